@@ -2,6 +2,7 @@
 #include "expr/native.h"
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "base/strbuf.h"
 #include "expr/native_emit.h"
 #include "expr/tape_interpret.h"
@@ -43,6 +44,25 @@ static struct {
     hn_native_counts counts;
     char reason[HN_DIAG_MESSAGE];
 } service = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+
+/// Compiled code, shared by all tapes that are equal.
+struct hn_native_loaded {
+    hn_tape *tape; ///< a copy of what was compiled
+    uint64_t hash;
+    void *handle;
+    hn_native_code code;
+    int refs;           ///< states, and the table below
+    unsigned long used; ///< of the table's count of uses, the last
+};
+
+/// The code that has been loaded lately: the next run of a scene has it from its first step.
+enum { KNOWN = 128 };
+static struct {
+    pthread_mutex_t lock;
+    hn_native_loaded *item[KNOWN];
+    int n;
+    unsigned long uses;
+} known = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static hn_native_call calls[HN_OP_COUNT];
 static _Thread_local int suspended;
@@ -94,6 +114,83 @@ static hn_tape *copy_tape(const hn_tape *tape) {
     return t;
 }
 
+// ---- code that is loaded ----
+
+static uint64_t hash_of(const hn_tape *t) {
+    uint64_t hash = 0;
+    hash = hn_hash_bytes(hash, t->code, ((size_t)t->info.instructions + 1) * sizeof *t->code);
+    hash = hn_hash_bytes(hash, t->constants, (size_t)t->n_constants * sizeof *t->constants);
+    return hn_hash_bytes(hash, t->outputs, (size_t)t->info.n_outputs * sizeof *t->outputs);
+}
+
+static bool same_tape(const hn_tape *a, const hn_tape *b) {
+    return memcmp(&a->info, &b->info, sizeof a->info) == 0 && a->n_constants == b->n_constants &&
+           memcmp(a->code, b->code, ((size_t)a->info.instructions + 1) * sizeof *a->code) == 0 &&
+           memcmp(a->constants, b->constants, (size_t)a->n_constants * sizeof *a->constants) == 0 &&
+           memcmp(a->outputs, b->outputs, (size_t)a->info.n_outputs * sizeof *a->outputs) == 0;
+}
+
+/// With the lock of the table held.
+static void release_loaded(hn_native_loaded *l) {
+    if (--l->refs == 0) {
+        dlclose(l->handle);
+        free_copy(l->tape);
+        free(l);
+    }
+}
+
+static hn_native_loaded *find_loaded(const hn_tape *tape) {
+    const uint64_t hash = hash_of(tape);
+    hn_native_loaded *found = NULL;
+    pthread_mutex_lock(&known.lock);
+    for (int i = 0; i < known.n && !found; i++) {
+        hn_native_loaded *l = known.item[i];
+        if (l->hash == hash && same_tape(l->tape, tape)) {
+            found = l;
+            l->refs++;
+            l->used = ++known.uses;
+        }
+    }
+    pthread_mutex_unlock(&known.lock);
+    return found;
+}
+
+/// Takes over `tape`; the table lets go of what was used longest ago where it is full.
+static hn_native_loaded *keep_loaded(hn_tape *tape, void *handle, hn_native_code code) {
+    hn_native_loaded *l = calloc(1, sizeof *l);
+    if (!l) {
+        return NULL;
+    }
+    pthread_mutex_lock(&known.lock);
+    *l = (hn_native_loaded){.tape = tape,
+                            .hash = hash_of(tape),
+                            .handle = handle,
+                            .code = code,
+                            .refs = 2,
+                            .used = ++known.uses};
+    int place = known.n;
+    if (known.n == KNOWN) {
+        place = 0;
+        for (int i = 1; i < KNOWN; i++) {
+            place = known.item[i]->used < known.item[place]->used ? i : place;
+        }
+        release_loaded(known.item[place]);
+    } else {
+        known.n++;
+    }
+    known.item[place] = l;
+    pthread_mutex_unlock(&known.lock);
+    return l;
+}
+
+static void forget_loaded(void) {
+    pthread_mutex_lock(&known.lock);
+    while (known.n > 0) {
+        release_loaded(known.item[--known.n]);
+    }
+    pthread_mutex_unlock(&known.lock);
+}
+
 // ---- states ----
 
 static int runs_in(double seconds, const hn_tape *tape) {
@@ -111,14 +208,18 @@ hn_native_state *hn_native_state_create(const hn_tape *tape) {
         s->look_at = s->look_at > 1 ? s->look_at : 1;
         s->build_at = s->build_at > s->look_at ? s->build_at : s->look_at + 1;
         atomic_init(&s->refs, 1);
+        s->loaded = find_loaded(tape);
+        atomic_init(&s->code, s->loaded ? s->loaded->code : NULL);
     }
     return s;
 }
 
 void hn_native_state_release(hn_native_state *s) {
     if (s && atomic_fetch_sub(&s->refs, 1) == 1) {
-        if (s->handle) {
-            dlclose(s->handle);
+        if (s->loaded) {
+            pthread_mutex_lock(&known.lock);
+            release_loaded(s->loaded);
+            pthread_mutex_unlock(&known.lock);
         }
         free(s);
     }
@@ -212,7 +313,20 @@ static hn_status obtain(const hn_tape *tape, bool build, void **handle, hn_nativ
     return status;
 }
 
-static void do_job(const job *j) {
+/// The code serves the tape of the job from now on; the job's copy of it goes to the table.
+static hn_status take_code(job *j, void *handle, hn_native_code code) {
+    hn_native_loaded *l = keep_loaded(j->copy, handle, code);
+    if (!l) {
+        dlclose(handle);
+        return HN_ERR_MEMORY;
+    }
+    j->copy = NULL;
+    j->state->loaded = l;
+    atomic_store_explicit(&j->state->code, code, memory_order_release);
+    return HN_OK;
+}
+
+static void do_job(job *j) {
     hn_diag diag = {0};
     hn_native_code code = NULL;
     bool cached = false;
@@ -220,11 +334,10 @@ static void do_job(const job *j) {
         return; // the look before the build found it
     }
     void *handle = NULL;
-    const hn_status status = obtain(j->copy, j->build, &handle, &code, &cached, &diag);
+    hn_status status = obtain(j->copy, j->build, &handle, &code, &cached, &diag);
+    HN_THEN(status, take_code(j, handle, code));
     pthread_mutex_lock(&service.lock);
     if (status == HN_OK) {
-        j->state->handle = handle;
-        atomic_store_explicit(&j->state->code, code, memory_order_release);
         service.counts.ready++;
         service.counts.from_cache += cached;
     } else if (j->build) {
@@ -354,6 +467,7 @@ void hn_native_stop(void) {
     }
     service.first = NULL;
     service.started = service.is_open = false;
+    forget_loaded();
 }
 
 void hn_native_wait(void) {

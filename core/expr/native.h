@@ -7,7 +7,8 @@
 // One service for the process, off until hn_native_start(): it owns a thread and a queue. The
 // interpreter serves until then, and for ever where there is no compiler, the compilation fails or
 // takes too long, or the folder cannot be used. A tape is looked up in the folder after 2 ms of
-// interpretation and compiled after 20 ms, so short runs start nothing. Before compiled code is
+// interpretation and compiled after 20 ms, so short runs start nothing. Code stays loaded for the
+// next tape that is equal, which then has it from its first evaluation. Before compiled code is
 // taken it is run beside the interpreter at several states; one different bit, and it is dropped.
 
 #include "base/diag.h"
@@ -69,13 +70,15 @@ HN_MUST_CHECK hn_status hn_native_measure(const struct hn_tape *tape, hn_native_
 
 // ---- for tape.c and tape_compile.c ----
 
+typedef struct hn_native_loaded hn_native_loaded;
+
 /// What a tape has of the service. Shared by the tape and the queue.
 typedef struct hn_native_state {
     _Atomic(hn_native_code) code; ///< NULL: the interpreter serves
     atomic_int runs;              ///< interpreted so far; loses some where threads share the tape
     int look_at, build_at;        ///< numbers of runs at which the queue is asked
     atomic_int refs;
-    void *handle;
+    struct hn_native_loaded *loaded; ///< what the code belongs to
 } hn_native_state;
 
 /// Returns the state of a new tape, or NULL while the service is off or memory is out.

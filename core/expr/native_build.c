@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define _GNU_SOURCE // environ
+#define _GNU_SOURCE // environ, memfd_create
 #include "expr/native_build.h"
 
 #include "base/clock.h"
@@ -13,6 +13,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -209,25 +210,47 @@ static void path_of(const hn_native_builder *b, uint64_t key, const char *suffix
     snprintf(out, 2 * HN_NATIVE_PATH, "%s/%s%s", b->folder, hex, suffix);
 }
 
-/// Whether an open file is what hn_native_build() put there, to the last byte.
-static bool is_sound(int fd, uint64_t key) {
+/// The bytes of an open file if they are what hn_native_build() put there, else NULL; free them.
+static char *read_sound(int fd, uint64_t key, size_t *n) {
     struct stat info;
     if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode) || info.st_uid != geteuid() ||
         (info.st_mode & (S_IWGRP | S_IWOTH)) != 0 || info.st_size <= (off_t)sizeof(footer) ||
         info.st_size > MOST_BYTES) {
-        return false;
+        return NULL;
     }
-    const size_t n = (size_t)info.st_size;
-    char *bytes = malloc(n);
+    *n = (size_t)info.st_size;
+    char *bytes = malloc(*n);
     footer f = {0};
-    bool sound = bytes && pread(fd, bytes, n, 0) == (ssize_t)n;
+    bool sound = bytes && pread(fd, bytes, *n, 0) == (ssize_t)*n;
     if (sound) {
-        memcpy(&f, bytes + n - sizeof f, sizeof f);
+        memcpy(&f, bytes + *n - sizeof f, sizeof f);
         sound = memcmp(f.magic, MAGIC, sizeof MAGIC) == 0 && f.key == key &&
-                f.checksum == hn_hash_bytes(HN_HASH_START, bytes, n - sizeof f);
+                f.checksum == hn_hash_bytes(HN_HASH_START, bytes, *n - sizeof f);
+    }
+    if (!sound) {
+        free(bytes);
+        return NULL;
+    }
+    return bytes;
+}
+
+/// Opens a copy in memory of the file at `path`, if it is sound; -1: it is not, or memory is out.
+/// Whatever happens to the file from now on, the program runs what has been checked.
+static int open_checked(const char *path, uint64_t key) {
+    const int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) {
+        return -1;
+    }
+    size_t n = 0;
+    char *bytes = read_sound(fd, key, &n);
+    close(fd);
+    int copy = bytes ? memfd_create("holonom-tape", MFD_CLOEXEC) : -1;
+    if (copy >= 0 && write(copy, bytes, n) != (ssize_t)n) {
+        close(copy);
+        copy = -1;
     }
     free(bytes);
-    return sound;
+    return copy;
 }
 
 /// A name for an open file that no other call gives: the dynamic linker takes a name it knows for
@@ -247,15 +270,11 @@ hn_status hn_native_load(const hn_native_builder *b, const char *text, size_t n,
     char path[2 * HN_NATIVE_PATH], open_file[160];
     const uint64_t key = key_of(b, text, n);
     path_of(b, key, ".so", path);
-    const int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (fd < 0 || !is_sound(fd, key)) {
-        if (fd >= 0) {
-            close(fd);
-        }
+    const int fd = open_checked(path, key);
+    if (fd < 0) {
         return HN_ERR_IO;
     }
 
-    // the very file that was checked, whatever stands under its name by now
     unique_name(fd, open_file);
     *handle = dlopen(open_file, RTLD_NOW | RTLD_LOCAL);
     close(fd);

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "expr/tape_internal.h"
 #include "expr/construct.h"
 #include "expr/native.h"
 #include "expr/parse.h"
@@ -248,6 +249,32 @@ static void what_was_compiled_once_is_found_again(void **state) {
     assert_int_equal(counts.from_cache, 1);
 }
 
+static void an_equal_tape_has_the_code_that_is_loaded_from_the_start(void **state) {
+    (void)state;
+    start(NULL);
+    (void)run_small(); // compiled; the tape itself is gone
+    const int before = hn_native_get_counts().ready;
+    hn_tape *again = small(), *other = long_tape(20);
+    assert_non_null(atomic_load(&again->native->code));
+    assert_null(atomic_load(&other->native->code));
+    assert_int_equal(hn_native_get_counts().ready, before); // nothing was loaded
+    hn_tape_free(again);
+    hn_tape_free(other);
+}
+
+static void a_file_that_is_cut_while_its_code_runs_harms_nothing(void **state) {
+    (void)state;
+    start(NULL);
+    (void)run_small();
+    find_file();
+    assert_int_equal(truncate(path, 0), 0);
+    hn_tape *again = small();
+    double out[4 * STATES];
+    assert_non_null(atomic_load(&again->native->code));
+    eval_all(again, out);
+    hn_tape_free(again);
+}
+
 static void flip_a_byte(void) {
     FILE *f = fopen(path, "r+b");
     assert_non_null(f);
@@ -481,6 +508,8 @@ int main(void) {
         ROW(every_operator_gives_the_bits_of_the_interpreter),
         ROW(a_tape_in_pieces_gives_the_bits_of_the_interpreter),
         ROW(what_was_compiled_once_is_found_again),
+        ROW(an_equal_tape_has_the_code_that_is_loaded_from_the_start),
+        ROW(a_file_that_is_cut_while_its_code_runs_harms_nothing),
         ROW(a_file_that_was_changed_is_compiled_anew),
         ROW(a_compiler_that_fails_leaves_the_interpreter),
         ROW(a_compiler_that_hangs_is_killed),
