@@ -24,6 +24,8 @@ import { createTransport } from "./views/transport.js";
 import { createUndoButtons } from "./views/undo.js";
 import { createVerdictBar } from "./views/verdict-bar.js";
 import { createWhyCard } from "./views/why-card.js";
+import { acceptFiles } from "./widgets/drop.js";
+import { loadStyle } from "./widgets/dom.js";
 import { saveFile } from "./widgets/save.js";
 import { createTheme } from "./widgets/theme.js";
 import { createTips } from "./widgets/tips.js";
@@ -69,6 +71,16 @@ const openExport = onDemand(async () => {
   const { createExportDialog } = await import("./views/export-dialog.js");
   return createExportDialog(document.body, store, session);
 });
+/** A view with a style sheet of its own. @param {string} sheet @param {() => Promise<any>} make */
+const styled = (sheet, make) =>
+  onDemand(async () => {
+    const [view] = await Promise.all([make(), loadStyle(`/style/${sheet}.css`)]);
+    return view;
+  });
+const openGallery = styled("gallery", async () => {
+  const { createGallery } = await import("./views/gallery.js");
+  return createGallery(document.body, store, session);
+});
 const openStudy = onDemand(async () => {
   const { createStudies } = await import("./views/studies.js");
   return createStudies(document.body, store, session);
@@ -83,15 +95,23 @@ store.on("view", () => {
 /** Keys that open something; all others are actions of the session. */
 const OPENERS = { help: openKeys, study: openStudy };
 const guide = createGuide(store, session, { openStudy });
+const mechanism = createDrawing(at("mechanism"), store, session);
+const openEditor = styled("editor", async () => {
+  const { createEditor } = await import("./views/editor/editor.js");
+  return createEditor(document.body, store, session, mechanism);
+});
+acceptFiles(document.body, openEditor);
 const views = [
   createHeader(at("top"), store, session, {
     toggleTheme: theme.toggle,
     openKeys,
     openStudy,
     openExport,
+    openGallery,
+    openEditor,
     openGuide: guide.open,
   }),
-  createDrawing(at("mechanism"), store, session),
+  mechanism,
   createTear(/** @type {HTMLElement} */ (document.querySelector(".stage")), store),
   createLook(at("mechanism"), store, session),
   createTransport(at("transport"), store, session),

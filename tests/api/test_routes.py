@@ -73,6 +73,39 @@ class Catalogue(driver.ServerCase):
         self.assertEqual(scene["dof"], 1)
         self.assertLess(scene["assembly"]["gap"], 1e-12)
 
+    def test_a_scene_is_had_as_the_file_it_was_written_in(self):
+        answer = self.server.ask("GET", "/api/v1/scenes/four-bar/document")
+        self.assertEqual((answer.status, answer.json()["name"]), (200, "four-bar"))
+        self.assertIn(b"\n", answer.body)
+        self.assertEqual(self.server.ask("GET", "/api/v1/scenes/five-barr/document").status, 404)
+        self.assertIn("joint", self.get("/api/v1/schema")["$defs"])
+
+    def test_a_model_of_another_program_becomes_a_scene(self):
+        text = ('<mujoco><worldbody><body name="arm"><joint name="j" axis="0 0 1"/>'
+                '<geom type="sphere" pos="1 0 0" size="0.1" mass="2" rgba="1 0 0 1"/></body></worldbody></mujoco>')
+        answer = self.server.ask("POST", "/api/v1/import", {"text": text, "name": "arm"}).json()
+        scene = json.loads(answer["document"])
+        self.assertEqual((answer["format"], scene["name"], scene["bodies"][0]["mass"]), ("MJCF", "arm", 2))
+        self.assertTrue(answer["notes"])
+        made = self.server.ask("POST", "/api/v1/assemble", {"scene": scene})
+        self.assertEqual(made.status, 200)
+        bad = self.server.ask("POST", "/api/v1/import", {"text": "<robot>"})
+        self.assertEqual(bad.status, 422)
+        self.assertIn("line", bad.json()["errors"][0]["detail"])
+
+    def test_pictures_of_lessons_are_served_and_no_other_file(self):
+        lesson = self.get("/api/v1/lessons")["lessons"][0]["id"]
+        picture = self.server.ask("GET", f"/api/v1/lessons/{lesson}/pictures/four-bar.png")
+        self.assertEqual((picture.status, picture.headers["content-type"]), (200, "image/png"))
+        for path in ("..%2ftext.md", "four-bar.json", ".png", "a.b.png", "nothing.png"):
+            self.assertEqual(self.server.ask("GET", f"/api/v1/lessons/{lesson}/pictures/{path}").status, 404, path)
+
+    def test_joints_say_where_they_sit(self):
+        scene = self.get("/api/v1/scenes/four-bar")
+        self.assertEqual([b["name"] for b in scene["bodies"]], ["crank", "coupler", "rocker"])
+        crank = scene["joints"][0]
+        self.assertEqual((crank["type"], crank["parent"], crank["child_axis"]), ("revolute", -1, [0, 0, 1]))
+
     def test_a_setting_in_the_query_moves_the_scene(self):
         scene = self.get("/api/v1/scenes/four-bar")
         name, value = scene["parameters"][0]["name"], scene["parameters"][0]["value"] * 1.05

@@ -2,7 +2,7 @@
 // @ts-check
 // The one place that speaks to the server: requests, and problem documents turned into errors.
 
-const BASE = "/api/v1";
+export const BASE = "/api/v1";
 
 /** What the server refused, with the fields at fault. */
 export class Problem extends Error {
@@ -40,7 +40,7 @@ export function sentenceOf(error) {
  * @param {unknown} [body]
  * @returns {Promise<any>}
  */
-async function request(method, path, body) {
+export async function request(method, path, body) {
   /** @type {RequestInit} */
   const init = { method, headers: { Accept: "application/json" } };
   if (body !== undefined) {
@@ -94,7 +94,7 @@ export const api = {
     }
     return request("GET", `${BASE}/scenes/${id}/reference?${query}`);
   },
-  /** @param {string} scene @param {Record<string, number>} settings */
+  /** @param {string | object} scene @param {Record<string, number>} settings */
   equations: (scene, settings) =>
     request("POST", `${BASE}/equations`, { scene, parameters: settings, format: "json" }),
   /** @param {object} body */

@@ -5,7 +5,7 @@
 import { api, sentenceOf } from "../api/client.js";
 import { namedState } from "../state/reactions.js";
 import { isStart, settingsWithStart } from "../state/start.js";
-import { shownIndex } from "../state/store.js";
+import { shownIndex, sourceOf } from "../state/store.js";
 
 /**
  * @typedef {{
@@ -42,7 +42,7 @@ export function createDragActions(store, exchange, notice) {
     }
     try {
       const answer = await api.drag({
-        scene: data.scene.id,
+        scene: sourceOf(data),
         parameters: parametersOf(settings),
         state: drag.state,
         ...body,

@@ -5,6 +5,7 @@
 // Problem.
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { createStream } from "../api/stream.js";
+import { sourceOf } from "../state/store.js";
 import { createReceiver } from "./receive.js";
 
 /**
@@ -113,6 +114,7 @@ export function createExchange(store, notice) {
       api.createComparison({ paused: true, ...asked }),
     );
     data.refused = refused;
+    data.document = typeof body.scene === "object" ? body.scene : null;
     adopt(description);
     if (old) {
       api
@@ -123,7 +125,7 @@ export function createExchange(store, notice) {
 
   /** What makes the present comparison again. */
   const presentBody = () => ({
-    scene: data.scene.id,
+    scene: sourceOf(data),
     parameters: data.settings,
     methods: data.methods.map((m) => m.spelling),
     speed: data.speed,

@@ -18,7 +18,7 @@ export function createKeeper(store, fragmentOf) {
 
   function keep() {
     timer = 0;
-    const now = data.scene && data.state !== "running" ? fragmentOf() : "";
+    const now = data.scene && !data.document && data.state !== "running" ? fragmentOf() : "";
     if (opened && now && now !== opened) {
       rememberSession(now);
     }

@@ -6,6 +6,7 @@ import { Problem, api, sentenceOf } from "../api/client.js";
 import { limits, readIndex } from "../state/catalogue.js";
 import { plain } from "../state/format.js";
 import { LONGEST_NOTE, decodeLink, encodeLink, fits } from "../state/link.js";
+import { sourceOf } from "../state/store.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
 import { isStart } from "../state/start.js";
 import { createKeeper } from "./keeper.js";
@@ -22,6 +23,9 @@ const FIRST_METHODS = [
   "nullspace@rk4:h=0.02",
   "reduced@rk4:h=0.02",
 ];
+
+/** @param {{spelling: string}} method */
+const spellingOf = ({ spelling }) => spelling;
 
 /**
  * Takes the parameters that the scene does not have, or not with that value, out of a link.
@@ -238,6 +242,12 @@ export function createSceneActions(store, exchange, notice) {
     endOffer: keeper.endOffer,
     /** Copies the link to what is shown, and puts it into the address line. */
     async share() {
+      if (data.document) {
+        const text = `${JSON.stringify(data.document, null, 2)}\n`;
+        store.emit("file", { name: `${data.scene.id}.json`, type: "application/json", text });
+        notice("this scene is yours: it was saved as a file; drop it on the page to open it again");
+        return;
+      }
       const fragment = fragmentOf();
       if (!fits(fragment)) {
         saveAsFile(fragment);
@@ -266,10 +276,24 @@ export function createSceneActions(store, exchange, notice) {
       const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
       await exchange.create({ scene: id, methods, speed, parameters: link?.settings ?? {} });
     },
+    /**
+     * Opens a scene that is none of the shipped ones. The one that runs goes on when the server
+     * refuses it.
+     * @param {any} document
+     * @param {{settings: Record<string, number>, methods: string[]}} [link]
+     */
+    async loadDocument(document, link) {
+      const present = data.methods.map(spellingOf);
+      const suggested = document?.methods?.length ? document.methods : present;
+      const wanted = link?.methods ?? (data.document ? present : suggested);
+      const methods = wanted.slice(0, limits().methods);
+      const parameters = link?.settings ?? {};
+      await exchange.create({ scene: document, methods, speed: data.speed, parameters });
+    },
     endSession: keeper.dispose,
-    equations: () => api.equations(data.scene?.id ?? "", data.settings),
+    equations: () => api.equations(sourceOf(data), data.settings),
     /** Every term of the equations at one state. @param {{t: number, state: object}} at */
-    terms: (at) => api.terms({ scene: data.scene?.id ?? "", parameters: data.settings, ...at }),
+    terms: (at) => api.terms({ scene: sourceOf(data), parameters: data.settings, ...at }),
   };
   return actions;
 }

@@ -5,6 +5,7 @@
 // that asked.
 import { createReactionFeed } from "../state/reaction-feed.js";
 import { createReferenceFeed } from "../state/reference.js";
+import { sourceOf } from "../state/store.js";
 import { createStudyFeed } from "../state/studies.js";
 import { createDragActions } from "./drag.js";
 import { createExchange } from "./exchange.js";
@@ -31,9 +32,11 @@ export function createSession(store) {
   const undo = createUndo(
     store,
     ({ scene, settings, methods }) =>
-      scene === store.data.scene.id
+      JSON.stringify(scene) === JSON.stringify(sourceOf(store.data))
         ? exchange.restart({ parameters: settings, methods })
-        : scenes.loadScene(scene, { settings, methods }),
+        : typeof scene === "string"
+          ? scenes.loadScene(scene, { settings, methods })
+          : scenes.loadDocument(scene, { settings, methods }),
     notice,
   );
 

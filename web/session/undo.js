@@ -2,6 +2,7 @@
 // @ts-check
 // Undo and redo of changes that start the runs anew: methods, parameters, the start, the scene.
 import { sentenceOf } from "../api/client.js";
+import { sourceOf } from "../state/store.js";
 
 const MOST = 100; // changes that are remembered
 const TOGETHER = 1000; // [ms] between changes of one value, as by a slider: they are one change
@@ -13,7 +14,7 @@ function differenceOf(a, b) {
   const changed = [...names].filter((name) => one.settings[name] !== other.settings[name]);
   const methods = JSON.stringify(one.methods) !== JSON.stringify(other.methods);
   return [
-    one.scene === other.scene ? "" : other.scene,
+    JSON.stringify(one.scene) === JSON.stringify(other.scene) ? "" : "scene",
     methods ? "methods" : "",
     ...changed,
   ].join();
@@ -36,7 +37,7 @@ export function createUndo(store, apply, notice) {
 
   const snapshot = () =>
     JSON.stringify({
-      scene: data.scene.id,
+      scene: sourceOf(data),
       settings: data.settings,
       methods: data.methods.map(({ spelling }) => spelling),
     });

@@ -127,6 +127,18 @@ const TYPED = {
   m: { in: 0.0254, ft: 0.3048, cm: 0.01, dm: 0.1 },
   kg: { g: 1e-3, t: 1e3, lb: 0.45359237 },
   N: { lbf: 4.4482216152605 },
+  "N·m": {
+    Nm: 1,
+    "N·cm": 0.01,
+    "N·mm": 1e-3,
+    "lb·in": 0.1129848290276167,
+    "lbf·in": 0.1129848290276167,
+    "lb·ft": 1.3558179483314,
+    "lbf·ft": 1.3558179483314,
+  },
+  "N/m": { "N/mm": 1e3, "N/cm": 100, "lb/in": 175.126835246476, "lbf/in": 175.126835246476 },
+  "N·m/rad": { "N·m/deg": 180 / Math.PI, "N·m/°": 180 / Math.PI },
+  "kg·m²": { "kg·cm²": 1e-4, "g·cm²": 1e-7, "lb·in²": 2.92639653e-4, "lb·ft²": 0.0421401101 },
   s: { min: 60 },
   rad: { deg: Math.PI / 180, "°": Math.PI / 180 },
   "rad/s": { "deg/s": Math.PI / 180, "°/s": Math.PI / 180, rpm: Math.PI / 30 },
@@ -134,19 +146,21 @@ const TYPED = {
 };
 
 /**
- * Reads "0.02", "0,02", "2e-2 s", "20 ms", "45 cm", "30 deg". The unit may be left out; a unit of
+ * Reads "0.02", "0,02", "2e-2 s", "20 ms", "45 cm", "30 deg", "5 lb in". The unit may be left out; a unit of
  * another quantity is refused.
  * @param {string} text
  * @param {string} unit
  * @returns {number} NaN when it is no number in this unit
  */
 export function parseQuantity(text, unit) {
-  const match = /^\s*([-+−]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+−]?\d+)?)\s*(\S*)\s*$/.exec(text);
+  const match = /^\s*([-+−]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+−]?\d+)?)\s*(\D?.*?)\s*$/.exec(
+    text,
+  );
   if (!match) {
     return NaN;
   }
   const value = Number(match[1].replace(",", ".").replaceAll("−", "-"));
-  const tail = prettyUnit(match[2]);
+  const tail = prettyUnit(match[2]).replace(/\s+/g, "·");
   if (tail === "" || tail === unit) {
     return value;
   }

@@ -4,6 +4,7 @@
 // selected method at the time shown.
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { namedState, pointAt } from "./reactions.js";
+import { sourceOf } from "./store.js";
 
 const PAUSE = 100; // [ms] between an answer and the next question while the mechanism moves
 
@@ -33,7 +34,7 @@ export function createReactionFeed(store) {
     const t = history.t[index];
     try {
       const answer = await api.terms({
-        scene: scene.id,
+        scene: sourceOf(data),
         parameters: settings,
         t,
         state: namedState(scene.coordinates, q, v),

@@ -5,6 +5,7 @@
 // that.
 import { api, sentenceOf } from "../api/client.js";
 import { isStart } from "./start.js";
+import { sourceOf } from "./store.js";
 
 const MOST_SAMPLES = 1200;
 const MOST_NUMBERS = 300000; // the server's bound is a little above
@@ -66,7 +67,7 @@ export function createReferenceFeed(store) {
 
   const keyOf = () =>
     data.scene
-      ? JSON.stringify([data.scene.id, changedSettings(data), data.frameDt, strideOf(data)])
+      ? JSON.stringify([sourceOf(data), changedSettings(data), data.frameDt, strideOf(data)])
       : "";
 
   /** @param {Reference} reference */
@@ -115,7 +116,9 @@ export function createReferenceFeed(store) {
       return;
     }
     const changed = Object.keys(changedSettings(data));
-    if (changed.length > 0 && changed.every(isStart)) {
+    if (data.document) {
+      tell(without(key, "none", "only shipped scenes have one"));
+    } else if (changed.length > 0 && changed.every(isStart)) {
       ask(true); // the mechanism is the one that the scene's own reference solution was made for
     } else if (changed.length > 0) {
       tell(without(key, "none", "none is stored for these parameters"));

@@ -74,6 +74,9 @@ function initialData() {
     id: "",
     generation: -1,
     /** counts the starts: no two runs, of whatever comparison, have the same number */ run: 0,
+    /** the scene itself, where it is none of the shipped ones; null: it has an id
+     * @type {object | null} */
+    document: null,
     /** null until the first comparison is there */
     scene: /** @type {Scene} */ (/** @type {any} */ (null)),
     /** @type {Method[]} */ methods: [],
@@ -142,6 +145,9 @@ export function createStore() {
     },
   };
 }
+
+/** What requests call the scene by: its id, or the whole of it. @param {Data} data */
+export const sourceOf = (data) => data.document ?? data.scene?.id ?? "";
 
 /**
  * Index of the frame that is shown; -1 when there is none.

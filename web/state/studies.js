@@ -74,14 +74,15 @@ function widerAxes(catalogue, spelling, keys) {
  * What the server is asked.
  * @param {string} kind
  * @param {{
- *   scene: {id: string}, settings: Record<string, number>, methods: {spelling: string}[],
+ *   scene: {id: string}, document?: object | null,
+ *   settings: Record<string, number>, methods: {spelling: string}[],
  *   catalogue: Catalogue,
  * }} data
  * @param {string} preset of a map
  */
-export function orderOf(kind, { scene, settings, methods, catalogue }, preset) {
+export function orderOf(kind, { scene, document, settings, methods, catalogue }, preset) {
   const all = methods.map(({ spelling }) => spelling);
-  const common = { scene: scene.id, parameters: settings, kind };
+  const common = { scene: document ?? scene.id, parameters: settings, kind };
   if (kind === "stability") {
     const chosen = presets().find(({ name }) => name === preset);
     const fitting = chosen

@@ -10,7 +10,8 @@ import { h } from "../widgets/dom.js";
  * @param {import("../state/store.js").Store} store
  * @param {import("../session/session.js").Session} actions
  * @param {{toggleTheme: () => void, openKeys: () => void, openStudy: (kind: string) => void,
- *   openExport: () => void, openGuide: () => void}} open
+ *   openExport: () => void, openGuide: () => void, openGallery: () => void,
+ *   openEditor: () => void}} open
  */
 export function createHeader(el, store, actions, open) {
   const data = store.data;
@@ -24,7 +25,16 @@ export function createHeader(el, store, actions, open) {
   const theme = button("dark", "", open.toggleTheme);
   const about = h("p", { class: "about scene-about" });
   el.append(
-    h("div", { class: "scene-pick" }, h("label", { for: "scene" }, "Scene"), menu),
+    h(
+      "div",
+      { class: "scene-pick" },
+      h("label", { for: "scene" }, "Scene"),
+      menu,
+      button("gallery", "all scenes with pictures", open.openGallery),
+      button("edit", "this scene as a document; build with the mouse; open a file", () =>
+        open.openEditor(),
+      ),
+    ),
     about,
     h(
       "div",
@@ -71,6 +81,16 @@ export function createHeader(el, store, actions, open) {
     menu.disabled = false;
   }
 
+  /** A scene that is none of the shipped ones has an entry of its own, as long as it runs. */
+  function showScene() {
+    menu.querySelector("[data-own]")?.remove();
+    if (data.document) {
+      const title = `${data.scene.title || data.scene.id} (yours)`;
+      menu.prepend(h("option", { value: "", "data-own": "true" }, title));
+    }
+    menu.value = data.document ? "" : (data.scene?.id ?? "");
+  }
+
   function showTheme() {
     theme.textContent = data.theme === "dark" ? "light" : "dark";
     theme.setAttribute("aria-label", `${theme.textContent} theme`);
@@ -79,7 +99,7 @@ export function createHeader(el, store, actions, open) {
   const stop = listen(store, {
     ready: fill,
     scene: () => {
-      menu.value = data.scene?.id ?? "";
+      showScene();
       menu.title = data.scene?.title ?? "";
       about.textContent = (data.scene?.about ?? "").split(/(?<=\.)\s/)[0];
     },

@@ -6,6 +6,7 @@
 #include "http/routes/catalogue.h"
 #include "http/routes/exports.h"
 #include "http/routes/openapi.h"
+#include "http/routes/scene_files.h"
 #include "http/routes/stateless.h"
 #include "http/runs/runs.h"
 #include "http/studies/studies.h"
@@ -34,6 +35,14 @@ static const double LONGEST_RUN = 1e6; // [s]
 
 static const char *const EQUATION_FORMATS[] = {"text", "latex", "json", NULL};
 static const char *const STATES[] = {"running", "paused", NULL};
+
+static const hn_field IMPORT[] = {
+    {.name = "text", .type = HN_FIELD_TEXT, .required = 1, .about = "MJCF or URDF: XML"},
+    {.name = "name", .type = HN_FIELD_TEXT, .about = "of the scene; the model's own when left out"},
+    {.name = "loops",
+     .type = HN_FIELD_TEXT,
+     .about = "URDF: the joints that close its loops, as JSON text"},
+    END_OF_FIELDS};
 
 static const hn_field SCENE_ONLY[] = {SCENE_FIELDS, END_OF_FIELDS};
 
@@ -290,6 +299,16 @@ static const hn_route ROUTES[] = {
      "Every shipped scene", NULL, NULL},
     {"GET", "/api/v1/scenes/{id}", HN_WORK_QUICK, hn_handle_scene, NULL, JSON, "200", "Scene",
      "One scene, assembled: what a page needs to draw it", SCENE_QUERY, NULL},
+    {"GET", "/api/v1/scenes/{id}/document", HN_WORK_QUICK, hn_handle_scene_document, NULL, JSON,
+     "200", "Document", "The file of a scene, as it was written", NULL, NULL},
+    {"GET", "/api/v1/schema", HN_WORK_QUICK, hn_handle_scene_schema, NULL, JSON, "200", "Document",
+     "The JSON schema of scene files", NULL, NULL},
+    {"POST", "/api/v1/import", HN_WORK_HEAVY, hn_handle_import, IMPORT, JSON, "200", "Document",
+     "A model of another program (MJCF, URDF) as a scene, with notes on what is not in it", NULL,
+     "{\"text\":\"<robot name='arm'><link name='base'/><link name='arm'><inertial><mass "
+     "value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+     "<joint name='j' type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 0 "
+     "1'/></joint></robot>\"}"},
     {"GET", "/api/v1/scenes/{id}/reference", HN_WORK_HEAVY, hn_handle_reference, NULL, JSON, "200",
      "Reference", "The reference solution of a scene: by two means, with the digits they share",
      REFERENCE_QUERY, NULL},
@@ -309,6 +328,8 @@ static const hn_route ROUTES[] = {
      "Lessons with their scenes and problems", NULL, NULL},
     {"GET", "/api/v1/lessons/{id}", HN_WORK_LIGHT, hn_handle_lesson, NULL, JSON, "200", "Lesson",
      "A lesson by number or id, as a tree of blocks", NULL, NULL},
+    {"GET", "/api/v1/lessons/{id}/pictures/{name}", HN_WORK_QUICK, hn_handle_lesson_picture, NULL,
+     "image/png image/svg+xml", "200", "Picture", "A picture that a lesson shows", NULL, NULL},
     {"GET", "/api/v1/problems", HN_WORK_LIGHT, hn_handle_problems, NULL, JSON, "200", "Problems",
      "Problems that can be graded", NULL, NULL},
     {"GET", "/api/v1/errors", HN_WORK_LIGHT, hn_handle_errors, NULL, JSON, "200", "Document",

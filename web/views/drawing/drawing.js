@@ -184,6 +184,10 @@ export function createDrawing(el, store, actions) {
   });
 
   return {
+    /** for views that draw on the picture, or ask where a pixel is */
+    stage,
+    frame,
+    overlay: layers.labels.parentNode,
     update,
     dispose() {
       stop();

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// The scene as a document beside the drawing. What is typed runs as soon as it is a scene; until
+// then the last good one goes on, and every fault is named at its line.
+import { Problem, sentenceOf } from "../../api/client.js";
+import { documents } from "../../api/documents.js";
+import { offersAt } from "../../state/completion.js";
+import { caretIn, lineOf, parseText, placeOf, placesOf } from "../../state/json-text.js";
+import { writeScene } from "../../state/scene-parts.js";
+import { listen } from "../../state/store.js";
+import { h, say, set } from "../../widgets/dom.js";
+import { saveFile } from "../../widgets/save.js";
+import { createOffers } from "./offers.js";
+import { createEditorTools } from "./tools.js";
+
+const PAUSE = 450; // [ms] after the last key before the server is asked
+const MOST_UNDONE = 100;
+const MODELS = /\.(xml|urdf|mjcf)$/i;
+const NEW_SCENE = `{
+  "holonom": 1,
+  "name": "mine",
+  "title": "My mechanism",
+  "parameters": {},
+  "gravity": [0, -9.81],
+  "bodies": [
+    {"name": "bar1", "mass": 1, "com": [0.5, 0], "inertia": {"zz": 0.0833}, "draw": [{"bar": [[0, 0], [1, 0]]}]}
+  ],
+  "joints": [
+    {"name": "P1", "type": "revolute", "parent": {"body": "ground", "at": [0, 0]}, "child": {"body": "bar1"}, "coordinate": "th1", "rate": "w1"}
+  ],
+  "start": {"positions": {"th1": 0.3}},
+  "duration": 10
+}
+`;
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../../state/store.js").Store} store
+ * @param {import("../../session/session.js").Session} actions
+ * @param {Parameters<typeof createEditorTools>[1]} drawing
+ */
+export function createEditor(el, store, actions, drawing) {
+  const data = store.data;
+  let schema = null;
+  let lastGood = /** @type {any} */ (null);
+  let timer = 0;
+  let asked = 0;
+  /** texts before changes by the mouse @type {string[]} */
+  const before = [];
+
+  const field = h("textarea", {
+    id: "editor-text",
+    class: "editor-text",
+    spellcheck: "false",
+    autocomplete: "off",
+    wrap: "off",
+    "aria-label": "Scene document",
+    "aria-describedby": "editor-state",
+    oninput: onInput,
+    onkeydown: onKey,
+    onscroll: () => {
+      gutter.scrollTop = field.scrollTop;
+    },
+    onblur: () => offers.close(),
+  });
+  const gutter = h("div", { class: "editor-lines", "aria-hidden": "true" });
+  const state = h("p", { id: "editor-state", role: "status", class: "about" });
+  const faults = h("ul", { class: "editor-faults" });
+  const offers = createOffers(field, findOffers, takeOffer);
+  const tools = createEditorTools(data, drawing, {
+    change,
+    tell: (text) => say(state, text),
+    begin: () => actions.reset(),
+  });
+  const file = h("input", {
+    type: "file",
+    accept: ".json,.xml,.urdf,.mjcf",
+    class: "hidden",
+    tabindex: "-1",
+    "aria-label": "Scene, MJCF or URDF file",
+    onchange: () => file.files?.[0] && openFile(file.files[0]),
+  });
+  const button = (word, tip, onclick) =>
+    h("button", { type: "button", class: "quiet", "data-tip": tip, onclick }, word);
+  const panel = h(
+    "section",
+    { class: "editor", "aria-label": "Scene document", hidden: true },
+    h(
+      "div",
+      { class: "card-head" },
+      h("h2", {}, "Scene document"),
+      tools.node,
+      h(
+        "div",
+        { class: "choices" },
+        button("undo", "takes back what was added with the mouse", undo),
+        button("new", "a document with one bar", () => put(NEW_SCENE)),
+        button("open", "a scene, MJCF or URDF file; or drop it on the page", () => file.click()),
+        button("save", "the document as a file", save),
+        button("close", "the scene goes on running", close),
+      ),
+    ),
+    h("div", { class: "editor-field" }, gutter, field),
+    offers.list,
+    h("div", { class: "editor-foot" }, state, faults, file),
+  );
+  el.append(panel);
+
+  function showLines() {
+    const count = field.value.split("\n").length;
+    const bad = new Set(
+      [...faults.querySelectorAll("[data-line]")].map((one) =>
+        Number(one.getAttribute("data-line")),
+      ),
+    );
+    gutter.replaceChildren(
+      ...Array.from({ length: count }, (_, i) =>
+        h("div", { class: bad.has(i + 1) ? "bad" : "" }, String(i + 1)),
+      ),
+    );
+    gutter.scrollTop = field.scrollTop;
+  }
+
+  /** @param {{message: string, hint?: string, offset: number}[]} list */
+  function showFaults(list) {
+    faults.replaceChildren(
+      ...list.map(({ message, hint, offset }) => {
+        const { line } = lineOf(field.value, offset);
+        const go = () => {
+          field.focus();
+          field.setSelectionRange(offset, offset);
+          field.scrollTop = Math.max(0, (line - 5) * 20);
+        };
+        return h(
+          "li",
+          { "data-line": String(line) },
+          h("button", { type: "button", class: "quiet", onclick: go }, `line ${line}`),
+          h("span", {}, hint ? `${message} (${hint})` : message),
+        );
+      }),
+    );
+    set(field, { "aria-invalid": list.length ? "true" : null });
+    showLines();
+  }
+
+  /** The faults that the server found, each at its place in the text. @param {unknown} error */
+  function faultsOf(error) {
+    const places = placesOf(field.value);
+    const list = error instanceof Problem ? error.errors : [];
+    return list.length
+      ? list.map(({ detail, hint, pointer = "" }) => ({
+          message: detail,
+          hint,
+          offset: placeOf(places, pointer.replace(/^\/scene/, "")),
+        }))
+      : [{ message: sentenceOf(error), offset: 0 }];
+  }
+
+  /** Runs what stands there, or says why it does not. */
+  async function run() {
+    clearTimeout(timer);
+    const number = ++asked;
+    const { value, fault } = parseText(field.value);
+    if (fault) {
+      showFaults([fault]);
+      say(state, "not a scene yet: the last good one runs");
+      return;
+    }
+    say(state, "asking the server");
+    try {
+      await actions.loadDocument(value);
+      if (number === asked) {
+        lastGood = value;
+        showFaults([]);
+        say(state, `runs: ${data.scene.caption}`);
+      }
+    } catch (error) {
+      if (number === asked) {
+        showFaults(faultsOf(error));
+        say(state, "not a scene yet: the last good one runs");
+      }
+    }
+  }
+
+  function onInput() {
+    showLines();
+    clearTimeout(timer);
+    asked++;
+    timer = window.setTimeout(run, PAUSE);
+    const caret = field.selectionStart;
+    if (/["\w]/.test(field.value[caret - 1] ?? "")) {
+      offers.open();
+    } else {
+      offers.close();
+    }
+  }
+
+  /** @param {KeyboardEvent} event */
+  function onKey(event) {
+    if (offers.takeKey(event)) {
+      event.preventDefault();
+    } else if (event.key === "Escape") {
+      close();
+    }
+  }
+
+  function findOffers() {
+    const caret = caretIn(field.value, field.selectionStart);
+    return schema ? offersAt(schema, lastGood, caret) : [];
+  }
+
+  /** @param {import("../../state/completion.js").Offer} offer */
+  function takeOffer({ text, quoted }) {
+    const at = field.selectionStart;
+    const { from, key } = caretIn(field.value, at);
+    const opened = field.value[from - 1] === '"';
+    const closed = field.value[at] === '"';
+    const whole = quoted ? `${opened ? "" : '"'}${text}${closed ? "" : '"'}` : text;
+    const after = field.value.slice(at + Number(closed)).trimStart();
+    field.setRangeText(
+      `${whole}${key && !after.startsWith(":") && !closed ? ": " : ""}`,
+      from,
+      at,
+      "end",
+    );
+    if (closed && quoted) {
+      field.selectionStart += 1;
+    }
+    onInput();
+    offers.close();
+  }
+
+  /** @param {string} text */
+  function put(text) {
+    before.push(field.value);
+    before.splice(0, before.length - MOST_UNDONE);
+    field.value = text;
+    field.scrollTop = 0;
+    showLines();
+    return run();
+  }
+
+  function undo() {
+    const text = before.pop();
+    if (text === undefined) {
+      say(state, "nothing to take back");
+      return;
+    }
+    field.value = text;
+    showLines();
+    run();
+  }
+
+  /** A part added with the mouse. @param {(scene: any) => any} make */
+  function change(make) {
+    const { value, fault } = parseText(field.value);
+    if (fault || !Array.isArray(value.bodies) || !Array.isArray(value.joints)) {
+      say(state, "parts can be added to a document of bodies and joints that has no fault");
+      return;
+    }
+    try {
+      put(`${writeScene(make(value))}\n`);
+    } catch (error) {
+      say(state, `this document repeats parts: write the new one by hand (${sentenceOf(error)})`);
+    }
+  }
+
+  function save() {
+    const name = parseText(field.value).value?.name ?? "scene";
+    saveFile(new Blob([field.value], { type: "application/json" }), `${name}.json`);
+  }
+
+  /** @param {File} dropped a scene, or a model of another program */
+  async function openFile(dropped) {
+    show();
+    const text = await dropped.text();
+    if (!MODELS.test(dropped.name)) {
+      await put(text);
+      return;
+    }
+    try {
+      const name = dropped.name.replace(/\.[^.]*$/, "").replace(/\W+/g, "-");
+      const { format, document: scene, notes } = await documents.importModel(text, name);
+      await put(scene);
+      say(state, `${format}: ${notes.length} notes on what is not, or not literally, in the scene`);
+      faults.append(
+        ...notes.map(({ outcome, line, where, what }) =>
+          h("li", {}, h("span", {}, `${outcome}, line ${line} of the file, ${where}: ${what}`)),
+        ),
+      );
+    } catch (error) {
+      const list = error instanceof Problem ? error.errors : [];
+      say(state, `${dropped.name} was not read: ${sentenceOf(error)}`);
+      faults.replaceChildren(
+        ...list.slice(1).map(({ detail }) => h("li", {}, h("span", {}, detail))),
+      );
+    }
+  }
+
+  /** The document of the scene that is shown. */
+  async function fill() {
+    try {
+      const text = data.document
+        ? `${writeScene(data.document)}\n`
+        : await documents.scene(data.scene.id);
+      field.value = text;
+      lastGood = parseText(text).value;
+      showFaults([]);
+      say(state, "this scene as a document: change it, and it runs");
+    } catch (error) {
+      say(state, sentenceOf(error));
+    }
+  }
+
+  function show() {
+    panel.hidden = false;
+    document.body.classList.add("edits");
+  }
+
+  function close() {
+    tools.choose("");
+    panel.hidden = true;
+    document.body.classList.remove("edits");
+    document.getElementById("play")?.focus({ preventScroll: true });
+  }
+
+  let id = data.scene?.id;
+  listen(store, {
+    scene: () => {
+      const other = !data.document && data.scene?.id !== id;
+      id = data.document ? "" : data.scene?.id;
+      const another = data.document && JSON.stringify(data.document) !== JSON.stringify(lastGood);
+      const asks = parseText(field.value);
+      const typed = asks.fault ? "" : JSON.stringify(asks.value);
+      if (!panel.hidden && (other || (another && typed !== JSON.stringify(data.document)))) {
+        fill();
+      }
+    },
+  });
+
+  return {
+    /** @param {File} [dropped] */
+    async open(dropped) {
+      schema ??= await documents.schema().catch(() => null);
+      if (dropped) {
+        await openFile(dropped);
+        return;
+      }
+      show();
+      await fill();
+      field.focus();
+      field.setSelectionRange(0, 0);
+    },
+  };
+}
