@@ -443,10 +443,12 @@ test("a singular pose is counted down, and then told with what became of each me
   for (const { message } of met) {
     assert.match(message, /two branches of motion cross; the run (went straight on|turned off)/);
   }
-  const told = await page.evaluate(() =>
-    [...document.querySelectorAll(".incidents .message")].map((node) => node.textContent),
+  await page.waitForFunction(
+    () =>
+      [...document.querySelectorAll(".incidents .message")].filter((node) =>
+        /the run (went straight on|turned off)/.test(node.textContent),
+      ).length === 3,
   );
-  assert.equal(told.filter((text) => /the run (went straight on|turned off)/.test(text)).length, 3);
 });
 
 test("one bad entry of a link is left out and named; the others stay", async (t) => {
