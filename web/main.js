@@ -124,7 +124,11 @@ const views = [
     store,
     session,
   ),
-  createUndoButtons(/** @type {HTMLElement} */ (document.querySelector(".stage")), store, session),
+  createUndoButtons(
+    /** @type {HTMLElement} */ (document.querySelector(".undo-tools")),
+    store,
+    session,
+  ),
   createVerdictBar(at("verdict"), store),
   createHappening(at("happening"), store, session),
   createNotes(at("notes"), store, session),

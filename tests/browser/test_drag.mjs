@@ -106,3 +106,31 @@ test("the start is set by number too, and a link carries it", async (t) => {
   const other = await open(t, { hash: new URL(page.url()).hash });
   assert.deepEqual((await read(other, ends)).q, q);
 });
+
+test("a length has a handle on its bar; one that cannot be assembled is held back with the reason", async (t) => {
+  const page = await open(t);
+  await page.getByRole("button", { name: "↔ lengths" }).click();
+  await page.waitForSelector(".length-handle");
+  const names = await page.locator(".length-handle text").allTextContents();
+  assert.deepEqual(names, ["l1 0.5 m", "l2 1.2 m", "l3 0.8 m", "l4 1 m"]);
+  const coupler = await page.locator(".length-handle rect").nth(1).boundingBox();
+  const [x, y] = [coupler.x + coupler.width / 2, coupler.y + coupler.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 12, y, { steps: 3 });
+  await until(page, (data) => data.drag?.settings.l2 > 1.25);
+  await page.mouse.move(x + 500, y, { steps: 3 });
+  await page.waitForFunction(() =>
+    /^Held here: .{10}/.test(document.querySelector(".drag-note").textContent),
+  );
+  const held = await read(page, (data) => data.drag.settings.l2);
+  assert.ok(held > 1.2 && held < 3, `the last length that closes is ${held} m`);
+  await page.mouse.up();
+  await until(page, (data) => data.drag === null && data.settings.l2 > 1.2);
+  const { settings, gap } = await read(page, (data) => ({
+    settings: data.settings,
+    gap: data.latest.methods[0].gap,
+  }));
+  assert.deepEqual(settings, { l2: held });
+  assert.ok(gap < 1e-12);
+});

@@ -251,10 +251,12 @@ test("each curve has a table with the same numbers", async (t) => {
   for (let k = 0; k < 2; k++) {
     const plot = plots.nth(k);
     await plot.getByRole("button", { name: "table" }).click();
-    assert.equal(await plot.locator("thead th").count(), 6);
-    assert.ok((await plot.locator("tbody tr").count()) >= 8);
+    assert.ok((await plot.locator("thead th").count()) >= 4, "some times");
+    assert.equal(await plot.locator("tbody tr").count(), 5, "a row per method");
+    const cut = await plot.locator(".twin").evaluate((el) => el.scrollWidth - el.clientWidth);
+    assert.ok(cut <= 0, `${cut} px are cut off`);
   }
-  const last = await plots.nth(1).locator("tbody tr").last().locator("td").first().textContent();
+  const last = await plots.nth(1).locator("tbody tr").first().locator("td").last().textContent();
   assert.match(last, /^[\d.]+ [pnµm]m$/);
   assert.equal(last, await page.textContent("tbody tr:nth-child(1) td.gap .number"));
 });

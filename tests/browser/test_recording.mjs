@@ -119,6 +119,27 @@ test("dragging zooms both plots, a double click shows the whole run again; decad
   assert.equal(await log.getAttribute("aria-pressed"), "true");
 });
 
+test("two recordings are compared: a kept one stays in the plots beside the next run", async (t) => {
+  const page = await open(t);
+  await playTo(page, 1);
+  await page.keyboard.press("k");
+  await until(page, (data) => data.kept !== null);
+  const before = await read(page, (data) => data.kept.history.columns[0].gap[20]);
+  await page.fill("#set-h", "0.005");
+  await page.press("#set-h", "Enter");
+  await until(page, (data) => /h=0.005/.test(data.methods[0].spelling));
+  await page.focus("#play");
+  await playTo(page, 1);
+  const box = await page.locator(".u-over").last().boundingBox();
+  await page.mouse.move(box.x + 0.05 * box.width, box.y + box.height / 2);
+  const text = await page.locator(".readout").last().textContent();
+  assert.match(text, /index-1, kept/);
+  const now = await read(page, (data) => data.history.columns[0].gap[20]);
+  assert.ok(before > 10 * now, `${before} m with the long step, ${now} m with the short one`);
+  await page.keyboard.press("k");
+  await until(page, (data) => data.kept === null);
+});
+
 test("a pane shows a phase plot: velocity against coordinate, for every method", async (t) => {
   const page = await open(t);
   await playTo(page, 1);

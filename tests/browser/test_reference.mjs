@@ -103,12 +103,12 @@ test("the error in the table of methods and in its curve is the distance from th
   assert.equal(await figure.locator("select").first().inputValue(), "off");
   assert.ok(await figure.locator(".no-curve").isHidden());
   await figure.getByRole("button", { name: "table" }).click();
-  const heads = await figure.locator("thead th").allTextContents();
-  const cells = await figure.locator("tbody tr").last().locator("td").allTextContents();
+  const names = await figure.locator("tbody th").allTextContents();
+  const cells = await figure.locator("tbody td:last-child").allTextContents();
   const named = await page.evaluate(() =>
     globalThis.holonom.data.methods.map(({ label }) => label),
   );
-  assert.deepEqual(heads.slice(1), named);
+  assert.deepEqual(names, named);
   assert.ok(
     cells.every((text) => /^[\d.×⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ ?[a-zµ]*m$/.test(text)),
     cells.join("; "),

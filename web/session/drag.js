@@ -10,8 +10,8 @@ import { shownIndex, sourceOf } from "../state/store.js";
 /**
  * @typedef {{
  *   points: number[], state: Record<string, number>, settings: Record<string, number>,
- *   held: string, moved: boolean,
- * }} Drag the last closed configuration; held: why it does not follow, or ""
+ *   held: string, moved: boolean, of: "" | "start" | "parameter",
+ * }} Drag the last closed configuration; held: why it does not follow, or ""; of: what is dragged
  */
 
 /**
@@ -35,7 +35,7 @@ export function createDragActions(store, exchange, notice) {
   const parametersOf = (settings) => settingsWithStart(settings, null);
 
   /** @param {any} body */
-  async function ask({ settings, ...body }) {
+  async function ask({ settings, of, ...body }) {
     const { drag } = data;
     if (!drag) {
       return;
@@ -50,7 +50,7 @@ export function createDragActions(store, exchange, notice) {
       if (data.drag) {
         const held = answer.reached ? "" : (answer.reason ?? "");
         const { points, state } = answer;
-        put({ points, state, settings, held, moved: true });
+        put({ points, state, settings, held, of, moved: true });
       }
     } catch (error) {
       if (data.drag) {
@@ -86,17 +86,30 @@ export function createDragActions(store, exchange, notice) {
       const { q, v } = data.history.stateAt(data.view.selected, i);
       const state = namedState(data.scene.coordinates, q, v);
       const points = [...data.history.pointsAt(data.view.selected, i)];
-      put({ points, state, settings: data.settings, held: "", moved: false });
+      put({ points, state, settings: data.settings, held: "", of: "", moved: false });
       return true;
     },
     /** @param {number} point index of a drawn point @param {number[]} target [m] */
-    dragPoint: (point, target) => follow({ point, target, settings: data.settings }),
+    dragPoint: (point, target) => follow({ point, target, settings: data.settings, of: "start" }),
     /** @param {string} name of a parameter @param {number} value */
     dragParameter(name, value) {
       const [first] = data.scene.coordinates;
       const target = [data.drag?.state[first.name] ?? 0];
       const settings = { ...data.settings, [name]: value };
-      return follow({ coordinate: first.name, target, settings });
+      return follow({ coordinate: first.name, target, settings, of: "parameter" });
+    },
+    /**
+     * Places of the drawn points at the start with other settings; null where the loops cannot be
+     * closed.
+     * @param {Record<string, number>} settings
+     */
+    pointsWith(settings) {
+      const [first] = data.scene.coordinates;
+      const body = { scene: data.scene.id, coordinate: first.name, target: [first.value] };
+      return api.drag({ ...body, parameters: settings }).then(
+        ({ points }) => points,
+        () => null,
+      );
     },
     /** Lets go: what is shown becomes the start. */
     async endDrag() {
@@ -106,7 +119,8 @@ export function createDragActions(store, exchange, notice) {
         return;
       }
       if (drag.moved) {
-        const parameters = settingsWithStart(drag.settings, drag.state);
+        const parameters =
+          drag.of === "parameter" ? drag.settings : settingsWithStart(drag.settings, drag.state);
         await exchange
           .change({ parameters, state: "paused" })
           .catch((error) => notice(sentenceOf(error)));
@@ -131,8 +145,9 @@ export function createDragActions(store, exchange, notice) {
         await exchange.restart({ parameters });
         return;
       }
-      put({ points, state, settings: data.settings, held: "", moved: false });
-      await follow({ coordinate: name, target: [value], settings: data.settings });
+      put({ points, state, settings: data.settings, held: "", of: "start", moved: false });
+      const { settings } = data;
+      await follow({ coordinate: name, target: [value], settings, of: "start" });
       const held = data.drag?.held;
       await actions.endDrag();
       if (held) {

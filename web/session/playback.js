@@ -141,6 +141,13 @@ export function createPlayback(store, exchange) {
       data.view.loop = !data.view.loop;
       store.emit("state");
     },
+    /** Keeps this recording beside the next ones, or lets the kept one go. */
+    toggleKept() {
+      const { kept, scene, methods, history } = data;
+      data.kept = kept || !scene ? null : { scene: scene.id, methods, history };
+      store.emit("view");
+      store.emit("state");
+    },
     slower: () =>
       actions.setSpeed([...SPEEDS].reverse().find((speed) => speed < wantedSpeed()) ?? SPEEDS[0]),
     faster: () =>

@@ -48,6 +48,8 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
   );
   /** time at which a method ended early, or NaN */
   const ended = new Float64Array(nMethods).fill(NaN);
+  /** code of what ended a method, or "" @type {string[]} */
+  const causes = Array.from({ length: nMethods }, () => "");
   const frames = new Int32Array(capacity);
   let count = 0;
   let stride = 1;
@@ -77,6 +79,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     const gone = failed && !Number.isNaN(ended[m]); // its last good values stand at its end once
     if (failed && !gone) {
       ended[m] = Number.isFinite(method.t) ? method.t : now;
+      causes[m] = method.failure?.code ?? "";
     }
     for (const name of COLUMNS) {
       const value = method[name];
@@ -107,6 +110,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     t,
     columns,
     ended,
+    causes,
     nMethods,
     nPoints,
     get count() {

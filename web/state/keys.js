@@ -77,6 +77,13 @@ export const KEYS = [
     means: "study: where the error comes from",
     shown: "E",
   },
+  {
+    key: "k",
+    context: "page",
+    action: "toggleKept",
+    means: "keep this recording beside the next ones",
+    shown: "K",
+  },
   { key: "z", context: "page", action: "undo", means: "undo the last change", shown: "Z" },
   { key: "y", context: "page", action: "redo", means: "redo it", shown: "Y" },
   { key: "F1", context: "page", action: "help", means: "this table" },

@@ -48,6 +48,7 @@ function initialView() {
     /** index into the history, or -1: the latest */ shown: -1,
     labels: true,
     traces: false,
+    /** handles that change lengths are drawn */ lengths: false,
     /** the reference solution is drawn */ reference: true,
     /** the table of forces is open */ reactions: false,
     /** forces are drawn */ arrows: false,
@@ -91,6 +92,9 @@ function initialData() {
     history: /** @type {History} */ (/** @type {any} */ (null)),
     /** the run before the last change @type {{methods: Method[], history: History} | null} */
     before: null,
+    /** a recording that others are compared with
+     * @type {{scene: string, methods: Method[], history: History} | null} */
+    kept: null,
     /** @type {Incident[]} */ incidents: [],
     /** null until they are asked for @type {import("./reactions.js").Reactions | null} */
     reactions: null,

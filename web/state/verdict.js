@@ -2,6 +2,7 @@
 // @ts-check
 // The verdict on a method: one phrase from its loop gap, its error against the reference solution
 // and its energy. Table, sentence, drawing and live region all use these words.
+import { incidentOf } from "./catalogue.js";
 import { ROUNDING, quantity, seconds } from "./format.js";
 import { errorsOf } from "./errors.js";
 
@@ -98,7 +99,9 @@ export function verdictAt(data, m, shown) {
   const { history, reference } = data;
   const trend = trendOf(history, m, shown);
   if (trend.tone === "bad") {
-    return { words: trend.word, tone: "bad", badness: 1e6 };
+    const cause = incidentOf(history.causes[m])?.name;
+    const words = cause ? `${trend.word}: ${cause}` : trend.word;
+    return { words, tone: "bad", badness: 1e6 };
   }
   if (shown < EARLIEST) {
     return { words: "starts closed", tone: "calm", badness: 0 };

@@ -2,7 +2,7 @@
 // @ts-check
 // One plot with its menu of quantities, the switch between decades and a linear axis, and a table
 // of the same numbers.
-import { quantity } from "../state/format.js";
+import { ROUNDING, quantity } from "../state/format.js";
 import { thin } from "../state/history.js";
 import { QUANTITIES, quantityNamed } from "../state/quantities.js";
 import { shownIndex } from "../state/store.js";
@@ -12,7 +12,14 @@ import { createPlot } from "../widgets/plot.js";
 
 const BUCKETS = 240;
 const PHASE = "phase"; // the choice that is no quantity over time
-const TABLE_ROWS = 9;
+/** A value of rounding has one digit: more of them mean nothing. */
+const cellWords = (value, unit) => quantity(value, unit, Math.abs(value) < ROUNDING ? 1 : 2);
+const KEPT_DASH = [1, 4];
+/** Of the table [px]. */
+const NAME_WIDTH = 92;
+const CELL_WIDTH = 74;
+const LEAST_TABLE = 320;
+const MOST_TIMES = 10;
 
 /**
  * @param {import("../state/store.js").Data} data
@@ -159,6 +166,29 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     return column;
   }
 
+  /** A recording of this scene that was kept. */
+  const keptRun = () => (data.kept?.scene === data.scene?.id ? data.kept : null);
+
+  /** Values of a kept method at the times of the present run; none past its end. */
+  function keptColumn(kept, m) {
+    const { history } = data;
+    const column = kind.columnOf({ ...data, history: kept.history, methods: kept.methods }, m);
+    const last = kept.history.t[kept.history.count - 1];
+    return Float64Array.from({ length: history.count }, (_, i) =>
+      history.t[i] <= last ? column[kept.history.indexAt(history.t[i])] : NaN,
+    );
+  }
+
+  /** @param {import("../state/store.js").Method} method @param {number} m */
+  const keptSeries = (method, m) => ({
+    ...styleOf(method, m),
+    label: m === data.view.selected ? `${method.label}, kept` : "",
+    width: 1.2,
+    dash: KEPT_DASH,
+    ended: NaN,
+    present: false,
+  });
+
   function inks() {
     const { ink, muted, hairline, paper } = data.look.surfaces[data.theme];
     return { text: ink, muted, hairline, paper };
@@ -175,10 +205,11 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
       present: true,
     }));
     if (hasGrey()) {
-      const label = "its own error";
+      const label = "reference";
       const { dash, [data.theme]: colour } = data.look.reference;
       series.push({ label, colour, dash, width: 1.5, ended: NaN, present: false });
     }
+    series.push(...(keptRun()?.methods ?? []).map(keptSeries));
     set(log, { "aria-pressed": String(options.log) });
     plot.setSeries(series, inks(), anew, data.duration || 1);
     showEmpty();
@@ -222,9 +253,12 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     if (grey) {
       columns.push(greyColumn());
     }
+    const kept = keptRun();
+    columns.push(...(kept?.methods ?? []).map((_, m) => keptColumn(kept, m)));
+    const others = columns.length - data.methods.length;
     plot.setEnded(
-      [...history.ended, ...(grey ? [NaN] : [])],
-      [...data.methods.map((_, m) => isPresent(m)), ...(grey ? [false] : [])],
+      [...history.ended, ...Array(others).fill(NaN)],
+      [...data.methods.map((_, m) => isPresent(m)), ...Array(others).fill(false)],
     );
     const map = options.log
       ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor))
@@ -234,35 +268,33 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     plot.draw(thinned, last, history.t[shownIndex(data)]);
   }
 
-  /** Indices of the frames in the table: about ten, evenly spread until now. */
+  /** Indices of the frames in the table: as many as fit side by side, evenly spread until now. */
   function tableFrames() {
     const now = shownIndex(data);
-    const rows = Array.from({ length: TABLE_ROWS + 1 }, (_, k) =>
-      Math.round((now * k) / TABLE_ROWS),
-    );
-    return [...new Set(rows)];
+    const room = (table.clientWidth || LEAST_TABLE) - NAME_WIDTH;
+    const most = Math.max(2, Math.min(MOST_TIMES, Math.floor(room / CELL_WIDTH)));
+    const chosen = Array.from({ length: most }, (_, k) => Math.round((now * k) / (most - 1)));
+    return [...new Set(chosen)];
   }
 
+  /** A row per method and a column per time, so that nothing is cut off. */
   function fillTable() {
     const { history } = data;
+    const frames = tableFrames();
     const drawn = data.methods.map((_, m) => m).filter((m) => !data.view.hidden.has(m));
-    const columns = new Map(drawn.map((m) => [m, kind.columnOf(data, m)]));
-    const head = drawn.map((m) => h("th", { scope: "col" }, data.methods[m].label));
-    const rows = tableFrames().map((i) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, history.t[i].toFixed(2)),
-        ...drawn.map((m) => h("td", {}, quantity(columns.get(m)?.[i], kind.unit))),
-      ),
-    );
+    const head = frames.map((i) => h("th", { scope: "col" }, `${history.t[i].toFixed(2)} s`));
+    const rows = drawn.map((m) => {
+      const column = kind.columnOf(data, m);
+      const cells = frames.map((i) => h("td", {}, cellWords(column[i], kind.unit)));
+      return h("tr", {}, h("th", { scope: "row" }, data.methods[m].label), ...cells);
+    });
     set(table, { "aria-label": kind.title });
     table.replaceChildren(
       h(
         "table",
         { class: "numbers" },
         h("caption", { class: "hidden" }, `${kind.title} over time`),
-        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "t, s"), ...head)),
+        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "method"), ...head)),
         h("tbody", {}, ...rows),
       ),
     );

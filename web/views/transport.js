@@ -49,6 +49,17 @@ export function createTransport(el, store, actions) {
     },
     "loop",
   );
+  const keep = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet loop",
+      "aria-pressed": "false",
+      "data-tip": "keep this recording: its curves stay, dotted, beside those of the next run (K)",
+      onclick: () => actions.toggleKept(),
+    },
+    "keep",
+  );
   const sign = (text, label, action) =>
     h("button", { type: "button", class: "tool", "aria-label": label, onclick: action }, text);
   const slower = sign("−", "Slower (minus)", () => actions.slower());
@@ -83,7 +94,7 @@ export function createTransport(el, store, actions) {
   el.replaceChildren(
     h("div", { class: "group" }, start, back, play, forward, motion),
     h("div", { class: "group scrubber" }, scrub, time),
-    h("div", { class: "group pace" }, slower, speed, faster, loop),
+    h("div", { class: "group pace" }, slower, speed, faster, loop, keep),
   );
 
   /** @param {KeyboardEvent} event */
@@ -122,6 +133,7 @@ export function createTransport(el, store, actions) {
     motion.hidden = !data.view.stepped;
     speed.value = String(data.speed);
     set(loop, { "aria-pressed": String(data.view.loop) });
+    set(keep, { "aria-pressed": String(data.kept !== null) });
     document.body.dataset.state = data.state;
   }
 

@@ -26,8 +26,7 @@ export function createUndoButtons(place, store, actions) {
     );
   const undo = button("Undo", "↶", "undo the last change (Z)", () => actions.undo());
   const redo = button("Redo", "↷", "redo it (Y)", () => actions.redo());
-  const tools = h("div", { class: "undo-tools" }, undo, redo);
-  place.append(tools);
+  place.prepend(undo, redo);
 
   const stop = listen(store, {
     undo: () => {
@@ -39,7 +38,8 @@ export function createUndoButtons(place, store, actions) {
     update() {},
     dispose() {
       stop();
-      tools.remove();
+      undo.remove();
+      redo.remove();
     },
   };
 }

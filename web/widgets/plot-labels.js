@@ -54,6 +54,9 @@ export function createEndLabels() {
     const ratio = devicePixelRatio;
     const bottom = u.bbox.top + u.bbox.height;
     const list = series.flatMap((one, k) => {
+      if (!one.label) {
+        return [];
+      }
       const ys = u.data[k + 1];
       const i = lastIndex(u.data[0], ys, range[1]);
       if (i >= 0) {

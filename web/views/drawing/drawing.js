@@ -8,6 +8,7 @@ import { h, s, say, set } from "../../widgets/dom.js";
 import { createDepth } from "./depth.js";
 import { createGhosts } from "./ghosts.js";
 import { createHandles } from "./handles.js";
+import { createLengths } from "./lengths.js";
 import { createMarks } from "./marks.js";
 import { createNotices } from "./notices.js";
 import { createStage } from "./stage.js";
@@ -19,6 +20,7 @@ const LAYERS = /** @type {const} */ ([
   "truth",
   "ghosts",
   "drag",
+  "lengths",
   "tears",
   "arrows",
   "labels",
@@ -48,6 +50,7 @@ export function createDrawing(el, store, actions) {
   const marks = createMarks(layers, data, stage);
   const notices = createNotices(data);
   const handles = createHandles(svg, layers.drag, data, stage, actions);
+  const lengths = createLengths(layers.lengths, data, stage, actions);
 
   const toggles = Object.fromEntries(
     Object.entries(TOGGLES).map(([key, word]) => [key, makeToggle(key, word)]),
@@ -58,7 +61,8 @@ export function createDrawing(el, store, actions) {
     "describe",
   );
   const caption = h("p", { class: "caption" });
-  const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note);
+  const tools = h("div", { class: "undo-tools" }, lengths.button);
+  const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note, tools);
   const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
   const demonstrations = h(
     "div",
@@ -99,6 +103,7 @@ export function createDrawing(el, store, actions) {
       ghosts.draw(now);
     }
     marks.draw(now);
+    lengths.draw();
     notices.update(now);
   }
 
@@ -172,7 +177,10 @@ export function createDrawing(el, store, actions) {
     },
     methods: makeGhosts,
     reactions: update,
-    drag: handles.draw,
+    drag: () => {
+      handles.draw();
+      lengths.draw();
+    },
     reference: makeReference,
     theme: makeGhosts,
     view: showView,

@@ -209,6 +209,7 @@ export function createHandles(svg, layer, data, stage, actions) {
       const d = lag(drag.points);
       layer.replaceChildren(group, ...(d ? [s("path", { class: "leash", d })] : []));
       say(note, wordsOf(drag.points));
+      note.hidden = note.textContent === "";
     },
     dispose() {
       removeEventListener("keydown", onKey, { capture: true });
