@@ -123,11 +123,27 @@ BROWSER       := $(sort $(wildcard tests/browser/test_*))
 .PHONY: all programs
 # `make` alone assumes nothing but itself, so the compilers come first
 all: build/.packages-run
+	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY) || \
+	    echo 'holonom: the libraries of the page cannot be had now; the program is built without them')
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM) $(LIBRARY)
 
-$(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(LIBRARY)
+$(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(OUT)/generated/bundle.o $(LIBRARY)
 	$(call say,link $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+# what the program reads lies in it too, so that a copy of it alone has all of it
+SHIPPED = $$(find web lessons core -path '*/node_modules' -prune -o -type f \
+    ! -name '*.[ch]' ! -name 'package*.json' ! -name 'README.md' -print 2>/dev/null | LC_ALL=C sort)
+BUNDLE := $(OUT)/generated/bundle.tar
+.PHONY: bundle
+bundle:
+	@mkdir -p $(@D) $(dir $(BUNDLE))
+	@tar --format=ustar --owner=0 --group=0 --numeric-owner --mtime=@0 --mode=644 -cf $(BUNDLE).new $(SHIPPED)
+	@cmp -s $(BUNDLE).new $(BUNDLE) && rm $(BUNDLE).new || mv $(BUNDLE).new $(BUNDLE)
+$(BUNDLE): bundle ;
+$(OUT)/generated/bundle.o: $(BUNDLE)
+	@printf '%s\n' '.section .rodata' '.globl hn_bundle_start, hn_bundle_end' 'hn_bundle_start:' '.incbin "$(BUNDLE)"' \
+	    'hn_bundle_end:' '.byte 0' '.section .note.GNU-stack,"",@progbits' | $(CC) -x assembler -c -o $@ -
 
 # made anew each time: an archive would keep the object of a source that is gone
 $(LIBRARY): $(CORE_OBJECTS)
@@ -220,7 +236,6 @@ BROWSER_READY := $(patsubst %/package.json,%/node_modules/.installed,$(wildcard 
 # ---- using ----------------------------------------------------------------------------------------------------
 .PHONY: run install clean help
 run: all
-	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
 	@build/holonom serve --port $(PORT) | while IFS= read -r line; do \
 	    printf '%s\n' "$$line"; \
 	    address=$$(printf '%s\n' "$$line" | sed -n 's|.*\(http://[^ ]*\).*|\1|p'); \
@@ -248,14 +263,12 @@ export PKG_CONFIG
 
 INSTALLED := $(DESTDIR)$(PREFIX)
 install: all
-	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
 	install -D -m 755 build/holonom $(INSTALLED)/bin/holonom
 	install -D -m 644 build/libholonom.a $(INSTALLED)/lib/libholonom.a
 	install -D -m 644 core/session/face/holonom.h $(INSTALLED)/include/holonom.h
 	@mkdir -p $(INSTALLED)/lib/pkgconfig
 	@printf '%s\n' "$$PKG_CONFIG" >$(INSTALLED)/lib/pkgconfig/holonom.pc
-	@for f in $$(find web lessons core -path '*/node_modules' -prune -o -type f \
-	    ! -name '*.[ch]' ! -name 'package*.json' ! -name 'README.md' -print 2>/dev/null); do \
+	@for f in $(SHIPPED); do \
 	    install -D -m 644 $$f $(INSTALLED)/share/holonom/$$f || exit 1; done
 
 clean:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/file.h"
 
+#include "base/bundle.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -42,8 +44,28 @@ static int add_bytes(int fd, size_t most, hn_strbuf *text) {
     return 0;
 }
 
+/// A file inside the program.
+static hn_status read_bundled(const char *path, size_t most, hn_strbuf *text, hn_diag *diag) {
+    size_t n = 0;
+    const void *bytes = hn_bundle_find(path, &n);
+    if (!bytes) {
+        return unreadable(path, strerror(ENOENT), diag);
+    }
+    if (n > most) {
+        return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "'%.200s' has more than %zu bytes", path,
+                           most);
+    }
+    hn_strbuf_add_n(text, bytes, n);
+    return text->failed
+               ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to read '%.200s'", path)
+               : HN_OK;
+}
+
 hn_status hn_file_read(const char *path, size_t most, hn_strbuf *text, hn_diag *diag) {
     HN_ASSERT(path && text);
+    if (hn_bundle_is_path(path)) {
+        return read_bundled(path, most, text, diag);
+    }
     struct stat info;
 
     // without O_NONBLOCK, opening a FIFO would wait for somebody to write to it

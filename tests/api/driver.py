@@ -62,11 +62,11 @@ class Answer:
 class Server:
     """A server process of its own."""
 
-    def __init__(self, *options, environment=None):
-        env = dict(os.environ, **(environment or {}))
+    def __init__(self, *options, environment=None, program=PROGRAM, folder=None):
+        env = {k: v for k, v in {**os.environ, **(environment or {})}.items() if v is not None}
         self.process = subprocess.Popen(
-            [PROGRAM, "serve", "--port", "0", "--json", *options],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=env)
+            [program, "serve", "--port", "0", "--json", *options],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=env, cwd=folder)
         line = self.process.stdout.readline()
         if not line:
             raise RuntimeError("the server did not start: " + self.process.stderr.read().decode())

@@ -5,11 +5,11 @@
 #include "session/extreme/extreme_read.h"
 
 #include "base/file.h"
+#include "base/folder.h"
 #include "base/hash.h"
 #include "base/json_text.h"
 
 #include <ctype.h>
-#include <dirent.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -81,10 +81,6 @@ static bool is_wanted(const char *file, const char *const *ids, int n_ids) {
     return n_ids == 0;
 }
 
-static int is_case_file(const struct dirent *e) {
-    return number_of(e->d_name) > 0;
-}
-
 static hn_status read_file(hn_extreme *x, const char *folder, const char *name, hn_diags *diags) {
     char path[4400];
     snprintf(path, sizeof path, "%.4096s/%.255s", folder, name);
@@ -97,12 +93,12 @@ static hn_status read_file(hn_extreme *x, const char *folder, const char *name, 
 }
 
 /// Reports an id for which there is no file.
-static hn_status check_ids(struct dirent **entries, int n, const char *const *ids, int n_ids,
+static hn_status check_ids(const hn_folder *cases, const char *const *ids, int n_ids,
                            hn_diags *diags) {
     for (int i = 0; i < n_ids; i++) {
         int found = 0;
-        for (int k = 0; k < n; k++) {
-            found |= is_wanted(entries[k]->d_name, &ids[i], 1);
+        for (int k = 0; k < cases->n; k++) {
+            found |= number_of(cases->names[k]) > 0 && is_wanted(cases->names[k], &ids[i], 1);
         }
         if (!found) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/id", "they are x1 to x25",
@@ -115,28 +111,28 @@ static hn_status check_ids(struct dirent **entries, int n, const char *const *id
 hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_ids,
                           hn_extreme **out, hn_diags *diags) {
     char folder[4200];
-    struct dirent **entries = NULL;
+    hn_folder cases = {0};
     hn_extreme *x = make(lib);
 
     // list the case files and check the names that were asked for
     snprintf(folder, sizeof folder, "%.4096s/extreme", hn_library_lessons(lib));
-    const int n = x ? scandir(folder, &entries, is_case_file, alphasort) : 0;
-    hn_status status =
-        !x      ? HN_ERR_MEMORY
-        : n < 1 ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "there is no case in %s", folder)
-                : check_ids(entries, n, ids, n_ids, diags);
+    hn_status status = x ? hn_folder_read(folder, &cases) : HN_ERR_MEMORY;
+    status = status == HN_ERR_IO
+                 ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "there is no case in %s", folder)
+             : status == HN_OK ? check_ids(&cases, ids, n_ids, diags)
+                               : status;
 
     // read the wanted cases; a file with faults does not stop the others
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < cases.n; i++) {
+        const char *name = cases.names[i];
         if ((status == HN_OK || status == HN_ERR_INPUT) && x->n_cases < HN_EXTREME_CASES &&
-            is_wanted(entries[i]->d_name, ids, n_ids)) {
-            const hn_status read = read_file(x, folder, entries[i]->d_name, diags);
+            number_of(name) > 0 && is_wanted(name, ids, n_ids)) {
+            const hn_status read = read_file(x, folder, name, diags);
             status = read == HN_OK ? status : read; // report the faults of all files
         }
-        free(entries[i]);
     }
+    hn_folder_reset(&cases);
 
-    free(entries);
     if (status != HN_OK) {
         hn_extreme_free(x);
         return status;

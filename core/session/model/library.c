@@ -2,11 +2,13 @@
 #define _XOPEN_SOURCE 700
 #include "session/model/library.h"
 
-#include <dirent.h>
+#include "base/bundle.h"
+#include "base/folder.h"
+
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { MAX_PATH_CHARS = 4096, MAX_ENTRIES = 512 };
@@ -23,11 +25,6 @@ struct hn_library {
     const char *web, *lessons;
     shelf scenes, problems;
 };
-
-static bool is_folder(const char *path) {
-    struct stat st;
-    return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
-}
 
 /// Joins two parts; 0 if the result would not fit.
 static bool join_path(char out[MAX_PATH_CHARS], const char *folder, const char *name) {
@@ -52,8 +49,8 @@ static bool program_folder(char out[MAX_PATH_CHARS]) {
 
 static bool is_home(const char *folder) {
     char path[MAX_PATH_CHARS];
-    return join_path(path, folder, "lessons") && is_folder(path) &&
-           join_path(path, folder, "web") && is_folder(path);
+    return join_path(path, folder, "lessons") && hn_folder_exists(path) &&
+           join_path(path, folder, "web") && hn_folder_exists(path);
 }
 
 /// Keeps a list of the places tried, for the message.
@@ -75,10 +72,8 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
 
     // otherwise: folders relative to the program, as built and as installed
     char program[MAX_PATH_CHARS];
-    if (!program_folder(program)) {
-        return 0;
-    }
-    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
+    const bool is_known = program_folder(program);
+    for (size_t i = 0; is_known && i < sizeof beside / sizeof *beside; i++) {
         char place[MAX_PATH_CHARS];
         if (!join_path(place, program, beside[i])) {
             continue;
@@ -94,7 +89,10 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
             return 1;
         }
     }
-    return 0;
+
+    // a program that was copied alone has its own
+    snprintf(out, MAX_PATH_CHARS, "%s", HN_BUNDLE);
+    return is_home(out);
 }
 
 /// Puts one file on the shelf at its place in the order of ids; a second file of the same id is
@@ -131,32 +129,30 @@ static void read_shelf(hn_library *lib, shelf *s, const char *lesson, const char
     if (!join_path(folder, lesson, kind)) {
         return;
     }
-    DIR *dir = opendir(folder);
-    if (!dir) {
+    hn_folder files;
+    if (hn_folder_read(folder, &files) != HN_OK) {
         return;
     }
-    for (struct dirent *e = readdir(dir); e; e = readdir(dir)) {
-        if (e->d_name[0] != '.') {
-            shelve(lib, s, folder, e->d_name);
-        }
+    for (int i = 0; i < files.n; i++) {
+        shelve(lib, s, folder, files.names[i]);
     }
-    closedir(dir);
+    hn_folder_reset(&files);
 }
 
 static hn_status read_lessons(hn_library *lib, hn_diag *diag) {
-    DIR *dir = opendir(lib->lessons);
-    if (!dir) {
+    hn_folder lessons;
+    if (hn_folder_read(lib->lessons, &lessons) != HN_OK) {
         return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the folder %s cannot be read",
                            lib->lessons);
     }
-    for (struct dirent *e = readdir(dir); e; e = readdir(dir)) {
+    for (int i = 0; i < lessons.n; i++) {
         char lesson[MAX_PATH_CHARS];
-        if (e->d_name[0] != '.' && join_path(lesson, lib->lessons, e->d_name)) {
+        if (join_path(lesson, lib->lessons, lessons.names[i])) {
             read_shelf(lib, &lib->scenes, lesson, "scenes");
             read_shelf(lib, &lib->problems, lesson, "problems");
         }
     }
-    closedir(dir);
+    hn_folder_reset(&lessons);
     return HN_OK;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_LIBRARY_H
 #define HN_SESSION_LIBRARY_H
-// Finds the shipped files: scenes, lessons, problems and the page. They lie beside the program (in
-// a checkout), where `make install` put them, or where HOLONOM_HOME points.
+// Finds the shipped files: scenes, lessons, problems and the page. They lie where HOLONOM_HOME
+// points, beside the program (in a checkout), where `make install` put them, or, for a program that
+// was copied alone, inside it (base/bundle.h).
 
 #include "base/arena.h"
 #include "base/diag.h"
@@ -11,7 +12,7 @@
 typedef struct hn_library hn_library;
 
 /// Opens the library in the folder `home`. NULL: tries HOLONOM_HOME, then the checkout around the
-/// running program, then the install prefix.
+/// running program, then the install prefix, then the program itself.
 /// Fails: HN_ERR_IO, with all places tried, when no folder holds lessons/ and web/; HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag);
 void hn_library_free(hn_library *lib);

@@ -2,8 +2,8 @@
 #include "session/model/lists.h"
 
 #include "base/file.h"
+#include "base/folder.h"
 
-#include <dirent.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -75,21 +75,19 @@ static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
     hn_strbuf_reset(&place);
 }
 
-static int is_lesson(const struct dirent *e) {
-    return e->d_name[0] >= '0' && e->d_name[0] <= '9';
-}
-
 void hn_lessons_json(hn_strbuf *b, const hn_library *lib) {
-    struct dirent **entries = NULL;
-    int n = scandir(hn_library_lessons(lib), &entries, is_lesson, alphasort);
+    hn_folder lessons;
+    const hn_status status = hn_folder_read(hn_library_lessons(lib), &lessons);
+    b->failed |= status == HN_ERR_MEMORY;
     hn_json_object(b);
     hn_json_key(b, "lessons");
     hn_json_array(b);
-    for (int i = 0; i < n; i++) {
-        put_lesson(b, lib, entries[i]->d_name);
-        free(entries[i]);
+    for (int i = 0; status == HN_OK && i < lessons.n; i++) {
+        if (lessons.names[i][0] >= '0' && lessons.names[i][0] <= '9') {
+            put_lesson(b, lib, lessons.names[i]);
+        }
     }
-    free(entries);
+    hn_folder_reset(&lessons);
     hn_json_end_array(b);
     hn_json_end_object(b);
 }

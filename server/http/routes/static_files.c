@@ -2,7 +2,9 @@
 #include "http/routes/static_files.h"
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "http/ground/sha256.h"
 #include "http/request/gzip.h"
 #include "http/request/request.h"
@@ -27,6 +29,10 @@ enum {
 
 typedef struct file {
     const char *address, *path, *media_type;
+    const void *bytes; ///< of a file inside the program; NULL: it lies on the disk
+    size_t n_bytes;
+    uint64_t hash;             ///< of these bytes
+    struct file *next;         ///< among those that came later
     hn_strbuf zipped;          ///< made on the first request; empty until then
     struct timespec zipped_of; ///< when the file was changed that it was made of
 } file;
@@ -36,8 +42,11 @@ struct hn_static_files {
     int n;
     file *files; ///< sorted by address
     const char **addresses;
+    const char *folder; ///< in which they lie
     hn_strbuf policy;
-    pthread_mutex_t lock; ///< of what is zipped
+    pthread_mutex_t lock; ///< of what is zipped, and of the next two
+    file *later;          ///< list: files that were added after the start
+    int n_later;
 };
 
 static const char *find_media_type(const char *name) {
@@ -114,6 +123,39 @@ static hn_status list_folder(hn_static_files *s, const char *folder, size_t n_ro
     return status;
 }
 
+/// Those inside the program, below "bundle:/web".
+typedef struct bundle_look {
+    hn_static_files *s;
+    size_t n_root;
+    hn_status status;
+} bundle_look;
+
+static bool see_bundled(void *user, const char *path) {
+    bundle_look *look = user;
+    hn_static_files *s = look->s;
+    char whole[MAX_PATH_CHARS];
+    snprintf(whole, sizeof whole, "%s%s", HN_BUNDLE, path);
+    if (strncmp(path, "/web/", 5) != 0) {
+        return true;
+    }
+    look->status = add_file(s, whole, look->n_root);
+    if (look->status == HN_OK) {
+        file *f = &s->files[s->n - 1];
+        f->bytes = hn_bundle_find(whole, &f->n_bytes);
+        f->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, f->bytes, f->n_bytes));
+    }
+    return look->status == HN_OK;
+}
+
+static hn_status list_files(hn_static_files *s, const char *folder) {
+    if (!hn_bundle_is_path(folder)) {
+        return list_folder(s, folder, strlen(folder), 0);
+    }
+    bundle_look look = {.s = s, .n_root = strlen(folder), .status = HN_OK};
+    hn_bundle_each(see_bundled, &look);
+    return look.status;
+}
+
 static int compare_files(const void *a, const void *b) {
     return strcmp(((const file *)a)->address, ((const file *)b)->address);
 }
@@ -121,6 +163,55 @@ static int compare_files(const void *a, const void *b) {
 static file *find_file(const hn_static_files *s, const char *address) {
     file key = {.address = address};
     return bsearch(&key, s->files, (size_t)s->n, sizeof key, compare_files);
+}
+
+/// 1 when every part of the address names a file or folder that is served, links left out.
+static bool is_served(const char *folder, const char *address, char path[MAX_PATH_CHARS]) {
+    const size_t n_folder = strlen(folder);
+    struct stat st = {.st_mode = S_IFDIR};
+    if (snprintf(path, MAX_PATH_CHARS, "%s%s", folder, address) >= MAX_PATH_CHARS) {
+        return false;
+    }
+    for (char *part = path + n_folder; *part == '/';) {
+        char *end = part + 1 + strcspn(part + 1, "/"), kept = *end;
+        *end = 0;
+        const bool is_good = part[1] && S_ISDIR(st.st_mode) && !is_left_out(part + 1) &&
+                             lstat(path, &st) == 0 && !S_ISLNK(st.st_mode);
+        *end = kept;
+        part = end;
+        if (!is_good) {
+            return false;
+        }
+    }
+    return S_ISREG(st.st_mode);
+}
+
+/// A file that was added after the start.
+static file *find_later(hn_static_files *s, const char *address) {
+    char path[MAX_PATH_CHARS];
+    if (hn_bundle_is_path(s->folder) || !is_served(s->folder, address, path)) {
+        return NULL;
+    }
+    pthread_mutex_lock(&s->lock);
+    file *f = s->later;
+    while (f && strcmp(f->address, address) != 0) {
+        f = f->next;
+    }
+    if (!f && s->n_later < MAX_FILES) {
+        f = hn_arena_get(s->arena, sizeof *f);
+        const char *kept = f ? hn_arena_strdup(s->arena, path) : NULL;
+        if (kept) {
+            *f = (file){.address = kept + strlen(s->folder),
+                        .path = kept,
+                        .media_type = find_media_type(path),
+                        .next = s->later};
+            s->later = f;
+            s->n_later++;
+        }
+        f = kept ? f : NULL;
+    }
+    pthread_mutex_unlock(&s->lock);
+    return f;
 }
 
 /// The hash of each inline import map goes into the policy: browsers take an import map in no other
@@ -168,10 +259,10 @@ hn_status hn_static_files_create(const char *folder, hn_static_files **out, hn_d
     if (s) {
         pthread_mutex_init(&s->lock, NULL);
         s->arena = hn_arena_create(1 << 16);
+        s->folder = folder;
         s->files = calloc(MAX_FILES, sizeof *s->files);
         s->addresses = calloc(MAX_FILES, sizeof *s->addresses);
-        status = s->arena && s->files && s->addresses ? list_folder(s, folder, strlen(folder), 0)
-                                                      : HN_ERR_MEMORY;
+        status = s->arena && s->files && s->addresses ? list_files(s, folder) : HN_ERR_MEMORY;
     }
 
     // sorted, so that an address is found by halving
@@ -196,6 +287,9 @@ void hn_static_files_free(hn_static_files *s) {
     if (s) {
         for (int i = 0; i < s->n; i++) {
             hn_strbuf_reset(&s->files[i].zipped);
+        }
+        for (file *f = s->later; f; f = f->next) {
+            hn_strbuf_reset(&f->zipped);
         }
         pthread_mutex_destroy(&s->lock);
         hn_arena_free(s->arena);
@@ -263,11 +357,20 @@ static bool reply_zipped(hn_static_files *s, hn_request *r, file *f, const struc
     return true;
 }
 
+static void close_file(int fd) {
+    if (fd >= 0) {
+        close(fd);
+    }
+}
+
 /// The file as it lies there; takes the descriptor.
 static void reply_plain(hn_request *r, const file *f, int fd, const struct stat *st) {
-    struct MHD_Response *response = MHD_create_response_from_fd((size_t)st->st_size, fd);
+    struct MHD_Response *response =
+        f->bytes ? MHD_create_response_from_buffer(f->n_bytes, (void *)(uintptr_t)f->bytes,
+                                                   MHD_RESPMEM_PERSISTENT)
+                 : MHD_create_response_from_fd((size_t)st->st_size, fd);
     if (!response) {
-        close(fd);
+        close_file(fd);
         hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
         return;
     }
@@ -275,14 +378,29 @@ static void reply_plain(hn_request *r, const file *f, int fd, const struct stat 
     hn_reply_header_add(r, "Content-Type", "%s", f->media_type);
 }
 
+/// Opens the file where it lies on the disk (*fd is -1 otherwise), and says which version of it
+/// there is; false when it has gone.
+static bool open_file(const file *f, int *fd, struct stat *st) {
+    *fd = -1;
+    if (f->bytes) {
+        *st = (struct stat){.st_size = (off_t)f->n_bytes};
+        st->st_mtim.tv_sec = (time_t)(f->hash >> 1); // the tag of a version is made of it
+        return true;
+    }
+    *fd = open(f->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (*fd < 0 || fstat(*fd, st) != 0) {
+        close_file(*fd);
+        return false;
+    }
+    return true;
+}
+
 int hn_static_files_reply(hn_static_files *s, hn_request *r, const char *address) {
     file *f = find_file(s, strcmp(address, "/") == 0 ? "/index.html" : address);
-    int fd = f ? open(f->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK) : -1;
     struct stat st;
-    if (fd < 0 || fstat(fd, &st) != 0) {
-        if (fd >= 0) {
-            close(fd);
-        }
+    int fd;
+    f = f ? f : find_later(s, address);
+    if (!f || !open_file(f, &fd, &st)) {
         return 0;
     }
 
@@ -291,10 +409,10 @@ int hn_static_files_reply(hn_static_files *s, hn_request *r, const char *address
     snprintf(tag, sizeof tag, "\"%llx-%llx-%lx\"", (long long)st.st_size,
              (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
     if (is_known(r, tag)) {
-        close(fd);
+        close_file(fd);
         hn_reply_empty(r, MHD_HTTP_NOT_MODIFIED);
     } else if (reply_zipped(s, r, f, &st)) {
-        close(fd);
+        close_file(fd);
     } else {
         reply_plain(r, f, fd, &st);
     }
