@@ -101,7 +101,7 @@ BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLES       := tests/library/example.c
 FUZZ_SOURCES   := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 FUZZ_SUPPORT   := tests/fuzz/fuzz.c
-TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c
+TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c tests/tables/accuracy.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
                   $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES) $(FUZZ_SOURCES) $(FUZZ_SUPPORT)
 
@@ -295,6 +295,7 @@ help:
 	@echo 'make long-runs    10,000 s of a turning crank: tests/tables/long_runs.txt'
 	@echo 'make reports      predictions of singular configurations that came true or not: tests/tables/reports.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
+	@echo 'make accuracy     error estimates of runs against their errors, over all scenes: tests/tables/accuracy.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
 	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
@@ -307,7 +308,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises run-suite run-unit run-server run-bench run-fuzz reports
+.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises run-suite run-unit run-server run-bench run-fuzz reports accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -424,6 +425,11 @@ figures: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(TABLES)
 	@$(OUT)/tests/tables/figures >build/figures.txt || { cat build/figures.txt; exit 1; }
 	@cp build/figures.txt tests/tables/figures.txt && cat tests/tables/figures.txt
+
+accuracy: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(OUT)/tests/tables/accuracy
+	@$(OUT)/tests/tables/accuracy >build/accuracy.txt || { cat build/accuracy.txt; exit 1; }
+	@cp build/accuracy.txt tests/tables/accuracy.txt && cat tests/tables/accuracy.txt
 
 # HOLONOM tells the scripts which program to drive
 # a locale that writes a comma in its numbers, for the tests alone

@@ -260,7 +260,7 @@ class CommandLine(unittest.TestCase):
 
     def test_compare_prints_a_row_for_each_method(self):
         text = self.assert_exit(call("compare", "four-bar", "--methods", RK4, "projection@rk4:h=1e-3", "--time", "1"), DONE)
-        self.assertRegex(text, r"worst gap \[m\] +velocity gap \[m/s\] +energy change \[\wJ\] +steps +evals +ops +ops/step +CPU/step \[.?s\] +quartiles")
+        self.assertRegex(text, r"worst gap \[m\] +velocity gap \[m/s\] +energy change \[\wJ\] +error estimate +steps +evals +ops +ops/step +CPU/step \[.?s\] +quartiles")
         self.assertRegex(text, r"(?m)^index1@rk4\S* +ok +1.00 ")
         self.assertRegex(text, r"(?m)^projection@rk4\S* +ok +1.00 ")
         summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", RK4, "--time", "0.5", "--json"), DONE))
@@ -432,6 +432,20 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(document["status"], "input")
         self.assertIn("four-bar", document["errors"][0]["hint"])
         self.assertEqual(done.stderr, b"")
+
+    def test_every_run_has_an_estimate_of_its_error(self):
+        far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
+        self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; a smaller step is needed")
+        near = call("run", "four-bar", "--method", "projection@rk4:h=1e-3", "--at", "1", "--json")
+        estimate = json.loads(near.stdout)["error_estimate"]
+        self.assertEqual((estimate["t"], estimate["reason"]), (1, ""))
+        self.assertLess(max(estimate["q"], estimate["v"], estimate["reaction"]), 1e-6)
+        # the work that a drive does is no change of energy
+        driven = json.loads(call("run", "driven-crank", "--method", "projection@rk4:h=1e-3", "--at", "1", "--json").stdout)
+        samples = driven["samples"]
+        self.assertGreater(abs(samples["work"][0]), 0.1)
+        self.assertLess(abs(samples["energy_change"][0]), 1e-8)
+        self.assertLess(driven["worst_energy_change"], 1e-8)
 
     def test_what_was_noticed_is_said_beside_the_samples(self):
         for form in "csv", "ndjson":

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
+#include "session/compare/estimate.h"
 #include "session/compare/failure.h"
 #include "study/run/diagnosis.h"
 #include "formulations/list/formulation_list.h"
@@ -30,6 +31,7 @@ typedef struct entry {
     long long frame_steps;         ///< steps when the frame was begun
     double step_cpu[COST_FRAMES];  ///< computing time a step, of the last frames [s]
     int n_costs;                   ///< frames that were measured
+    hn_accuracy_track track;       ///< what the accuracy watch has seen of it
 } entry;
 
 struct hn_comparison {
@@ -38,7 +40,8 @@ struct hn_comparison {
     entry entries[HN_COMPARISON_MAX_METHODS];
     double frame_dt, duration, cpu_budget;
     long long frame;
-    int in_frame; ///< the frame after the present one was begun, and interrupted
+    hn_accuracy *accuracy; ///< one for all methods
+    int in_frame;          ///< the frame after the present one was begun, and interrupted
 };
 
 hn_comparison_opts hn_comparison_opts_default(void) {
@@ -150,6 +153,12 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
     c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
     c->cpu_budget =
         chosen.cpu_budget > 0 ? chosen.cpu_budget : hn_comparison_opts_default().cpu_budget;
+    status = hn_accuracy_create(hn_model_system(model), hn_model_q(model), hn_model_v(model),
+                                c->duration, &c->accuracy);
+    if (status != HN_OK) {
+        hn_comparison_free(c);
+        return hn_diags_add(diags, status, NULL, NULL, "%s", hn_status_text(status));
+    }
     *out = c;
     return HN_OK;
 }
@@ -159,6 +168,7 @@ void hn_comparison_free(hn_comparison *c) {
         for (int i = 0; i < c->n; i++) {
             hn_run_free(c->entries[i].run);
         }
+        hn_accuracy_free(c->accuracy);
         free(c);
     }
 }
@@ -265,6 +275,25 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method) {
     return cost;
 }
 
+/// Compares the methods with the run of the accuracy watch, where that is due and within its share.
+static void watch_accuracy(hn_comparison *c) {
+    const double t = (double)c->frame * c->frame_dt;
+    double ops = 0;
+    for (int i = 0; i < c->n; i++) {
+        ops += hn_run_get_summary(c->entries[i].run).cost.ops;
+    }
+    if (!hn_accuracy_reach(c->accuracy, t, ops)) {
+        return;
+    }
+    for (int i = 0; i < c->n; i++) {
+        entry *e = &c->entries[i];
+        hn_sample sample;
+        if (is_live(e) && hn_run_sample(e->run, t, &sample) == HN_OK) {
+            hn_accuracy_see(c->accuracy, hn_run_spec(e->run), &sample, &e->track);
+        }
+    }
+}
+
 bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && !c->in_frame; i++) {
         const hn_run_summary s = hn_run_get_summary(c->entries[i].run);
@@ -288,6 +317,7 @@ bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     }
     c->in_frame = 0;
     c->frame++;
+    watch_accuracy(c);
     for (int i = 0; i < c->n && hn_comparison_finished(c); i++) {
         hn_run_diagnose(c->entries[i].run);
     }
@@ -301,8 +331,10 @@ void hn_comparison_next(hn_comparison *c) {
 void hn_comparison_reset(hn_comparison *c) {
     c->frame = 0;
     c->in_frame = 0;
+    hn_accuracy_reset(c->accuracy);
     for (int i = 0; i < c->n; i++) {
         c->entries[i].over_budget = 0;
+        c->entries[i].track = (hn_accuracy_track){0};
         c->entries[i].n_costs = 0;
         hn_run_reset(
             c->entries[i]
@@ -488,6 +520,7 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
         put_sample(b, c, &sample);
         put_cost(b, &s);
         put_step_cost(b, c, i);
+        hn_estimate_put_json(b, c->accuracy, &c->entries[i].track, s.t);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
@@ -579,6 +612,8 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         // cost and error totals
         put_cost(b, &s);
         put_step_cost(b, c, i);
+        hn_estimate_put_json(b, c->accuracy, &c->entries[i].track,
+                             fmin(s.t, (double)c->frame * c->frame_dt));
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
         hn_json_put_int(b, "chart_changes", s.cost.chart_changes);

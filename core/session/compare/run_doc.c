@@ -5,10 +5,12 @@
 #include "dynamics/evaluate/accel.h"
 #include "session/store/columns_json.h"
 #include "session/compare/comparison.h"
+#include "session/compare/estimate.h"
 #include "session/compare/failure.h"
 #include "session/model/reactions_json.h"
 #include "study/run/pace.h"
 #include "study/run/diagnosis.h"
+#include "study/truth/accuracy.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,6 +35,8 @@ typedef struct table {
     double *effort;                ///< one per effort
     double *state;                 ///< q and v of a sample in system coordinates
     const hn_system *sys;
+    hn_accuracy *accuracy; ///< estimates the error at the samples
+    hn_accuracy_track track;
 } table;
 
 /// Returns the largest number of values that the tables may hold.
@@ -129,7 +133,15 @@ static void add_points(table *tab, const hn_sample *s, size_t k) {
     }
 }
 
+/// Shows the accuracy watch a sample, where it wants one.
+static void watch_accuracy(table *tab, const hn_sample *s, const hn_run *run) {
+    if (hn_accuracy_reach(tab->accuracy, s->t, hn_run_get_summary(run).cost.ops)) {
+        hn_accuracy_see(tab->accuracy, hn_run_spec(run), s, &tab->track);
+    }
+}
+
 static void table_add(table *tab, const hn_sample *s, hn_run *run) {
+    watch_accuracy(tab, s, run);
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
     memcpy(tab->q + k * nq, s->q, nq * sizeof(double));
@@ -212,11 +224,19 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
 }
 
 /// Steps until the run reaches t. Returns HN_ERR_BUDGET when `progress` stops it.
-static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r) {
+static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r,
+                         table *tab) {
+    const bool fixed = !hn_method_is_adaptive(hn_run_spec(run));
     while (hn_run_time(run) < t * (1 - 1e-14)) {
         hn_status status = hn_run_step_towards(run, t);
         if (status != HN_OK) {
             return status;
+        }
+        // between output times too; an adaptive step would need dense output there
+        hn_sample sample;
+        if (fixed && hn_accuracy_is_due(tab->accuracy, hn_run_time(run)) &&
+            hn_run_sample(run, hn_run_time(run), &sample) == HN_OK) {
+            watch_accuracy(tab, &sample, run);
         }
         if (r->progress && hn_pace_is_due(pace) &&
             !r->progress(r->user, hn_run_time(run) / r->time)) {
@@ -246,7 +266,7 @@ static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
         !r->progress(r->user, hn_run_time(run) / r->time)) {
         return HN_ERR_BUDGET;
     }
-    hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r);
+    hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r, tab);
     hn_sample sample;
     HN_THEN(status, sample_at(run, t, &sample));
     if (status == HN_OK) {
@@ -398,6 +418,7 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     hn_json_put_number(b, "worst_gap", s.worst_gap);
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
     hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
+    hn_estimate_put_json(b, tab->accuracy, &tab->track, fmin(s.t, request->time));
     put_run_incidents(b, run);
     put_run_cost(b, &s);
     hn_json_end_object(b);
@@ -443,6 +464,10 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     if (status == HN_OK && request->reactions) {
         status = table_want_reactions(&tab, model, request, diags);
     }
+    if (status == HN_OK) {
+        status = hn_accuracy_create(hn_model_system(model), hn_model_q(model), hn_model_v(model),
+                                    schedule_time(&times, times.n - 1), &tab.accuracy);
+    }
 
     // run, diagnose, write
     if (status == HN_OK) {
@@ -452,6 +477,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
         status = b->failed ? HN_ERR_MEMORY : HN_OK;
     }
     hn_reaction_writer_free(tab.reactions);
+    hn_accuracy_free(tab.accuracy);
     hn_arena_free(tab.arena);
     hn_run_free(run);
     return status;

@@ -83,6 +83,19 @@ static bool has_failed(const cJSON *method) {
     return strcmp(hn_document_text(method, "state"), "failed") == 0;
 }
 
+/// The larger of the estimates of coordinates and reactions, and where it ends before the run.
+static void put_estimate(hn_table *t, const cJSON *e) {
+    const double q = hn_document_number(e, "q");
+    if (!isfinite(q)) {
+        hn_table_cell(t, "-");
+    } else if (hn_document_text(e, "reason")[0]) {
+        hn_table_cell(t, "%.1e to %.3g s", fmax(q, hn_document_number(e, "reaction")),
+                      hn_document_number(e, "t"));
+    } else {
+        hn_table_cell(t, "%.1e", fmax(q, hn_document_number(e, "reaction")));
+    }
+}
+
 static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     double steps = hn_document_number(m, "steps");
     char rate[8];
@@ -100,6 +113,7 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_quantity(t, hn_document_number(m, "worst_energy_change"), "J");
 
     // what it cost
+    put_estimate(t, hn_document_get(m, "error_estimate"));
     hn_table_cell(t, "%.0f", steps);
     hn_table_cell(t, "%.0f", hn_document_number(m, "evals"));
     hn_table_quantity(t, hn_document_number(m, "ops"), "op");
@@ -151,10 +165,19 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary)
     static const struct {
         const char *head;
         int to_right, spare;
-    } columns[] = {{"method", 0, 0},    {"status", 0, 0},       {"t", 1, 5},
-                   {"worst gap", 1, 0}, {"velocity gap", 1, 6}, {"energy change", 1, 0},
-                   {"steps", 1, 7},     {"evals", 1, 4},        {"ops", 1, 3},
-                   {"ops/step", 1, 2},  {"CPU/step", 1, 8},     {"quartiles", 0, 1}};
+    } columns[] = {{"method", 0, 0},
+                   {"status", 0, 0},
+                   {"t", 1, 5},
+                   {"worst gap", 1, 0},
+                   {"velocity gap", 1, 6},
+                   {"energy change", 1, 0},
+                   {"error estimate", 1, 9},
+                   {"steps", 1, 7},
+                   {"evals", 1, 4},
+                   {"ops", 1, 3},
+                   {"ops/step", 1, 2},
+                   {"CPU/step", 1, 8},
+                   {"quartiles", 0, 1}};
     const hn_scene *scene = hn_model_scene(model);
     hn_table t;
     hn_table_init(&t);

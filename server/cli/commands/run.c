@@ -8,6 +8,7 @@
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
 #include "session/compare/run_doc.h"
+#include "study/truth/accuracy.h"
 #include "terminal/motion_plot.h"
 #include "terminal/width.h"
 
@@ -15,6 +16,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /// A column of the output: a name, and where its values are.
 typedef struct column {
@@ -248,6 +250,28 @@ static void tell_incidents(const cJSON *run) {
     }
 }
 
+/// Says how far the motion may be from the true one, and up to when that is known: to people, and
+/// in any case where it is far.
+static void tell_estimate(const cJSON *run) {
+    const cJSON *e = hn_document_get(run, "error_estimate");
+    const double q = hn_document_number(e, "q"), reaction = hn_document_number(e, "reaction");
+    const char *reason = hn_document_text(e, "reason");
+    const bool far = fmax(q, reaction) > HN_ACCURACY_WARN;
+    if (!far && !isatty(STDERR_FILENO)) {
+        return;
+    }
+    if (isfinite(q)) {
+        fprintf(stderr,
+                "holonom: error estimate up to t = %.4g s: coordinates %.1e, reactions %.1e of "
+                "their largest%s\n",
+                hn_document_number(e, "t"), q, reaction, far ? "; a smaller step is needed" : "");
+    }
+    if (reason[0]) {
+        fprintf(stderr, "holonom: no error estimate%s: %s\n", isfinite(q) ? " beyond that" : "",
+                reason);
+    }
+}
+
 static int tell_progress(void *user, double share) {
     hn_progress_tell(user, "running", share);
     return 1;
@@ -351,6 +375,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
         tell_marks(run);
         tell_incidents(run);
+        tell_estimate(run);
         if (args->plot) {
             put_plot(&b, run);
         } else {

@@ -18,6 +18,11 @@
 /// An array for each time; null where there is none.
 #define ROWS "{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "}}"
 #define TEXT "{\"type\":\"string\"}"
+#define ESTIMATE                                                                                   \
+    "{\"type\":\"object\",\"description\":\"relative errors against a pilot run, the "             \
+    "largest up to t; null where not known, reason says why\",\"properties\":{\"q\":" MAYBE_NUMBER \
+    ",\"v\":" MAYBE_NUMBER ",\"reaction\":" MAYBE_NUMBER ",\"own\":" MAYBE_NUMBER                  \
+    ",\"t\":" MAYBE_NUMBER ",\"reason\":" TEXT "}}"
 #define STATUS_NAME(value, name, text) ",\"" name "\""
 #define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
 #define OBJECTS "{\"type\":\"array\",\"items\":{\"type\":\"object\"}}"
@@ -113,7 +118,7 @@ static const struct {
      "},\"v\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
      "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER
      ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy\":" MAYBE_NUMBER ",\"work\":" MAYBE_NUMBER
-     ",\"energy_change\":" MAYBE_NUMBER
+     ",\"energy_change\":" MAYBE_NUMBER ",\"error_estimate\":" ESTIMATE
      ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
      "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}},"
      "\"sigma_min\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER

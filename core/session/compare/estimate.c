@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/compare/estimate.h"
+
+#include <math.h>
+
+void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_accuracy_track *track,
+                          double t_run) {
+    const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
+    const double none = nan("");
+    hn_json_key(b, "error_estimate");
+    hn_json_object(b);
+    hn_json_put_number(b, "q", e.known ? e.q : none);
+    hn_json_put_number(b, "v", e.known ? e.v : none);
+    hn_json_put_number(b, "reaction", e.known ? e.reaction : none);
+    hn_json_put_number(b, "own", e.known ? e.own : none);
+    hn_json_put_number(b, "t", e.known ? e.t : none);
+    hn_json_put_string(b, "reason", e.reason);
+    hn_json_end_object(b);
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_ESTIMATE_H
+#define HN_SESSION_ESTIMATE_H
+// The error estimate of a run as data: the same object in runs, frames and summaries of
+// comparisons.
+
+#include "base/strbuf.h"
+#include "study/truth/accuracy.h"
+
+/// Puts the member "error_estimate": {"q","v","reaction","own","t","reason"}, relative errors as in
+/// study/truth/errors.h, the largest up to the time t [s]; null each where nothing is known. The
+/// reason says why it is not known, or ended before t_run; else it is "".
+void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_accuracy_track *track,
+                          double t_run);
+#endif

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/truth/accuracy.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PILOT, ROUGH, RUNS };
+static const char *const methods[RUNS] = {HN_ACCURACY_METHOD, HN_ACCURACY_ROUGH};
+
+struct hn_accuracy {
+    hn_arena *arena;
+    hn_run *run[RUNS]; ///< the first NULL: the scene has no such run
+    hn_errors *errors;
+    double t_end, next;         ///< end of the runs, and the time of the next comparison [s]
+    hn_scales scales;           ///< largest rate and reaction of the pilot so far
+    hn_sample sample;           ///< of the pilot, at the time reached last
+    double own[HN_ERROR_COUNT]; ///< what it may be off itself, the largest so far, without scales
+    double t_out;     ///< where its operations were used up, or it ended [s]; HUGE_VAL: nowhere
+    bool lost;        ///< the pilot may be off too much itself
+    char reason[200]; ///< why it is not there or ended
+};
+
+static const hn_scales unity = {.length = 1, .rate = 1, .reaction = 1, .energy = 1};
+
+/// Forgets what was compared. The states of the runs are set back by the caller.
+static void begin(hn_accuracy *a) {
+    a->next = 0;
+    a->t_out = HUGE_VAL;
+    a->lost = false;
+    a->scales = (hn_scales){0};
+    memset(a->own, 0, sizeof a->own);
+}
+
+static hn_status create_parts(hn_accuracy *a, const hn_system *sys, const double *q,
+                              const double *v) {
+    hn_diag diag = {0};
+    if (hn_system_get_info(sys).nodes > HN_ACCURACY_NODES) {
+        snprintf(a->reason, sizeof a->reason,
+                 "the mechanism is so large that starting a pilot run would take longer than the "
+                 "estimate is worth");
+        return HN_OK;
+    }
+    HN_TRY(hn_errors_create(sys, a->arena, &a->errors));
+    for (int i = 0; i < RUNS; i++) {
+        hn_method_spec spec;
+        HN_TRY(hn_method_parse(methods[i], &spec, &diag));
+        const hn_status status = hn_run_create(sys, &spec, q, v, NULL, &a->run[i], &diag);
+        if (status == HN_ERR_MEMORY || status == HN_ERR_LIMIT) {
+            return status;
+        }
+        if (status != HN_OK) {
+            snprintf(a->reason, sizeof a->reason, "%.190s", diag.message);
+            return HN_OK;
+        }
+        hn_run_watch(a->run[i], 0);
+    }
+    return HN_OK;
+}
+
+hn_status hn_accuracy_create(const hn_system *sys, const double *q, const double *v, double t_end,
+                             hn_accuracy **out) {
+    HN_ASSERT(sys && q && v && out);
+    hn_accuracy *a = calloc(1, sizeof *a);
+    *out = NULL;
+    if (!a) {
+        return HN_ERR_MEMORY;
+    }
+    a->arena = hn_arena_create(0);
+    a->t_end = t_end;
+    begin(a);
+    const hn_status status = a->arena ? create_parts(a, sys, q, v) : HN_ERR_MEMORY;
+    if (status != HN_OK) {
+        hn_accuracy_free(a);
+        return status;
+    }
+    *out = a;
+    return HN_OK;
+}
+
+void hn_accuracy_free(hn_accuracy *a) {
+    if (a) {
+        for (int i = 0; i < RUNS; i++) {
+            hn_run_free(a->run[i]);
+        }
+        hn_errors_free(a->errors);
+        hn_arena_free(a->arena);
+        free(a);
+    }
+}
+
+static bool is_there(const hn_accuracy *a) {
+    return a->run[PILOT] && a->run[ROUGH];
+}
+
+void hn_accuracy_reset(hn_accuracy *a) {
+    begin(a);
+    for (int i = 0; i < RUNS && is_there(a); i++) {
+        a->reason[0] = '\0';
+        (void)hn_run_reset(a->run[i]); // a run that cannot start says so at its first step
+    }
+}
+
+double hn_accuracy_ops(const hn_accuracy *a) {
+    return is_there(a) ? hn_run_get_summary(a->run[PILOT]).cost.ops +
+                             hn_run_get_summary(a->run[ROUGH]).cost.ops
+                       : 0;
+}
+
+// ---- pilot and rough run ----
+
+/// Steps one of the two to t within the operations allowed.
+static bool step_to(hn_accuracy *a, hn_run *run, double t, double ops) {
+    const double allowed = HN_ACCURACY_FREE + HN_ACCURACY_SHARE * ops;
+    while (hn_run_time(run) < t) {
+        const bool used_up = hn_accuracy_ops(a) > allowed;
+        if (used_up) {
+            snprintf(a->reason, sizeof a->reason,
+                     "it would take more than a tenth of the run's own operations");
+        } else if (hn_run_step_towards(run, t) != HN_OK) {
+            snprintf(a->reason, sizeof a->reason, HN_ACCURACY_METHOD " ended: %.150s",
+                     hn_run_get_summary(run).reason);
+        } else {
+            continue;
+        }
+        a->t_out = fmin(a->t_out, hn_run_time(run));
+        return false;
+    }
+    return true;
+}
+
+static hn_state_seen seen_of(const hn_sample *s) {
+    return (hn_state_seen){s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
+}
+
+/// What the pilot may be off at the time reached: a share of its difference from the rough run.
+/// Returns false where that is too much for an estimate.
+static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
+    hn_sample rough;
+    double error[HN_ERROR_COUNT];
+    if (hn_run_sample(a->run[ROUGH], pilot->t, &rough) != HN_OK) {
+        return false;
+    }
+    const hn_state_seen other = seen_of(&rough);
+    hn_errors_calc(a->errors, &other, pilot, &unity, error);
+    if (!(error[HN_ERROR_Q] / HN_ACCURACY_OWN < HN_ACCURACY_LOST)) {
+        a->t_out = fmin(a->t_out, pilot->t);
+        a->lost = true;
+        snprintf(a->reason, sizeof a->reason,
+                 "neighbouring motions part too fast: from t = %.4g s on the pilot run itself may "
+                 "be off by %.0g",
+                 pilot->t, HN_ACCURACY_LOST);
+        return false;
+    }
+    for (int i = 0; i < HN_ERROR_COUNT; i++) {
+        a->own[i] = fmax(a->own[i], error[i] / HN_ACCURACY_OWN);
+    }
+    return true;
+}
+
+/// Whether the pilot cannot serve any more; one that is only late can catch up.
+static bool has_ended(const hn_accuracy *a) {
+    return a->lost || hn_run_get_summary(a->run[PILOT]).state == HN_RUN_FAILED ||
+           hn_run_get_summary(a->run[ROUGH]).state == HN_RUN_FAILED;
+}
+
+bool hn_accuracy_is_due(const hn_accuracy *a, double t) {
+    return is_there(a) && !has_ended(a) && (t >= a->next || t >= a->t_end * (1 - 1e-9));
+}
+
+bool hn_accuracy_reach(hn_accuracy *a, double t, double ops) {
+    if (!hn_accuracy_is_due(a, t) || !step_to(a, a->run[ROUGH], t, ops) ||
+        !step_to(a, a->run[PILOT], t, ops) ||
+        hn_run_sample(a->run[PILOT], t, &a->sample) != HN_OK) {
+        return false;
+    }
+    a->next = t + a->t_end / HN_ACCURACY_LOOKS;
+
+    // what errors are divided by in the end: the largest rate and reaction of the motion
+    const hn_state_seen at = seen_of(&a->sample);
+    a->scales.rate = fmax(a->scales.rate, hn_errors_rate(a->errors, at.v));
+    a->scales.reaction = fmax(a->scales.reaction, hn_errors_reaction(a->errors, &at, at.lambda));
+    return measure_own(a, &at);
+}
+
+// ---- what is seen of the runs ----
+
+/// A run by the same integrator at such a tolerance is as far from the true motion as the pilot:
+/// their difference says nothing.
+static bool is_itself(const hn_method_spec *spec) {
+    hn_method_spec own;
+    hn_diag diag = {0};
+    return hn_method_parse(HN_ACCURACY_METHOD, &own, &diag) == HN_OK &&
+           spec->stepper == own.stepper &&
+           hn_method_option(spec, "rtol", 1) <= 10 * hn_method_option(&own, "rtol", 1);
+}
+
+void hn_accuracy_see(hn_accuracy *a, const hn_method_spec *spec, const hn_sample *s,
+                     hn_accuracy_track *track) {
+    double error[HN_ERROR_COUNT];
+    track->itself = is_itself(spec);
+    if (!s->q || track->itself) {
+        return;
+    }
+    const hn_sample *r = &a->sample;
+    const hn_state_seen at = {s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap},
+                        truth = {r->t, r->q, r->v, r->lambda, r->energy, r->gap, r->velocity_gap};
+    hn_errors_calc(a->errors, &at, &truth, &unity, error);
+    for (int i = 0; i < HN_ERROR_COUNT; i++) {
+        track->worst[i] =
+            fmax(track->worst[i], error[i]); // a state without multipliers is left out
+    }
+    track->t = s->t;
+    track->n++;
+}
+
+/// The largest difference seen, no less than what the pilot may be off, over the scale.
+static double relative(const hn_accuracy *a, const double *worst, hn_error_kind kind,
+                       double scale) {
+    const double error = fmax(worst[kind], a->own[kind]);
+    return fmax(scale > 0 ? error / scale : 0, HN_ACCURACY_FLOOR);
+}
+
+hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *track,
+                                 double t_run) {
+    hn_estimate e = {.known = track->n > 0, .t = track->t};
+    if (!e.known) {
+        snprintf(e.reason, sizeof e.reason, "%s",
+                 track->itself ? "the method is as accurate as the estimate" : a->reason);
+        return e;
+    }
+    e.q = relative(a, track->worst, HN_ERROR_Q, 1);
+    e.v = relative(a, track->worst, HN_ERROR_V, a->scales.rate);
+    e.reaction = relative(a, track->worst, HN_ERROR_REACTION, a->scales.reaction);
+    e.own = fmax(a->own[HN_ERROR_Q], HN_ACCURACY_FLOOR);
+    if (a->t_out < t_run) {
+        memcpy(e.reason, a->reason, sizeof e.reason);
+    }
+    return e;
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_ACCURACY_H
+#define HN_STUDY_ACCURACY_H
+// The accuracy watch: an estimate of how far runs are from the true motion, made while they go on.
+//
+// A pilot run of the same scene by HN_ACCURACY_METHOD goes beside them; what they differ by from it
+// is their error, as long as the pilot's own is smaller. That is estimated too, by a rough run with
+// a tolerance 1000 times as large: a HN_ACCURACY_OWN-th of the difference of the two, which grows
+// with the time, and exponentially where the motion is chaotic. Local errors of single steps would
+// be cheaper, but they say nothing about the error at the end.
+//
+// Cost: at most HN_ACCURACY_SHARE of the operations of the runs watched, and HN_ACCURACY_FREE
+// operations (some milliseconds) in any case. Where that is not enough the estimate ends, and says
+// at which time. One pilot serves all methods of a comparison. The runs themselves are read only:
+// their motion is the same to the last bit.
+
+#include "study/truth/errors.h"
+
+#define HN_ACCURACY_METHOD "projection@dop853:rtol=1e-8"
+#define HN_ACCURACY_ROUGH "projection@dop853:rtol=1e-5"
+/// Tolerances of the two differ by 1000; errors follow them within a factor of 10.
+#define HN_ACCURACY_OWN 100.0
+#define HN_ACCURACY_FLOOR 1e-7 ///< relative: smaller errors are not told apart
+#define HN_ACCURACY_WARN 1e-2  ///< an estimate above it is worth a remark
+/// Error of the pilot itself, of q, that ends the estimate.
+#define HN_ACCURACY_LOST 1e-3
+#define HN_ACCURACY_SHARE 0.1 ///< of the operations of the runs
+#define HN_ACCURACY_FREE 5e6  ///< operations
+enum {
+    HN_ACCURACY_LOOKS = 64,   ///< times of a run at which it is compared, at most
+    HN_ACCURACY_NODES = 6000, ///< of the system's graph: compiling two runs takes 50 ms there
+};
+
+typedef struct hn_accuracy hn_accuracy;
+
+/// What has been seen of one run: largest differences, not yet divided by scales.
+typedef struct hn_accuracy_track {
+    double worst[HN_ERROR_COUNT];
+    double t;    ///< last time compared [s]
+    int n;       ///< times compared
+    bool itself; ///< the run is by the method of the estimate: nothing can be said
+} hn_accuracy_track;
+
+typedef struct hn_estimate {
+    bool known;
+    double q, v, reaction; ///< as in errors.h, the largest so far; never below `own`
+    double own;            ///< of q: error of the pilot itself, at least HN_ACCURACY_FLOOR
+    double t;              ///< up to which it holds [s]
+    char reason[200];      ///< why it is not known, or ended before the run; else ""
+} hn_estimate;
+
+/// Makes the pilot and the rough run from the assembled state (q, v) in system coordinates, for
+/// runs to t_end.
+/// Not thread-safe for one system (see system.h). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT. A scene that
+/// the method refuses, or a very large one, gives a watch that knows nothing and says why.
+HN_MUST_CHECK hn_status hn_accuracy_create(const hn_system *sys, const double *q, const double *v,
+                                           double t_end, hn_accuracy **out);
+void hn_accuracy_free(hn_accuracy *a); ///< NULL is legal
+void hn_accuracy_reset(hn_accuracy *a);
+/// Whether a comparison is due at t.
+bool hn_accuracy_is_due(const hn_accuracy *a, double t);
+/// Brings the pilot to t, where a comparison is due there; `ops` are the operations of the
+/// runs watched, so far. Returns true when samples of time t can be compared now.
+bool hn_accuracy_reach(hn_accuracy *a, double t, double ops);
+/// Compares a sample of the time reached last. `track` starts as zeros.
+void hn_accuracy_see(hn_accuracy *a, const hn_method_spec *spec, const hn_sample *sample,
+                     hn_accuracy_track *track);
+/// The estimate of a run whose samples were seen; t_run: time that it has reached.
+hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *track,
+                                 double t_run);
+/// Operations of pilot and rough run so far.
+double hn_accuracy_ops(const hn_accuracy *a);
+
+#endif

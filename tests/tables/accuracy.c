@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How honest the accuracy watch is: its estimate against the error, by the reference solution, of
+// every scene of the library by the methods that it suggests and some coarser ones.
+
+#include "session/model/model.h"
+#include "session/references/reference_store.h"
+#include "study/truth/accuracy.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LATE = 2 }; // ratios beyond this factor are counted
+
+/// Ratios of one kind of error.
+typedef struct counter {
+    int n, within;
+    double lowest, highest;
+} counter;
+
+static const char *const coarse[] = {"projection@rk4:h=0.01", "ggl@radau5:rtol=1e-4",
+                                     "nullspace@dopri5:rtol=1e-4", "baumgarte@rk4:h=0.005"};
+
+static void count(counter *c, double ratio) {
+    c->lowest = c->n ? fmin(c->lowest, ratio) : ratio;
+    c->highest = c->n ? fmax(c->highest, ratio) : ratio;
+    c->n++;
+    c->within += ratio > 1.0 / LATE && ratio < LATE;
+}
+
+/// Runs one method along the times of the reference, the watch beside it; fills the true errors up
+/// to the time to which the estimate holds.
+static bool run_method(const hn_model *model, const hn_ref *ref, const char *text,
+                       hn_estimate *estimate, double truth[HN_ERROR_COUNT]) {
+    const hn_system *sys = hn_model_system(model);
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    hn_run *run = NULL;
+    hn_accuracy *a = NULL;
+    hn_errors *errors = NULL;
+    hn_accuracy_track track = {0};
+    hn_arena *arena = hn_arena_create(0);
+    bool good =
+        hn_method_parse(text, &spec, &diag) == HN_OK &&
+        hn_run_create(sys, &spec, hn_model_q(model), hn_model_v(model), NULL, &run, &diag) ==
+            HN_OK &&
+        hn_accuracy_create(sys, hn_model_q(model), hn_model_v(model), ref->T, &a) == HN_OK &&
+        hn_errors_create(sys, arena, &errors) == HN_OK;
+    memset(truth, 0, HN_ERROR_COUNT * sizeof *truth);
+    for (int k = 1; good && k <= ref->n; k++) {
+        const hn_state_seen exact = hn_ref_at(ref, k);
+        hn_sample s;
+        if (hn_run_advance(run, exact.t) != HN_OK || hn_run_sample(run, exact.t, &s) != HN_OK) {
+            break;
+        }
+        if (!hn_accuracy_reach(a, s.t, hn_run_get_summary(run).cost.ops)) {
+            continue; // where the watch is late it claims nothing
+        }
+        double error[HN_ERROR_COUNT];
+        const hn_state_seen at = {s.t, s.q, s.v, s.lambda, s.energy, s.gap, s.velocity_gap};
+        hn_accuracy_see(a, &spec, &s, &track);
+        hn_errors_calc(errors, &at, &exact, &ref->scales, error);
+        for (int i = 0; i < HN_ERROR_COUNT; i++) {
+            truth[i] = fmax(truth[i], error[i]);
+        }
+    }
+    if (good) {
+        *estimate = hn_accuracy_estimate(a, &track, hn_run_time(run));
+    }
+    hn_run_free(run);
+    hn_accuracy_free(a);
+    hn_errors_free(errors);
+    hn_arena_free(arena);
+    return good && estimate->known;
+}
+
+/// A row of the table; ratios only of errors that the watch can tell from its own.
+static void put_row(const char *scene, const char *method, const hn_estimate *e,
+                    const double *truth, counter *q) {
+    printf("%-22s %-42s %8.3g  %.1e  %.1e  %.1e", scene, method, e->t, e->own, e->q,
+           truth[HN_ERROR_Q]);
+    if (truth[HN_ERROR_Q] > 10 * e->own) {
+        const double ratio = e->q / truth[HN_ERROR_Q];
+        printf("  %5.2f", ratio);
+        count(q, ratio);
+    } else {
+        printf("      -");
+    }
+    printf("  %.1e%s\n", e->reaction,
+           fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? "  above 1 %" : "");
+}
+
+static void do_scene(hn_library *lib, int scene, counter *q) {
+    const hn_model_source source = {.name = hn_library_scene_id(lib, scene)};
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_ref *ref = NULL;
+    hn_ref_request request = hn_ref_request_default();
+    request.only_stored = 1;
+    if (hn_model_load(lib, &source, &model, &diags) != HN_OK ||
+        hn_reference_get(model, &request, &ref, NULL, &diags) != HN_OK) {
+        printf("%-22s no reference is stored\n", source.name);
+        hn_model_free(model);
+        return;
+    }
+    const hn_scene *s = hn_model_scene(model);
+    const int n_coarse = sizeof coarse / sizeof *coarse;
+    for (int i = 0; i < s->n_methods + n_coarse; i++) {
+        const char *method = i < s->n_methods ? s->methods[i] : coarse[i - s->n_methods];
+        hn_estimate e = {0};
+        double truth[HN_ERROR_COUNT];
+        if (run_method(model, ref, method, &e, truth)) {
+            put_row(source.name, method, &e, truth, q);
+        } else {
+            printf("%-22s %-42s %s\n", source.name, method, e.reason);
+        }
+    }
+    hn_ref_free(ref);
+    hn_model_free(model);
+}
+
+int main(void) {
+    hn_library *lib = NULL;
+    hn_diag diag = {0};
+    counter q = {0};
+    if (hn_library_open(".", &lib, &diag) != HN_OK) {
+        fprintf(stderr, "%s\n", diag.message);
+        return 1;
+    }
+    printf("The error estimate of runs against their error by the reference solution.\n"
+           "t: up to which the estimate holds [s]; own: what the pilot may be off itself; relative "
+           "errors as in core/study/truth/errors.h;\n"
+           "ratio: estimate over error of the coordinates, where the error is ten times `own`\n\n"
+           "scene                  method                                            t  own      "
+           "estimate  error    ratio  reactions\n");
+    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
+        do_scene(lib, i, &q);
+    }
+    printf("\n%d ratios, %d of them between 1/%d and %d; %.2f to %.2f\n", q.n, q.within, LATE, LATE,
+           q.lowest, q.highest);
+    hn_library_free(lib);
+    return q.within < q.n; // an estimate that is off by more than the factor is a fault
+}
