@@ -257,7 +257,7 @@ static int string(scan *s) {
 static int word(scan *s, const char *name) {
     size_t length = strlen(name);
     if (s->n - s->at < length || memcmp(s->text + s->at, name, length) != 0) {
-        return expected(s, "bare words are only true, false and null; texts stand in double quotes",
+        return expected(s, "bare words are only true, false and null; write texts in double quotes",
                         "a value");
     }
     s->at += length;
@@ -271,7 +271,7 @@ static int member(scan *s) {
         int c = peek(s);
         const char *hint = c == '}'   ? "remove the comma before the '}'"
                            : c == '/' ? "JSON has no comments"
-                                      : "names stand in double quotes";
+                                      : "write names in double quotes";
         return expected(s, hint, "a name in double quotes");
     }
     if (!string(s)) {
@@ -340,7 +340,7 @@ static int value(scan *s) {
     case 'n':
         return word(s, "null");
     case '\'':
-        return expected(s, "texts stand in double quotes", "a value");
+        return expected(s, "write texts in double quotes", "a value");
     case '/':
         return expected(s, "JSON has no comments", "a value");
     case '.':
@@ -359,7 +359,7 @@ static int value(scan *s) {
     if (c == '-' || is_digit(c)) {
         return number(s);
     }
-    return expected(s, c > 0x20 && c < 0x7F ? "texts stand in double quotes" : NULL, "a value");
+    return expected(s, c > 0x20 && c < 0x7F ? "write texts in double quotes" : NULL, "a value");
 }
 
 hn_status hn_json_text_locate(const char *text, size_t n, int max_depth, size_t *offset,

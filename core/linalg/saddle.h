@@ -37,13 +37,13 @@ typedef struct hn_saddle_opts {
     /// Dependent rows that disagree by more than this contradict each other, relative to the sizes
     /// of gamma, J a and f, all equilibrated [-]; 1e-8. HUGE_VAL: accept the least-squares answer.
     double residual_tol;
-    /// How wrong J and gamma may be at this state, relative to the longest row [-]; 0. An error of
-    /// the state this large, over the smallest kept pivot and stretched as the shortest row is,
-    /// explains a disagreement of dependent rows: it is then no contradiction.
+    /// Relative error of J and gamma at this state, against the longest row [-]; 0: exact.
+    /// Dependent rows contradict each other only where they disagree by more than such an error
+    /// explains: noise / (smallest kept pivot), times the stretch of the shortest row.
     double noise;
-    /// The accelerations that the velocities alone can make, equilibrated (sqrt(M_jj) a_j); 0.
-    /// A disagreement of dependent rows is compared with these too, since gamma, J a and f may all
-    /// vanish at a pose where their parts do not.
+    /// Size of the accelerations due to the velocities alone, equilibrated (sqrt(M_jj) a_j); 0.
+    /// Disagreements are measured against it as well: gamma, J a and f may all vanish at a
+    /// configuration where the terms that they are sums of do not.
     double motion;
     /// Rows of J D shorter than this times the longest are not brought to unit length: they stay as
     /// small as they are against it [-]; 0.

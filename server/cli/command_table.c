@@ -55,7 +55,8 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
      hn_command_snapshot},
     {"import", "FILE",
-     "a scene from a MuJoCo MJCF or URDF file; what is not in it is told, with lines",
+     "convert a MuJoCo MJCF or URDF file to a scene; unsupported elements are listed with their "
+     "lines",
      "--out -o --loops --key", 1, 1, hn_command_import},
     {"lesson", "N|ID", "a lesson to read: text, formulas, what to try, exercises", "--wide", 1, 1,
      hn_command_lesson},

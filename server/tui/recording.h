@@ -57,7 +57,8 @@ const hn_track *hn_recording_track(const hn_recording *r, int i);
 hn_track_end hn_recording_end(const hn_recording *r, int i);
 /// What the reference is good for; digits 0: none is stored for these parameters.
 typedef struct hn_recording_truth {
-    double digits, energy_scale; ///< [-], [J]
+    double digits;       ///< of the reference that are right [-]
+    double energy_scale; ///< scale of the energies of the reference [J]
 } hn_recording_truth;
 hn_recording_truth hn_recording_get_truth(const hn_recording *r);
 /// Points of the reference motion at a frame (3 n_points); NULL: none.

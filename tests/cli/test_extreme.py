@@ -81,7 +81,7 @@ class Extreme(unittest.TestCase):
         self.assertNotIn(" fail", table.splitlines()[-1])
 
     def test_an_unknown_case_and_a_wrong_file_name_are_told(self):
-        for words, says in ([["x99"], "no case 'x99'"], [["x3", "--out", "a.doc"], "cannot be told from its name"]):
+        for words, says in ([["x99"], "no case 'x99'"], [["x3", "--out", "a.doc"], "does not say which form to write"]):
             done = call(words)
             self.assertEqual(done.returncode, INPUT)
             self.assertIn(says, done.stderr)

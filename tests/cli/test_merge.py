@@ -196,7 +196,7 @@ class Merge(unittest.TestCase):
             ([*COUNTED, "--shard", "1"], b"no part of a study"),
             ([*COUNTED, "--shard", "1/2", "--csv"], b"a part of a study is JSON"),
             ([*COUNTED, "--shard", "1/2", "--out", "x.html"], b"a part of a study is JSON"),
-            (["merge", self.parts(1)[0], "--out", "x.pdf"], b"cannot be told from its name"),
+            (["merge", self.parts(1)[0], "--out", "x.pdf"], b"does not say which form to write"),
             (["merge"], b"needs PART"),
         ):
             done = self.call(words)

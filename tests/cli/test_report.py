@@ -155,7 +155,7 @@ class Report(unittest.TestCase):
             (["report", "fb0", "--methods", "index1@rk5"], b"rk5"),
             (["report", "fb0", "--levels", "99"], b"2 to 10"),
             (["report", "fb0", "--time-limit", "-3"], b"are allowed"),
-            (["report", "fb0", "--out", "x.pdf"], b"cannot be told from its name"),
+            (["report", "fb0", "--out", "x.pdf"], b"does not say which form to write"),
         ):
             done = call(words, self.kept.name)
             self.assertEqual(done.returncode, INPUT, words)

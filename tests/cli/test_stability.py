@@ -122,7 +122,7 @@ class Stability(unittest.TestCase):
             (["--preset", "limits", "--over", "h=1e-3..1"], b"not from both"),
             (["--grid", "0x7"], b"not a grid"),
             (["--grid", "99x99", "--over", "h=1e-3..1,k=1..1e3"], b"2 to 64 are allowed"),
-            (["--out", "x.pdf"], b"cannot be told from its name"),
+            (["--out", "x.pdf"], b"does not say which form to write"),
             (["--levels", "3"], b"kind stability has no 'levels'"),
         ):
             done = self.call(*STUDY, *words)

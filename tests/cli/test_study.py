@@ -118,7 +118,7 @@ class Study(unittest.TestCase):
             (["study", "fb0", "--methods", "index1@rk5"], b"rk5"),
             (["study", "fb0", "--levels", "99"], b"2 to 10"),
             (["study", "fb0", "--time", "-1"], b"are allowed"),
-            (["study", "fb0", "--out", "x.pdf"], b"cannot be told from its name"),
+            (["study", "fb0", "--out", "x.pdf"], b"does not say which form to write"),
             (["study", "fb0", "--samples", "1000"], b"0 to 10 are allowed"),
             (["study", "fb0", "--time-limit", "0", "--out", "/no/such/folder/x.html"], b"cannot write"),
             (["extreme", "--out", "/no/such/folder/x.html"], b"cannot write"),

@@ -192,7 +192,8 @@ static void find_steps(builder *b) {
         btf_order(d->n_dep, b->start, b->rows, 0, &work, b->P, b->Q, b->R, &matched, b->work);
     if (matched < d->n_dep) {
         snprintf(d->refusal, sizeof d->refusal,
-                 "the rows do not tell %d of the dependent coordinates apart", d->n_dep - matched);
+                 "the constraints do not determine %d of the dependent coordinates",
+                 d->n_dep - matched);
         return;
     }
     recognise_blocks(b, n_blocks);

@@ -36,7 +36,7 @@ typedef struct hn_singularity_info {
     /// of the rows that count (those that do not always depend on others) [-]
     double sigma_min, sigma_max;
     double ratio; ///< sigma_min / sigma_max; 1 without rows
-    /// rows lost beyond those that were dependent at the first look; 0 unless ratio < 1e-8
+    /// rows lost beyond those that were dependent at the first check; 0 unless ratio < 1e-8
     int lost;
     /// seconds until a singular configuration that the pilot run has just reached, else HUGE_VAL;
     /// said once for each

@@ -5,9 +5,10 @@
 //
 //     K [a; -lambda] = [f; -(gamma + 2 alpha (J v + phi_t) + beta^2 phi)],   K = [M J'; J 0]  (1)
 //
-// A sparse symbolic LDL' of K, its order chosen when the system is compiled, is part of the tape;
-// its pivots are guarded at run time. Where a pivot is lost, or a value is not finite, the dense
-// rank-revealing solve of linalg/kkt.h answers instead, and the info says so.
+// The system is solved by a tape (accel_tape.h) that contains a sparse LDL' factorisation of K
+// whose order of elimination is chosen when the system is compiled. Its pivots are checked at every
+// evaluation. Where a pivot is lost, or a value is not finite, the dense rank-revealing solve of
+// linalg/kkt.h is used instead, and hn_accel_info.fallback is set.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_FORMULATION_H
 #define HN_FORMULATIONS_FORMULATION_H
-// A formulation: how the constraints enter the equations of motion. It turns a system into an
-// ordinary differential equation (ode.h) that any integrator can step, and may correct the state
-// after a step; or it passes the differential-algebraic system to integrators that take one. One
-// file in formulations/rows and one line in formulations/list each.
+// A formulation states how the constraints enter the equations of motion. Most formulations turn a
+// system into an ordinary differential equation (ode.h), which every integrator can solve, and may
+// correct the state after a step. The others pass the differential-algebraic system on, to the
+// integrators that solve one. A formulation is one file in formulations/rows and one line in
+// formulations/list.
 
 #include "base/arena.h"
 #include "base/diag.h"

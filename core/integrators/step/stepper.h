@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_STEPPER_H
 #define HN_INTEGRATORS_STEPPER_H
-// An integrator: how time advances. One file and one line in integrators/list each; explicit
-// tableaux are data.
+// An integrator advances a state from t to t + h. Each one is a table of functions (hn_stepper): one
+// file, and one line in integrators/list. Explicit Runge-Kutta methods are tableaux (tableau.h).
 
 #include "base/arena.h"
 #include "formulations/ground/formulation.h"
@@ -27,7 +27,7 @@ typedef struct hn_stepper {
 
     /// Forms that it serves, bit (1 << form) each; 0: ordinary differential equations only.
     unsigned forms;
-    /// The reason why it does not serve a form that a user may expect, for the refusal; NULL: none.
+    /// The message for a form that users expect and it does not serve: why not. NULL: none.
     const char *unserved;
     /// Functions for differential-algebraic forms, see integrators/step/dae.h; NULL when `forms`
     /// has none.

@@ -113,7 +113,7 @@ static void put_legend(hn_strbuf *b) {
                          hn_bill_about((hn_bill_item)i));
     }
     hn_strbuf_add(b, "</dl><p class=\"quiet\">A formulation without equations of its own has its "
-                     "part in truncation; \xe2\x80\x93: it cannot be told.</p>");
+                     "part in truncation; \xe2\x80\x93: it cannot be determined.</p>");
 }
 
 void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {

@@ -370,8 +370,9 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
         }
     }
     if (!served) {
-        return hn_diag_set(diag, HN_ERR_INPUT, "/set/key", "alpha and beta belong to baumgarte",
-                           "no method of this comparison has a setting '%.40s'", key);
+        return hn_diag_set(diag, HN_ERR_INPUT, "/set/key",
+                           "name an option that a method of the comparison has, such as h",
+                           "no method of this comparison has an option '%.40s'", key);
     }
     return HN_OK;
 }

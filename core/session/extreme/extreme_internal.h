@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_INTERNAL_H
 #define HN_SESSION_EXTREME_INTERNAL_H
-// The types that the files of the extreme matrix share: extreme_files.c and extreme_read*.c (files,
-// see extreme_reader.h), extreme_store.c (journal), extreme.c (trials and verdicts),
-// extreme_model.c (scene and start of a point), extreme_walk.c (a run), extreme_quantity.c and
-// extreme_measure.c (the two tables), extreme_solve.c, extreme_stable.c (measures with a loop of
-// their own).
+// Types shared by the files of the extreme matrix: a point (scene, method, value), the state kept
+// from trial to trial, and the record of one run.
+//
+//     extreme_read*.c    reads cases from files          extreme_walk.c      runs a point
+//     extreme_model.c    scene and start of a point      extreme_quantity.c  table of quantities
+//     extreme_store.c    journal of finished trials      extreme_measure.c   table of measures
+//     extreme.c          trials and verdicts             extreme_solve.c, extreme_stable.c: measures
+//                                                        that make several runs
 
 #include "session/extreme/extreme.h"
 #include "session/model/model.h"
@@ -44,7 +47,7 @@ typedef struct hn_extreme_bench {
 int hn_extreme_is_stopped(void *bench);
 
 /// A run that has ended, with what was measured on the way.
-typedef struct hn_extreme_look {
+typedef struct hn_extreme_check {
     hn_extreme_bench *bench;
     const hn_extreme_point *point;
     const hn_model *model; ///< NULL: the scene was refused
@@ -57,12 +60,12 @@ typedef struct hn_extreme_look {
     double start_energy;
     hn_sample end; ///< when it finished
     hn_run_summary summary;
-    double least_step;     ///< of the whole run, where each step was looked at
+    double least_step;     ///< of the whole run, where each step was measured
     double first, last;    ///< largest |v| over the first and the last tenth, likewise
     const double *truth;   ///< n_user, what q should be; NULL: none
     const double *truth_v; ///< likewise, NULL: unknown
     const double *truth_lambda;
-} hn_extreme_look;
+} hn_extreme_check;
 
 enum {
     HN_EXTREME_EACH_STEP = 1,   ///< step by step: least_step, first, last
@@ -91,7 +94,7 @@ typedef struct hn_extreme_answer {
 typedef struct hn_extreme_quantity {
     const char *name, *unit, *about;
     unsigned needs;
-    double (*of_run)(const hn_extreme_look *look);
+    double (*of_run)(const hn_extreme_check *look);
     double (*of_answer)(const hn_extreme_answer *answer);
 } hn_extreme_quantity;
 

@@ -29,15 +29,15 @@ static hn_status end_of(hn_extreme_bench *bench, const hn_extreme_point *point, 
         snprintf(reason, 200, "%s", answer.reason);
         return answer.status;
     }
-    hn_extreme_look look;
-    hn_extreme_look_begin(bench, point, HN_EXTREME_WATCHED, &look);
+    hn_extreme_check look;
+    hn_extreme_check_begin(bench, point, HN_EXTREME_WATCHED, &look);
     const hn_status status = look.status;
     if (status != HN_OK && look.run) {
         snprintf(reason, 200, "at %.4g s: %.180s", look.summary.t, look.reason);
     } else {
         snprintf(reason, 200, "%s", look.reason);
     }
-    hn_extreme_look_end(&look);
+    hn_extreme_check_end(&look);
     return status;
 }
 

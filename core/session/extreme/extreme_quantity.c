@@ -14,12 +14,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static int n_user(const hn_extreme_look *look) {
+static int n_user(const hn_extreme_check *look) {
     return hn_system_get_info(hn_model_system(look->model)).n_user;
 }
 
 /// Returns the index of a user coordinate, by its name or the name of its rate; -1: none.
-static int find_coordinate(const hn_extreme_look *look, const char *name) {
+static int find_coordinate(const hn_extreme_check *look, const char *name) {
     const hn_system *sys = hn_model_system(look->model);
     const hn_scene *scene = hn_model_scene(look->model);
     for (int i = 0; i < n_user(look); i++) {
@@ -42,7 +42,7 @@ static double largest_difference(const double *x, const double *y, int n) {
 // errors ----
 
 /// Returns the largest error of the coordinates that the truth names, or of all.
-static double error_q(const hn_extreme_look *look) {
+static double error_q(const hn_extreme_check *look) {
     const hn_extreme_trial *t = look->point->trial;
     double worst = 0;
     if (t->truth_method) {
@@ -61,95 +61,95 @@ static double error_q(const hn_extreme_look *look) {
     return worst;
 }
 
-static double error_v(const hn_extreme_look *look) {
+static double error_v(const hn_extreme_check *look) {
     return look->truth_v ? largest_difference(look->end.v, look->truth_v, n_user(look))
                          : (double)NAN;
 }
 
-static int n_rows(const hn_extreme_look *look) {
+static int n_rows(const hn_extreme_check *look) {
     return hn_system_get_info(hn_model_system(look->model)).nc;
 }
 
-static double error_lambda(const hn_extreme_look *look) {
+static double error_lambda(const hn_extreme_check *look) {
     return look->truth_lambda
                ? largest_difference(look->end.lambda, look->truth_lambda, n_rows(look))
                : (double)NAN;
 }
 
-static double error_raw(const hn_extreme_look *look) {
+static double error_raw(const hn_extreme_check *look) {
     return look->truth_lambda && look->end.raw_lambda
                ? largest_difference(look->end.raw_lambda, look->truth_lambda, n_rows(look))
                : (double)NAN;
 }
 
-static double raw_lambda(const hn_extreme_look *look) {
+static double raw_lambda(const hn_extreme_check *look) {
     return look->end.raw_lambda ? hn_norm2(n_rows(look), look->end.raw_lambda) : (double)NAN;
 }
 
-static double lambda(const hn_extreme_look *look) {
+static double lambda(const hn_extreme_check *look) {
     return hn_norm2(n_rows(look), look->end.lambda);
 }
 
 // gaps and energies ----
 
-static double gap(const hn_extreme_look *look) {
+static double gap(const hn_extreme_check *look) {
     return look->end.gap;
 }
-static double speed_gap(const hn_extreme_look *look) {
+static double speed_gap(const hn_extreme_check *look) {
     return look->end.velocity_gap;
 }
-static double worst_gap(const hn_extreme_look *look) {
+static double worst_gap(const hn_extreme_check *look) {
     return look->summary.worst_gap;
 }
-static double worst_speed_gap(const hn_extreme_look *look) {
+static double worst_speed_gap(const hn_extreme_check *look) {
     return look->summary.worst_velocity_gap;
 }
-static double energy_change(const hn_extreme_look *look) {
+static double energy_change(const hn_extreme_check *look) {
     return look->end.energy - look->start_energy;
 }
-static double energy_error(const hn_extreme_look *look) {
+static double energy_error(const hn_extreme_check *look) {
     return fabs(energy_change(look));
 }
-static double worst_energy_error(const hn_extreme_look *look) {
+static double worst_energy_error(const hn_extreme_check *look) {
     return fabs(look->summary.worst_energy_change);
 }
-static double energy_removed(const hn_extreme_look *look) {
+static double energy_removed(const hn_extreme_check *look) {
     return look->summary.cost.energy_removed;
 }
-static double energy_share(const hn_extreme_look *look) {
+static double energy_share(const hn_extreme_check *look) {
     return energy_change(look) / look->start_energy;
 }
-static double energy_growth(const hn_extreme_look *look) {
+static double energy_growth(const hn_extreme_check *look) {
     return log(look->end.energy / look->start_energy);
 }
 
 // steps ----
 
-static double steps(const hn_extreme_look *look) {
+static double steps(const hn_extreme_check *look) {
     return (double)look->summary.steps;
 }
-static double rejected(const hn_extreme_look *look) {
+static double rejected(const hn_extreme_check *look) {
     return (double)look->summary.rejected;
 }
-static double rejected_share(const hn_extreme_look *look) {
+static double rejected_share(const hn_extreme_check *look) {
     return rejected(look) / (rejected(look) + steps(look));
 }
-static double evaluations(const hn_extreme_look *look) {
+static double evaluations(const hn_extreme_check *look) {
     return (double)look->summary.cost.evals;
 }
-static double chart_changes(const hn_extreme_look *look) {
+static double chart_changes(const hn_extreme_check *look) {
     return (double)look->summary.cost.chart_changes;
 }
-static double time_reached(const hn_extreme_look *look) {
+static double time_reached(const hn_extreme_check *look) {
     return look->summary.t;
 }
-static double least_step(const hn_extreme_look *look) {
+static double least_step(const hn_extreme_check *look) {
     return look->least_step;
 }
-static double ringing(const hn_extreme_look *look) {
+static double ringing(const hn_extreme_check *look) {
     return look->last / look->first;
 }
-static double per_step_ringing(const hn_extreme_look *look) {
+static double per_step_ringing(const hn_extreme_check *look) {
     // between the middles of the first and the last tenth
     return exp(log(ringing(look)) / (0.9 * steps(look)));
 }
@@ -157,7 +157,7 @@ static double per_step_ringing(const hn_extreme_look *look) {
 // states and incidents ----
 
 /// Returns the coordinate or rate of that name at the last good state.
-static double coordinate(const hn_extreme_look *look) {
+static double coordinate(const hn_extreme_check *look) {
     const int k = find_coordinate(look, look->point->trial->coordinate);
     const hn_scene *scene = hn_model_scene(look->model);
     hn_sample s = look->end;
@@ -170,7 +170,7 @@ static double coordinate(const hn_extreme_look *look) {
     return is_rate ? s.v[k] : s.q[k];
 }
 
-static const hn_incident *find_incident(const hn_extreme_look *look) {
+static const hn_incident *find_incident(const hn_extreme_check *look) {
     const hn_incident *list = NULL;
     const int n = hn_run_incidents(look->run, &list);
     for (int i = 0; i < n; i++) {
@@ -180,30 +180,30 @@ static const hn_incident *find_incident(const hn_extreme_look *look) {
     }
     return NULL;
 }
-static double incident_told(const hn_extreme_look *look) {
+static double incident_told(const hn_extreme_check *look) {
     return find_incident(look) != NULL;
 }
-static double incident_time(const hn_extreme_look *look) {
+static double incident_time(const hn_extreme_check *look) {
     const hn_incident *found = find_incident(look);
     return found ? found->t : (double)NAN;
 }
-static double incident_count(const hn_extreme_look *look) {
+static double incident_count(const hn_extreme_check *look) {
     const hn_incident *list = NULL;
     return hn_run_incidents(look->run, &list);
 }
 
 // models ----
 
-static double assembly_gap(const hn_extreme_look *look) {
+static double assembly_gap(const hn_extreme_check *look) {
     return hn_model_assembly(look->model)->gap;
 }
-static double rank(const hn_extreme_look *look) {
+static double rank(const hn_extreme_check *look) {
     return hn_model_assembly(look->model)->rank;
 }
-static double freedoms(const hn_extreme_look *look) {
+static double freedoms(const hn_extreme_check *look) {
     return hn_model_assembly(look->model)->freedoms;
 }
-static double sigma_min(const hn_extreme_look *look) {
+static double sigma_min(const hn_extreme_check *look) {
     return hn_model_assembly(look->model)->sigma_min;
 }
 
@@ -256,11 +256,11 @@ const hn_extreme_quantity hn_extreme_quantities[] = {
      NULL},
     {"coordinate", "", "a coordinate or rate at the last good state", EARLY | HN_EXTREME_COORDINATE,
      coordinate, NULL},
-    {"incident-told", "", "1 when the run told it", EARLY | WATCHED | HN_EXTREME_INCIDENT,
+    {"incident-told", "", "1 when the run reported it", EARLY | WATCHED | HN_EXTREME_INCIDENT,
      incident_told, NULL},
-    {"incident-time", "s", "when it was told", EARLY | WATCHED | HN_EXTREME_INCIDENT, incident_time,
-     NULL},
-    {"incidents", "", "how many were told, of any kind", EARLY | WATCHED, incident_count, NULL},
+    {"incident-time", "s", "when it was reported", EARLY | WATCHED | HN_EXTREME_INCIDENT,
+     incident_time, NULL},
+    {"incidents", "", "how many were reported, of any kind", EARLY | WATCHED, incident_count, NULL},
     {"assembly-gap", "", "what assembly could not close", HN_EXTREME_MODEL, assembly_gap, NULL},
     {"rank", "", "of J at the start", HN_EXTREME_MODEL, rank, NULL},
     {"dof", "", "at the start", HN_EXTREME_MODEL, freedoms, NULL},
@@ -289,7 +289,7 @@ double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *p
                               char reason[200], hn_status *status) {
     const hn_extreme_quantity *of = point->trial->of;
     double value = (double)NAN;
-    hn_extreme_look look;
+    hn_extreme_check look;
     reason[0] = 0;
 
     // a solver's answer needs no run
@@ -298,7 +298,7 @@ double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *p
     }
 
     // make the run; some quantities exist for a run that ended early
-    hn_extreme_look_begin(bench, point, of->needs, &look);
+    hn_extreme_check_begin(bench, point, of->needs, &look);
     *status = look.status;
     const int early =
         (of->needs & HN_EXTREME_FAILED_TOO) && look.run && !hn_extreme_is_stopped(bench);
@@ -311,6 +311,6 @@ double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *p
         snprintf(reason, 200, "%s%s%.150s", hn_extreme_outcome(look.status),
                  look.reason[0] ? ": " : "", look.reason);
     }
-    hn_extreme_look_end(&look);
+    hn_extreme_check_end(&look);
     return value;
 }

@@ -258,7 +258,7 @@ static void read_rest(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
         known = strcmp(hn_incident_spelling((hn_incident_code)i), t->incident) == 0;
     }
     if (!known) {
-        hn_xr_fault(r, "incident", NULL, "no run tells of '%.60s'", t->incident);
+        hn_xr_fault(r, "incident", NULL, "no run reports '%.60s'", t->incident);
     }
 }
 

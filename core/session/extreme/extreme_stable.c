@@ -62,15 +62,15 @@ static bool walk_quarters(hn_extreme_bench *bench, hn_run *run, int n, long long
 /// Returns 1 if the motion does not grow at step h, 0 if it does, -1 if unknown (reason in out).
 static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
                      hn_extreme_seen *out) {
-    hn_extreme_look look;
+    hn_extreme_check look;
     double most[4] = {0, 0, 0, 0};
 
     // start a run at this step size; it stays at its start (time 0)
     point->value = h;
-    hn_extreme_look_begin(bench, point, 0, &look);
+    hn_extreme_check_begin(bench, point, 0, &look);
     if (!look.run) {
         fail(out, look.status, look.reason);
-        hn_extreme_look_end(&look);
+        hn_extreme_check_end(&look);
         return -1;
     }
 
@@ -82,7 +82,7 @@ static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
     const double steps = floor(point->trial->steps);
     const int held = hn_run_time(look.run) > steps * h * (1 - 1e-6);
 
-    hn_extreme_look_end(&look);
+    hn_extreme_check_end(&look);
     if (hn_extreme_is_stopped(bench)) {
         fail(out, HN_ERR_BUDGET, "stopped");
         return -1;
@@ -125,14 +125,14 @@ static bool search(hn_extreme_bench *bench, hn_extreme_point *point, double low,
 /// of a trial's run [s]; NaN with a reason in out.
 static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
                       hn_extreme_seen *out) {
-    hn_extreme_look look;
+    hn_extreme_check look;
     hn_spectrum *spectrum = NULL;
     const hn_eigenvalue *s = NULL;
     int n = 0;
     double limit = (double)NAN;
 
     // make the run, and leave it at its start
-    hn_extreme_look_begin(bench, point, 0, &look);
+    hn_extreme_check_begin(bench, point, 0, &look);
 
     // the eigenvalues at its start
     hn_status status = look.status;
@@ -150,7 +150,7 @@ static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
     }
 
     hn_spectrum_free(spectrum);
-    hn_extreme_look_end(&look);
+    hn_extreme_check_end(&look);
 
     // a limit of 0 or infinity cannot be compared with
     if (!isnan(limit) && !(limit > 0 && limit < HUGE_VAL)) {
@@ -195,11 +195,11 @@ void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *tr
     still.time = (hn_extreme_number){0}; // the run stays at its start
     const hn_extreme_point point = {&still, scene, method, 0};
     const hn_walk_limits limits = {.stop = ask_bench, .user = bench};
-    hn_extreme_look look;
+    hn_extreme_check look;
     hn_chaos chaos;
     hn_diag diag = {0};
     out->value = (double)NAN;
-    hn_extreme_look_begin(bench, &point, 0, &look);
+    hn_extreme_check_begin(bench, &point, 0, &look);
     hn_status status = look.status;
     if (status != HN_OK) {
         fail(out, status, look.reason);
@@ -212,5 +212,5 @@ void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *tr
             fail(out, status, diag.message);
         }
     }
-    hn_extreme_look_end(&look);
+    hn_extreme_check_end(&look);
 }

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static void fail_look(hn_extreme_look *look, hn_status status, const char *reason) {
+static void fail_look(hn_extreme_check *look, hn_status status, const char *reason) {
     look->status = status;
     snprintf(look->reason, sizeof look->reason, "%.199s", reason);
 }
@@ -20,7 +20,7 @@ static const char *first_message(const hn_diags *diags, hn_status status) {
     return diags->n > 0 ? diags->item[0].message : hn_status_text(status);
 }
 
-static void refuse(hn_extreme_look *look, hn_status status) {
+static void refuse(hn_extreme_check *look, hn_status status) {
     char text[sizeof look->reason];
     const hn_diags *d = &look->bench->diags;
     const char *pointer = d->n > 0 ? d->item[0].pointer : "";
@@ -29,7 +29,8 @@ static void refuse(hn_extreme_look *look, hn_status status) {
     fail_look(look, status, text);
 }
 
-static hn_status make_run(hn_extreme_look *look, const char *method, unsigned needs, hn_run **out) {
+static hn_status make_run(hn_extreme_check *look, const char *method, unsigned needs,
+                          hn_run **out) {
     const hn_extreme_trial *t = look->point->trial;
     hn_run_opts opts = hn_run_opts_default();
     hn_method_spec spec;
@@ -46,7 +47,7 @@ static hn_status make_run(hn_extreme_look *look, const char *method, unsigned ne
 }
 
 /// Largest |v| of the system's speeds now; NaN when it cannot be sampled.
-static double largest_speed(const hn_extreme_look *look) {
+static double largest_speed(const hn_extreme_check *look) {
     hn_sample s;
     const int n = hn_system_get_info(hn_model_system(look->model)).n_user;
     return hn_run_sample(look->run, hn_run_time(look->run), &s) == HN_OK ? hn_norm_max(n, s.v)
@@ -54,7 +55,7 @@ static double largest_speed(const hn_extreme_look *look) {
 }
 
 /// Steps to the end of the trial and records the smallest step and the largest velocities.
-static hn_walk_end walk_steps(hn_extreme_look *look, const hn_walk_limits *limits) {
+static hn_walk_end walk_steps(hn_extreme_check *look, const hn_walk_limits *limits) {
     const double T = look->time;
     double before = 0;
     look->least_step = HUGE_VAL;
@@ -88,7 +89,7 @@ static hn_walk_end walk_steps(hn_extreme_look *look, const hn_walk_limits *limit
     return HN_WALK_DONE;
 }
 
-static void walk(hn_extreme_look *look, unsigned needs) {
+static void walk(hn_extreme_check *look, unsigned needs) {
     const hn_walk_limits limits = {.stop = hn_extreme_is_stopped, .user = look->bench};
     const int each = (needs & HN_EXTREME_EACH_STEP) != 0;
     const hn_walk_end end =
@@ -107,7 +108,7 @@ static void walk(hn_extreme_look *look, unsigned needs) {
 }
 
 /// Computes the end state of the truth method, once for each model and time.
-static hn_status find_truth(hn_extreme_look *look) {
+static hn_status find_truth(hn_extreme_check *look) {
     hn_extreme_bench *bench = look->bench;
     const hn_extreme_trial *t = look->point->trial;
     const hn_system_info info = hn_system_get_info(hn_model_system(look->model));
@@ -133,7 +134,7 @@ static hn_status find_truth(hn_extreme_look *look) {
     }
 
     // run the truth method on the same model
-    hn_extreme_look exact = *look;
+    hn_extreme_check exact = *look;
     hn_status status = make_run(&exact, t->truth_method, 0, &exact.run);
     if (status == HN_OK) {
         hn_run_watch(exact.run, 0);
@@ -158,7 +159,7 @@ static hn_status find_truth(hn_extreme_look *look) {
     return status;
 }
 
-static hn_status use_truth(hn_extreme_look *look) {
+static hn_status use_truth(hn_extreme_check *look) {
     if (look->point->trial->truth_method) {
         const hn_status status = find_truth(look);
         look->truth = look->bench->truth_q;
@@ -169,8 +170,8 @@ static hn_status use_truth(hn_extreme_look *look) {
     return HN_OK; // the trial gives exact values by name; the quantity reads them
 }
 
-void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
-                           hn_extreme_look *look) {
+void hn_extreme_check_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
+                            hn_extreme_check *look) {
     const hn_extreme_trial *t = point->trial;
 
     // the model of this point
@@ -221,7 +222,7 @@ void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *poin
     walk(look, needs);
 }
 
-void hn_extreme_look_end(hn_extreme_look *look) {
+void hn_extreme_check_end(hn_extreme_check *look) {
     hn_run_free(look->run);
     hn_arena_free(look->arena);
 }

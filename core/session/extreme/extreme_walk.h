@@ -6,8 +6,8 @@
 #include "session/extreme/extreme_internal.h"
 
 /// Runs the point to its time. look->run is NULL and status set when it could not begin.
-/// hn_extreme_look_end() in any case.
-void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
-                           hn_extreme_look *look);
-void hn_extreme_look_end(hn_extreme_look *look);
+/// hn_extreme_check_end() in any case.
+void hn_extreme_check_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
+                            hn_extreme_check *look);
+void hn_extreme_check_end(hn_extreme_check *look);
 #endif

@@ -44,8 +44,8 @@ typedef struct holonom_fault {
 typedef struct holonom_mechanism holonom_mechanism;
 
 typedef struct holonom_sizes {
-    int coordinates; ///< entries of q and v
-    int constraints; ///< entries of lambda: closure rows, redundant ones included
+    int coordinates; ///< entries of q [m or rad] and of v [m/s or rad/s]
+    int constraints; ///< entries of lambda [N or N m], redundant constraints included
     int dof;         ///< degrees of freedom at the start
     int redundant;   ///< constraints that depend on others at the start
     int points;      ///< points that a drawing needs

@@ -35,7 +35,7 @@ typedef struct terms {
 static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
     *w = (terms){.model = model, .info = hn_system_get_info(hn_model_system(model))};
     if (w->info.nv > MAX_DENSE) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "inspect tells its sizes and patterns",
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "inspect reports its sizes and patterns",
                             "the scene has %d speeds; its matrices are written out up to %d",
                             w->info.nv, MAX_DENSE);
     }

@@ -31,7 +31,7 @@ static const char *const MEANINGS[HN_SURVIVAL_ENDS] = {
     [HN_SURVIVAL_SURVIVED] = "survived",
     [HN_SURVIVAL_OFF] = "inaccurate from here",
     [HN_SURVIVAL_STOPPED] = "stopped, and said why",
-    [HN_SURVIVAL_TOLD] = "wrong, and told",
+    [HN_SURVIVAL_TOLD] = "wrong, and reported",
     [HN_SURVIVAL_SILENT] = "folded over, silently",
 };
 

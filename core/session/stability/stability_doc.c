@@ -40,7 +40,7 @@ static void put_cell(hn_strbuf *b, const hn_map_cell *cell) {
 
 static void put_column(hn_strbuf *b, const hn_map_column *c) {
     static const char *const verdicts[] = {
-        [HN_MAP_UNTOLD] = "untold",
+        [HN_MAP_UNTOLD] = "not known",
         [HN_MAP_AGREE] = "agrees",
         [HN_MAP_UNSEEN] = "too-slow-to-see",
         [HN_MAP_EARLIER] = "earlier",

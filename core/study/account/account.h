@@ -4,12 +4,12 @@
 // The error budget of a run: what each step adds to the error at the end, and to the energy, split
 // by cause. The parts add up to the whole.
 //
-// Step k takes y_k = (q, v) to y_k+1. Beside it two flows start from the same y_k and are followed
-// to all digits: B of the formulation's own differential equation, and I of the equations of motion
-// as index 1, which are defined off the loops too. Then
+// Step k takes y_k = (q, v) to y_k+1; u_k+1 is its result before the projection, y_k+1 after it.
+// From the same y_k two exact flows are computed to all digits: B solves the differential equation
+// of the formulation, I the equations of motion of index 1, which exist off the loops too. Then
 //
-//     y_k+1 - I(y_k) = [before mending - B(y_k)] + [B(y_k) - I(y_k)] + [y_k+1 - before mending] (1)
-//                        truncation                formulation          projection
+//     y_k+1 - I(y_k)  =  [u_k+1 - B(y_k)]  +  [B(y_k) - I(y_k)]  +  [y_k+1 - u_k+1]            (1)
+//                          truncation          formulation            projection
 //     y_N - exact(T) = sum over k of  DI_(T - t_k+1) (1),   to first order                      (2)
 //
 // with DI the derivative of I by its start, carried backwards from T: one row of it, transposed

@@ -42,8 +42,8 @@ typedef struct hn_books {
     hn_state_at unmended;
     double *record; ///< per step: t, h, y (ny), the parts (HN_PARTS x nd)
     size_t kept, room, width;
-    double *y, *y_own, *flowed, *owned, *was_y; ///< ny each
-    double *w, *column, *up, *down, *split;     ///< nd, nd, ny, ny, nd
+    double *y, *y_own, *flowed, *owned;     ///< ny each
+    double *w, *column, *up, *down, *split; ///< nd, nd, ny, ny, nd
     double *zero, *gap, *a, *lambda;
     double v_min, v_max, t_max;
 } hn_books;

@@ -418,7 +418,7 @@ static void put_clocks(hn_strbuf *b, const hn_wp *wp) {
         hn_strbuf_printf(b, "the same run took %.0f %% longer in one part than in another.\n",
                          100 * (wp->clocks_apart - 1));
     } else {
-        hn_strbuf_add(b, "the parts have no run in common that tells whether their clocks ran "
+        hn_strbuf_add(b, "the parts have no run in common that shows whether their clocks ran "
                          "alike.\n");
     }
 }

@@ -16,7 +16,7 @@
     X(HN_SURVIVAL_OFF, "off", "left the exact motion, no loop seen folded over: inaccurate") \
     X(HN_SURVIVAL_STOPPED, "stopped", "ended early and said why")                            \
     X(HN_SURVIVAL_TOLD, "told", "went wrong, and an incident says so")                       \
-    X(HN_SURVIVAL_SILENT, "silent", "a loop folded over, and nothing was told")
+    X(HN_SURVIVAL_SILENT, "silent", "a loop folded over, and nothing was reported")
 typedef enum hn_survival_end {
 #define HN_SURVIVAL_ENUM(code, name, about) code,
     HN_SURVIVAL_LIST(HN_SURVIVAL_ENUM)

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CROSSING_INCIDENTS
 #define HN_STUDY_CROSSING_INCIDENTS
-// Singular configurations that a long step has gone across: neither of its ends is near them.
-// Between the ends the motion is a cubic through both states, in the coordinates that move the
-// first to the second.
+// Finds singular configurations inside a long step, where neither of its ends is near one. Between
+// the ends the motion is taken as the cubic through both states.
 
 #include "study/incidents/watch.h"
 

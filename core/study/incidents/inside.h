@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_INSIDE_INCIDENTS_H
 #define HN_STUDY_INSIDE_INCIDENTS_H
-// Checks of states between steps: what is put out is checked like what is stepped to.
+// Checks of samples between steps: every state that is put out is checked like the states that the
+// run steps to.
 
 #include "study/incidents/watch.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_POSE_INCIDENTS
 #define HN_STUDY_POSE_INCIDENTS
-// What waits at a singular configuration, in words.
+// Describes a singular configuration in words: dependent constraints, bodies, degrees of freedom,
+// branches.
 
 #include "study/incidents/watch.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WATCH_H
 #define HN_STUDY_WATCH_H
-// The watching half of a run: after a step it measures the state that has been reached and checks
-// it against the table of incidents. It reads the stepping half and never changes it.
+// Monitors a run: after a step it measures the state that has been reached and checks it against
+// the table of incidents (kinds.h). It reads the state of the stepping part and never changes it.
 
 #include "dynamics/analyse/singularity_monitor.h"
 #include "dynamics/assembly/mode.h"

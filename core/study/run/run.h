@@ -2,8 +2,8 @@
 #ifndef HN_STUDY_RUN_H
 #define HN_STUDY_RUN_H
 // A run: one method on one scene. It steps, keeps time as t0 + n h, samples, counts, and reports
-// incidents. A run that fails keeps its last good state and says why. The work is done by its three
-// halves: stepping (study/stepping), watching (study/incidents) and sampling.
+// incidents. A run that fails keeps its last good state and the reason. It has three parts:
+// stepping (study/stepping), watching (study/incidents) and sampling (sampling.h).
 
 #include "study/incidents/kinds.h"
 #include "study/run/sampling.h"
@@ -61,15 +61,15 @@ void hn_run_free(hn_run *run);
 hn_status hn_run_advance(hn_run *run, double t_end);
 /// Makes exactly one accepted step.
 hn_status hn_run_step(hn_run *run);
-/// Makes one accepted step on the way to `t_sample`: only the step that reaches that time will be
-/// sampled inside, so the others are spared what dense output alone needs. A sample inside such a
-/// step is a side step.
+/// Makes one accepted step on the way to `t_sample`. Steps that end before that time skip the
+/// evaluations that only dense output needs; a sample inside such a step is computed by a second,
+/// shorter step from its start, which leaves the run as it was.
 hn_status hn_run_step_towards(hn_run *run, double t_sample);
 double hn_run_time(const hn_run *run);
-/// The sample at time t: the present time, a time within the last step (dense output where the
-/// integrator has it, else a side step of the same integrator from that step's start, which leaves
-/// the run as it was), or, with fixed steps, less than one step ahead of the present time (a side
-/// step). With raw multipliers asked for it is always a side step.
+/// Computes the sample at time t: the present time, a time within the last step, or, with fixed
+/// steps, less than one step ahead. Within a step it uses the integrator's dense output. Where there
+/// is none, ahead of the present time, and for raw multipliers it makes a step of the same
+/// integrator aside, which leaves the run as it was.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
 /// What the multipliers of the last sample are worth; near a singular configuration at the cost of
 /// a dense solve. Allocates nothing.

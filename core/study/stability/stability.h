@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_STABILITY_H
 #define HN_STUDY_STABILITY_H
-// What a fixed step does to a motion: predicted from the spectrum on the loops
-// (study/spectrum/spectrum.h), and tried.
+// The largest stable step of a method along a motion: predicted from the eigenvalues of the motion
+// on the loops (study/spectrum/spectrum.h), and observed by trial runs.
 //
-// A path is a motion that has been computed finely once: looks at equal times, with the state, the
-// energy and the eigenvalues there. Against it a method's trial is classed, and along it the
-// strictest of the predicted limits is found.
+// A path is a motion computed once with small steps. It records the state, the energy and the
+// eigenvalues at equal times. A trial run of a method is classed by its distance from the path. The
+// prediction is the smallest of the step limits along the path.
 
 #include "integrators/method/method_spec.h"
 #include "study/spectrum/spectrum.h"

@@ -293,9 +293,6 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
                                   .reactions = args->reactions,
                                   .progress = tell_progress,
                                   .user = &progress};
-        if (!args->method && !args->json) {
-            fprintf(stderr, "holonom: method %s; --method chooses another\n", request.method);
-        }
 
         // an interval of 0 would mean the default
         if (!isnan(args->every) && !(args->every > 0)) {
@@ -305,6 +302,11 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
             status = hn_model_run_json(b, model, &request, ended, diags);
         }
         hn_progress_end(&progress);
+
+        // the method that was chosen, once the question has turned out to be one
+        if (status == HN_OK && !args->method && !args->json) {
+            fprintf(stderr, "holonom: method %s; --method chooses another\n", request.method);
+        }
     }
     hn_model_free(model);
     return status;
@@ -340,7 +342,7 @@ static void put_plot(hn_strbuf *b, const cJSON *run) {
     hn_motion_plot_free(&plot);
 }
 
-/// "csv", "ndjson" or "json"; NULL with a fault told.
+/// "csv", "ndjson" or "json"; NULL with the fault reported.
 static const char *choose_format(const hn_args *args, hn_diags *diags) {
     static const char *const formats[] = {"csv", "ndjson", "json"};
     const char *wanted = args->json ? "json" : args->format ? args->format : "csv";

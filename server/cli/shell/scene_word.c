@@ -52,6 +52,24 @@ static hn_status see_setting(void *user, const char *name, double value) {
     return HN_OK;
 }
 
+static bool names_json(const char *word) {
+    const size_t n = strlen(word);
+    return n > 5 && strcmp(word + n - 5, ".json") == 0;
+}
+
+/// The fault of a word that ends in .json and names no file: the shipped scenes have no such
+/// ending.
+static hn_status report_no_file(const hn_library *lib, const char *word, hn_diags *diags) {
+    char name[80], hint[HN_DIAG_HINT];
+    snprintf(name, sizeof name, "%.*s", (int)(strlen(word) - 5), word);
+    const char *near = hn_nearest_name(name, hn_library_scene_ids(lib), hn_library_n_scenes(lib));
+    snprintf(hint, sizeof hint,
+             near ? "the shipped scene is called '%s'"
+                  : "name a file by its path; 'holonom list scenes' names the shipped scenes%s",
+             near ? near : "");
+    return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint, "there is no file '%.80s'", word);
+}
+
 hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const char *word,
                              bool allow_open, hn_model **out, hn_diags *diags) {
     settings *s = calloc(1, sizeof *s);
@@ -71,6 +89,8 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
         } else if (!hn_library_scene_path(lib, word) &&
                    (strchr(word, '/') || access(word, F_OK) == 0)) {
             source.path = word;
+        } else if (names_json(word)) {
+            status = report_no_file(lib, word, diags);
         } else {
             source.name = word;
         }

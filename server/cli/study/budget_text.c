@@ -93,7 +93,7 @@ static void put_legend(hn_strbuf *b) {
                          hn_bill_about((hn_bill_item)i));
     }
     hn_strbuf_add(b, "  A formulation without equations of its own has its part in truncation; "
-                     "\"-\": it cannot be told.\n");
+                     "\"-\": it cannot be determined.\n");
 }
 
 void hn_accounts_text(hn_strbuf *b, const hn_accounts *a) {

@@ -40,7 +40,7 @@
     X(HN_PROBLEM_STUDIES_BUSY, 503, "studies-busy", "Enough studies are running",                  \
       "Wait as long as the Retry-After header says, or stop a study that is running.")             \
     X(HN_PROBLEM_STOPPING, 503, "stopping", "The server is going down",                            \
-      "It was told to stop and takes on no new work.")
+      "The server is stopping and takes on no new work.")
 
 typedef enum hn_http_problem {
 #define HN_PROBLEM_ENUM(kind, status, code, title, about) kind,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_REQUEST_H
 #define HN_HTTP_REQUEST_H
-// One HTTP request from its first header to its last byte. The server makes it, a handler fills in
-// the reply, the completed callback alone frees it. A handler sees only this.
+// One HTTP request from its first header to its last byte. The server creates it, a handler (a
+// function of the table of routes) fills in the reply, and the callback that libmicrohttpd makes at
+// the end frees it; nothing else may. A handler reads and writes this struct only.
 
 #include "http/ground/microhttpd.h"
 #include "base/diag.h"
@@ -25,7 +26,7 @@ typedef struct hn_reply_header {
 
 typedef enum hn_request_stage {
     HN_STAGE_BODY,    ///< the body is coming in
-    HN_STAGE_WAITING, ///< suspended: somebody works on it
+    HN_STAGE_WAITING, ///< suspended until a worker has the reply
     HN_STAGE_ANSWERED ///< the reply is there
 } hn_request_stage;
 

@@ -127,7 +127,7 @@ static const struct {
      "\"lambda\":{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      "},\"description\":\"of each method, when fields asks for it: multipliers\"}}}"},
     {"Incident",
-     "{\"type\":\"object\",\"description\":\"data of the event incident; told again with the same "
+     "{\"type\":\"object\",\"description\":\"data of the event incident; sent again with the same "
      "method, code and t when the run has shown what became of "
      "it\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
      "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"

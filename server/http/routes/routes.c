@@ -394,7 +394,7 @@ static const hn_route ROUTES[] = {
      "StudyList", "The studies there are", NULL, NULL},
     {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, hn_study_fields, JSON,
      "202", "Study",
-     "Starts a study; its Location tells the progress, and the document when it is done", NULL,
+     "Starts a study; its Location gives the progress, and the document when it is done", NULL,
      "{\"scene\":\"four-bar\",\"kind\":\"work-precision\",\"methods\":[\"projection@rk4\",\"index1@"
      "rk4\"],\"time\":1,\"levels\":3,\"samples\":0}"},
     {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",
