@@ -182,7 +182,9 @@ class NearMisses(unittest.TestCase):
                              (["run", "four-bar", "--format", "cvs"], "csv"), (["equations", "four-bar", "--format", "latx"], "latex"),
                              (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--view", "fornt"], "front"),
                              (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
-                             (["terms", "four-bar", "--q", "ht1=1"], "th1"), (["extreme", "xx1"], "x1")):
+                             (["terms", "four-bar", "--q", "ht1=1"], "th1"), (["extreme", "xx1"], "x1"),
+                             (["run", "four-bar.json"], "the shipped scene is called 'four-bar'"),
+                             (["run", "nosuch.json"], "there is no file 'nosuch.json'")):
             done = call(*words)
             self.assertEqual(done.returncode, 2, words)
             self.assertIn(meant, done.stderr + done.stdout, words)

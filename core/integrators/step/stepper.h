@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_STEPPER_H
 #define HN_INTEGRATORS_STEPPER_H
-// An integrator advances a state from t to t + h. Each one is a table of functions (hn_stepper): one
+// An integrator advances a state from t to t + h. Each is a table of functions (hn_stepper): one
 // file, and one line in integrators/list. Explicit Runge-Kutta methods are tableaux (tableau.h).
 
 #include "base/arena.h"

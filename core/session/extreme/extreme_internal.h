@@ -7,8 +7,8 @@
 //     extreme_read*.c    reads cases from files          extreme_walk.c      runs a point
 //     extreme_model.c    scene and start of a point      extreme_quantity.c  table of quantities
 //     extreme_store.c    journal of finished trials      extreme_measure.c   table of measures
-//     extreme.c          trials and verdicts             extreme_solve.c, extreme_stable.c: measures
-//                                                        that make several runs
+//     extreme.c          trials and verdicts             extreme_solve.c, extreme_stable.c:
+//                                                        measures that make several runs
 
 #include "session/extreme/extreme.h"
 #include "session/model/model.h"

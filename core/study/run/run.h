@@ -67,8 +67,8 @@ hn_status hn_run_step(hn_run *run);
 hn_status hn_run_step_towards(hn_run *run, double t_sample);
 double hn_run_time(const hn_run *run);
 /// Computes the sample at time t: the present time, a time within the last step, or, with fixed
-/// steps, less than one step ahead. Within a step it uses the integrator's dense output. Where there
-/// is none, ahead of the present time, and for raw multipliers it makes a step of the same
+/// steps, less than one step ahead. Within a step it uses the integrator's dense output. Where
+/// there is none, ahead of the present time, and for raw multipliers it makes a step of the same
 /// integrator aside, which leaves the run as it was.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
 /// What the multipliers of the last sample are worth; near a singular configuration at the cost of
