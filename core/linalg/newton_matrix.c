@@ -212,6 +212,14 @@ static bool is_singular(hn_newton_matrix *m) {
     return !good || !(m->common.rcond > SINGULAR);
 }
 
+// pivots that pass for regular and yet hold few digits
+static bool is_doubtful(const hn_newton_matrix *m) {
+    if (m->sparse) {
+        return m->common.rcond < DOUBTFUL;
+    }
+    return m->parts == 1 && m->square.pivot_ratio < DOUBTFUL;
+}
+
 static hn_status factor_sparse(hn_newton_matrix *m, int known) {
     if (!hn_all_finite(m->parts * m->places.start[m->n], m->values)) {
         return HN_ERR_DIVERGED;
@@ -223,7 +231,8 @@ static hn_status factor_sparse(hn_newton_matrix *m, int known) {
             return m->common.status == KLU_OUT_OF_MEMORY ? HN_ERR_MEMORY : HN_ERR_SINGULAR;
         }
     }
-    if (!keep_pivots(m)) {
+    // pivots that were chosen in other units, or long ago, may be poor ones by now
+    if (!keep_pivots(m) || is_singular(m) || is_doubtful(m)) {
         const hn_status status = choose_pivots(m);
         if (status != HN_OK) {
             return status;
@@ -273,14 +282,6 @@ static void scale(const hn_newton_matrix *m, const double *exponents, double *x)
     for (int i = 0; i < m->parts * m->n; i++) {
         x[i] = ldexp(x[i], (int)exponents[i / m->parts]);
     }
-}
-
-// pivots that pass for regular and yet hold few digits
-static bool is_doubtful(const hn_newton_matrix *m) {
-    if (m->sparse) {
-        return m->common.rcond < DOUBTFUL;
-    }
-    return m->parts == 1 && m->square.pivot_ratio < DOUBTFUL;
 }
 
 hn_status hn_newton_matrix_factor(hn_newton_matrix *m) {

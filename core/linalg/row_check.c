@@ -118,10 +118,11 @@ hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int n_entries, co
     return c->spd ? HN_OK : HN_ERR_MEMORY;
 }
 
-static void take_unit_rows(hn_row_check *c, const double *J) {
+static void take_unit_rows(hn_row_check *c, const double *J, const double *unit) {
     memset(c->size, 0, (size_t)c->nc * sizeof *c->size);
     for (int k = 0; k < c->n_entries; k++) {
-        c->entry[k] = J[(size_t)c->row[k] * (size_t)c->nv + (size_t)c->col[k]];
+        c->entry[k] =
+            J[(size_t)c->row[k] * (size_t)c->nv + (size_t)c->col[k]] * (unit ? unit[c->col[k]] : 1);
         c->size[c->row[k]] += c->entry[k] * c->entry[k];
     }
     for (int i = 0; i < c->nc; i++) {
@@ -132,8 +133,8 @@ static void take_unit_rows(hn_row_check *c, const double *J) {
     }
 }
 
-bool hn_row_check_run(hn_row_check *c, const double *J) {
-    take_unit_rows(c, J);
+bool hn_row_check_run(hn_row_check *c, const double *J, const double *unit) {
+    take_unit_rows(c, J, unit);
     memset(c->sums, 0, (size_t)c->n_sums * sizeof *c->sums);
     for (int k = 0; k < c->n_products; k++) {
         const product *p = &c->products[k];

@@ -124,6 +124,21 @@ class OneMechanismInOtherUnits(unittest.TestCase):
                     for state in states[1:]:
                         self.assertLess(max(abs(a - b) for a, b in zip(state, states[0])), bound, (scene, method))
 
+    def test_a_platform_of_a_nanometre_and_one_of_a_thousand_kilometres_are_one(self):
+        # rows in metres and in radians side by side, and Newton matrices with masses of 1e-27 kg beside lengths of 1e-9 m
+        methods = ("nullspace-tangent@rk4", "index2@hem4", "ggl@radau5", "ggl@genalpha", "index3@genalpha", "index3@hht", "index3@rattle")
+        with tempfile.TemporaryDirectory() as folder:
+            for method in methods:
+                states = []
+                for s in (1, 1e-9, 1e-4, 1e6):
+                    path = similarity.scaled("stewart-6-3", s, folder)
+                    spelled = similarity.spelled(method, s, "stewart-6-3")
+                    status, q, names = similarity.run(driver.PROGRAM, path, spelled, 0.05 * math.sqrt(s))
+                    self.assertEqual(status, "ok", (method, s))
+                    states.append([x / s if similarity.is_length(n) else x for n, x in zip(names, q)])
+                for state in states[1:]:
+                    self.assertLess(max(abs(a - b) for a, b in zip(state, states[0])), 1e-13, method)  # rounding
+
     def test_two_thousand_turns_ahead_is_the_same_mechanism(self):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(similarity.LESSONS, "01-closed-loops", "scenes", "four-bar.json"), encoding="utf-8") as file:

@@ -8,8 +8,10 @@ import json
 import subprocess
 import sys
 
-METHODS = ["projection@rk4:h=0.005", "projection@dop853:rtol=1e-8", "symmetric-projection@midpoint:h=0.005", "symmetric-projection@gauss2:h=0.005", "partitioning@gauss2:h=0.005",
-           "reduced@rk4:h=0.005"]
+# the energy of symmetric-projection@midpoint grows with t h^2 on a crank that turns one way round: with h=0.005 it has thirty
+# times what it began with after 4,100 s, and no step is found any more
+METHODS = ["projection@rk4:h=0.005", "projection@dop853:rtol=1e-8", "symmetric-projection@midpoint:h=0.0025",
+           "symmetric-projection@gauss2:h=0.005", "partitioning@gauss2:h=0.005", "reduced@rk4:h=0.005"]
 
 
 def main():

@@ -12,7 +12,8 @@ Each mechanism runs by projection@rk4 with its own step and by projection@dopri5
   branch-flip  right when the state a little later is more than FAR off the same motion computed at rtol 1e-10 from the
                start, or when that motion cannot be computed; a run that has been reported once is not judged again
   stiff        right when an implicit method of the same tolerance needs less than half the steps
-  chart-lost   by nullspace@rk4: right when the motion is singular there, or partitioning and projection end there too
+  chart-lost   by nullspace@rk4: right when the motion is singular there, when the run had left its motion before, or when
+               partitioning and projection end there too
 
 An event that no report announced is a singular configuration, or one nearly so, later than 0.3 s after the start without a
 prediction. A prediction is early when it comes 0.2 s before the event, or a quarter of the time 2 pi / |fastest rate|.
@@ -56,7 +57,7 @@ def state(document):
 def is_off(program, scene, method, t, sets):
     """whether the run is far off its motion at t"""
     here, exact = run(program, scene, method, t, sets), run(program, scene, "projection@dop853:rtol=1e-10", t, sets)
-    if not here or not exact or exact["status"] != "ok" or here["status"] != "ok":
+    if not here or not exact or exact["status"] != "ok" or not here["samples"]["t"]:
         return True
     a, b = state(here), state(exact)
     size = 1 + math.sqrt(sum(x * x for x in b))
@@ -93,14 +94,13 @@ class Table:
 def judge_ahead(table, name, document):
     told = document["incidents"]
     events = [i["t"] for i in told if i["code"] in EVENTS and i["t"] > 0]
-    if document["status"] != "ok":
-        events.append(document["t_reached"])
+    ends = [document["t_reached"]] if document["status"] != "ok" else []
     met = set()
     for i in told:
         if i["code"] != "rank-ahead":
             continue
         when, lead = i["t"] + i["value"], i["value"]
-        near = [e for e in events if abs(e - when) < max(0.05, 0.25 * lead)]
+        near = [e for e in events + ends if abs(e - when) < max(0.05, 0.25 * lead)]
         table.withdrawn += "withdrawn" in i["message"]
         if near:
             table.right["rank-ahead"] += 1
@@ -143,7 +143,8 @@ def judge_chart(table, program, name, scene, document, sets, step):
     end = document["t_reached"]
     singular = "singular" in document["reason"] or any(abs(i["t"] - end) < 0.01 for i in document["incidents"] if i["code"] in EVENTS)
     others = [run(program, scene, f"{f}@rk4:h={step:g}", end + 20 * step, sets) for f in ("partitioning", "projection")]
-    right = singular or all(not o or o["status"] != "ok" for o in others)
+    lost = end > 0 and is_off(program, scene, document["method"], end, sets)
+    right = singular or lost or all(not o or o["status"] != "ok" for o in others)
     (table.right if right else table.wrong)["chart-lost"] += 1
     if not right:
         table.notes.append(f"chart-lost, {name}: {document['reason']}")

@@ -40,6 +40,11 @@ double hn_system_row_unit(const hn_system *sys, int row) {
     return sys->rows[row].is_length ? sys->length : 1;
 }
 
+double hn_system_velocity_unit(const hn_system *sys, int i) {
+    const hn_coordinate *c = &sys->scene->coordinates[hn_system_user_coordinate(sys, i)];
+    return c->kind == HN_LENGTH ? sys->length : 1;
+}
+
 int hn_system_loop_joint(const hn_system *sys, int loop) {
     HN_ASSERT(loop >= 0 && loop < sys->n_loops);
     return sys->loops[loop].joint;

@@ -53,6 +53,9 @@ int hn_system_row_loop(const hn_system *sys, int row);
 bool hn_system_row_is_length(const hn_system *sys, int row);
 /// The unit in which rows are compared: the characteristic length for a row in metres, else 1.
 double hn_system_row_unit(const hn_system *sys, int row);
+/// The unit in which velocities are compared: the characteristic length for one of a length, else
+/// 1. With both, J is the same matrix for similar mechanisms of any size.
+double hn_system_velocity_unit(const hn_system *sys, int i);
 /// Of a loop: the joint (scene index) that closes it, -1 where a constraint or a formula does; its
 /// name.
 int hn_system_loop_joint(const hn_system *sys, int loop);

@@ -72,8 +72,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
         s->row_unit[i] = hn_system_row_unit(sys, i);
     }
     for (int i = 0; i < s->nv; i++) {
-        const hn_coordinate *c = &sys->scene->coordinates[hn_system_user_coordinate(sys, i)];
-        s->speed_unit[i] = c->kind == HN_LENGTH ? hn_system_length(sys) : 1;
+        s->speed_unit[i] = hn_system_velocity_unit(sys, i);
     }
     HN_TRY(hn_eval_create(sys, terms, arena, &s->terms));
     s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);

@@ -345,7 +345,7 @@ const hn_formulation hn_formulation_symmetric_projection = {
     .short_name = "symm. proj.",
     .rule = "Push the state off the closed loops before the step and back on after it by "
             "the same amount. The step is then symmetric in time, and the energy error "
-            "of a motion that swings to and fro stays bounded.",
+            "of a swing stays bounded.",
     .drift = "none: gap and velocity violation at rounding level; with a symmetric "
              "integrator the energy error of a swing stays bounded, that of a crank that keeps "
              "turning grows slowly",

@@ -77,6 +77,11 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     l->unit = hn_arena_doubles(arena, nc);
     l->mass_unit = hn_arena_doubles(arena, nv);
     l->seen = hn_arena_doubles(arena, nc);
+    l->column_unit = hn_arena_doubles(arena, nv);
+
+    for (int i = 0; i < l->nv && l->column_unit; i++) {
+        l->column_unit[i] = hn_system_velocity_unit(l->sys, i);
+    }
 
     // the projection M^-1 J' of the ggl form
     if (l->stabilised && !l->sparse) {
@@ -155,7 +160,7 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
     hn_linear_run(l->terms, t, q, v, NULL, NULL);
 
     // the quick check: all rows count
-    if (l->check && hn_row_check_run(l->check, l->J)) {
+    if (l->check && hn_row_check_run(l->check, l->J, l->column_unit)) {
         keep_all(l);
         return 1;
     }
@@ -163,16 +168,20 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
     // lengths of the rows, not below those of earlier poses and of the longest
     double longest = 0;
     for (int i = 0; i < nc; i++) {
-        l->unit[i] = hn_norm2(nv, l->J + (size_t)i * (size_t)nv);
+        double *row = l->qr.a + (size_t)i * (size_t)nv;
+        const double row_unit = hn_system_row_unit(l->sys, i);
+        for (int j = 0; j < nv; j++) {
+            row[j] = l->J[(size_t)i * (size_t)nv + (size_t)j] * l->column_unit[j] / row_unit;
+        }
+        l->unit[i] = hn_norm2(nv, row);
         longest = fmax(longest, l->unit[i]);
     }
     for (int i = 0; i < nc; i++) {
-        const double *row = l->J + (size_t)i * (size_t)nv;
         l->seen[i] = fmax(l->seen[i], l->unit[i]);
         const double size = fmax(fmax(l->unit[i], OWN_FLOOR * l->seen[i]), ROW_FLOOR * longest);
         l->unit[i] = size > 0 ? 1 / size : 0;
         for (int j = 0; j < nv; j++) {
-            l->qr.a[i * nv + j] = row[j] * l->unit[i];
+            l->qr.a[i * nv + j] *= l->unit[i];
         }
     }
 

@@ -49,6 +49,7 @@ typedef struct hn_implicit_linear {
     int *place;          ///< nc: which of the kept rows this is; -1: left out
     hn_row_check *check; ///< NULL: the pivoted QR always chooses
     double *unit;        ///< nc: 1 / length of a row
+    double *column_unit; ///< nv: see hn_system_velocity_unit
     double *seen;        ///< nc: the longest it has been
     hn_qr qr;
     double *Y, *S, *damped; ///< GGL, dense: nv x nc; n_kept x n_kept factored; C Y S^-1 V (nv x nv)

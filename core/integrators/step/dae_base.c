@@ -45,6 +45,7 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
     b->place = hn_arena_ints(arena, (size_t)b->nc);
     b->arm = hn_arena_doubles(arena, (size_t)b->nv);
     b->gap = hn_arena_doubles(arena, (size_t)b->nc);
+    b->column_unit = hn_arena_doubles(arena, (size_t)b->nv);
     HN_THEN(status, find_patterns(b, arena));
     if (status == HN_OK && (!hn_qr_init(&b->qr, arena, b->nv, b->nc) || hn_arena_failed(arena))) {
         status = HN_ERR_MEMORY;
@@ -54,6 +55,10 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
         hn_dae_base_destroy(b);
         return hn_diag_set(diag, status, NULL, NULL, "the equations cannot be compiled: %s",
                            hn_status_text(status));
+    }
+
+    for (int i = 0; i < b->nv; i++) {
+        b->column_unit[i] = hn_system_velocity_unit(sys, i);
     }
 
     // the terms live in the evaluators
@@ -146,15 +151,18 @@ static void keep_all_rows(hn_dae_base *b) {
 
 void hn_dae_choose_rows(hn_dae_base *b) {
     const int nv = b->nv, nc = b->nc;
-    if (b->check && hn_row_check_run(b->check, b->J)) {
+    if (b->check && hn_row_check_run(b->check, b->J, b->column_unit)) {
         keep_all_rows(b);
         return;
     }
     for (int i = 0; i < nc; i++) {
-        const double *row = b->J + (size_t)i * nv;
+        double *row = b->qr.a + (size_t)i * nv;
+        for (int j = 0; j < nv; j++) {
+            row[j] = b->J[(size_t)i * nv + j] * b->column_unit[j];
+        }
         const double size = hn_norm2(nv, row);
         for (int j = 0; j < nv; j++) {
-            b->qr.a[(size_t)i * nv + j] = size > 0 ? row[j] / size : 0;
+            row[j] = size > 0 ? row[j] / size : 0;
         }
     }
     hn_qr_factor(&b->qr, nv, nc, DEPENDENT_ROW);

@@ -38,8 +38,9 @@ typedef struct hn_dae_base {
     /// entries of M's lower triangle and of J that are not identically zero
     int n_M, n_J;
     const int *M_row, *M_col, *J_row, *J_col;
-    double *arm, *gap; ///< nv, nc: scratch
-    hn_cost cost;      ///< what the evaluators do not count themselves
+    double *column_unit; ///< nv: see hn_system_velocity_unit
+    double *arm, *gap;   ///< nv, nc: scratch
+    hn_cost cost;        ///< what the evaluators do not count themselves
     char why[HN_DAE_WHY_TEXT];
 } hn_dae_base;
 
