@@ -33,7 +33,7 @@ class Completion(unittest.TestCase):
         self.assertIn("--methods", candidates("compare", "four-bar", "--m"))
         self.assertEqual(candidates("run", "slider"), ["slider-crank"])
         self.assertEqual(candidates("study", "four-bar", "stab"), ["stability"])
-        self.assertEqual(candidates("grade", "p"), ["p3"])
+        self.assertEqual(candidates("grade", "p"), ["p1", "p2", "p3", "p4", "p5"])
 
     def test_methods_and_their_options_are_offered_in_pieces(self):
         self.assertEqual(candidates("run", "four-bar", "--method", "baum"), ["baumgarte@"])
@@ -177,7 +177,7 @@ class NearMisses(unittest.TestCase):
                              (["study", "four-bar", "work-precison"], "work-precision"), (["list", "scnes"], "scenes"), (["help", "rum"], "run"),
                              (["run", "four-bar", "--mehtod", "x"], "--method"), (["run", "four-bar", "--method", "baumgrate@rk4"], "baumgarte"),
                              (["run", "four-bar", "--method", "index1@rk5"], "rk4"), (["run", "four-bar", "--set", "l11=1"], "l1"),
-                             (["run", "four-bar", "--method", "baumgarte:alpa=3@rk4"], "alpha"), (["problem", "p4"], "p3"),
+                             (["run", "four-bar", "--method", "baumgarte:alpa=3@rk4"], "alpha"), (["problem", "p33"], "p3"),
                              (["grade", "p33", "x.json"], "p3"), (["export", "four-bar", "--language", "pyton"], "python"),
                              (["run", "four-bar", "--format", "cvs"], "csv"), (["equations", "four-bar", "--format", "latx"], "latex"),
                              (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--view", "fornt"], "front"),
