@@ -60,6 +60,24 @@ class Stability(unittest.TestCase):
             self.assertLessEqual(column["first_unstable"] / column["last_stable"], 1.021, method["method"])
             self.assertEqual(method["agreement"]["compared"], 1, method["agreement"]["text"])
 
+    def test_a_mechanism_without_stiffness_is_told_so_with_the_map_that_tells(self):
+        for scene in ("four-bar", "slider-crank"):
+            study = strict(self.call("study", scene, "stability", "--time-limit", "0", "--json").stdout)
+            self.assertEqual((study["stiff"], study["telling"]), (False, "baumgarte"))
+            for method in study["methods"]:
+                self.assertRegex(method["agreement"]["text"], r"not stiff: at the predicted limit, .* one step moves the mechanism by [\d.]+ rad")
+                self.assertNotIn("of 1 columns", method["agreement"]["text"])
+        # that map has the error and the gap of every cell
+        map_of = self.call("study", "four-bar", "stability", "--preset", "baumgarte", "--grid", "3x3", "--time-limit", "0", "--json")
+        cells = [c for m in strict(map_of.stdout)["methods"] for row in m["rows"] for c in row]
+        self.assertEqual(len(cells), 18)
+        for cell in cells:
+            if cell["class"] in ("stable", "inaccurate"):
+                self.assertGreater(min(cell["error"], cell["gap"]), 0)
+        # a stiff one keeps its own
+        stiff = strict(self.call(*STUDY, "--json").stdout)
+        self.assertEqual((stiff["stiff"], stiff["telling"]), (True, None))
+
     def test_an_implicit_method_ends_where_newton_does_and_says_so(self):
         done = self.call(*STUDY, "--methods", "index3@genalpha", "projection@radau5")
         self.assertEqual(done.returncode, DONE, done.stderr)

@@ -18,7 +18,8 @@
 enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSINGS = 4 };
 #define HN_MAP_STEPS 2e5 ///< most steps of one trial
 #define HN_MAP_REFINED \
-    1.02 ///< ratio of the steps between which an observed boundary lies in the end
+    1.02                ///< ratio of the steps between which an observed boundary lies in the end
+#define HN_MAP_TURN 0.2 ///< [rad] in one step: further, no step is accurate
 #define HN_MAP_AGREES 0.05    ///< relative difference of boundaries that agree
 #define HN_MAP_CELL_SECONDS 5 ///< computing time of one trial
 
@@ -50,7 +51,9 @@ typedef struct hn_map_cell {
 typedef struct hn_map_column {
     int n_predicted;
     double predicted
-        [HN_MAP_CROSSINGS];  ///< places on the vertical axis; one of a step may lie outside it
+        [HN_MAP_CROSSINGS]; ///< places on the vertical axis; one of a step may lie outside it
+    double turn; ///< step axis: what one step at the first predicted limit moves the mechanism by,
+                 ///< largest rate of a coordinate times the limit [rad, or lengths]
     double visible;          ///< step axis: growth is seen from here on within a trial [s]
     double stable, unstable; ///< step axis: the boundary observed lies between; NaN: not on the map
     char how[HN_STABILITY_REASON]; ///< how the run at `unstable` ended
@@ -88,6 +91,11 @@ const hn_model *hn_map_model(const hn_map *map);
 const hn_map_axis *hn_map_x(const hn_map *map);
 const hn_map_axis *hn_map_y(const hn_map *map);
 int hn_map_n_methods(const hn_map *map);
+/// Whether some column has a predicted limit at which one step moves the mechanism by less than
+/// HN_MAP_TURN: where none has, the error of a step decides and not its stability.
+bool hn_map_is_stiff(const hn_map *map);
+/// The preset whose map tells more about a mechanism with loops that is not stiff; NULL: this one.
+const char *hn_map_telling(const hn_map *map);
 /// Returns the spelling of method m without the options that the axes set.
 const char *hn_map_method(const hn_map *map, int m);
 const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row);

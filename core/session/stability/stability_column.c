@@ -39,6 +39,7 @@ static void predict_steps(hn_map *map, int m, int column) {
     }
     map->forecasts[m] = f;
     c->visible = f.visible;
+    c->turn = f.limit * hn_stability_path_rate(scene->path);
     if (isfinite(f.limit)) {
         c->predicted[c->n_predicted++] = f.limit;
     }
@@ -83,6 +84,7 @@ static void predict_cells(hn_map *map, int m, int column) {
 
 void hn_map_predict_column(hn_map *map, int m, int column) {
     hn_map_column_at(map, m, column)->n_predicted = 0;
+    hn_map_column_at(map, m, column)->turn = (double)NAN;
     if (map->y.is_step) {
         predict_steps(map, m, column);
     } else {
@@ -275,10 +277,52 @@ static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
     }
 }
 
+bool hn_map_is_stiff(const hn_map *map) {
+    bool judged = false;
+    for (int m = 0; map->y.is_step && m < map->n_methods; m++) {
+        for (int i = 0; i < map->x.n; i++) {
+            const double turn = hn_map_column_at(map, m, i)->turn;
+            if (turn < HN_MAP_TURN) {
+                return true;
+            }
+            judged |= turn >= HN_MAP_TURN;
+        }
+    }
+    return !judged; // nothing says that it is not
+}
+
+const char *hn_map_telling(const hn_map *map) {
+    const hn_system_info info = hn_system_get_info(hn_model_system(map->model));
+    return info.nc > 0 && !hn_map_is_stiff(map) ? "baumgarte" : NULL;
+}
+
+/// Of one column without stiffness: the error of steps ends it, and no prediction of stability
+/// applies.
+static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_column *c) {
+    hn_strbuf_printf(b,
+                     "not stiff: at the predicted limit, %.3g s, one step moves the mechanism by "
+                     "%.2g rad, so its error ends the motion and not its stability",
+                     c->predicted[0], c->turn);
+    if (c->stable > 0) {
+        hn_strbuf_printf(b, ", at %.3g s", c->unstable);
+    }
+    if (hn_map_telling(map)) {
+        hn_strbuf_printf(b, "; the preset %s maps error and gap over alpha and beta",
+                         hn_map_telling(map));
+    }
+}
+
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
     const hn_map_agreement a = hn_map_agrees(map, m);
     if (a.why) {
         hn_strbuf_printf(b, "nothing to compare: %s", a.why);
+        return;
+    }
+
+    // one column, and nothing in it is faster than the motion
+    const hn_map_column *c = hn_map_column_at(map, m, 0);
+    if (a.by_columns && map->x.n == 1 && a.agree == 0 && c->turn >= HN_MAP_TURN) {
+        put_no_stiffness(b, map, c);
         return;
     }
 

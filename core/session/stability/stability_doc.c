@@ -112,6 +112,9 @@ void hn_map_json(hn_strbuf *b, const hn_map *map) {
     hn_json_put_bool(b, "finished", !hn_map_stopped(map) && !hn_map_out_of_time(map));
     hn_json_put_bool(b, "stopped", hn_map_stopped(map));
     hn_json_put_number(b, "elapsed", hn_map_elapsed(map));
+    // the preset whose map tells more, where this one rests on a stability that decides nothing
+    hn_json_put_bool(b, "stiff", hn_map_is_stiff(map));
+    hn_json_put_string(b, "telling", hn_map_telling(map));
     put_axis(b, "x", hn_map_x(map));
     put_axis(b, "y", hn_map_y(map));
     hn_json_key(b, "methods");

@@ -35,6 +35,7 @@ struct hn_stability_path {
     double *M;                              ///< (looks + 1) x nv x nv
     double *energy;                         ///< looks + 1
     double highest, highest_kinetic, scale; ///< [J]
+    double rate;                            ///< see hn_stability_path_rate()
     const char *means;
     int n_values[HN_STABILITY_LOOKS + 1];
     hn_eigenvalue *values; ///< (looks + 1) x 2 nv
@@ -70,6 +71,13 @@ static int see_path(void *user, int k, const hn_sample *s) {
     hn_eval_run(p->mass, s->t, p->q, v);
     memcpy(p->M + (size_t)k * nv * nv, hn_eval_get(p->mass, HN_TERM_M), nv * nv * sizeof(double));
 
+    // the largest rate of a coordinate
+    const hn_scene *scene = hn_system_scene(p->sys);
+    for (int i = 0; i < p->info.n_user; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(p->sys, i)];
+        p->rate = fmax(p->rate, fabs(s->v[i]) / (c->kind == HN_LENGTH ? p->length : 1));
+    }
+
     // energies and their ranges
     p->energy[k] = s->energy;
     p->highest = fmax(p->highest, s->energy);
@@ -103,7 +111,7 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
 
     // start anew: an earlier method may have failed on the way
     p->means = means;
-    p->highest_kinetic = 0;
+    p->highest_kinetic = p->rate = 0;
     p->highest = -HUGE_VAL;
     m->v_min = HUGE_VAL;
     m->v_max = -HUGE_VAL;
@@ -200,6 +208,10 @@ void hn_stability_path_free(hn_stability_path *p) {
         hn_eval_free(p->mass);
         hn_arena_free(p->arena);
     }
+}
+
+double hn_stability_path_rate(const hn_stability_path *p) {
+    return p->rate;
 }
 
 const char *hn_stability_path_means(const hn_stability_path *p) {

@@ -65,6 +65,8 @@ HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const dou
                                                  const double *v, double T,
                                                  const hn_walk_limits *limits,
                                                  hn_stability_path **out, hn_diag *diag);
+/// The largest rate of a coordinate along the motion, lengths over the characteristic length [1/s].
+double hn_stability_path_rate(const hn_stability_path *p);
 void hn_stability_path_free(hn_stability_path *p);               ///< NULL is legal
 const char *hn_stability_path_means(const hn_stability_path *p); ///< the method that computed it
 /// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
