@@ -100,6 +100,10 @@ const openEditor = styled("editor", async () => {
   const { createEditor } = await import("./views/editor/editor.js");
   return createEditor(document.body, store, session, mechanism);
 });
+const openLessons = styled("lessons", async () => {
+  const { createLessons } = await import("./views/lessons/lessons.js");
+  return createLessons(document.body, store, session);
+});
 acceptFiles(document.body, openEditor);
 const views = [
   createHeader(at("top"), store, session, {
@@ -109,6 +113,7 @@ const views = [
     openExport,
     openGallery,
     openEditor,
+    openLessons,
     openGuide: guide.open,
   }),
   mechanism,

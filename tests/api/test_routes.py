@@ -129,6 +129,14 @@ class Catalogue(driver.ServerCase):
         self.assertIn("p3", [p["id"] for p in problems])
         self.assertEqual(self.get("/api/v1/problems/p3")["id"], "p3")
 
+    def test_hints_come_one_after_the_other(self):
+        hints = self.get("/api/v1/problems/p1")["hints"]
+        texts = [self.get(f"/api/v1/problems/p1?hint={i + 1}")["text"] for i in range(hints)]
+        self.assertEqual(len(set(texts)), hints)
+        self.assertGreater(hints, 1)
+        for wrong in ("0", str(hints + 1), "x", "1x"):
+            self.assertEqual(self.server.ask("GET", f"/api/v1/problems/p1?hint={wrong}").status, 422, wrong)
+
     def test_every_kind_of_error_has_a_page(self):
         for error in self.get("/api/v1/errors")["errors"]:
             self.assertEqual(self.get("/api/v1/errors/" + error["code"])["status"], error["status"])

@@ -47,6 +47,8 @@ export const documents = {
   pictureAddress: (id, src) => `${BASE}/lessons/${id}/${src}`,
   /** @param {string} id */
   problem: (id) => request("GET", `${BASE}/problems/${id}`),
+  /** @param {string} id @param {number} number from 1 @returns {Promise<{text: string}>} */
+  hint: (id, number) => request("GET", `${BASE}/problems/${id}?hint=${number}`),
   /** @param {string} problem @param {unknown} submission */
   grade: (problem, submission) => request("POST", `${BASE}/grade`, { problem, submission }),
 };

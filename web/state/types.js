@@ -70,7 +70,7 @@
 
 /**
  * @typedef {{spelling: string, reason: string}} Refused a method that the scene cannot serve
- * @typedef {{id: string, title: string, scenes: string[]}} Lesson
+ * @typedef {{id: string, title: string, scenes: string[], problems: string[]}} Lesson
  * @typedef {{
  *   method: number, code: string, t: number, quantity: string, value: number, limit: number,
  *   message: string, remedies: string[],

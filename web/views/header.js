@@ -11,7 +11,7 @@ import { h } from "../widgets/dom.js";
  * @param {import("../session/session.js").Session} actions
  * @param {{toggleTheme: () => void, openKeys: () => void, openStudy: (kind: string) => void,
  *   openExport: () => void, openGuide: () => void, openGallery: () => void,
- *   openEditor: () => void}} open
+ *   openEditor: () => void, openLessons: () => void}} open
  */
 export function createHeader(el, store, actions, open) {
   const data = store.data;
@@ -39,6 +39,7 @@ export function createHeader(el, store, actions, open) {
     h(
       "div",
       { class: "choices" },
+      button("lessons", "read, run, predict, solve", open.openLessons),
       button(
         "studies",
         "what accuracy costs (W), where steps are stable (B), where the error comes from (E)",

@@ -263,6 +263,8 @@ static const hn_route_query EXPORT_QUERY[] = {
     {"language", "string", "python when left out; see /languages"},
     {"method", "string", "named in the last line; the program has a solver of its own"},
     {NULL, NULL, NULL}};
+static const hn_route_query PROBLEM_QUERY[] = {
+    {"hint", "integer", "one of its hints, from 1, in place of the problem"}, {NULL, NULL, NULL}};
 static const hn_route_query RUN_QUERY[] = {
     {"wait", "number", "seconds to wait for the end, at most 60; POST: 25 when left out, GET: 0"},
     {NULL, NULL, NULL}};
@@ -370,7 +372,7 @@ static const hn_route ROUTES[] = {
      "Picture", "A picture of where the methods have taken a scene", NULL,
      "{\"scene\":\"four-bar\",\"methods\":[\"projection@rk4:h=1e-3\"],\"time\":0.5}"},
     {"GET", "/api/v1/problems/{id}", HN_WORK_LIGHT, hn_handle_problem, NULL, JSON, "200",
-     "Document", "A problem's text and what to hand in", NULL, NULL},
+     "Document", "A problem's text and what to hand in; or one of its hints", PROBLEM_QUERY, NULL},
     {"POST", "/api/v1/grade", HN_WORK_HEAVY, hn_handle_grade, GRADE, JSON, "200", "Verdict",
      "Grades one submission", NULL,
      "{\"problem\":\"p3\",\"submission\":{\"J\":[[\"-l1*sin(th1)\",\"-l2*sin(th2)\",\"l3*sin(th3)"

@@ -224,6 +224,35 @@ void hn_handle_snapshot(hn_request *r) {
     hn_reply_header_add(r, "Holonom-Status", "%s", hn_status_name(ended));
 }
 
+/// The number of the hint that the query asks for; 0 when it asks for none.
+static int hint_asked(const hn_request *r, const hn_exercise *problem, hn_diags *diags,
+                      hn_status *status) {
+    const char *text = hn_request_query(r, "hint");
+    char *end = NULL;
+    const long number = text ? strtol(text, &end, 10) : 0;
+    if (text && (*end || end == text || number < 1 || number > problem->n_hints)) {
+        *status = hn_diags_add(diags, HN_ERR_INPUT, "/hint", "hint=1",
+                               "'%.40s' is not the number of a hint; this exercise has %d", text,
+                               problem->n_hints);
+        return 0;
+    }
+    return (int)number;
+}
+
+/// One hint, with the numbers of this variant.
+static void put_hint(hn_strbuf *b, const hn_exercise *problem, hn_variant *x, int number) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_draw_text(&text, &x->draw, problem->hints[number - 1]);
+    hn_json_object(b);
+    hn_json_put_string(b, "id", problem->id);
+    hn_json_put_int(b, "hint", number);
+    hn_json_put_int(b, "hints", problem->n_hints);
+    hn_json_put_string(b, "text", hn_strbuf_text(&text));
+    hn_json_end_object(b);
+    hn_strbuf_reset(&text);
+}
+
 void hn_handle_problem(hn_request *r) {
     hn_exercise *problem = NULL;
     hn_diags diags = {0};
@@ -232,6 +261,7 @@ void hn_handle_problem(hn_request *r) {
     hn_status status = hn_shelf_exercise_load(r->context->lib, r->parts[0], &problem, &diags);
     hn_diag diag = {0};
     hn_variant x = {0};
+    const int hint = status == HN_OK ? hint_asked(r, problem, &diags, &status) : 0;
     if (status == HN_OK && problem->n_parts) {
         status = hn_variant_init(&x, problem, 0, &diag);
         if (status != HN_OK) {
@@ -239,7 +269,9 @@ void hn_handle_problem(hn_request *r) {
         }
     }
     if (status == HN_OK) {
-        if (problem->n_parts) {
+        if (hint) {
+            put_hint(&b, problem, &x, hint);
+        } else if (problem->n_parts) {
             hn_variant_json(&b, &x);
         } else {
             hn_exercise_json(&b, problem);

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lessons in the page: set formulas, exhibits that run, predictions, exercises with hints and a
+// check, progress, print.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
+import { violations } from "./axe.mjs";
+import { createBench, read, screenshot, until } from "./support.mjs";
+
+const { open } = createBench();
+const text = (words) => ({ kind: "text", text: words });
+const paragraph = (...children) => ({ kind: "paragraph", children });
+
+/** One block of every kind. */
+const LESSON = {
+  id: "01-closed-loops",
+  title: "Every block",
+  scenes: ["four-bar"],
+  problems: ["p1", "p3"],
+  number: 1,
+  blocks: [
+    { kind: "heading", level: 1, children: [text("Every block")] },
+    paragraph(
+      text("The gap is "),
+      { kind: "math", tex: "\\varphi(q)", display: false },
+      text(", "),
+      { kind: "strong", children: [text("never")] },
+      { kind: "break" },
+      { kind: "em", children: [text("praised")] },
+      { kind: "mono", text: "index1" },
+      { kind: "link", href: "https://example.org/", children: [text("elsewhere")] },
+      { kind: "link", href: "javascript:alert(1)", children: [text("nowhere")] },
+    ),
+    paragraph({ kind: "math", tex: "M\\,a = f + J^{\\mathsf T}\\lambda", display: true }),
+    { kind: "heading", level: 2, children: [text("A section")] },
+    {
+      kind: "list",
+      ordered: true,
+      start: 1,
+      children: [{ kind: "item", children: [text("one")] }],
+    },
+    { kind: "quote", children: [paragraph(text("quoted"))] },
+    {
+      kind: "table",
+      children: [
+        {
+          kind: "row",
+          head: true,
+          children: [{ kind: "cell", align: "right", children: [text("h")] }],
+        },
+        {
+          kind: "row",
+          head: false,
+          children: [{ kind: "cell", align: "right", children: [text("1")] }],
+        },
+      ],
+    },
+    { kind: "code", info: "", text: "holonom run four-bar\n" },
+    { kind: "rule" },
+    { kind: "figure", src: "pictures/four-bar.png", children: [text("a four-bar")] },
+    {
+      kind: "exhibit",
+      scene: "slider-crank",
+      methods: ["index1@rk4:h=0.01", "projection@rk4:h=0.01"],
+      set: ["r=0.25"],
+      time: 2,
+      command: "compare slider-crank --methods index1@rk4:h=0.01 projection@rk4:h=0.01 --time 2",
+      children: [paragraph(text("Look at the gap."))],
+    },
+    {
+      kind: "predict",
+      children: [paragraph(text("How does the gap grow?"))],
+      choices: [{ children: [text("like t")] }, { children: [text("like t squared")] }],
+      right: 1,
+      after: [paragraph(text("Kicks to the velocity add up."))],
+    },
+    { kind: "slip", number: 2, children: [paragraph(text("Four angles are no four-bar."))] },
+    { kind: "exercise", id: "p3", children: [paragraph(text("The Jacobian."))] },
+  ],
+};
+
+/** Opens the lesson above. */
+async function openLesson(t, options) {
+  const page = await open(t, { bypassCSP: true, ...options });
+  await page.route("**/api/v1/lessons/01-closed-loops", (route) => route.fulfill({ json: LESSON }));
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.waitForSelector(".lesson-text .katex");
+  return page;
+}
+
+test("what is asked is read from the exercise, what is typed is a value or a formula", () => {
+  const form = '{"choice": "a", "reason": "b"}\n    (a) one\n    (b) two\n  because\n    (a) so';
+  const { options, reasons } = readChoice(form);
+  assert.deepEqual(options, [
+    { letter: "a", text: "one" },
+    { letter: "b", text: "two" },
+  ]);
+  assert.equal(reasons.length, 1);
+  assert.deepEqual(readAnswer('["solve", "integrate"]'), ["solve", "integrate"]);
+  assert.equal(readAnswer(" 0.5 "), 0.5);
+  assert.equal(readAnswer("-J' * lambda"), "-J' * lambda");
+  assert.deepEqual(matrixOf('{"J": [["...", "..."], ["...", "..."]]}'), {
+    name: "J",
+    rows: 2,
+    columns: 2,
+  });
+  assert.equal(matrixOf("none"), null);
+});
+
+test("an exhibit runs beside its text, a prediction is kept", async (t) => {
+  const page = await openLesson(t, { viewport: { width: 1366, height: 768 } });
+  assert.equal(await page.locator(".katex-error").count(), 0);
+  assert.deepEqual(
+    await page.locator(".lesson-text p a").evaluateAll((list) => list.map(({ href }) => href)),
+    ["https://example.org/"],
+  );
+  await page.getByRole("button", { name: "Run it" }).click();
+  await until(page, (data) => data.scene.id === "slider-crank" && data.latest?.t > 0);
+  assert.deepEqual(await read(page, (data) => data.methods.map(({ spelling }) => spelling)), [
+    "index1@rk4:h=0.01",
+    "projection@rk4:h=0.01",
+  ]);
+  assert.equal(await read(page, (data) => data.settings.r), 0.25);
+  await page.waitForSelector(".exhibit .thumbnail");
+
+  const after = page.locator(".prediction-after");
+  assert.equal(await after.isVisible(), false);
+  await page.getByRole("button", { name: "like t", exact: true }).click();
+  assert.equal(await after.isVisible(), true);
+  assert.match(await page.textContent(".predict"), /No: the marked answer is right/);
+  await page.reload();
+  await page.waitForFunction(() => document.querySelector("main")?.ariaBusy === "false");
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.waitForSelector(".prediction-after");
+  assert.equal(await after.isVisible(), true);
+  await page.emulateMedia({ media: "print" });
+  assert.equal(await page.locator("main").isVisible(), false);
+  assert.equal(await page.locator(".lesson-text").isVisible(), true);
+});
+
+for (const [theme, width] of [
+  ["light", 1366],
+  ["dark", 360],
+]) {
+  test(`exercises are checked, hints come in steps: ${theme}, ${width} wide`, async (t) => {
+    const page = await openLesson(t, { viewport: { width, height: 780 }, colorScheme: theme });
+    await page.getByText("Exercise p3").click();
+    await page.waitForSelector(".answer-matrix");
+    const right = ["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"];
+    const rows = [...right, "l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "0"];
+    for (const [k, formula] of rows.entries()) {
+      await page.locator(".answer-matrix input").nth(k).fill(formula);
+    }
+    await page.getByRole("button", { name: "Check" }).first().click();
+    await page.waitForSelector(".verdict-list strong");
+    assert.match(await page.textContent(".verdict-list"), /7 of 8 points.*J24/s);
+
+    await page.getByText("Exercise p1").click();
+    await page.waitForSelector(".exercise fieldset");
+    const second = page.locator(".exercise").nth(1);
+    await second.getByRole("button", { name: "a hint" }).click();
+    await second.getByRole("button", { name: /another hint/ }).click();
+    await page.waitForFunction(() => document.querySelectorAll(".hints li").length === 2);
+    await second.getByRole("radio", { name: /J has full row rank, and M is positive/ }).check();
+    await second.getByRole("button", { name: "Check" }).click();
+    await page.waitForFunction(() =>
+      document.querySelectorAll(".verdict-list")[1].textContent.includes("of 9 points"),
+    );
+    assert.match(await page.textContent("#lesson option:checked"), /2 of \d exercises/);
+    await page.evaluate(() => document.activeElement.blur());
+    await page.mouse.move(5, 5);
+    assert.deepEqual(await violations(page), []);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await page.locator(".exhibit").scrollIntoViewIfNeeded();
+    await page.waitForSelector(".exhibit .thumbnail");
+    await screenshot(page, `lesson-${theme}-${width}`, { seen: true });
+  });
+}
+
+test("every lesson of the server is shown, with no formula in error", async (t) => {
+  const page = await open(t);
+  await page.getByRole("button", { name: "lessons" }).click();
+  const lessons = await read(page, (data) => data.lessons.map(({ id }) => id));
+  for (const id of lessons) {
+    await page.selectOption("#lesson", id);
+    await page.waitForFunction(
+      (title) => document.querySelector(".lesson-text").ariaLabel === title,
+      await page.evaluate(async (one) => {
+        const { blocks } = await (await fetch(`/api/v1/lessons/${one}`)).json();
+        const words = (list) =>
+          list.map(({ text: own, tex, children }) => own ?? tex ?? words(children ?? [])).join("");
+        return words(blocks.slice(0, 1));
+      }, id),
+    );
+    assert.equal(await page.locator(".lesson-text .katex-error").count(), 0, id);
+    assert.doesNotMatch(await page.textContent(".lesson-text"), /undefined|\[object/, id);
+  }
+  assert.equal(
+    await page.getByRole("button", { name: "next", exact: true }).last().isDisabled(),
+    true,
+  );
+});

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// What an exercise asks for, and what is handed in.
+
+/**
+ * @typedef {{letter: string, text: string}} Option
+ * @typedef {{id: string, kind: string, points: number, ask: string, answer_form: string}} Part
+ */
+
+/**
+ * The options of a choice, and the reasons to choose from, as the exercise prints them.
+ * @param {string} form
+ * @returns {{options: Option[], reasons: Option[]}}
+ */
+export function readChoice(form) {
+  const [first, second = ""] = form.split(/^\s*because\s*$/m);
+  const read = (text) =>
+    [...text.matchAll(/^\s+\(([a-z])\)\s+(.*)$/gm)].map(([, letter, words]) => ({
+      letter,
+      text: words,
+    }));
+  return { options: read(first), reasons: read(second) };
+}
+
+/** How an answer is written; what follows of a choice are its options. @param {Part} part */
+export const formOf = ({ kind, answer_form: form }) => (kind === "choice" ? "" : form);
+
+/** Typed text as a value: JSON where it is JSON, else the text itself. @param {string} text */
+export function readAnswer(text) {
+  const plain = text.trim();
+  if (/^[[{"]|^[-+\d.]/.test(plain)) {
+    try {
+      return JSON.parse(plain);
+    } catch {
+      return plain;
+    }
+  }
+  return plain;
+}
+
+/**
+ * The matrix that an exercise of entries asks for: its name and how large it is.
+ * @param {string} submission as the exercise shows it
+ * @returns {{name: string, rows: number, columns: number} | null}
+ */
+export function matrixOf(submission) {
+  try {
+    const [[name, rows]] = Object.entries(JSON.parse(submission));
+    return Array.isArray(rows) && Array.isArray(rows[0])
+      ? { name, rows: rows.length, columns: rows[0].length }
+      : null;
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// Lessons beside the drawing: text with set formulas, exhibits that run in the page, predictions,
+// exercises. The page makes room for them; what was read and solved is kept in this browser.
+import { sentenceOf } from "../../api/client.js";
+import { documents } from "../../api/documents.js";
+import { createProgress } from "../../state/progress.js";
+import { h, loadStyle, say } from "../../widgets/dom.js";
+import { hasMath, make, wordsOf } from "./blocks.js";
+import { createExercise } from "./exercise.js";
+import { makeExhibit, makePrediction, makeSlip } from "./live.js";
+
+const KATEX_STYLE = "/vendor/katex/katex.min.css";
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../../state/store.js").Store} store
+ * @param {import("../../session/session.js").Session} actions
+ */
+export function createLessons(el, store, actions) {
+  const data = store.data;
+  const progress = createProgress();
+  let katex = null;
+  let shown = "";
+  /** what is made when it is first seen @type {Map<Element, () => void>} */
+  const waiting = new Map();
+
+  const menu = h("select", {
+    id: "lesson",
+    "aria-label": "Lesson",
+    onchange: () => show(menu.value),
+  });
+  const text = h("article", {
+    class: "lesson-text",
+    tabindex: "0",
+    "aria-label": "Text of the lesson",
+  });
+  const button = (word, tip, onclick) =>
+    h("button", { type: "button", class: "quiet", "data-tip": tip, onclick }, word);
+  const back = button("previous", "the lesson before this one", () => move(-1));
+  const next = button("next", "the lesson after this one", () => move(1));
+  const panel = h(
+    "section",
+    { class: "lesson-panel", "aria-label": "Lessons", hidden: true },
+    h(
+      "div",
+      { class: "card-head" },
+      menu,
+      h(
+        "div",
+        { class: "choices" },
+        back,
+        next,
+        button("print", "this lesson on paper", () => print()),
+        button("close", "back to the page", close),
+      ),
+    ),
+    text,
+  );
+  el.append(panel);
+  const watcher = new IntersectionObserver(
+    (entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (isIntersecting) {
+          waiting.get(target)?.();
+          waiting.delete(target);
+          watcher.unobserve(target);
+        }
+      }
+    },
+    { root: text, rootMargin: "200px" },
+  );
+
+  /** @param {Element} node @param {() => void} act */
+  function whenSeen(node, act) {
+    waiting.set(node, act);
+    watcher.observe(node);
+  }
+
+  function fillMenu() {
+    menu.replaceChildren(
+      ...data.lessons.map(({ id, title, problems = [] }, i) => {
+        const solved = problems.filter((one) => progress.solved(one)?.score > 0).length;
+        const marks = [
+          progress.isRead(id) ? "read" : "",
+          solved ? `${solved} of ${problems.length} exercises` : "",
+        ].filter(Boolean);
+        const words = `${i + 1}. ${title}${marks.length ? ` (${marks.join(", ")})` : ""}`;
+        return h("option", { value: id }, words);
+      }),
+    );
+    menu.value = shown;
+  }
+
+  const placeOf = (id) => data.lessons.findIndex((one) => one.id === id);
+
+  /** @param {number} by */
+  function move(by) {
+    const to = data.lessons[placeOf(shown) + by];
+    if (to) {
+      show(to.id);
+    }
+  }
+
+  /** @param {any} lesson */
+  function kitOf(lesson) {
+    let questions = 0;
+    const kit = {
+      katex,
+      picture: (src) => documents.pictureAddress(lesson.id, src),
+      live: {
+        exhibit: (block) => makeExhibit(block, kit, actions, whenSeen),
+        predict: (block) => {
+          const k = questions++;
+          return makePrediction(block, kit, progress.predicted(lesson.id, k), (choice) =>
+            progress.setPredicted(lesson.id, k, choice),
+          );
+        },
+        slip: (block) => makeSlip(block, kit),
+        exercise: (block) => exercise(block.id, make(block.children, kit)),
+      },
+    };
+    return kit;
+  }
+
+  /** @param {string} id @param {Node[]} about */
+  const exercise = (id, about) => createExercise({ id, about, progress, changed: fillMenu });
+
+  /** @param {string} id */
+  async function show(id) {
+    shown = id;
+    fillMenu();
+    back.disabled = placeOf(id) <= 0;
+    next.disabled = placeOf(id) === data.lessons.length - 1;
+    try {
+      const lesson = await documents.lesson(id);
+      if (!katex && lesson.blocks.some(hasMath)) {
+        const [library] = await Promise.all([import("katex"), loadStyle(KATEX_STYLE)]);
+        katex = library.default;
+      }
+      if (id === shown) {
+        fill(lesson);
+      }
+    } catch (error) {
+      text.replaceChildren(h("p", { class: "hint" }, sentenceOf(error)));
+    }
+  }
+
+  /** Ids of exercises that the text itself names. @param {any[]} blocks @returns {string[]} */
+  const named = (blocks) =>
+    blocks.flatMap(({ kind, id, children = [] }) => (kind === "exercise" ? [id] : named(children)));
+
+  /** @param {any} lesson */
+  function fill(lesson) {
+    watcher.disconnect();
+    waiting.clear();
+    const inText = named(lesson.blocks);
+    const others = lesson.problems.filter((id) => !inText.includes(id));
+    const end = h("p", { class: "about" });
+    text.replaceChildren(
+      ...make(lesson.blocks, kitOf(lesson)),
+      ...(others.length ? [h("h3", {}, "Exercises"), ...others.map((id) => exercise(id, []))] : []),
+      end,
+    );
+    const following = data.lessons[placeOf(lesson.id) + 1];
+    say(
+      end,
+      following
+        ? `The end of this lesson. Next: ${following.title}`
+        : "The end of the last lesson.",
+    );
+    text.scrollTop = 0;
+    text.setAttribute("aria-label", wordsOf(lesson.blocks.slice(0, 1)) || lesson.title);
+    whenSeen(end, () => {
+      progress.setRead(lesson.id);
+      fillMenu();
+    });
+  }
+
+  function close() {
+    panel.hidden = true;
+    document.body.classList.remove("reads");
+    document.getElementById("play")?.focus({ preventScroll: true });
+  }
+
+  panel.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") {
+      close();
+    }
+  });
+
+  return {
+    /** Opens the lesson of the scene that is shown, or the one that was open. */
+    open() {
+      const own = data.lessons.find(({ scenes }) => scenes.includes(data.scene?.id));
+      panel.hidden = false;
+      document.body.classList.add("reads");
+      if (!shown) {
+        show(own?.id ?? data.lessons[0].id);
+      }
+      text.focus({ preventScroll: true });
+    },
+  };
+}

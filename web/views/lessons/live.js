@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// Exhibits that run in the page, predictions to be made before a run, slips of printed lessons.
+import { api, sentenceOf } from "../../api/client.js";
+import { h, say, set } from "../../widgets/dom.js";
+import { makeThumbnail } from "../../widgets/thumbnail.js";
+import { make } from "./blocks.js";
+
+/** "l1=1.2" as [name, number]. @param {string} text @returns {[string, number]} */
+function readSetting(text) {
+  const [name, value] = text.split("=");
+  return [name, Number(value)];
+}
+
+/** @param {any} list words in one string, or a list */
+const wordsIn = (list) =>
+  (Array.isArray(list) ? list : String(list ?? "").split(/\s+/)).filter(Boolean);
+
+/**
+ * @param {import("./blocks.js").Block} block
+ * @param {import("./blocks.js").Kit} kit
+ * @param {import("../../session/session.js").Session} actions
+ * @param {(seen: HTMLElement, show: () => void) => void} whenSeen
+ */
+export function makeExhibit(block, kit, actions, whenSeen) {
+  const { scene, command, children } = block;
+  const picture = h("div", { class: "exhibit-picture" });
+  const said = h("p", { role: "status", class: "about" });
+  const settings = Object.fromEntries(wordsIn(block.set).map(readSetting));
+  const link = { settings, methods: wordsIn(block.methods) };
+
+  async function run() {
+    say(said, "opening");
+    try {
+      await actions.loadScene(scene, link);
+      history.replaceState(null, "", `#${scene}`);
+      const end = Number(block.time);
+      say(
+        said,
+        end > 0 ? `runs beside this text; look at it until ${end} s` : "runs beside this text",
+      );
+      await actions.play();
+    } catch (error) {
+      say(said, sentenceOf(error));
+    }
+  }
+
+  if (scene) {
+    whenSeen(picture, () => {
+      api.scene(scene).then(
+        (document) => picture.replaceChildren(makeThumbnail(document)),
+        (error) => say(said, sentenceOf(error)),
+      );
+    });
+  }
+  return h(
+    "section",
+    { class: "live exhibit", "aria-label": scene ? `Exhibit: ${scene}` : "Exhibit" },
+    scene ? picture : "",
+    h(
+      "div",
+      { class: "exhibit-words" },
+      ...make(children, kit),
+      command
+        ? h("pre", { tabindex: "0" }, h("code", {}, `holonom ${command.replace(/^holonom /, "")}`))
+        : "",
+      scene
+        ? h(
+            "div",
+            { class: "choices" },
+            h("button", { type: "button", class: "primary", onclick: run }, "Run it"),
+            said,
+          )
+        : "",
+    ),
+  );
+}
+
+/**
+ * The answer is shown once a choice is made.
+ * @param {import("./blocks.js").Block} block
+ * @param {import("./blocks.js").Kit} kit
+ * @param {number} made the choice that was made earlier, or -1
+ * @param {(choice: number) => void} choose
+ */
+export function makePrediction({ children, choices = [], right, after }, kit, made, choose) {
+  const told = h("div", { class: "prediction-after", hidden: true }, ...make(after, kit));
+  const verdict = h("p", { role: "status" });
+  const buttons = choices.map((choice, i) =>
+    h(
+      "button",
+      { type: "button", class: "plain", "aria-pressed": "false", onclick: () => pick(i, true) },
+      ...make(choice.children, kit),
+    ),
+  );
+
+  /** @param {number} i @param {boolean} now by a press, not remembered */
+  function pick(i, now) {
+    buttons.forEach((button, k) => {
+      set(button, { "aria-pressed": String(k === i) });
+      button.classList.toggle("right", k === right);
+    });
+    told.hidden = false;
+    say(verdict, i === right ? "Yes." : "No: the marked answer is right.");
+    if (now) {
+      choose(i);
+    }
+  }
+  if (made >= 0) {
+    pick(made, false);
+  }
+  return h(
+    "section",
+    { class: "live predict", "aria-label": "Predict first" },
+    h("p", { class: "live-title" }, "Predict first"),
+    ...make(children, kit),
+    h("div", { class: "choices predictions" }, ...buttons),
+    verdict,
+    told,
+  );
+}
+
+/** @param {import("./blocks.js").Block} block @param {import("./blocks.js").Kit} kit */
+export const makeSlip = ({ number, children }, kit) =>
+  h(
+    "section",
+    { class: "live slip", "aria-label": `Slip ${number} of the printed lesson` },
+    h("p", { class: "live-title" }, `Slip ${number} of the printed lesson`),
+    ...make(children, kit),
+  );
