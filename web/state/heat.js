@@ -2,7 +2,7 @@
 // @ts-check
 // A stability map as heat: the worst gap, the error or the energy error of every cell as a colour,
 // and where the smallest of them is.
-import { plain, quantity } from "./format.js";
+import { plain, quantity, scientific } from "./format.js";
 
 /**
  * `of` gives the value of a cell, NaN where there is none.
@@ -18,6 +18,7 @@ export const HEATS = [
 ];
 
 const RAN = ["stable", "inaccurate"];
+const LEAST_PLAIN = 1e-3; // [%] below it a power of ten is easier to read
 const LEAST = 1e-17; // smaller values are rounding
 
 /** The value of a cell that ran to its end; NaN for any other. */
@@ -53,8 +54,11 @@ export function heatRange(heat, rows, length) {
 }
 
 /** "2.5 mm", or a share in percent. @param {Heat} heat @param {number} value */
-export const heatWords = (heat, value) =>
-  heat.unit ? quantity(value, heat.unit) : `${plain(Number((100 * value).toPrecision(2)))} %`;
+export function heatWords(heat, value) {
+  const percent = 100 * value;
+  const share = percent < LEAST_PLAIN ? scientific(percent) : plain(Number(percent.toPrecision(2)));
+  return heat.unit ? quantity(value, heat.unit) : `${share} %`;
+}
 
 /**
  * The best value of every quantity and where it is: closing the gap, the right motion and the right

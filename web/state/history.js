@@ -227,10 +227,8 @@ function extremes(y, start, end) {
 export function thin(t, ys, count, buckets, map) {
   const size = Math.ceil(count / buckets);
   if (size <= 2) {
-    return [
-      Array.from(t).slice(0, count),
-      ...ys.map((y) => Array.from(y).slice(0, count).map(map)),
-    ];
+    const first = (y, of) => Array.from({ length: count }, (_, i) => of(y[i]));
+    return [first(t, Number), ...ys.map((y) => first(y, map))];
   }
   /** @type {(number | null)[][]} */
   const out = [[], ...ys.map(() => [])];

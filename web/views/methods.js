@@ -5,7 +5,7 @@ import { ROUNDING, bound, quantity, withPowers } from "../state/format.js";
 import { costWords } from "../state/cards.js";
 import { errorsOf } from "../state/errors.js";
 import { limits } from "../state/catalogue.js";
-import { cardOf, parseSpelling } from "../state/spelling.js";
+import { cardOf, parseSpelling, settingOf } from "../state/spelling.js";
 import { listen, shownIndex } from "../state/store.js";
 import { verdictAt } from "../state/verdict.js";
 import { h, icon, s, say, set } from "../widgets/dom.js";
@@ -47,16 +47,41 @@ export function createMethods(el, store, actions, openDialog) {
   const body = h("tbody", { role: "rowgroup" });
   const add = h(
     "button",
-    { type: "button", class: "quiet", onclick: () => openDialog(-1) },
+    {
+      type: "button",
+      class: "quiet",
+      "aria-label": "add a method",
+      onclick: () => openDialog(-1),
+    },
     icon("plus"),
-    "add a method",
+    "add",
+  );
+  const cheapest = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      "data-tip": "error against cost of every method, at many step sizes (W)",
+      onclick: () => actions.setView({ study: "work-precision" }),
+    },
+    "cheapest?",
+  );
+  const map = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      "data-tip": "the worst gap over all α and β as a map, with the present values on it (B)",
+      onclick: () => actions.setView({ study: "stability", map: "baumgarte" }),
+    },
+    "α, β map",
   );
   el.replaceChildren(
     h(
       "div",
       { class: "title" },
       h("h2", { id: "methods-title" }, "Methods"),
-      h("div", { class: "choices" }, add),
+      h("div", { class: "choices" }, cheapest, map, add),
     ),
     h(
       "div",
@@ -211,6 +236,7 @@ export function createMethods(el, store, actions, openDialog) {
     refusals = data.refused;
     body.replaceChildren(...rows.map(({ row }) => row), ...refusals.map(refusedRow));
     const most = limits().methods;
+    map.hidden = !data.methods.some(({ spelling }) => settingOf(data.catalogue, spelling, "alpha"));
     add.disabled = data.methods.length >= most;
     set(add, { "data-tip": add.disabled ? `${most} methods at most` : null });
     showView();

@@ -211,6 +211,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     }
     series.push(...(keptRun()?.methods ?? []).map(keptSeries));
     set(log, { "aria-pressed": String(options.log) });
+    set(menu, { "data-tip": kind.about });
     plot.setSeries(series, inks(), anew, data.duration || 1);
     showEmpty();
   }

@@ -12,6 +12,9 @@ import { rove } from "../widgets/roving.js";
 import { drawContours, drawLines, fillLegend, shadeCells } from "./study-map-parts.js";
 import { addPresentPoint } from "./study-map-point.js";
 
+const SWEET_SPOT =
+  "Small α and β let the gap grow; near the boundary every step overshoots. The best place lies " +
+  "between, and it is another one for the gap, the motion and the energy.";
 const GREEK = { alpha: "α", beta: "β" };
 const ROOM = { left: 62, right: 12, top: 8, bottom: 44 };
 const HEIGHT = 360;
@@ -143,7 +146,8 @@ export function createStudyMap(store, actions) {
           ),
         )
       : [];
-    best.replaceChildren(...lines);
+    const isBaumgarte = x?.name === "alpha";
+    best.replaceChildren(...(isBaumgarte ? [h("li", {}, SWEET_SPOT)] : []), ...lines);
     shades.hidden = !x;
     [...shades.children].forEach((button, k) =>
       button.setAttribute(
