@@ -6,6 +6,7 @@ within a share, `at_most`, `contains` ... A number of the text that no entry cov
 no longer says. An entry without a command says in `because` why it needs none.
 """
 
+import glob
 import json
 import os
 import re
@@ -76,8 +77,17 @@ def faults_of(fact, text):
     if "command" not in fact:
         return [] if fact.get("because") else [f"no command and no reason: {fact['says']!r}"]
     doc = document(fact["command"])
-    found = [(check, *holds(doc, check)) for check in fact["checks"]]
+    try:
+        found = [(check, *holds(doc, check)) for check in fact["checks"]]
+    except (KeyError, ValueError) as error:
+        return [f"{fact['command']}: there is no {error}"]
     return [f"{check}: found {value}" for check, good, value in found if not good]
+
+
+def look_at(block, blank):
+    """The block blanked, but for what an exhibit says to look at."""
+    head, empty, rest = block[0].partition("\n\n")
+    return re.sub(r"[^\n]", " ", head) + empty + rest if block[1] == "exhibit" else blank(block)
 
 
 def prose(text):
@@ -85,7 +95,13 @@ def prose(text):
     def blank(m):
         return re.sub(r"[^\n]", " ", m[0])
 
-    for pattern in (r"^ {4}\S.*$", r"^#.*$", r"^!\[.*$", r"^\d+\. ", r"\*\*[\w-]+\*\* - ", r"`[^`\n]*`"):
+    # a formula states no measured number; of the special blocks only predictions and what to look at do
+    text = re.sub(r"^```(exhibit|slip|exercise|python)\b.*?^```$", lambda m: look_at(m, blank), text, flags=re.M | re.S)
+    text = re.sub(r"\$\$.*?\$\$", blank, text, flags=re.S)
+    # wrong choices of a prediction, and years of sources
+    text = re.sub(r"^```predict\b.*?^```$", lambda m: re.sub(r"^- .*$", blank, m[0], flags=re.M), text, flags=re.M | re.S)
+    text = re.sub(r"^## Sources$.*?(?=^## |\Z)", blank, text, flags=re.M | re.S)
+    for pattern in (r"\$[^$\n]*\$", r"^ {4}\S.*$", r"^#.*$", r"^!\[.*$", r"^\d+\. ", r"\*\*[\w-]+\*\* - ", r"`[^`\n]*`"):
         text = re.sub(pattern, blank, text, flags=re.M)
     return text
 
@@ -112,10 +128,40 @@ def counts(text):
                     yield scene, part.strip(), WORDS[m[1]], pick(doc, path)
 
 
+def read(path):
+    with open(path, encoding="utf-8") as f:
+        return f.read()
+
+
+def exercises(texts):
+    """Exercises that a text names and that are not there, and the other way round."""
+    named = {name for t in texts for name in re.findall(r"^```exercise (\S+)$", read(t), flags=re.M)}
+    there = {p["id"] for p in document("list problems --json")["problems"]}
+    return sorted(named ^ there)
+
+
+def slips(texts):
+    """Numbers of slips, 1 to 38, that no text or no exercise has."""
+    told = {int(n) for t in texts for n in re.findall(r"^```slip (\d+)$", read(t), flags=re.M)}
+    asked = {int(part["id"][1:]) for path in glob.glob("lessons/*/problems/slips-*.json") for part in json.loads(read(path))["parts"]}
+    return [f"slip {n} is in no {where}" for where, seen in (("text", told), ("exercise", asked)) for n in range(1, 39) if n not in seen]
+
+
+def programs(texts):
+    """Python programs of the texts that end with a fault; the one with NumPy is Debian's."""
+    faults = []
+    for t in texts:
+        for code in re.findall(r"^```python\n(.*?)^```$", read(t), flags=re.M | re.S):
+            done = subprocess.run(["/usr/bin/python3", "-c", code], capture_output=True, text=True, timeout=300)
+            faults += [f"{t}: {done.stderr[-200:]}"] if done.returncode else []
+    return faults
+
+
 def main():
     with open(FACTS, encoding="utf-8") as f:
         all_facts = json.load(f)
     results = []
+    texts = sorted(f"lessons/{d}/text.md" for d in os.listdir("lessons") if os.path.exists(f"lessons/{d}/text.md"))
     for path, facts in all_facts.items():
         with open(path, encoding="utf-8") as f:
             text = f.read()
@@ -125,7 +171,10 @@ def main():
         wrong = [f"{scene}: {part}, found {found}" for scene, part, said, found in told if said != found]
         results.append((f"{path}: {len(told)} counts of its scenes are those of inspect", wrong))
         results.append((f"{path}: no number without a command", uncovered(text, facts)))
-    texts = sorted(f"lessons/{d}/text.md" for d in os.listdir("lessons") if os.path.exists(f"lessons/{d}/text.md"))
+    results.append(("every exercise of a text is there, and every exercise is in a text", exercises(texts)))
+    results.append(("every slip of the printed lesson is in a text and in an exercise", slips(texts)))
+    results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))
+    results.append(("the programs of the texts run", programs(texts)))
     results.append(("every text of a lesson is listed", [t for t in texts if t not in all_facts]))
     for n, (name, faults) in enumerate(results, 1):
         for fault in faults:

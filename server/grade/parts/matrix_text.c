@@ -175,6 +175,7 @@ static const char *const TRANSPOSE[] = {
     "^{\\top}",       "^{T}",         "^\\top", "^T", "ᵀ", "'", ".T",
     "^{\\mathrm{T}}", "^\\mathrm{T}", "^t",     "’",  "′", NULL};
 static const char *const INVERSE[] = {"^{-1}", "^-1", "^(-1)", "⁻¹", "**-1", NULL};
+static const char *const SQUARE[] = {"^2", "^{2}", "²", "**2", NULL};
 static const char *const DOT[] = {"\\dot", NULL};
 static const char *const BOLD[] = {"\\mathbf", "\\boldsymbol", "\\mathrm", "\\bm", NULL};
 
@@ -301,6 +302,8 @@ static hn_status read_factor(parser *p, hn_matrix *out) {
     for (;;) {
         if (take_any(p, TRANSPOSE)) {
             HN_TRY(transpose(p, &m, out));
+        } else if (take_any(p, SQUARE)) {
+            HN_TRY(multiply(p, &m, &m, out));
         } else if (take_any(p, INVERSE)) {
             HN_TRY(invert(p, &m, out));
         } else {

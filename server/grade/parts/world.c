@@ -91,6 +91,7 @@ static hn_status make_one(hn_world *w, const hn_part *p, const cJSON *node, uint
     }
     if (how && strcmp(how, "any") == 0 && rows && cols) {
         *out = hn_matrix_new(w->arena, rows, cols);
+        out->number = rows == 1 && cols == 1;
         if (out->x) {
             fill(out, seed);
         }
