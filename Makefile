@@ -51,13 +51,13 @@ ROOMS_session      := store: model:store job:model compare:store,model reference
                       report:store,model,job,compare,references,precision,accounts,stability,extreme \
                       kinds:job,model,references,precision,accounts,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
-ROOMS_server       := terminal: lesson:terminal grade/parts: grade:grade/parts,lesson \
+ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,lesson,http/ground,http/request,http/live,http/studies,http/runs \
                       cli/shell:terminal tui:terminal,cli/shell \
                       cli/commands:grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
-                      cli/study:terminal,cli/shell cli:terminal,cli/shell :cli
+                      cli/study:terminal,cli/shell cli:program,terminal,cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
 VARIANT ?= release
@@ -211,7 +211,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
-                 libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
+                 libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core bwrap:bubblewrap
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format

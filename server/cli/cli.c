@@ -13,6 +13,7 @@
 #include "cli/shell/print.h"
 #include "cli/shell/cache_folder.h"
 #include "expr/native.h"
+#include "program/program_method.h"
 #include "terminal/width.h"
 
 #include <stdbool.h>
@@ -154,6 +155,15 @@ static void start_native(const hn_args *args) {
     }
 }
 
+/// Students' programs, where the command line says so: a scene or a link cannot.
+static void allow_programs(const hn_args *args) {
+    if (args->allow_programs || args->trust_programs || args->programs) {
+        hn_programs_allow(&(hn_program_opts){.trusted = args->trust_programs,
+                                             .answer = args->answer_time,
+                                             .folder = args->programs});
+    }
+}
+
 static hn_exit run_command(const hn_command *command, const hn_args *args) {
     const behind function = function_of(command);
     hn_library *lib = NULL;
@@ -177,8 +187,10 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
     hn_diags diags = {0};
     const hn_status status = hn_cli_protect_inputs(args, &diags);
     start_native(args);
+    allow_programs(args);
     const hn_exit result =
         status == HN_OK ? function.run(lib, args) : hn_report_diags(args, status, &diags);
+    hn_programs_report();
     hn_native_stop();
     hn_library_free(lib);
     return result;

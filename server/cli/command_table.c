@@ -10,7 +10,8 @@
 
 static const hn_command COMMANDS[] = {
     {"serve", "", "the page, the API and the stream, on this machine alone",
-     "--host --port --allow-host --open --history --max-comparisons --max-streams "
+     "--host --port --programs --answer-time --allow-host --open --history --max-comparisons "
+     "--max-streams "
      "--max-connections --runs --token --guests --run-cpu "
      "--idle-pause "
      "--expiry --keep-alive",
@@ -27,17 +28,25 @@ static const hn_command COMMANDS[] = {
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave or "
      "julia",
      MODEL_OPTIONS " --language --out -o", 1, 1, hn_command_export},
+    {"program", "python|javascript|octave|c|cpp|java",
+     "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,
+     hn_command_program},
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
     {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
-     MODEL_OPTIONS " --method --time --at --every --raw-lambda --reactions --format --plot", 1, 1,
-     hn_command_run},
+     MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
+                   "--raw-lambda --reactions --format --plot",
+     1, 1, hn_command_run},
     {"compare", "SCENE", "several methods on one clock, and where they part",
-     MODEL_OPTIONS " --methods --time --frame --plot --wide", 1, 1, hn_command_compare},
+     MODEL_OPTIONS
+     " --allow-programs --trust-programs --answer-time --methods --time --frame --plot --wide",
+     1, 1, hn_command_compare},
     {"study", "SCENE work-precision|budget|stability",
      "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
      ".json or .csv (maps also .svg, .png)",
-     MODEL_OPTIONS " --methods --time --grid --csv --out -o --wide", 1, 2, hn_command_study},
+     MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --methods --time --grid --csv "
+                   "--out -o --wide",
+     1, 2, hn_command_study},
     {"report", "[SCENE...]",
      "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
      "--methods --out -o --plots --wide", 0, HN_JOB_SCENES, hn_command_report},
@@ -52,8 +61,9 @@ static const hn_command COMMANDS[] = {
      "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
      "--csv --out -o --wide", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
     {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
-     MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
-     hn_command_snapshot},
+     MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --methods --time "
+                   "--out -o --width --height --theme --view",
+     1, 1, hn_command_snapshot},
     {"import", "FILE",
      "convert a MuJoCo MJCF or URDF file to a scene; unsupported elements are listed with their "
      "lines",

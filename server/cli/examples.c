@@ -20,6 +20,7 @@ static const struct {
     {"export",
      {"export four-bar --language python", "export pendulum --language octave -o pendulum.m",
       "export slider-crank --language c --set l=0.9 -o slider-crank.c"}},
+    {"program", {"program python -o mine.py", "program c", "program octave -o mine.m"}},
     {"run",
      {"run four-bar --time 1 --plot",
       "run four-bar --method reduced@dop853:rtol=1e-10 --time 2 --every 0.1",

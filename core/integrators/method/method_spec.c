@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/method/method_spec.h"
 #include "integrators/list/stepper_list.h"
+#include "integrators/method/guest.h"
 #include "formulations/list/formulation_list.h"
 
 #include <ctype.h>
@@ -102,6 +103,20 @@ static hn_status find_stepper(piece p, const hn_stepper **out, hn_diag *diag) {
         return wrong_side(diag, p, word, "a formulation");
     }
     return *out ? HN_OK : unknown_name(diag, p, "integrator", word, names, n);
+}
+
+// program:FILE, and the integrator behind the '@'; without one the program makes its own steps
+static hn_status find_guest(piece left, piece right, hn_method_spec *spec, hn_diag *diag) {
+    char name[HN_SPEC_MAX], word[MAX_WORD];
+    hn_guest guest;
+    snprintf(name, sizeof name, "%.*s", (int)(left.to - left.from), left.text + left.from);
+    HN_TRY(hn_guest_find(name, &guest, diag));
+    spec->formulation = guest.formulation;
+    spec->stepper = guest.stepper;
+    copy_word(right, word);
+    return word[0] == '\0' || strcmp(word, guest.stepper->name) == 0
+               ? HN_OK
+               : find_stepper(right, &spec->stepper, diag);
 }
 
 // One "key=value"; `given` has a bit per setting already seen.
@@ -267,8 +282,9 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
                            "a method is spelled with at most %d characters, found %zu",
                            HN_SPEC_MAX - 1, n);
     }
+    const bool guest = hn_guest_is_named(text);
     const size_t at = find_char(all, '@');
-    if (at == n) {
+    if (at == n && !guest) {
         hn_diag_set(diag, HN_ERR_INPUT, NULL, "write for example index1@rk4:h=1e-3",
                     "'%.60s' names no method: a formulation, '@' and an integrator are needed",
                     text);
@@ -277,12 +293,18 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
         }
         return HN_ERR_INPUT;
     }
-    const piece left = {text, 0, at}, right = {text, at + 1, n};
-    const size_t left_colon = find_char(left, ':'), right_colon = find_char(right, ':');
+    const piece left = {text, 0, at}, right = {text, at < n ? at + 1 : n, n};
+    const size_t right_colon = find_char(right, ':');
+    size_t left_colon = find_char(left, ':');
 
     // names, whether they fit, and their options
-    HN_TRY(find_formulation((piece){text, 0, left_colon}, &spec.formulation, diag));
-    HN_TRY(find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag));
+    if (guest) {
+        left_colon = at;
+        HN_TRY(find_guest(left, (piece){text, right.from, right_colon}, &spec, diag));
+    } else {
+        HN_TRY(find_formulation((piece){text, 0, left_colon}, &spec.formulation, diag));
+        HN_TRY(find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag));
+    }
     HN_TRY(check_pair(right, &spec, diag));
     HN_TRY(parse_side(left, left_colon, spec.formulation->options, spec.formulation->n_options,
                       spec.formulation_set, diag));

@@ -24,6 +24,8 @@ typedef struct hn_method_spec {
 /// given twice, missing '@', an integrator that does not serve the formulation. `diag->column` says
 /// where. With HN_OK, diag->message is "" or a warning ("alpha = -5 1/s: below zero it pushes the
 /// loop apart").
+/// A spelling that begins with "program:" is that of a guest (integrators/method/guest.h):
+/// program:FILE[@INTEGRATOR[:key=value,...]].
 HN_MUST_CHECK hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag);
 /// The normal spelling: only options that differ from their defaults, plus h or rtol (what the step
 /// is taken or chosen by) always. Reads back to the same spec.

@@ -30,12 +30,12 @@ typedef struct hn_args {
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
-        *size, *runs, *token, *student, *seeds;
-    double time, every, t, port, width, height, seed, frame_dt, frames;
+        *size, *runs, *token, *programs, *student, *seeds;
+    double time, answer_time, every, t, port, width, height, seed, frame_dt, frames;
     double hint, history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause,
         expiry, keep_alive;
     int guests;
-    int json, csv, wide, open, help, raw_lambda, reactions;
+    int json, csv, wide, allow_programs, trust_programs, open, help, raw_lambda, reactions;
     int once, ascii, blocks, plot, check, no_native;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;

@@ -11,6 +11,7 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_terms(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_export(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_program(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_reference(const hn_library *lib, const hn_args *args);

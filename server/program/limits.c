@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/limits.h"
+
+hn_program_limits hn_program_limits_default(void) {
+    // a Java or Octave program needs seconds to start on a busy machine
+    return (hn_program_limits){.start = 30,
+                               .answer = 5,
+                               .cpu = 120,
+                               .memory = 768LL << 20,
+                               .processes = 64,
+                               .files = 16LL << 20,
+                               .line = 4LL << 20,
+                               .stderr_kept = 4096};
+}

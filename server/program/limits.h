@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_PROGRAM_LIMITS_H
+#define HN_PROGRAM_LIMITS_H
+// What a student's program may use.
+
+typedef struct hn_program_limits {
+    double start, answer; ///< [s] of wall clock until the first answer, and until any other
+    double cpu;           ///< [s] of computing time over its whole life
+    long long memory;     ///< [bytes] of all its processes together
+    int processes;        ///< at once, threads included
+    long long files;      ///< [bytes] of each file that it writes, and of its /tmp
+    long long line;       ///< [bytes] of one answer
+    int stderr_kept;      ///< [bytes] of its standard error that are kept
+} hn_program_limits;
+
+hn_program_limits hn_program_limits_default(void);
+
+#endif

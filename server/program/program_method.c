@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/program_method.h"
+
+#include "dynamics/compile/coordinates.h"
+#include "formulations/ground/state_ode.h"
+#include "integrators/method/guest.h"
+#include "program/conversation.h"
+#include "program/sandbox.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_PROGRAMS = 32, NAME = 220 };
+
+/// One program file and its method. Stays for the life of the process.
+typedef struct program {
+    char name[NAME]; ///< "program:./mine.py"
+    char file[1024];
+    hn_formulation formulation;
+    // what its processes used
+    long long answers, peak;
+    double cpu;
+} program;
+
+static hn_program_opts options;
+static hn_program_limits get_limits(void) {
+    hn_program_limits limits = hn_program_limits_default();
+    limits.answer = options.answer > 0 ? options.answer : limits.answer;
+    return limits;
+}
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // of the list below
+static program *programs[MOST_PROGRAMS];
+static int n_programs;
+
+/// An instance: one process.
+typedef struct guest {
+    hn_state_ode base; // first
+    program *program;
+    hn_conversation talk;
+} guest;
+
+static void keep_why(guest *g) {
+    snprintf(g->base.why, sizeof g->base.why, "%.230s", g->talk.why.message);
+}
+
+// ---- the formulation ----
+
+static hn_status create(const hn_system *sys, const double *set, hn_arena *arena, void **self,
+                        hn_diag *diag) {
+    const hn_program_limits limits = get_limits();
+    hn_sandbox_command command;
+    guest *g = hn_arena_get(arena, sizeof *g);
+    if (!g) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *g = (guest){.program = programs[(int)set[0]]};
+    *self = g;
+    HN_TRY(hn_state_ode_init(&g->base, sys, arena));
+    HN_TRY(hn_sandbox_build(&command, g->program->file, options.trusted, &limits, diag));
+
+    // its greeting says whether it can be talked to
+    hn_diag why = {0};
+    const hn_status status = hn_conversation_begin(
+        &g->talk, sys, command.argv, command.file[0] ? command.file : NULL, &limits, arena, &why);
+    if (status != HN_OK) {
+        hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%.100s: %.300s", g->program->name,
+                    why.message);
+        hn_conversation_end(&g->talk);
+        return HN_ERR_UNSUPPORTED;
+    }
+    return HN_OK;
+}
+
+static void destroy(void *self) {
+    guest *g = self;
+    hn_conversation_end(&g->talk);
+    pthread_mutex_lock(&lock);
+    g->program->answers += g->talk.id;
+    g->program->cpu += g->talk.process.cpu;
+    g->program->peak =
+        g->talk.process.peak > g->program->peak ? g->talk.process.peak : g->program->peak;
+    pthread_mutex_unlock(&lock);
+    hn_state_ode_destroy(&g->base);
+}
+
+static hn_status rhs(void *self, double t, const double *y, double *ydot) {
+    guest *g = self;
+    const double *q = hn_unit_positions(g->base.sys, y, g->base.unit), *v = y + g->base.nq;
+    g->base.cost.evals++;
+    const hn_status status = hn_conversation_accelerations(&g->talk, t, q, v, ydot + g->base.nq);
+    if (status != HN_OK) {
+        keep_why(g);
+        return status;
+    }
+    hn_system_kinematics(g->base.sys, y, v, ydot);
+    return HN_OK;
+}
+
+static void get_ode(void *self, hn_ode *out) {
+    hn_state_ode_get(self, rhs, out);
+    // only the program knows its derivatives: implicit integrators take differences
+    out->jacobian = NULL;
+    out->newton = NULL;
+    out->prepare = NULL;
+}
+
+static const hn_formulation FORMULATION = {
+    .short_name = "your program",
+    .rule = "A program of your own computes the accelerations, or makes the steps; the workbench "
+            "measures what comes out.",
+    .drift = "as the program's own equations say",
+    .when = "to see your own solver beside the others",
+    .when_not = "where time is measured: every answer crosses a pipe",
+    .source = "its author",
+    .needs = "what its greeting asks for",
+    .index = 1,
+    .n_options = 1,
+    .create = create,
+    .destroy = destroy,
+    .ode = get_ode,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
+    .after_step = hn_state_ode_after_step,
+    .add_cost = hn_state_ode_add_cost,
+    .why = hn_state_ode_why,
+};
+
+// ---- the integrator of programs that make their own steps ----
+
+static void *create_stepper(int n_pos, int n_vel, hn_arena *arena) {
+    (void)n_pos;
+    (void)n_vel;
+    return hn_arena_get(arena, sizeof(double));
+}
+
+static hn_status step(void *self, const hn_ode *ode, double t, double h, const double *y,
+                      double *y_new, double *err) {
+    guest *g = ode->self;
+    (void)self;
+    (void)err;
+    g->base.cost.evals++;
+    const hn_status status =
+        hn_conversation_step(&g->talk, t, h, y, y + g->base.nq, y_new, y_new + g->base.nq);
+    if (status != HN_OK) {
+        keep_why(g);
+    }
+    return status;
+}
+
+static void on_accepted(void *self, int changed) {
+    (void)self;
+    (void)changed;
+}
+
+static const hn_stepper STEPPER = {
+    .name = HN_GUEST_STEPPER,
+    .title = "its own steps",
+    .about = "The program makes the steps; the workbench asks for the state at each.",
+    .source = "its author",
+    .order = 1,
+    .stages = 1,
+    .real_limit = HUGE_VAL,
+    .imag_limit = HUGE_VAL,
+    .n_options = 1,
+    .options = {{.key = "h",
+                 .initial = 1e-3,
+                 .min = 1e-12,
+                 .max = 100,
+                 .unit = "s",
+                 .about = "step size"}},
+    .create = create_stepper,
+    .step = step,
+    .on_accepted = on_accepted,
+};
+
+// ---- names ----
+
+/// The file of a name; in a folder of the server a name is no path.
+static hn_status find_file(const char *name, char file[1024], hn_diag *diag) {
+    if (!options.folder) {
+        snprintf(file, 1024, "%s", name);
+        return HN_OK;
+    }
+    if (!name[0] || name[0] == '.' || strchr(name, '/')) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                           "name a file of the folder that serve was "
+                           "given with --programs",
+                           "'%.100s' is no name of a program here", name);
+    }
+    snprintf(file, 1024, "%.700s/%.300s", options.folder, name);
+    return HN_OK;
+}
+
+/// The entry of a program, made when it is first asked for. Under the lock.
+static program *find_program(const char *name, const char *file) {
+    for (int i = 0; i < n_programs; i++) {
+        if (strcmp(programs[i]->name, name) == 0) {
+            return programs[i];
+        }
+    }
+    program *p = n_programs < MOST_PROGRAMS ? calloc(1, sizeof *p) : NULL;
+    if (!p) {
+        return NULL;
+    }
+    snprintf(p->name, sizeof p->name, "%s", name);
+    snprintf(p->file, sizeof p->file, "%s", file);
+    p->formulation = FORMULATION;
+    p->formulation.name = p->name;
+    p->formulation.title = p->name;
+    // the option that tells create() which program it is; it has this value alone, so that no
+    // spelling shows it
+    p->formulation.options[0] = (hn_option){.key = "number",
+                                            .initial = n_programs,
+                                            .min = n_programs,
+                                            .max = n_programs,
+                                            .about = "which program"};
+    programs[n_programs++] = p;
+    return p;
+}
+
+static hn_status find(const char *name, hn_guest *out, hn_diag *diag) {
+    char file[1024];
+    hn_sandbox_command command;
+    const hn_program_limits limits = get_limits();
+    if (strlen(name) >= NAME) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "the name of the program is too long");
+    }
+    HN_TRY(find_file(name + strlen(HN_GUEST_PREFIX), file, diag));
+    HN_TRY(hn_sandbox_build(&command, file, options.trusted, &limits, diag));
+    pthread_mutex_lock(&lock);
+    program *p = find_program(name, file);
+    pthread_mutex_unlock(&lock);
+    if (!p) {
+        return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "there are %d programs already",
+                           MOST_PROGRAMS);
+    }
+    *out = (hn_guest){&p->formulation, &STEPPER};
+    return HN_OK;
+}
+
+void hn_programs_allow(const hn_program_opts *opts) {
+    options = *opts;
+    hn_guest_serve(find);
+}
+
+void hn_programs_report(void) {
+    pthread_mutex_lock(&lock);
+    for (int i = 0; i < n_programs; i++) {
+        const program *p = programs[i];
+        if (p->answers > 0) {
+            fprintf(
+                stderr,
+                "holonom: %s was asked %lld times and took %.2f s of computing time of its own%s",
+                p->name, p->answers, p->cpu, p->peak > 0 ? "" : "\n");
+        }
+        if (p->answers > 0 && p->peak > 0) {
+            fprintf(stderr, ", with at most %lld MB\n", p->peak >> 20);
+        }
+    }
+    pthread_mutex_unlock(&lock);
+}

@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Students' programs: the starting points give what Baumgarte gives, and whatever a program does, its row says what it did."""
+
+import concurrent.futures
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+PROGRAM = os.path.abspath(driver.PROGRAM)
+DONE, INPUT, ENDED = 0, 2, 4
+BUILDS = {"c": ["gcc", "-O2", "-Wall", "-Werror", "-x", "c"], "cpp": ["g++", "-O2", "-Wall", "-Werror", "-x", "c++"]}
+NEEDS = {"python": "python3", "javascript": "node", "octave": "octave-cli", "java": "java", "c": "gcc", "cpp": "g++"}
+ENDINGS = {"python": "py", "javascript": "js", "octave": "m", "c": "c", "cpp": "cpp", "java": "java"}
+
+
+def call(*words, cwd=None):
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300 * driver.SLOW, cwd=cwd)
+
+
+def sandbox_trouble():
+    """Why the sandbox cannot be set up on this machine; "" where it can."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "true.py")
+        with open(path, "w", encoding="utf-8") as f:
+            f.write("pass\n")
+        said = call("run", "pendulum", "--method", f"program:{path}", "--time", "0.1", "--allow-programs").stderr
+    found = re.search(r"untrusted programs run in a sandbox, and .*", said)
+    return found.group(0) if found else ""
+
+
+TROUBLE = sandbox_trouble()
+ALLOW = "--trust-programs" if TROUBLE else "--allow-programs"
+
+
+def has_numpy():
+    python = shutil.which("python3") if TROUBLE else "/usr/bin/python3"
+    return python and subprocess.run([python, "-c", "import numpy"], capture_output=True).returncode == 0
+
+
+class StartingPoints(unittest.TestCase):
+    def test_each_language_gives_what_baumgarte_gives(self):
+        tried = 0
+        for language, tool in NEEDS.items():
+            if not shutil.which(tool) or (language == "python" and not has_numpy()):
+                print(f"# {language}: {tool} is not here, its starting point was not run")
+                continue
+            tried += 1
+            with tempfile.TemporaryDirectory() as folder:
+                name = "mine." + ENDINGS[language]
+                self.assertEqual(call("program", language, "-o", name, cwd=folder).returncode, DONE)
+                if language in BUILDS:
+                    subprocess.run([*BUILDS[language], "-o", "mine", name, "-lm"], check=True, cwd=folder)
+                    name = "mine"
+                for scene, time in (("four-bar", "0.3"), ("double-pendulum", "0.2"), ("heavy-top", "0.1"))[:3 if language in ("python", "c") else 1]:
+                    done = call("compare", scene, "--methods", f"program:./{name}@rk4:h=1e-2", "baumgarte@rk4:h=1e-2", "--time", time, "--json", ALLOW, cwd=folder)
+                    self.assertEqual(done.returncode, DONE, (language, scene, done.stderr))
+                    own, ours = json.loads(done.stdout)["methods"]
+                    self.assertEqual(own["evals"], ours["evals"], (language, scene))
+                    # the same equations by another elimination: equal to rounding, grown over some steps
+                    for key in ("worst_gap", "worst_energy_change"):
+                        self.assertLess(abs(own[key] - ours[key]), 1e-12 + 1e-6 * abs(ours[key]), (language, scene, key))
+        self.assertGreaterEqual(tried, 2)
+
+    def test_a_language_that_is_not_there_is_answered_with_those_that_are(self):
+        done = call("program", "pyton")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("did you mean 'python'", done.stderr)
+
+
+# what every program below begins with
+GREETING = """
+import json, os, sys, time
+scene = json.loads(sys.stdin.readline())
+def say(**what):
+    print(json.dumps(what), flush=True)
+def greet(provides="accelerations", **more):
+    say(holonom=1, provides=provides, **more)
+def questions():
+    for line in sys.stdin:
+        yield json.loads(line)
+n = len(scene["coordinates"])
+"""
+EULER = ("import math\ndef euler(q, v, h):\n"
+         "    return [x + h * y for x, y in zip(q, v)], [y - h * 9.81 * math.sin(x) for x, y in zip(q, v)]\n")
+STEP = EULER + "greet('step')\nfor ask in questions():\n    q, v = euler(ask['q'], ask['v'], ask['h'])\n    say(id=ask['id'], q=q, v=v)\n"
+SOLVE = EULER + ("greet('solve')\nfor ask in questions():\n    t, q, v, rows = ask['t'], ask['q'], ask['v'], []\n    for to in ask['times']:\n"
+                 "        (q, v), t = euler(q, v, to - t), to\n        rows.append((q, v))\n"
+                 "    say(id=ask['id'], q=[r[0] for r in rows], v=[r[1] for r in rows])\n")
+
+
+class OneFile(unittest.TestCase):
+    """Calls with one program of Python in a folder of its own."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def run_program(self, text, *words, method="program:./mine.py@own:h=1e-2", allow=ALLOW, folder=None):
+        folder = folder or self.folder.name
+        with open(os.path.join(folder, "mine.py"), "w", encoding="utf-8") as f:
+            f.write(GREETING + text)
+        allow = [allow] if allow else []
+        return call("compare", "pendulum", "--methods", method, "baumgarte@rk4:h=1e-2", "--time", "0.2", *words, *allow, cwd=folder)
+
+
+class Services(OneFile):
+    def test_steps_and_whole_runs_are_the_same_motion(self):
+        step, solve = (json.loads(self.run_program(text, "--json").stdout)["methods"][0] for text in (STEP, SOLVE))
+        self.assertEqual((step["state"], solve["state"], step["steps"], solve["steps"]), ("finished", "finished", 20, 20))
+        # explicit Euler gains energy; differences of times are h to rounding
+        self.assertGreater(step["worst_energy_change"], 1e-3)
+        self.assertAlmostEqual(step["worst_energy_change"], solve["worst_energy_change"], delta=1e-12)
+        # a question is for many steps
+        asked = [int(re.search(r"asked (\d+) times", self.run_program(text).stderr).group(1)) for text in (STEP, SOLVE)]
+        self.assertGreaterEqual(asked[0], 20)
+        self.assertLessEqual(asked[1], asked[0] // 5)
+
+    def test_run_study_and_snapshot_take_them(self):
+        self.run_program(STEP)
+        method = "program:./mine.py@own:h=1e-2"
+        done = call("run", "pendulum", "--method", method, "--time", "0.1", ALLOW, cwd=self.folder.name)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(len(done.stdout.splitlines()), 202)
+        done = call("snapshot", "pendulum", "--method", method, "--time", "0.1", "-o", "a.png", ALLOW, cwd=self.folder.name)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = call("study", "pendulum", "--methods", method, "projection@rk4", "--time", "0.2", "--levels", "3", "--samples", "0", "--json", ALLOW, cwd=self.folder.name)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual([p["state"] for p in json.loads(done.stdout)["methods"][0]["points"]], ["done"] * 3)
+
+    def test_they_are_off_until_the_command_line_allows_them(self):
+        done = self.run_program(STEP, allow=None)
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("--allow-programs", done.stderr)
+
+    def test_a_scene_file_cannot_bring_one(self):
+        scene = json.load(open(os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "scenes", "four-bar.json"), encoding="utf-8")) \
+            if os.path.exists(os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "scenes", "four-bar.json")) else None
+        if scene is None:
+            self.skipTest("the scene is elsewhere")
+        scene["methods"] = ["program:/bin/true"]
+        path = os.path.join(self.folder.name, "scene.json")
+        with open(path, "w", encoding="utf-8") as f:
+            json.dump(scene, f)
+        done = call("compare", path, "--time", "0.1")
+        self.assertEqual(done.returncode, INPUT)
+
+    def test_the_wrong_way_of_asking_is_answered_with_the_right_one(self):
+        done = self.run_program(STEP, method="program:./mine.py@rk4:h=1e-2")
+        self.assertEqual(done.returncode, ENDED)
+        self.assertIn("it makes its own steps", done.stderr)
+        done = self.run_program("greet()\nfor ask in questions(): say(id=ask['id'], a=[0.0] * n)\n")
+        self.assertEqual(done.returncode, ENDED)
+        self.assertIn("spell it with an integrator", done.stderr)
+
+    def test_a_file_that_is_none_is_refused(self):
+        for name, said in (("no-such.py", "there is no program"), ("/tmp", "is not a file"), ("/etc/passwd", "cannot be started")):
+            done = call("run", "pendulum", "--method", f"program:{name}", "--time", "0.1", ALLOW)
+            self.assertEqual(done.returncode, INPUT, name)
+            self.assertIn(said, done.stderr)
+
+
+ANSWER = "say(id=ask['id'], q=ask['q'], v=ask['v'])"
+# name: (the program, what its line says)
+HOSTILE = {
+    "says nothing and ends": ("", "it ended with exit status 0 instead of an answer"),
+    "ends with an error": ("raise ValueError('wrong sign')", "ValueError: wrong sign"),
+    "dies by a signal": ("os.kill(os.getpid(), 11)", "signal 11"),
+    "greets with another version": ("say(holonom=7, provides='step')", 'must say "holonom": 1'),
+    "greets with nothing to offer": ("say(holonom=1, provides='miracles')", "what it provides"),
+    "wants what there is not": ("greet(wants=['truth'])", "wants 'truth'"),
+    "greets twice": ("greet('step'); greet('step'); time.sleep(9)", "before it was asked"),
+    "dies after a while": (STEP.replace("    say(", "    if ask['id'] == 5: sys.exit(3)\n    say("), "exit status 3"),
+    "sends too many numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[0.0] * 50, v=ask['v'])", "q has 50 numbers, 1 are needed"),
+    "sends no numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'])", "has no list q"),
+    "sends words for numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=['x'], v=ask['v'])", "q[0] is not a finite number"),
+    "sends nested lists": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[[1]], v=ask['v'])", "q[0] is not a finite number"),
+    "sends NaN": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[float('nan')], v=ask['v'])", "NaN"),
+    "sends numbers beyond all bounds": ("greet('step')\nfor ask in questions(): print('{\"id\":%d,\"q\":[1e999],\"v\":[0]}' % ask['id'], flush=True)", "q[0] is not a finite number"),
+    "answers out of order": ("greet('step')\nfor ask in questions(): say(id=ask['id'] + 1, q=ask['q'], v=ask['v'])", "has the id 2; question 1 was asked"),
+    "answers without an id": ("greet('step')\nfor ask in questions(): say(q=ask['q'], v=ask['v'])", "has no id"),
+    "answers twice": (f"greet('step')\nfor ask in questions():\n    sys.stdout.write(2 * (json.dumps(dict(id=ask['id'], q=ask['q'], v=ask['v'])) + '\\n')); sys.stdout.flush()", "more than one line"),
+    "writes prose": ("greet('step')\nfor ask in questions(): print('the answer is 42', flush=True)", "is no JSON object: 'the answer is 42'"),
+    "writes binary": ("greet('step')\nfor ask in questions(): os.write(1, bytes(range(256)) + b'\\n')", "answer 1"),
+    "writes zero bytes": ("greet('step')\nfor ask in questions(): os.write(1, b'{\\0}\\n')", "zero byte"),
+    "writes deep nests": ("greet('step')\nfor ask in questions(): os.write(1, b'[' * 100000 + b'\\n')", "is no JSON object"),
+    "floods without an end of line": ("greet('step')\nfor ask in questions():\n    while True: os.write(1, b'x' * 65536)", "without an end of line"),
+    "floods with lines": ("greet('step')\nfor ask in questions():\n    while True: os.write(1, b'{\"id\":1}\\n' * 9999)", "more than one line"),
+    "floods its errors": (STEP.replace("    say(", "    os.write(2, b'e' * 300000)\n    say("), None),
+    "hangs": ("greet('step')\nfor ask in questions(): time.sleep(99)", "did not answer within 0.5 s"),
+    "computes without end": ("greet('step')\nfor ask in questions():\n    while True: pass", "did not answer within 0.5 s"),
+    "ignores signals and hangs": ("import signal\nfor s in range(1, 32):\n    try: signal.signal(s, signal.SIG_IGN)\n    except OSError: pass\ngreet('step')\ntime.sleep(99)", "did not answer within 0.5 s"),
+    "never reads": ("greet('step')\ntime.sleep(99)", "did not answer within 0.5 s"),
+    "closes its output": ("greet('step')\nos.close(1); time.sleep(99)", "did not answer within 0.5 s|it closed its output"),
+    "takes all memory": ("greet('step')\nx = []\nwhile True: x.append(bytearray(1 << 24))", "MemoryError|MB of memory"),
+    "shares all memory": ("import mmap\ngreet('step')\nx = []\nwhile True:\n    m = mmap.mmap(-1, 1 << 26); m.write(b'x' * (1 << 26)); x.append(m)", "MB of memory; 768 MB are allowed"),
+}
+# what only the sandbox stops: (the program, what its line says)
+CONFINED = {
+    "forks without end": ("greet('step')\nwhile True:\n    try: os.fork()\n    except OSError: time.sleep(0.01)", "did not answer within 0.5 s|processes; 64 are allowed|MB of memory"),
+    "forks away": ("greet('step')\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n        time.sleep(60)\nos._exit(0)", "instead of an answer"),
+    "fills its disk": ("greet('step')\nfor k in range(99):\n    open('/tmp/%d' % k, 'wb').write(b'x' * (1 << 24))", "No space left"),
+    "writes a large file": ("greet('step')\nimport signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_DFL)\nopen('/tmp/a', 'wb').write(b'x' * (1 << 25))", "file of more than 16 MB"),
+    "calls home": ("import socket\ngreet('step')\nsocket.create_connection(('127.0.0.1', 22), timeout=3)", "refused"),
+    "writes into the system": ("open('/usr/mine', 'w')", "Read-only file system"),
+    "writes beside itself": ("open('/program/other', 'w')", "Read-only file system"),
+    "reads the home of others": ("print(open('/root/.profile').read() + open('/home').read())", "No such file"),
+    "counts its processes": ("greet('step')\nk = 0\ntry:\n    while k < 500:\n        if os.fork() == 0: time.sleep(20)\n        k += 1\nexcept OSError: raise ValueError('%d forked' % k)", "forked"),
+    "looks for other processes": ("greet('step')\nwant = [p for p in os.listdir('/proc') if p.isdigit()]\nraise ValueError('%d processes' % len(want))", "ValueError: [23] processes"),
+    "makes itself root": ("import ctypes\ngreet('step')\nlibc = ctypes.CDLL(None, use_errno=True)\nraise OSError(libc.unshare(0x10000000), ctypes.get_errno())", "OSError"),
+}
+
+
+class Hostile(OneFile):
+    def check_all(self, programs):
+        def run(name):
+            # those that hang are waited for half a second, the others as long as a busy machine needs
+            hangs = (programs[name][1] or "").startswith("did not answer")
+            with tempfile.TemporaryDirectory() as folder:
+                return self.run_program(programs[name][0] + "\n", "--answer-time", "0.5" if hangs else "60", folder=folder)
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            for name, done in zip(programs, pool.map(run, programs)):
+                with self.subTest(name):
+                    self.check(name, done, programs[name][1])
+
+    def check(self, name, done, said):
+        line = " ".join(done.stderr.split())
+        self.assertIn(done.returncode, (DONE, INPUT, ENDED), (name, line))
+        self.assertNotIn("program is at fault", line, name)
+        if said is None:
+            self.assertEqual(done.returncode, DONE, (name, line))
+            return
+        self.assertNotEqual(done.returncode, DONE, name)
+        self.assertRegex(line, "|".join(re.escape(words).replace(r"\[23\]", "[23]") for words in said.split("|")), name)
+        self.assertLess(len(done.stderr), 4000, name)
+        # one that fails on its way leaves the others in the table
+        if done.returncode == ENDED:
+            self.assertRegex(done.stdout, r"(?m)^baumgarte@rk4\S* +ok", name)
+            self.assertRegex(done.stdout, r"(?m)^program:\S+ +ENDED EARLY", name)
+
+    def test_whatever_it_does_its_line_says_what(self):
+        self.check_all(HOSTILE)
+
+    @unittest.skipIf(TROUBLE, TROUBLE)
+    def test_the_sandbox_holds(self):
+        self.check_all(CONFINED)
+
+    @unittest.skipIf(TROUBLE, TROUBLE)
+    def test_nothing_is_left_running(self):
+        mark = f"sleep-{os.getpid()}"
+        self.run_program(f"greet('step')\nif os.fork() == 0:\n    os.setsid()\n    os.execvp('python3', ['{mark}', '-c', 'import time; time.sleep(60)'])\ntime.sleep(0.3)\nos._exit(0)\n")
+        left = [p for p in os.listdir("/proc") if p.isdigit() and mark in self.words_of(p)]
+        self.assertEqual(left, [])
+
+    @staticmethod
+    def words_of(pid):
+        try:
+            with open(f"/proc/{pid}/cmdline", "rb") as f:
+                return f.read().decode(errors="replace")
+        except OSError:
+            return ""
+
+    def test_without_a_sandbox_untrusted_programs_are_refused(self):
+        if not TROUBLE:
+            self.skipTest("there is a sandbox here")
+        done = self.run_program(STEP, allow="--allow-programs")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("--trust-programs", done.stderr)
+
+
+class InTheServer(OneFile):
+    @unittest.skipIf(TROUBLE, TROUBLE)
+    def test_a_folder_of_programs_is_served_and_nothing_else(self):
+        with open(os.path.join(self.folder.name, "mine.py"), "w", encoding="utf-8") as f:
+            f.write(GREETING + STEP)
+        body = {"scene": "pendulum", "method": "program:mine.py@own:h=1e-2", "time": 0.1}
+        for options, methods in (([], {"program:mine.py@own:h=1e-2": 422}),
+                                 (["--programs", self.folder.name], {"program:mine.py@own:h=1e-2": 201, "program:../mine.py": 422, "program:/bin/true": 422})):
+            server = driver.Server(*options)
+            try:
+                for method, status in methods.items():
+                    answer = server.ask("POST", "/api/v1/runs", {**body, "method": method})
+                    self.assertIn(answer.status, (status, 200 if status == 201 else status), answer.body[:300])
+            finally:
+                server.stop()
+
+
+if __name__ == "__main__":
+    driver.main()
