@@ -11,7 +11,8 @@
 //
 // A program that provides "step" gets {"id","t","h","q","v"} and answers {"id","q","v"}; one that
 // provides "solve" gets {"id","t","times":[...],"q","v"} and answers {"id","q":[[...]],"v":[...]},
-// both a row for each time. Coordinates and rates are those of the scene. After the last question its
+// both a row for each time. Coordinates and rates are those of the scene. After the last
+// question its
 // input ends, and so should the program.
 
 #include "base/arena.h"

@@ -4,7 +4,8 @@
 // The command line under which a student's program runs.
 //
 // Inside bubblewrap: no network, no other processes in sight, /usr read-only, the program's own
-// file at /program, a /tmp of its own in memory, no capabilities, no user namespaces of its own. prlimit
+// file at /program, a /tmp of its own in memory, no capabilities, no user namespaces of its own.
+// prlimit
 // sets the limits in there. Without bubblewrap only trusted programs run, with the limits alone.
 
 #include "base/diag.h"

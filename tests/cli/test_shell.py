@@ -98,6 +98,8 @@ class Help(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             answer = os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "answers", "p3.json")
             shutil.copy(answer, os.path.join(folder, "answer.json"))
+            with open(os.path.join(folder, "verdict.json"), "w", encoding="utf-8") as f:
+                f.write(call("grade", "p3", os.path.join(folder, "answer.json"), "--format", "json").stdout)
             for command in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M):
                 lines = re.findall(r"^  holonom (.+)$", call("help", command).stdout.split("examples\n")[-1], re.M)
                 self.assertEqual(len(lines), 3, command)
