@@ -433,6 +433,30 @@ class CommandLine(unittest.TestCase):
         self.assertIn("four-bar", document["errors"][0]["hint"])
         self.assertEqual(done.stderr, b"")
 
+    def test_samples_appear_as_they_are_made(self):
+        # half an hour of steps; the first rows are there long before its end
+        for form, first in (("csv", b"t,th1"), ("ndjson", b'{"scene":"four-bar"')):
+            words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=1e-7", "--time", "200", "--every", "1e-3", "--format", form]
+            with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as run:
+                try:
+                    lines = [run.stdout.readline() for _ in range(3)]
+                    self.assertIsNone(run.poll())
+                finally:
+                    run.kill()
+            self.assertTrue(lines[0].startswith(first), lines[0])
+            self.assertEqual([float(line.strip(b"[]\n").split(b",")[0]) for line in lines[1:]], [0, 1e-3])
+        # a row has the numbers of the document
+        words = ("run", "driven-crank", "--method", "index3@genalpha:h=1e-3", "--raw-lambda", "--reactions", "--at", "0,0.5")
+        samples = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]
+        rows = list(csv.reader(io.StringIO(self.assert_exit(call(*words), DONE))))
+        flat = []
+        for key in ("t", "q", "v", "lambda", "raw_lambda", "lambda_mark", "reaction_force", "reaction_moment", "effort", "points",
+                    "gap", "velocity_gap", "energy", "work", "energy_change"):
+            value = samples[key][1]
+            flat += value if isinstance(value, list) else [value]
+        self.assertEqual(len(rows[0]), len(flat))
+        self.assertEqual([float(x) if x else None for x in rows[2]], flat)
+
     def test_every_run_has_an_estimate_of_its_error(self):
         far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
         self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; a smaller step is needed")

@@ -107,6 +107,12 @@ typedef struct hn_run_request {
     int reactions;
     /// called every few milliseconds with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
+    /// Called with each sample when it is made; NULL: not wanted. `values` are t, q, v, lambda,
+    /// raw_lambda, lambda_mark, reaction_force, reaction_moment, effort, points, gap, velocity_gap,
+    /// energy, work, energy_change, those that the document of the run has. `names` is that
+    /// document with this sample alone, at the first call, and NULL at all others.
+    void (*row)(void *user, const hn_strbuf *names, const double *values, int n);
+    void *row_user;
     const char *stop_reason; ///< reason if `progress` stops the run; NULL: "stopped on request"
     void *user;
 } hn_run_request;

@@ -35,6 +35,8 @@ typedef struct table {
     double *effort;                ///< one per effort
     double *state;                 ///< q and v of a sample in system coordinates
     const hn_system *sys;
+    const hn_model *model;
+    double *flat;          ///< one row, for hn_run_request.row
     hn_accuracy *accuracy; ///< estimates the error at the samples
     hn_accuracy_track track;
 } table;
@@ -103,6 +105,18 @@ static hn_status table_want_reactions(table *tab, const hn_model *model,
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
+/// Room for one row of all columns.
+static hn_status table_want_rows(table *tab, const hn_model *model) {
+    size_t width = 8 + 2 * (size_t)tab->n_user + 2 * (size_t)tab->nc + 3 * (size_t)tab->n_points;
+    if (tab->reactions) {
+        width += 6 * (size_t)hn_reaction_writer_count(tab->reactions) +
+                 (size_t)hn_reaction_writer_efforts(tab->reactions);
+    }
+    tab->model = model;
+    tab->flat = hn_arena_doubles(tab->arena, width);
+    return tab->flat ? HN_OK : HN_ERR_MEMORY;
+}
+
 /// Adds the reactions of a sample; null where the accelerations cannot be computed.
 static void add_reactions(table *tab, const hn_sample *s, size_t k) {
     const size_t n = 3 * (size_t)hn_reaction_writer_count(tab->reactions),
@@ -140,7 +154,70 @@ static void watch_accuracy(table *tab, const hn_sample *s, const hn_run *run) {
     }
 }
 
-static void table_add(table *tab, const hn_sample *s, hn_run *run) {
+static void put_samples(hn_strbuf *b, const table *tab);
+static void put_names(hn_strbuf *b, const hn_model *model);
+
+static double *append(double *to, const double *values, size_t k, size_t width) {
+    if (values) {
+        memcpy(to, values + k * width, width * sizeof *to);
+    }
+    return values ? to + width : to;
+}
+
+/// Row k as one list of numbers, in the order that hn_run_request.row says; returns their number.
+static int flatten(const table *tab, size_t k) {
+    const size_t nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
+    const size_t carriers =
+        tab->reactions ? 3 * (size_t)hn_reaction_writer_count(tab->reactions) : 0;
+    const size_t efforts = tab->reactions ? (size_t)hn_reaction_writer_efforts(tab->reactions) : 0;
+    const struct {
+        const double *values;
+        size_t width;
+    } parts[] = {{tab->t, 1},
+                 {tab->q, nq},
+                 {tab->v, nq},
+                 {tab->lambda, nc},
+                 {tab->raw_lambda, nc},
+                 {nc > 0 ? tab->mark : NULL, 1},
+                 {tab->force, carriers},
+                 {tab->moment, carriers},
+                 {tab->effort, efforts},
+                 {tab->points, 3 * (size_t)tab->n_points},
+                 {tab->gap, 1},
+                 {tab->velocity_gap, 1},
+                 {tab->energy, 1},
+                 {tab->work, 1},
+                 {tab->energy_change, 1}};
+    double *to = tab->flat;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        to = append(to, parts[i].values, k, parts[i].width);
+    }
+    return (int)(to - tab->flat);
+}
+
+/// Hands the row that was added last to the caller, the first with the names of its columns.
+static void hand_out_row(const table *tab, const hn_run *run, const hn_run_request *request) {
+    const int n = flatten(tab, (size_t)tab->n - 1);
+    hn_strbuf names;
+    hn_strbuf_init(&names);
+    if (tab->n == 1) {
+        char spelling[HN_SPEC_MAX];
+        hn_method_format(hn_run_spec(run), spelling);
+        hn_json_object(&names);
+        hn_json_put_string(&names, "scene", hn_model_scene(tab->model)->id);
+        hn_json_put_string(&names, "method", spelling);
+        put_names(&names, tab->model);
+        if (tab->reactions) {
+            hn_reaction_writer_names(&names, tab->reactions);
+        }
+        put_samples(&names, tab);
+        hn_json_end_object(&names);
+    }
+    request->row(request->row_user, tab->n == 1 ? &names : NULL, tab->flat, n);
+    hn_strbuf_reset(&names);
+}
+
+static void table_add(table *tab, const hn_sample *s, hn_run *run, const hn_run_request *request) {
     watch_accuracy(tab, s, run);
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
@@ -162,6 +239,9 @@ static void table_add(table *tab, const hn_sample *s, hn_run *run) {
     tab->energy[k] = s->energy;
     tab->work[k] = s->work;
     tab->energy_change[k] = s->energy_change;
+    if (request->row) {
+        hand_out_row(tab, run, request);
+    }
 }
 
 /// Output times, one after the other.
@@ -270,7 +350,7 @@ static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
     hn_sample sample;
     HN_THEN(status, sample_at(run, t, &sample));
     if (status == HN_OK) {
-        table_add(tab, &sample, run);
+        table_add(tab, &sample, run, r);
     }
     return status;
 }
@@ -293,7 +373,7 @@ static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double t = hn_run_time(run);
     if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) &&
         t <= s->request->time && hn_run_sample(run, t, &last) == HN_OK) {
-        table_add(tab, &last, run);
+        table_add(tab, &last, run, s->request);
     }
     return status;
 }
@@ -463,6 +543,9 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     }
     if (status == HN_OK && request->reactions) {
         status = table_want_reactions(&tab, model, request, diags);
+    }
+    if (status == HN_OK) {
+        status = table_want_rows(&tab, model);
     }
     if (status == HN_OK) {
         status = hn_accuracy_create(hn_model_system(model), hn_model_q(model), hn_model_v(model),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom run: one method, its samples as CSV, NDJSON or JSON.
 #include "cli/shell/commands.h"
+#include "cli/commands/run_rows.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/print.h"
@@ -18,157 +19,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/// A column of the output: a name, and where its values are.
-typedef struct column {
-    char name[96];
-    const cJSON *list; ///< of samples
-    int part;          ///< index within each entry; -1: the entry itself
-} column;
-
-enum { MAX_RUN_COLUMNS = 4096 };
-
-static int add_parts(column *columns, int n, const cJSON *samples, const char *key,
-                     const char *prefix, const cJSON *names) {
-    int part = 0;
-    const cJSON *name;
-    cJSON_ArrayForEach(name, names) {
-        if (n == MAX_RUN_COLUMNS) {
-            return n;
-        }
-        column *c = &columns[n++];
-        snprintf(c->name, sizeof c->name, "%s%s", prefix, name->valuestring);
-        c->list = hn_document_get(samples, key);
-        c->part = part++;
-    }
-    return n;
-}
-
-/// Three columns for each of the names in run[names]: "force O1 x", "point P x".
-static int add_vectors(column *columns, int n, const cJSON *run, const char *key,
-                       const char *names_key, const char *what) {
-    const cJSON *list = hn_document_get(hn_document_get(run, "samples"), key), *name;
-    const cJSON *names = list ? hn_document_get(run, names_key) : NULL;
-    int part = 0;
-    cJSON_ArrayForEach(name, names) {
-        for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
-            column *c = &columns[n++];
-            snprintf(c->name, sizeof c->name, "%s %s %c", what, name->valuestring, "xyz"[i]);
-            c->list = list;
-            c->part = part++;
-        }
-    }
-    return n;
-}
-
-/// One column for each effort: "effort gear along th1 [N m]".
-static int add_efforts(column *columns, int n, const cJSON *run) {
-    const cJSON *list = hn_document_get(hn_document_get(run, "samples"), "effort"), *item;
-    int part = 0;
-    cJSON_ArrayForEach(item, hn_document_get(run, "efforts")) {
-        if (n == MAX_RUN_COLUMNS) {
-            return n;
-        }
-        column *c = &columns[n++];
-        snprintf(c->name, sizeof c->name, "effort %s along %s [%s]", hn_document_text(item, "name"),
-                 hn_document_text(item, "coordinate"), hn_document_text(item, "unit"));
-        c->list = list;
-        c->part = part++;
-    }
-    return n;
-}
-
-/// One number a sample, where the run has it.
-static int add_measure(column *columns, int n, const cJSON *samples, const char *key) {
-    const cJSON *list = hn_document_get(samples, key);
-    if (list && n < MAX_RUN_COLUMNS) {
-        columns[n] = (column){.list = list, .part = -1};
-        snprintf(columns[n++].name, sizeof columns[0].name, "%s", key);
-    }
-    return n;
-}
-
-/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, points, gaps and
-/// energies.
-static int find_columns(column *columns, const cJSON *run) {
-    static const char *const last[] = {"gap", "velocity_gap", "energy", "work", "energy_change"};
-    const cJSON *samples = hn_document_get(run, "samples");
-    columns[0] = (column){.name = "t", .list = hn_document_get(samples, "t"), .part = -1};
-    int n = add_parts(columns, 1, samples, "q", "", hn_document_get(run, "coordinates"));
-    n = add_parts(columns, n, samples, "v", "", hn_document_get(run, "rates"));
-    n = add_parts(columns, n, samples, "lambda", "lambda ", hn_document_get(run, "rows"));
-    if (hn_document_get(samples, "raw_lambda")) {
-        n = add_parts(columns, n, samples, "raw_lambda", "raw lambda ",
-                      hn_document_get(run, "rows"));
-    }
-    n = add_measure(columns, n, samples, "lambda_mark");
-    n = add_vectors(columns, n, run, "reaction_force", "carriers", "force");
-    n = add_vectors(columns, n, run, "reaction_moment", "carriers", "moment");
-    n = add_efforts(columns, n, run);
-    n = add_vectors(columns, n, run, "points", "points", "point");
-    for (size_t i = 0; i < sizeof last / sizeof *last; i++) {
-        n = add_measure(columns, n, samples, last[i]);
-    }
-    return n;
-}
-
-/// Entries of the lists are walked, not indexed: a list of a parsed document is a chain.
-typedef struct cursor {
-    const cJSON *entry;
-} cursor;
-
-static void put_row(hn_strbuf *b, const column *columns, cursor *cursors, int n) {
-    for (int c = 0; c < n; c++) {
-        const cJSON *entry = cursors[c].entry;
-        hn_strbuf_add(b, c ? "," : "");
-        const cJSON *value =
-            columns[c].part < 0 ? entry : cJSON_GetArrayItem(entry, columns[c].part);
-        hn_document_put_number(b, value);
-        cursors[c].entry = entry ? entry->next : NULL;
-    }
-}
-
-/// A field in quotes where it holds a comma or a quote (RFC 4180).
-static void put_csv_name(hn_strbuf *b, const char *name) {
-    if (!strpbrk(name, ",\"\n")) {
-        hn_strbuf_add(b, name);
-        return;
-    }
-    hn_strbuf_add(b, "\"");
-    for (; *name; name++) {
-        hn_strbuf_add_n(b, name, 1);
-        hn_strbuf_add(b, *name == '"' ? "\"" : "");
-    }
-    hn_strbuf_add(b, "\"");
-}
-
-static void put_head(hn_strbuf *b, const column *columns, int n, int ndjson, const cJSON *run) {
-    if (!ndjson) {
-        for (int c = 0; c < n; c++) {
-            hn_strbuf_add(b, c ? "," : "");
-            put_csv_name(b, columns[c].name);
-        }
-        hn_strbuf_add(b, "\n");
-        return;
-    }
-
-    // the first line of NDJSON names the columns
-    hn_strbuf line;
-    hn_strbuf_init(&line);
-    hn_json_object(&line);
-    hn_json_put_string(&line, "scene", hn_document_text(run, "scene"));
-    hn_json_put_string(&line, "method", hn_document_text(run, "method"));
-    hn_json_key(&line, "columns");
-    hn_json_array(&line);
-    for (int c = 0; c < n; c++) {
-        hn_json_string(&line, columns[c].name);
-    }
-    hn_json_end_array(&line);
-    hn_json_end_object(&line);
-    hn_strbuf_printf(b, "%s\n", hn_strbuf_text(&line));
-    b->failed |= line.failed;
-    hn_strbuf_reset(&line);
-}
-
 /// NDJSON closes with everything but the samples.
 static void put_tail(hn_strbuf *b, cJSON *run) {
     cJSON_DeleteItemFromObjectCaseSensitive(run, "samples");
@@ -179,30 +29,15 @@ static void put_tail(hn_strbuf *b, cJSON *run) {
     cJSON_free(text);
 }
 
-static void put_samples(hn_strbuf *b, cJSON *run, int ndjson) {
-    column *columns = calloc(MAX_RUN_COLUMNS, sizeof *columns);
-    cursor *cursors = calloc(MAX_RUN_COLUMNS, sizeof *cursors);
-    if (!columns || !cursors) {
-        b->failed = 1;
-    } else {
-        int n = find_columns(columns, run);
-        for (int c = 0; c < n; c++) {
-            cursors[c].entry = columns[c].list ? columns[c].list->child : NULL;
-        }
-
-        // row by row, all columns at once
-        put_head(b, columns, n, ndjson, run);
-        while (cursors[0].entry) {
-            hn_strbuf_add(b, ndjson ? "[" : "");
-            put_row(b, columns, cursors, n);
-            hn_strbuf_add(b, ndjson ? "]\n" : "\n");
-        }
-        if (ndjson) {
-            put_tail(b, run);
-        }
+/// A row that the run has just made.
+static void take_row(void *user, const hn_strbuf *names, const double *values, int n) {
+    hn_run_rows *rows = user;
+    if (names) {
+        cJSON *document = cJSON_Parse(hn_strbuf_text(names));
+        hn_run_rows_begin(rows, document);
+        cJSON_Delete(document);
     }
-    free(columns);
-    free(cursors);
+    hn_run_rows_put(rows, values, n);
 }
 
 /// Says how many samples have multipliers that are not determined, by mark.
@@ -277,8 +112,9 @@ static int tell_progress(void *user, double share) {
     return 1;
 }
 
-static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf *b,
-                           hn_status *ended, hn_diags *diags) {
+/// `rows`: prints them as they are made; NULL: the document alone.
+static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_rows *rows,
+                           hn_strbuf *b, hn_status *ended, hn_diags *diags) {
     hn_model *model = NULL;
     hn_progress progress = {0};
     hn_status status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, diags);
@@ -291,8 +127,11 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
                                   .every = isnan(args->every) ? 0 : args->every,
                                   .raw_lambda = args->raw_lambda,
                                   .reactions = args->reactions,
-                                  .progress = tell_progress,
+                                  .row = rows ? take_row : NULL,
+                                  .row_user = rows,
                                   .user = &progress};
+        // rows on a terminal are progress enough
+        request.progress = rows && isatty(STDOUT_FILENO) ? NULL : tell_progress;
 
         // an interval of 0 would mean the default
         if (!isnan(args->every) && !(args->every > 0)) {
@@ -362,7 +201,10 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     const char *format = choose_format(args, &diags);
-    hn_status status = format ? run_scene(lib, args, &b, &ended, &diags) : HN_ERR_INPUT;
+    hn_run_rows rows = {.ndjson = format && strcmp(format, "ndjson") == 0};
+    const bool streams = format && strcmp(format, "json") != 0 && !args->plot;
+    hn_status status =
+        format ? run_scene(lib, args, streams ? &rows : NULL, &b, &ended, &diags) : HN_ERR_INPUT;
     if (status != HN_OK) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
@@ -375,14 +217,18 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         run = hn_document_parse(&b);
         snprintf(reason, sizeof reason, "at t = %.6g s: %.480s",
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
+        if (streams && !rows.begun) {
+            hn_run_rows_begin(&rows, run); // no sample was made
+        }
         tell_marks(run);
         tell_incidents(run);
         tell_estimate(run);
         if (args->plot) {
             put_plot(&b, run);
-        } else {
-            put_samples(&b, run, strcmp(format, "ndjson") == 0);
+        } else if (rows.ndjson) {
+            put_tail(&b, run);
         }
+        b.failed |= rows.failed;
         if (hn_document_text(run, "warning")[0]) {
             fprintf(stderr, "holonom: %s\n", hn_document_text(run, "warning"));
         }

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/commands/run_rows.h"
+
+#include "base/clock.h"
+#include "cli/shell/document.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double FLUSH_EVERY = 0.05; // wall time between rows that are shown at once [s]
+
+enum { MOST_COLUMNS = 4096 };
+
+/// The name of a column.
+typedef char column[96];
+
+static int add_parts(column *columns, int n, const char *prefix, const cJSON *names) {
+    const cJSON *name;
+    cJSON_ArrayForEach(name, names) {
+        if (n < MOST_COLUMNS) {
+            snprintf(columns[n++], sizeof *columns, "%s%s", prefix, name->valuestring);
+        }
+    }
+    return n;
+}
+
+/// Three columns for each of the names in run[names], where there are samples of them: "force O1
+/// x", "point P x".
+static int add_vectors(column *columns, int n, const cJSON *run, const char *key,
+                       const char *names_key, const char *what) {
+    const cJSON *list = hn_document_get(hn_document_get(run, "samples"), key), *name;
+    const cJSON *names = list ? hn_document_get(run, names_key) : NULL;
+    cJSON_ArrayForEach(name, names) {
+        for (int i = 0; i < 3 && n < MOST_COLUMNS; i++) {
+            snprintf(columns[n++], sizeof *columns, "%s %s %c", what, name->valuestring, "xyz"[i]);
+        }
+    }
+    return n;
+}
+
+/// One column for each effort: "effort gear along th1 [N m]".
+static int add_efforts(column *columns, int n, const cJSON *run) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, hn_document_get(run, "efforts")) {
+        if (n < MOST_COLUMNS) {
+            snprintf(columns[n++], sizeof *columns, "effort %s along %s [%s]",
+                     hn_document_text(item, "name"), hn_document_text(item, "coordinate"),
+                     hn_document_text(item, "unit"));
+        }
+    }
+    return n;
+}
+
+/// One number a sample, where the run has it.
+static int add_measure(column *columns, int n, const cJSON *samples, const char *key) {
+    if (hn_document_get(samples, key) && n < MOST_COLUMNS) {
+        snprintf(columns[n++], sizeof *columns, "%s", key);
+    }
+    return n;
+}
+
+/// The columns in the order of hn_run_request.row: t, coordinates, rates, multipliers by row and
+/// their mark, reactions, efforts, points, gaps and energies.
+static int find_columns(column *columns, const cJSON *run) {
+    static const char *const last[] = {"gap", "velocity_gap", "energy", "work", "energy_change"};
+    const cJSON *samples = hn_document_get(run, "samples");
+    const cJSON *constraints = hn_document_get(run, "rows");
+    int n = add_measure(columns, 0, samples, "t");
+    n = add_parts(columns, n, "", hn_document_get(run, "coordinates"));
+    n = add_parts(columns, n, "", hn_document_get(run, "rates"));
+    n = add_parts(columns, n, "lambda ", constraints);
+    if (hn_document_get(samples, "raw_lambda")) {
+        n = add_parts(columns, n, "raw lambda ", constraints);
+    }
+    n = add_measure(columns, n, samples, "lambda_mark");
+    n = add_vectors(columns, n, run, "reaction_force", "carriers", "force");
+    n = add_vectors(columns, n, run, "reaction_moment", "carriers", "moment");
+    n = add_efforts(columns, n, run);
+    n = add_vectors(columns, n, run, "points", "points", "point");
+    for (size_t i = 0; i < sizeof last / sizeof *last; i++) {
+        n = add_measure(columns, n, samples, last[i]);
+    }
+    return n;
+}
+
+/// A field in quotes where it holds a comma or a quote (RFC 4180).
+static void put_csv_name(hn_strbuf *b, const char *name) {
+    if (!strpbrk(name, ",\"\n")) {
+        hn_strbuf_add(b, name);
+        return;
+    }
+    hn_strbuf_add(b, "\"");
+    for (; *name; name++) {
+        hn_strbuf_add_n(b, name, 1);
+        hn_strbuf_add(b, *name == '"' ? "\"" : "");
+    }
+    hn_strbuf_add(b, "\"");
+}
+
+static void put_head(hn_strbuf *b, column *columns, int n, bool ndjson, const cJSON *run) {
+    if (!ndjson) {
+        for (int c = 0; c < n; c++) {
+            hn_strbuf_add(b, c ? "," : "");
+            put_csv_name(b, columns[c]);
+        }
+        hn_strbuf_add(b, "\n");
+        return;
+    }
+
+    // the first line of NDJSON names the columns
+    hn_strbuf line;
+    hn_strbuf_init(&line);
+    hn_json_object(&line);
+    hn_json_put_string(&line, "scene", hn_document_text(run, "scene"));
+    hn_json_put_string(&line, "method", hn_document_text(run, "method"));
+    hn_json_key(&line, "columns");
+    hn_json_array(&line);
+    for (int c = 0; c < n; c++) {
+        hn_json_string(&line, columns[c]);
+    }
+    hn_json_end_array(&line);
+    hn_json_end_object(&line);
+    hn_strbuf_printf(b, "%s\n", hn_strbuf_text(&line));
+    b->failed |= line.failed;
+    hn_strbuf_reset(&line);
+}
+
+// ---- printing ----
+
+static void print(hn_run_rows *rows, hn_strbuf *text) {
+    rows->failed |= text->failed || fwrite(hn_strbuf_text(text), 1, text->n, stdout) != text->n;
+    hn_strbuf_reset(text);
+
+    // rows that come quickly are shown together
+    const double now = hn_clock_wall();
+    if (now - rows->flushed >= FLUSH_EVERY) {
+        rows->failed |= fflush(stdout) != 0;
+        rows->flushed = now;
+    }
+}
+
+void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run) {
+    column *columns = calloc(MOST_COLUMNS, sizeof *columns);
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    rows->begun = true;
+    rows->failed |= !columns;
+    if (columns) {
+        rows->n = find_columns(columns, run);
+        put_head(&text, columns, rows->n, rows->ndjson, run);
+    }
+    print(rows, &text);
+    free(columns);
+}
+
+void hn_run_rows_put(hn_run_rows *rows, const double *values, int n) {
+    hn_strbuf text, number;
+    hn_strbuf_init(&text);
+    hn_strbuf_add(&text, rows->ndjson ? "[" : "");
+    for (int c = 0; c < n && c < rows->n; c++) {
+        hn_strbuf_add(&text, c ? "," : "");
+        if (isfinite(values[c])) {
+            hn_strbuf_init(&number); // a buffer of its own: no commas
+            hn_json_number(&number, values[c]);
+            hn_strbuf_add(&text, hn_strbuf_text(&number));
+            text.failed |= number.failed;
+            hn_strbuf_reset(&number);
+        } else {
+            hn_strbuf_add(&text, rows->ndjson ? "null" : "");
+        }
+    }
+    hn_strbuf_add(&text, rows->ndjson ? "]\n" : "\n");
+    print(rows, &text);
+}

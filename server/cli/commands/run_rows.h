@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLI_RUN_ROWS_H
+#define HN_CLI_RUN_ROWS_H
+// The samples of `holonom run` as rows of CSV or NDJSON, each printed when it is there.
+
+#include "base/strbuf.h"
+
+#include <cjson/cJSON.h>
+#include <stdbool.h>
+
+typedef struct hn_run_rows {
+    bool ndjson;
+    bool begun;     ///< the head was printed
+    bool failed;    ///< memory, or the output
+    int n;          ///< columns
+    double flushed; ///< when rows were last shown [s]
+} hn_run_rows;
+
+/// Prints the head: the names of the columns of a run document, which needs no samples.
+void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run);
+/// Prints one row of n numbers; what is not finite is left empty, null in NDJSON.
+void hn_run_rows_put(hn_run_rows *rows, const double *values, int n);
+
+#endif
