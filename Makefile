@@ -54,7 +54,7 @@ ROOMS_session      := store: model:store job:model compare:store,model reference
 ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
-                      http/routes:grade,lesson,http/ground,http/request,http/live,http/studies,http/runs \
+                      http/routes:grade,grade/parts,lesson,http/ground,http/request,http/live,http/studies,http/runs \
                       cli/shell:terminal tui:terminal,cli/shell \
                       cli/commands:grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
                       cli/study:terminal,cli/shell cli:program,terminal,cli/shell :cli
