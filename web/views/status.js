@@ -13,7 +13,7 @@ const STREAM = {
   ended: "stream: run complete",
 };
 const LOST =
-  "The server does not answer. What was received stays here and can be replayed; " +
+  "The server does not answer. What was received stays here; " +
   "the page goes on by itself when the server is back.";
 const LOST_AFTER = 700; // [ms] that a short drop is not worth a word
 const SHOWN_FOR = 9000; // [ms]
@@ -52,7 +52,9 @@ export function createStatus(el, body, store, actions) {
       "×",
     ),
   );
-  body.append(h("div", { class: "notes" }, lost, offer, note));
+  body.append(
+    h("div", { class: "notes", role: "region", "aria-label": "Notices" }, lost, offer, note),
+  );
   let timer = 0;
   let lostTimer = 0;
 

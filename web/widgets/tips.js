@@ -44,7 +44,8 @@ export function createTips(body) {
       return;
     }
     owner = found;
-    const home = found.closest("dialog[open]") ?? body; // what lies over the page hides the rest
+    // what lies over the page hides the rest; a part of the page stays in its landmark
+    const home = found.closest("dialog[open], main, header, footer") ?? body;
     if (bubble.parentElement !== home) {
       home.append(bubble);
     }

@@ -105,6 +105,9 @@ export function createDrawing(el, store, actions) {
     marks.draw(now);
     lengths.draw();
     notices.update(now);
+    if (data.state !== "running" && !data.view.replaying) {
+      notices.describe(); // the text that stands for the drawing follows what is shown
+    }
   }
 
   function fit() {
