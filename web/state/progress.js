@@ -16,7 +16,11 @@ function load() {
 }
 
 export function createProgress() {
-  /** @type {{lessons: Record<string, Read>, solved: Record<string, {score: number, most: number}>}} */
+  /**
+   * @type {{
+   *   lessons: Record<string, Read>, solved: Record<string, {score: number, most: number}>,
+   * }}
+   */
   const kept = load();
   const keep = () => localStorage.setItem(KEY, JSON.stringify(kept));
   const of = (id) => (kept.lessons[id] ??= {});

@@ -7,7 +7,8 @@ import { h } from "../../widgets/dom.js";
 /**
  * @typedef {{kind: string, children?: Block[], [key: string]: any}} Block
  * @typedef {{
- *   katex: any, picture: (src: string) => string, live: Record<string, (block: Block, kit: Kit) => Node>,
+ *   katex: any, picture: (src: string) => string,
+ *   live: Record<string, (block: Block, kit: Kit) => Node>,
  * }} Kit katex: null until it is here; live: makers of live blocks, by kind
  */
 
