@@ -18,7 +18,8 @@ static const double DENSE_BUDGET = 2e5;
 // prediction: a pilot run starts when sigma_min falls below this share of the largest so far, and
 // reports what it finds below the second share
 static const double FALLEN = 0.9;
-static const double REACHED = 2e-3;
+// that finds what a run reports as nearly dependent: pivots of 1e-4, which are squares
+static const double REACHED = 8e-3;
 static const double AT_END = 0.999; // of a step
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
@@ -45,8 +46,9 @@ struct hn_singularity {
     int first, start_rank, wait;
     double largest, strongest; // sigma_min and sigma_max so far
     hn_pilot *pilot;
-    double *ahead_q;   // nq: a state of the pilot run
-    double next_pilot; // [s] no pilot run before
+    double *ahead_q;     // nq: a state of the pilot run
+    double next_pilot;   // [s] no pilot run before
+    double lowest_ahead; // sigma_min where the last one that found something came nearest
     hn_singularity_info last;
 };
 
@@ -308,8 +310,10 @@ static double run_pilot(hn_singularity *r, double t, const double *q, const doub
         const double steepest = fmax(slope, fabs(sigma - before));
         double share = 1;
         if (sigma + before < 2 * steepest || sigma < REACHED * r->largest) {
-            const bool reached = smallest_inside(r, &share) < REACHED * r->largest;
-            if (reached && share < AT_END) { // lowest at its end: it lies in the next step
+            const double lowest = smallest_inside(r, &share);
+            if (lowest < REACHED * r->largest &&
+                share < AT_END) { // lowest at its end: it lies in the next step
+                r->lowest_ahead = lowest;
                 return hn_pilot_time(r->pilot) - (1 - share) * h - t;
             }
         }
@@ -341,6 +345,7 @@ static void look_ahead(hn_singularity *r, double t, const double *q, const doubl
         return;
     }
     info->ahead = pilot_ahead(r, t, q, v, horizon, info->sigma_min);
+    info->lowest = r->lowest_ahead;
     info->predicted = isfinite(info->ahead) ? t + info->ahead : info->predicted;
     r->next_pilot = t + (isfinite(info->ahead) ? info->ahead + 0.1 * horizon : 0.25 * horizon);
 }

@@ -41,6 +41,7 @@ typedef struct hn_singularity_info {
     /// seconds until a singular configuration that the pilot run has just reached, else HUGE_VAL;
     /// said once for each
     double ahead;
+    double lowest;    ///< sigma_min there, where `ahead` is finite
     double predicted; ///< time of the last one that was announced, -HUGE_VAL: none so far
 } hn_singularity_info;
 

@@ -8,6 +8,8 @@
 
 /// Of the largest sigma_min: a configuration this close counts as the one that was announced.
 static const double REACHED = 0.02;
+/// And one that is reached, not only passed.
+static const double LOST = 2e-3;
 
 /// Closes a prediction whose time has passed; its text says so where the run did not reach the
 /// configuration.
@@ -54,8 +56,11 @@ static void check(hn_watch *w) {
     }
     const hn_incident *i = hn_incident_report(
         w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
-        "J loses rank in %.3g s, at t = %.4g s: a pilot run from here reaches a singular "
-        "configuration then; sigma_min is %.2g of %.2g now",
+        s->info.lowest < LOST * s->largest
+            ? "J loses rank in %.3g s, at t = %.4g s: a pilot run from here reaches a singular "
+              "configuration then; sigma_min is %.2g of %.2g now"
+            : "J all but loses rank in %.3g s, at t = %.4g s: a pilot run from here passes close "
+              "to a singular configuration then; sigma_min is %.2g of %.2g now",
         s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
     if (i) {
         s->announced = 1 + (int)(i - w->log.list);

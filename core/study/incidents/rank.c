@@ -47,6 +47,16 @@ static void check_rank(hn_watch *w) {
     }
 }
 
+/// Of the largest sigma_min so far; of sigma_max.
+static const double FALLEN = 0.15, TINY = 1e-3;
+
+/// Links of very different masses give J M^-1 J' pivots of very different sizes everywhere: near a
+/// singular configuration sigma_min is small against what it was elsewhere, or next to nothing.
+static bool has_fallen(const hn_watch *w) {
+    const hn_singularity_info *info = &w->singular.info;
+    return info->sigma_min < FALLEN * w->singular.largest || info->ratio < TINY;
+}
+
 static void check_near(hn_watch *w) {
     const hn_stepping *s = w->run;
     if (s->info.nc == 0) {
@@ -59,7 +69,7 @@ static void check_near(hn_watch *w) {
     const double pivot = w->accel_status == HN_OK && w->accel_info.fallback
                              ? ratio * ratio
                              : row * row * w->accel_info.pivot_ratio;
-    const bool near = w->accel_status != HN_OK || pivot < HN_RUN_WARN_PIVOT;
+    const bool near = w->accel_status != HN_OK || (pivot < HN_RUN_WARN_PIVOT && has_fallen(w));
     if (!near || w->accel_info.rank < s->info.nc) {
         hn_incident_over(&w->log, HN_INCIDENT_NEAR_SINGULAR);
         return;

@@ -133,6 +133,20 @@ static void a_pilot_run_follows_a_motion_that_becomes_faster(void **state) {
     hn_model_close(&m);
 }
 
+// A heavy block and a light crank: the pivots of J M^-1 J' differ by 1e4 everywhere, and J is far
+// from losing rank.
+static void unlike_masses_are_no_singular_configuration(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "quick-return",
+                         "r=0.3032 mA=51.5 mR=21.79 rho=0.07423 g=20.73 th_0=1.182");
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+    assert_int_equal(hn_run_advance(run, 2), HN_OK);
+    assert_null(find(run, HN_INCIDENT_NEAR_SINGULAR));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 // Three of the five rows of this shaft depend on the others. At rest gamma vanishes and what the
 // rows ask for is the pull on a gap of rounding alone, on which they agree as far as it has digits.
 static void rows_that_pull_on_rounding_contradict_nothing(void **state) {
@@ -156,6 +170,7 @@ int main(void) {
         cmocka_unit_test(rows_that_pull_on_rounding_contradict_nothing),
         cmocka_unit_test(a_long_step_of_high_order_is_no_jump),
         cmocka_unit_test(a_pilot_run_follows_a_motion_that_becomes_faster),
+        cmocka_unit_test(unlike_masses_are_no_singular_configuration),
         cmocka_unit_test(a_sharp_turn_is_no_other_branch),
         cmocka_unit_test(a_prediction_that_did_not_come_true_is_withdrawn),
     };
