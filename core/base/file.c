@@ -61,21 +61,24 @@ static hn_status read_bundled(const char *path, size_t most, hn_strbuf *text, hn
                : HN_OK;
 }
 
-hn_status hn_file_read(const char *path, size_t most, hn_strbuf *text, hn_diag *diag) {
-    HN_ASSERT(path && text);
-    if (hn_bundle_is_path(path)) {
-        return read_bundled(path, most, text, diag);
-    }
+/// Reads a file on the disk; `own`: of this user's, and no link.
+static hn_status read_disk(const char *path, size_t most, bool own, hn_strbuf *text,
+                           hn_diag *diag) {
     struct stat info;
 
     // without O_NONBLOCK, opening a FIFO would wait for somebody to write to it
-    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    const int fd =
+        open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY | (own ? O_NOFOLLOW : 0));
     if (fd < 0) {
         return unreadable(path, strerror(errno), diag);
     }
     if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
         close(fd);
         return unreadable(path, kind_of(info.st_mode), diag);
+    }
+    if (own && info.st_uid != geteuid()) {
+        close(fd);
+        return unreadable(path, "it belongs to somebody else", diag);
     }
 
     const size_t before = text->n;
@@ -92,6 +95,17 @@ hn_status hn_file_read(const char *path, size_t most, hn_strbuf *text, hn_diag *
                            most);
     }
     return HN_OK;
+}
+
+hn_status hn_file_read(const char *path, size_t most, hn_strbuf *text, hn_diag *diag) {
+    HN_ASSERT(path && text);
+    return hn_bundle_is_path(path) ? read_bundled(path, most, text, diag)
+                                   : read_disk(path, most, false, text, diag);
+}
+
+hn_status hn_file_read_own(const char *path, size_t most, hn_strbuf *text, hn_diag *diag) {
+    HN_ASSERT(path && text);
+    return read_disk(path, most, true, text, diag);
 }
 
 hn_status hn_file_load(const char *path, size_t most, hn_strbuf *text, hn_diags *diags) {
@@ -161,7 +175,8 @@ static int open_beside(const char *target, hn_strbuf *name) {
 
 /// Replaces `target`, or makes it; `old` is what stands there (NULL: nothing). Returns 0 or an
 /// errno.
-static int replace(const char *target, const struct stat *old, const void *bytes, size_t n) {
+static int replace(const char *target, const struct stat *old, const void *bytes, size_t n,
+                   bool sync) {
     hn_strbuf name;
     hn_strbuf_init(&name);
     const int fd = open_beside(target, &name);
@@ -170,7 +185,7 @@ static int replace(const char *target, const struct stat *old, const void *bytes
         if (old && fchmod(fd, old->st_mode & 07777) != 0) {
             error = errno;
         }
-        const int put = put_bytes(fd, bytes, n, true);
+        const int put = put_bytes(fd, bytes, n, sync);
         error = error ? error : put;
         if (error == 0 && rename(hn_strbuf_text(&name), target) != 0) {
             error = errno;
@@ -202,7 +217,7 @@ static int write_bytes(const char *path, const void *bytes, size_t n) {
     struct stat link, target;
     const bool is_there = lstat(path, &link) == 0;
     if (!is_there) {
-        return errno == ENOENT ? replace(path, NULL, bytes, n) : errno;
+        return errno == ENOENT ? replace(path, NULL, bytes, n, true) : errno;
     }
     if (stat(path, &target) != 0) {
         return errno; // a link that leads nowhere: ENOENT, or ELOOP
@@ -211,20 +226,28 @@ static int write_bytes(const char *path, const void *bytes, size_t n) {
         return S_ISDIR(target.st_mode) ? EISDIR : put_directly(path, bytes, n);
     }
     if (!S_ISLNK(link.st_mode)) {
-        return replace(path, &target, bytes, n);
+        return replace(path, &target, bytes, n, true);
     }
 
     // the file that the link means is replaced, not the link
     char *real = realpath(path, NULL);
-    const int error = real ? replace(real, &target, bytes, n) : errno;
+    const int error = real ? replace(real, &target, bytes, n, true) : errno;
     free(real);
     return error;
 }
 
-hn_status hn_file_write(const char *path, const void *bytes, size_t n, hn_diag *diag) {
-    HN_ASSERT(path && (bytes || n == 0));
-    const int error = write_bytes(path, bytes, n);
+static hn_status tell_written(const char *path, int error, hn_diag *diag) {
     return error == 0 ? HN_OK
                       : hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot write '%.200s': %s", path,
                                     strerror(error));
+}
+
+hn_status hn_file_write(const char *path, const void *bytes, size_t n, hn_diag *diag) {
+    HN_ASSERT(path && (bytes || n == 0));
+    return tell_written(path, write_bytes(path, bytes, n), diag);
+}
+
+hn_status hn_file_keep(const char *path, const void *bytes, size_t n, hn_diag *diag) {
+    HN_ASSERT(path && (bytes || n == 0));
+    return tell_written(path, replace(path, NULL, bytes, n, false), diag);
 }

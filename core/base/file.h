@@ -16,6 +16,11 @@
 /// bytes), HN_ERR_MEMORY. `diag` (may be NULL) names the path; `text` then holds no usable bytes.
 HN_MUST_CHECK hn_status hn_file_read(const char *path, size_t most, hn_strbuf *text, hn_diag *diag);
 
+/// The same of a file that this program has kept for itself: a link, and a file that belongs to
+/// another user, are refused too (HN_ERR_IO).
+HN_MUST_CHECK hn_status hn_file_read_own(const char *path, size_t most, hn_strbuf *text,
+                                         hn_diag *diag);
+
 /// The same, with the fault added to a list (may be NULL).
 HN_MUST_CHECK hn_status hn_file_load(const char *path, size_t most, hn_strbuf *text,
                                      hn_diags *diags);
@@ -32,4 +37,8 @@ HN_MUST_CHECK hn_status hn_file_read_stdin(size_t most, hn_strbuf *text, hn_diag
 /// leads nowhere is refused. A device, a FIFO with a reader or a socket takes the bytes directly.
 /// Fails: HN_ERR_IO; `diag` (may be NULL) names the path and the reason.
 HN_MUST_CHECK hn_status hn_file_write(const char *path, const void *bytes, size_t n, hn_diag *diag);
+/// Writes a file that this program keeps for itself and can compute again. Whatever stands in its
+/// place is replaced, a link itself and not what it leads to; nobody waits for the disk: a program
+/// that is killed loses nothing, a machine that loses its power may leave a file that is cut.
+HN_MUST_CHECK hn_status hn_file_keep(const char *path, const void *bytes, size_t n, hn_diag *diag);
 #endif

@@ -174,6 +174,10 @@ bool hn_accounts_run(hn_accounts *a) {
 
 // reading ----
 
+bool hn_accounts_lost(const hn_accounts *a) {
+    return a->journal.failed;
+}
+
 int hn_accounts_resumed(const hn_accounts *a) {
     return a->resumed;
 }

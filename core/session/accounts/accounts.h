@@ -56,6 +56,7 @@ bool hn_accounts_run(hn_accounts *accounts);
 bool hn_accounts_stopped(const hn_accounts *accounts),
     hn_accounts_out_of_time(const hn_accounts *accounts);
 
+bool hn_accounts_lost(const hn_accounts *accounts);   ///< the journal could not be written
 int hn_accounts_resumed(const hn_accounts *accounts); ///< budgets kept from an earlier run
 int hn_accounts_n(const hn_accounts *accounts);
 const hn_account_row *hn_accounts_at(const hn_accounts *accounts, int i);

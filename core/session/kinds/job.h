@@ -25,6 +25,7 @@ typedef struct hn_job_end {
     bool stopped;     ///< on request
     bool out_of_time; ///< the time limit left something out
     bool differs;     ///< it is complete, and a result differs from its prediction
+    bool lost;        ///< what is done could not be written into the journal: it is not kept
 } hn_job_end;
 
 typedef struct hn_job_kind {

@@ -25,6 +25,7 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     hn_accounts_run(work);
     end->stopped = hn_accounts_stopped(work);
     end->out_of_time = hn_accounts_out_of_time(work);
+    end->lost = hn_accounts_lost(work);
     return HN_OK;
 }
 

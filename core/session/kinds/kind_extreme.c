@@ -40,6 +40,7 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     hn_extreme_run(x, &request->limits, hn_job_number(request, "long", 0) > 0);
     end->stopped = x->stopped;
     end->out_of_time = x->out_of_time;
+    end->lost = x->journal.failed;
     end->differs = hn_extreme_count(x, HN_EXTREME_FAIL) > 0;
     return HN_OK;
 }

@@ -55,6 +55,7 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     hn_map_run(work);
     end->stopped = hn_map_stopped(work);
     end->out_of_time = hn_map_out_of_time(work);
+    end->lost = hn_map_lost(work);
     return HN_OK;
 }
 

@@ -32,6 +32,7 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     hn_study_run(work);
     end->stopped = hn_study_wp(work)->stopped;
     end->out_of_time = hn_study_wp(work)->out_of_time;
+    end->lost = hn_study_lost(work);
     return HN_OK;
 }
 

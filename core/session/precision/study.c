@@ -191,6 +191,10 @@ const hn_model *hn_study_model(const hn_study *s) {
     return s->model;
 }
 
+bool hn_study_lost(const hn_study *s) {
+    return s->journal.failed;
+}
+
 int hn_study_resumed(const hn_study *s) {
     return s->resumed;
 }

@@ -51,6 +51,7 @@ const hn_chaos *hn_study_chaos(const hn_study *study);
 #define HN_STUDY_TINY 1e-13 ///< rounding error of some thousand steps
 #define HN_STUDY_LARGE 0.1  ///< no correct digit is left
 
+bool hn_study_lost(const hn_study *study);           ///< the journal could not be written
 int hn_study_resumed(const hn_study *study);         ///< points resumed from an interrupted study
 bool hn_study_kept_reference(const hn_study *study); ///< read, not computed
 

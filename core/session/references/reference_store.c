@@ -14,6 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
+enum { MOST_BYTES = 256 << 20 };
 enum { FORMAT = 2 }; // counts up when the meaning of a member changes
 
 const char *hn_ref_source_name(hn_ref_source source) {
@@ -87,7 +88,44 @@ hn_ref *hn_reference_take(const cJSON *o, const hn_model *model, double T, int n
     return ref;
 }
 
-/// The reference in a file, as hn_reference_take().
+/// The text of a kept reference ends with the hash of what stands before: its own program wrote it,
+/// and all of it is there.
+static const char MARK[] = ",\"checksum\":\"";
+
+static void seal(hn_strbuf *b, const char *object, size_t n) {
+    char hex[17];
+    hn_hash_hex(hn_hash_mix(hn_hash_bytes(HN_HASH_START, object, n)), hex);
+    hn_strbuf_add_n(b, object, n);
+    hn_strbuf_printf(b, "%s%s\"}\n", MARK, hex);
+}
+
+static bool is_whole(const hn_strbuf *text) {
+    const size_t n_end = strlen(MARK) + 16 + 3; // the hash, quote, brace, end of the line
+    if (text->n <= n_end) {
+        return false;
+    }
+    hn_strbuf again;
+    hn_strbuf_init(&again);
+    seal(&again, hn_strbuf_text(text), text->n - n_end);
+    const bool same = !again.failed && again.n == text->n &&
+                      memcmp(hn_strbuf_text(&again), hn_strbuf_text(text), text->n) == 0;
+    hn_strbuf_reset(&again);
+    return same;
+}
+
+/// The reference in a file that was kept, as hn_reference_take().
+static hn_ref *read_kept(const char *path, const hn_model *model, double T, int n) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    const bool good = hn_file_read_own(path, MOST_BYTES, &text, NULL) == HN_OK && is_whole(&text);
+    cJSON *o = good ? cJSON_Parse(hn_strbuf_text(&text)) : NULL;
+    hn_ref *ref = hn_reference_take(o, model, T, n);
+    cJSON_Delete(o);
+    hn_strbuf_reset(&text);
+    return ref;
+}
+
+/// The reference in a file that is shipped, as hn_reference_take().
 static hn_ref *read_ref(const char *path, const hn_model *model, double T, int n) {
     cJSON *o = hn_stored_open(path);
     hn_ref *ref = hn_reference_take(o, model, T, n);
@@ -145,6 +183,23 @@ hn_status hn_reference_save(const char *path, const hn_model *model, const hn_re
     return status;
 }
 
+/// Writes a reference into the cache.
+static hn_status keep(const char *path, const hn_model *model, const hn_ref *ref, hn_diag *diag) {
+    hn_strbuf b, sealed;
+    hn_strbuf_init(&b);
+    hn_strbuf_init(&sealed);
+    hn_reference_put(&b, model, ref);
+    if (!b.failed) {
+        seal(&sealed, hn_strbuf_text(&b), b.n - 1); // without its closing brace
+    }
+    const hn_status status = b.failed || sealed.failed
+                                 ? HN_ERR_MEMORY
+                                 : hn_file_keep(path, hn_strbuf_text(&sealed), sealed.n, diag);
+    hn_strbuf_reset(&b);
+    hn_strbuf_reset(&sealed);
+    return status;
+}
+
 // finding ----
 
 static bool kept_path(const char *folder, uint64_t scene, double T, int n, char out[512]) {
@@ -162,7 +217,7 @@ static hn_ref *find_stored(const hn_model *model, const hn_ref_request *r, doubl
     hn_ref *ref = shipped ? read_ref(shipped, model, r->time, n) : NULL;
     *source = HN_REF_SHIPPED;
     if (!ref && r->folder && kept_path(r->folder, hn_model_scene(model)->hash, T, n, path)) {
-        ref = read_ref(path, model, T, n);
+        ref = read_kept(path, model, T, n);
         *source = HN_REF_KEPT;
     }
     return ref;
@@ -178,7 +233,7 @@ static hn_status compute(const hn_model *model, const hn_ref_request *r, double 
         return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
     }
     if (r->folder && kept_path(r->folder, (*out)->scene, T, (*out)->n, path) &&
-        hn_reference_save(path, model, *out, &diag) != HN_OK) {
+        keep(path, model, *out, &diag) != HN_OK) {
         return HN_OK; // without it the next study computes it again
     }
     return HN_OK;

@@ -182,6 +182,10 @@ double hn_map_time(const hn_map *map) {
     return map->T;
 }
 
+bool hn_map_lost(const hn_map *map) {
+    return map->journal.failed;
+}
+
 int hn_map_resumed(const hn_map *map) {
     return map->resumed;
 }

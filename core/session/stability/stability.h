@@ -101,6 +101,7 @@ const char *hn_map_method(const hn_map *map, int m);
 const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row);
 const hn_map_column *hn_map_get_column(const hn_map *map, int m, int column);
 double hn_map_time(const hn_map *map);
+bool hn_map_lost(const hn_map *map); ///< the journal could not be written
 int hn_map_resumed(const hn_map *map);
 bool hn_map_stopped(const hn_map *map), hn_map_out_of_time(const hn_map *map);
 double hn_map_elapsed(const hn_map *map); ///< [s]

@@ -5,6 +5,7 @@
 #include "session/store/stored_json.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,13 +57,32 @@ static bool take_lock(int fd) {
     return false;
 }
 
+/// Opens the file, a regular one of this user's: nothing that stands in its place is followed or
+/// waited for. Returns why not, NULL when it is open. No program that this one starts, such as a
+/// compiler, inherits the file and its lock (O_CLOEXEC).
+static const char *open_own(hn_journal *j) {
+    struct stat st;
+    const int fd =
+        open(j->path, O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0600);
+    if (fd < 0) {
+        return errno == ELOOP ? "it is a link" : strerror(errno);
+    }
+    const char *why = fstat(fd, &st) != 0              ? strerror(errno)
+                      : !S_ISREG(st.st_mode)           ? "it is not a regular file"
+                      : st.st_uid != geteuid()         ? "it belongs to somebody else"
+                      : !(j->file = fdopen(fd, "a+b")) ? strerror(errno)
+                                                       : NULL;
+    if (why) {
+        close(fd);
+    }
+    return why;
+}
+
 static hn_status open_file(hn_journal *j, hn_diags *diags) {
-    // "e": no program that this one starts, such as a compiler, inherits the file and its lock
-    j->file = fopen(j->path, "a+be");
-    if (!j->file) {
+    const char *why = open_own(j);
+    if (why) {
         return hn_diags_add(diags, HN_ERR_IO, NULL, NULL,
-                            "cannot keep unfinished work in '%.200s': %s", j->path,
-                            strerror(errno));
+                            "cannot keep unfinished work in '%.200s': %s", j->path, why);
     }
     if (!take_lock(fileno(j->file))) {
         hn_journal_end(j, 0);

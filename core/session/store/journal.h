@@ -27,8 +27,8 @@ typedef int (*hn_journal_take)(void *user, const cJSON *line);
 /// key  hash of everything that determines the pieces. The program's own file is added to it, so
 /// that another build does not continue this journal.
 /// A path that is too long turns the journal off: nothing is kept, and HN_OK is returned.
-/// Fails, reported in diags, with the journal closed: HN_ERR_IO when the file cannot be written, or
-/// when another program has held it for two seconds.
+/// Fails, reported in diags, with the journal closed: HN_ERR_IO when the file cannot be written, is
+/// a link, no regular file or somebody else's, or when another program has held it for two seconds.
 HN_MUST_CHECK hn_status hn_journal_open(hn_journal *journal, const char *folder, const char *kind,
                                         uint64_t key, hn_journal_take take, void *user,
                                         hn_diags *diags);

@@ -11,7 +11,7 @@ bool hn_cache_folder_find(char out[400]) {
                *home = getenv("HOME");
     char base[360] = "";
     if (own && own[0]) {
-        return snprintf(out, 400, "%s", own) < 400 && (mkdir(out, 0777) == 0 || errno == EEXIST);
+        return snprintf(out, 400, "%s", own) < 400 && (mkdir(out, 0700) == 0 || errno == EEXIST);
     }
     if (xdg && xdg[0] == '/') {
         snprintf(base, sizeof base, "%s", xdg);

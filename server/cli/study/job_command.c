@@ -194,7 +194,9 @@ static void report_resumed(const command *c, const hn_job *job) {
 }
 
 static void report_end(const command *c, const hn_job_end *end) {
-    const char *kept = c->request.limits.folder ? "; the same command goes on from here" : "";
+    const char *kept = !c->request.limits.folder ? ""
+                       : end->lost ? "; what was done could not be written and is not kept"
+                                   : "; the same command goes on from here";
     if (end->stopped) {
         fprintf(stderr, "holonom: stopped on request%s\n", kept);
     } else if (end->out_of_time) {

@@ -99,6 +99,7 @@ static bool file_path(const hn_runs *all, const char *id, char out[1024]) {
 }
 
 /// Documents as an array, behind a line with their hash: a file is believed only when it is whole.
+/// It can be computed again, so nobody waits for the disk.
 static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
     char path[1024], hash[HN_SHA256_BASE64];
     hn_strbuf body, file;
@@ -119,7 +120,7 @@ static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
     // a folder that is full costs the next server the time of computing, no more
     hn_diag diag = {0};
     if (body.failed || file.failed ||
-        hn_file_write(path, hn_strbuf_text(&file), file.n, &diag) != HN_OK) {
+        hn_file_keep(path, hn_strbuf_text(&file), file.n, &diag) != HN_OK) {
         fprintf(stderr, "holonom: a run could not be kept: %s\n", diag.message);
     }
     hn_strbuf_reset(&body);
@@ -157,7 +158,7 @@ static hn_kept_run *read_from_folder(const hn_runs *all, const char *id) {
     hn_strbuf text;
     hn_kept_run *run = NULL;
     hn_strbuf_init(&text);
-    if (file_path(all, id, path) && hn_file_read(path, MAX_FILE, &text, NULL) == HN_OK) {
+    if (file_path(all, id, path) && hn_file_read_own(path, MAX_FILE, &text, NULL) == HN_OK) {
         run = new_run(id, 0);
     }
     if (run && split_file(run, hn_strbuf_text(&text), text.n)) {
