@@ -298,6 +298,7 @@ help:
 	@echo 'make accuracy     error estimates of runs against their errors, over all scenes: tests/tables/accuracy.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
+	@echo 'make book         all lessons for print: build/book.html and build/book.pdf'
 	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
@@ -308,7 +309,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises run-suite run-unit run-server run-bench run-fuzz reports accuracy
+.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises book run-suite run-unit run-server run-bench run-fuzz reports accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -375,7 +376,14 @@ every-method: build/.packages-test
 	@python3 tests/tables/every_method.py $(PROGRAM) >build/every_method.csv
 	@cp build/every_method.csv tests/tables/every_method.csv && python3 tests/tables/summary.py
 
-# half an hour on one processor; fails where a variant is bad
+# all lessons as one page for print, and as PDF
+book: all build/.packages-test
+	@$(MAKE) -s --no-print-directory $(WEB_READY)
+	@node lessons/book.mjs $(PROGRAM) build/book.html
+	@chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/book.pdf "file://$(CURDIR)/build/book.html" 2>/dev/null
+	@echo 'book: build/book.html, build/book.pdf'
+
+# some minutes on one processor; fails where a variant is bad
 exercises: all
 	@python3 tests/tables/exercises.py $(PROGRAM) >build/exercises.txt || { cat build/exercises.txt; exit 1; }
 	@cp build/exercises.txt tests/tables/exercises.txt && cat tests/tables/exercises.txt

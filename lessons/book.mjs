@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All lessons as one printable page: node lessons/book.mjs PROGRAM OUT.html
+//
+// The text comes from `holonom lesson N --json`, the exercises from `holonom problem ID --json`;
+// formulas are set by KaTeX as MathML, pictures are put into the file, figures are numbered.
+import { execFileSync } from "node:child_process";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+
+const [program, out] = process.argv.slice(2);
+const katex = createRequire(new URL("../web/package.json", import.meta.url))("katex");
+const ask = (...words) => JSON.parse(execFileSync(program, [...words, "--json"], { maxBuffer: 1 << 26 }));
+const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+const faults = [];
+let lesson, figures, answers;
+
+function math(node) {
+  try {
+    return katex.renderToString(node.tex, { displayMode: node.display, output: "mathml", throwOnError: true });
+  } catch (error) {
+    faults.push(`${lesson.id}: ${node.tex}: ${error.message}`);
+    return plain(node.tex);
+  }
+}
+
+const inline = {
+  text: (n) => plain(n.text),
+  mono: (n) => `<code>${plain(n.text)}</code>`,
+  math,
+  strong: (n) => `<strong>${all(n.children)}</strong>`,
+  em: (n) => `<em>${all(n.children)}</em>`,
+  link: (n) => (n.href.includes("://") ? `<a href="${plain(n.href)}">${all(n.children)}</a>` : all(n.children)),
+  break: () => "<br>",
+};
+
+function figure(node) {
+  const path = `lessons/${lesson.id}/${node.src}`;
+  if (!existsSync(path)) {
+    faults.push(`${lesson.id}: there is no picture ${path}`);
+    return "";
+  }
+  const image = `data:image/png;base64,${readFileSync(path).toString("base64")}`;
+  const caption = all(node.children);
+  return `<figure><img src="${image}" alt="${caption.replace(/<[^>]*>/g, "").replace(/"/g, "")}"><figcaption>Figure ${lesson.number}.${++figures}. ${caption}</figcaption></figure>`;
+}
+
+function predict(node) {
+  const letters = "abcdefgh";
+  const choices = node.choices.map((c) => `<li>${all(c.children)}</li>`).join("");
+  answers.push(`<li><strong>(${letters[node.right]})</strong> ${all(node.after)}</li>`);
+  return `<div class="box"><b>Predict first, ${answers.length}.</b> ${all(node.children)}<ol type="a">${choices}</ol></div>`;
+}
+
+const points = (n) => `${n} point${n === 1 ? "" : "s"}`;
+
+function exercise(node) {
+  const e = ask("problem", node.id);
+  const parts = e.parts ? `, ${e.parts.length} part${e.parts.length === 1 ? "" : "s"}` : "";
+  return `<div class="box"><b>Exercise ${node.id}: ${plain(e.title)}</b> (${points(e.points)}${parts}) ${all(node.children)}<pre>holonom problem ${node.id} --student NAME</pre></div>`;
+}
+
+const cell = (tag) => (c) => `<${tag} style="text-align:${c.align || "left"}">${all(c.children ?? [])}</${tag}>`;
+
+const block = {
+  heading: (n) => `<h${n.level + 1}>${all(n.children)}</h${n.level + 1}>`,
+  paragraph: (n) => `<p>${all(n.children)}</p>`,
+  list: (n) => (n.ordered ? `<ol start="${n.start}">${all(n.children)}</ol>` : `<ul>${all(n.children)}</ul>`),
+  item: (n) => `<li>${all(n.children)}</li>`,
+  quote: (n) => `<blockquote>${all(n.children)}</blockquote>`,
+  table: (n) => `<table>${all(n.children)}</table>`,
+  row: (n) => `<tr>${n.children.map(cell(n.head ? "th" : "td")).join("")}</tr>`,
+  code: (n) => `<pre>${plain(n.text)}</pre>`,
+  rule: () => "<hr>",
+  figure,
+  exhibit: (n) => `<div class="box"><b>Run it.</b><pre>holonom ${plain(n.command)}</pre>${all(n.children)}</div>`,
+  predict,
+  slip: (n) => `<div class="slip"><b>Printed (slip ${n.number}).</b> ${all(n.children)}</div>`,
+  exercise,
+};
+
+/** @param {{kind: string}[]} nodes */
+function all(nodes = []) {
+  return nodes.map((n) => (inline[n.kind] ?? block[n.kind])(n)).join("");
+}
+
+function chapter(id) {
+  lesson = ask("lesson", id);
+  figures = 0;
+  answers = [];
+  const text = all(lesson.blocks);
+  const seen = answers.length ? `<h3>Answers to the predictions</h3><ol>${answers.join("")}</ol>` : "";
+  return `<section id="${lesson.id}">${text}${seen}</section>`;
+}
+
+const STYLE = `
+@page { size: A4; margin: 22mm 20mm 20mm; }
+body { font: 10.5pt/1.45 "DejaVu Serif", Georgia, serif; max-width: 42em; margin: 2em auto; color: #1a1a1a; }
+h1, h2, h3, h4 { font-family: "DejaVu Sans", sans-serif; line-height: 1.2; break-after: avoid; }
+section { break-before: page; }
+pre, code { font: 8.5pt/1.35 "DejaVu Sans Mono", monospace; }
+pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5em 0; }
+.box { border: 1px solid #9aa5b1; border-radius: 3px; padding: .5em .8em; margin: 1em 0; break-inside: avoid; }
+.slip { border-left: 3px solid #b5472f; padding: .1em .8em; margin: 1em 0; break-inside: avoid; }
+.box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
+figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; }
+figcaption { font-size: 9pt; color: #444; }
+table { border-collapse: collapse; margin: 1em 0; font-size: 9.5pt; break-inside: avoid; }
+th, td { border-bottom: 1px solid #ccc; padding: .25em .7em; } th { border-bottom: 1px solid #333; }
+math[display="block"] { margin: .7em 0; }
+`;
+
+const lessons = ask("list", "lessons").lessons;
+const chapters = lessons.map((l) => chapter(l.id));
+const contents = lessons.map((l) => `<li><a href="#${l.id}">${plain(l.title.replace(/^\d+\. /, ""))}</a></li>`).join("");
+writeFileSync(
+  out,
+  `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Mechanisms with closed loops</title><style>${STYLE}</style>
+<h1>Mechanisms with closed loops</h1><p>A course with the workbench holonom: text, exhibits to run, and exercises that are marked.</p>
+<ol>${contents}</ol>${chapters.join("\n")}</html>\n`,
+);
+for (const fault of faults) {
+  console.error(fault);
+}
+process.exit(faults.length ? 1 : 0);
