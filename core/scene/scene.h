@@ -40,6 +40,8 @@ typedef struct hn_param {
     double value, initial, min, max; ///< initial: as the scene file says
     bool integer;                    ///< must stay whole (numbers of loops, links)
     bool structural;                 ///< changes how many bodies there are
+    /// set outside min..max: the mechanism can be built, but its texts speak of that range
+    bool beyond;
 } hn_param;
 
 typedef struct hn_body {

@@ -199,6 +199,23 @@ static void evaluate_all(hn_reader *r) {
     }
 }
 
+static bool is_set(const hn_reader *r, const hn_param *p) {
+    for (int i = 0; i < r->n_settings; i++) {
+        if (r->settings[i].name && strcmp(r->settings[i].name, p->name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Whether a value outside the range is of the same kind as those inside: of their sign, and no
+/// count. Ranges are those of sliders, not limits of mechanics.
+static bool is_possible(const hn_param *p) {
+    const bool below = (p->min > 0 && p->value <= 0) || (p->min == 0 && p->value < 0);
+    const bool above = (p->max < 0 && p->value >= 0) || (p->max == 0 && p->value > 0);
+    return !p->integer && !p->structural && !below && !above;
+}
+
 static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
     hn_quantity q;
     if (hn_rd_member(r, node, "min", 0, -HUGE_VAL, &q, HN_RD_CONST)) {
@@ -211,6 +228,8 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
         hn_rd_fault_at(r, "min", NULL, "min %g is larger than max %g", p->min, p->max);
     } else if (!isfinite(p->value)) {
         hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
+    } else if ((p->value < p->min || p->value > p->max) && is_set(r, p) && is_possible(p)) {
+        p->beyond = true;
     } else if (p->value < p->min || p->value > p->max) {
         hn_rd_fault(r, NULL, "%s = %g is outside its range %g ... %g %s", p->name, p->value, p->min,
                     p->max, p->unit);

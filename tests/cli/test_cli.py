@@ -457,6 +457,20 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(len(rows[0]), len(flat))
         self.assertEqual([float(x) if x else None for x in rows[2]], flat)
 
+    def test_a_run_ends_at_the_time_asked_for(self):
+        words = ("four-bar", "--method", "projection@rk4:h=0.013", "--time", "10", "--json")
+        run = strict(self.assert_exit(call("run", *words), DONE))
+        self.assertEqual((run["samples"]["t"][-1], run["t_reached"]), (10, 10))
+        summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", "projection@rk4:h=0.013", "--time", "10", "--json"), DONE))
+        self.assertEqual((summary["t"], summary["methods"][0]["t_reached"]), (10, 10))
+
+    def test_a_setting_beyond_its_range_is_taken_with_a_remark(self):
+        done = call("run", "car-axis", "--set", "eps=0.001", "--at", "0.1")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn(b"eps = 0.001 is outside its range, 0.002 to 0.1", done.stderr)
+        for refused in ("car-axis", "eps=-0.01"), ("ring", "n=1000000"):
+            self.assertEqual(call("run", refused[0], "--set", refused[1]).returncode, INPUT)
+
     def test_every_run_has_an_estimate_of_its_error(self):
         far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
         self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; a smaller step is needed")

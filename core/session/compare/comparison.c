@@ -607,8 +607,9 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
         put_warning(b, &c->entries[i]);
         put_reason(b, c, &c->entries[i], &s);
-        // an adaptive step may end beyond the clock; what was reached is what can be shown
-        hn_json_put_number(b, "t_reached", fmin(s.t, (double)c->frame * c->frame_dt));
+        // a step may end beyond the clock or short of it; its sample is that of the clock's time
+        const double clock = (double)c->frame * c->frame_dt;
+        hn_json_put_number(b, "t_reached", is_live(&c->entries[i]) ? clock : fmin(s.t, clock));
 
         // cost and error totals
         put_cost(b, &s);

@@ -488,8 +488,10 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     hn_json_put_string(b, "reason", reason_of(run, request, &s, ended));
     hn_failure_put_json(b, run, ended, reason_of(run, request, &s, ended),
                         fmin(s.t, request->time));
-    // an adaptive step may end beyond the time asked for
-    hn_json_put_number(b, "t_reached", fmin(s.t, request->time));
+    // an adaptive step may end beyond the time asked for, a fixed one short of it: the sample at
+    // that time is given all the same
+    const double last = tab->n > 0 ? tab->t[tab->n - 1] : 0;
+    hn_json_put_number(b, "t_reached", fmax(fmin(s.t, request->time), last));
     put_names(b, model);
     if (tab->reactions) {
         hn_reaction_writer_names(b, tab->reactions);

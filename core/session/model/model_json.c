@@ -20,6 +20,7 @@ static void put_params(hn_strbuf *b, const hn_scene *scene) {
         hn_json_put_number(b, "min", p->min);
         hn_json_put_number(b, "max", p->max);
         hn_json_put_bool(b, "integer", p->integer);
+        hn_json_put_bool(b, "beyond", p->beyond);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);

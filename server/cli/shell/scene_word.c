@@ -70,6 +70,20 @@ static hn_status report_no_file(const hn_library *lib, const char *word, hn_diag
     return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint, "there is no file '%.80s'", word);
 }
 
+/// Says which parameters lie outside the range of their sliders.
+static void tell_beyond(const hn_model *model) {
+    const hn_scene *scene = hn_model_scene(model);
+    for (int i = 0; i < scene->n_params; i++) {
+        const hn_param *p = &scene->params[i];
+        if (p->beyond) {
+            fprintf(stderr,
+                    "holonom: %s = %g is outside its range, %g to %g%s%s, of which the texts of "
+                    "this scene speak\n",
+                    p->name, p->value, p->min, p->max, p->unit[0] ? " " : "", p->unit);
+        }
+    }
+}
+
 hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const char *word,
                              bool allow_open, hn_model **out, hn_diags *diags) {
     settings *s = calloc(1, sizeof *s);
@@ -95,6 +109,9 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
             source.name = word;
         }
         HN_THEN(status, hn_model_load(lib, &source, out, diags));
+    }
+    if (status == HN_OK && !args->json) {
+        tell_beyond(*out);
     }
     hn_strbuf_reset(&text);
     free(s);

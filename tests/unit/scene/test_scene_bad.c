@@ -115,15 +115,28 @@ static void settings_are_checked_like_the_file(void **state) {
     static const struct {
         hn_setting set;
         const char *word;
-    } bad[] = {
-        {{"l9", 1}, "did you mean"}, {{"l1", 700}, "outside its range"}, {{"N", 2.5}, "whole"}};
+    } bad[] = {{{"l9", 1}, "did you mean"},
+               {{"l1", -7}, "outside its range"},
+               {{"N", 2.5}, "whole"},
+               {{"N", 9}, "outside its range"}};
     static const char text[] =
-        "{\"holonom\":1, \"name\":\"x\", \"parameters\":{\"l1\":{\"value\":1,\"max\":5}, \"l2\":1,"
-        "\"N\":{\"value\":2,\"integer\":true}}, \"bodies\":[{\"name\":\"b\",\"mass\":1}],"
+        "{\"holonom\":1, \"name\":\"x\", "
+        "\"parameters\":{\"l1\":{\"value\":1,\"min\":0.1,\"max\":5}, \"l2\":1,"
+        "\"N\":{\"value\":2,\"integer\":true,\"max\":8}}, \"bodies\":[{\"name\":\"b\",\"mass\":1}],"
         "\"joints\":[{\"name\":\"j\",\"type\":\"revolute\",\"parent\":{\"body\":\"ground\"},"
         "\"child\":{\"body\":\"b\"}}]}";
     (void)state;
-    for (size_t i = 0; i < 3; i++) {
+
+    // a range is that of a slider: beyond it a length is a length still
+    const hn_setting longer = {"l1", 700};
+    hn_scene *beyond;
+    hn_diags none = {0};
+    assert_int_equal(hn_scene_load_json(text, strlen(text), NULL, &longer, 1, &beyond, &none),
+                     HN_OK);
+    assert_true(beyond->params[0].beyond && beyond->params[0].value == 700);
+    assert_false(beyond->params[1].beyond);
+    hn_scene_free(beyond);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         hn_scene *scene;
         hn_diags diags = {0};
         assert_int_equal(
