@@ -69,7 +69,7 @@ const openKeys = onDemand(async () => {
 });
 const openExport = onDemand(async () => {
   const { createExportDialog } = await import("./views/export-dialog.js");
-  return createExportDialog(document.body, store, session);
+  return createExportDialog(document.body, store, session, mechanism);
 });
 /** A view with a style sheet of its own. @param {string} sheet @param {() => Promise<any>} make */
 const styled = (sheet, make) =>

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Saves what is on the page: the recording as CSV or NDJSON, the drawing as SVG or PNG.
-import { toCsv, toNdjson } from "../state/export.js";
+// Saves what is on the page: the recording as data, as a film and as a file that plays by itself,
+// the drawing as a picture, the scene as a program.
 import { sentenceOf } from "../api/client.js";
+import { documents } from "../api/documents.js";
+import { toCsv, toNdjson } from "../state/export.js";
+import { toReplay } from "../state/replay.js";
+import { shownIndex, sourceOf } from "../state/store.js";
+import { verdictAt } from "../state/verdict.js";
+import { canFilm, makeFilm } from "../widgets/film.js";
 import { h, say } from "../widgets/dom.js";
+import { baseOf } from "../widgets/pieces.js";
 import { standAlone, toPng } from "../widgets/picture.js";
 import { saveFile } from "../widgets/save.js";
 
@@ -11,12 +18,64 @@ import { saveFile } from "../widgets/save.js";
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
  * @param {import("../session/session.js").Session} actions
+ * @param {ReturnType<typeof import("./drawing/drawing.js").createDrawing>} mechanism
  */
-export function createExportDialog(el, store, actions) {
+export function createExportDialog(el, store, actions, mechanism) {
   const data = store.data;
+  let stopped = false;
   const text = (make, type) => () => new Blob([make(data)], { type });
-  const picture = () =>
-    standAlone(/** @type {SVGSVGElement} */ (document.querySelector(".stage .picture")));
+  const svg = () => /** @type {SVGSVGElement} */ (mechanism.frame.querySelector(".picture"));
+
+  /** The solids of a scene in space, drawn just now; null: there are none. */
+  function solids() {
+    const solid = mechanism.frame.classList.contains("solid");
+    mechanism.update();
+    return solid ? mechanism.frame.querySelector("canvas") : null;
+  }
+  const picture = () => standAlone(svg(), { below: solids()?.toDataURL("image/png") ?? "" });
+
+  /** A film of the whole recording; afterwards the page shows what it showed. */
+  async function film() {
+    if (!canFilm()) {
+      throw new Error("this browser records no film");
+    }
+    const { history, view } = data;
+    const before = view.shown;
+    stopped = false;
+    try {
+      return await makeFilm({
+        svg: svg(),
+        solids,
+        duration: history.t[history.count - 1],
+        show: (t) => {
+          actions.show(history.indexAt(t));
+          mechanism.update();
+        },
+        told: (share) => say(done, `filming: ${Math.round(100 * share)} %`),
+        stopped: () => stopped,
+      });
+    } finally {
+      actions.show(before < 0 ? history.count : before);
+    }
+  }
+
+  function replay() {
+    const { stage } = mechanism;
+    const { scene, methods } = data;
+    const now = shownIndex(data);
+    const { solid, marks } = baseOf(scene);
+    return toReplay(data, {
+      size: stage.size,
+      point: stage.camera.point,
+      radius: stage.pen.radius,
+      fixed: [
+        ...marks.map((shape) => stage.pen.mark(shape, scene.points)),
+        ...solid.map((shape) => stage.pen.outline(shape, scene.points)),
+      ],
+      verdicts: methods.map((_, m) => verdictAt(data, m, now).words),
+    });
+  }
+
   /** @type {{ending: string, word: string, about: string, make: () => Blob | Promise<Blob>}[]} */
   const FORMATS = [
     {
@@ -43,11 +102,23 @@ export function createExportDialog(el, store, actions) {
       about: "the drawing as it is shown now, at twice its size",
       make: () => toPng(picture()),
     },
+    {
+      ending: "webm",
+      word: "WebM",
+      about: "a film of the recording; it takes as long as it lasts, 20 s at most",
+      make: film,
+    },
+    {
+      ending: "html",
+      word: "HTML",
+      about: "the recording as one file that plays without a server",
+      make: () => new Blob([replay()], { type: "text/html" }),
+    },
   ];
   const done = h("p", { role: "status", class: "about" });
 
-  /** @param {typeof FORMATS[number]} format */
-  async function write({ ending, make }) {
+  /** @param {string} ending @param {() => Blob | Promise<Blob>} make */
+  async function write(ending, make) {
     const name = `${data.scene.id}.${ending}`;
     try {
       saveFile(await make(), name);
@@ -57,19 +128,61 @@ export function createExportDialog(el, store, actions) {
     }
   }
 
-  const rows = FORMATS.map((format) =>
+  const rows = FORMATS.map(({ word, about, ending, make }) =>
     h(
       "li",
       {},
-      h("button", { type: "button", class: "plain", onclick: () => write(format) }, format.word),
-      h("span", {}, format.about),
+      h("button", { type: "button", class: "plain", onclick: () => write(ending, make) }, word),
+      h("span", {}, about),
     ),
   );
+  const languages = h("select", { id: "export-language", "aria-label": "Language" });
+  const program = h(
+    "li",
+    { class: "program" },
+    h("button", { type: "button", class: "plain", onclick: writeProgram }, "Program"),
+    h("span", {}, "that runs this scene by itself and checks itself: ", languages),
+  );
+
+  /** @type {{name: string, suffix: string, about: string}[]} */
+  let known = [];
+
+  function writeProgram() {
+    const chosen = known.find(({ name }) => name === languages.value);
+    const body = {
+      scene: sourceOf(data),
+      parameters: data.settings,
+      language: languages.value,
+      method: data.methods[data.view.selected]?.spelling,
+    };
+    return write((chosen?.suffix ?? ".txt").slice(1), async () => {
+      const code = await documents.program(body);
+      return new Blob([code], { type: "text/plain" });
+    });
+  }
+
+  async function fillLanguages() {
+    try {
+      known = (await documents.languages()).languages;
+      languages.replaceChildren(
+        ...known.map(({ name, about }) => h("option", { value: name }, about)),
+      );
+    } catch (error) {
+      say(done, sentenceOf(error));
+    }
+  }
+
   const dialog = h(
     "dialog",
-    { class: "dialog export", "aria-labelledby": "export-title" },
+    {
+      class: "dialog export",
+      "aria-labelledby": "export-title",
+      onclose: () => {
+        stopped = true;
+      },
+    },
     h("h2", { id: "export-title" }, "Save"),
-    h("ul", { class: "formats" }, ...rows),
+    h("ul", { class: "formats" }, ...rows, program),
     done,
     h("form", { method: "dialog", class: "actions" }, h("button", { class: "primary" }, "Close")),
   );
@@ -80,6 +193,9 @@ export function createExportDialog(el, store, actions) {
         await actions.pause();
         say(done, "");
         dialog.showModal();
+        if (!known.length) {
+          fillLanguages();
+        }
       }
     },
   };

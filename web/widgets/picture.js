@@ -24,9 +24,10 @@ const STYLES = [
 
 /**
  * @param {SVGSVGElement} svg as it is drawn now
+ * @param {{paper?: boolean, below?: string}} [how] below: address of a picture under it
  * @returns {{text: string, width: number, height: number}} the same picture, alone
  */
-export function standAlone(svg) {
+export function standAlone(svg, { paper: onPaper = true, below = "" } = {}) {
   const copy = /** @type {SVGSVGElement} */ (svg.cloneNode(true));
   const originals = [svg, ...svg.querySelectorAll("*")];
   [copy, ...copy.querySelectorAll("*")].forEach((node, i) => {
@@ -42,7 +43,16 @@ export function standAlone(svg) {
   paper.setAttribute("width", "100%");
   paper.setAttribute("height", "100%");
   paper.setAttribute("fill", getComputedStyle(document.body).backgroundColor);
-  copy.prepend(paper);
+  if (below) {
+    const image = document.createElementNS("http://www.w3.org/2000/svg", "image");
+    image.setAttribute("href", below);
+    image.setAttribute("width", String(width));
+    image.setAttribute("height", String(height));
+    copy.prepend(image);
+  }
+  if (onPaper) {
+    copy.prepend(paper);
+  }
   return { text: new XMLSerializer().serializeToString(copy), width, height };
 }
 

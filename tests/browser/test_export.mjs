@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is saved beside data and pictures: a file that plays by itself, a film, programs.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { violations } from "./axe.mjs";
+import { createBench, playTo, screenshot } from "./support.mjs";
+
+const { open } = createBench();
+
+/** Presses a button of the dialog and waits for the file. */
+async function fileOf(page, word) {
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.locator(".formats").getByRole("button", { name: word, exact: true }).click(),
+  ]);
+  const path = await download.path();
+  return { name: download.suggestedFilename(), path, bytes: readFileSync(path) };
+}
+
+test("the recording becomes one file that plays without a server", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  await playTo(page, 0.4);
+  await page.getByRole("button", { name: "export" }).click();
+  const { name, path, bytes } = await fileOf(page, "HTML");
+  assert.equal(name, "four-bar.html");
+  assert.ok(bytes.length < 2e6, `${bytes.length} bytes`);
+  assert.ok(!/ src=| href=|@import|"NaN|null,null/.test(bytes.toString()), "nothing is fetched");
+
+  const alone = await page.context().newPage();
+  t.after(() => alone.close());
+  const faults = [];
+  alone.on("pageerror", (error) => faults.push(error.message));
+  alone.on("request", (request) =>
+    faults.push(...(/^file:/.test(request.url()) ? [] : [request.url()])),
+  );
+  await alone.setContent(bytes.toString());
+  assert.ok(pathToFileURL(path));
+  const drawn = () => alone.locator("svg.drawing path").nth(1).getAttribute("d");
+  const first = await drawn();
+  await alone.getByRole("button", { name: "Play" }).click();
+  await alone.waitForFunction(() => Number(document.querySelector("input[type=range]").value) > 3);
+  assert.notEqual(await drawn(), first);
+  assert.equal(await alone.locator("li").count(), 5);
+  assert.match(await alone.textContent("li"), /index-1: /);
+  await screenshot(alone, "replay", { seen: true });
+  assert.deepEqual(faults, []);
+});
+
+test("a scene in space is saved with its solids, as a film, and as a program", async (t) => {
+  const page = await open(t, { hash: "#rssr", bypassCSP: true });
+  await page.waitForSelector(".stage.solid");
+  await playTo(page, 0.2);
+  await page.getByRole("button", { name: "export" }).click();
+  assert.deepEqual(await violations(page), []);
+  const svg = (await fileOf(page, "SVG")).bytes.toString();
+  assert.match(svg, /<image href="data:image\/png/);
+  const film = await fileOf(page, "WebM");
+  assert.equal(film.bytes.subarray(0, 4).toString("hex"), "1a45dfa3", "the mark of a WebM file");
+  assert.ok(film.bytes.length > 1000);
+  await page.waitForSelector("#export-language option", { state: "attached" });
+  await page.selectOption("#export-language", "python");
+  const code = await fileOf(page, "Program");
+  assert.equal(code.name, "rssr.py");
+  assert.match(code.bytes.toString(), /import numpy/);
+});

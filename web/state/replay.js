@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// The recording as one HTML file that plays by itself: pixels of the drawn points of every method,
+// the loop gap over time, and a player of some lines. It asks nobody for anything.
+
+const MOST_NUMBERS = 240000; // about 1.5 MB of text
+const MOST_FRAMES = 600;
+
+/** Text inside a script or an element. @param {string} text */
+const escaped = (text) =>
+  text.replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c] ?? c);
+
+/** Frames that are kept, evenly over the recording. @param {number} count @param {number} most */
+export function pickFrames(count, most) {
+  const n = Math.max(1, Math.min(count, most));
+  return Array.from({ length: n }, (_, i) => Math.round((i * (count - 1)) / Math.max(1, n - 1)));
+}
+
+/** Runs in the file. It stands alone: nothing of the page is there. */
+const PLAYER = `
+const svg = document.querySelector("svg.drawing"), NS = "http://www.w3.org/2000/svg";
+const make = (name, to, attributes) => {
+  const node = to.appendChild(document.createElementNS(NS, name));
+  for (const key in attributes) node.setAttribute(key, attributes[key]);
+  return node;
+};
+const at = (row, i) => [row[2 * i] / 10, row[2 * i + 1] / 10];
+const zigzag = (a, b, r) => {
+  const dx = b[0] - a[0], dy = b[1] - a[1], l = Math.hypot(dx, dy) || 1, n = [-dy / l, dx / l];
+  let d = "M" + a;
+  for (let i = 1; i < 12; i++) {
+    const s = i / 12, w = i === 1 || i === 11 ? 0 : i % 2 ? r : -r;
+    d += "L" + [a[0] + s * dx + w * n[0], a[1] + s * dy + w * n[1]];
+  }
+  return d + "L" + b;
+};
+const groups = film.methods.map((method, m) => {
+  const g = make("g", svg, { opacity: m ? 0.6 : 1 });
+  const nodes = film.shapes.map((shape) => {
+    const solid = shape.kind === "bar" || shape.kind === "polygon" || shape.kind === "slider";
+    const look = shape.kind === "bar"
+      ? { "stroke-width": 2 * shape.r, "stroke-opacity": 0.45, "stroke-linecap": "round" }
+      : shape.kind === "pivot" || shape.kind === "ground"
+        ? { fill: "Canvas", "stroke-width": 1.6 }
+        : { "stroke-width": 2, "fill-opacity": solid ? 0.3 : 0, fill: method.colour };
+    return make("path", g, { stroke: method.colour, fill: "none", "stroke-linejoin": "round", ...look });
+  });
+  svg.prepend(g);
+  return { g, nodes };
+});
+const outline = (shape, row) => {
+  const a = at(row, shape.p), b = shape.q < 0 ? a : at(row, shape.q), r = shape.r;
+  if (a.some(isNaN) || b.some(isNaN)) return "";
+  if (shape.kind === "polygon") {
+    return "M" + Array.from({ length: shape.n }, (_, i) => at(row, shape.p + i)).join("L") + "Z";
+  }
+  if (shape.kind === "spring" || shape.kind === "damper") return zigzag(a, b, r + 2);
+  if (shape.kind === "slider") {
+    const t = Math.atan2(b[1] - a[1], b[0] - a[0]), c = Math.cos(t), s = Math.sin(t);
+    const w = 1.5 * r + 6, h = r + 4;
+    return "M" + [[-w, -h], [w, -h], [w, h], [-w, h]]
+      .map(([x, y]) => [a[0] + x * c - y * s, a[1] + x * s + y * c]).join("L") + "Z";
+  }
+  if (shape.kind === "pivot" || shape.kind === "ground") {
+    const k = Math.max(2.5, 0.55 * r);
+    return "M" + (a[0] - k) + " " + a[1] + "a" + k + " " + k + " 0 1 0 " + 2 * k + " 0a" + k + " " + k + " 0 1 0 " + -2 * k + " 0";
+  }
+  return "M" + a + "L" + b;
+};
+const plot = document.querySelector("svg.gap"), W = 640, H = 180;
+const end = film.t[film.t.length - 1] || 1;
+const low = -17, high = Math.max(-3, ...film.gap.flat().filter((x) => x !== null));
+const px = (t) => 40 + (W - 50) * t / end, py = (g) => 8 + (H - 28) * (high - g) / (high - low);
+for (let d = Math.ceil(low); d <= high; d += 4) {
+  make("path", plot, { d: "M40 " + py(d) + "H" + (W - 10), stroke: "currentColor", opacity: 0.15 });
+  make("text", plot, { x: 34, y: py(d) + 4, "text-anchor": "end", "font-size": 11, fill: "currentColor" }).textContent = "1e" + d;
+}
+film.gap.forEach((row, m) => {
+  let d = "";
+  row.forEach((g, i) => { d += g === null ? "" : (d ? "L" : "M") + px(film.t[i]).toFixed(1) + " " + py(Math.max(low, g)).toFixed(1); });
+  make("path", plot, { d, fill: "none", stroke: film.methods[m].colour, "stroke-width": 1.8, "stroke-dasharray": film.methods[m].dash });
+});
+const cursor = make("path", plot, { stroke: "currentColor" });
+const slider = document.querySelector("input[type=range]"), clock = document.querySelector("output");
+slider.max = film.t.length - 1;
+let now = 0, playing = false, began = 0, from = 0;
+const draw = (i) => {
+  now = i;
+  slider.value = i;
+  clock.textContent = "t = " + film.t[i].toFixed(2) + " s";
+  groups.forEach(({ nodes }, m) => nodes.forEach((node, k) => node.setAttribute("d", outline(film.shapes[k], film.points[m][i]))));
+  cursor.setAttribute("d", "M" + px(film.t[i]) + " 8V" + (H - 20));
+};
+const button = document.querySelector("button");
+const tick = (time) => {
+  if (!playing) return;
+  began = began || time;
+  const t = from + (time - began) / 1000;
+  let i = now;
+  while (i < film.t.length - 1 && film.t[i + 1] <= t) i++;
+  draw(i);
+  if (i === film.t.length - 1) toggle(); else requestAnimationFrame(tick);
+};
+const toggle = () => {
+  playing = !playing;
+  button.textContent = playing ? "Pause" : "Play";
+  if (playing) {
+    if (now === film.t.length - 1) draw(0);
+    began = 0;
+    from = film.t[now];
+    requestAnimationFrame(tick);
+  }
+};
+button.onclick = toggle;
+slider.oninput = () => { if (playing) toggle(); draw(Number(slider.value)); };
+document.querySelectorAll("input[type=checkbox]").forEach((box, m) => {
+  box.onchange = () => { groups[m].g.style.display = box.checked ? "" : "none"; };
+});
+draw(0);
+`;
+
+const STYLE = `:root{color-scheme:light dark}body{margin:0 auto;padding:16px;max-width:960px;font:15px/1.45 system-ui,sans-serif}
+h1{font-size:20px;margin:0 0 4px}p{margin:0 0 8px}
+svg{display:block;width:100%;height:auto}.drawing{max-height:56vh}
+.row{display:flex;gap:12px;align-items:center;margin:8px 0}.row input[type=range]{flex:1}
+button{min-width:88px;min-height:36px;font:inherit}ul{list-style:none;margin:8px 0;padding:0}
+li{display:flex;gap:8px;align-items:center}li i{width:28px;border-top:3px solid}
+output{min-width:90px;font-variant-numeric:tabular-nums}.fixed path{fill:none;stroke:GrayText;stroke-width:1.4}`;
+
+/**
+ * @param {import("./store.js").Data} data
+ * @param {{
+ *   size: {width: number, height: number},
+ *   point: (points: ArrayLike<number>, i: number) => [number, number],
+ *   radius: (shape: import("./types.js").Shape) => number, fixed: string[], verdicts: string[],
+ * }} drawing fixed: outlines of what never moves
+ */
+export function toReplay(data, { size, point, radius, fixed, verdicts }) {
+  const { scene, history, methods, look, view } = data;
+  const order = methods
+    .map((_, m) => m)
+    .sort((a, b) => Number(b === view.selected) - Number(a === view.selected));
+  const perFrame = methods.length * (2 * history.nPoints + 1);
+  const frames = pickFrames(history.count, Math.min(MOST_FRAMES, MOST_NUMBERS / perFrame));
+  const tenth = (x) => (Number.isFinite(x) ? Math.round(10 * x) : null);
+  const film = {
+    t: frames.map((i) => Number(history.t[i].toPrecision(6))),
+    shapes: scene.drawing.shapes
+      .filter(({ kind }) => kind !== "trace" && kind !== "guide")
+      .map(({ kind, p, q, n, ...shape }) => ({
+        kind,
+        p,
+        q: kind === "polygon" ? -1 : q,
+        n,
+        r: Number(radius({ kind, p, q, n, ...shape }).toFixed(1)),
+      })),
+    methods: order.map((m) => ({
+      label: methods[m].label,
+      colour: look.slots[methods[m].slot].light,
+      dash: look.slots[methods[m].slot].dash.join(" "),
+    })),
+    points: order.map((m) =>
+      frames.map((i) => {
+        const points = history.pointsAt(m, i);
+        return Array.from({ length: history.nPoints }, (_, k) =>
+          point(points, k).map(tenth),
+        ).flat();
+      }),
+    ),
+    gap: order.map((m) =>
+      frames.map((i) => {
+        const gap = history.columns[m].gap[i];
+        return gap > 0 ? Number(Math.log10(gap).toFixed(2)) : null;
+      }),
+    ),
+  };
+  const script = JSON.stringify(film).replaceAll("<", "\\u003c");
+  const rows = order.map(
+    (m, k) =>
+      `<li><input type="checkbox" id="m${k}" checked><i style="border-color:${film.methods[k].colour}"></i>` +
+      `<label for="m${k}">${escaped(`${methods[m].label}: ${verdicts[m]}`)} <code>${escaped(methods[m].spelling)}</code></label></li>`,
+  );
+  const settings = Object.entries(data.settings).map(([name, value]) => `${name} = ${value}`);
+  const every =
+    frames.length < history.count ? `, ${frames.length} of ${history.count} frames` : "";
+  return `<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>${escaped(scene.title)}</title><style>${STYLE}</style></head><body>
+<h1>${escaped(scene.title)}</h1>
+<p>${escaped([scene.caption, ...settings].join(", "))}</p>
+<svg class="drawing" viewBox="0 0 ${size.width} ${size.height}" role="img" aria-label="${escaped(scene.title).replaceAll('"', "&quot;")}"><g class="fixed">${fixed.map((d) => `<path d="${d}"/>`).join("")}</g></svg>
+<div class="row"><button type="button">Play</button><input type="range" min="0" value="0" aria-label="Time"><output></output></div>
+<ul>${rows.join("")}</ul>
+<p>Loop gap over time, m</p>
+<svg class="gap" viewBox="0 0 640 180" role="img" aria-label="Loop gap over time, logarithmic"></svg>
+<p><small>Recorded by holonom ${escaped(data.build)}${every}. This file needs no server.</small></p>
+<script>const film = ${script};${PLAYER}</script></body></html>
+`;
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// A film of the drawing: pictures on a canvas, recorded by the browser as WebM.
+import { standAlone } from "./picture.js";
+
+const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+const BITS = 4e6; // per second
+const LONGEST = 20; // [s] of film: a longer recording is shown faster
+
+export const canFilm = () =>
+  typeof MediaRecorder !== "undefined" && KINDS.some((kind) => MediaRecorder.isTypeSupported(kind));
+
+/**
+ * One picture: solids below, the SVG over them.
+ * @param {SVGSVGElement} svg
+ * @param {HTMLCanvasElement | null} solids drawn in this very task, or null
+ * @param {CanvasRenderingContext2D} context
+ */
+export async function paint(svg, solids, context) {
+  const { width, height } = context.canvas;
+  const below = document.createElement("canvas");
+  if (solids) {
+    below.width = solids.width;
+    below.height = solids.height;
+    below.getContext("2d")?.drawImage(solids, 0, 0); // what WebGL drew is gone after this task
+  }
+  const { text } = standAlone(svg, { paper: false });
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await image.decode();
+  context.fillStyle = getComputedStyle(document.body).backgroundColor;
+  context.fillRect(0, 0, width, height);
+  if (solids) {
+    context.drawImage(below, 0, 0, width, height);
+  }
+  context.drawImage(image, 0, 0, width, height);
+}
+
+/**
+ * @param {{
+ *   svg: SVGSVGElement, solids: () => HTMLCanvasElement | null, duration: number,
+ *   show: (t: number) => void, told: (share: number) => void, stopped: () => boolean,
+ * }} what duration [s]; show: the page draws this time at once; told: how much is done
+ * @returns {Promise<Blob>}
+ */
+export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
+  const kind = KINDS.find((one) => MediaRecorder.isTypeSupported(one));
+  const canvas = document.createElement("canvas");
+  canvas.width = 2 * Math.round(svg.clientWidth);
+  canvas.height = 2 * Math.round(svg.clientHeight);
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  show(0);
+  await paint(svg, solids(), context);
+
+  const recorder = new MediaRecorder(canvas.captureStream(), {
+    mimeType: kind,
+    videoBitsPerSecond: BITS,
+  });
+  /** @type {Blob[]} */
+  const parts = [];
+  recorder.ondataavailable = ({ data }) => parts.push(data);
+  const ended = new Promise((resolve) => {
+    recorder.onstop = () => resolve(null);
+  });
+  recorder.start();
+  const length = Math.min(duration, LONGEST);
+  const began = performance.now();
+  for (let share = 0; share < 1 && !stopped(); ) {
+    share = Math.min(1, (performance.now() - began) / 1000 / length);
+    show(share * duration);
+    await paint(svg, solids(), context);
+    told(share);
+    await new Promise((resolve) => requestAnimationFrame(resolve));
+  }
+  recorder.stop();
+  await ended;
+  return new Blob(parts, { type: "video/webm" });
+}
