@@ -104,6 +104,10 @@ static void put_part(hn_strbuf *b, hn_variant *x, const hn_part *part) {
     hn_json_end_object(b);
 }
 
+void hn_variant_hint(hn_strbuf *b, hn_variant *x, int number) {
+    hn_draw_text(b, &x->draw, x->exercise->hints[number - 1]);
+}
+
 void hn_variant_json(hn_strbuf *b, hn_variant *x) {
     const hn_exercise *p = x->exercise;
     char hash[17], seed[32];

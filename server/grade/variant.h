@@ -22,6 +22,8 @@ void hn_variant_reset(hn_variant *x);
 uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student);
 /// Statement, parts with their numbers, and the shape of a submission.
 void hn_variant_text(hn_strbuf *b, hn_variant *x);
+/// Writes a hint of the exercise, from 1 to its n_hints, with the numbers of this variant.
+void hn_variant_hint(hn_strbuf *b, hn_variant *x, int number);
 void hn_variant_json(hn_strbuf *b, hn_variant *x);
 /// Grades a submission, an object with a member for each part, into the verdict.
 /// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.

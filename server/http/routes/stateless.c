@@ -243,7 +243,7 @@ static int hint_asked(const hn_request *r, const hn_exercise *problem, hn_diags 
 static void put_hint(hn_strbuf *b, const hn_exercise *problem, hn_variant *x, int number) {
     hn_strbuf text;
     hn_strbuf_init(&text);
-    hn_draw_text(&text, &x->draw, problem->hints[number - 1]);
+    hn_variant_hint(&text, x, number);
     hn_json_object(b);
     hn_json_put_string(b, "id", problem->id);
     hn_json_put_int(b, "hint", number);
