@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, playTo, read, screenshot, until } from "./support.mjs";
 
+const TRACED = ["toplevel", "devtools.timeline", "disabled-by-default-devtools.timeline"];
 const MOST_BYTES = 500e3; // on the line
 
 const bench = createBench();
@@ -221,4 +222,36 @@ test("before the first interaction the page takes 500 kB at most, and no view th
       .filter((name) => /katex\.mjs|study-|three|-dialog/.test(name)),
   );
   assert.deepEqual(late, [], "loaded when they are opened");
+});
+
+test("six methods on FB0 leave the main thread room for 60 frames a second", async (t) => {
+  const methods = ["index1", "baumgarte", "projection", "nullspace", "reduced", "partitioning"];
+  const asked = methods.map((name) => `&method=${name}@rk4:h=0.01`).join("");
+  const page = await open(t, { hash: `#scene=fb0${asked}` });
+  assert.equal(await read(page, (data) => data.methods.length), 6);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.5);
+  const browser = page.context().browser();
+  await browser.startTracing(page, { categories: TRACED });
+  const frames = await page.evaluate(
+    (count) =>
+      new Promise((done) => {
+        let left = count;
+        const next = () => (--left > 0 ? requestAnimationFrame(next) : done(count));
+        requestAnimationFrame(next);
+      }),
+    90,
+  );
+  const { traceEvents } = JSON.parse(String(await browser.stopTracing()));
+  const mains = new Set(
+    traceEvents
+      .filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain")
+      .map(({ pid, tid }) => `${pid} ${tid}`),
+  );
+  // computing time of the thread, which other programs on the machine do not lengthen
+  const busy = traceEvents
+    .filter(({ name, pid, tid }) => name === "RunTask" && mains.has(`${pid} ${tid}`))
+    .reduce((sum, { tdur = 0 }) => sum + tdur / 1000, 0);
+  assert.ok(busy > 0, "the trace tells of the main thread");
+  assert.ok(busy / frames < 1000 / 60, `${busy / frames} ms of computing per frame`);
 });

@@ -453,7 +453,7 @@ test("a singular pose is counted down, and then told with what became of each me
 
 test("one bad entry of a link is left out and named; the others stay", async (t) => {
   const page = await open(t, {
-    hash: "#scene=four-bar&set.l2=1.3&set.l1=50&set.zz=1&method=projection@rk4:h=0.01&method=projektion@rk4&frame=3",
+    hash: "#scene=four-bar&set.l2=1.3&set.l1=50&set.zz=1&set.start.th1=1.2&set.start.th8=1&method=projection@rk4:h=0.01&method=projektion@rk4&frame=3",
   });
   await until(page, (data) => /the link/.test(data.notice) && data.latest?.frame === 3);
   const { notice, methods, settings } = await read(page, (data) => ({
@@ -465,6 +465,8 @@ test("one bad entry of a link is left out and named; the others stay", async (t)
   assert.equal(settings.l2, 1.3);
   assert.match(notice, /l1 is 50; 0\.1 to 3 is allowed/);
   assert.match(notice, /no parameter 'zz'/);
+  assert.equal(settings["start.th1"], 1.2);
+  assert.match(notice, /no coordinate named 'th8'/);
   assert.match(notice, /projektion/);
 });
 

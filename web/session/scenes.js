@@ -61,6 +61,11 @@ export function dropUnknown(left, parameters) {
 export function dropRefused(left, error) {
   const pointer = error instanceof Problem ? (error.errors[0]?.pointer ?? "") : "";
   const [, kind, name] = pointer.split("/");
+  const start = /\/start\/moved\/(.+)$/.exec(pointer);
+  if (start && `start.${start[1]}` in left.settings) {
+    delete left.settings[`start.${start[1]}`];
+    return true;
+  }
   if (kind === "parameters" && name in left.settings) {
     delete left.settings[name];
     return true;

@@ -153,6 +153,16 @@ export function createHandles(svg, layer, data, stage, actions) {
   }
   addEventListener("keydown", onKey, { capture: true });
 
+  /** A finger on a joint drags it; anywhere else it scrolls the page. @param {TouchEvent} event */
+  function keepFromScrolling(event) {
+    const box = svg.getBoundingClientRect();
+    const { clientX, clientY } = event.touches[0];
+    if (event.touches.length === 1 && pointAt(clientX - box.left, clientY - box.top) >= 0) {
+      event.preventDefault();
+    }
+  }
+  svg.addEventListener("touchstart", keepFromScrolling, { passive: false });
+
   function makePieces() {
     const key = `${data.run} ${data.view.selected}`;
     if (madeFor !== key) {
