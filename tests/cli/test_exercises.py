@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exercises from the shell: variants, checks, verdicts and their exit statuses, grading again. Speaks TAP."""
 
+import csv
 import json
 import os
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 PROGRAM = os.environ.get("HOLONOM", "build/holonom")
 RESULTS = []
@@ -72,6 +74,23 @@ def statuses(folder):
     expect("what is no verdict is refused", run("regrade", path).returncode == 2)
 
 
+def forms(folder):
+    path = write(folder, "some.json", {"b": {"choice": "a", "reason": "a"}, "d": "b"})
+    junit = run("grade", "p1", path, "--format", "junit").stdout
+    suite = xml.etree.ElementTree.fromstring(junit)[0]
+    failures = [c for c in suite if c.find("failure") is not None]
+    expect("JUnit counts its cases and failures", len(suite) == int(suite.get("tests")) and len(failures) == int(suite.get("failures")) > 0, junit)
+    lines = list(csv.reader(run("grade", "p1", path, path, "--format", "csv", "--student", "=cmd()").stdout.splitlines()))
+    expect("CSV has one head and a line for each file", [line[0] for line in lines if line] == ["problem", "p1", "p1"], str(lines))
+    expect("CSV hands no formula to a spreadsheet", lines[1][1] == " =cmd()", str(lines))
+    html = run("grade", "p1", write(folder, "bad.json", {"b": {"choice": "<script>", "reason": "a"}, "d": "b"}), "--format", "html").stdout
+    expect("HTML escapes what was handed in", "<script>" not in html and "&#60;script&#62;" in html, html)
+    bad = run("grade", "p1", write(folder, "none.json", {}), "--format", "junit")
+    expect("a submission that cannot be graded is an error of JUnit", bad.returncode == 2 and "<error" in bad.stdout, bad.stdout)
+    near = run("grade", "p1", path, "--format", "junti")
+    expect("a form is suggested", near.returncode == 2 and "junit" in near.stderr, near.stderr)
+
+
 def broken_exercise(folder):
     """An exercise that is at fault is the program's fault, whatever is handed in."""
     home = os.path.join(folder, "home")
@@ -98,6 +117,7 @@ def main():
     checks()
     with tempfile.TemporaryDirectory() as folder:
         statuses(folder)
+        forms(folder)
         broken_exercise(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):
         if not good:

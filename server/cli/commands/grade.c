@@ -11,6 +11,7 @@
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
 #include "grade/variant.h"
+#include "grade/verdict_forms.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,39 +24,59 @@ static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_st
     return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
 }
 
-/// The forms a verdict can be written in.
-typedef enum verdict_form { FORM_TEXT, FORM_JSON, FORM_GRADESCOPE } verdict_form;
+/// The forms a verdict can be written in: the name, and the ending of its file in --out.
+typedef enum verdict_form {
+    FORM_TEXT,
+    FORM_JSON,
+    FORM_GRADESCOPE,
+    FORM_JUNIT,
+    FORM_CSV,
+    FORM_HTML,
+    N_FORMS
+} verdict_form;
+static const char *const FORM_NAMES[N_FORMS] = {"text",  "json", "gradescope",
+                                                "junit", "csv",  "html"};
+static const char *const FORM_ENDINGS[N_FORMS] = {"txt", "json", "json", "xml", "csv", "html"};
 
 static hn_status choose_form(const hn_args *args, verdict_form *form, hn_diag *diag) {
-    static const char *const names[] = {"text", "json", "gradescope"};
     const char *wanted = args->format ? args->format : args->json ? "json" : "text";
-    for (int i = 0; i < 3; i++) {
-        if (strcmp(wanted, names[i]) == 0) {
+    for (int i = 0; i < N_FORMS; i++) {
+        if (strcmp(wanted, FORM_NAMES[i]) == 0) {
             *form = (verdict_form)i;
             return HN_OK;
         }
     }
-    const char *near = hn_nearest_name(wanted, names, 3);
-    return hn_diag_set(diag, HN_ERR_INPUT, NULL, near ? near : "text, json or gradescope",
+    const char *near = hn_nearest_name(wanted, FORM_NAMES, N_FORMS);
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                       near ? near : "text, json, gradescope, junit, csv or html",
                        "'%.40s' is not a form of verdicts", wanted);
 }
 
-/// Ending of the files in --out.
 static const char *ending_of(verdict_form form) {
-    return form == FORM_TEXT ? "txt" : "json";
+    return FORM_ENDINGS[form];
 }
 
-static void write_verdict(hn_strbuf *b, const hn_verdict *v, verdict_form form, double seconds) {
+/// `first`: of several verdicts on one output.
+static void write_verdict(hn_strbuf *b, const hn_verdict *v, verdict_form form, double seconds,
+                          int first) {
     switch (form) {
-    case FORM_TEXT:
-        hn_verdict_text(b, v);
-        break;
     case FORM_JSON:
         hn_verdict_json(b, v);
         break;
     case FORM_GRADESCOPE:
         hn_verdict_gradescope(b, v, seconds);
         break;
+    case FORM_JUNIT:
+        hn_verdict_junit(b, v);
+        break;
+    case FORM_CSV:
+        hn_verdict_csv(b, v, first);
+        break;
+    case FORM_HTML:
+        hn_verdict_html(b, v);
+        break;
+    default:
+        hn_verdict_text(b, v);
     }
 }
 
@@ -97,7 +118,8 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
     if (t->args->words.n > 2 && t->form == FORM_TEXT && !t->target) {
         hn_strbuf_printf(&b, "== %s\n", t->submission);
     }
-    write_verdict(&b, v, t->form, seconds);
+    const int first = t->target || t->submission == t->args->words.word[1];
+    write_verdict(&b, v, t->form, seconds, first);
     if (!t->target) {
         return hn_cli_print(&b);
     }
