@@ -51,12 +51,12 @@ ROOMS_session      := store: model:store job:model compare:store,model reference
                       report:store,model,job,compare,references,precision,accounts,stability,extreme \
                       kinds:job,model,references,precision,accounts,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
-ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson \
+ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson class:grade,grade/parts \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,grade/parts,lesson,http/ground,http/request,http/live,http/studies,http/runs \
                       cli/shell:terminal tui:terminal,cli/shell \
-                      cli/commands:grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
+                      cli/commands:class,grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
                       cli/study:terminal,cli/shell cli:program,terminal,cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------

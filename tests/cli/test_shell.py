@@ -100,6 +100,8 @@ class Help(unittest.TestCase):
             shutil.copy(answer, os.path.join(folder, "answer.json"))
             with open(os.path.join(folder, "verdict.json"), "w", encoding="utf-8") as f:
                 f.write(call("grade", "p3", os.path.join(folder, "answer.json"), "--format", "json").stdout)
+            os.mkdir(os.path.join(folder, "handed-in"))
+            shutil.copy(answer, os.path.join(folder, "handed-in", "ada.json"))
             for command in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M):
                 lines = re.findall(r"^  holonom (.+)$", call("help", command).stdout.split("examples\n")[-1], re.M)
                 self.assertEqual(len(lines), 3, command)

@@ -93,6 +93,8 @@ static const option OPTIONS[] = {
     {"--theme", "light|dark", OPTION_TEXT, AT(theme), "paper or slate"},
     {"--view", "VIEW", OPTION_TEXT, AT(view),
      "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
+    {"--jobs", "N", OPTION_COUNT, AT(jobs),
+     "processes that work at once; all processors when left out"},
     {"--seed", "N", OPTION_COUNT, AT(seed),
      "the variant: its numbers, and the states at which answers are compared"},
     {"--student", "NAME", OPTION_TEXT, AT(student), "whose variant: a seed made from the name"},

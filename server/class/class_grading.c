@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // pipe2
+#include "class/class_grading.h"
+
+#include "base/clock.h"
+#include "base/hash.h"
+#include "build.h"
+#include "grade/grade.h"
+#include "grade/variant.h"
+
+#include <cjson/cJSON.h>
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MOST_JOBS = 64, TICK = 100 }; // [ms] between two looks at the clock
+
+typedef struct worker {
+    pid_t pid;
+    int ask, answer; ///< indices go out, lines come back
+    int index;       ///< of the submission under way; -1: idle
+    double since;
+    hn_strbuf text;
+} worker;
+
+typedef struct grading {
+    const hn_roster *roster;
+    const hn_exercise *exercise;
+    const hn_class_opts *opts;
+    hn_class_result *out;
+    uint64_t *key; ///< of each submission: what its line depends on
+    FILE *journal;
+    worker workers[MOST_JOBS];
+    int n_workers, next, done;
+} grading;
+
+// ---- one line ----
+
+static uint64_t seed_of(const grading *g, const hn_roster_entry *e) {
+    return g->opts->seed              ? g->opts->seed
+           : g->exercise->n_parts > 0 ? hn_variant_seed(g->exercise, e->student)
+                                      : 0;
+}
+
+/// What the line of a submission depends on: its text or why there is none, the exercise, the seed
+/// and this build.
+static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
+    hn_strbuf text;
+    char file[HN_ROSTER_PATH];
+    hn_diag diag = {0};
+    hn_strbuf_init(&text);
+    const hn_status status = hn_roster_load(e, &text, file, &diag);
+    uint64_t hash = hn_hash_text(HN_HASH_START, hn_build_name());
+    hash = hn_hash_bytes(hash, &g->exercise->hash, sizeof g->exercise->hash);
+    const uint64_t seed = seed_of(g, e);
+    hash = hn_hash_bytes(hash, &seed, sizeof seed);
+    hash = hn_hash_text(hash, e->student);
+    hash = status == HN_OK ? hn_hash_bytes(hash, hn_strbuf_text(&text), text.n)
+                           : hn_hash_text(hash, diag.message);
+    hn_strbuf_reset(&text);
+    return hn_hash_mix(hash);
+}
+
+/// All texts of a submission without blanks: two that differ in spacing alone are one.
+static uint64_t hash_texts(uint64_t hash, const cJSON *item) {
+    if (cJSON_IsString(item)) {
+        for (const char *p = item->valuestring; *p; p++) {
+            const char c = (char)tolower((unsigned char)*p);
+            hash = isspace((unsigned char)c) ? hash : hn_hash_bytes(hash, &c, 1);
+        }
+        hash = hn_hash_text(hash, "|");
+    } else if (cJSON_IsNumber(item)) {
+        hash = hn_hash_double(hash, item->valuedouble);
+    }
+    const cJSON *part;
+    cJSON_ArrayForEach(part, item) {
+        hash = hash_texts(hash, part);
+    }
+    return hash;
+}
+
+static void begin_line(const grading *g, int i, hn_strbuf *b, const char *status) {
+    char hex[17];
+    hn_hash_hex(g->key[i], hex);
+    hn_json_object(b);
+    hn_json_put_string(b, "student", g->roster->entry[i].student);
+    hn_json_put_string(b, "status", status);
+    hn_json_put_string(b, "key", hex);
+}
+
+static void put_graded(hn_strbuf *b, const hn_verdict *v, const char *text) {
+    char hex[17];
+    cJSON *submission = cJSON_Parse(text);
+    hn_hash_hex(hn_hash_mix(hash_texts(HN_HASH_START, submission)), hex);
+    cJSON_Delete(submission);
+    hn_json_put_number(b, "score", v->score);
+    hn_json_put_number(b, "max_score", v->max_score);
+    hn_json_put_string(b, "summary", v->summary);
+    hn_json_put_string(b, "texts", hex);
+    hn_json_key(b, "mistakes");
+    hn_json_array(b);
+    for (int k = 0; k < v->n_entries; k++) {
+        if (!v->entry[k].right && v->entry[k].mistake && v->entry[k].mistake[0]) {
+            char what[80];
+            snprintf(what, sizeof what, "%s in %s", v->entry[k].mistake, v->entry[k].name);
+            hn_json_string(b, what);
+        }
+    }
+    hn_json_end_array(b);
+}
+
+/// The line of submission i.
+static void grade_one(const grading *g, int i, hn_strbuf *b) {
+    const hn_roster_entry *e = &g->roster->entry[i];
+    hn_strbuf text;
+    char file[HN_ROSTER_PATH];
+    hn_diag diag = {0};
+    hn_verdict *v = calloc(1, sizeof *v);
+    hn_strbuf_init(&text);
+    hn_status status = v ? hn_roster_load(e, &text, file, &diag) : HN_ERR_MEMORY;
+    const bool there = status == HN_OK;
+    HN_THEN(status, hn_grade_json(g->exercise, hn_strbuf_text(&text), text.n, seed_of(g, e), v));
+
+    // graded, not gradable by its own fault, or the grader's fault
+    const bool failed = there ? status != HN_OK : !v;
+    const bool graded = !failed && there && v->kind == HN_VERDICT_GRADED;
+    begin_line(g, i, b, failed ? "failed" : graded ? "graded" : "ungradable");
+    hn_json_put_string(b, "file", v ? file : "");
+    if (graded) {
+        put_graded(b, v, hn_strbuf_text(&text));
+    } else {
+        hn_json_put_number(b, "score", 0);
+        hn_json_put_string(b, "reason",
+                           failed  ? hn_status_text(status)
+                           : there ? v->reason
+                                   : diag.message);
+    }
+    hn_json_end_object(b);
+    hn_strbuf_add(b, "\n");
+    hn_strbuf_reset(&text);
+    free(v);
+}
+
+// ---- workers ----
+
+/// In the child: answers indices with lines until there are no more.
+_Noreturn static void work(const grading *g, int ask, int answer) {
+    int i;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    signal(SIGINT, SIG_IGN); // Ctrl-C is the parent's to answer
+    while (read(ask, &i, sizeof i) == (ssize_t)sizeof i) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        grade_one(g, i, &b);
+        const char *text = hn_strbuf_text(&b);
+        for (size_t sent = 0; sent < b.n;) {
+            const ssize_t n = write(answer, text + sent, b.n - sent);
+            if (n <= 0) {
+                _exit(1);
+            }
+            sent += (size_t)n;
+        }
+        hn_strbuf_reset(&b);
+    }
+    _exit(0);
+}
+
+static hn_status start_worker(grading *g, worker *w, hn_diag *diag) {
+    int ask[2], answer[2];
+    if (pipe2(ask, O_CLOEXEC) != 0 || pipe2(answer, O_CLOEXEC) != 0) {
+        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "no pipe for a worker: %s",
+                           strerror(errno));
+    }
+    fflush(NULL);
+    *w = (worker){.pid = fork(), .ask = ask[1], .answer = answer[0], .index = -1};
+    hn_strbuf_init(&w->text);
+    if (w->pid == 0) {
+        close(ask[1]);
+        close(answer[0]);
+        // the pipes of the others: their ends would never come
+        for (int k = 0; k < g->n_workers; k++) {
+            if (&g->workers[k] != w && g->workers[k].pid > 0) {
+                close(g->workers[k].ask);
+                close(g->workers[k].answer);
+            }
+        }
+        work(g, ask[0], answer[1]);
+    }
+    close(ask[0]);
+    close(answer[1]);
+    return w->pid > 0 ? HN_OK
+                      : hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "no process for a worker: %s",
+                                    strerror(errno));
+}
+
+static void end_worker(worker *w, bool kill_it) {
+    if (w->pid <= 0) {
+        return;
+    }
+    close(w->ask);
+    if (kill_it) {
+        kill(w->pid, SIGKILL);
+    }
+    close(w->answer);
+    waitpid(w->pid, NULL, 0);
+    hn_strbuf_reset(&w->text);
+    w->pid = 0;
+}
+
+// ---- lines that are done ----
+
+static hn_status keep_line(grading *g, int i, const char *line, bool told) {
+    g->out->line[i] = strdup(line);
+    g->done++;
+    if (told) {
+        g->out->graded++;
+        if (g->journal && (fprintf(g->journal, "%s\n", line) < 0 || fflush(g->journal) != 0)) {
+            return HN_ERR_IO;
+        }
+        if (g->opts->tell) {
+            g->opts->tell(g->opts->user, line);
+        }
+    }
+    return g->out->line[i] ? HN_OK : HN_ERR_MEMORY;
+}
+
+/// A line for a submission whose worker has ended.
+static hn_status keep_loss(grading *g, worker *w, const char *reason) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    begin_line(g, w->index, &b, "failed");
+    hn_json_put_number(&b, "score", 0);
+    hn_json_put_string(&b, "reason", reason);
+    hn_json_end_object(&b);
+    const hn_status status = keep_line(g, w->index, hn_strbuf_text(&b), true);
+    hn_strbuf_reset(&b);
+    return status;
+}
+
+/// Reads what a worker has to say; false: it has ended.
+static bool read_worker(worker *w) {
+    char piece[8192];
+    const ssize_t n = read(w->answer, piece, sizeof piece);
+    if (n > 0) {
+        hn_strbuf_add_n(&w->text, piece, (size_t)n);
+    }
+    return n > 0 || (n < 0 && errno == EINTR);
+}
+
+static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
+    const bool alive = !ready || read_worker(w);
+    if (w->text.n > 0 && w->text.text[w->text.n - 1] == '\n') {
+        w->text.text[w->text.n - 1] = '\0';
+        const hn_status status = keep_line(g, w->index, hn_strbuf_text(&w->text), true);
+        hn_strbuf_clear(&w->text);
+        w->index = -1;
+        return status;
+    }
+    const bool late = w->index >= 0 && hn_clock_wall() - w->since > g->opts->time_limit;
+    if (!alive || late) {
+        char reason[80];
+        snprintf(reason, sizeof reason,
+                 late ? "grading took longer than %g s" : "the grader ended while it graded this",
+                 g->opts->time_limit);
+        const hn_status status = w->index >= 0 ? keep_loss(g, w, reason) : HN_OK;
+        end_worker(w, true);
+        HN_TRY(status);
+        return start_worker(g, w, diag);
+    }
+    return HN_OK;
+}
+
+static void give_work(grading *g) {
+    for (int k = 0; k < g->n_workers; k++) {
+        worker *w = &g->workers[k];
+        while (w->index < 0 && g->next < g->roster->n) {
+            const int i = g->next++;
+            if (!g->out->line[i] && write(w->ask, &i, sizeof i) == (ssize_t)sizeof i) {
+                w->index = i;
+                w->since = hn_clock_wall();
+            }
+        }
+    }
+}
+
+static hn_status run(grading *g, hn_diag *diag) {
+    hn_status status = HN_OK;
+    while (status == HN_OK && g->done < g->roster->n) {
+        struct pollfd wait[MOST_JOBS];
+        if (g->opts->stop && g->opts->stop(g->opts->user)) {
+            return HN_ERR_BUDGET;
+        }
+        give_work(g);
+        for (int k = 0; k < g->n_workers; k++) {
+            wait[k] = (struct pollfd){.fd = g->workers[k].answer, .events = POLLIN};
+        }
+        poll(wait, (nfds_t)g->n_workers, TICK);
+        for (int k = 0; status == HN_OK && k < g->n_workers; k++) {
+            status = look_at(g, &g->workers[k], wait[k].revents != 0, diag);
+        }
+    }
+    return status;
+}
+
+// ---- the journal ----
+
+static int find_key(const grading *g, const char *student, const char *hex) {
+    for (int i = 0; i < g->roster->n; i++) {
+        char own[17];
+        hn_hash_hex(g->key[i], own);
+        if (strcmp(own, hex) == 0 && strcmp(g->roster->entry[i].student, student) == 0 &&
+            !g->out->line[i]) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/// Takes the lines of an earlier run that still hold; a line that was cut off by a kill is dropped.
+static hn_status open_journal(grading *g, hn_diag *diag) {
+    char *line = NULL;
+    size_t cap = 0;
+    FILE *old = fopen(g->opts->journal, "re");
+    for (ssize_t n; old && (n = getline(&line, &cap, old)) > 0;) {
+        cJSON *o = line[n - 1] == '\n' ? cJSON_Parse(line) : NULL;
+        const char *student = cJSON_GetStringValue(cJSON_GetObjectItem(o, "student"));
+        const char *hex = cJSON_GetStringValue(cJSON_GetObjectItem(o, "key"));
+        const char *status = cJSON_GetStringValue(cJSON_GetObjectItem(o, "status"));
+        const int i = student && hex && status && strcmp(status, "failed") != 0
+                          ? find_key(g, student, hex)
+                          : -1;
+        if (i >= 0) {
+            line[n - 1] = '\0';
+            if (keep_line(g, i, line, false) == HN_OK) {
+                g->out->resumed++;
+            }
+        }
+        cJSON_Delete(o);
+    }
+    free(line);
+    if (old) {
+        fclose(old);
+    }
+
+    // begun anew with what holds
+    g->journal = fopen(g->opts->journal, "we");
+    if (!g->journal) {
+        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "'%.200s' cannot be written: %s",
+                           g->opts->journal, strerror(errno));
+    }
+    for (int i = 0; i < g->roster->n; i++) {
+        if (g->out->line[i]) {
+            fprintf(g->journal, "%s\n", g->out->line[i]);
+        }
+    }
+    return fflush(g->journal) == 0 ? HN_OK : HN_ERR_IO;
+}
+
+hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,
+                         const hn_class_opts *opts, hn_class_result *out, hn_diag *diag) {
+    grading g = {.roster = roster, .exercise = exercise, .opts = opts, .out = out};
+    const size_t n = (size_t)roster->n;
+    *out = (hn_class_result){.n = roster->n, .line = calloc(n + 1, sizeof *out->line)};
+    g.key = calloc(n + 1, sizeof *g.key);
+    hn_status status = out->line && g.key ? HN_OK : HN_ERR_MEMORY;
+    for (int i = 0; status == HN_OK && i < roster->n; i++) {
+        g.key[i] = calc_key(&g, &roster->entry[i]);
+    }
+    if (status == HN_OK && opts->journal) {
+        status = open_journal(&g, diag);
+    }
+
+    // no more workers than there is work
+    const int left = roster->n - g.done;
+    int jobs = opts->jobs < 1 ? 1 : opts->jobs > MOST_JOBS ? MOST_JOBS : opts->jobs;
+    jobs = jobs < left ? jobs : left;
+    for (int k = 0; status == HN_OK && k < jobs; k++) {
+        status = start_worker(&g, &g.workers[k], diag);
+        g.n_workers = k + 1;
+    }
+    HN_THEN(status, run(&g, diag));
+    for (int k = 0; k < g.n_workers; k++) {
+        end_worker(&g.workers[k], status != HN_OK);
+    }
+    if (g.journal) {
+        fclose(g.journal);
+    }
+    free(g.key);
+    return status;
+}
+
+void hn_class_result_reset(hn_class_result *r) {
+    for (int i = 0; r->line && i < r->n; i++) {
+        free(r->line[i]);
+    }
+    free(r->line);
+    *r = (hn_class_result){0};
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLASS_CLASS_GRADING_H
+#define HN_CLASS_CLASS_GRADING_H
+// Grades a roster with several worker processes. A submission that takes too long, or ends its
+// worker, costs its own line and nobody else's. Every line is kept in a journal as it is finished,
+// so that a run that was killed goes on; the result does not depend on the order of finishing.
+
+#include "class/roster.h"
+#include "grade/exercise.h"
+
+#include <stdint.h>
+
+typedef struct hn_class_opts {
+    int jobs;
+    double time_limit;   ///< [s] for one submission
+    uint64_t seed;       ///< of all; 0: each student's own for an exercise that draws numbers
+    const char *journal; ///< NULL: nothing is kept
+    /// called with each line as it is finished; resumed lines are not told again
+    void (*tell)(void *user, const char *line);
+    int (*stop)(void *user); ///< returns 1 to stop; may be NULL
+    void *user;
+} hn_class_opts;
+
+typedef struct hn_class_result {
+    char **line; ///< n JSON objects, in the order of the roster; NULL: not graded
+    int n, resumed, graded;
+} hn_class_result;
+
+/// Grades everybody. Fails: HN_ERR_IO (journal, processes), HN_ERR_MEMORY; HN_ERR_BUDGET when it was
+/// stopped, with what is done in *out. hn_class_result_reset() in any case.
+HN_MUST_CHECK hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,
+                                       const hn_class_opts *opts, hn_class_result *out,
+                                       hn_diag *diag);
+void hn_class_result_reset(hn_class_result *r);
+
+#endif

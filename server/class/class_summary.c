@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "class/class_summary.h"
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { BINS = 10, BAR = 40, MOST_NAMED = 10, WORD = 96 };
+
+/// How often a word was seen, and who is behind it.
+typedef struct count {
+    char word[WORD];
+    int n;
+    hn_strbuf who;
+} count;
+
+typedef struct counts {
+    int n, cap;
+    count *item;
+} counts;
+
+static void add_count(counts *c, const char *word, const char *who) {
+    int i = 0;
+    while (i < c->n && strcmp(c->item[i].word, word) != 0) {
+        i++;
+    }
+    if (i == c->n) {
+        if (c->n == c->cap) {
+            const int cap = c->cap ? 2 * c->cap : 32;
+            count *larger = realloc(c->item, (size_t)cap * sizeof *larger);
+            if (!larger) {
+                return;
+            }
+            c->item = larger;
+            c->cap = cap;
+        }
+        c->item[c->n] = (count){0};
+        snprintf(c->item[c->n].word, WORD, "%s", word);
+        hn_strbuf_init(&c->item[c->n++].who);
+    }
+    c->item[i].n++;
+    hn_strbuf_printf(&c->item[i].who, "%s%s", c->item[i].n > 1 ? ", " : "", who);
+}
+
+static int more_first(const void *a, const void *b) {
+    const count *x = a, *y = b;
+    return x->n != y->n ? y->n - x->n : strcmp(x->word, y->word);
+}
+
+static void free_counts(counts *c) {
+    for (int i = 0; i < c->n; i++) {
+        hn_strbuf_reset(&c->item[i].who);
+    }
+    free(c->item);
+}
+
+static const char *text_of(const cJSON *o, const char *key) {
+    const char *text = cJSON_GetStringValue(cJSON_GetObjectItem(o, key));
+    return text ? text : "";
+}
+
+typedef struct tally {
+    int graded, ungradable, failed, bin[BINS + 1];
+    double sum, most;
+    counts mistakes, equal;
+} tally;
+
+static void take_line(tally *t, const cJSON *o) {
+    const char *student = text_of(o, "student"), *status = text_of(o, "status");
+    if (strcmp(status, "graded") != 0) {
+        t->failed += strcmp(status, "failed") == 0;
+        t->ungradable += strcmp(status, "ungradable") == 0;
+        return;
+    }
+    const double score = cJSON_GetNumberValue(cJSON_GetObjectItem(o, "score"));
+    const double most = cJSON_GetNumberValue(cJSON_GetObjectItem(o, "max_score"));
+    t->graded++;
+    t->sum += score;
+    t->most = most;
+    t->bin[most > 0 ? (int)(BINS * score / most) : 0]++;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, cJSON_GetObjectItem(o, "mistakes")) {
+        add_count(&t->mistakes, m->valuestring, student);
+    }
+    // right answers are alike by nature; wrong ones are not
+    if (score < most) {
+        add_count(&t->equal, text_of(o, "texts"), student);
+    }
+}
+
+static void put_histogram(hn_strbuf *b, const tally *t) {
+    int highest = 1;
+    for (int k = 0; k <= BINS; k++) {
+        highest = t->bin[k] > highest ? t->bin[k] : highest;
+    }
+    for (int k = BINS; k >= 0; k--) {
+        char range[24];
+        snprintf(range, sizeof range, k == BINS ? "all" : "%d-%d %%", 100 * k / BINS,
+                 100 * (k + 1) / BINS);
+        const int bar = (BAR * t->bin[k] + highest - 1) / highest;
+        hn_strbuf_printf(b, "  %9s %5d  %.*s\n", range, t->bin[k], bar,
+                         "########################################");
+    }
+}
+
+void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
+    tally t = {0};
+    for (int i = 0; i < r->n; i++) {
+        cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
+        if (o) {
+            take_line(&t, o);
+        }
+        cJSON_Delete(o);
+    }
+    hn_strbuf_printf(b, "%d submissions: %d graded, %d not gradable, %d failed in the grader\n",
+                     r->n, t.graded, t.ungradable, t.failed);
+    if (t.graded > 0) {
+        hn_strbuf_printf(b, "mean score %.2f of %g\n", t.sum / t.graded, t.most);
+        put_histogram(b, &t);
+    }
+
+    // what to talk about in class
+    qsort(t.mistakes.item, (size_t)t.mistakes.n, sizeof(count), more_first);
+    for (int k = 0; k < t.mistakes.n && k < MOST_NAMED; k++) {
+        hn_strbuf_printf(b, "%s  %4d  %s\n", k == 0 ? "commonest mistakes\n" : "",
+                         t.mistakes.item[k].n, t.mistakes.item[k].word);
+    }
+    qsort(t.equal.item, (size_t)t.equal.n, sizeof(count), more_first);
+    for (int k = 0; k < t.equal.n && t.equal.item[k].n > 1; k++) {
+        hn_strbuf_printf(b, "%s  %s\n",
+                         k == 0 ? "equal wrong answers, blanks and capitals aside\n" : "",
+                         hn_strbuf_text(&t.equal.item[k].who));
+    }
+    free_counts(&t.mistakes);
+    free_counts(&t.equal);
+}

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLASS_CLASS_SUMMARY_H
+#define HN_CLASS_CLASS_SUMMARY_H
+// What a teacher reads after a class was graded.
+
+#include "class/class_grading.h"
+
+/// Adds the scores as a histogram, the commonest mistakes, and who handed in equal wrong answers.
+void hn_class_summary(hn_strbuf *b, const hn_class_result *r);
+
+#endif

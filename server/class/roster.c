@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "class/roster.h"
+
+#include "base/file.h"
+#include "class/zip_file.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+enum { MOST_DEPTH = 6, MOST_ARCHIVE = 64 << 20 };
+
+// ---- names ----
+
+static bool ends_in(const char *text, const char *ending) {
+    const size_t n = strlen(text), m = strlen(ending);
+    return n > m && strcasecmp(text + n - m, ending) == 0;
+}
+
+static bool is_number(const char *text, size_t n) {
+    size_t digits = 0;
+    while (digits < n && isdigit((unsigned char)text[digits])) {
+        digits++;
+    }
+    return n > 0 && digits == n;
+}
+
+/// Canvas: NAME_[LATE_]NUMBER_NUMBER_file. Returns the length of the name, 0: it is not so.
+static size_t canvas_name(const char *name) {
+    const size_t first = strcspn(name, "_");
+    const char *p = name[first] ? name + first + 1 : "";
+    if (strncmp(p, "LATE_", 5) == 0) {
+        p += 5;
+    }
+    for (int i = 0; i < 2; i++) {
+        const size_t n = strcspn(p, "_");
+        if (!p[n] || !is_number(p, n)) {
+            return 0;
+        }
+        p += n + 1;
+    }
+    return first;
+}
+
+void hn_roster_student(const char *name, char out[HN_ROSTER_NAME]) {
+    const char *moodle = strstr(name, "_assignsubmission_");
+    const char *dot = strrchr(name, '.');
+    size_t n = canvas_name(name);
+    if (moodle) {
+        // behind the name stands the participant's number
+        n = (size_t)(moodle - name);
+        size_t digits = n;
+        while (digits > 0 && isdigit((unsigned char)name[digits - 1])) {
+            digits--;
+        }
+        n = digits < n && digits > 1 && name[digits - 1] == '_' ? digits - 1 : n;
+    } else if (n == 0) {
+        const bool file = ends_in(name, ".json") || ends_in(name, ".zip");
+        n = file && dot ? (size_t)(dot - name) : strlen(name);
+    }
+    snprintf(out, HN_ROSTER_NAME, "%.*s", (int)(n < HN_ROSTER_NAME ? n : HN_ROSTER_NAME - 1), name);
+}
+
+// ---- the folder ----
+
+static int compare(const void *a, const void *b) {
+    const hn_roster_entry *x = a, *y = b;
+    const int by_student = strcmp(x->student, y->student);
+    return by_student ? by_student : strcmp(x->path, y->path);
+}
+
+static hn_status add(hn_roster *r, const char *folder, const char *name) {
+    struct stat info;
+    if (r->n == r->cap) {
+        const int cap = r->cap ? 2 * r->cap : 64;
+        hn_roster_entry *larger = realloc(r->entry, (size_t)cap * sizeof *larger);
+        if (!larger) {
+            return HN_ERR_MEMORY;
+        }
+        r->entry = larger;
+        r->cap = cap;
+    }
+    hn_roster_entry *e = &r->entry[r->n];
+    const int n = snprintf(e->path, sizeof e->path, "%s/%s", folder, name);
+    if (n >= (int)sizeof e->path || lstat(e->path, &info) != 0) {
+        return HN_OK;
+    }
+    e->is_folder = S_ISDIR(info.st_mode);
+    const bool file = S_ISREG(info.st_mode) && (ends_in(name, ".json") || ends_in(name, ".zip"));
+    if (e->is_folder || file) {
+        hn_roster_student(name, e->student);
+        r->n++;
+    }
+    return HN_OK;
+}
+
+hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag) {
+    *r = (hn_roster){0};
+    DIR *dir = opendir(folder);
+    if (!dir) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "unpack the platform's archive first",
+                           "'%.200s' is not a folder: %s", folder, strerror(errno));
+    }
+    hn_status status = HN_OK;
+    for (struct dirent *d; status == HN_OK && (d = readdir(dir)) != NULL;) {
+        if (d->d_name[0] != '.') {
+            status = add(r, folder, d->d_name);
+        }
+    }
+    closedir(dir);
+    if (status == HN_OK && r->n == 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "a folder, a .json or a .zip for each student",
+                           "there is nobody in '%.200s'", folder);
+    }
+    if (r->n > 0) {
+        qsort(r->entry, (size_t)r->n, sizeof *r->entry, compare);
+    }
+    return status;
+}
+
+void hn_roster_reset(hn_roster *r) {
+    free(r->entry);
+    *r = (hn_roster){0};
+}
+
+// ---- one student's file ----
+
+/// The JSON and zip files below a folder: how many, and the first of each by name.
+typedef struct finds {
+    int n_json, n_zip;
+    char json[HN_ROSTER_PATH], zip[HN_ROSTER_PATH];
+} finds;
+
+static void keep(int *n, char first[HN_ROSTER_PATH], const char *path) {
+    if (++*n == 1 || strcmp(path, first) < 0) {
+        snprintf(first, HN_ROSTER_PATH, "%s", path);
+    }
+}
+
+/// Files of tools and systems that nobody hands in on purpose.
+static bool is_noise(const char *name) {
+    return name[0] == '.' || strcmp(name, "__MACOSX") == 0 || strcmp(name, "package.json") == 0 ||
+           strcmp(name, "submission_metadata.json") == 0 || strcmp(name, "node_modules") == 0;
+}
+
+static void search(finds *f, const char *folder, int depth) {
+    DIR *dir = depth < MOST_DEPTH ? opendir(folder) : NULL;
+    if (!dir) {
+        return;
+    }
+    for (struct dirent *d; (d = readdir(dir)) != NULL;) {
+        char path[HN_ROSTER_PATH];
+        struct stat info;
+        if (is_noise(d->d_name) ||
+            snprintf(path, sizeof path, "%s/%s", folder, d->d_name) >= (int)sizeof path ||
+            lstat(path, &info) != 0) {
+            continue;
+        }
+        if (S_ISDIR(info.st_mode)) {
+            search(f, path, depth + 1);
+        } else if (S_ISREG(info.st_mode) && ends_in(path, ".json")) {
+            keep(&f->n_json, f->json, path);
+        } else if (S_ISREG(info.st_mode) && ends_in(path, ".zip")) {
+            keep(&f->n_zip, f->zip, path);
+        }
+    }
+    closedir(dir);
+}
+
+static hn_status refuse_count(int n, hn_diag *diag) {
+    return n == 0 ? hn_diag_set(diag, HN_ERR_INPUT, NULL, "hand in one file that ends in .json",
+                                "no JSON file was handed in")
+                  : hn_diag_set(diag, HN_ERR_INPUT, NULL, "hand in one file that ends in .json",
+                                "%d JSON files were handed in; which one counts cannot be told", n);
+}
+
+static bool is_answer(const char *name) {
+    const char *base = strrchr(name, '/') ? strrchr(name, '/') + 1 : name;
+    return ends_in(name, ".json") && !is_noise(base) && strstr(name, "__MACOSX") == NULL;
+}
+
+static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER_PATH],
+                          hn_diag *diag) {
+    hn_strbuf bytes;
+    hn_zip_entry *list = NULL;
+    int n = 0, found = 0, one = 0;
+    hn_strbuf_init(&bytes);
+    hn_status status = hn_file_read(path, MOST_ARCHIVE, &bytes, diag);
+    HN_THEN(status, hn_zip_list(hn_strbuf_text(&bytes), bytes.n, &list, &n, diag));
+    for (int i = 0; status == HN_OK && i < n; i++) {
+        if (is_answer(list[i].name)) {
+            found++;
+            one = i;
+        }
+    }
+    if (status == HN_OK && found != 1) {
+        status = refuse_count(found, diag);
+    }
+    if (status == HN_OK) {
+        snprintf(file, HN_ROSTER_PATH, "%.700s:%.255s", path, list[one].name);
+        status =
+            hn_zip_read(hn_strbuf_text(&bytes), bytes.n, &list[one], HN_ROSTER_BYTES, text, diag);
+    }
+    free(list);
+    hn_strbuf_reset(&bytes);
+    return status;
+}
+
+hn_status hn_roster_load(const hn_roster_entry *e, hn_strbuf *text, char file[HN_ROSTER_PATH],
+                         hn_diag *diag) {
+    finds f = {0};
+    snprintf(file, HN_ROSTER_PATH, "%s", e->path);
+    if (e->is_folder) {
+        search(&f, e->path, 0);
+    } else if (ends_in(e->path, ".zip")) {
+        keep(&f.n_zip, f.zip, e->path);
+    } else {
+        keep(&f.n_json, f.json, e->path);
+    }
+    if (f.n_json == 0 && f.n_zip == 1) {
+        return load_zip(f.zip, text, file, diag);
+    }
+    if (f.n_json != 1) {
+        return refuse_count(f.n_json, diag);
+    }
+    snprintf(file, HN_ROSTER_PATH, "%s", f.json);
+    return hn_file_read(f.json, HN_ROSTER_BYTES, text, diag);
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLASS_ROSTER_H
+#define HN_CLASS_ROSTER_H
+// A class's submissions, found in a folder as teaching platforms export them: one folder, one file
+// or one zip archive for each student.
+//
+//   Moodle            Ada Lovelace_4711_assignsubmission_file_/answer.json, or the same as one file
+//   Canvas            lovelaceada_LATE_4711_9999_answer.json
+//   Gradescope        submission_4711/answer.json
+//   GitHub Classroom  exercise-ada/answer.json
+//   anything else     the name of the folder, or of the file without its ending
+
+#include "base/diag.h"
+#include "base/strbuf.h"
+
+#include <stdbool.h>
+
+enum { HN_ROSTER_NAME = 80, HN_ROSTER_PATH = 1024, HN_ROSTER_BYTES = 1 << 20 };
+
+typedef struct hn_roster_entry {
+    char student[HN_ROSTER_NAME];
+    char path[HN_ROSTER_PATH]; ///< of the folder or the file
+    bool is_folder;
+} hn_roster_entry;
+
+typedef struct hn_roster {
+    int n, cap;
+    hn_roster_entry *entry; ///< sorted by student, then path
+} hn_roster;
+
+/// Lists the students of a folder; names that begin with a dot are left out. Fails: HN_ERR_INPUT
+/// (no folder, nobody in it), HN_ERR_MEMORY. hn_roster_reset() in any case.
+HN_MUST_CHECK hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag);
+void hn_roster_reset(hn_roster *r);
+/// Finds the one JSON file of a student and reads it into `text`; `file` gets its name. Fails, with
+/// a sentence for the student in diag: HN_ERR_INPUT (none, several, no archive), HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_roster_load(const hn_roster_entry *e, hn_strbuf *text,
+                                       char file[HN_ROSTER_PATH], hn_diag *diag);
+/// The student's name in the name of a folder or file, by the rules above.
+void hn_roster_student(const char *name, char out[HN_ROSTER_NAME]);
+
+#endif

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A class is graded: as platforms export it, in any order, through kills, and nobody's submission stops the batch."""
+
+import csv
+import io
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import zipfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+PROGRAM = os.path.abspath(driver.PROGRAM)
+with open(os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "answers", "p3.json"), encoding="utf-8") as answer_file:
+    RIGHT = answer_file.read()
+WRONG_SIGN = RIGHT.replace('"-l1*sin(th1)"', '"l1*sin(th1)"')
+SPACED = WRONG_SIGN.replace("*", " * ")
+
+
+def call(*words):
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300 * driver.SLOW)
+
+
+def zipped(files):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as z:
+        for name, text in files.items():
+            z.writestr(name, text)
+    return out.getvalue()
+
+
+class Class(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = os.path.join(self.temporary.name, "handed in")
+        self.out = os.path.join(self.temporary.name, "scores.ndjson")
+
+    def put(self, path, content):
+        whole = os.path.join(self.folder, path)
+        os.makedirs(os.path.dirname(whole), exist_ok=True)
+        with open(whole, "wb") as f:
+            f.write(content if isinstance(content, bytes) else content.encode())
+
+    def grade(self, *words):
+        done = call("class", "p3", self.folder, *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def lines(self, *words):
+        self.grade("--out", self.out, *words)
+        with open(self.out, encoding="utf-8") as f:
+            return [json.loads(line) for line in f]
+
+    def test_every_platforms_folder_is_understood(self):
+        self.put("Ada Lovelace_4711_assignsubmission_file_/answer.json", RIGHT)  # Moodle
+        self.put("Alan Turing_4712_assignsubmission_file_answer.json", RIGHT)  # Moodle, flat
+        self.put("hopper_LATE_4713_99_answer.json", RIGHT)  # Canvas
+        self.put("noether_4714_99_answer.zip", zipped({"answer.json": RIGHT}))  # Canvas, zip
+        self.put("submission_4715/answer.json", RIGHT)  # Gradescope
+        self.put("submission_4715/metadata.yml", "x: 1\n")
+        self.put("exercise-euler/work/answer.json", RIGHT)  # GitHub Classroom
+        self.put("exercise-euler/.git/config.json", "{}")
+        self.put("gauss.json", RIGHT)
+        self.put("lagrange/all.zip", zipped({"my work/answer.json": RIGHT, "__MACOSX/x.json": "{}", "readme": "hello"}))
+        lines = self.lines()
+        self.assertEqual([(line["student"], line["status"], line["score"]) for line in lines],
+                         [(name, "graded", 8) for name in sorted(("Ada Lovelace", "Alan Turing", "hopper", "noether", "submission_4715", "exercise-euler", "gauss", "lagrange"))])
+
+    def test_what_cannot_be_graded_says_why_and_stops_nobody(self):
+        bad = {"empty": "", "words": "I do not know", "nothing": "{}", "numbers": '{"J": [[NaN]]}', "deep": "[" * 100000, "binary": bytes(range(256)) * 40}
+        for name, content in bad.items():
+            self.put(f"{name}.json", content)
+        self.put("two/a.json", RIGHT)
+        self.put("two/b.json", RIGHT)
+        self.put("none/readme.txt", "later")
+        self.put("large.json", '{"J": "' + "x" * (2 << 20) + '"}')
+        self.put("broken.zip", b"PK\3\4 and no more")
+        self.put("cut.zip", zipped({"answer.json": RIGHT})[:-40])
+        self.put("bomb.zip", zipped({"answer.json": "0" * (64 << 20)}))
+        os.makedirs(os.path.join(self.folder, "link"))
+        os.symlink("/etc/passwd", os.path.join(self.folder, "link", "answer.json"))
+        self.put("good.json", RIGHT)
+        lines = {line["student"]: line for line in self.lines("--jobs", "2")}
+        self.assertEqual({name: line["status"] for name, line in lines.items() if line["status"] != "ungradable"}, {"good": "graded"})
+        self.assertEqual(len(lines), 14)
+        for name, said in (("two", "2 JSON files"), ("none", "no JSON file"), ("bomb", "larger than"), ("link", "no JSON file"), ("broken", "zip"), ("cut", "zip")):
+            self.assertIn(said, lines[name]["reason"])
+        for line in lines.values():
+            self.assertTrue(line.get("reason") or line.get("summary"), line)
+
+    def test_the_summary_has_histogram_mistakes_and_equal_wrong_answers(self):
+        for k in range(6):
+            self.put(f"right{k}.json", RIGHT)
+        self.put("copy1.json", WRONG_SIGN)
+        self.put("copy2.json", SPACED)
+        self.put("own.json", RIGHT.replace('"l3*sin(th3)"', '"l3*cos(th3)"'))
+        text = self.grade().stdout
+        self.assertIn("9 submissions: 9 graded, 0 not gradable, 0 failed in the grader", text)
+        self.assertRegex(text, r"(?m)^ +all +6  #+$")
+        self.assertRegex(text, r"commonest mistakes\n +2  \S+ in J11\n")
+        self.assertIn("copy1, copy2", text)
+        self.assertNotRegex(text.split("equal wrong")[1], "right|own")
+
+    def test_order_and_jobs_change_nothing_and_csv_holds_the_same(self):
+        chance = random.Random(3)
+        for k in chance.sample(range(60), 60):
+            self.put(f"student{k:02d}.json", chance.choice((RIGHT, WRONG_SIGN, "{}", "nonsense")))
+        one = self.lines("--jobs", "1")
+        os.remove(self.out)
+        os.remove(self.out + ".part")
+        self.assertEqual(self.lines("--jobs", "7"), one)
+        table = os.path.join(self.temporary.name, "scores.csv")
+        self.grade("--out", table)
+        with open(table, encoding="utf-8", newline="") as f:
+            rows = list(csv.DictReader(f))
+        self.assertEqual([(r["student"], r["status"], float(r["score"])) for r in rows], [(line["student"], line["status"], line["score"]) for line in one])
+
+    def test_killed_ten_times_none_is_lost_and_none_is_graded_twice(self):
+        chance = random.Random(5)
+        for k in range(400):
+            self.put(f"student{k:03d}.json", chance.choice((RIGHT, WRONG_SIGN, SPACED, "{}")).replace("}", f', "n": {k}}}' if k % 7 == 0 else "}"))
+        calm = self.lines()
+        with open(self.out, "rb") as f:
+            calm_bytes = f.read()
+        os.remove(self.out)
+        os.remove(self.out + ".part")
+        killed = 0
+        for _ in range(10):
+            size = os.path.getsize(self.out + ".part") if os.path.exists(self.out + ".part") else 0
+            process = subprocess.Popen([PROGRAM, "class", "p3", self.folder, "--jobs", "2", "--out", self.out], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            deadline = time.monotonic() + 60
+            while process.poll() is None and time.monotonic() < deadline:
+                if os.path.exists(self.out + ".part") and os.path.getsize(self.out + ".part") > size:
+                    break
+                time.sleep(0.001)
+            killed += process.poll() is None
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        self.assertGreaterEqual(killed, 3)
+        done = self.grade("--out", self.out)
+        self.assertIn("were graded before", done.stderr)
+        with open(self.out, "rb") as f:
+            self.assertEqual(f.read(), calm_bytes)
+        with open(self.out + ".part", encoding="utf-8") as f:
+            students = [json.loads(line)["student"] for line in f]
+        self.assertEqual(sorted(students), sorted(line["student"] for line in calm))
+        # a submission that is changed is graded anew, the others are not
+        self.put("student000.json", "{}")
+        done = self.grade("--out", self.out)
+        self.assertIn("399 of 400 submissions were graded before", done.stderr)
+
+    def test_a_folder_that_is_none_is_refused(self):
+        for folder, said in (("/nowhere", "is not a folder"), (self.temporary.name + "/empty", "there is nobody")):
+            os.makedirs(self.temporary.name + "/empty", exist_ok=True)
+            done = call("class", "p3", folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
+        self.assertEqual(call("class", "no-such", self.temporary.name).returncode, 2)
+
+
+if __name__ == "__main__":
+    driver.main()
