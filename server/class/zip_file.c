@@ -5,7 +5,8 @@
 #include <string.h>
 #include <zlib.h>
 
-// Source: PKWARE, APPNOTE.TXT 6.3, sections 4.3.7 (local header), 4.3.12 (central directory), 4.3.16.
+// Source: PKWARE, APPNOTE.TXT 6.3, sections 4.3.7 (local header), 4.3.12 (central directory),
+// 4.3.16.
 enum { END_SIZE = 22, CENTRAL_SIZE = 46, LOCAL_SIZE = 30, MOST_COMMENT = 65535 };
 enum { ENCRYPTED = 1, STORED = 0, DEFLATED = 8 };
 
