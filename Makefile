@@ -282,6 +282,7 @@ help:
 	@echo 'make asan         the unit tests and the tests of the server under the address and undefined-behaviour sanitisers'
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
+	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: tests/load/results.txt'
 	@echo 'make bench        time the engine: CSV on standard output'
 	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
@@ -309,7 +310,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises book run-suite run-unit run-server run-bench run-fuzz reports accuracy
+.PHONY: test test-quick asan tsan fuzz load bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises book run-suite run-unit run-server run-bench run-fuzz reports accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -329,6 +330,11 @@ MINUTES ?= 10
 fuzz: build/.packages-check
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=release $(PROGRAM)
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=fuzz run-fuzz
+
+# a class of 300 readers, 30 browsers, 10,000 questions asked twice with kill -9 between: four minutes, nothing else should run
+load: all
+	@python3 tests/load/load.py $(PROGRAM) >build/load.txt || { cat build/load.txt; exit 1; }
+	@cp build/load.txt tests/load/results.txt && cat tests/load/results.txt
 
 run-fuzz: $(FUZZERS)
 	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing $(HARNESS)

@@ -52,6 +52,24 @@ class Examples(driver.ServerCase):
         self.assertEqual([line.split()[0] for line in out.splitlines()], ["index1@rk4:h=0.01", "projection@rk4:h=0.01"])
         self.assertGreater(*(float(line.split()[1]) for line in out.splitlines()))
 
+    def test_python_with_numpy(self):
+        python = next((p for p in (sys.executable, "/usr/bin/python3") if subprocess.run([p, "-c", "import numpy"], capture_output=True).returncode == 0), None)
+        if not python:
+            self.skipTest("no numpy here")
+        out, _ = self.run_example([python, "-"], block("python", 1))
+        self.assertRegex(out, r"^\['a2', 'gap', 't', 'th1', 'th3'\] [0-9.]+ [0-9.e-]+\n$")
+
+    @unittest.skipUnless(shutil.which("octave-cli") and shutil.which("curl"), "no octave-cli and curl here")
+    def test_octave(self):
+        # it reads a program from a file only; its own words at the end of a process are not the example's
+        text = block("octave")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "example.m")
+            with open(path, "w") as f:
+                f.write(text)
+            out, _ = self.run_example(["octave-cli", "--norc", "--quiet", path], "")
+        self.assertRegex(out, r"^ok 201 [0-9.e-]+\n$")
+
     @unittest.skipUnless(shutil.which("node"), "no node here")
     def test_javascript(self):
         out, _ = self.run_example(["node", "--input-type=module", "-"], block("javascript"))
