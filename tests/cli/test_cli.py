@@ -258,6 +258,24 @@ class CommandLine(unittest.TestCase):
         self.assertIn("cannot be closed with this value", run["reason"])
         self.assertEqual(run["incidents"][-1]["code"], "chart-lost")
 
+    def test_a_weight_that_hangs_is_held_up_as_help_and_readme_say(self):
+        bodies = [{"name": "bob", "mass": 2, "com": [0, 0, 0], "inertia": {"zz": 0.1}}]
+        pin = {"name": "pin", "type": "revolute", "parent": {"body": "ground"}, "child": {"body": "bob", "at": [0, 1, 0]}, "coordinate": "th"}
+        slide = {"name": "slide", "type": "prismatic", "axis": [0, 1, 0], "parent": {"body": "ground"}, "child": {"body": "bob"}, "coordinate": "y"}
+        rod = {"name": "rod", "distance": {"from": [0, 2, 0], "to": {"body": "bob", "at": [0, 0, 0]}, "length": 1}}
+        for joints, constraints, carrier, start in (([pin], [], "pin", {"th": 0}), ([slide], [rod], "rod", {"y": {"guess": 0.9}})):
+            scene = {"holonom": 1, "name": "weight", "gravity": [0, -10, 0], "bodies": bodies, "joints": joints, "constraints": constraints,
+                     "start": {"positions": start}}
+            done = call("run", "-", "--method", "projection@rk4:h=1e-3", "--time", "0.01", "--at", "0.01", "--reactions", "--json",
+                        stdin=json.dumps(scene))
+            run = strict(self.assert_exit(done, DONE))
+            force, at = run["samples"]["reaction_force"][-1], run["carriers"].index(carrier)
+            upward = force[3 * at + 1]
+            self.assertAlmostEqual(upward, 20, delta=1e-9, msg=carrier)  # m g, upward
+        self.assertRegex(b" ".join(call("run", "--help").stdout.split()), rb"Of a joint they act on the child, by its parent")
+        with open("core/README.md", encoding="utf-8") as readme:
+            self.assertIn("| a joint | its child | its parent |", readme.read())
+
     def test_compare_prints_a_row_for_each_method(self):
         text = self.assert_exit(call("compare", "four-bar", "--methods", RK4, "projection@rk4:h=1e-3", "--time", "1"), DONE)
         self.assertRegex(text, r"worst gap \[m\] +velocity gap \[m/s\] +energy change \[\wJ\] +error estimate +steps +evals +ops +ops/step +CPU/step \[.?s\] +quartiles")

@@ -2,10 +2,11 @@
 #ifndef HN_SESSION_REACTIONS_JSON_H
 #define HN_SESSION_REACTIONS_JSON_H
 // Reactions of joints and constraints, as JSON. A reaction is a force [N] and a moment [N m] about
-// its place, in world axes. It acts on the child of a joint, or on the body of a constraint's first
-// point. Reactions of joints are also given in the joint's axes (ref, axis x ref, axis). Efforts
-// are generalised forces along coordinates: of constraints on coordinates, and of energies given as
-// formulas. A scene given by formulas has efforts only.
+// its place, in world axes. It acts on the child of a joint, on the body of a distance's second
+// point, or on a body that is guided (dynamics/reactions/reactions.h). Reactions of joints are also
+// given in the joint's axes (ref, axis x ref, axis). Efforts are generalised forces along
+// coordinates: of constraints on coordinates, and of energies given as formulas. A scene given by
+// formulas has efforts only.
 
 #include "session/model/model.h"
 

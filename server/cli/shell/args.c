@@ -59,7 +59,9 @@ static const option OPTIONS[] = {
      "output interval [s]; 200 samples when neither is given"},
     {"--reactions", NULL, OPTION_FLAG, AT(reactions),
      "what every joint and constraint carries too: forces [N] and moments [N m], world axes, and "
-     "efforts along coordinates"},
+     "efforts along coordinates. Of a joint they act on the child, by its parent, drives and loads "
+     "along its coordinates included; of a distance on the body of 'to'; of a line, plane or wheel "
+     "on the body that is guided"},
     {"--raw-lambda", NULL, OPTION_FLAG, AT(raw_lambda),
      "a column raw_lambda too: the multipliers the scheme itself found, where it has some"},
     {"--format", "FORMAT", OPTION_TEXT, AT(format), "form of the output"},

@@ -55,7 +55,8 @@ static const hn_field TERMS[] = {
     {.name = "reactions",
      .type = HN_FIELD_BOOL,
      .about = "what every joint and constraint carries too: forces [N] and moments [N m], and "
-              "efforts along coordinates"},
+              "efforts along coordinates; on the child of a joint, on the body of a distance's "
+              "'to', on a body that is guided"},
     END_OF_FIELDS};
 
 static const hn_field DRAG[] = {
