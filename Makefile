@@ -266,6 +266,7 @@ install: all
 	install -D -m 755 build/holonom $(INSTALLED)/bin/holonom
 	install -D -m 644 build/libholonom.a $(INSTALLED)/lib/libholonom.a
 	install -D -m 644 core/session/face/holonom.h $(INSTALLED)/include/holonom.h
+	install -D -m 644 server/python/holonom.py $(INSTALLED)/share/holonom/python/holonom.py
 	@mkdir -p $(INSTALLED)/lib/pkgconfig
 	@printf '%s\n' "$$PKG_CONFIG" >$(INSTALLED)/lib/pkgconfig/holonom.pc
 	@for f in $(SHIPPED); do \

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Python module says what the command says, and its notebook runs."""
+
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+MODULE = os.path.join(HERE, "..", "..", "server", "python")
+sys.path.insert(0, os.path.join(HERE, "..", "api"))
+sys.path.insert(0, MODULE)
+import driver  # noqa: E402
+
+os.environ["HOLONOM"] = os.path.abspath(driver.PROGRAM)
+import holonom  # noqa: E402
+
+
+class Module(unittest.TestCase):
+    def test_a_run_has_its_columns(self):
+        motion = holonom.run("four-bar", "projection@rk4:h=1e-3", time=0.5, at=[0, 0.25, 0.5])
+        self.assertEqual(list(motion.t), [0, 0.25, 0.5])
+        self.assertEqual(motion["th1"][0], 1)
+        self.assertEqual(len(motion[motion.rates[0]]), 3)
+        self.assertLess(max(motion.gap), 1e-14)
+        self.assertTrue(motion.finished)
+        self.assertIn("3 samples", repr(motion))
+        self.assertTrue(any(name.startswith("lambda ") for name in motion.keys()))
+
+    def test_a_parameter_changes_the_motion(self):
+        usual, heavy = (holonom.run("pendulum", "reduced@dop853:rtol=1e-10", time=1, every=0.5, set=s) for s in ({}, {"l": 2.0}))
+        self.assertNotEqual(usual[usual.coordinates[0]][-1], heavy[heavy.coordinates[0]][-1])
+
+    def test_a_run_that_ended_early_says_why(self):
+        motion = holonom.run("four-bar", "index1@euler:h=0.05", time=60)
+        self.assertFalse(motion.finished)
+        self.assertTrue(motion.reason)
+
+    def test_comparisons_studies_scenes_terms_and_grades(self):
+        table = holonom.compare("four-bar", ["index1@rk4:h=1e-2", "projection@rk4:h=1e-2"], time=1)
+        gaps = [m["worst_gap"] for m in table["methods"]]
+        self.assertGreater(gaps[0], 1e6 * gaps[1])
+        work = holonom.study("pendulum", methods=["projection@rk4"], time=0.5, levels=3, samples=0)
+        self.assertEqual(len(work["methods"][0]["points"]), 3)
+        self.assertIn("four-bar", [s["id"] for s in holonom.scenes()])
+        self.assertEqual(holonom.scene("four-bar")["start"]["dof"], 1)
+        self.assertEqual(len(holonom.terms("four-bar", q={"th1": 1.2})["M"]), 3)
+        self.assertIn("p3", [p["id"] for p in holonom.problems()])
+        right = {"problem": "p3", "J": [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"],
+                                        ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]}
+        self.assertEqual(holonom.grade("p3", right)["score"], 8)
+
+    def test_what_is_refused_is_an_exception_with_the_near_miss(self):
+        with self.assertRaises(holonom.HolonomError) as caught:
+            holonom.run("fuor-bar")
+        self.assertIn("four-bar", str(caught.exception))
+        self.assertEqual(caught.exception.status, 2)
+        self.assertTrue(caught.exception.faults)
+
+    def test_every_name_that_is_offered_is_explained(self):
+        for name in holonom.__all__:
+            self.assertTrue(getattr(holonom, name).__doc__, name)
+
+    def test_the_notebook_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            env = {**os.environ, "PYTHONPATH": MODULE}
+            done = subprocess.run([sys.executable, os.path.join(MODULE, "four_bar.py")], capture_output=True, text=True, timeout=300, cwd=folder, env=env)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        gaps = [float(g) for g in re.findall(r"gap +(\S+) m", done.stdout)]
+        self.assertEqual(len(gaps), 5)
+        self.assertTrue(all(math.isfinite(g) for g in gaps))
+        # the first is not stabilised, the second is held, the others close the loop
+        self.assertGreater(gaps[0], gaps[1])
+        self.assertLess(max(gaps[2:]), 1e-14)
+
+
+if __name__ == "__main__":
+    driver.main()
