@@ -268,7 +268,9 @@ test("the scenes stand under their lessons, in the order of the lessons", async 
   assert.ok(lessons.length >= 3);
   assert.deepEqual(
     groups,
-    lessons.map(({ title, scenes }) => ({ label: title, scenes })),
+    lessons
+      .filter(({ scenes }) => scenes.length > 0)
+      .map(({ title, scenes }) => ({ label: title, scenes })),
   );
   assert.equal(
     groups.flatMap(({ scenes }) => scenes).length,
