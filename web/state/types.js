@@ -59,7 +59,7 @@
  *   gap?: number, velocity_gap?: number, energy_change?: number,
  *   steps: number, rejected: number, evals: number, ops: number, cpu: number,
  *   work?: number, sigma_min?: number, lambda_max?: number,
- *   energy?: number, work?: number | null,
+ *   energy?: number,
  *   error_estimate?: {q: number | null, v: number | null, reaction: number | null, own: number | null, t: number | null, reason: string},
  *   step_cpu: {median: number | null, low: number | null, high: number | null, frames: number},
  *   failure?: {code: string, t: number, message: string} | null,
