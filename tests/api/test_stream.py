@@ -344,6 +344,24 @@ class Untouched(driver.ServerCase):
         reader.close()
 
 
+class Memory(driver.ServerCase):
+    @unittest.skipIf(driver.SLOW > 1, "a sanitiser keeps freed memory to itself")
+    def test_the_memory_of_comparisons_that_have_gone_comes_back(self):
+        def memory():
+            with open(f"/proc/{self.server.process.pid}/status") as f:
+                return next(int(line.split()[1]) for line in f if line.startswith("VmRSS"))
+
+        before, made = memory(), [self.server.compare(methods=METHODS)["id"] for _ in range(30)]
+        for ident in made:
+            self.server.ask("PATCH", "/api/v1/comparisons/" + ident, {"step": 200})
+        most = memory()
+        for ident in made:
+            self.assertEqual(self.server.ask("DELETE", "/api/v1/comparisons/" + ident).status, 204)
+        self.assertGreater(most, before + 5000)
+        # 80 % stayed with the heaps of threads that had ended
+        self.assertTrue(driver.until(lambda: memory() < before + (most - before) / 2), (before, most, memory()))
+
+
 class Crowd(driver.ServerCase):
     options = ("--run-cpu", "3")
 

@@ -8,6 +8,7 @@
 #include "http/request/request.h"
 
 #include <stdbool.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -24,6 +25,7 @@ struct hn_comparisons {
     hn_session **sessions; ///< one reference each
     int n, n_reserved;     ///< there, and being made
     int n_threads, stopping;
+    int n_threads_before; ///< at the keeper's last look
     hn_shares *places;
     pthread_t keeper;
     int has_keeper;
@@ -73,6 +75,20 @@ static bool end_forsaken(hn_comparisons *all) {
     return oldest >= 0;
 }
 
+/// Gives the memory of comparisons that have ended back to the system. Their threads have heaps of
+/// their own, which the C library keeps otherwise: 300 MB after a class has gone. With the lock
+/// held, which is given up meanwhile.
+static void give_back_memory(hn_comparisons *all) {
+    if (all->n_threads >= all->n_threads_before) {
+        all->n_threads_before = all->n_threads;
+        return;
+    }
+    all->n_threads_before = all->n_threads;
+    pthread_mutex_unlock(&all->lock);
+    malloc_trim(0);
+    pthread_mutex_lock(&all->lock);
+}
+
 static void *keep(void *arg) {
     hn_comparisons *all = arg;
     // a look per second, oftener when the bounds are tighter than that
@@ -86,6 +102,7 @@ static void *keep(void *arg) {
         ts.tv_nsec = ns % 1000000000;
         pthread_cond_timedwait(&all->changed, &all->lock, &ts);
         tick(all);
+        give_back_memory(all);
     }
     pthread_mutex_unlock(&all->lock);
     return NULL;
