@@ -7,9 +7,7 @@ import { createBench, playTo, read, screenshot, until } from "./support.mjs";
 const TRACED = ["toplevel", "devtools.timeline", "disabled-by-default-devtools.timeline"];
 const MOST_BYTES = 500e3; // on the line
 
-const bench = createBench();
-const { open } = bench;
-const url = () => bench.url;
+const { open } = createBench();
 
 /** Boxes of elements, by a name each. */
 function boxesOf(page, selectors) {
@@ -201,8 +199,7 @@ test("a special word explains itself on hover and on focus, and Escape closes th
 });
 
 test("before the first interaction the page takes 500 kB at most, and no view that is opened later", async (t) => {
-  const page = await open(t, { fresh: true, wait: false, hash: "#pendulum" });
-  await page.goto("about:blank");
+  const page = await open(t, { fresh: true });
   const line = await page.context().newCDPSession(page);
   const sizes = new Map();
   await line.send("Network.enable");
@@ -210,7 +207,7 @@ test("before the first interaction the page takes 500 kB at most, and no view th
   line.on("Network.loadingFinished", ({ requestId, encodedDataLength }) =>
     sizes.set(requestId, encodedDataLength),
   );
-  await page.goto(url());
+  await page.reload();
   await page.waitForFunction(() => globalThis.holonom?.data.reference?.state === "ready");
   const sum = [...sizes.values()].reduce((a, b) => a + b, 0);
   assert.ok(sizes.size > 40 && sum > 1e5, `${sizes.size} files, ${sum} bytes`);

@@ -494,8 +494,7 @@ test("notes travel with the link; one too long to be sent becomes a file that op
 test("the last session of this browser can be continued, and an untouched page leaves none", async (t) => {
   const context = { viewport: { width: 1279, height: 800 } }; // a browser of this test's own
   const untouched = await open(t, context);
-  await untouched.goto("about:blank");
-  await untouched.goto(bench.url);
+  await untouched.reload();
   await untouched.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
   assert.ok(await untouched.isHidden(".offer"));
   const page = await open(t, context);

@@ -3,7 +3,15 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, read, screenshot, until } from "./support.mjs";
-import { barsOf, boundaryOf, dotsOf, floorOf, frameOf } from "../../web/state/study-documents.js";
+import {
+  barsOf,
+  boundaryOf,
+  dotsOf,
+  floorOf,
+  frameOf,
+  meaningOf,
+  sentencesOf,
+} from "../../web/state/study-documents.js";
 import { readIndex } from "../../web/state/catalogue.js";
 import {
   baumgarteLimit,
@@ -173,6 +181,17 @@ test("the heat of a map is that of the cells that ran, and its least is found in
   const map = { x: { values: [1, 2] }, y: { values: [3, 4] } };
   const said = heatSentences(map, { rows }, 2, (_, value) => String(value));
   assert.equal(said[0], "smallest worst loop gap: 20 µm at 1, 4");
+});
+
+test("counts are said in words, and an error of a position as a length", () => {
+  const sentences = "Errors of 1e-03: projection@rk4, 606 kop to 1.1 Mop; 817 op before.";
+  const study = { pareto: [{ error: "q", cost: "operations", sentences }] };
+  assert.deepEqual(sentencesOf(study, "q", "operations"), [
+    "Errors of 10⁻³: projection@rk4, 606 thousand operations to 1.1 million operations; 817 operations before.",
+  ]);
+  assert.deepEqual(sentencesOf(study, "v", "operations"), []);
+  assert.match(meaningOf("q", 1.2), /10⁻³ is 1 mrad of an angle: 1\.2 mm at the end of 1\.2 m/);
+  assert.equal(meaningOf("v", 1.2), "");
 });
 
 test("a place on an axis and its value agree; contours lie between the values they part", () => {

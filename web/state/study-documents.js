@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
-import { withPowers } from "./format.js";
+import { quantity, withPowers } from "./format.js";
 
 export const ERRORS = [
   { name: "q", word: "position", about: "largest error of a coordinate, angles in rad" },
@@ -116,11 +116,26 @@ export function dotsOf(study, error, cost) {
 /** Below it an error is no more than a bound; 0: the quantity needs no reference. */
 export const floorOf = (study, error) => ABOVE_REFERENCE * (study.reference.error[error] ?? 0);
 
+const COUNTS = { k: "thousand ", M: "million ", G: "billion ", "": "" };
+
 /** Sentences on who reaches which accuracy for the least. @returns {string[]} */
 export function sentencesOf(study, error, cost) {
   const found = study.pareto.find((one) => one.error === error && one.cost === cost);
-  return found ? withPowers(found.sentences).split("\n").filter(Boolean) : [];
+  const text = withPowers(found?.sentences ?? "").replace(
+    /(?<=\d )([kMG]?)op\b/g,
+    (_, prefix) => `${COUNTS[prefix]}operations`,
+  );
+  return text.split("\n").filter(Boolean);
 }
+
+/**
+ * What an error of a position means on this mechanism; "" for other errors, which say it themselves.
+ * @param {string} error @param {number} length [m] of the scene
+ */
+export const meaningOf = (error, length) =>
+  error === "q"
+    ? `An error of 10⁻³ is 1 mrad of an angle: ${quantity(1e-3 * length, "m")} at the end of ${quantity(length, "m")}.`
+    : "";
 
 /**
  * Whole decades that hold all finite errors and the floor, at least two.

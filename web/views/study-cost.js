@@ -10,6 +10,7 @@ import {
   dotsOf,
   floorOf,
   frameOf,
+  meaningOf,
   sentencesOf,
 } from "../state/study-documents.js";
 import { h, s, say } from "../widgets/dom.js";
@@ -61,6 +62,7 @@ export function createStudyCost(store, onPick) {
   const picture = s("svg", { class: "scatter", role: "group" });
   const frame = h("div", { class: "study-picture" }, picture);
   const sentences = h("ul", { class: "answers" });
+  const meaning = h("p", { class: "told" });
   const classes = h("ul", { class: "answers" });
   const table = h("div", {
     class: "twin-table",
@@ -104,6 +106,7 @@ export function createStudyCost(store, onPick) {
     told,
     h("h3", {}, "Cheapest for an accuracy"),
     sentences,
+    meaning,
     h("h3", {}, "What each converges to"),
     classes,
     h("details", { class: "fold" }, h("summary", {}, "All points as a table"), table),
@@ -362,6 +365,7 @@ export function createStudyCost(store, onPick) {
     draw();
     fillTable();
     const lines = sentencesOf(study(), view.error, view.cost);
+    say(meaning, meaningOf(view.error, data.scene.length));
     sentences.replaceChildren(
       ...(lines.length
         ? lines
