@@ -34,7 +34,8 @@ static double rounding_of(const hn_watch *w) {
         gravity = hypot(gravity, scene->gravity[i].value);
     }
     const double size = fabs(w->measure.potential) + w->measure.kinetic;
-    return ROUNDINGS * DBL_EPSILON * (size + mass * gravity * w->length);
+    const double creep = ROUNDINGS * DBL_EPSILON * w->length; // in a second: what rests may do
+    return ROUNDINGS * DBL_EPSILON * (size + mass * gravity * w->length) + mass * creep * creep;
 }
 
 void hn_energy_start(hn_watch *w) {
