@@ -37,6 +37,7 @@ export const EVENTS = [
   "file", // something is to be saved: {name, type, text}
   "offer", // the last session can be continued, or no longer
   "note", // the notes were replaced: by a link, or by another session
+  "light", // bodies, cut joints and curves that are pointed at; the detail names them
   "theme",
 ];
 

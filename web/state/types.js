@@ -36,6 +36,7 @@
  *   coordinates: {name: string, rate: string, kind: string, joint: string, actuated: boolean,
  *     value: number}[],
  *   bodies: {name: string, com: number[]}[], joints: Joint[],
+ *   rows: {name: string, loop: string, unit: string}[],
  *   points: number[], ground_points: number[], envelope: number[], extremes?: number[],
  *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]},
  *   methods: string[], duration: number, step: number,

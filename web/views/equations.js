@@ -4,9 +4,12 @@
 // is shown. Both they and the library that sets them are fetched when the panel is opened.
 import { sentenceOf } from "../api/client.js";
 import { plain } from "../state/format.js";
+import { partsOf } from "../state/belongs.js";
+import { TEX, foldAngles } from "../state/fold.js";
 import { evaluate, valuesAt } from "../state/formula.js";
 import { listen, shownIndex } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
+import { createNotation } from "./notation.js";
 import { createReduced } from "./reduced.js";
 
 const REDRAW = 200; // [ms] between two sets of numbers
@@ -37,6 +40,7 @@ export function createEquations(el, store, actions) {
   const summary = h("summary", {}, h("h2", { id: "equations-title" }, "Equations"));
   const details = h("details", { class: "fold equation-panel" }, summary, body);
   el.replaceChildren(details);
+  const notation = createNotation(store, actions);
   const reduced = createReduced(store, actions, { formula, line: entryLine });
   let shownFor = "";
   /** the library that sets formulas, once it is here */
@@ -97,11 +101,12 @@ export function createEquations(el, store, actions) {
     }));
     body.replaceChildren(
       formula(constrained ? SYSTEM : FREE, true),
+      notation.node,
       ...special(),
       h(
         "p",
         { class: "about" },
-        `Velocities, in the order of rows and columns: ${answer.speeds.join(", ")}. Matrices M are symmetric and only their lower half is listed; other entries not listed are zero. Numbers belong to the time shown, in SI units.`,
+        `Velocities, in the order of rows and columns: ${answer.speeds.join(", ")}. Entries that are not listed are zero. Point at an entry: what it belongs to lights up; point at a link: its entries do. Numbers belong to the time shown, in SI units.`,
       ),
       ...(answer.coordinates ?? [])
         .filter(({ name, is }) => name !== is)
@@ -109,6 +114,7 @@ export function createEquations(el, store, actions) {
       h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
       reduced.node,
     );
+    notation.make(formula);
     reduced.give(answer.position);
     showNumbers();
   }
@@ -121,12 +127,40 @@ export function createEquations(el, store, actions) {
     if (!details.open || !answer || i < 0) {
       return;
     }
+    notation.update();
     const state = { t: data.history.t[i], ...data.history.stateAt(data.view.selected, i) };
     const values = valuesAt(answer, data.scene, state);
     for (const { text, node } of nodes) {
       const value = evaluate(text, values);
       say(node, Number.isFinite(value) ? `= ${plain(Number(value.toPrecision(4)))}` : "");
     }
+  }
+
+  /** An entry lights up what it belongs to, and is lit by it. @param {HTMLElement} line */
+  function connect(line, entry) {
+    const parts = partsOf(entry, printed.answer.speeds, data.scene);
+    const tell = (on) => store.emit("light", on ? parts : { bodies: [], tears: [], curves: [] });
+    line.tabIndex = 0;
+    line.dataset.bodies = parts.bodies.join(" ");
+    for (const name of ["pointerenter", "focus"]) {
+      line.addEventListener(name, () => tell(true));
+    }
+    for (const name of ["pointerleave", "blur"]) {
+      line.addEventListener(name, () => tell(false));
+    }
+    return line;
+  }
+
+  /** Entries of bodies that are pointed at in the drawing; curves of what is pointed at here. */
+  function showLight({ bodies, curves, from }) {
+    body.querySelectorAll("[data-bodies]").forEach((line) => {
+      const own = (line.getAttribute("data-bodies") ?? "").split(" ").filter(Boolean).map(Number);
+      line.classList.toggle("lit", from === "drawing" && own.some((one) => bodies.includes(one)));
+    });
+    document.querySelectorAll("figure.plot").forEach((figure) => {
+      const shown = figure.querySelector("select")?.value ?? "";
+      figure.classList.toggle("lit", curves.includes(shown));
+    });
   }
 
   function showNumbersSoon() {
@@ -137,7 +171,10 @@ export function createEquations(el, store, actions) {
 
   function entryLine(entry) {
     if (entry.latex.length <= LONGEST) {
-      const whole = formula(`${entry.name_latex} = ${entry.latex}`, false);
+      const mirrored = entry.column && entry.column !== entry.row && /^M/.test(entry.term);
+      const twin = mirrored ? ` = ${entry.term}_{${entry.column}${entry.row}}` : "";
+      const right = foldAngles(entry.latex, TEX);
+      const whole = connect(formula(`${entry.name_latex}${twin} = ${right}`, false), entry);
       if (entry.text) {
         const node = h("span", { class: "number value" });
         whole.append(node);
@@ -166,6 +203,7 @@ export function createEquations(el, store, actions) {
   details.addEventListener("toggle", show);
   const stop = listen(store, {
     scene: show,
+    light: showLight,
     view: () => {
       show();
       showNumbersSoon();

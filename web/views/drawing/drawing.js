@@ -9,6 +9,7 @@ import { createDepth } from "./depth.js";
 import { createGhosts } from "./ghosts.js";
 import { createHandles } from "./handles.js";
 import { createLengths } from "./lengths.js";
+import { createLight } from "./light.js";
 import { createMarks } from "./marks.js";
 import { createNotices } from "./notices.js";
 import { createStage } from "./stage.js";
@@ -103,6 +104,7 @@ export function createDrawing(el, store, actions) {
       ghosts.draw(now);
     }
     marks.draw(now);
+    light.draw();
     lengths.draw();
     notices.update(now);
     if (data.state !== "running" && !data.view.replaying) {
@@ -165,6 +167,7 @@ export function createDrawing(el, store, actions) {
     }
   }
 
+  const light = createLight(svg, store, stage, () => shownIndex(data));
   const depth = createDepth(frame, store, actions, stage, { refit, fit });
   const observer = new ResizeObserver(() => {
     stage.fit();
@@ -204,6 +207,7 @@ export function createDrawing(el, store, actions) {
       stop();
       observer.disconnect();
       depth.dispose();
+      light.dispose();
       handles.dispose();
       el.replaceChildren();
     },

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The equations of the scene: two notations with present numbers, folded cosines, and terms that
+// light up what they belong to, and back.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { partsOf } from "../../web/state/belongs.js";
+import { PLAIN, TEX, foldAngles } from "../../web/state/fold.js";
+import { evaluate } from "../../web/state/formula.js";
+import { createBench, playTo, read, screenshot } from "./support.mjs";
+
+const { open } = createBench();
+
+test("products of sines and cosines are folded without changing the value", () => {
+  const values = new Map(Object.entries({ a: 0.7, b: -1.3, m: 2, l: 0.4 }));
+  const cases = [
+    ["0.5*m*l*sin(a)*sin(b) + 0.5*m*l*cos(a)*cos(b)", "0.5*m*l*cos(a - b)"],
+    ["cos(a)*cos(b) - sin(a)*sin(b)", "cos(a + b)"],
+    ["m*sin(a)*cos(b) - m*cos(a)*sin(b)", "m*sin(a - b)"],
+    ["-m*cos(a)*sin(b) + l + m*sin(a)*cos(b)", ""],
+    ["-m*cos(a)*cos(b) - m*sin(a)*sin(b)", "-m*cos(a - b)"],
+    ["cos(a)*cos(b) + m*sin(a)*sin(b)", "cos(a)*cos(b) + m*sin(a)*sin(b)"],
+    ["m*(cos(a)*cos(b) + sin(a)*sin(b))", "m*(cos(a)*cos(b) + sin(a)*sin(b))"],
+  ];
+  for (const [text, wanted] of cases) {
+    const folded = foldAngles(text, PLAIN);
+    assert.ok(Math.abs(evaluate(folded, values) - evaluate(text, values)) < 1e-14, folded);
+    if (wanted) {
+      assert.equal(folded, wanted);
+    } else {
+      assert.ok(folded.length < text.length, folded);
+    }
+  }
+  assert.equal(
+    foldAngles("-\\left(\\sin a\\, \\cos b - \\cos a\\, \\sin b\\right) - g", TEX),
+    "-\\left(\\sin(a - b)\\right) - g",
+  );
+  const tex =
+    "\\tfrac{1}{2}\\, l_{1}\\, \\sin \\theta_{1}\\, \\sin \\theta_{c} + \\tfrac{1}{2}\\, l_{1}\\, \\cos \\theta_{1}\\, \\cos \\theta_{c}";
+  assert.equal(foldAngles(tex, TEX), "\\tfrac{1}{2}\\, l_{1}\\, \\cos(\\theta_{1} - \\theta_{c})");
+});
+
+test("an entry belongs to the bodies of its velocities and to its loop", () => {
+  const scene = {
+    bodies: [{ name: "crank" }, { name: "coupler" }],
+    coordinates: [{ name: "th1", rate: "w1", joint: "O1" }],
+    joints: [{ name: "O1", child: 0 }],
+    rows: [{ loop: "B" }, { loop: "B" }],
+  };
+  const speeds = ["w1", "omega_coupler"];
+  assert.deepEqual(partsOf({ term: "M", row: 2, column: 1 }, speeds, scene).bodies, [1, 0]);
+  const entry = partsOf({ term: "J", row: 1, column: 2 }, speeds, scene);
+  assert.deepEqual([entry.bodies, entry.tears], [[1], ["B"]]);
+  assert.deepEqual(partsOf({ term: "phi", row: 1 }, speeds, scene).curves, ["gap"]);
+});
+
+test("terms light up links and curves, links light up terms; numbers follow the state", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 1200 } });
+  await page.click(".equation-panel summary");
+  await page.waitForSelector(".term-block .katex");
+  assert.match(await page.textContent(".notation-table"), /rad\/s²/);
+  await page.waitForFunction(() =>
+    /Rank of J: 2 of 2/.test(document.querySelector(".notation").textContent),
+  );
+  const first = await page.textContent(".notation-table tbody tr:nth-child(6) td.number");
+  // -15.47 rad/s² at the start: the accelerations that POST /terms gives
+  assert.match(first, /^−15\.47 rad\/s²/);
+  assert.match(await page.innerHTML(".terms"), /M_\{21\} = M_\{12\} = [^<]*\\cos\(/);
+
+  const line = page.locator('.term-block .line[data-bodies="0"]').first();
+  await line.hover();
+  await page.waitForFunction(() => document.querySelector(".picture > .lit")?.getAttribute("d"));
+  await screenshot(page, "equations-lit", { seen: true });
+  await page.locator(".term-block", { hasText: "loop closure" }).locator(".line").first().focus();
+  await page.waitForSelector("figure.plot.lit");
+
+  await page.evaluate(() => scrollTo(0, 0));
+  const bar = await page.evaluate(() => {
+    const { history, view, scene } = globalThis.holonom.data;
+    return { points: [...history.pointsAt(view.selected, 0)], shape: scene.drawing.shapes[0] };
+  });
+  assert.equal(bar.shape.kind, "bar");
+  const box = await page.locator(".ghost.selected .outline").first().boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForSelector(".term-block .line.lit", { state: "attached" });
+
+  await playTo(page, 0.3);
+  await page.waitForFunction(
+    (before) =>
+      document.querySelector(".notation-table tbody tr:nth-child(6) td.number").textContent !==
+      before,
+    first,
+  );
+  assert.ok(await read(page, (data) => data.latest.t > 0.3));
+});
