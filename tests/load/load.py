@@ -47,7 +47,7 @@ def open_stream(server, comparison):
 
 def read_streams(sockets, seconds, slow=()):
     """Gaps between frames of each reader [s], and how many streams ended; slow ones give up a byte each second."""
-    chooser, last, gaps, ended, frames = selectors.DefaultSelector(), {}, [], 0, 0
+    chooser, last, gaps, ended, frames, buffer = selectors.DefaultSelector(), {}, [], 0, 0, bytearray(1 << 18)
     for s in sockets:
         s.setblocking(False)
         chooser.register(s, selectors.EVENT_READ)
@@ -56,14 +56,14 @@ def read_streams(sockets, seconds, slow=()):
         for key, _ in chooser.select(0.05):
             s = key.fileobj
             try:
-                piece = s.recv(1 << 18)
+                size = s.recv_into(buffer)
             except BlockingIOError:
                 continue
-            if not piece:
+            if size == 0:
                 ended += 1
                 chooser.unregister(s)
                 continue
-            n = piece.count(b"event: frame")
+            n = buffer.count(b"event: frame", 0, size)
             if n:
                 now = time.monotonic()
                 if s in last:
