@@ -75,7 +75,10 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
     const bool terminal = isatty(STDOUT_FILENO) && isatty(STDIN_FILENO);
     opts->colours = colours_wanted() && isatty(STDOUT_FILENO);
     if (terminal && !args->once) {
-        if (hn_tui_run(w, opts)) {
+        // a terminal that cannot place its cursor would show a heap of lines
+        const char *name = getenv("TERM");
+        opts->colours = opts->colours && name && strcmp(name, "dumb") != 0;
+        if (name && strcmp(name, "dumb") != 0 && hn_tui_run(w, opts)) {
             return HN_EXIT_DONE;
         }
         fprintf(stderr, "holonom: the terminal '%s' cannot be driven; this is one frame as text\n",

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The workbench in a real terminal: sizes, keys, storms of resizes, suspension, ends; nothing is left of it afterwards."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+PROGRAM = os.path.abspath(driver.PROGRAM)
+PATIENCE = 60 * driver.SLOW  # [s] until something that must appear has appeared
+
+
+@unittest.skipUnless(shutil.which("tmux"), "tmux is not here")
+class Terminal(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.socket = os.path.join(self.folder.name, "tmux")
+        self.addCleanup(self.tmux, "kill-server", check=False)
+
+    def tmux(self, *words, check=True):
+        env = {**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm-256color", "HOLONOM_CACHE": self.folder.name}
+        env.pop("TMUX", None)
+        done = subprocess.run(["tmux", "-u", "-S", self.socket, "-f", "/dev/null", *words], capture_output=True, text=True, env=env, timeout=60)
+        if check:
+            self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def start(self, width, height, command):
+        """An interactive shell that is told to run the command."""
+        self.tmux("new-session", "-d", "-x", str(width), "-y", str(height), "bash --norc --noprofile")
+        self.keys(f"PS1='$ '; clear; {command}", "Enter")
+
+    def screen(self):
+        return self.tmux("capture-pane", "-p")
+
+    def wait_for(self, pattern):
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            screen = self.screen()
+            if re.search(pattern, screen):
+                return screen
+            time.sleep(0.1)
+        self.fail(f"'{pattern}' did not appear in\n{screen}")
+
+    def keys(self, *keys):
+        self.tmux("send-keys", *keys)
+
+    def pid(self):
+        shell = self.tmux("list-panes", "-F", "#{pane_pid}").strip()
+        return int(subprocess.run(["pgrep", "-P", shell, "-f", "holonom"], capture_output=True, text=True, check=True).stdout.split()[0])
+
+    def assert_restored(self):
+        """The line is echoed again, the cursor is back, the screen is the shell's."""
+        self.keys("stty -a | grep -cw -- -echo; echo a'  'line", "Enter")
+        self.wait_for(r"\n0\na  line\n")
+        self.assertEqual(self.tmux("display-message", "-p", "#{cursor_flag} #{alternate_on} #{mouse_any_flag}").split(), ["1", "0", "0"])
+
+    def test_each_size_shows_mechanism_plot_and_methods_within_its_width(self):
+        for width, height in ((80, 24), (120, 40), (200, 60)):
+            with self.subTest(f"{width}x{height}"):
+                self.start(width, height, f"{PROGRAM} tui four-bar")
+                screen = self.wait_for("Baumgarte|baumgarte")
+                lines = screen.rstrip("\n").split("\n")
+                self.assertLessEqual(max(map(len, lines)), width)
+                self.assertGreaterEqual(len(lines), height - 1)
+                self.assertRegex(screen, "[\u2801-\u28ff]")
+                self.keys("q")
+                self.assert_restored()
+                self.tmux("kill-server", check=False)
+
+    def test_time_goes_on_until_space(self):
+        self.start(100, 30, f"{PROGRAM} tui four-bar")
+        self.wait_for("Baumgarte|baumgarte")
+        seen = re.search(r"t +([0-9.]+) s", self.screen())
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            now = re.search(r"t +([0-9.]+) s", self.screen())
+            if seen and now and float(now.group(1)) > float(seen.group(1)):
+                break
+            time.sleep(0.1)
+        else:
+            self.fail(self.screen())
+        self.keys("Space")
+        self.wait_for("paused")
+        self.keys("q")
+        self.assert_restored()
+
+    def test_a_storm_of_resizes_and_a_tiny_window_do_not_end_it(self):
+        self.start(80, 24, f"{PROGRAM} tui four-bar")
+        self.wait_for("Baumgarte|baumgarte")
+        self.keys("Space")
+        for k in range(60):
+            self.tmux("resize-window", "-x", str(20 + 37 * k % 150), "-y", str(5 + 13 * k % 50))
+        self.tmux("resize-window", "-x", "20", "-y", "5")
+        time.sleep(0.5)
+        self.assertLessEqual(max(map(len, self.screen().split("\n"))), 20)
+        self.tmux("resize-window", "-x", "100", "-y", "30")
+        self.wait_for("Baumgarte|baumgarte")
+        self.keys("q")
+        self.assert_restored()
+
+    def test_ctrl_c_and_termination_restore_the_terminal(self):
+        for how in ("C-c", "TERM", "HUP"):
+            with self.subTest(how):
+                self.start(80, 24, f"{PROGRAM} tui four-bar")
+                self.wait_for("Baumgarte|baumgarte")
+                if how == "C-c":
+                    self.keys("C-c")
+                else:
+                    subprocess.run(["kill", "-" + how, str(self.pid())], check=True)
+                self.assert_restored()
+                self.tmux("kill-server", check=False)
+
+    def test_suspended_it_leaves_the_screen_and_comes_back(self):
+        self.start(80, 24, f"{PROGRAM} tui four-bar")
+        self.wait_for("Baumgarte|baumgarte")
+        self.keys("C-z")
+        self.wait_for("Stopped")
+        self.keys("echo out'  'side", "Enter")
+        self.wait_for(r"\nout  side\n")
+        self.keys("fg", "Enter")
+        self.wait_for(r"Baumgarte|baumgarte")
+        self.keys("q")
+        self.assert_restored()
+
+    def test_a_dumb_terminal_and_a_pipe_get_plain_text(self):
+        for command in (f"TERM=dumb {PROGRAM} tui four-bar", f"{PROGRAM} tui four-bar | cat"):
+            with self.subTest(command):
+                self.start(80, 24, command)
+                self.keys("echo ended'  'with $?", "Enter")
+                screen = self.wait_for(r"ended  with 0")
+                self.assertNotIn("\033", screen)
+                self.tmux("kill-server", check=False)
+
+
+if __name__ == "__main__":
+    driver.main()
