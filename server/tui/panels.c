@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/panels.h"
 
+#include "lesson/lesson.h"
+#include "lesson/lesson_text.h"
 #include "session/model/lists.h"
 #include "session/model/equations.h"
 #include "session/model/model_json.h"
@@ -11,6 +13,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { LESSON_COLUMNS = 78 };
 
 // ---- lists ----
 
@@ -125,18 +129,15 @@ static void show_equations(hn_workbench *w) {
 }
 
 static void show_lesson(hn_workbench *w, const char *id) {
-    char path[1024], line[1024];
-    snprintf(path, sizeof path, "%s/%s/text.md", hn_library_lessons(w->library), id);
-    FILE *file = fopen(path, "r");
-    if (!file) {
-        hn_workbench_say(w, "%s: the lesson has no text", id);
+    cJSON *lesson = NULL;
+    hn_diags diags = {0};
+    if (hn_lesson_load(w->library, id, &lesson, &diags) != HN_OK) {
+        hn_workbench_say_fault(w, &diags);
         return;
     }
     begin_text(w, "lesson: Esc goes back");
-    while (fgets(line, sizeof line, file)) {
-        hn_strbuf_add(&w->text, line);
-    }
-    fclose(file);
+    hn_lesson_text(&w->text, lesson, LESSON_COLUMNS);
+    cJSON_Delete(lesson);
 }
 
 /// Runs a study of this scene beside the workbench; its text is shown as it comes.

@@ -171,6 +171,14 @@ class Keys(unittest.TestCase):
             terminal.type("\033")
             time.sleep(0.2)
 
+    def test_a_lesson_is_shown_as_text_not_as_its_source(self):
+        terminal = self.open("four-bar")
+        terminal.type("t")
+        self.assertTrue(terminal.wait_for(rb"01-closed-loops"))
+        terminal.clear()
+        terminal.type("\r")
+        self.assertTrue(terminal.wait_for(rb"1. Loops and constraints\s*(\x1b\S*\s*)*=="))
+
     def test_a_parameter_out_of_reach_keeps_what_was_open(self):
         terminal = self.open("four-bar")
         terminal.type("p\r")
