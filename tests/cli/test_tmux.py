@@ -22,8 +22,8 @@ class Terminal(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.socket = os.path.join(self.folder.name, "tmux")
-        self.addCleanup(self.tmux, "kill-server", check=False)
+        self.starts = 0
+        self.addCleanup(self.stop)
 
     def tmux(self, *words, check=True):
         env = {**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm-256color", "HOLONOM_CACHE": self.folder.name}
@@ -34,9 +34,14 @@ class Terminal(unittest.TestCase):
         return done.stdout
 
     def start(self, width, height, command):
-        """An interactive shell that is told to run the command."""
+        """An interactive shell, in a server of its own, that is told to run the command."""
+        self.starts += 1
+        self.socket = os.path.join(self.folder.name, f"tmux{self.starts}")
         self.tmux("new-session", "-d", "-x", str(width), "-y", str(height), "bash --norc --noprofile")
         self.keys(f"PS1='$ '; clear; {command}", "Enter")
+
+    def stop(self):
+        self.tmux("kill-server", check=False)
 
     def screen(self):
         return self.tmux("capture-pane", "-p")
@@ -74,7 +79,7 @@ class Terminal(unittest.TestCase):
                 self.assertRegex(screen, "[\u2801-\u28ff]")
                 self.keys("q")
                 self.assert_restored()
-                self.tmux("kill-server", check=False)
+                self.stop()
 
     def test_time_goes_on_until_space(self):
         self.start(100, 30, f"{PROGRAM} tui four-bar")
@@ -117,7 +122,7 @@ class Terminal(unittest.TestCase):
                 else:
                     subprocess.run(["kill", "-" + how, str(self.pid())], check=True)
                 self.assert_restored()
-                self.tmux("kill-server", check=False)
+                self.stop()
 
     def test_suspended_it_leaves_the_screen_and_comes_back(self):
         self.start(80, 24, f"{PROGRAM} tui four-bar")
@@ -138,7 +143,7 @@ class Terminal(unittest.TestCase):
                 self.keys("echo ended'  'with $?", "Enter")
                 screen = self.wait_for(r"ended  with 0")
                 self.assertNotIn("\033", screen)
-                self.tmux("kill-server", check=False)
+                self.stop()
 
 
 if __name__ == "__main__":
