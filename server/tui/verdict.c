@@ -9,6 +9,8 @@
 
 /// A gap that more than doubles from the first half of the motion to the second grows.
 static const double GROWTH = 1.5;
+/// One that has fallen below this share of the largest so far does not grow any more.
+static const double FALLEN = 0.9;
 static const int EARLIEST = 6;        // [frames] before it there is nothing to judge
 static const double OPEN = 1e-2;      // of the scene's length: a gap that is the first thing to say
 static const double VISIBLE = 1e-3;   // of the scene's length: a gap that can be seen
@@ -38,7 +40,8 @@ static trend trend_of(const hn_track *track, int frame) {
         return STARTED;
     }
     const double early = worst(track->gap, 0, frame / 2);
-    return late > GROWTH * early ? GROWING : late < early / GROWTH ? SHRINKING : HELD;
+    const bool grows = late > GROWTH * early && fabs(track->gap[frame]) >= FALLEN * late;
+    return grows ? GROWING : late < early / GROWTH ? SHRINKING : HELD;
 }
 
 typedef struct sizes {
@@ -53,7 +56,7 @@ static void put(hn_verdict *v, hn_tone tone, const char *first, const char *seco
              second);
 }
 
-/// "closed", "closed to 4.2 um", or nothing for a mechanism without loops.
+/// "closed", "closed to 4.2 um", "open by 2.1 mm", or nothing for a mechanism without loops.
 static void closed_words(const sizes *s, char *out, size_t size) {
     char gap[HN_SI_TEXT];
     hn_si_format(s->gap, "m", 1, gap);
@@ -61,8 +64,11 @@ static void closed_words(const sizes *s, char *out, size_t size) {
         out[0] = '\0';
     } else if (s->gap <= CLOSED * s->length) {
         snprintf(out, size, "closed");
-    } else {
+    } else if (s->gap <= VISIBLE * s->length) {
         snprintf(out, size, "closed to %s", gap);
+    } else {
+        hn_si_format(s->gap, "m", 2, gap);
+        snprintf(out, size, "open by %s", gap);
     }
 }
 
@@ -71,8 +77,15 @@ static void judge_wrong(hn_verdict *v, const sizes *s, double value, const char 
     char first[64], number[HN_SI_TEXT], second[128];
     closed_words(s, first, sizeof first);
     hn_si_format(value, unit, 2, number);
-    snprintf(second, sizeof second, "%s%s %s", first[0] ? "but " : "", number, what);
-    put(v, HN_TONE_BAD, first, second);
+    // a closed loop does not make a motion right, and an open one is one fault more
+    const bool is_open = s->loops && s->gap > VISIBLE * s->length;
+    snprintf(second, sizeof second, "%s%s %s", first[0] && !is_open ? "but " : "", number, what);
+    if (is_open) {
+        v->tone = HN_TONE_BAD;
+        snprintf(v->text, sizeof v->text, "%.60s and %.90s", first, second);
+    } else {
+        put(v, HN_TONE_BAD, first, second);
+    }
 }
 
 static void judge_right(hn_verdict *v, const sizes *s) {

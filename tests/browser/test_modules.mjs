@@ -301,7 +301,7 @@ test("the verdict takes the worst of gap, error and energy", () => {
   );
   assert.equal(
     verdictOf({ gap: () => 2e-3, off: (t) => 0.034 * t }),
-    "closed to 2 mm, but 340 mm from the true motion",
+    "open by 2.0 mm and 340 mm from the true motion",
   );
   assert.equal(
     verdictOf({ gap: rounding, energy: (t) => 0.71 * t }),
@@ -310,6 +310,12 @@ test("the verdict takes the worst of gap, error and energy", () => {
   assert.equal(verdictOf({ gap: rounding, off: () => 3e-6 }), "right to 5 digits");
   assert.equal(verdictOf({ gap: rounding, off: () => 0 }), "right to 12 digits");
   assert.equal(verdictOf({ gap: () => 3e-3 }), "open by 3.0 mm");
+  assert.equal(
+    verdictOf({ gap: () => 9e-4, off: () => 0.34 }),
+    "closed to 900 µm, but 340 mm from the true motion",
+  );
+  // it has grown, and falls now
+  assert.equal(verdictOf({ gap: (t) => (t < 8 ? 1e-4 * t : 4e-4) }), "right to 12 digits");
   assert.equal(
     verdictOf({ gap: (t) => 4.3e-8 * t * t, off: () => 3e-6 }),
     "right to 5 digits, gap 4.3 µm and growing",

@@ -90,7 +90,7 @@ class Frame(unittest.TestCase):
         self.assertTrue(all(len(line) <= 110 for line in lines))
         self.assertIn("t 3.500 s of 10 s", lines[0])
         # index-1 at h = 0.01 is 3.4 mm open after 3.5 s (the table of the lesson), the others are closed and right to two digits
-        self.assertRegex(out, r"index-1 .*gap +3\.4 mm .*closed to 3 mm, but \d+ mm from the true motion")
+        self.assertRegex(out, r"index-1 .*gap +3\.4 mm .*open by 3\.4 mm and \d+ mm from the true motion")
         self.assertRegex(out, r"projection .*right to 2 digits")
 
     def test_the_same_frame_has_the_same_bytes(self):

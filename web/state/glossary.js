@@ -50,7 +50,7 @@ export const GLOSSARY = {
   beta: {
     word: "β",
     means:
-      "Baumgarte's β pulls the gap back like a spring (β² in front of φ). dt·β must stay well below 2.",
+      "Baumgarte's β pulls the gap back like a spring (β² in front of φ). dt·β must stay below the integrator's stability limit: 2.8 for RK4.",
   },
   verdict: {
     word: "verdict",

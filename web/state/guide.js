@@ -30,7 +30,7 @@ export const STEPS = [
   },
   {
     title: "One of them falls apart",
-    text: "index-1 opens at the cut joint B; the circle magnifies its gap, which grows with time squared. The others stay closed.",
+    text: "index-1 opens at the cut joint B; the circle magnifies its gap, which keeps growing. Compare it with the others.",
     button: "let it fall apart",
     does: "fallApart",
     done: isOpen,

@@ -8,6 +8,8 @@ import { errorsOf } from "./errors.js";
 
 /** A gap that more than doubles from the first half of the motion to the second grows. */
 const GROWTH = 1.5;
+/** One that has fallen below this share of the largest so far does not grow any more. */
+const FALLEN = 0.9;
 const EARLIEST = 6; // [frames] before it there is nothing to judge
 const OPEN = 1e-2; // of the scene's length: a gap that is the first thing to say
 const VISIBLE = 1e-3; // of the scene's length: a gap that can be seen
@@ -37,7 +39,8 @@ export function trendOf(history, m, shown) {
     return { word: "just started", arrow: "→", tone: "calm" };
   }
   const early = history.worst(m, "gap", 0, half);
-  if (late > GROWTH * early) {
+  const now = history.columns[m].gap[shown];
+  if (late > GROWTH * early && now >= FALLEN * late) {
     return { word: "growing", arrow: "↗", tone: "warn" };
   }
   return late < early / GROWTH
@@ -69,16 +72,23 @@ function measure(data, m, shown) {
   };
 }
 
-/** Words for a loop that does not look open. */
+/** Words for the loop where something else is worse. */
 function closedWords({ loops, gap, gapShare }) {
   if (!loops) {
     return "";
   }
+  if (gapShare > VISIBLE) {
+    return `open by ${quantity(gap, "m")}`;
+  }
   return gapShare <= CLOSED ? "closed" : `closed to ${quantity(gap, "m", 1)}`;
 }
 
-/** @param {string} first @param {string} second */
-const but = (first, second) => (first ? `${first}, but ${second}` : second);
+/** A closed loop does not make a motion right, and an open one is one fault more. */
+const besides = (size, second) => {
+  const first = closedWords(size);
+  const joint = size.gapShare > VISIBLE ? " and" : ", but";
+  return first ? `${first}${joint} ${second}` : second;
+};
 
 /** Digits that are right, by the worse of motion and energy; no more than the reference has. */
 function rightDigits({ offShare, energyShare }, reference) {
@@ -118,11 +128,11 @@ export function verdictAt(data, m, shown) {
     return open();
   }
   if (size.known && size.offShare > WRONG) {
-    const words = but(closedWords(size), `${quantity(size.off, "m")} from the true motion`);
+    const words = besides(size, `${quantity(size.off, "m")} from the true motion`);
     return { words, tone: "bad", badness: 100 + size.offShare };
   }
   if (size.energyShare > WRONG) {
-    const words = but(closedWords(size), `${quantity(size.energy, "J")} off in energy`);
+    const words = besides(size, `${quantity(size.energy, "J")} off in energy`);
     return { words, tone: "bad", badness: 100 + size.energyShare };
   }
   if (size.loops && size.gapShare > VISIBLE) {
