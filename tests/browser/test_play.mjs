@@ -501,10 +501,17 @@ test("the last session of this browser can be continued, and an untouched page l
   await type(page, "#set-h", "0.013");
   await page.focus("#play");
   await playTo(page, 0.4);
-  await page.waitForFunction(() => /h=0.013/.test(localStorage.getItem("holonom.last") ?? ""));
-  const before = await read(page, (data) => data.latest.methods.map(({ q }) => q));
+  const state = (data) => ({
+    frame: data.latest.frame,
+    q: data.latest.methods.map(({ q }) => q),
+  });
+  const before = await read(page, state);
+  await page.waitForFunction(
+    (frame) => (localStorage.getItem("holonom.last") ?? "").includes(`h=0.013&frame=${frame}&`),
+    before.frame,
+  );
   const again = await open(t, { ...context, keep: true });
   await again.getByRole("button", { name: "continue it" }).click();
-  await until(again, (data) => data.latest?.t > 0.3 && data.offer === "");
-  assert.deepEqual(await read(again, (data) => data.latest.methods.map(({ q }) => q)), before);
+  await until(again, `(data) => data.latest?.frame === ${before.frame} && data.offer === ""`);
+  assert.deepEqual(await read(again, state), before);
 });

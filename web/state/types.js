@@ -61,7 +61,10 @@
  *   steps: number, rejected: number, evals: number, ops: number, cpu: number,
  *   work?: number, sigma_min?: number, lambda_max?: number,
  *   energy?: number,
- *   error_estimate?: {q: number | null, v: number | null, reaction: number | null, own: number | null, t: number | null, reason: string},
+ *   error_estimate?: {
+ *     q: number | null, v: number | null, reaction: number | null, own: number | null,
+ *     t: number | null, reason: string,
+ *   },
  *   step_cpu: {median: number | null, low: number | null, high: number | null, frames: number},
  *   failure?: {code: string, t: number, message: string} | null,
  *   worst_gap: number, worst_velocity_gap: number, worst_energy_change: number,
