@@ -6,6 +6,7 @@ import { standAlone } from "./picture.js";
 const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
 const BITS = 4e6; // per second
 const LONGEST = 20; // [s] of film: a longer recording is shown faster
+const SHORTEST = 1; // [s] of film: a shorter one is shown slower
 
 export const canFilm = () =>
   typeof MediaRecorder !== "undefined" && KINDS.some((kind) => MediaRecorder.isTypeSupported(kind));
@@ -63,7 +64,7 @@ export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
     recorder.onstop = () => resolve(null);
   });
   recorder.start();
-  const length = Math.min(duration, LONGEST);
+  const length = Math.max(SHORTEST, Math.min(duration, LONGEST));
   const began = performance.now();
   for (let share = 0; share < 1 && !stopped(); ) {
     share = Math.min(1, (performance.now() - began) / 1000 / length);
@@ -74,5 +75,9 @@ export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
   }
   recorder.stop();
   await ended;
-  return new Blob(parts, { type: "video/webm" });
+  const film = new Blob(parts, { type: "video/webm" });
+  if (film.size === 0) {
+    throw new Error("the browser recorded nothing");
+  }
+  return film;
 }
