@@ -152,14 +152,12 @@ static void read_question(reader *r, const cJSON *root) {
     p->points = read_number(r, answer, "points", "/answer/points", 0, 1e6);
 }
 
-/// Form 2: parts with kinds of answers, and hints.
-static void read_parts(reader *r, cJSON *root) {
+/// A field that nobody reads is a slip of the author.
+static void check_fields(reader *r, const cJSON *root) {
     static const char *const fields[] = {"exercise", "id",         "title", "lesson", "section",
                                          "scene",    "statement",  "draw",  "parts",  "hints",
                                          "about",    "conditions", NULL};
-    hn_exercise *p = r->p;
     const cJSON *m;
-    hn_diag diag = {0};
     cJSON_ArrayForEach(m, root) {
         int k = 0;
         while (fields[k] && strcmp(fields[k], m->string) != 0) {
@@ -169,6 +167,16 @@ static void read_parts(reader *r, cJSON *root) {
             fault(r, m->string, "an exercise has no such field");
         }
     }
+}
+
+/// Form 2: parts with kinds of answers, and hints.
+static void read_parts(reader *r, cJSON *root) {
+    hn_exercise *p = r->p;
+    const cJSON *m;
+    hn_diag diag = {0};
+    check_fields(r, root);
+
+    // a part that cannot be read is reported, and the next one is tried
     cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(root, "parts")) {
         if (p->n_parts == HN_GRADE_MAX_PARTS) {
             fault(r, "/parts", "too many parts");
@@ -187,6 +195,8 @@ static void read_parts(reader *r, cJSON *root) {
     if (p->n_parts == 0) {
         fault(r, "/parts", "an exercise needs a part that can be read");
     }
+
+    // the parts and hints point into the tree, so the exercise keeps it
     p->seed = 1;
     p->root = root;
 }

@@ -39,12 +39,16 @@ static hn_status try_right(trial *t, const hn_part *p) {
     hn_part_result results[HN_PART_RESULTS];
     hn_diag diag = {0};
     int n = 0;
+
+    // the answer that the exercise itself gives
     cJSON *answer = p->kind->right(p, &diag);
     if (!answer) {
         complain(t, p->id, "there is no right answer: %s", diag.message);
         return HN_OK;
     }
     t->report->rights++;
+
+    // graded as a student's, it must pass in every entry
     const hn_status status = p->kind->grade(p, answer, results, &n, &diag);
     for (int i = 0; i < n && status == HN_OK; i++) {
         if (!results[i].right) {
@@ -65,16 +69,22 @@ static hn_status try_fault(trial *t, const hn_part *p, const cJSON *answer, cons
     hn_part_result results[HN_PART_RESULTS];
     hn_diag diag = {0};
     int n = 0, named = 0, wrong = 0;
+
+    // graded as if a student had handed it in
     t->report->faults++;
     const hn_status status = p->kind->grade(p, answer, results, &n, &diag);
     if (status != HN_OK) {
         complain(t, p->id, "%s", diag.message);
         return status == HN_ERR_MEMORY ? status : HN_OK;
     }
+
+    // an entry may be wrong under another name, or not at all
     for (int i = 0; i < n; i++) {
         wrong += !results[i].right;
         named += !results[i].right && strcmp(results[i].mistake, id) == 0;
     }
+
+    // the author sees the answer, and what it was taken for
     if (!named) {
         char *text = cJSON_PrintUnformatted(answer);
         complain(t, p->id, "the mistake '%s' (%.150s) is %s%s", id, text ? text : "",

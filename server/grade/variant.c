@@ -180,6 +180,8 @@ static int has_part(const hn_variant *x, const char *id) {
 /// Fields that no part asks for; the file of another exercise or another seed.
 static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     static const char *const others[] = {"problem", "exercise", "student", "seed", "comment"};
+
+    // each field is a part, or one that every submission may have
     const cJSON *m;
     int answers = 0;
     cJSON_ArrayForEach(m, submission) {
@@ -188,10 +190,14 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
         for (int i = 0; i < 5 && !known; i++) {
             known = strcmp(m->string, others[i]) == 0;
         }
+
+        // the note names the first of the others
         if (!known && !v->note[0]) {
             snprintf(v->note, sizeof v->note, "the field '%.60s' was not read", m->string);
         }
     }
+
+    // it must be meant for this exercise and this seed
     const cJSON *id = cJSON_GetObjectItemCaseSensitive(submission, "problem");
     const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
     if (cJSON_IsString(id) && strcmp(id->valuestring, x->exercise->id) != 0) {
@@ -203,6 +209,8 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
                                     "the submission answers the variant of seed %.0f, this is %llu",
                                     seed->valuedouble, (unsigned long long)x->seed);
     }
+
+    // a submission without any answer is no attempt
     return answers > 0
                ? 1
                : hn_submission_refuse(v, "'holonom problem' shows the shape of a submission",

@@ -105,14 +105,20 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     char hash[17], seed[32];
     hn_hash_hex(v->problem->hash, hash);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)v->seed);
+
+    // the variant that was graded
     hn_json_put_string(b, "problem", v->problem->id);
     hn_json_put_string(b, "problem_hash", hash);
     hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
     hn_json_put_int(b, "states", v->n_states);
+
+    // who handed in what, and which build graded it
     hn_json_put_string(b, "student", v->student);
     hn_json_put_string(b, "build", hn_build_name());
     hn_hash_hex(v->submission_hash, hash);
     hn_json_put_string(b, "submission_hash", hash);
+
+    // the scene in the state where the answer is shown
     if (v->shown_entry >= 0) {
         hn_json_put_string(b, "shown_entry", v->entry[v->shown_entry].name);
         hn_json_put_string(b, "shown_scene", v->problem->scene);
@@ -126,6 +132,7 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
 }
 
 void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
+    // what was graded, and the outcome
     hn_json_object(b);
     put_origin(b, v);
     hn_json_put_string(b, "status", v->kind == HN_VERDICT_GRADED ? "graded" : "ungradable");
@@ -136,15 +143,20 @@ void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
         hn_json_put_number(b, "score", v->score);
         hn_json_put_string(b, "summary", v->summary);
     }
+
+    // what holds for every outcome
     hn_json_put_number(b, "max_score", v->max_score);
     hn_json_put_string(b, "note", v->note);
     hn_json_put_string(b, "submission", v->submission);
+
+    // the verdict on each entry
     hn_json_key(b, "entries");
     hn_json_array(b);
     for (int k = 0; k < v->n_entries; k++) {
         put_entry(b, &v->entry[k]);
     }
     hn_json_end_array(b);
+
     hn_json_end_object(b);
 }
 

@@ -53,8 +53,12 @@ static void derive_command(cJSON *node) {
     const cJSON *methods = cJSON_GetObjectItem(node, "methods"), *word;
     hn_strbuf b;
     hn_strbuf_init(&b);
+
+    // one method runs; several, or none named, are compared
     const int several = cJSON_GetArraySize(methods) != 1;
     hn_strbuf_printf(&b, "%s %s", several ? "compare" : "run", scene ? scene : "");
+
+    // the options, in the order in which a person writes them
     cJSON_ArrayForEach(word, cJSON_GetObjectItem(node, "set")) {
         hn_strbuf_printf(&b, " --set %s", word->valuestring);
     }
@@ -68,6 +72,8 @@ static void derive_command(cJSON *node) {
     if (time) {
         hn_strbuf_printf(&b, " --time %g", time->valuedouble);
     }
+
+    // a single run shows its plot
     hn_strbuf_add(&b, several ? "" : " --plot");
     cJSON_AddStringToObject(node, "command", hn_strbuf_text(&b));
     hn_strbuf_reset(&b);
@@ -78,11 +84,14 @@ static hn_status read_exhibit(cJSON *node, const char *text, hn_diags *diags) {
     static const char *const keys[] = {"command", "scene", "methods", "set", "time", "look"};
     char line[MAX_LINE];
     while (next_line(&text, line) && *skip_blanks(line)) {
+        // key and value
         char *colon = strchr(line, ':');
         const char *value = colon ? skip_blanks(colon + 1) : "";
         if (colon) {
             *colon = 0;
         }
+
+        // an unknown key is refused, with the nearest one
         int k = 0;
         while (k < 6 && strcmp(keys[k], line) != 0) {
             k++;
@@ -91,6 +100,8 @@ static hn_status read_exhibit(cJSON *node, const char *text, hn_diags *diags) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/exhibit", hn_nearest_name(line, keys, 6),
                                 "an exhibit has no line '%.60s'", line);
         }
+
+        // lists, the time in seconds, and texts
         if (k == 2 || k == 3) {
             put_words(node, keys[k], value);
         } else if (k == 4) {
@@ -99,6 +110,8 @@ static hn_status read_exhibit(cJSON *node, const char *text, hn_diags *diags) {
             cJSON_AddStringToObject(node, keys[k], value);
         }
     }
+
+    // a command that is written out goes before a derived one
     if (!cJSON_GetObjectItem(node, "command")) {
         derive_command(node);
     }
@@ -203,6 +216,7 @@ hn_status hn_lesson_parse(const char *text, size_t n, cJSON **blocks, hn_diags *
 /// The id of the lesson that a word names: its number, or the id itself. NULL, with a fault, if
 /// there is none.
 static const char *find_id(const cJSON *list, const char *word, hn_diags *diags) {
+    // the number, or the id; the ids are kept for the hint
     const char *ids[MAX_LESSONS];
     int n = 0;
     char *end;
@@ -217,6 +231,8 @@ static const char *find_id(const cJSON *list, const char *word, hn_diags *diags)
             ids[n++] = id;
         }
     }
+
+    // what to try instead
     const char *near = hn_nearest_name(word, ids, n);
     char hint[HN_DIAG_HINT];
     if (near) {

@@ -83,6 +83,7 @@ static size_t word_columns(const char *word, size_t n) {
 static void put_folded(hn_strbuf *b, const char *text, int indent, int width, const char *head) {
     int column = hn_text_columns(head), started = 0;
     hn_strbuf_add(b, head);
+
     while (*text) {
         if (*text == '\x01') { // a line of a display
             const size_t n = strcspn(text + 1, "\n");
@@ -91,12 +92,16 @@ static void put_folded(hn_strbuf *b, const char *text, int indent, int width, co
             column = started = 0;
             continue;
         }
+
+        // the next word goes onto a new line when this one is full
         const size_t n = strcspn(text, " \n\x01");
         const int columns = (int)word_columns(text, n);
         if (n > 0 && started && column + 1 + columns > width) {
             hn_strbuf_add(b, "\n");
             column = started = 0;
         }
+
+        // a blank between words, or the indent before the first
         if (n > 0) {
             hn_strbuf_printf(b, "%*s", started ? 1 : column >= indent ? 0 : indent - column, "");
             column = started ? column + 1 : column >= indent ? column : indent;
@@ -104,6 +109,8 @@ static void put_folded(hn_strbuf *b, const char *text, int indent, int width, co
             column += columns;
             started = 1;
         }
+
+        // a break of the source ends the line
         text += n;
         if (*text == '\n') {
             hn_strbuf_add(b, "\n");
@@ -111,6 +118,7 @@ static void put_folded(hn_strbuf *b, const char *text, int indent, int width, co
         }
         text += *text == ' ' || *text == '\n';
     }
+
     hn_strbuf_add(b, column > 0 ? "\n" : "");
 }
 
@@ -154,16 +162,22 @@ static bool holds_line(const cJSON *item) {
 }
 
 static void put_list(hn_strbuf *b, const cJSON *node, int indent, int width) {
+    // the numbering goes on from the first number
     const bool ordered = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(node, "ordered"));
     int number = (int)cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "start"));
     const cJSON *item;
+
+    // each item behind its mark
     cJSON_ArrayForEach(item, children_of(node)) {
         char head[40];
         snprintf(head, sizeof head, ordered ? "%*s%d. " : "%*s* ", indent, "", number++);
         const int inner = indent + (ordered ? 3 : 2);
+
+        // an item of one line, or of blocks
         if (holds_line(item)) {
             put_inline(b, children_of(item), inner, width, head);
         } else {
+            // the first block stands beside the mark, the others below it
             const cJSON *first = children_of(item) ? children_of(item)->child : NULL;
             put_inline(b, children_of(first), inner, width, head);
             for (const cJSON *m = first ? first->next : NULL; m; m = m->next) {
@@ -274,8 +288,11 @@ static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
     } else if (is_kind(node, "predict")) {
         hn_strbuf_printf(b, "%*sPredict first:\n", indent, "");
         put_blocks(b, children_of(node), indent, width);
+
+        // the choices stand below the question
         put_choices(b, node, indent, width);
     } else if (is_kind(node, "slip")) {
+        // a heading line, then the text below it
         hn_strbuf_printf(b, "%*sPrinted in a lesson (slip %.0f):\n", indent, "",
                          cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "number")));
         put_blocks(b, children_of(node), indent + INDENT, width);

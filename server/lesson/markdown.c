@@ -86,6 +86,25 @@ static void enter_cell(builder *b, const MD_BLOCK_TD_DETAIL *cell) {
     cJSON_AddStringToObject(push(b, "cell"), "align", names[cell->align]);
 }
 
+static void enter_code(builder *b, const MD_BLOCK_CODE_DETAIL *code) {
+    cJSON *node = push(b, "code");
+    add_text(b, node, "info", code->info.text ? code->info.text : "", code->info.size);
+    add_text(b, node, "text", "", 0);
+}
+
+/// A table, its head and body, a row, or a cell.
+static void enter_table(builder *b, MD_BLOCKTYPE type, void *detail) {
+    if (type == MD_BLOCK_TABLE) {
+        push(b, "table");
+    } else if (type == MD_BLOCK_THEAD || type == MD_BLOCK_TBODY) {
+        b->head = type == MD_BLOCK_THEAD;
+    } else if (type == MD_BLOCK_TR) {
+        cJSON_AddBoolToObject(push(b, "row"), "head", b->head);
+    } else {
+        enter_cell(b, detail);
+    }
+}
+
 static int enter_block(MD_BLOCKTYPE type, void *detail, void *user) {
     builder *b = user;
     switch (type) {
@@ -94,6 +113,8 @@ static int enter_block(MD_BLOCKTYPE type, void *detail, void *user) {
     case MD_BLOCK_H:
         cJSON_AddNumberToObject(push(b, "heading"), "level", ((MD_BLOCK_H_DETAIL *)detail)->level);
         break;
+
+    // lists, and blocks apart from the running text
     case MD_BLOCK_UL:
         enter_list(b, 0, 1);
         break;
@@ -109,26 +130,16 @@ static int enter_block(MD_BLOCKTYPE type, void *detail, void *user) {
     case MD_BLOCK_HR:
         push(b, "rule");
         break;
-    case MD_BLOCK_CODE: {
-        const MD_ATTRIBUTE *info = &((MD_BLOCK_CODE_DETAIL *)detail)->info;
-        cJSON *node = push(b, "code");
-        add_text(b, node, "info", info->text ? info->text : "", info->size);
-        add_text(b, node, "text", "", 0);
+    case MD_BLOCK_CODE:
+        enter_code(b, detail);
         break;
-    }
     case MD_BLOCK_TABLE:
-        push(b, "table");
-        break;
     case MD_BLOCK_THEAD:
     case MD_BLOCK_TBODY:
-        b->head = type == MD_BLOCK_THEAD;
-        break;
     case MD_BLOCK_TR:
-        cJSON_AddBoolToObject(push(b, "row"), "head", b->head);
-        break;
     case MD_BLOCK_TH:
     case MD_BLOCK_TD:
-        enter_cell(b, detail);
+        enter_table(b, type, detail);
         break;
     default:
         push(b, "paragraph");
@@ -152,10 +163,14 @@ static int leave_block(MD_BLOCKTYPE type, void *detail, void *user) {
 static int enter_span(MD_SPANTYPE type, void *detail, void *user) {
     builder *b = user;
     cJSON *node;
+
     switch (type) {
+    // styles
     case MD_SPAN_EM:
         push(b, "em");
         break;
+
+    // what points to a place
     case MD_SPAN_A:
         node = push(b, "link");
         add_text(b, node, "href", ((MD_SPAN_A_DETAIL *)detail)->href.text,
@@ -166,6 +181,8 @@ static int enter_span(MD_SPANTYPE type, void *detail, void *user) {
         add_text(b, node, "src", ((MD_SPAN_IMG_DETAIL *)detail)->src.text,
                  ((MD_SPAN_IMG_DETAIL *)detail)->src.size);
         break;
+
+    // what is kept as it is written; the text is added later
     case MD_SPAN_CODE:
         add_text(b, push(b, "mono"), "text", "", 0);
         break;

@@ -185,9 +185,13 @@ static bool read_known(reader *r, const char *name) {
 static int read_command(reader *r) {
     char name[MAX_NAME];
     read_name(r, name);
+
+    // the end of a block belongs to the one that opened it
     if (strcmp(name, "end") == 0) {
         return 0;
     }
+
+    // all else is read to its end here
     if (strcmp(name, "begin") == 0 && r->nesting < MAX_NESTING) {
         read_block(r);
     } else if (strcmp(name, "\\") == 0) {
@@ -203,6 +207,7 @@ static int read_command(reader *r) {
         read_argument(r, r->out);
         hn_strbuf_add(r->out, ")");
     } else if (strcmp(name, "mathbb") == 0) {
+        // every blackboard letter is taken for the reals
         hn_strbuf_add(r->out, "ℝ");
         hn_strbuf inner;
         hn_strbuf_init(&inner);

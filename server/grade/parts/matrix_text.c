@@ -40,6 +40,7 @@ static hn_status make(parser *p, int rows, int cols, hn_matrix *out) {
 /// a + sign * b
 static hn_status add(parser *p, const hn_matrix *a, const hn_matrix *b, double sign,
                      hn_matrix *out) {
+    // the number 0 fits every shape
     if (a->number && a->x[0] == 0 && !b->number) {
         HN_TRY(make(p, b->rows, b->cols, out));
         for (int i = 0; i < b->rows * b->cols; i++) {
@@ -51,6 +52,8 @@ static hn_status add(parser *p, const hn_matrix *a, const hn_matrix *b, double s
         *out = *a;
         return HN_OK;
     }
+
+    // all else entry by entry, in one shape
     if (a->rows != b->rows || a->cols != b->cols) {
         return shapes(p, "the sum", a, b);
     }
@@ -63,6 +66,7 @@ static hn_status add(parser *p, const hn_matrix *a, const hn_matrix *b, double s
 }
 
 static hn_status multiply(parser *p, const hn_matrix *a, const hn_matrix *b, hn_matrix *out) {
+    // a number scales
     if (a->number || b->number) {
         const hn_matrix *m = a->number ? b : a;
         const double factor = a->number ? a->x[0] : b->x[0];
@@ -73,6 +77,8 @@ static hn_status multiply(parser *p, const hn_matrix *a, const hn_matrix *b, hn_
         }
         return HN_OK;
     }
+
+    // rows by columns
     if (a->cols != b->rows) {
         return shapes(p, "the product", a, b);
     }
@@ -103,11 +109,15 @@ static hn_status invert(parser *p, const hn_matrix *a, hn_matrix *out) {
     double lu[HN_MATRIX_LARGEST * HN_MATRIX_LARGEST], scale[HN_MATRIX_LARGEST];
     double column[HN_MATRIX_LARGEST];
     int pivot[HN_MATRIX_LARGEST];
+
+    // square, and small enough for the arrays above
     if (n != a->cols || n > HN_MATRIX_LARGEST) {
         return hn_diag_set(p->diag, HN_ERR_UNSUPPORTED, NULL, NULL,
                            "a matrix of %d x %d has no inverse: it is not square", a->rows,
                            a->cols);
     }
+
+    // the factors, of a copy: a stays as it is
     memcpy(lu, a->x, sizeof(double) * (size_t)(n * n));
     HN_TRY(make(p, n, n, out));
     out->number = a->number;
@@ -115,6 +125,8 @@ static hn_status invert(parser *p, const hn_matrix *a, hn_matrix *out) {
         return hn_diag_set(p->diag, HN_ERR_SINGULAR, NULL, NULL,
                            "a matrix that is inverted here is singular");
     }
+
+    // column j of the inverse solves A x = e_j
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
             column[i] = i == j;
@@ -192,7 +204,10 @@ static void read_name(parser *p, char name[MAX_NAME]) {
     bool brace = false;
     name[0] = 0;
     p->at += *p->at == '\\';
+
+    // letters, digits behind the first, and indices
     while (n < MAX_NAME - 8) {
+        // a Greek letter in UTF-8 goes by its name
         size_t k = 0;
         const size_t letters = sizeof LETTERS / sizeof *LETTERS;
         while (k < letters && strncmp(p->at, LETTERS[k].utf8, strlen(LETTERS[k].utf8)) != 0) {
@@ -204,6 +219,7 @@ static void read_name(parser *p, char name[MAX_NAME]) {
         } else if (isalpha((unsigned char)*p->at) || (n > 0 && isdigit((unsigned char)*p->at))) {
             name[n++] = *p->at++;
         } else if (n > 0 && *p->at == '_' && !brace) {
+            // the sign of an index and its brace leave nothing in the name
             brace = p->at[1] == '{';
             p->at += 1 + brace;
         } else {
@@ -211,6 +227,8 @@ static void read_name(parser *p, char name[MAX_NAME]) {
         }
         name[n] = 0;
     }
+
+    // the brace that the index opened
     p->at += brace && *p->at == '}';
 }
 
@@ -272,18 +290,24 @@ static hn_status read_word(parser *p, hn_matrix *out) {
 
 static hn_status read_primary(parser *p, hn_matrix *out) {
     skip(p);
+
+    // what stands in brackets is read as a whole
     if (take(p, "(")) {
         return read_group(p, ")", out);
     }
     if (take(p, "[")) {
         return read_group(p, "]", out);
     }
+
+    // marks before a name: the dot of a rate, the bold face of a matrix
     if (take_any(p, DOT)) {
         return read_dotted(p, out);
     }
     if (take_any(p, BOLD) || *p->at == '{') {
         return take(p, "{") ? read_group(p, "}", out) : fault(p, "expected a brace");
     }
+
+    // a number is a matrix of one by one
     if (isdigit((unsigned char)*p->at) || *p->at == '.') {
         char *end;
         HN_TRY(make(p, 1, 1, out));
@@ -292,6 +316,8 @@ static hn_status read_primary(parser *p, hn_matrix *out) {
         p->at = end > p->at ? end : p->at + 1;
         return HN_OK;
     }
+
+    // what is left: a name, or a command
     return read_word(p, out);
 }
 

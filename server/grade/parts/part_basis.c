@@ -124,6 +124,7 @@ static int find_sign(hn_draw *d, const table *J, const table *N) {
 }
 
 static void judge(hn_draw *d, const table *J, const table *N, int r, hn_part_result *out) {
+    // the shape, or that of the transpose
     if (N->rows != J->cols || N->cols != r) {
         const int transposed = N->cols == J->cols && N->rows == r;
         hn_part_wrong(out, transposed ? "transposed" : "shape", transposed ? 0.5 : 0,
@@ -132,6 +133,8 @@ static void judge(hn_draw *d, const table *J, const table *N, int r, hn_part_res
                       J->cols, r, N->rows, N->cols);
         return;
     }
+
+    // in the null space, perhaps but for the sign of one row
     if (worst_residual(d, J, N, 0) > ALLOWED) {
         const int i = find_sign(d, J, N);
         if (i >= 0) {
@@ -143,6 +146,8 @@ static void judge(hn_draw *d, const table *J, const table *N, int r, hn_part_res
         }
         return;
     }
+
+    // independent columns in every state
     for (int s = 0; s < d->n_states; s++) {
         const int rank = rank_of(d, N, s);
         if (rank < r) {
@@ -167,10 +172,14 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     hn_draw d;
     table J, N;
     hn_diag why = {0};
+
+    // what every result says, whatever was handed in
     *n = 1;
     *r = (hn_part_result){.mistake = ""};
     snprintf(r->expected, sizeof r->expected, "any N with J N = 0 and full rank");
     hn_part_keep_given(r, given);
+
+    // judged only when it can be read
     hn_status status = open_draw(p, &d, &J, diag);
     if (status == HN_OK && (!given || cJSON_IsNull(given))) {
         hn_part_wrong(r, "blank", 0, "nothing was handed in here");
@@ -184,6 +193,8 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
             status = read == HN_ERR_MEMORY ? read : status;
         }
     }
+
+    // the draw is closed on every path
     hn_draw_reset(&d);
     return status;
 }

@@ -84,15 +84,20 @@ static int eval_block(system_t *s, const cJSON *node, hn_matrix *out) {
 /// The order of the unknowns and the columns that they take.
 static int read_unknowns(system_t *s, const cJSON *answer) {
     const cJSON *order = cJSON_GetObjectItemCaseSensitive(answer, "unknowns"), *m;
+
+    // without an order of its own, an answer keeps that of the exercise
     const cJSON *list = order ? order : unknowns_of(s->p);
     int seen = 0;
     cJSON_ArrayForEach(m, list) {
+        // each unknown once, with its sign
         double sign = 1;
         const int i = order ? find_unknown(s->p, m, &sign) : s->n_blocks;
         if (i < 0 || s->n_blocks == MAX_BLOCKS || (seen & 1 << i)) {
             return tell(s, "unreadable", "an entry of 'unknowns' is unknown or twice there: %.60s",
                         m->valuestring ? m->valuestring : "");
         }
+
+        // its columns follow those of the unknown before
         const cJSON *size = cJSON_GetArrayItem(unknowns_of(s->p), i);
         const cJSON *n = cJSON_GetObjectItemCaseSensitive(
             cJSON_GetObjectItemCaseSensitive(s->p->node, "sizes"), size->valuestring);
@@ -102,6 +107,8 @@ static int read_unknowns(system_t *s, const cJSON *answer) {
         s->column_of[s->n_blocks + 1] = s->column_of[s->n_blocks] + (n ? n->valueint : 1);
         s->n_blocks++;
     }
+
+    // all unknowns, and no more columns than there is room for
     s->size = s->column_of[s->n_blocks];
     return s->n_blocks == cJSON_GetArraySize(unknowns_of(s->p)) && s->size <= MAX_SIZE
                ? 1
@@ -132,9 +139,13 @@ static int place_block(system_t *s, const hn_matrix *m, int row, int column, int
 /// One row of blocks with its right-hand side.
 static int read_row(system_t *s, const cJSON *row, const cJSON *side, int i) {
     hn_matrix blocks[MAX_BLOCKS], b;
+
+    // one block for each unknown
     if (cJSON_GetArraySize(row) != s->n_blocks) {
         return tell(s, "shape", "%s", "a row of blocks has another length than the unknowns");
     }
+
+    // the height comes from any block that is no bare number
     int height = 0;
     for (int j = 0; j < s->n_blocks; j++) {
         if (!eval_block(s, cJSON_GetArrayItem(row, j), &blocks[j])) {
@@ -142,6 +153,8 @@ static int read_row(system_t *s, const cJSON *row, const cJSON *side, int i) {
         }
         height = blocks[j].number || height ? height : blocks[j].rows;
     }
+
+    // the right-hand side has the last word on it
     if (!eval_block(s, side, &b)) {
         return 0;
     }
@@ -149,6 +162,8 @@ static int read_row(system_t *s, const cJSON *row, const cJSON *side, int i) {
     if (s->row_of[i] + height > s->size || height == 0 || (!b.number && b.cols != 1)) {
         return tell(s, "shape", "%s", "the rows of blocks do not make a square system");
     }
+
+    // the entries, at their place in the whole system
     s->row_of[i + 1] = s->row_of[i] + height;
     for (int k = 0; k < height; k++) {
         s->b[s->row_of[i] + k] = b.number ? 0 : b.x[k];
@@ -189,6 +204,8 @@ static int solve(const hn_part *p, hn_world *w, const cJSON *answer, hn_part_res
     system_t s = {.p = p, .w = w, .r = r};
     int pivot[MAX_SIZE];
     double scale[MAX_SIZE];
+
+    // the whole system, and its solution
     if (!assemble(&s, answer)) {
         return 0;
     }
@@ -197,6 +214,8 @@ static int solve(const hn_part *p, hn_world *w, const cJSON *answer, hn_part_res
                     "this system is singular although J has full row rank and M is definite");
     }
     hn_lu_solve(s.size, s.K, pivot, s.b);
+
+    // cut into the unknowns of the exercise, in their order and with their signs
     out->n = s.n_blocks;
     for (int k = 0; k < s.n_blocks; k++) {
         const int height = s.column_of[k + 1] - s.column_of[k];
@@ -229,6 +248,7 @@ static int agrees(const solution *a, const solution *b, int k, double sign) {
 /// Names the mistake: a listed one with the same solution, or an unknown with the wrong sign.
 static void explain(const hn_part *p, hn_world *w, const solution *given, const solution *wanted,
                     hn_part_result *r) {
+    // a listed mistake that leads to the same solution
     const cJSON *fault;
     for (int i = 0; (fault = hn_part_fault_at(p, i)) != NULL; i++) {
         solution wrong;
@@ -242,6 +262,8 @@ static void explain(const hn_part *p, hn_world *w, const solution *given, const 
             return;
         }
     }
+
+    // the unknowns that differ, and those that differ by the sign alone
     const char *wrong = "";
     int n = 0, signs = 0;
     for (int k = 0; k < wanted->n; k++) {
@@ -250,6 +272,8 @@ static void explain(const hn_part *p, hn_world *w, const solution *given, const 
         signs += !right && agrees(given, wanted, k, -1);
         wrong = right ? wrong : cJSON_GetArrayItem(unknowns_of(p), k)->string;
     }
+
+    // one wrong unknown can be named; more than one cannot
     if (n == 1 && signs == 1) {
         hn_part_wrong(r, "sign", 0.5, "%s comes out with the wrong sign", wrong);
     } else if (n == 1) {

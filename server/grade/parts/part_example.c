@@ -46,8 +46,12 @@ static double smallest_pivot(const hn_matrix *m) {
     double a[HN_MATRIX_LARGEST * HN_MATRIX_LARGEST], least = HUGE_VAL;
     const int n = m->rows;
     const double size = fmax(largest(m), 1e-300);
+
+    // elimination on a copy
     memcpy(a, m->x, sizeof(double) * (size_t)(n * n));
     int done[HN_MATRIX_LARGEST] = {0};
+
+    // the largest diagonal entry that is left is the next pivot
     for (int step = 0; step < n; step++) {
         int k = -1;
         for (int i = 0; i < n; i++) {
@@ -56,11 +60,14 @@ static double smallest_pivot(const hn_matrix *m) {
         const double pivot = a[k * n + k] / size;
         done[k] = 1;
         least = fmin(least, pivot);
+
         for (int i = 0; i < n && pivot <= SMALL; i++) { // nothing may be left beside a zero pivot
             if (!done[i] && fabs(a[i * n + k]) > SMALL * size) {
                 least = fmin(least, -1);
             }
         }
+
+        // the rest, without the pivot's row and column
         for (int i = 0; i < n && pivot > SMALL; i++) {
             for (int j = 0; j < n && !done[i]; j++) {
                 a[i * n + j] -= a[i * n + k] * a[k * n + j] / a[k * n + k];
@@ -226,10 +233,14 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     hn_world w = {.arena = hn_arena_create(0)};
     hn_draw d = {0};
     int good = 1;
+
+    // what every result says, whatever was handed in
     *n = 1;
     *r = (hn_part_result){.mistake = ""};
     snprintf(r->expected, sizeof r->expected, "any example that passes every check");
     hn_part_keep_given(r, given);
+
+    // the numbers first, then the matrices, then the checks of both
     hn_status status = w.arena ? HN_OK : HN_ERR_MEMORY;
     if (status == HN_OK && (!given || cJSON_IsNull(given))) {
         hn_part_wrong(r, "blank", 0, "nothing was handed in here");
@@ -241,6 +252,8 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
             status = run_checks(p, &w, &d, r, diag);
         }
     }
+
+    // both are closed on every path
     hn_draw_reset(&d);
     hn_world_reset(&w);
     return status;

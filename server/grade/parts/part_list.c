@@ -39,6 +39,7 @@ static int lists(const char *list, const char *word) {
 }
 
 hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag) {
+    // what all kinds have
     p->node = node;
     p->id = hn_part_text(node, "id");
     p->points = hn_part_number(node, "points", -1);
@@ -46,10 +47,14 @@ hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag) {
     if (!p->kind) {
         return HN_ERR_INPUT;
     }
+
+    // the id is a key of the submission
     if (!p->id[0] || strlen(p->id) > 16 || !(p->points >= 0)) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/parts", NULL,
                            "a part needs an id of 1 to 16 characters and points from 0");
     }
+
+    // a field that nobody reads is a slip of the author
     const cJSON *m;
     cJSON_ArrayForEach(m, node) {
         if (!lists("id kind points ask about", m->string) && !lists(p->kind->fields, m->string)) {

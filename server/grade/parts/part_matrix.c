@@ -109,10 +109,14 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
                        hn_diag *diag) {
     hn_world worlds[WORLDS];
     const char *text = cJSON_GetStringValue(given);
+
+    // what every result says, whatever was handed in
     *n = 1;
     *r = (hn_part_result){.mistake = ""};
     snprintf(r->expected, sizeof r->expected, "the formula");
     hn_part_keep_given(r, given);
+
+    // equal formulas agree in every random world
     const hn_status status = open_worlds(p, worlds, diag);
     if (status == HN_OK && (!given || cJSON_IsNull(given) || (text && !*text))) {
         hn_part_wrong(r, "blank", 0, "nothing was handed in here");
@@ -125,6 +129,8 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
             explain(p, worlds, text, r);
         }
     }
+
+    // closed on every path
     close_worlds(worlds);
     return status;
 }

@@ -29,6 +29,8 @@ static hn_status load_model(const hn_part *p, hn_model **model, hn_diag *diag) {
     int n = 0;
     hn_diags diags = {0};
     const cJSON *name;
+
+    // the settings take their numbers from the draw
     cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(p->node, "set")) {
         double value;
         HN_TRY(hn_draw_value(p->draw, name->valuestring, &value, diag));
@@ -36,11 +38,15 @@ static hn_status load_model(const hn_part *p, hn_model **model, hn_diag *diag) {
             settings[n++] = (hn_setting){.name = name->valuestring, .value = value};
         }
     }
+
+    // the scene comes from the library that the part was given
     const hn_model_source source = {
         .name = hn_part_text(p->node, "scene"), .settings = settings, .n_settings = n};
     if (!p->lib) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/parts/scene", NULL, "no library of scenes here");
     }
+
+    // the first message of the loader becomes that of the part
     const hn_status status = hn_model_load(p->lib, &source, model, &diags);
     return status == HN_OK ? status
                            : hn_diag_set(diag, status == HN_ERR_MEMORY ? status : HN_ERR_INPUT,

@@ -143,6 +143,8 @@ static int read_order(const cJSON *given, int *order, int *n, hn_part_result *r)
     const cJSON *m;
     int seen = 0;
     *n = 0;
+
+    // each word is a stage, and stands there once
     cJSON_ArrayForEach(m, given) {
         const char *word = cJSON_GetStringValue(m);
         int i = 0;
@@ -160,6 +162,8 @@ static int read_order(const cJSON *given, int *order, int *n, hn_part_result *r)
         seen |= 1 << i;
         order[(*n)++] = i;
     }
+
+    // the first three stages make a step; the others may be left out
     for (int i = 0; i < 3; i++) {
         if (!(seen & 1 << i)) {
             hn_part_wrong(r, "missing-stage", 0, "without '%s' there is no step", STAGES[i].name);
@@ -173,12 +177,18 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
                        hn_diag *diag) {
     int order[MAX_STAGES], count;
     double worst_gap, worst_rate;
+
+    // a part of this kind draws nothing and cannot fail
     (void)p;
     (void)diag;
+
+    // what every result says, whatever was handed in
     *n = 1;
     *r = (hn_part_result){.mistake = ""};
     snprintf(r->expected, sizeof r->expected, "an order that keeps phi and J v at zero");
     hn_part_keep_given(r, given);
+
+    // nothing, or nothing that can be run
     if (!given || cJSON_IsNull(given)) {
         hn_part_wrong(r, "blank", 0, "nothing was handed in here");
         return HN_OK;
@@ -190,6 +200,8 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     if (!read_order(given, order, &count, r)) {
         return HN_OK;
     }
+
+    // the steps are run in this order, and the drift tells what it is worth
     const int outcome = execute(order, count, &worst_gap, &worst_rate);
     if (outcome < 0) {
         hn_part_right(r);

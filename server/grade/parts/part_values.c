@@ -46,10 +46,14 @@ static int flatten(const cJSON *node, const cJSON *list[MAX_ENTRIES], int *colum
     int n = 0;
     const cJSON *row, *entry;
     *columns = 0;
+
+    // one entry
     if (!cJSON_IsArray(node)) {
         list[0] = node;
         return 1;
     }
+
+    // a list; its entries may be rows
     cJSON_ArrayForEach(row, node) {
         if (!cJSON_IsArray(row)) {
             if (n == MAX_ENTRIES) {
@@ -58,6 +62,8 @@ static int flatten(const cJSON *node, const cJSON *list[MAX_ENTRIES], int *colum
             list[n++] = row;
             continue;
         }
+
+        // a row: its entries, one after another
         *columns = cJSON_GetArraySize(row);
         cJSON_ArrayForEach(entry, row) {
             if (n == MAX_ENTRIES) {
@@ -72,23 +78,31 @@ static int flatten(const cJSON *node, const cJSON *list[MAX_ENTRIES], int *colum
 /// Reads formulas of the exercise itself; `base` (may be NULL) stands in for null entries.
 static hn_status read_reference(sheet *s, const cJSON *node, const values *base, values *out) {
     const cJSON *list[MAX_ENTRIES];
+
+    // as many entries as the base
     out->n = flatten(node, list, &out->columns);
     if (out->n < 1 || (base && out->n != base->n)) {
         return hn_diag_set(s->diag, HN_ERR_INPUT, "/parts/answer", NULL,
                            "part %s: the answer needs 1 to %d entries, the same in every fault",
                            s->p->id, MAX_ENTRIES);
     }
+
+    // only null may stand for no formula, and only over a base
     for (int k = 0; k < out->n; k++) {
         const char *text = cJSON_GetStringValue(list[k]);
         if (!text && !(base && cJSON_IsNull(list[k]))) {
             return hn_diag_set(s->diag, HN_ERR_INPUT, "/parts/answer", NULL,
                                "part %s: an entry of an answer is no formula in quotes", s->p->id);
         }
+
+        // the formula, or the one that it leaves as it is
         if (text) {
             HN_TRY(hn_draw_parse(s->draw, text, &out->e[k], s->diag));
         } else {
             out->e[k] = base->e[k];
         }
+
+        // its value in every state
         for (int i = 0; i < s->draw->n_states; i++) {
             out->x[k][i] = hn_draw_eval(s->draw, out->e[k], i);
         }
@@ -168,6 +182,8 @@ static int read_text(sheet *s, const char *text, hn_ex *e, hn_unit *unit, hn_par
     hn_strbuf plain;
     hn_strbuf_init(&plain);
     hn_status status;
+
+    // a formula, or a number with its unit
     if (s->symbolic) {
         hn_spelling_normalise(&plain, text);
         status = hn_draw_parse(s->draw, hn_strbuf_text(&plain), e, &diag);
@@ -178,6 +194,8 @@ static int read_text(sheet *s, const char *text, hn_ex *e, hn_unit *unit, hn_par
             status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
         }
     }
+
+    // the reason, with the slip that is most frequent
     if (status != HN_OK) {
         const int comma = strchr(text, ',') && !s->symbolic;
         hn_part_unreadable(r, "'%.60s' cannot be read: %.160s%s%.80s%s", text, diag.message,
@@ -288,6 +306,8 @@ static int find_factor(const sheet *s, int k, const double *given, hn_part_resul
         {"kilo", "a factor of 1/1000: check the unit", 0.001, 0.5, 1},
         {"gravity", "the acceleration of gravity is missing", 1 / 9.81, 0.25, 1},
     };
+
+    // some ratios are a mistake in numbers alone
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if ((!rows[i].numbers || !s->symbolic) &&
             agrees(s, k, given, s->reference.x[k], rows[i].factor)) {
@@ -339,10 +359,13 @@ static int find_angles(sheet *s, int k, const double *given, hn_part_result *r) 
 
 /// A name left out, or another in its place: formulas alone, for a number tells too little.
 static int find_names(sheet *s, int k, const double *given, hn_part_result *r) {
+    // each name that the reference holds
     for (int i = 0; i < s->draw->n_names && s->symbolic; i++) {
         if (!hn_depends_on(s->draw->graph, s->reference.e[k], i)) {
             continue;
         }
+
+        // as if it were 1, 0, or negative
         if (has_replaced(s, k, given, &i, 1, 1, 0)) {
             hn_part_wrong(r, "missing-name", 0.25, "the factor %s is missing", s->draw->name[i]);
             return 1;
@@ -521,6 +544,8 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
     sheet s;
     hn_draw draw;
     values second = {0};
+
+    // both forms, each with its values
     const cJSON *node = cJSON_GetObjectItemCaseSensitive(p->node, "second");
     hn_status status = open_sheet(&s, p, &draw, diag);
     if (status == HN_OK && !node) {
@@ -528,6 +553,8 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
                              "part %s has no second form of its answer", p->id);
     }
     status = status == HN_OK ? read_reference(&s, node, &s.reference, &second) : status;
+
+    // equal to rounding, and within what a student is allowed
     for (int k = 0; k < s.reference.n && status == HN_OK; k++) {
         for (int i = 0; i < draw.n_states && status == HN_OK; i++) {
             const double x = s.reference.x[k][i], y = second.x[k][i];
@@ -547,6 +574,8 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     const int n = cJSON_IsArray(answer) ? cJSON_GetArraySize(answer) : 0;
     const char *unit = hn_part_text(p->node, "unit");
     const char *what = is_symbolic(p) ? "formula" : "number";
+
+    // how many, and of which kind
     if (n && cJSON_IsArray(answer->child)) {
         hn_strbuf_printf(b, "%d rows of %d formulas in quotes: [[\"...\", ...], ...]", n,
                          cJSON_GetArraySize(answer->child));
@@ -556,8 +585,12 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     } else {
         hn_strbuf_printf(b, "a %s%s", what, is_symbolic(p) ? " in quotes" : "");
     }
+
+    // the unit, which may be left out
     hn_strbuf_printf(b, unit[0] ? " in %s, or with its unit: \"1.2 %s\"" : "%s%s", unit,
                      unit[0] ? unit : "");
+
+    // the names that a formula may use
     const cJSON *states = cJSON_GetObjectItemCaseSensitive(p->node, "states"), *m;
     hn_strbuf_add(b, states ? "; names:" : "");
     cJSON_ArrayForEach(m, states) {

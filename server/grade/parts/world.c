@@ -82,10 +82,13 @@ static hn_status make_null(hn_world *w, const char *of, uint64_t seed, hn_matrix
 
 static hn_status make_one(hn_world *w, const hn_part *p, const cJSON *node, uint64_t seed,
                           hn_matrix *out, hn_diag *diag) {
+    // what is asked for, and two sizes or a word
     const char *how = cJSON_GetStringValue(cJSON_GetArrayItem(node, 0));
     const cJSON *first = cJSON_GetArrayItem(node, 1), *second = cJSON_GetArrayItem(node, 2);
     const char *word = cJSON_GetStringValue(first);
     const int rows = size_of(p, first), cols = size_of(p, second);
+
+    // a random matrix, of the sizes that the exercise names
     if (how && strcmp(how, "spd") == 0 && rows) {
         return make_spd(w, rows, seed, out);
     }
@@ -97,12 +100,15 @@ static hn_status make_one(hn_world *w, const hn_part *p, const cJSON *node, uint
         }
         return out->x ? HN_OK : HN_ERR_MEMORY;
     }
+
+    // a matrix that follows from those made before
     if (how && word && strcmp(how, "null") == 0) {
         return make_null(w, word, seed, out, diag);
     }
     if (how && word && strcmp(how, "is") == 0) {
         return hn_world_eval(w, word, out, diag);
     }
+
     return refuse(node->string, "is none of spd, any, null, is, or its size is unknown", diag);
 }
 
@@ -155,12 +161,15 @@ static int measure(const cJSON *rows, int *n, int *m) {
 }
 
 int hn_world_add(hn_world *w, const char *name, const cJSON *rows, char why[HN_PART_TEXT]) {
+    // rows of one length
     int n, m, i = 0;
     if (!cJSON_IsArray(rows) || !measure(rows, &n, &m)) {
         snprintf(why, HN_PART_TEXT, "%.20s is no list of rows of one length (at most %d)", name,
                  HN_MATRIX_LARGEST);
         return 0;
     }
+
+    // the entries, row by row; a row that is no list is one entry
     hn_matrix out = hn_matrix_new(w->arena, n, m);
     const cJSON *row, *entry;
     cJSON_ArrayForEach(row, rows) {
@@ -174,10 +183,13 @@ int hn_world_add(hn_world *w, const char *name, const cJSON *rows, char why[HN_P
             out.x[i++] = entry->valuedouble;
         }
     }
+
+    // no memory, or no room for one more name
     if (!out.x || w->n == HN_WORLD_NAMES) {
         snprintf(why, HN_PART_TEXT, "%.20s does not fit into memory", name);
         return 0;
     }
+
     w->name[w->n] = name;
     w->matrix[w->n++] = out;
     return 1;
