@@ -69,7 +69,8 @@ def plot(rows):
         out += [f'<circle cx="{x(t):.1f}" cy="{y(e):.1f}" r="2.6" fill="{COLOURS[program]}"/>' for t, e in curve]
     for i, (program, colour) in enumerate(COLOURS.items()):
         out.append(f'<rect x="{WIDTH - RIGHT + 20}" y="{TOP + 22 * i}" width="12" height="12" fill="{colour}"/>'
-                   f'<text x="{WIDTH - RIGHT + 38}" y="{TOP + 22 * i + 11}">{program}</text>')
+                   f'<text x="{WIDTH - RIGHT + 38}" y="{TOP + 22 * i + 11}">{program}'
+                   f'{", same C" if program in ("GSL", "SUNDIALS") else ""}</text>')
     return "".join(out) + "</svg>\n"
 
 
