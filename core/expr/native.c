@@ -161,6 +161,8 @@ static hn_native_loaded *keep_loaded(hn_tape *tape, void *handle, hn_native_code
     if (!l) {
         return NULL;
     }
+
+    // two references: the table and the caller
     pthread_mutex_lock(&known.lock);
     *l = (hn_native_loaded){.tape = tape,
                             .hash = hash_of(tape),
@@ -168,6 +170,8 @@ static hn_native_loaded *keep_loaded(hn_tape *tape, void *handle, hn_native_code
                             .code = code,
                             .refs = 2,
                             .used = ++known.uses};
+
+    // a place: a free one, or that of the entry unused for longest
     int place = known.n;
     if (known.n == KNOWN) {
         place = 0;
@@ -178,6 +182,7 @@ static hn_native_loaded *keep_loaded(hn_tape *tape, void *handle, hn_native_code
     } else {
         known.n++;
     }
+
     known.item[place] = l;
     pthread_mutex_unlock(&known.lock);
     return l;

@@ -212,12 +212,15 @@ static void path_of(const hn_native_builder *b, uint64_t key, const char *suffix
 
 /// The bytes of an open file if they are what hn_native_build() put there, else NULL; free them.
 static char *read_sound(int fd, uint64_t key, size_t *n) {
+    // a regular file of this user that nobody else may write
     struct stat info;
     if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode) || info.st_uid != geteuid() ||
         (info.st_mode & (S_IWGRP | S_IWOTH)) != 0 || info.st_size <= (off_t)sizeof(footer) ||
         info.st_size > MOST_BYTES) {
         return NULL;
     }
+
+    // its footer must fit the key and the bytes before it
     *n = (size_t)info.st_size;
     char *bytes = malloc(*n);
     footer f = {0};
@@ -227,6 +230,7 @@ static char *read_sound(int fd, uint64_t key, size_t *n) {
         sound = memcmp(f.magic, MAGIC, sizeof MAGIC) == 0 && f.key == key &&
                 f.checksum == hn_hash_bytes(HN_HASH_START, bytes, *n - sizeof f);
     }
+
     if (!sound) {
         free(bytes);
         return NULL;
@@ -275,6 +279,7 @@ hn_status hn_native_load(const hn_native_builder *b, const char *text, size_t n,
         return HN_ERR_IO;
     }
 
+    // by a name of its own: a path loaded before would give the old code
     unique_name(fd, open_file);
     *handle = dlopen(open_file, RTLD_NOW | RTLD_LOCAL);
     close(fd);

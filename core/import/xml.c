@@ -98,6 +98,7 @@ static xmlDoc *parse(hn_build *b, hn_im_file *file, xmlParserCtxt *parser, const
 
 xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
                     const xmlDoc *beside) {
+    // what can be refused before the text is read
     if (n > HN_IMPORT_MAX_BYTES) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
@@ -110,6 +111,8 @@ xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
             hn_diags_add(b->diags, missing.status, NULL, missing.hint, "%s", missing.message);
         return NULL;
     }
+
+    // names shared with the document beside it, so that nodes can move between them
     xmlParserCtxt *parser = xmlNewParserCtxt();
     if (!parser) {
         hn_im_out_of_memory(b);
@@ -120,6 +123,7 @@ xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
         parser->dict = beside->dict;
         xmlDictReference(parser->dict);
     }
+
     xmlDoc *doc = parse(b, file, parser, text, n);
     xmlFreeParserCtxt(parser);
     return doc;

@@ -174,10 +174,14 @@ _Noreturn static void work(const grading *g, int ask, int answer) {
 
 static hn_status start_worker(grading *g, worker *w, hn_diag *diag) {
     int ask[2], answer[2];
+
+    // a pipe each way
     if (pipe2(ask, O_CLOEXEC) != 0 || pipe2(answer, O_CLOEXEC) != 0) {
         return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "no pipe for a worker: %s",
                            strerror(errno));
     }
+
+    // the child grades until its pipe ends
     fflush(NULL);
     *w = (worker){.pid = fork(), .ask = ask[1], .answer = answer[0], .index = -1};
     hn_strbuf_init(&w->text);
@@ -193,6 +197,7 @@ static hn_status start_worker(grading *g, worker *w, hn_diag *diag) {
         }
         work(g, ask[0], answer[1]);
     }
+
     close(ask[0]);
     close(answer[1]);
     return w->pid > 0 ? HN_OK
@@ -256,6 +261,8 @@ static bool read_worker(worker *w) {
 
 static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
     const bool alive = !ready || read_worker(w);
+
+    // a whole line is a verdict
     if (w->text.n > 0 && w->text.text[w->text.n - 1] == '\n') {
         w->text.text[w->text.n - 1] = '\0';
         const hn_status status = keep_line(g, w->index, hn_strbuf_text(&w->text), true);
@@ -263,6 +270,8 @@ static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
         w->index = -1;
         return status;
     }
+
+    // a worker that ended or takes too long is replaced; its submission counts as lost
     const bool late = w->index >= 0 && hn_clock_wall() - w->since > g->opts->time_limit;
     if (!alive || late) {
         char reason[80];

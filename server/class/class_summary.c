@@ -20,10 +20,13 @@ typedef struct counts {
 } counts;
 
 static void add_count(counts *c, const char *word, const char *who) {
+    // the place of the word
     int i = 0;
     while (i < c->n && strcmp(c->item[i].word, word) != 0) {
         i++;
     }
+
+    // a new word, in a longer list where that is full
     if (i == c->n) {
         if (c->n == c->cap) {
             const int cap = c->cap ? 2 * c->cap : 32;
@@ -38,6 +41,7 @@ static void add_count(counts *c, const char *word, const char *who) {
         snprintf(c->item[c->n].word, WORD, "%s", word);
         hn_strbuf_init(&c->item[c->n++].who);
     }
+
     c->item[i].n++;
     hn_strbuf_printf(&c->item[i].who, "%s%s", c->item[i].n > 1 ? ", " : "", who);
 }
@@ -67,17 +71,23 @@ typedef struct tally {
 
 static void take_line(tally *t, const cJSON *o) {
     const char *student = text_of(o, "student"), *status = text_of(o, "status");
+
+    // without a score it is counted only
     if (strcmp(status, "graded") != 0) {
         t->failed += strcmp(status, "failed") == 0;
         t->ungradable += strcmp(status, "ungradable") == 0;
         return;
     }
+
+    // the distribution of the scores
     const double score = cJSON_GetNumberValue(cJSON_GetObjectItem(o, "score"));
     const double most = cJSON_GetNumberValue(cJSON_GetObjectItem(o, "max_score"));
     t->graded++;
     t->sum += score;
     t->most = most;
     t->bin[most > 0 ? (int)(BINS * score / most) : 0]++;
+
+    // mistakes, and answers equal to those of others
     const cJSON *m;
     cJSON_ArrayForEach(m, cJSON_GetObjectItem(o, "mistakes")) {
         add_count(&t->mistakes, m->valuestring, student);

@@ -75,6 +75,8 @@ static int compare(const void *a, const void *b) {
 
 static hn_status add(hn_roster *r, const char *folder, const char *name) {
     struct stat info;
+
+    // room for one more
     if (r->n == r->cap) {
         const int cap = r->cap ? 2 * r->cap : 64;
         hn_roster_entry *larger = realloc(r->entry, (size_t)cap * sizeof *larger);
@@ -84,6 +86,8 @@ static hn_status add(hn_roster *r, const char *folder, const char *name) {
         r->entry = larger;
         r->cap = cap;
     }
+
+    // only folders and files that may hold a submission
     hn_roster_entry *e = &r->entry[r->n];
     const int n = snprintf(e->path, sizeof e->path, "%s/%s", folder, name);
     if (n >= (int)sizeof e->path || lstat(e->path, &info) != 0) {
@@ -105,6 +109,8 @@ hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, "unpack the platform's archive first",
                            "'%.200s' is not a folder: %s", folder, strerror(errno));
     }
+
+    // all but hidden entries
     hn_status status = HN_OK;
     for (struct dirent *d; status == HN_OK && (d = readdir(dir)) != NULL;) {
         if (d->d_name[0] != '.') {
@@ -116,6 +122,8 @@ hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, "a folder, a .json or a .zip for each student",
                            "there is nobody in '%.200s'", folder);
     }
+
+    // by student, so that the order does not hang on the file system
     if (r->n > 0) {
         qsort(r->entry, (size_t)r->n, sizeof *r->entry, compare);
     }
@@ -152,6 +160,8 @@ static void search(finds *f, const char *folder, int depth) {
     if (!dir) {
         return;
     }
+
+    // links are not followed: lstat() shows them as neither file nor folder
     for (struct dirent *d; (d = readdir(dir)) != NULL;) {
         char path[HN_ROSTER_PATH];
         struct stat info;
@@ -160,6 +170,7 @@ static void search(finds *f, const char *folder, int depth) {
             lstat(path, &info) != 0) {
             continue;
         }
+
         if (S_ISDIR(info.st_mode)) {
             search(f, path, depth + 1);
         } else if (S_ISREG(info.st_mode) && ends_in(path, ".json")) {
@@ -189,6 +200,8 @@ static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER
     hn_zip_entry *list = NULL;
     int n = 0, found = 0, one = 0;
     hn_strbuf_init(&bytes);
+
+    // the one answer among the files of the archive
     hn_status status = hn_file_read(path, MOST_ARCHIVE, &bytes, diag);
     HN_THEN(status, hn_zip_list(hn_strbuf_text(&bytes), bytes.n, &list, &n, diag));
     for (int i = 0; status == HN_OK && i < n; i++) {
@@ -200,11 +213,14 @@ static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER
     if (status == HN_OK && found != 1) {
         status = refuse_count(found, diag);
     }
+
+    // the answer itself
     if (status == HN_OK) {
         snprintf(file, HN_ROSTER_PATH, "%.700s:%.255s", path, list[one].name);
         status =
             hn_zip_read(hn_strbuf_text(&bytes), bytes.n, &list[one], HN_ROSTER_BYTES, text, diag);
     }
+
     free(list);
     hn_strbuf_reset(&bytes);
     return status;

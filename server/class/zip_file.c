@@ -74,6 +74,8 @@ static hn_status inflate_to(const unsigned char *from, size_t n, size_t most, hn
     z_stream z = {.next_in = (unsigned char *)from, .avail_in = (uInt)n};
     size_t written = 0;
     int state = inflateInit2(&z, -MAX_WBITS);
+
+    // piece by piece, so that a small archive cannot fill the memory
     while (state == Z_OK && written <= most) {
         z.next_out = piece;
         z.avail_out = sizeof piece;
@@ -85,6 +87,7 @@ static hn_status inflate_to(const unsigned char *from, size_t n, size_t most, hn
             state = Z_DATA_ERROR; // the stream is cut
         }
     }
+
     inflateEnd(&z);
     if (written > most) {
         return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL,
@@ -98,6 +101,8 @@ static hn_status inflate_to(const unsigned char *from, size_t n, size_t most, hn
 hn_status hn_zip_read(const char *text, size_t n, const hn_zip_entry *e, size_t most,
                       hn_strbuf *out, hn_diag *diag) {
     const unsigned char *bytes = (const unsigned char *)text;
+
+    // the local header; what it says must lie inside the archive
     if ((size_t)e->offset + LOCAL_SIZE > n || memcmp(bytes + e->offset, "PK\3\4", 4) != 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "the zip archive is damaged");
     }
@@ -106,6 +111,8 @@ hn_status hn_zip_read(const char *text, size_t n, const hn_zip_entry *e, size_t 
     if (at > n || e->packed > n - at) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "the zip archive is damaged");
     }
+
+    // by the way it is packed
     if (e->method == DEFLATED) {
         return inflate_to(bytes + at, e->packed, most, out, diag);
     }

@@ -296,8 +296,11 @@ static void put_terms(hn_conversation *c, double t, const double *q, const doubl
     if (!c->eval) {
         return;
     }
+
     calc_P(c);
     hn_eval_run(c->eval, t, q, v);
+
+    // the matrices
     if (c->wants & HN_TERM_M) {
         times_P(c, hn_eval_get(c->eval, HN_TERM_M), c->nv, c->scratch);
         for (int i = 0; i < c->nu; i++) {
@@ -315,6 +318,8 @@ static void put_terms(hn_conversation *c, double t, const double *q, const doubl
         times_P(c, hn_eval_get(c->eval, HN_TERM_J), c->nc, c->J);
         put_matrix(b, "J", c->J, c->nc, c->nu);
     }
+
+    // the vectors
     if (c->wants & HN_TERM_F) {
         hn_system_forces_to_user(c->sys, hn_eval_get(c->eval, HN_TERM_F), c->f);
         hn_json_put_numbers(b, "f", c->f, (size_t)c->nu);

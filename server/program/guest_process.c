@@ -137,6 +137,8 @@ static double cpu_of(long pid) {
 static void add_use(use *sum, long pid, int depth) {
     enum { MOST_DEPTH = 40 };
     char path[64], word[32];
+
+    // memory and time of its own
     snprintf(path, sizeof path, "/proc/%ld/statm", pid);
     FILE *file = fopen(path, "re");
     long long whole, resident;
@@ -148,6 +150,8 @@ static void add_use(use *sum, long pid, int depth) {
         }
         fclose(file);
     }
+
+    // its children; a process may have ended meanwhile
     snprintf(path, sizeof path, "/proc/%ld/task/%ld/children", pid, pid);
     file = depth < MOST_DEPTH ? fopen(path, "re") : NULL;
     while (file && fscanf(file, "%31s", word) == 1) {
@@ -214,6 +218,8 @@ static bool read_output(hn_guest_process *p) {
 
 static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
     const int ended = hn_guest_process_wait(p, FAREWELL);
+
+    // the last line that it wrote to standard error
     char last[160];
     const char *errors = hn_guest_process_errors(p);
     size_t n = strlen(errors);
@@ -225,6 +231,8 @@ static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
         from--;
     }
     snprintf(last, sizeof last, "%.*s", (int)(n - from), errors + from);
+
+    // a limit that it reached, a signal, or an end of its own
     if (ended == 128 + SIGXCPU || (ended == 128 + SIGKILL && p->cpu >= 0.9 * p->limits.cpu)) {
         return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "it used up its %g s of computing time",
                            p->limits.cpu);

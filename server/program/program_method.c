@@ -201,6 +201,8 @@ static program *find_program(const char *name, const char *file) {
             return programs[i];
         }
     }
+
+    // a new entry
     program *p = n_programs < MOST_PROGRAMS ? calloc(1, sizeof *p) : NULL;
     if (!p) {
         return NULL;

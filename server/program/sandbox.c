@@ -183,6 +183,8 @@ static void try_sandbox(void) {
     hn_program_limits limits = hn_program_limits_default();
     hn_guest_process process;
     char said[200];
+
+    // the program that makes the sandbox
     if (access(BUBBLEWRAP[0], X_OK) != 0) {
         hn_diag_set(&trouble, HN_ERR_UNSUPPORTED, NULL,
                     "install the package bubblewrap; --trust-programs runs a program of your own "
@@ -190,6 +192,8 @@ static void try_sandbox(void) {
                     "untrusted programs run in a sandbox, and %s is not installed", BUBBLEWRAP[0]);
         return;
     }
+
+    // a command that does nothing, inside
     add_sandbox(&c, NULL, &limits);
     add_limits(&c, false, &limits);
     add(&c, "true");
@@ -200,6 +204,7 @@ static void try_sandbox(void) {
     const int ended = hn_guest_process_wait(&process, limits.start);
     snprintf(said, sizeof said, "%.199s", hn_guest_process_errors(&process));
     hn_guest_process_end(&process);
+
     if (ended != 0) {
         said[strcspn(said, "\n")] = '\0';
         hn_diag_set(&trouble, HN_ERR_UNSUPPORTED, NULL,

@@ -301,11 +301,14 @@ static double run_pilot(hn_singularity *r, double t, const double *q, const doub
     double before = sigma_now, slope = 0;
     hn_pilot_start(r->pilot, t, q, v);
     for (int k = 0; k < 2 * steps && hn_pilot_time(r->pilot) < t + horizon; k++) {
+        // a step of the pilot, short enough for its own rhythm
         const double half_turn = hn_pilot_half_turn(r->pilot, hn_pilot_v(r->pilot));
         const double h = fmin(horizon, half_turn) / steps;
         if (hn_pilot_step(r->pilot, h) != HN_OK) {
             return HUGE_VAL;
         }
+
+        // a fall to zero inside the step, where the ends do not rule it out
         const double sigma = hn_singularity_probe(r, hn_pilot_time(r->pilot), hn_pilot_q(r->pilot));
         const double steepest = fmax(slope, fabs(sigma - before));
         double share = 1;
@@ -317,6 +320,7 @@ static double run_pilot(hn_singularity *r, double t, const double *q, const doub
                 return hn_pilot_time(r->pilot) - (1 - share) * h - t;
             }
         }
+
         slope = fabs(sigma - before);
         before = sigma;
     }

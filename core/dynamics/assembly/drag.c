@@ -183,11 +183,15 @@ static outcome step(drag *d) {
     outcome result = NO_NEARER;
     hn_eval_run(d->rows, d->t, d->q, NULL);
     differentiate(d);
+
+    // more damping until the loops close and the miss shrinks
     for (int i = 0; i < MAX_DAMPINGS; i++, d->damping *= 10) {
         if (find_move(d) != HN_OK || !close_after_move(d)) {
             result = NOT_CLOSED;
             continue;
         }
+
+        // a move that closes counts only where it comes nearer
         double miss[3] = {0};
         const double distance = find_miss(d, d->trial, miss);
         result = NO_NEARER;

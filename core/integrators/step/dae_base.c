@@ -151,10 +151,14 @@ static void keep_all_rows(hn_dae_base *b) {
 
 void hn_dae_choose_rows(hn_dae_base *b) {
     const int nv = b->nv, nc = b->nc;
+
+    // all rows stay where the quick check finds them far from each other
     if (b->check && hn_row_check_run(b->check, b->J, b->column_unit)) {
         keep_all_rows(b);
         return;
     }
+
+    // rows of equal size, columns in like units: one threshold then fits all
     for (int i = 0; i < nc; i++) {
         double *row = b->qr.a + (size_t)i * nv;
         for (int j = 0; j < nv; j++) {
@@ -165,6 +169,8 @@ void hn_dae_choose_rows(hn_dae_base *b) {
             row[j] = size > 0 ? row[j] / size : 0;
         }
     }
+
+    // the independent rows, in the order of the system
     hn_qr_factor(&b->qr, nv, nc, DEPENDENT_ROW);
     b->nr = count_rows(b);
     memcpy(b->rows, b->qr.perm, (size_t)b->nr * sizeof *b->rows);

@@ -2,6 +2,7 @@
 #include "session/compare/comparison.h"
 #include "session/compare/estimate.h"
 #include "session/compare/failure.h"
+#include "session/compare/incident_json.h"
 #include "study/run/diagnosis.h"
 #include "formulations/list/formulation_list.h"
 
@@ -359,6 +360,8 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
         return hn_diag_set(diag, HN_ERR_INPUT, "/set/method", NULL,
                            "method %d was named; -1 to %d are allowed", method, c->n - 1);
     }
+
+    // one method, or all that have the option
     int served = 0;
     for (int i = 0; i < c->n; i++) {
         if ((method == -1 && has_setting(c->entries[i].run, key)) || method == i) {
@@ -369,6 +372,7 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
             served++;
         }
     }
+
     if (!served) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/set/key",
                            "name an option that a method of the comparison has, such as h",
@@ -459,45 +463,11 @@ static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sa
     hn_json_put_int(b, "rank", sample->rank);
 }
 
-void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
-    hn_json_object(b);
-    if (method >= 0) {
-        hn_json_put_int(b, "method", method);
-    }
-
-    // what happened, when, by which measure
-    hn_json_put_string(b, "code", hn_incident_spelling(incident->code));
-    hn_json_put_number(b, "t", incident->t);
-    hn_json_put_string(b, "quantity", incident->quantity);
-    hn_json_put_number(b, "value", incident->value);
-    hn_json_put_number(b, "limit", incident->limit);
-    hn_json_put_string(b, "message", incident->message);
-
-    // remedies, and the result of the trial of each
-    hn_json_key(b, "remedies");
-    hn_json_array(b);
-    for (int i = 0; i < HN_REMEDIES && incident->remedy[i][0]; i++) {
-        hn_json_string(b, incident->remedy[i]);
-    }
-    hn_json_end_array(b);
-    hn_json_key(b, "tried");
-    hn_json_array(b);
-    for (int i = 0; i < HN_REMEDIES && incident->remedy[i][0]; i++) {
-        hn_json_string(b, incident->tried[i]);
-    }
-    hn_json_end_array(b);
-    hn_json_end_object(b);
-}
-
 static void put_incidents(hn_strbuf *b, const hn_comparison *c) {
     hn_json_key(b, "incidents");
     hn_json_array(b);
     for (int i = 0; i < c->n; i++) {
-        const hn_incident *list;
-        int n = hn_run_incidents(c->entries[i].run, &list);
-        for (int k = 0; k < n; k++) {
-            hn_incident_json(b, i, &list[k]);
-        }
+        hn_incidents_json(b, i, c->entries[i].run);
     }
     hn_json_end_array(b);
 }

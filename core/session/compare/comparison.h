@@ -85,10 +85,6 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
 /// energy, steps, rejected steps, evaluations, operations and CPU time per method; then the
 /// incidents.
 void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c);
-/// Writes one incident:
-/// {["method",]"code","t","quantity","value","limit","message","remedies":[...],"tried":[...]}.
-/// method -1 leaves "method" out.
-void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident);
 
 // one run with output, for `holonom run` and POST /runs ----
 typedef struct hn_run_request {

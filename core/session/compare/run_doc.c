@@ -7,6 +7,7 @@
 #include "session/compare/comparison.h"
 #include "session/compare/estimate.h"
 #include "session/compare/failure.h"
+#include "session/compare/incident_json.h"
 #include "session/model/reactions_json.h"
 #include "study/run/pace.h"
 #include "study/run/diagnosis.h"
@@ -170,6 +171,8 @@ static int flatten(const table *tab, size_t k) {
     const size_t carriers =
         tab->reactions ? 3 * (size_t)hn_reaction_writer_count(tab->reactions) : 0;
     const size_t efforts = tab->reactions ? (size_t)hn_reaction_writer_efforts(tab->reactions) : 0;
+
+    // the columns in their order; a part without values has no column
     const struct {
         const double *values;
         size_t width;
@@ -188,6 +191,7 @@ static int flatten(const table *tab, size_t k) {
                  {tab->energy, 1},
                  {tab->work, 1},
                  {tab->energy_change, 1}};
+
     double *to = tab->flat;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         to = append(to, parts[i].values, k, parts[i].width);
@@ -219,6 +223,8 @@ static void hand_out_row(const table *tab, const hn_run *run, const hn_run_reque
 
 static void table_add(table *tab, const hn_sample *s, hn_run *run, const hn_run_request *request) {
     watch_accuracy(tab, s, run);
+
+    // the state, and the multipliers with the mark of how far they are determined
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
     memcpy(tab->q + k * nq, s->q, nq * sizeof(double));
@@ -230,6 +236,8 @@ static void table_add(table *tab, const hn_sample *s, hn_run *run, const hn_run_
     for (size_t i = 0; tab->raw_lambda && i < nc; i++) {
         tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // written as null
     }
+
+    // what was asked for besides, and the error measures
     if (tab->reactions) {
         add_reactions(tab, s, k);
     }
@@ -239,6 +247,7 @@ static void table_add(table *tab, const hn_sample *s, hn_run *run, const hn_run_
     tab->energy[k] = s->energy;
     tab->work[k] = s->work;
     tab->energy_change[k] = s->energy_change;
+
     if (request->row) {
         hand_out_row(tab, run, request);
     }
@@ -449,13 +458,9 @@ static void put_run_cost(hn_strbuf *b, const hn_run_summary *s) {
 }
 
 static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
-    const hn_incident *list;
-    int n = hn_run_incidents(run, &list);
     hn_json_key(b, "incidents");
     hn_json_array(b);
-    for (int i = 0; i < n; i++) {
-        hn_incident_json(b, -1, &list[i]);
-    }
+    hn_incidents_json(b, -1, run);
     hn_json_end_array(b);
 }
 
@@ -506,6 +511,33 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     hn_json_end_object(b);
 }
 
+static hn_status create_run(const hn_model *model, const hn_run_request *request,
+                            const hn_method_spec *spec, hn_run **out, hn_diag *diag) {
+    hn_run_opts opts = hn_run_opts_default();
+    opts.t_end = request->time;
+    if (request->max_steps > 0) {
+        opts.max_steps = request->max_steps;
+    }
+    opts.raw_lambda = request->raw_lambda;
+    return hn_run_create(hn_model_system(model), spec, hn_model_q(model), hn_model_v(model), &opts,
+                         out, diag);
+}
+
+/// The table with all columns that were asked for, and the watch on its accuracy.
+static hn_status prepare_table(table *tab, const hn_model *model, const hn_run *run,
+                               const hn_run_request *request, const schedule *times,
+                               hn_diags *diags) {
+    const hn_system *sys = hn_model_system(model);
+    const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
+    HN_TRY(table_create(tab, sys, times->n + 1, request, raw, diags));
+    if (request->reactions) {
+        HN_TRY(table_want_reactions(tab, model, request, diags));
+    }
+    HN_TRY(table_want_rows(tab, model));
+    return hn_accuracy_create(sys, hn_model_q(model), hn_model_v(model),
+                              schedule_time(times, times->n - 1), &tab->accuracy);
+}
+
 hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_request *request,
                             hn_status *ended, hn_diags *diags) {
     hn_diag diag = {0};
@@ -525,36 +557,14 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
 
     // the run
     if (status == HN_OK) {
-        hn_run_opts opts = hn_run_opts_default();
-        opts.t_end = request->time;
-        if (request->max_steps > 0) {
-            opts.max_steps = request->max_steps;
-        }
-        opts.raw_lambda = request->raw_lambda;
-        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
-                               &opts, &run, &diag);
+        status = create_run(model, request, &spec, &run, &diag);
         if (status != HN_OK) {
             hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
         }
     }
 
-    // tables for the samples
-    if (status == HN_OK) {
-        const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
-        status = table_create(&tab, hn_model_system(model), times.n + 1, request, raw, diags);
-    }
-    if (status == HN_OK && request->reactions) {
-        status = table_want_reactions(&tab, model, request, diags);
-    }
-    if (status == HN_OK) {
-        status = table_want_rows(&tab, model);
-    }
-    if (status == HN_OK) {
-        status = hn_accuracy_create(hn_model_system(model), hn_model_q(model), hn_model_v(model),
-                                    schedule_time(&times, times.n - 1), &tab.accuracy);
-    }
-
-    // run, diagnose, write
+    // tables for the samples; run, diagnose, write
+    HN_THEN(status, prepare_table(&tab, model, run, request, &times, diags));
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
         hn_run_diagnose(run);

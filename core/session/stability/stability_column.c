@@ -32,17 +32,22 @@ static void predict_steps(hn_map *map, int m, int column) {
     if (!scene->path) {
         return;
     }
+
+    // a first forecast for the limit, then one over the steps of a run at it
     const hn_method_spec spec = hn_map_spec_at(map, m, column, map->y.value[0]);
     hn_stability_forecast f = hn_stability_predict(scene->path, &spec, 1);
     if (isfinite(f.limit) && f.limit > 0) {
         f = hn_stability_predict(scene->path, &spec, (long long)steps_of(map, f.limit));
     }
+
+    // what is drawn: the limit, and where it lies beside each step
     map->forecasts[m] = f;
     c->visible = f.visible;
     c->turn = f.limit * hn_stability_path_rate(scene->path);
     if (isfinite(f.limit)) {
         c->predicted[c->n_predicted++] = f.limit;
     }
+
     for (int j = 0; j < map->y.n; j++) {
         hn_map_cell_at(map, m, column, j)->margin =
             f.limit > 0 ? map->y.value[j] / f.limit : HUGE_VAL;

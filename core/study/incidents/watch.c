@@ -192,21 +192,30 @@ static void check_present(hn_watch *w) {
 }
 
 static void forget(hn_watch *w) {
+    // what the run has met
     hn_singular_record *s = &w->singular;
     hn_incident_log_clear(&w->log);
     hn_heading_start(w);
     hn_singularity_reset(s->monitor);
+
+    // when the next full check is due
     w->own_pace = find_own_pace();
     w->calm = false;
     w->checks = 0;
+
+    // how near the singularity was
     s->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
     s->largest = s->multiplier = 0;
     s->fallbacks = 0;
     s->passing = 0;
     s->announced = 0;
+
+    // rows, limits and the worst figures
     memset(w->row_size, 0, (size_t)w->run->info.nc * sizeof *w->row_size);
     memset(w->beyond, 0, (size_t)hn_limits_count(w->limits));
     w->worst_gap = w->worst_velocity_gap = w->worst_energy_change = w->swiftest = 0;
+
+    // the stability limit, and the end of the run
     w->held = w->released = 0;
     w->restarts = 0;
     w->failure = HN_OK;

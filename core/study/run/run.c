@@ -94,6 +94,8 @@ static hn_status step_and_check(hn_run *run, bool *ticking) {
         start_clock(run);
         *ticking = true;
     }
+
+    // the step, timed; what is measured on it is not
     HN_TRY(hn_stepping_step(&run->stepping));
     const hn_status pace = hn_headway_step(&run->stepping);
     hn_watch_step(&run->watch);
@@ -103,6 +105,8 @@ static hn_status step_and_check(hn_run *run, bool *ticking) {
         *ticking = false;
         hn_watch_measure_step(&run->watch);
     }
+
+    // a check of the state every so many steps
     if (run->watch.every == 0 || ++run->since < run->watch.every) {
         return HN_OK;
     }

@@ -30,6 +30,7 @@ static hn_status resistance(const hn_system *sys, const hn_mode_at *mode, double
     hn_status status =
         hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_eval_create(sys, HN_TERM_F, arena, &eval);
 
+    // a difference of both sides, so that the force at rest drops out
     const double size = PROBE / fmax(1e-12, hn_norm_max((int)nv, mode->x));
     *out = 0;
     for (int side = -1; side <= 1 && status == HN_OK; side += 2) {
@@ -46,6 +47,7 @@ static hn_status resistance(const hn_system *sys, const hn_mode_at *mode, double
         hn_eval_run(eval, mode->t, q, v);
         *out -= side * hn_dot((int)nv, mode->x, hn_eval_get(eval, HN_TERM_F)) / (2 * size);
     }
+
     hn_eval_free(eval);
     hn_arena_free(arena);
     return status;

@@ -36,12 +36,16 @@ static void begin(hn_accuracy *a) {
 static hn_status create_parts(hn_accuracy *a, const hn_system *sys, const double *q,
                               const double *v) {
     hn_diag diag = {0};
+
+    // a large mechanism gets no estimate: it would delay the start
     if (hn_system_get_info(sys).nodes > HN_ACCURACY_NODES) {
         snprintf(a->reason, sizeof a->reason,
                  "the mechanism is so large that starting a pilot run would take longer than the "
                  "estimate is worth");
         return HN_OK;
     }
+
+    // the runs; where one cannot start, its reason stands in for the estimate
     HN_TRY(hn_errors_create(sys, a->arena, &a->errors));
     for (int i = 0; i < RUNS; i++) {
         hn_method_spec spec;
@@ -139,11 +143,15 @@ static hn_state_seen seen_of(const hn_sample *s) {
 static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
     hn_sample rough;
     double error[HN_ERROR_COUNT];
+
+    // how far the two runs are apart
     if (hn_run_sample(a->run[ROUGH], pilot->t, &rough) != HN_OK) {
         return false;
     }
     const hn_state_seen other = seen_of(&rough);
     hn_errors_calc(a->errors, &other, pilot, &unity, error);
+
+    // too far: the estimate ends here
     if (!(error[HN_ERROR_Q] / HN_ACCURACY_OWN < HN_ACCURACY_LOST)) {
         a->t_out = fmin(a->t_out, pilot->t);
         a->lost = true;
@@ -153,6 +161,7 @@ static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
                  pilot->t, HN_ACCURACY_LOST);
         return false;
     }
+
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         a->own[i] = fmax(a->own[i], error[i] / HN_ACCURACY_OWN);
     }

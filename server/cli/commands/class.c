@@ -92,10 +92,14 @@ static hn_exit grade_roster(const hn_args *args, const hn_exercise *exercise,
                           .seed = isnan(args->seed) ? 0 : (uint64_t)args->seed,
                           .tell = tell,
                           .user = (void *)args};
+
+    // the journal from which an interrupted run goes on
     if (args->out) {
         snprintf(journal, sizeof journal, "%.1000s.part", args->out);
         opts.journal = journal;
     }
+
+    // verdicts to the file, the summary to the terminal
     const hn_status status = hn_class_grade(roster, exercise, &opts, &result, &diag);
     hn_exit exit = status == HN_OK ? HN_EXIT_DONE : HN_EXIT_PROGRAM;
     if (status != HN_OK) {
@@ -112,6 +116,7 @@ static hn_exit grade_roster(const hn_args *args, const hn_exercise *exercise,
         fputs(hn_strbuf_text(&b), args->json ? stderr : stdout);
         hn_strbuf_reset(&b);
     }
+
     hn_class_result_reset(&result);
     return exit;
 }

@@ -178,6 +178,8 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary)
                    {"ops/step", 1, 2},
                    {"CPU/step", 1, 8},
                    {"quartiles", 0, 1}};
+
+    // a row for each method
     const hn_scene *scene = hn_model_scene(model);
     hn_table t;
     hn_table_init(&t);
@@ -189,6 +191,8 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary)
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
         put_row(&t, m, gap_unit(model));
     }
+
+    // title, table, and what happened on the way
     hn_strbuf_printf(b, "%s to t = %g s\n", scene->title ? scene->title : scene->id,
                      hn_document_number(summary, "t"));
     hn_table_write(b, &t);

@@ -115,6 +115,8 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
     hn_strbuf b, path;
     hn_strbuf_init(&b);
     hn_strbuf_init(&path);
+
+    // the verdict, under the name of its submission where there are several
     if (t->args->words.n > 2 && t->form == FORM_TEXT && !t->target) {
         hn_strbuf_printf(&b, "== %s\n", t->submission);
     }
@@ -124,6 +126,7 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
         return hn_cli_print(&b);
     }
 
+    // into files, with one line here
     hn_strbuf_printf(&path, "%s.%s", t->target, ending_of(t->form));
     hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), &b);
     hn_strbuf_reset(&path);
@@ -137,10 +140,14 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
 static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
+
+    // the variant of this student, or of the seed given
     const uint64_t seed = t->args->student       ? hn_variant_seed(t->exercise, t->args->student)
                           : isnan(t->args->seed) ? 0
                                                  : (uint64_t)t->args->seed;
     hn_status status = v ? hn_grade_file(t->exercise, t->submission, seed, v) : HN_ERR_MEMORY;
+
+    // a submission that cannot be graded is the fault of the input
     hn_exit result = HN_EXIT_PROGRAM;
     if (status == HN_OK) {
         snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");

@@ -58,6 +58,8 @@ static hn_exit check(const hn_args *args, const hn_exercise *e) {
     hn_diag diag;
     hn_exercise_report report;
     hn_strbuf b;
+
+    // what the command line asks for
     if (!read_seeds(args->seeds, &from, &to)) {
         hn_diag_set(&diag, HN_ERR_INPUT, NULL, "--seeds 1..200", "'%.40s' is no range of seeds",
                     args->seeds);
@@ -68,6 +70,7 @@ static hn_exit check(const hn_args *args, const hn_exercise *e) {
                     "%s has no variants to check", hn_exercise_id(e));
         return hn_report_diag(args, &diag);
     }
+
     if (hn_exercise_check(e, from, to, &report) != HN_OK) {
         return HN_EXIT_PROGRAM;
     }
@@ -92,10 +95,13 @@ static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant
 static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
     hn_variant x;
     hn_diag diag = {0};
+
+    // the variant of this student, or of the seed given
     const uint64_t seed = args->student       ? hn_variant_seed(e, args->student)
                           : isnan(args->seed) ? 0
                                               : (uint64_t)args->seed;
     const hn_status status = hn_variant_init(&x, e, seed, &diag);
+
     hn_exit result = HN_EXIT_PROGRAM;
     hn_strbuf b;
     hn_strbuf_init(&b);

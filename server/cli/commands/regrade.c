@@ -60,10 +60,13 @@ static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
 }
 
 static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *v) {
+    // the same score, up to the rounding of its text
     const double score = hn_part_number(old, "score", (double)NAN);
     const int graded = strcmp(text_of(old, "status"), "graded") == 0;
     const int same = graded == (v->kind == HN_VERDICT_GRADED) &&
                      (!graded || fabs(score - v->score) <= 1e-9 * fmax(1, v->max_score));
+
+    // as a document, or as text with the changes
     hn_strbuf b;
     hn_strbuf_init(&b);
     if (args->json) {
@@ -90,6 +93,8 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
     hn_diags diags = {0};
     const char *submission = text_of(old, "submission");
     const uint64_t seed = strtoull(text_of(old, "seed"), NULL, 10);
+
+    // the submission: the file named, or the copy that the verdict holds
     hn_status status = hn_shelf_exercise_load(lib, text_of(old, "problem"), &e, &diags);
     if (status == HN_OK && args->words.n > 1) {
         status = hn_grade_file(e, args->words.word[1], seed, v);
@@ -99,6 +104,7 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
         status = hn_diags_add(&diags, HN_ERR_INPUT, "/submission", "name its file as second word",
                               "the verdict does not hold the submission");
     }
+
     hn_exit result =
         status == HN_OK ? compare(args, old, v) : hn_report_diags(args, status, &diags);
     if (result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE) {

@@ -243,6 +243,8 @@ static void write_row(hn_strbuf *b, const hn_table *t, const layout *l, const ch
     const char *rest[HN_TABLE_COLUMNS];
     bool more = true;
     memcpy(rest, text, sizeof rest);
+
+    // a line at a time, until no cell has text left
     while (more) {
         more = false;
         bool first = true;
@@ -250,6 +252,8 @@ static void write_row(hn_strbuf *b, const hn_table *t, const layout *l, const ch
             if (l->width[c] == 0) {
                 continue;
             }
+
+            // as much of the cell as fits its column
             const size_t n = t->to_right[c] ? strlen(rest[c]) : hn_fold_line(rest[c], l->width[c]);
             const bool coloured = t->colours && n > 0 && (head || bad[c]);
             hn_strbuf_printf(b, "%s", first ? "" : "  ");

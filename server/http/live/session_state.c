@@ -2,6 +2,7 @@
 #include "http/live/session_state.h"
 
 #include "base/clock.h"
+#include "session/compare/incident_json.h"
 #include "session/model/model_json.h"
 
 #include <stdbool.h>

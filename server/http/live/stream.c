@@ -301,6 +301,7 @@ static hn_stream *create_stream(hn_session *session, hn_request *r, int skips) {
 }
 
 void hn_stream_open(hn_session *session, hn_request *r) {
+    // what the query asks for
     const char *mode = hn_request_query(r, "mode");
     if (mode && strcmp(mode, "live") != 0 && strcmp(mode, "complete") != 0) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "mode=complete or mode=live",
@@ -317,6 +318,7 @@ void hn_stream_open(hn_session *session, hn_request *r) {
         return;
     }
 
+    // a stream that is not attached gives its place back
     hn_stream *s = create_stream(session, r, mode && strcmp(mode, "live") == 0);
     if (s) {
         s->fields = fields;

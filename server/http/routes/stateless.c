@@ -259,6 +259,8 @@ void hn_handle_problem(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status status = hn_shelf_exercise_load(r->context->lib, r->parts[0], &problem, &diags);
+
+    // the exercise's own variant, and a hint to it if one is asked for
     hn_diag diag = {0};
     hn_variant x = {0};
     const int hint = status == HN_OK ? hint_asked(r, problem, &diags, &status) : 0;
@@ -268,6 +270,8 @@ void hn_handle_problem(hn_request *r) {
             hn_diags_add(&diags, status, diag.pointer, NULL, "%s", diag.message);
         }
     }
+
+    // the answer, or why there is none
     if (status == HN_OK) {
         if (hint) {
             put_hint(&b, problem, &x, hint);
@@ -283,6 +287,7 @@ void hn_handle_problem(hn_request *r) {
     } else {
         hn_reply_diags(r, status, &diags);
     }
+
     hn_exercise_free(problem);
 }
 

@@ -192,11 +192,15 @@ static file *find_later(hn_static_files *s, const char *address) {
     if (hn_bundle_is_path(s->folder) || !is_served(s->folder, address, path)) {
         return NULL;
     }
+
+    // a file found before
     pthread_mutex_lock(&s->lock);
     file *f = s->later;
     while (f && strcmp(f->address, address) != 0) {
         f = f->next;
     }
+
+    // its first request: it is kept for the next
     if (!f && s->n_later < MAX_FILES) {
         f = hn_arena_get(s->arena, sizeof *f);
         const char *kept = f ? hn_arena_strdup(s->arena, path) : NULL;
