@@ -117,7 +117,7 @@ static void an_open_mechanism_that_cannot_close_is_refused(void **state) {
     double q[MAX_NV], before[MAX_NV];
     hn_drag_info info;
     for (int i = 0; i < m.info.nq; i++) {
-        before[i] = q[i] = NAN;
+        before[i] = q[i] = (double)NAN;
     }
     assert_int_equal(hn_drag(m.sys, 0, &goal, ENOUGH, q, &info), HN_ERR_DIVERGED);
     assert_memory_equal(q, before, (size_t)m.info.nq * sizeof *q);
