@@ -149,14 +149,20 @@ static hn_status open_sheet(sheet *s, const hn_part *p, hn_draw *draw, hn_diag *
 
 // ---- what the student wrote ----
 
+/// Whether a unit may begin at text[i]: behind a number, a bracket or a blank, never inside a
+/// number (the unit "1/s" begins with a digit, and so does the end of "0.11/s").
+static bool may_begin_unit(const char *text, size_t i) {
+    const bool inside = strchr("0123456789.", text[i - 1]) && strchr("0123456789.", text[i]);
+    return !inside && (strchr("0123456789.) ", text[i - 1]) || strncmp(text + i, "°", 2) == 0);
+}
+
 /// A formula with a unit behind it, as "2*pi rad/s": the unit is the longest end that is one.
 static hn_status read_quantity(sheet *s, const char *text, hn_ex *e, hn_unit *unit, hn_diag *diag) {
     char head[MAX_CHARS];
     *unit = s->unit;
     hn_status status = hn_draw_parse(s->draw, text, e, diag);
     for (size_t i = 1; status != HN_OK && text[i]; i++) {
-        if (strchr("0123456789.)", text[i - 1]) || text[i - 1] == ' ' ||
-            strncmp(text + i, "°", 2) == 0) {
+        if (may_begin_unit(text, i)) {
             snprintf(head, sizeof head, "%.*s", (int)i, text);
             if (hn_unit_parse(text + i, unit) && text[i + strspn(text + i, " ")] &&
                 hn_draw_parse(s->draw, head, e, NULL) == HN_OK) {

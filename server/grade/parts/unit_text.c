@@ -30,6 +30,14 @@ static const struct {
     {"min", {60, {0, 0, 1, 0}}},
     {"h", {3600, {0, 0, 1, 0}}},
     {"rad", {1, {0, 0, 0, 1}}},
+    {"metre", {1, {1, 0, 0, 0}}},
+    {"metres", {1, {1, 0, 0, 0}}},
+    {"meter", {1, {1, 0, 0, 0}}},
+    {"meters", {1, {1, 0, 0, 0}}},
+    {"second", {1, {0, 0, 1, 0}}},
+    {"seconds", {1, {0, 0, 1, 0}}},
+    {"degree", {DEGREE, {0, 0, 0, 1}}},
+    {"degrees", {DEGREE, {0, 0, 0, 1}}},
     {"mrad", {1e-3, {0, 0, 0, 1}}},
     {"deg", {DEGREE, {0, 0, 0, 1}}},
     {"°", {DEGREE, {0, 0, 0, 1}}},
@@ -58,10 +66,21 @@ static void multiply(hn_unit *u, const hn_unit *by, int power) {
     }
 }
 
-/// "^2", "²", "-1" behind a unit, else 1.
+static const char MINUS[] = "⁻"; // superscript
+
+/// "^2", "²", "⁻¹", "^-1" behind a unit, else 1.
 static int read_power(const char **at) {
     int power = 1;
     char *end;
+    if (strncmp(*at, MINUS, strlen(MINUS)) == 0) {
+        static const char *const digits[] = {"¹", "²", "³"};
+        for (int k = 0; k < 3; k++) {
+            if (strncmp(*at + strlen(MINUS), digits[k], 2) == 0) {
+                *at += strlen(MINUS) + 2;
+                return -1 - k;
+            }
+        }
+    }
     if (strncmp(*at, "²", 2) == 0 || strncmp(*at, "³", 2) == 0) {
         power = strncmp(*at, "²", 2) == 0 ? 2 : 3;
         *at += 2;
@@ -77,10 +96,10 @@ static int read_one(const char **at, hn_unit *u, int sign) {
     size_t n = 0;
     while ((*at)[n] && !strchr(" */^().", (*at)[n]) && !isdigit((unsigned char)(*at)[n]) &&
            strncmp(*at + n, "·", 2) != 0 && strncmp(*at + n, "²", 2) != 0 &&
-           strncmp(*at + n, "³", 2) != 0) {
+           strncmp(*at + n, "³", 2) != 0 && strncmp(*at + n, MINUS, strlen(MINUS)) != 0) {
         n++;
     }
-    n += n == 0 && **at == '1';
+    n += n == 0 && **at == '1' && strchr(" */", (*at)[1]); // a one that stands alone
     for (int i = 0; i < N_UNITS; i++) {
         if (strlen(UNITS[i].name) == n && strncmp(UNITS[i].name, *at, n) == 0) {
             *at += n;

@@ -93,6 +93,20 @@ static void numbers_are_read_with_their_units(void **state) {
     expect(e, "a", "true", "unreadable");
 }
 
+static void no_digit_of_a_number_is_taken_for_a_unit(void **state) {
+    static const char *const units[] = {"m/s", " m/s", " m*1/s", "m s⁻¹", " meters/second"};
+    hn_exercise *e = *state;
+    for (int digit = 0; digit < 10; digit++) {
+        for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+            char form[64]; // a number that ends in the digit, before the unit
+            snprintf(form, sizeof form, "\"%%.6f*1%d/1%d%s\"", digit, digit, units[k]);
+            expect(e, "a", with_number(e, "l*w", form), "");
+        }
+    }
+    // some ten times as much
+    expect(e, "a", with_number(e, "l*w", "\"%.0f1 m/s\""), "other");
+}
+
 static void mistakes_in_numbers_are_named(void **state) {
     hn_exercise *e = *state;
     expect(e, "a", with_number(e, "l+w", "%.4f"), "sum");
@@ -191,6 +205,9 @@ static void units_are_what_they_measure(void **state) {
     assert_int_equal(hn_unit_fits(&a, &b), 1);
     assert_int_equal(hn_unit_parse("m", &b), 1);
     assert_int_equal(hn_unit_fits(&a, &b), 0);
+    assert_int_equal(hn_unit_parse("s⁻¹", &b), 1);
+    assert_int_equal(b.power[2], -1);
+    assert_int_equal(hn_unit_parse("degrees", &b), 1);
     assert_int_equal(hn_unit_parse("furlong", &a), 0);
     assert_int_equal(hn_unit_parse("m^99", &a), 0);
 }
@@ -371,6 +388,7 @@ static int teardown(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(numbers_are_read_with_their_units, setup, teardown),
+        cmocka_unit_test_setup_teardown(no_digit_of_a_number_is_taken_for_a_unit, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_numbers_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(formulas_are_right_in_any_form, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_formulas_are_named, setup, teardown),
