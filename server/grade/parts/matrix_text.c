@@ -93,6 +93,22 @@ static hn_status multiply(parser *p, const hn_matrix *a, const hn_matrix *b, hn_
     return HN_OK;
 }
 
+/// Entry by entry, in one shape; a number scales.
+static hn_status multiply_entries(parser *p, const hn_matrix *a, const hn_matrix *b,
+                                  hn_matrix *out) {
+    if (a->number || b->number) {
+        return multiply(p, a, b, out);
+    }
+    if (a->rows != b->rows || a->cols != b->cols) {
+        return shapes(p, "the product entry by entry", a, b);
+    }
+    HN_TRY(make(p, a->rows, a->cols, out));
+    for (int i = 0; i < a->rows * a->cols; i++) {
+        out->x[i] = a->x[i] * b->x[i];
+    }
+    return HN_OK;
+}
+
 static hn_status transpose(parser *p, const hn_matrix *a, hn_matrix *out) {
     HN_TRY(make(p, a->cols, a->rows, out));
     out->number = a->number;
@@ -146,13 +162,30 @@ static hn_status fault(parser *p, const char *what) {
                        (int)(p->at - p->start) + 1, what);
 }
 
+/// `sign` stands at `at`, as a whole: \cdot is not the start of \cdots, nor ^2 that of ^25 or ^2.5,
+/// nor .T that of a product with tau.
+static bool stands(const char *at, const char *sign) {
+    const size_t n = strlen(sign);
+    if (strncmp(at, sign, n) != 0) {
+        return false;
+    }
+    const unsigned char last = (unsigned char)sign[n - 1], next = (unsigned char)at[n];
+    if (isdigit(last)) {
+        return !isdigit(next) && !(next == '.' && isdigit((unsigned char)at[n + 1]));
+    }
+    if (isalpha(last) && sign[0] == '.') {
+        return !isalnum(next) && next != '_';
+    }
+    return !isalpha(last) || sign[0] != '\\' || !isalpha(next);
+}
+
 static void skip(parser *p) {
-    static const char *const silent[] = {" ",      "\t",      "\n",  "\\,", "\\;",   "\\ ",
-                                         "\\left", "\\right", "\\!", "$",   "\\big", "\\quad"};
+    static const char *const silent[] = {
+        " ",      "\t",      "\n",    "\\,",   "\\;",    "\\:",    "\\!",    "$",
+        "\\left", "\\right", "\\big", "\\Big", "\\bigl", "\\bigr", "\\quad", "\\qquad"};
     for (size_t i = 0; i < sizeof silent / sizeof *silent;) {
-        const size_t n = strlen(silent[i]);
-        if (strncmp(p->at, silent[i], n) == 0) {
-            p->at += n;
+        if (stands(p->at, silent[i])) {
+            p->at += strlen(silent[i]);
             i = 0;
         } else {
             i++;
@@ -163,11 +196,10 @@ static void skip(parser *p) {
 /// Steps over `sign` when it stands here.
 static bool take(parser *p, const char *sign) {
     skip(p);
-    const size_t n = strlen(sign);
-    if (strncmp(p->at, sign, n) != 0) {
+    if (!stands(p->at, sign)) {
         return false;
     }
-    p->at += n;
+    p->at += strlen(sign);
     return true;
 }
 
@@ -183,37 +215,81 @@ static bool take_any(parser *p, const char *const *signs) {
 static const char *const PLUS[] = {"+", NULL};
 static const char *const MINUS[] = {"-", "−", "–", NULL};
 static const char *const TIMES[] = {"*", "@", "·", "⋅", "×", "\\cdot", "\\times", NULL};
-static const char *const TRANSPOSE[] = {
-    "^{\\top}",       "^{T}",         "^\\top", "^T", "ᵀ", "'", ".T",
-    "^{\\mathrm{T}}", "^\\mathrm{T}", "^t",     "’",  "′", NULL};
+static const char *const PRIMES[] = {"ᵀ", "'", ".'", ".T", "’", "′", NULL};
+static const char *const FONTS[] = {"\\mathsf", "\\mathrm", "\\text", "\\mathit", "\\mathbf", NULL};
+static const char *const TRANSPOSED[] = {"\\top", "\\intercal", "\\prime", "T", "t", NULL};
 static const char *const INVERSE[] = {"^{-1}", "^-1", "^(-1)", "⁻¹", "**-1", NULL};
 static const char *const SQUARE[] = {"^2", "^{2}", "²", "**2", NULL};
+static const char *const SQUARE_ENTRIES[] = {".^2", ".^{2}", ".**2", NULL};
 static const char *const DOT[] = {"\\dot", NULL};
-static const char *const BOLD[] = {"\\mathbf", "\\boldsymbol", "\\mathrm", "\\bm", NULL};
+static const char *const BOLD[] = {"\\mathbf", "\\boldsymbol", "\\mathrm",
+                                   "\\mathsf", "\\bm",         NULL};
 
 // clang-format off
 static const struct {
     const char *utf8, *name;
 } LETTERS[] = {{"λ", "lambda"}, {"γ", "gamma"}, {"τ", "tau"}, {"Φ", "Phi"}, {"φ", "phi"},
+               {"ϕ", "phi"}, {"α", "alpha"}, {"β", "beta"}, {"θ", "theta"}, {"ω", "omega"},
                {"Ṅ", "Ndot"}, {"\u0307", "dot"}, {"J̇", "Jdot"}};
 // clang-format on
+
+enum { N_LETTERS = sizeof LETTERS / sizeof *LETTERS };
+
+/// Commands of LaTeX that are letters, and those that are a letter behind their "var".
+static const char *const GREEK[] = {
+    "alpha",   "beta",   "gamma", "delta",   "epsilon", "zeta",  "eta",   "theta", "iota",
+    "kappa",   "lambda", "mu",    "nu",      "xi",      "pi",    "rho",   "sigma", "tau",
+    "upsilon", "phi",    "chi",   "psi",     "omega",   "Gamma", "Delta", "Theta", "Lambda",
+    "Xi",      "Pi",     "Sigma", "Upsilon", "Phi",     "Psi",   "Omega", NULL};
+static const char *const VARIANTS[] = {"varphi", "vartheta", "varepsilon", "varrho", NULL};
+/// Commands that stand before an operand, or for a product.
+static const char *const COMMANDS[] = {"dot", "mathbf", "boldsymbol", "mathrm", "mathsf",
+                                       "bm",  "cdot",   "times",      NULL};
+
+/// The word at `at` is one of the words, as a whole.
+static bool is_word(const char *at, const char *const *words) {
+    size_t n = 0;
+    while (isalpha((unsigned char)at[n])) {
+        n++;
+    }
+    for (int i = 0; words[i]; i++) {
+        if (strlen(words[i]) == n && strncmp(at, words[i], n) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_letter(const char *at) {
+    return is_word(at, GREEK) || is_word(at, VARIANTS);
+}
+
+/// The letter in UTF-8 that stands at `at`; N_LETTERS when none does.
+static size_t find_letter(const char *at) {
+    size_t k = 0;
+    while (k < N_LETTERS && strncmp(at, LETTERS[k].utf8, strlen(LETTERS[k].utf8)) != 0) {
+        k++;
+    }
+    return k;
+}
 
 /// A name without underscores and backslashes: \tau_a, S_a, N_dot. Empty when none stands here.
 static void read_name(parser *p, char name[MAX_NAME]) {
     size_t n = 0;
     bool brace = false;
     name[0] = 0;
-    p->at += *p->at == '\\';
+    if (*p->at == '\\') {
+        // of the commands the letters alone are names
+        if (!is_letter(p->at + 1)) {
+            return;
+        }
+        p->at += is_word(p->at + 1, VARIANTS) ? 1 + strlen("var") : 1;
+    }
 
     // letters, digits behind the first, and indices
     while (n < MAX_NAME - 8) {
-        // a Greek letter in UTF-8 goes by its name
-        size_t k = 0;
-        const size_t letters = sizeof LETTERS / sizeof *LETTERS;
-        while (k < letters && strncmp(p->at, LETTERS[k].utf8, strlen(LETTERS[k].utf8)) != 0) {
-            k++;
-        }
-        if (k < letters) {
+        const size_t k = find_letter(p->at);
+        if (k < N_LETTERS) { // a Greek letter in UTF-8 goes by its name
             n += (size_t)snprintf(name + n, MAX_NAME - n, "%s", LETTERS[k].name);
             p->at += strlen(LETTERS[k].utf8);
         } else if (isalpha((unsigned char)*p->at) || (n > 0 && isdigit((unsigned char)*p->at))) {
@@ -229,6 +305,9 @@ static void read_name(parser *p, char name[MAX_NAME]) {
     }
 
     // the brace that the index opened
+    if (brace && *p->at != '}') {
+        name[0] = 0;
+    }
     p->at += brace && *p->at == '}';
 }
 
@@ -273,23 +352,36 @@ static hn_status read_dotted(parser *p, hn_matrix *out) {
 }
 
 static hn_status read_word(parser *p, hn_matrix *out) {
+    static const char *const modules[] = {"np",    "numpy",  "jnp", "sp",
+                                          "scipy", "linalg", "la",  NULL};
     char name[MAX_NAME];
-    read_name(p, name);
-    const bool inverse = strcmp(name, "inv") == 0, transposed = strcmp(name, "transpose") == 0;
+
+    // the modules before a function, unless a matrix has that name
+    do {
+        read_name(p, name);
+    } while (is_word(name, modules) && !p->names->lookup(p->names->user, name) && *p->at == '.' &&
+             isalpha((unsigned char)p->at[1]) && p->at++);
     if (!name[0]) {
-        return fault(p, *p->at ? "expected a matrix, a number or a bracket"
-                               : "the formula ends here, and something is missing");
+        return fault(p, *p->at == '\\' ? "this command of LaTeX is not known here"
+                        : *p->at       ? "expected a matrix, a number or a bracket"
+                                       : "the formula ends here, and something is missing");
     }
-    if ((inverse || transposed) && take(p, "(")) {
+
+    // a function and its argument
+    const bool inverse = strcmp(name, "inv") == 0 || strcmp(name, "Inverse") == 0;
+    const bool transposed = strcmp(name, "transpose") == 0 || strcmp(name, "Transpose") == 0;
+    const bool round = (inverse || transposed) && take(p, "(");
+    if (round || ((inverse || transposed) && take(p, "["))) {
         hn_matrix inner;
-        HN_TRY(read_group(p, ")", &inner));
+        HN_TRY(read_group(p, round ? ")" : "]", &inner));
         return inverse ? invert(p, &inner, out) : transpose(p, &inner, out);
     }
     return look_up(p, name, out);
 }
 
 static hn_status read_primary(parser *p, hn_matrix *out) {
-    skip(p);
+    while (take(p, "\\ ")) { // a space of LaTeX: no operand stands before it
+    }
 
     // what stands in brackets is read as a whole
     if (take(p, "(")) {
@@ -308,17 +400,36 @@ static hn_status read_primary(parser *p, hn_matrix *out) {
     }
 
     // a number is a matrix of one by one
-    if (isdigit((unsigned char)*p->at) || *p->at == '.') {
+    if (isdigit((unsigned char)p->at[*p->at == '.'])) {
         char *end;
         HN_TRY(make(p, 1, 1, out));
         out->number = 1;
         out->x[0] = strtod(p->at, &end);
-        p->at = end > p->at ? end : p->at + 1;
-        return HN_OK;
+        p->at = end;
+        return isdigit((unsigned char)p->at[*p->at == '.']) ? fault(p, "a number in a number")
+                                                            : HN_OK;
     }
 
     // what is left: a name, or a command
     return read_word(p, out);
+}
+
+/// Steps over a mark of the transpose: ', .T, ^T, ^{\top}, ^{\mathsf{T}} and their like.
+static bool take_transpose(parser *p) {
+    if (take_any(p, PRIMES)) {
+        return true;
+    }
+    const char *before = p->at;
+    if (!take(p, "^")) {
+        return false;
+    }
+    const bool outer = take(p, "{");
+    const bool inner = take_any(p, FONTS) && take(p, "{");
+    if (take_any(p, TRANSPOSED) && (!inner || take(p, "}")) && (!outer || take(p, "}"))) {
+        return true;
+    }
+    p->at = before;
+    return false;
 }
 
 /// A primary with its marks behind it.
@@ -326,15 +437,17 @@ static hn_status read_factor(parser *p, hn_matrix *out) {
     hn_matrix m;
     HN_TRY(read_primary(p, &m));
     for (;;) {
-        if (take_any(p, TRANSPOSE)) {
+        if (take_transpose(p)) {
             HN_TRY(transpose(p, &m, out));
         } else if (take_any(p, SQUARE)) {
             HN_TRY(multiply(p, &m, &m, out));
+        } else if (take_any(p, SQUARE_ENTRIES)) {
+            HN_TRY(multiply_entries(p, &m, &m, out));
         } else if (take_any(p, INVERSE)) {
             HN_TRY(invert(p, &m, out));
         } else {
             *out = m;
-            return HN_OK;
+            return *p->at == '^' ? fault(p, "the powers known here are ^T, ^2 and ^-1") : HN_OK;
         }
         m = *out;
     }
@@ -355,20 +468,120 @@ static hn_status read_signed(parser *p, hn_matrix *out) {
     return HN_OK;
 }
 
+/// What stands between two factors.
+typedef enum joint { END, PRODUCT, BESIDE, ENTRIES, QUOTIENT, SOLVE, UNCLEAR } joint;
+
+/// The text has what only LaTeX has, so that a backslash belongs to a command.
+static bool is_latex(const parser *p) {
+    if (strpbrk(p->start, "{}$") || strstr(p->start, "^\\")) {
+        return true;
+    }
+    for (const char *at = p->start; (at = strchr(at, '\\')) != NULL; at++) {
+        const bool open =
+            at == p->start || strchr(" +-*(", at[-1]) || isdigit((unsigned char)at[-1]);
+        if (is_word(at + 1, COMMANDS) || (open && is_letter(at + 1))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// A backslash behind a factor: MATLAB's left division, or a command or space of LaTeX. Where it
+/// can be either, it is neither.
+static joint read_backslash(parser *p) {
+    const char *next = p->at + 1;
+    const bool blank = p->at > p->start && p->at[-1] == ' ', latex = is_latex(p);
+    if (is_word(next, COMMANDS)) {
+        return BESIDE;
+    }
+    if (is_letter(next)) {
+        return blank || latex ? BESIDE : UNCLEAR;
+    }
+
+    // LaTeX knows no command of this name: a matrix, a function or a bracket divided from the left
+    char name[MAX_NAME];
+    parser ahead = *p;
+    ahead.at = next;
+    skip(&ahead);
+    read_name(&ahead, name);
+    if (*next == ' ' && blank == latex) {
+        return UNCLEAR;
+    }
+    if (*next == ' ' && latex) {
+        return BESIDE;
+    }
+    static const char *const functions[] = {"inv", "transpose", "Inverse", "Transpose", NULL};
+    if (*ahead.at == '\\' ||
+        (name[0] && !is_word(name, functions) && !p->names->lookup(p->names->user, name))) {
+        return BESIDE; // reported as an unknown command
+    }
+    p->at++;
+    return SOLVE;
+}
+
+static joint read_joint(parser *p) {
+    skip(p);
+    if (*p->at == '\\' && !is_word(p->at + 1, (const char *const[]){"cdot", "times", NULL})) {
+        return read_backslash(p);
+    }
+    if (take(p, ".*")) {
+        return ENTRIES;
+    }
+    if (take(p, "./") || take(p, "/")) {
+        return QUOTIENT;
+    }
+
+    // the dot of a product, not that of a number
+    const bool dot = *p->at == '.' && !isdigit((unsigned char)p->at[1]);
+    if (take_any(p, TIMES) || (dot && take(p, "."))) {
+        return PRODUCT;
+    }
+    const bool ends =
+        !*p->at || strchr("+-)]},;", *p->at) || stands(p->at, "−") || stands(p->at, "–");
+    return ends ? END : BESIDE;
+}
+
+/// a / b with a number b.
+static hn_status divide(parser *p, const hn_matrix *a, const hn_matrix *b, hn_matrix *out) {
+    hn_matrix inverse;
+    if (!b->number) {
+        return fault(p, "what stands before this is no number and divides nothing; write inv()");
+    }
+    HN_TRY(invert(p, b, &inverse));
+    return multiply(p, a, &inverse, out);
+}
+
+static hn_status join(parser *p, joint how, const hn_matrix *a, const hn_matrix *b,
+                      hn_matrix *out) {
+    hn_matrix inverse;
+    switch (how) {
+    case ENTRIES:
+        return multiply_entries(p, a, b, out);
+    case QUOTIENT:
+        return divide(p, a, b, out);
+    case SOLVE:
+        HN_TRY(invert(p, a, &inverse));
+        return multiply(p, &inverse, b, out);
+    default:
+        return multiply(p, a, b, out);
+    }
+}
+
 static hn_status read_product(parser *p, hn_matrix *out) {
     hn_matrix left, right;
     HN_TRY(read_signed(p, &left));
     for (;;) {
-        const bool sign = take_any(p, TIMES);
-        skip(p);
-        const bool beside = *p->at && !strchr("+-)]},;", *p->at) && strncmp(p->at, "−", 3) != 0 &&
-                            strncmp(p->at, "–", 3) != 0;
-        if (!sign && !beside) {
+        const joint how = read_joint(p);
+        if (how == END) {
             *out = left;
             return HN_OK;
         }
-        HN_TRY(sign ? read_signed(p, &right) : read_factor(p, &right));
-        HN_TRY(multiply(p, &left, &right, out));
+        if (how == UNCLEAR) {
+            return fault(p, "this backslash may be LaTeX or a division from the left; write * "
+                            "for the product, inv(A)*b for A\\b");
+        }
+        HN_TRY(how == BESIDE ? read_factor(p, &right) : read_signed(p, &right));
+        HN_TRY(join(p, how, &left, &right, out));
         left = *out;
     }
 }

@@ -6,7 +6,9 @@
 //     N' M N     N^T*M*N     N.T @ M @ N     N^{\top} M N     transpose(N)*M*N     inv(M)*J'
 //
 // Products stand side by side or with * or @; ' and ^T transpose; inv() and ^-1 invert; + - and
-// brackets; numbers multiply. \dot{N}, N_dot and dN are the name Ndot.
+// brackets; numbers multiply and divide. \dot{N}, N_dot and dN are the name Ndot.
+// A.B is the product too, A.*B and A.^2 go entry by entry, M\x is inv(M)*x. What can be read in two
+// ways, or not at all, is refused with its column.
 
 #include "base/arena.h"
 #include "base/diag.h"
