@@ -49,8 +49,21 @@ static uint64_t seed_of(const grading *g, const hn_roster_entry *e) {
                                       : 0;
 }
 
-/// What the line of a submission depends on: its text or why there is none, the exercise, the seed
-/// and this build.
+/// How many submissions carry the name of submission i; the roster is sorted by name.
+static int count_name(const hn_roster *r, int i) {
+    int n = 1;
+    for (int k = i; k > 0 && strcmp(r->entry[k - 1].student, r->entry[i].student) == 0; k--) {
+        n++;
+    }
+    for (int k = i; k + 1 < r->n && strcmp(r->entry[k + 1].student, r->entry[i].student) == 0;
+         k++) {
+        n++;
+    }
+    return n;
+}
+
+/// What the line of a submission depends on: its text or why there is none, the exercise, the seed,
+/// others of its name, and this build.
 static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     hn_strbuf text;
     char file[HN_ROSTER_PATH];
@@ -62,6 +75,8 @@ static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     const uint64_t seed = seed_of(g, e);
     hash = hn_hash_bytes(hash, &seed, sizeof seed);
     hash = hn_hash_text(hash, e->student);
+    const int same = count_name(g->roster, (int)(e - g->roster->entry));
+    hash = hn_hash_bytes(hash, &same, sizeof same);
     hash = status == HN_OK ? hn_hash_bytes(hash, hn_strbuf_text(&text), text.n)
                            : hn_hash_text(hash, diag.message);
     hn_strbuf_reset(&text);
@@ -93,6 +108,19 @@ static void begin_line(const grading *g, int i, hn_strbuf *b, const char *status
     hn_json_put_string(b, "student", g->roster->entry[i].student);
     hn_json_put_string(b, "status", status);
     hn_json_put_string(b, "key", hex);
+    const int same = count_name(g->roster, i);
+    if (same > 1) {
+        char remark[80];
+        snprintf(remark, sizeof remark, "%d submissions have this name; keep one", same);
+        hn_json_put_string(b, "remark", remark);
+    }
+}
+
+/// A line without a score of its own still says what could be had.
+static void put_zero(const grading *g, hn_strbuf *b, const char *reason) {
+    hn_json_put_number(b, "score", 0);
+    hn_json_put_number(b, "max_score", hn_exercise_points(g->exercise));
+    hn_json_put_string(b, "reason", reason);
 }
 
 static void put_graded(hn_strbuf *b, const hn_verdict *v, const char *text) {
@@ -136,11 +164,7 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
     if (graded) {
         put_graded(b, v, hn_strbuf_text(&text));
     } else {
-        hn_json_put_number(b, "score", 0);
-        hn_json_put_string(b, "reason",
-                           failed  ? hn_status_text(status)
-                           : there ? v->reason
-                                   : diag.message);
+        put_zero(g, b, failed ? hn_status_text(status) : there ? v->reason : diag.message);
     }
     hn_json_end_object(b);
     hn_strbuf_add(b, "\n");
@@ -241,8 +265,7 @@ static hn_status keep_loss(grading *g, worker *w, const char *reason) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     begin_line(g, w->index, &b, "failed");
-    hn_json_put_number(&b, "score", 0);
-    hn_json_put_string(&b, "reason", reason);
+    put_zero(g, &b, reason);
     hn_json_end_object(&b);
     const hn_status status = keep_line(g, w->index, hn_strbuf_text(&b), true);
     hn_strbuf_reset(&b);

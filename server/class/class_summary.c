@@ -66,11 +66,13 @@ static const char *text_of(const cJSON *o, const char *key) {
 typedef struct tally {
     int graded, ungradable, failed, bin[BINS + 1];
     double sum, most;
-    counts mistakes, equal;
+    counts mistakes, equal, names;
 } tally;
 
 static void take_line(tally *t, const cJSON *o) {
     const char *student = text_of(o, "student"), *status = text_of(o, "status");
+
+    add_count(&t->names, student, text_of(o, "file"));
 
     // without a score it is counted only
     if (strcmp(status, "graded") != 0) {
@@ -113,6 +115,16 @@ static void put_histogram(hn_strbuf *b, const tally *t) {
     }
 }
 
+/// Names that more than one submission carries, with their files.
+static void put_names(hn_strbuf *b, counts *c) {
+    qsort(c->item, (size_t)c->n, sizeof(count), more_first);
+    for (int k = 0; k < c->n && c->item[k].n > 1; k++) {
+        hn_strbuf_printf(b, "%s  %s: %s\n",
+                         k == 0 ? "more than one submission of a name: keep one\n" : "",
+                         c->item[k].word, hn_strbuf_text(&c->item[k].who));
+    }
+}
+
 void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
     tally t = {0};
     for (int i = 0; i < r->n; i++) {
@@ -125,7 +137,8 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
     hn_strbuf_printf(b, "%d submissions: %d graded, %d not gradable, %d failed in the grader\n",
                      r->n, t.graded, t.ungradable, t.failed);
     if (t.graded > 0) {
-        hn_strbuf_printf(b, "mean score %.2f of %g\n", t.sum / t.graded, t.most);
+        hn_strbuf_printf(b, "mean of the %d graded: %.2f of %g\n", t.graded, t.sum / t.graded,
+                         t.most);
         put_histogram(b, &t);
     }
 
@@ -141,6 +154,8 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
                          k == 0 ? "equal wrong answers, blanks and capitals aside\n" : "",
                          hn_strbuf_text(&t.equal.item[k].who));
     }
+    put_names(b, &t.names);
+    free_counts(&t.names);
     free_counts(&t.mistakes);
     free_counts(&t.equal);
 }

@@ -5,7 +5,8 @@
 
 #include "class/class_grading.h"
 
-/// Adds the scores as a histogram, the commonest mistakes, and who handed in equal wrong answers.
+/// Adds the scores as a histogram, the commonest mistakes, who handed in equal wrong answers,
+/// and names with more than one submission.
 void hn_class_summary(hn_strbuf *b, const hn_class_result *r);
 
 #endif

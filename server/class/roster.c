@@ -73,7 +73,24 @@ static int compare(const void *a, const void *b) {
     return by_student ? by_student : strcmp(x->path, y->path);
 }
 
-static hn_status add(hn_roster *r, const char *folder, const char *name) {
+/// Files of tools and systems that nobody hands in on purpose.
+static bool is_noise(const char *name) {
+    static const char *const noise[] = {"__MACOSX",
+                                        "package.json",
+                                        "submission_metadata.json",
+                                        "submission_metadata.yml",
+                                        "node_modules",
+                                        "desktop.ini",
+                                        "Thumbs.db"};
+    for (size_t i = 0; i < sizeof noise / sizeof *noise; i++) {
+        if (strcmp(name, noise[i]) == 0) {
+            return true;
+        }
+    }
+    return name[0] == '.';
+}
+
+static hn_status add(hn_roster *r, const char *folder, const char *name, hn_diag *diag) {
     struct stat info;
 
     // room for one more
@@ -87,18 +104,22 @@ static hn_status add(hn_roster *r, const char *folder, const char *name) {
         r->cap = cap;
     }
 
-    // only folders and files that may hold a submission
+    // whatever it is, it gets its row
     hn_roster_entry *e = &r->entry[r->n];
     const int n = snprintf(e->path, sizeof e->path, "%s/%s", folder, name);
-    if (n >= (int)sizeof e->path || lstat(e->path, &info) != 0) {
-        return HN_OK;
+    if (n >= (int)sizeof e->path) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "move the folder to a shorter path",
+                           "the path of '%.200s' has more than %d bytes", name, HN_ROSTER_PATH - 1);
     }
-    e->is_folder = S_ISDIR(info.st_mode);
-    const bool file = S_ISREG(info.st_mode) && (ends_in(name, ".json") || ends_in(name, ".zip"));
-    if (e->is_folder || file) {
-        hn_roster_student(name, e->student);
-        r->n++;
+    e->is_folder = lstat(e->path, &info) == 0 && S_ISDIR(info.st_mode);
+    hn_roster_student(name, e->student);
+
+    // a file of another kind loses its ending too
+    char *dot = strrchr(e->student, '.');
+    if (!e->is_folder && dot && dot > e->student && strcmp(e->student, name) == 0) {
+        *dot = '\0';
     }
+    r->n++;
     return HN_OK;
 }
 
@@ -110,11 +131,11 @@ hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag) {
                            "'%.200s' is not a folder: %s", folder, strerror(errno));
     }
 
-    // all but hidden entries
+    // all but hidden entries and noise
     hn_status status = HN_OK;
     for (struct dirent *d; status == HN_OK && (d = readdir(dir)) != NULL;) {
-        if (d->d_name[0] != '.') {
-            status = add(r, folder, d->d_name);
+        if (!is_noise(d->d_name)) {
+            status = add(r, folder, d->d_name, diag);
         }
     }
     closedir(dir);
@@ -147,12 +168,6 @@ static void keep(int *n, char first[HN_ROSTER_PATH], const char *path) {
     if (++*n == 1 || strcmp(path, first) < 0) {
         snprintf(first, HN_ROSTER_PATH, "%s", path);
     }
-}
-
-/// Files of tools and systems that nobody hands in on purpose.
-static bool is_noise(const char *name) {
-    return name[0] == '.' || strcmp(name, "__MACOSX") == 0 || strcmp(name, "package.json") == 0 ||
-           strcmp(name, "submission_metadata.json") == 0 || strcmp(name, "node_modules") == 0;
 }
 
 static void search(finds *f, const char *folder, int depth) {
@@ -226,10 +241,33 @@ static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER
     return status;
 }
 
+/// A file that is no submission: a link, or of another kind than JSON and zip.
+static hn_status check_file(const char *path, hn_diag *diag) {
+    struct stat info;
+    const char *name = strrchr(path, '/') + 1;
+    const char *hint = "hand in one file that ends in .json";
+    if (lstat(path, &info) != 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%.100s' cannot be read: %s", name,
+                           strerror(errno));
+    }
+    if (S_ISLNK(info.st_mode)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
+                           "'%.100s' is a link; links are not followed", name);
+    }
+    if (!S_ISREG(info.st_mode) || !(ends_in(name, ".json") || ends_in(name, ".zip"))) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
+                           "'%.100s' is no .json file, no .zip archive and no folder", name);
+    }
+    return HN_OK;
+}
+
 hn_status hn_roster_load(const hn_roster_entry *e, hn_strbuf *text, char file[HN_ROSTER_PATH],
                          hn_diag *diag) {
     finds f = {0};
     snprintf(file, HN_ROSTER_PATH, "%s", e->path);
+    if (!e->is_folder) {
+        HN_TRY(check_file(e->path, diag));
+    }
     if (e->is_folder) {
         search(&f, e->path, 0);
     } else if (ends_in(e->path, ".zip")) {

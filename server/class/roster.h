@@ -28,12 +28,14 @@ typedef struct hn_roster {
     hn_roster_entry *entry; ///< sorted by student, then path
 } hn_roster;
 
-/// Lists the students of a folder; names that begin with a dot are left out. Fails: HN_ERR_INPUT
-/// (no folder, nobody in it), HN_ERR_MEMORY. hn_roster_reset() in any case.
+/// Lists every entry of a folder, also those that cannot be graded; hidden files and what platforms
+/// and systems add are left out. Fails: HN_ERR_INPUT (no folder, nobody in it, a path too long),
+/// HN_ERR_MEMORY. hn_roster_reset() in any case.
 HN_MUST_CHECK hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag);
 void hn_roster_reset(hn_roster *r);
 /// Finds the one JSON file of a student and reads it into `text`; `file` gets its name. Fails, with
-/// a sentence for the student in diag: HN_ERR_INPUT (none, several, no archive), HN_ERR_LIMIT.
+/// a sentence for the student in diag: HN_ERR_INPUT (none, several, no archive, a link, another
+/// kind of file), HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_roster_load(const hn_roster_entry *e, hn_strbuf *text,
                                        char file[HN_ROSTER_PATH], hn_diag *diag);
 /// The student's name in the name of a folder or file, by the rules above.

@@ -77,8 +77,8 @@ static const hn_command COMMANDS[] = {
      "verdicts as --format text, json, gradescope, junit, csv or html; into --out DIR",
      "--format --out -o --seed --student --wide", 2, HN_CLI_MAX_WORDS, hn_command_grade},
     {"class", "ID FOLDER",
-     "grade the submissions of a class, a folder, file or zip for each student; --out "
-     "FILE.ndjson or .csv",
+     "grade the submissions of a class, a folder, file or zip for each student, whose name chooses "
+     "the variant unless --seed does; --out FILE.ndjson or .csv",
      "--jobs --seed --out -o", 2, 2, hn_command_class},
     {"regrade", "VERDICT [SUBMISSION]", "grade again what a verdict (JSON) says, and compare", "",
      1, 2, hn_command_regrade},

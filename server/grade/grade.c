@@ -318,7 +318,11 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
 }
 
 /// An exercise of form 2.
-static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
+static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
+    // the file's own variant where the caller leaves it open
+    const uint64_t said = chosen ? 0 : hn_variant_seed_said(v->problem, root);
+    v->seed = said ? said : v->seed;
+
     hn_variant *x = malloc(sizeof *x);
     hn_diag diag = {0};
     hn_status status = x ? hn_variant_init(x, v->problem, v->seed, &diag) : HN_ERR_MEMORY;
@@ -336,9 +340,10 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
     return status;
 }
 
-static hn_status grade_tree(hn_verdict *v, const cJSON *root) {
+/// `chosen`: the seed is the caller's.
+static hn_status grade_tree(hn_verdict *v, const cJSON *root, bool chosen) {
     if (v->problem->n_parts) {
-        return grade_parts(v, root);
+        return grade_parts(v, root, chosen);
     }
     const cJSON *answer;
     int transposed;
@@ -398,7 +403,7 @@ hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n, 
         return HN_OK;
     }
     cJSON *root = cJSON_ParseWithLength(text, n);
-    hn_status status = root ? grade_tree(out, root) : HN_ERR_MEMORY;
+    hn_status status = root ? grade_tree(out, root, seed != 0) : HN_ERR_MEMORY;
     cJSON_Delete(root);
     return status;
 }

@@ -12,9 +12,9 @@
 
 #include "grade/verdict.h"
 
-/// Grades n bytes of a submission. `seed` chooses the states (0: the problem's own). HN_OK for
-/// graded and ungradable alike; otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time
-/// and memory are bounded.
+/// Grades n bytes of a submission. `seed` chooses the states or the variant (0: the variant that
+/// the submission says it answers, else the problem's own). HN_OK for graded and ungradable alike;
+/// otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time and memory are bounded.
 HN_MUST_CHECK hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n,
                                       uint64_t seed, hn_verdict *out);
 /// Grades a file. One that is missing, too large or no regular file is ungradable.

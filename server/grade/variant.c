@@ -4,7 +4,9 @@
 #include "base/hash.h"
 #include "grade/submission.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t seed,
@@ -12,6 +14,7 @@ hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t s
     memset(x, 0, sizeof *x);
     x->exercise = exercise;
     x->seed = seed ? seed : exercise->seed;
+    x->chosen = seed != 0;
     x->n_parts = exercise->n_parts;
     const hn_status status =
         hn_draw_init(&x->draw, cJSON_GetObjectItemCaseSensitive(exercise->root, "draw"),
@@ -36,6 +39,25 @@ uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student) {
     return (hash & ((1ull << 48) - 1)) + 1; // programs that read it as a double keep it
 }
 
+uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submission) {
+    const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
+    const cJSON *student = cJSON_GetObjectItemCaseSensitive(submission, "student");
+
+    // a seed goes before a name; 'problem --json' writes it as text
+    if (cJSON_IsString(seed)) {
+        const char *text = seed->valuestring;
+        const size_t n = strspn(text, "0123456789");
+        return n > 0 && n < 19 && !text[n] ? strtoull(text, NULL, 10) : 0;
+    }
+    if (cJSON_IsNumber(seed)) {
+        const double value = seed->valuedouble;
+        return value >= 1 && value <= 9007199254740992.0 && value == floor(value) ? (uint64_t)value
+                                                                                  : 0;
+    }
+    const bool named = cJSON_IsString(student) && student->valuestring[0];
+    return named ? hn_variant_seed(exercise, student->valuestring) : 0;
+}
+
 // ---- text ----
 
 static void put_statement(hn_strbuf *b, hn_variant *x) {
@@ -58,6 +80,20 @@ static void put_question(hn_strbuf *b, hn_variant *x, const hn_part *p) {
     }
 }
 
+/// The member that says which variant is answered; nothing for the exercise's own.
+static void put_variant(hn_strbuf *b, const hn_variant *x) {
+    if (x->student) {
+        hn_strbuf name;
+        hn_strbuf_init(&name);
+        hn_json_string(&name, x->student);
+        hn_strbuf_printf(b, "\"student\": %s, ", hn_strbuf_text(&name));
+        b->failed |= name.failed;
+        hn_strbuf_reset(&name);
+    } else if (x->chosen) {
+        hn_strbuf_printf(b, "\"seed\": %llu, ", (unsigned long long)x->seed);
+    }
+}
+
 void hn_variant_text(hn_strbuf *b, hn_variant *x) {
     const hn_exercise *p = x->exercise;
     hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g points; seed %llu)\n\n", p->id,
@@ -76,6 +112,7 @@ void hn_variant_text(hn_strbuf *b, hn_variant *x) {
 
     // how to hand it in
     hn_strbuf_add(b, "\nHand in a JSON file: {");
+    put_variant(b, x);
     for (int i = 0; i < x->n_parts; i++) {
         hn_strbuf_printf(b, "%s\"%s\": ...", i ? ", " : "", x->part[i].id);
     }
@@ -177,6 +214,34 @@ static int has_part(const hn_variant *x, const char *id) {
     return 0;
 }
 
+/// Refuses a submission that says it answers another variant.
+static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
+    const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
+    const cJSON *student = cJSON_GetObjectItemCaseSensitive(submission, "student");
+    const uint64_t said = hn_variant_seed_said(x->exercise, submission);
+    if (said == x->seed || (said == 0 && !cJSON_IsNumber(seed) && !cJSON_IsString(seed))) {
+        return 1;
+    }
+
+    // by its number, or by its name
+    if (cJSON_IsNumber(seed)) {
+        return hn_submission_refuse(v, "grade it with --seed of that number",
+                                    "the submission answers the variant of seed %.17g, this is "
+                                    "%llu",
+                                    seed->valuedouble, (unsigned long long)x->seed);
+    }
+    if (cJSON_IsString(seed)) {
+        return hn_submission_refuse(v, "grade it with --seed of that number",
+                                    "the submission answers the variant of seed '%.20s', this is "
+                                    "%llu",
+                                    seed->valuestring, (unsigned long long)x->seed);
+    }
+    return hn_submission_refuse(v, "grade it with --student of that name",
+                                "the submission answers the variant of student '%.60s', this is "
+                                "the variant of seed %llu",
+                                student->valuestring, (unsigned long long)x->seed);
+}
+
 /// Fields that no part asks for; the file of another exercise or another seed.
 static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     static const char *const others[] = {"problem", "exercise", "student", "seed", "comment"};
@@ -197,17 +262,14 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
         }
     }
 
-    // it must be meant for this exercise and this seed
+    // it must be meant for this exercise
     const cJSON *id = cJSON_GetObjectItemCaseSensitive(submission, "problem");
-    const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
     if (cJSON_IsString(id) && strcmp(id->valuestring, x->exercise->id) != 0) {
         return hn_submission_refuse(v, NULL, "the submission says it answers '%.40s', this is '%s'",
                                     id->valuestring, x->exercise->id);
     }
-    if (cJSON_IsNumber(seed) && seed->valuedouble != (double)x->seed) {
-        return hn_submission_refuse(v, "grade it with --seed of that number",
-                                    "the submission answers the variant of seed %.0f, this is %llu",
-                                    seed->valuedouble, (unsigned long long)x->seed);
+    if (!check_seed(x, submission, v)) {
+        return 0;
     }
 
     // a submission without any answer is no attempt

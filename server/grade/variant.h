@@ -8,6 +8,8 @@
 typedef struct hn_variant {
     const hn_exercise *exercise; ///< borrowed
     uint64_t seed;
+    bool chosen;         ///< the seed is not the exercise's own
+    const char *student; ///< borrowed; whose seed it is, said in the text; NULL: nobody's
     hn_draw draw;
     int n_parts;
     hn_part part[HN_GRADE_MAX_PARTS];
@@ -20,6 +22,8 @@ HN_MUST_CHECK hn_status hn_variant_init(hn_variant *x, const hn_exercise *exerci
 void hn_variant_reset(hn_variant *x);
 /// The seed of a student's variant: the same for the same name, never 0.
 uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student);
+/// The seed that a submission says it answers, by its "seed" or its "student"; 0: it says none.
+uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submission);
 /// Statement, parts with their numbers, and the shape of a submission.
 void hn_variant_text(hn_strbuf *b, hn_variant *x);
 /// Writes a hint of the exercise, from 1 to its n_hints, with the numbers of this variant.

@@ -157,6 +157,56 @@ class Class(unittest.TestCase):
         done = self.grade("--out", self.out)
         self.assertIn("399 of 400 submissions were graded before", done.stderr)
 
+    def test_every_entry_of_the_folder_has_a_row(self):
+        self.put("ada.json", RIGHT)
+        self.put("sam.txt", "see my mail")
+        self.put("tom.docx", b"PK")
+        self.put("Dr. Who_4711_assignsubmission_file_/answer.json", RIGHT)
+        for junk in (".DS_Store", "Thumbs.db", "desktop.ini", "submission_metadata.yml", "__MACOSX/x.json"):
+            self.put(junk, "{}")
+        os.symlink("/nowhere/will.json", os.path.join(self.folder, "will.json"))
+        os.mkfifo(os.path.join(self.folder, "pipe.json"))
+        lines = {line["student"]: line for line in self.lines()}
+        self.assertEqual(sorted(lines), ["Dr. Who", "ada", "pipe", "sam", "tom", "will"])
+        for name, said in (("sam", "'sam.txt' is no .json file"), ("tom", "'tom.docx' is no .json file"), ("will", "'will.json' is a link"), ("pipe", "'pipe.json' is no .json file")):
+            self.assertEqual(lines[name]["status"], "ungradable")
+            self.assertIn(said, lines[name]["reason"])
+        self.assertIn("6 submissions: 2 graded, 4 not gradable", self.grade().stdout)
+
+    def test_the_mean_names_its_number_and_a_name_with_two_files_is_remarked(self):
+        for name in ("ida.json", "ada.json"):
+            self.put(name, RIGHT)
+        self.put("ida.zip", zipped({"answer.json": WRONG_SIGN}))
+        self.put("sam.txt", "later")
+        table = os.path.join(self.temporary.name, "scores.csv")
+        text = self.grade("--out", table).stdout
+        self.assertRegex(text, r"(?m)^mean of the 3 graded: \d\.\d\d of 8$")
+        self.assertRegex(text, r"(?m)^more than one submission of a name: keep one\n  ida: \S.*ida\.json, \S.*ida\.zip:answer\.json$")
+        self.assertEqual(text.count("2 submissions have this name"), 2)
+        with open(table, encoding="utf-8", newline="") as f:
+            rows = list(csv.DictReader(f))
+        self.assertEqual([(r["student"], r["max_score"], r["remark"]) for r in rows],
+                         [("ada", "8", ""), *[("ida", "8", "2 submissions have this name; keep one")] * 2, ("sam", "8", "")])
+        # the second file goes: the row of the first loses its remark
+        os.remove(os.path.join(self.folder, "ida.zip"))
+        self.assertNotIn("more than one submission", self.grade("--out", table).stdout)
+        with open(table, encoding="utf-8", newline="") as f:
+            self.assertEqual({r["remark"] for r in csv.DictReader(f)}, {""})
+
+    def test_the_name_chooses_the_variant_and_another_one_is_reported(self):
+        answer = {"a": {"matrix": [["M", "J'"], ["J", "0"]], "right": ["S'*tau - h", "-gamma"], "unknowns": ["a", "-lambda"]}}
+        own = json.loads(call("problem", "p1", "--student", "own", "--json").stdout)["seed"]
+        for name, said in (("own", {"seed": int(own)}), ("named", {"student": "named"}), ("silent", {}), ("other", {"seed": 7}), ("borrowed", {"student": "own"})):
+            self.put(f"{name}.json", json.dumps(dict(said, **answer)))
+        done = call("class", "p1", self.folder, "--json")
+        lines = {line["student"]: line for line in map(json.loads, done.stdout.splitlines())}
+        self.assertEqual({name: line["status"] for name, line in lines.items()},
+                         {"own": "graded", "named": "graded", "silent": "graded", "other": "ungradable", "borrowed": "ungradable"})
+        self.assertIn("answers the variant of seed 7, this is", lines["other"]["reason"])
+        self.assertIn("answers the variant of student 'own', this is", lines["borrowed"]["reason"])
+        said = " ".join(call("help", "class").stdout.split())
+        self.assertIn("whose name chooses the variant unless --seed does", said)
+
     def test_a_folder_that_is_none_is_refused(self):
         for folder, said in (("/nowhere", "is not a folder"), (self.temporary.name + "/empty", "there is nobody")):
             os.makedirs(self.temporary.name + "/empty", exist_ok=True)

@@ -74,6 +74,30 @@ def statuses(folder):
     expect("what is no verdict is refused", run("regrade", path).returncode == 2)
 
 
+def hand_in_line(*words):
+    text = run("problem", "p1", *words).stdout
+    return json.loads(text.split("Hand in a JSON file: ")[1].splitlines()[0].replace("...", "null"))
+
+
+def own_variant(folder):
+    """The hand-in line names its variant, and the grader grades that one and no other."""
+    plain, seeded, named = hand_in_line(), hand_in_line("--seed", "7"), hand_in_line("--student", 'Ada "x"')
+    expect("the exercise's own variant is not named", list(plain)[0] == "a" and not {"seed", "student"} & set(plain), str(plain))
+    expect("the hand-in line begins with its seed", list(seeded.items())[:2] == [("seed", 7), ("a", None)], str(seeded))
+    expect("the hand-in line begins with its student", list(named.items())[:2] == [("student", 'Ada "x"'), ("a", None)], str(named))
+
+    answer = {"a": {"matrix": [["M", "J'"], ["J", "0"]], "right": ["S'*tau - h", "-gamma"], "unknowns": ["a", "-lambda"]}}
+    drawn = json.loads(run("problem", "p1", "--student", "s1001", "--json").stdout)["seed"]
+    for name, said, seed in (("number", {"seed": 7}, "7"), ("text", {"seed": "7"}, "7"), ("student", {"student": "s1001"}, drawn)):
+        path = write(folder, "own.json", dict(said, **answer))
+        done = run("grade", "p1", path, "--json")
+        expect(f"the file's variant is graded ({name})", done.returncode == 0 and json.loads(done.stdout)["seed"] == seed, done.stdout[:300])
+        same = run("grade", "p1", path, "--seed", seed)
+        expect(f"the same variant is no other ({name})", same.returncode == 0, same.stdout)
+        other = run("grade", "p1", path, "--seed", "8")
+        expect(f"another variant is refused ({name})", other.returncode == 2 and "the submission answers the variant of" in other.stdout, other.stdout)
+
+
 def forms(folder):
     path = write(folder, "some.json", {"b": {"choice": "a", "reason": "a"}, "d": "b"})
     junit = run("grade", "p1", path, "--format", "junit").stdout
@@ -117,6 +141,7 @@ def main():
     checks()
     with tempfile.TemporaryDirectory() as folder:
         statuses(folder)
+        own_variant(folder)
         forms(folder)
         broken_exercise(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):

@@ -18,6 +18,10 @@
 
 static const double TIME_LIMIT = 60; // [s] for one submission
 
+static bool is_graded(const cJSON *o) {
+    return strcmp(hn_document_text(o, "status"), "graded") == 0;
+}
+
 /// One line on standard output as it is finished: JSON, or words.
 static void tell(void *user, const char *line) {
     const hn_args *args = user;
@@ -27,14 +31,15 @@ static void tell(void *user, const char *line) {
         return;
     }
     cJSON *o = cJSON_Parse(line);
-    const cJSON *most = hn_document_get(o, "max_score");
-    if (most) {
-        printf("%s: %g of %g, %s\n", hn_document_text(o, "student"), hn_document_number(o, "score"),
-               most->valuedouble, hn_document_text(o, "summary"));
+    const char *remark = hn_document_text(o, "remark");
+    if (is_graded(o)) {
+        printf("%s: %g of %g, %s", hn_document_text(o, "student"), hn_document_number(o, "score"),
+               hn_document_number(o, "max_score"), hn_document_text(o, "summary"));
     } else {
-        printf("%s: %s, %s\n", hn_document_text(o, "student"), hn_document_text(o, "status"),
+        printf("%s: %s, %s", hn_document_text(o, "student"), hn_document_text(o, "status"),
                hn_document_text(o, "reason"));
     }
+    printf("%s%s\n", remark[0] ? "; " : "", remark);
     fflush(stdout);
     cJSON_Delete(o);
 }
@@ -51,17 +56,17 @@ static void put_field(hn_strbuf *b, const char *text) {
 }
 
 static void put_csv(hn_strbuf *b, const hn_class_result *r) {
-    hn_strbuf_add(b, "student,status,score,max_score,says,file\n");
+    hn_strbuf_add(b, "student,status,score,max_score,says,file,remark\n");
     for (int i = 0; i < r->n; i++) {
         cJSON *o = cJSON_Parse(r->line[i] ? r->line[i] : "{}");
-        const bool graded = hn_document_get(o, "max_score") != NULL;
         put_field(b, hn_document_text(o, "student"));
-        hn_strbuf_printf(b, ",%s,%.10g,", hn_document_text(o, "status"),
-                         hn_document_number(o, "score"));
-        hn_strbuf_printf(b, graded ? "%.10g," : ",", hn_document_number(o, "max_score"));
-        put_field(b, hn_document_text(o, graded ? "summary" : "reason"));
+        hn_strbuf_printf(b, ",%s,%.10g,%.10g,", hn_document_text(o, "status"),
+                         hn_document_number(o, "score"), hn_document_number(o, "max_score"));
+        put_field(b, hn_document_text(o, is_graded(o) ? "summary" : "reason"));
         hn_strbuf_add(b, ",");
         put_field(b, hn_document_text(o, "file"));
+        hn_strbuf_add(b, ",");
+        put_field(b, hn_document_text(o, "remark"));
         hn_strbuf_add(b, "\n");
         cJSON_Delete(o);
     }

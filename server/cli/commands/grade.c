@@ -141,7 +141,7 @@ static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
 
-    // the variant of this student, or of the seed given
+    // the variant of this student, or of the seed given, or what the file says
     const uint64_t seed = t->args->student       ? hn_variant_seed(t->exercise, t->args->student)
                           : isnan(t->args->seed) ? 0
                                                  : (uint64_t)t->args->seed;

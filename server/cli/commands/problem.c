@@ -101,6 +101,7 @@ static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
                           : isnan(args->seed) ? 0
                                               : (uint64_t)args->seed;
     const hn_status status = hn_variant_init(&x, e, seed, &diag);
+    x.student = args->student;
 
     hn_exit result = HN_EXIT_PROGRAM;
     hn_strbuf b;

@@ -199,7 +199,8 @@ static const hn_field GRADE[] = {
      .type = HN_FIELD_INTEGER,
      .min = 0,
      .max = 9007199254740991.0,
-     .about = "chooses the states at which answers are compared"},
+     .about = "chooses the variant and the states at which answers are compared; 0: the variant "
+              "that the submission says"},
     END_OF_FIELDS};
 
 static const hn_field SET[] = {
