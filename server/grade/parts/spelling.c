@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -23,7 +24,7 @@ static const struct {
     {"₅", "5"},     {"₆", "6"},    {"₇", "7"},   {"₈", "8"},      {"₉", "9"},    //
     {"α", "alpha"}, {"β", "beta"}, {"γ", "gamma"}, {"δ", "delta"}, {"θ", "theta"}, // letters
     {"ϑ", "theta"}, {"λ", "lambda"}, {"μ", "mu"}, {"π", "pi"},     {"ρ", "rho"},   //
-    {"φ", "phi"},   {"ϕ", "phi"},  {"ψ", "psi"}, {"ω", "omega"},                 //
+    {"φ", "phi"},   {"ϕ", "phi"},  {"ψ", "psi"}, {"ω", "omega"}, {"ℓ", "l"},     //
     {"\xc2\xa0", " "}, {"\xe2\x80\x89", " "}, {"\xe2\x80\xaf", " "}, {"\xe2\x80\x8b", ""}, // spaces
     {"（", "("},    {"）", ")"},                                                 // wide brackets
 };
@@ -82,6 +83,11 @@ static const char *const MODULES[] = {"np",    "numpy", "math", "Math",  "sp",
 /// Commands of LaTeX that say nothing about the value.
 static const char *const SILENT[] = {"left", "right", "big",    "Big",          "bigl", "bigr",
                                      "quad", "qquad", "mathrm", "operatorname", "text", NULL};
+/// Commands that set the word in braces behind them upright; a function may be that word.
+static const char *const UPRIGHT[] = {"mathrm", "operatorname", "text", NULL};
+/// Letters of LaTeX that are written in two ways.
+static const char *const LETTERS[][2] = {
+    {"varphi", "phi"}, {"vartheta", "theta"}, {"varrho", "rho"}, {"ell", "l"}};
 static const char *const PRODUCTS[] = {"cdot", "times", "ast", NULL};
 static const char *const FRACTIONS[] = {"frac", "dfrac", "tfrac", NULL};
 
@@ -219,6 +225,32 @@ static void write_function(rewriter *w, const char *function) {
     }
 }
 
+/// \operatorname{sin} is \sin: reads the braces when a function stands in them.
+static void read_upright(rewriter *w, char name[MAX_NAME]) {
+    rewriter ahead = *w;
+    char word[MAX_NAME];
+    if (*ahead.at++ != '{') {
+        return;
+    }
+    read_name(&ahead, word);
+    if (*ahead.at == '}' && find_function(word)) {
+        w->at = ahead.at + 1;
+        snprintf(name, MAX_NAME, "%s", word);
+    }
+}
+
+/// Puts the plain letter for \varphi, \ell_1 and their like.
+static void plain_letter(char name[MAX_NAME]) {
+    for (size_t i = 0; i < sizeof LETTERS / sizeof *LETTERS; i++) {
+        const size_t n = strlen(LETTERS[i][0]), m = strlen(LETTERS[i][1]);
+        if (strncmp(name, LETTERS[i][0], n) == 0 && !isalpha((unsigned char)name[n])) {
+            memmove(name + m, name + n, strlen(name + n) + 1);
+            memcpy(name, LETTERS[i][1], m);
+            return;
+        }
+    }
+}
+
 /// A name, a function, a module or a command of LaTeX.
 static void write_word(rewriter *w) {
     const int command = *w->at == '\\';
@@ -229,6 +261,11 @@ static void write_word(rewriter *w) {
         return;
     }
     read_name(w, name);
+    if (command && is_one_of(UPRIGHT, name)) {
+        read_upright(w, name);
+    } else if (command) {
+        plain_letter(name);
+    }
     if (command && is_one_of(SILENT, name)) {
         return;
     }

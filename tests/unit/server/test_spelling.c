@@ -66,6 +66,7 @@ static void typographic_characters_become_ascii(void **state) {
     check("\xef\xbb\xbfl1", "l1");
     check("l1\xc2\xa0* l2", "l1 * l2");
     check("π", "pi");
+    check("ℓ₁", "l1");
     check("ж\xff", "ж\xff"); // the parser reports what is no formula
 }
 
@@ -79,6 +80,9 @@ static void latex_is_read(void **state) {
     check("\\sin^2\\theta", "sin(theta)^2");
     check("\\cos^{2}{x} \\cdot y", "cos(x)^2 * y");
     check("l_1 \\, \\theta_1", "l_1  *theta_1");
+    check("-\\ell_1\\operatorname{sin}(\\vartheta_1)", "-l_1*sin(theta_1)");
+    check("\\mathrm{cos}^2\\varphi", "cos(phi)^2");
+    check("\\ell_{12} \\ellipse", "l_12 *ellipse");
     // an argument whose end would be a guess is left to the parser to refuse
     check("\\sin 2\\theta", "sin 2*theta");
 }
