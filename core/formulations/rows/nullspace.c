@@ -102,7 +102,7 @@ const hn_formulation hn_formulation_nullspace = {
     .title = "null-space, full form",
     .short_name = "null-space",
     .rule = "Write the velocities as v = N u with J N = 0 and project the equations on N: "
-            "they hold no multipliers then. N changes with the configuration, so its rate belongs "
+            "no multipliers are left. N changes with the configuration, so its rate belongs "
             "in the equation.",
     .drift = "none: J v = 0 by construction, and the position is closed after each step",
     .when = "any mechanism away from singular configurations, if multipliers are not "
