@@ -389,6 +389,21 @@ test("E shows the parts of each method's error, that add up to it", async (t) =>
   assert.match(await page.locator(".accounts").textContent(), /energy at the end has changed by/);
 });
 
+test("an error that is not the sum of its parts has no bar, and the time until which it was one", async (t) => {
+  const page = await open(t, {
+    hash: "#scene=four-bar&method=index1@rk4:h=0.02&method=projection@rk4:h=0.02&study=budget",
+  });
+  await until(page, hasEnded("budget"), LONG);
+  const { methods } = await read(page, (data) => data.studies.budget.document);
+  const held = methods.filter(({ error }) => error?.holds).length;
+  assert.ok(held < methods.length, "ten seconds at this step are too long for one of them");
+  assert.equal(await page.locator(".accounts svg.account").count(), held);
+  assert.match(
+    await page.locator(".accounts").textContent(),
+    /first order has ended, its parts add up to .*; they agree until/,
+  );
+});
+
 test("what a study chooses itself makes no other study of it", () => {
   const of = (kind, method, preset) => signatureOf({ kind, methods: [method], preset });
   const same = (kind, a, b, preset) => of(kind, a, preset) === of(kind, b, preset);

@@ -66,7 +66,7 @@ class Class(unittest.TestCase):
         self.put("noether_4714_99_answer.zip", zipped({"answer.json": RIGHT}))  # Canvas, zip
         self.put("submission_4715/answer.json", RIGHT)  # Gradescope
         self.put("submission_4715/metadata.yml", "x: 1\n")
-        self.put("exercise-euler/work/answer.json", RIGHT)  # GitHub Classroom
+        self.put("exercise-euler/part-1/answer.json", RIGHT)  # GitHub Classroom
         self.put("exercise-euler/.git/config.json", "{}")
         self.put("gauss.json", RIGHT)
         self.put("lagrange/all.zip", zipped({"my work/answer.json": RIGHT, "__MACOSX/x.json": "{}", "readme": "hello"}))

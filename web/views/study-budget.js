@@ -2,7 +2,7 @@
 // @ts-check
 // Where the error at the end comes from, and who put energy in: the parts of each method as a bar
 // that adds up, and as numbers.
-import { quantity, scientific } from "../state/format.js";
+import { quantity, scientific, seconds } from "../state/format.js";
 import { BILL, CAUSES, barsOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
@@ -13,8 +13,6 @@ const ACCOUNTS = [
   { name: "error", word: "position error", order: CAUSES },
   { name: "energy", word: "energy", order: BILL },
 ];
-
-const ADDS_UP = 0.05; // relative: beyond it the error is too large for a sum of first order
 
 /** @param {number | null} value @param {string} unit */
 const numberOf = (value, unit) =>
@@ -74,6 +72,8 @@ export function createStudyBudget(store) {
             unit: account.unit,
             parts: account.parts,
             sum: account.sum,
+            holds: account.holds,
+            until: account.holds_until,
             what: `the error of ${account.coordinate} at the end is`,
           }
         : {
@@ -81,6 +81,8 @@ export function createStudyBudget(store) {
             unit: "J",
             parts: account.parts,
             sum: account.change,
+            holds: true,
+            until: null,
             what: "energy at the end has changed by",
           }
       : null;
@@ -124,10 +126,11 @@ export function createStudyBudget(store) {
     const why =
       method.state === "done" ? "there is no reference solution to compare with" : method.reason;
     const partly = method.state === "failed" ? ` (it ended early: ${method.reason})` : "";
-    const differs =
-      account && Math.abs(account.sum - account.total) > ADDS_UP * Math.abs(account.total);
-    const warning = differs
-      ? `; the parts add up to ${numberOf(account.sum, account.unit)}: an error this large is not the sum of small contributions`
+    const ended = account && !account.holds;
+    const agree =
+      ended && account.until !== null ? `; they agree until ${seconds(account.until)}` : "";
+    const warning = ended
+      ? `: first order has ended, its parts add up to ${numberOf(account.sum, account.unit)}${agree}`
       : "";
     const words = account
       ? `${account.what} ${numberOf(account.total, account.unit)}${warning}${partly}`
@@ -136,7 +139,7 @@ export function createStudyBudget(store) {
       "figure",
       {},
       h("figcaption", {}, h("b", {}, labelOf(m)), ` ${words}`),
-      ...(account
+      ...(account && !ended
         ? [
             bar(
               m,
@@ -193,7 +196,7 @@ export function createStudyBudget(store) {
     }
     about.textContent =
       shown.name === "error"
-        ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. Small errors are the sum of their parts."
+        ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. An error too large to be the sum of its parts has no bar; a shorter time or a smaller step has one."
         : "Each bar shows the parts that added energy (right) and removed energy (left) as shares. Their sum is the energy change.";
     list.replaceChildren(...study().methods.map(row));
     legend.replaceChildren(

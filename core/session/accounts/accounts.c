@@ -65,7 +65,7 @@ void hn_account_note(const hn_model *model, const hn_account_row *row, char out[
     }
 }
 
-// life ----
+// ---- life ----
 
 static hn_status set_up(hn_accounts *a, hn_diags *diags) {
     hn_job_request *r = &a->request;
