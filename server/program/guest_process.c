@@ -106,11 +106,29 @@ hn_status hn_guest_process_start(hn_guest_process *p, char *const *argv, const c
 
 // ---- what it uses ----
 
+enum { MOST_PROCESSES = 512 }; ///< of one look: far above what any limit allows
+
 typedef struct use {
     long long bytes;
-    int processes;
     double cpu; ///< [s]
+    int processes;
+    long seen[MOST_PROCESSES]; ///< their numbers
 } use;
+
+/// Whether a process is looked at for the first time. One whose parent ends during the look is
+/// found twice: below its parent, and below the first process, which takes it over.
+static bool note(use *sum, long pid) {
+    for (int i = 0; i < sum->processes; i++) {
+        if (sum->seen[i] == pid) {
+            return false;
+        }
+    }
+    if (sum->processes == MOST_PROCESSES) {
+        return false;
+    }
+    sum->seen[sum->processes++] = pid;
+    return true;
+}
 
 /// The computing time of a process and of its children that have ended [s]: fields 14 to 17 of its
 /// stat, counted behind the name in brackets.
@@ -143,9 +161,8 @@ static void add_use(use *sum, long pid, int depth) {
     FILE *file = fopen(path, "re");
     long long whole, resident;
     if (file) {
-        if (fscanf(file, "%lld %lld", &whole, &resident) == 2) {
+        if (fscanf(file, "%lld %lld", &whole, &resident) == 2 && note(sum, pid)) {
             sum->bytes += resident * sysconf(_SC_PAGESIZE);
-            sum->processes++;
             sum->cpu += cpu_of(pid);
         }
         fclose(file);
