@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/matrix_text.h"
 
-#include "linalg/lu.h"
-
 #include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -14,151 +12,14 @@ enum { MAX_CHARS = 1000, MAX_DEPTH = 40, MAX_NAME = 32 };
 typedef struct parser {
     const char *start, *at;
     const hn_matrix_names *names;
-    hn_arena *arena;
-    hn_diag *diag;
+    hn_matrix_desk desk;
     int depth;
 } parser;
-
-hn_matrix hn_matrix_new(hn_arena *arena, int rows, int cols) {
-    return (hn_matrix){
-        .rows = rows, .cols = cols, .x = hn_arena_doubles(arena, (size_t)rows * (size_t)cols)};
-}
-
-// ---- arithmetic ----
-
-static hn_status shapes(parser *p, const char *what, const hn_matrix *a, const hn_matrix *b) {
-    return hn_diag_set(p->diag, HN_ERR_UNSUPPORTED, NULL, "a transpose may be missing",
-                       "%s of %d x %d and %d x %d does not exist", what, a->rows, a->cols, b->rows,
-                       b->cols);
-}
-
-static hn_status make(parser *p, int rows, int cols, hn_matrix *out) {
-    *out = hn_matrix_new(p->arena, rows, cols);
-    return out->x ? HN_OK : HN_ERR_MEMORY;
-}
-
-/// a + sign * b
-static hn_status add(parser *p, const hn_matrix *a, const hn_matrix *b, double sign,
-                     hn_matrix *out) {
-    // the number 0 fits every shape
-    if (a->number && a->x[0] == 0 && !b->number) {
-        HN_TRY(make(p, b->rows, b->cols, out));
-        for (int i = 0; i < b->rows * b->cols; i++) {
-            out->x[i] = sign * b->x[i];
-        }
-        return HN_OK;
-    }
-    if (b->number && b->x[0] == 0) {
-        *out = *a;
-        return HN_OK;
-    }
-
-    // all else entry by entry, in one shape
-    if (a->rows != b->rows || a->cols != b->cols) {
-        return shapes(p, "the sum", a, b);
-    }
-    HN_TRY(make(p, a->rows, a->cols, out));
-    out->number = a->number && b->number;
-    for (int i = 0; i < a->rows * a->cols; i++) {
-        out->x[i] = a->x[i] + sign * b->x[i];
-    }
-    return HN_OK;
-}
-
-static hn_status multiply(parser *p, const hn_matrix *a, const hn_matrix *b, hn_matrix *out) {
-    // a number scales
-    if (a->number || b->number) {
-        const hn_matrix *m = a->number ? b : a;
-        const double factor = a->number ? a->x[0] : b->x[0];
-        HN_TRY(make(p, m->rows, m->cols, out));
-        out->number = a->number && b->number;
-        for (int i = 0; i < m->rows * m->cols; i++) {
-            out->x[i] = factor * m->x[i];
-        }
-        return HN_OK;
-    }
-
-    // rows by columns
-    if (a->cols != b->rows) {
-        return shapes(p, "the product", a, b);
-    }
-    HN_TRY(make(p, a->rows, b->cols, out));
-    for (int i = 0; i < a->rows; i++) {
-        for (int j = 0; j < b->cols; j++) {
-            for (int k = 0; k < a->cols; k++) {
-                out->x[i * b->cols + j] += a->x[i * a->cols + k] * b->x[k * b->cols + j];
-            }
-        }
-    }
-    return HN_OK;
-}
-
-/// Entry by entry, in one shape; a number scales.
-static hn_status multiply_entries(parser *p, const hn_matrix *a, const hn_matrix *b,
-                                  hn_matrix *out) {
-    if (a->number || b->number) {
-        return multiply(p, a, b, out);
-    }
-    if (a->rows != b->rows || a->cols != b->cols) {
-        return shapes(p, "the product entry by entry", a, b);
-    }
-    HN_TRY(make(p, a->rows, a->cols, out));
-    for (int i = 0; i < a->rows * a->cols; i++) {
-        out->x[i] = a->x[i] * b->x[i];
-    }
-    return HN_OK;
-}
-
-static hn_status transpose(parser *p, const hn_matrix *a, hn_matrix *out) {
-    HN_TRY(make(p, a->cols, a->rows, out));
-    out->number = a->number;
-    for (int i = 0; i < a->rows; i++) {
-        for (int j = 0; j < a->cols; j++) {
-            out->x[j * a->rows + i] = a->x[i * a->cols + j];
-        }
-    }
-    return HN_OK;
-}
-
-static hn_status invert(parser *p, const hn_matrix *a, hn_matrix *out) {
-    const int n = a->rows;
-    double lu[HN_MATRIX_LARGEST * HN_MATRIX_LARGEST], scale[HN_MATRIX_LARGEST];
-    double column[HN_MATRIX_LARGEST];
-    int pivot[HN_MATRIX_LARGEST];
-
-    // square, and small enough for the arrays above
-    if (n != a->cols || n > HN_MATRIX_LARGEST) {
-        return hn_diag_set(p->diag, HN_ERR_UNSUPPORTED, NULL, NULL,
-                           "a matrix of %d x %d has no inverse: it is not square", a->rows,
-                           a->cols);
-    }
-
-    // the factors, of a copy: a stays as it is
-    memcpy(lu, a->x, sizeof(double) * (size_t)(n * n));
-    HN_TRY(make(p, n, n, out));
-    out->number = a->number;
-    if (hn_lu_factor(n, lu, pivot, scale) != HN_OK) {
-        return hn_diag_set(p->diag, HN_ERR_SINGULAR, NULL, NULL,
-                           "a matrix that is inverted here is singular");
-    }
-
-    // column j of the inverse solves A x = e_j
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            column[i] = i == j;
-        }
-        hn_lu_solve(n, lu, pivot, column);
-        for (int i = 0; i < n; i++) {
-            out->x[i * n + j] = column[i];
-        }
-    }
-    return HN_OK;
-}
 
 // ---- reading ----
 
 static hn_status fault(parser *p, const char *what) {
-    return hn_diag_set(p->diag, HN_ERR_INPUT, NULL, NULL, "column %d: %s",
+    return hn_diag_set(p->desk.diag, HN_ERR_INPUT, NULL, NULL, "column %d: %s",
                        (int)(p->at - p->start) + 1, what);
 }
 
@@ -319,9 +180,10 @@ static hn_status look_up(parser *p, const char *name, hn_matrix *out) {
         m = p->names->lookup(p->names->user, other);
     }
     if (!m) {
-        return hn_diag_set(
-            p->diag, HN_ERR_INPUT, NULL, hn_nearest_name(name, p->names->known, p->names->n_known),
-            "there is no matrix '%.30s'; products are written with a blank or *", name);
+        return hn_diag_set(p->desk.diag, HN_ERR_INPUT, NULL,
+                           hn_nearest_name(name, p->names->known, p->names->n_known),
+                           "there is no matrix '%.30s'; products are written with a blank or *",
+                           name);
     }
     *out = *m;
     return HN_OK;
@@ -374,7 +236,8 @@ static hn_status read_word(parser *p, hn_matrix *out) {
     if (round || ((inverse || transposed) && take(p, "["))) {
         hn_matrix inner;
         HN_TRY(read_group(p, round ? ")" : "]", &inner));
-        return inverse ? invert(p, &inner, out) : transpose(p, &inner, out);
+        return inverse ? hn_matrix_invert(&p->desk, &inner, out)
+                       : hn_matrix_transpose(&p->desk, &inner, out);
     }
     return look_up(p, name, out);
 }
@@ -402,7 +265,10 @@ static hn_status read_primary(parser *p, hn_matrix *out) {
     // a number is a matrix of one by one
     if (isdigit((unsigned char)p->at[*p->at == '.'])) {
         char *end;
-        HN_TRY(make(p, 1, 1, out));
+        *out = hn_matrix_new(p->desk.arena, 1, 1);
+        if (!out->x) {
+            return HN_ERR_MEMORY;
+        }
         out->number = 1;
         out->x[0] = strtod(p->at, &end);
         p->at = end;
@@ -438,13 +304,13 @@ static hn_status read_factor(parser *p, hn_matrix *out) {
     HN_TRY(read_primary(p, &m));
     for (;;) {
         if (take_transpose(p)) {
-            HN_TRY(transpose(p, &m, out));
+            HN_TRY(hn_matrix_transpose(&p->desk, &m, out));
         } else if (take_any(p, SQUARE)) {
-            HN_TRY(multiply(p, &m, &m, out));
+            HN_TRY(hn_matrix_multiply(&p->desk, &m, &m, out));
         } else if (take_any(p, SQUARE_ENTRIES)) {
-            HN_TRY(multiply_entries(p, &m, &m, out));
+            HN_TRY(hn_matrix_multiply_entries(&p->desk, &m, &m, out));
         } else if (take_any(p, INVERSE)) {
-            HN_TRY(invert(p, &m, out));
+            HN_TRY(hn_matrix_invert(&p->desk, &m, out));
         } else {
             *out = m;
             return *p->at == '^' ? fault(p, "the powers known here are ^T, ^2 and ^-1") : HN_OK;
@@ -462,7 +328,7 @@ static hn_status read_signed(parser *p, hn_matrix *out) {
     take_any(p, PLUS);
     HN_TRY(read_factor(p, &m));
     if (negative) {
-        return multiply(p, &minus, &m, out);
+        return hn_matrix_multiply(&p->desk, &minus, &m, out);
     }
     *out = m;
     return HN_OK;
@@ -547,8 +413,8 @@ static hn_status divide(parser *p, const hn_matrix *a, const hn_matrix *b, hn_ma
     if (!b->number) {
         return fault(p, "what stands before this is no number and divides nothing; write inv()");
     }
-    HN_TRY(invert(p, b, &inverse));
-    return multiply(p, a, &inverse, out);
+    HN_TRY(hn_matrix_invert(&p->desk, b, &inverse));
+    return hn_matrix_multiply(&p->desk, a, &inverse, out);
 }
 
 static hn_status join(parser *p, joint how, const hn_matrix *a, const hn_matrix *b,
@@ -556,14 +422,14 @@ static hn_status join(parser *p, joint how, const hn_matrix *a, const hn_matrix 
     hn_matrix inverse;
     switch (how) {
     case ENTRIES:
-        return multiply_entries(p, a, b, out);
+        return hn_matrix_multiply_entries(&p->desk, a, b, out);
     case QUOTIENT:
         return divide(p, a, b, out);
     case SOLVE:
-        HN_TRY(invert(p, a, &inverse));
-        return multiply(p, &inverse, b, out);
+        HN_TRY(hn_matrix_invert(&p->desk, a, &inverse));
+        return hn_matrix_multiply(&p->desk, &inverse, b, out);
     default:
-        return multiply(p, a, b, out);
+        return hn_matrix_multiply(&p->desk, a, b, out);
     }
 }
 
@@ -596,14 +462,14 @@ static hn_status read_sum(parser *p, hn_matrix *out) {
             return HN_OK;
         }
         HN_TRY(read_product(p, &right));
-        HN_TRY(add(p, &left, &right, plus ? 1 : -1, out));
+        HN_TRY(hn_matrix_add(&p->desk, &left, &right, plus ? 1 : -1, out));
         left = *out;
     }
 }
 
 hn_status hn_matrix_eval(const char *text, const hn_matrix_names *names, hn_arena *arena,
                          hn_matrix *out, hn_diag *diag) {
-    parser p = {.start = text, .at = text, .names = names, .arena = arena, .diag = diag};
+    parser p = {.start = text, .at = text, .names = names, .desk = {arena, diag}};
     if (strlen(text) > MAX_CHARS) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
                            "the formula has more than %d characters", MAX_CHARS);

@@ -10,16 +10,7 @@
 // A.B is the product too, A.*B and A.^2 go entry by entry, M\x is inv(M)*x. What can be read in two
 // ways, or not at all, is refused with its column.
 
-#include "base/arena.h"
-#include "base/diag.h"
-
-enum { HN_MATRIX_LARGEST = 16 };
-
-/// Row-major; number: 1 x 1 that may multiply any matrix, and 0 may be added to any.
-typedef struct hn_matrix {
-    int rows, cols, number;
-    double *x; ///< borrowed from the arena
-} hn_matrix;
+#include "grade/parts/matrix.h"
 
 /// Finds the matrix of a name; NULL when there is none.
 typedef const hn_matrix *(*hn_matrix_lookup)(void *user, const char *name);
@@ -31,8 +22,6 @@ typedef struct hn_matrix_names {
     int n_known;
 } hn_matrix_names;
 
-/// A zero matrix; x is NULL when memory is out.
-hn_matrix hn_matrix_new(hn_arena *arena, int rows, int cols);
 /// Evaluates a text of at most 1,000 characters, nested at most 40 deep.
 /// Fails: HN_ERR_INPUT (cannot be read, with the column; or the name is unknown),
 /// HN_ERR_UNSUPPORTED (shapes do not fit, with both), HN_ERR_SINGULAR (an inverse that is not

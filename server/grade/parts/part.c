@@ -53,3 +53,31 @@ void hn_part_keep_given(hn_part_result *r, const cJSON *given) {
     snprintf(r->given, sizeof r->given, "%s", text ? text : printed ? printed : "");
     free(printed);
 }
+
+bool hn_part_begin(hn_part_result *r, int *n, const cJSON *given, const char *expected) {
+    const char *text = cJSON_GetStringValue(given);
+    *n = 1;
+    *r = (hn_part_result){.mistake = ""};
+    snprintf(r->expected, sizeof r->expected, "%s", expected);
+    hn_part_keep_given(r, given);
+    if (!given || cJSON_IsNull(given) || (text && !text[strspn(text, " \t\r\n")])) {
+        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
+        return false;
+    }
+    return true;
+}
+
+cJSON *hn_part_right_answer(const hn_part *p, hn_diag *diag) {
+    const cJSON *answer = cJSON_GetObjectItemCaseSensitive(p->node, "answer");
+    if (!answer) {
+        hn_diag_set(diag, HN_ERR_INPUT, "/parts/answer", NULL, "part %s has no answer", p->id);
+    }
+    return cJSON_Duplicate(answer, 1);
+}
+
+cJSON *hn_part_fault_answer(const hn_part *p, int i, const char **id, hn_diag *diag) {
+    const cJSON *node = hn_part_fault_at(p, i);
+    (void)diag;
+    *id = hn_part_text(node, "id");
+    return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
+}

@@ -9,6 +9,8 @@
 #include "grade/parts/draw.h"
 #include "session/model/library.h"
 
+#include <stdbool.h>
+
 enum { HN_PART_TEXT = 400, HN_PART_RESULTS = 16 };
 
 /// What became of one entry of an answer.
@@ -56,10 +58,17 @@ void hn_part_wrong(hn_part_result *r, const char *mistake, double share, const c
 /// Fills a result for an answer that cannot be read.
 void hn_part_unreadable(hn_part_result *r, const char *format, ...) HN_PRINTF(2, 3);
 void hn_part_right(hn_part_result *r);
+/// Begins the one result of an answer: what was handed in, and what is expected. False, with the
+/// result complete, when nothing was handed in.
+bool hn_part_begin(hn_part_result *r, int *n, const cJSON *given, const char *expected);
 /// The i-th object of "faults"; NULL after the last.
 const cJSON *hn_part_fault_at(const hn_part *p, int i);
 const char *hn_part_text(const cJSON *node, const char *key); ///< "" when there is none
 double hn_part_number(const cJSON *node, const char *key, double otherwise);
 /// Keeps the answer as the student wrote it in r->given.
 void hn_part_keep_given(hn_part_result *r, const cJSON *given);
+/// `right` of a kind whose "answer" is a submission as it stands.
+cJSON *hn_part_right_answer(const hn_part *p, hn_diag *diag);
+/// `fault` of a kind whose faults have such an "answer" too.
+cJSON *hn_part_fault_answer(const hn_part *p, int i, const char **id, hn_diag *diag);
 #endif

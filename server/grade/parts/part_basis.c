@@ -173,17 +173,11 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     table J, N;
     hn_diag why = {0};
 
-    // what every result says, whatever was handed in
-    *n = 1;
-    *r = (hn_part_result){.mistake = ""};
-    snprintf(r->expected, sizeof r->expected, "any N with J N = 0 and full rank");
-    hn_part_keep_given(r, given);
+    const bool handed_in = hn_part_begin(r, n, given, "any N with J N = 0 and full rank");
 
     // judged only when it can be read
     hn_status status = open_draw(p, &d, &J, diag);
-    if (status == HN_OK && (!given || cJSON_IsNull(given))) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
-    } else if (status == HN_OK) {
+    if (status == HN_OK && handed_in) {
         const hn_status read = read_table(&d, given, &N, &why);
         if (read == HN_OK) {
             const int wanted = (int)hn_part_number(p->node, "freedoms", J.cols - J.rows);
@@ -199,18 +193,6 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     return status;
 }
 
-static cJSON *right(const hn_part *p, hn_diag *diag) {
-    (void)diag;
-    return cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(p->node, "answer"), 1);
-}
-
-static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
-    const cJSON *node = hn_part_fault_at(p, i);
-    (void)diag;
-    *id = hn_part_text(node, "id");
-    return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
-}
-
 static void ask(hn_strbuf *b, const hn_part *p) {
     const cJSON *m;
     hn_strbuf_add(b, "rows of formulas in quotes, [[\"...\", ...], ...]; names:");
@@ -224,7 +206,7 @@ const hn_part_kind hn_part_basis = {
     .fields = "states conditions jacobian freedoms answer faults",
     .ask = ask,
     .grade = grade,
-    .right = right,
-    .fault = fault,
+    .right = hn_part_right_answer,
+    .fault = hn_part_fault_answer,
     .prove = NULL, // grading multiplies J N and computes the rank
 };

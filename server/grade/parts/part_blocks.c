@@ -306,28 +306,11 @@ static hn_status grade_worlds(const hn_part *p, const cJSON *given, hn_part_resu
 
 static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, int *n,
                        hn_diag *diag) {
-    *n = 1;
-    *r = (hn_part_result){.mistake = ""};
-    snprintf(r->expected, sizeof r->expected, "a system with the right solution");
-    hn_part_keep_given(r, given);
-    if (!given || cJSON_IsNull(given)) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
+    if (!hn_part_begin(r, n, given, "a system with the right solution")) {
         return HN_OK;
     }
     hn_part_right(r);
     return grade_worlds(p, given, r, diag);
-}
-
-static cJSON *right(const hn_part *p, hn_diag *diag) {
-    (void)diag;
-    return cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(p->node, "answer"), 1);
-}
-
-static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
-    const cJSON *node = hn_part_fault_at(p, i);
-    (void)diag;
-    *id = hn_part_text(node, "id");
-    return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
 }
 
 static void ask(hn_strbuf *b, const hn_part *p) {
@@ -348,7 +331,7 @@ const hn_part_kind hn_part_blocks = {
     .fields = "sizes matrices unknowns answer second faults",
     .ask = ask,
     .grade = grade,
-    .right = right,
-    .fault = fault,
+    .right = hn_part_right_answer,
+    .fault = hn_part_fault_answer,
     .prove = NULL, // grading compares the solved system with the elimination of "second"
 };

@@ -234,19 +234,13 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     hn_draw d = {0};
     int good = 1;
 
-    // what every result says, whatever was handed in
-    *n = 1;
-    *r = (hn_part_result){.mistake = ""};
-    snprintf(r->expected, sizeof r->expected, "any example that passes every check");
-    hn_part_keep_given(r, given);
+    const bool handed_in = hn_part_begin(r, n, given, "any example that passes every check");
 
     // the numbers first, then the matrices, then the checks of both
     hn_status status = w.arena ? HN_OK : HN_ERR_MEMORY;
-    if (status == HN_OK && (!given || cJSON_IsNull(given))) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
-    } else if (status == HN_OK && !cJSON_IsObject(given)) {
+    if (status == HN_OK && handed_in && !cJSON_IsObject(given)) {
         hn_part_unreadable(r, "expected an object with the names that are asked for");
-    } else if (status == HN_OK) {
+    } else if (status == HN_OK && handed_in) {
         status = read_numbers(p, given, &d, r, &good, diag);
         if (status == HN_OK && good && read_matrices(p, given, &w, r)) {
             status = run_checks(p, &w, &d, r, diag);
@@ -257,18 +251,6 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     hn_draw_reset(&d);
     hn_world_reset(&w);
     return status;
-}
-
-static cJSON *right(const hn_part *p, hn_diag *diag) {
-    (void)diag;
-    return cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(p->node, "answer"), 1);
-}
-
-static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
-    const cJSON *node = hn_part_fault_at(p, i);
-    (void)diag;
-    *id = hn_part_text(node, "id");
-    return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
 }
 
 static void put_names(hn_strbuf *b, const hn_part *p, const char *key, const char *form,
@@ -292,7 +274,7 @@ const hn_part_kind hn_part_example = {
     .fields = "given numbers checks answer faults",
     .ask = ask,
     .grade = grade,
-    .right = right,
-    .fault = fault,
+    .right = hn_part_right_answer,
+    .fault = hn_part_fault_answer,
     .prove = NULL, // the answer of the exercise goes through the checks like any other
 };

@@ -110,19 +110,13 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     hn_world worlds[WORLDS];
     const char *text = cJSON_GetStringValue(given);
 
-    // what every result says, whatever was handed in
-    *n = 1;
-    *r = (hn_part_result){.mistake = ""};
-    snprintf(r->expected, sizeof r->expected, "the formula");
-    hn_part_keep_given(r, given);
+    const bool handed_in = hn_part_begin(r, n, given, "the formula");
 
     // equal formulas agree in every random world
     const hn_status status = open_worlds(p, worlds, diag);
-    if (status == HN_OK && (!given || cJSON_IsNull(given) || (text && !*text))) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
-    } else if (status == HN_OK && !text) {
+    if (status == HN_OK && handed_in && !text) {
         hn_part_unreadable(r, "expected a formula of matrices in quotes");
-    } else if (status == HN_OK && can_read(&worlds[0], text, r)) {
+    } else if (status == HN_OK && handed_in && can_read(&worlds[0], text, r)) {
         if (same(worlds, text, hn_part_text(p->node, "answer"), 1, 0)) {
             hn_part_right(r);
         } else {

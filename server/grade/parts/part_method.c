@@ -154,12 +154,7 @@ static hn_status grade_word(const hn_part *p, const char *word, hn_part_result *
 static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, int *n,
                        hn_diag *diag) {
     const char *word = cJSON_GetStringValue(given);
-    *n = 1;
-    *r = (hn_part_result){.mistake = ""};
-    snprintf(r->expected, sizeof r->expected, "a method within the limits");
-    hn_part_keep_given(r, given);
-    if (!given || cJSON_IsNull(given)) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
+    if (!hn_part_begin(r, n, given, "a method within the limits")) {
         return HN_OK;
     }
     if (!word) {
@@ -167,18 +162,6 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
         return HN_OK;
     }
     return grade_word(p, word, r, diag);
-}
-
-static cJSON *right(const hn_part *p, hn_diag *diag) {
-    (void)diag;
-    return cJSON_CreateString(hn_part_text(p->node, "answer"));
-}
-
-static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
-    const cJSON *node = hn_part_fault_at(p, i);
-    (void)diag;
-    *id = hn_part_text(node, "id");
-    return node ? cJSON_CreateString(hn_part_text(node, "answer")) : NULL;
 }
 
 /// A second method agrees with the reference to a tenth of the error that is allowed.
@@ -221,7 +204,7 @@ const hn_part_kind hn_part_method = {
     .fields = "scene set time measure error evaluations reference second answer faults",
     .ask = ask,
     .grade = grade,
-    .right = right,
-    .fault = fault,
+    .right = hn_part_right_answer,
+    .fault = hn_part_fault_answer,
     .prove = prove,
 };

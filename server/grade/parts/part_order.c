@@ -182,15 +182,8 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     (void)p;
     (void)diag;
 
-    // what every result says, whatever was handed in
-    *n = 1;
-    *r = (hn_part_result){.mistake = ""};
-    snprintf(r->expected, sizeof r->expected, "an order that keeps phi and J v at zero");
-    hn_part_keep_given(r, given);
-
     // nothing, or nothing that can be run
-    if (!given || cJSON_IsNull(given)) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
+    if (!hn_part_begin(r, n, given, "an order that keeps phi and J v at zero")) {
         return HN_OK;
     }
     if (!cJSON_IsArray(given)) {
@@ -213,18 +206,6 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     return HN_OK;
 }
 
-static cJSON *right(const hn_part *p, hn_diag *diag) {
-    (void)diag;
-    return cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(p->node, "answer"), 1);
-}
-
-static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
-    const cJSON *node = hn_part_fault_at(p, i);
-    (void)diag;
-    *id = hn_part_text(node, "id");
-    return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
-}
-
 /// The stages in an order that depends on the seed and is not the answer.
 static void ask(hn_strbuf *b, const hn_part *p) {
     int order[N_STAGES];
@@ -242,7 +223,7 @@ const hn_part_kind hn_part_order = {
     .fields = "answer faults",
     .ask = ask,
     .grade = grade,
-    .right = right,
-    .fault = fault,
+    .right = hn_part_right_answer,
+    .fault = hn_part_fault_answer,
     .prove = NULL, // the order is executed
 };
