@@ -43,7 +43,7 @@ ROOMS_integrators  := step: explicit:step implicit:step constrained:step externa
 ROOMS_study        := spectrum: stepping: incidents:stepping run:spectrum,stepping,incidents \
                       truth:stepping,incidents,run account:stepping,incidents,run \
                       stability:spectrum,stepping,incidents,run cost:stepping,incidents,run,truth
-ROOMS_session      := store: model:store job:model compare:store,model references:store,model face:model export:model \
+ROOMS_session      := verdict: store: model:store job:model compare:store,model references:store,model face:model export:model \
                       precision:store,model,job,compare,references \
                       accounts:store,model,job,references,precision \
                       stability:store,model,job,references,precision \

@@ -2,9 +2,11 @@
 #include "tui/recording.h"
 
 #include "base/clock.h"
+#include "session/compare/failure.h"
 #include "session/references/references.h"
 #include "session/references/reference_doc.h"
 #include "session/references/reference_store.h"
+#include "study/incidents/kinds.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -16,7 +18,7 @@
 enum { MOST_INCIDENTS = 64 * HN_COMPARISON_MAX_METHODS, MOST_FRAMES = 20000 };
 
 typedef struct track_store {
-    double *gap, *velocity_gap, *energy, *energy_error, *error, *points, *evaluations;
+    double *gap, *velocity_gap, *energy, *error, *points, *evaluations;
 } track_store;
 
 typedef struct told_incident {
@@ -33,8 +35,9 @@ struct hn_recording {
     track_store stores[HN_COMPARISON_MAX_METHODS];
     double *reference; ///< 3 n_points a frame, NaN where there is none
     hn_recording_truth truth;
+    double own; ///< error of the reference itself [m]
     atomic_int frames, wanted, reference_frames;
-    atomic_bool stop;
+    atomic_bool stop, asked; ///< asked: the reference is being fetched
     _Atomic double frame_seconds;
     pthread_t thread;
     bool started;
@@ -95,6 +98,8 @@ static void fetch_reference(hn_recording *r) {
                                  &diags) == HN_OK) {
         cJSON *document = cJSON_Parse(hn_strbuf_text(&text));
         const cJSON *scales = cJSON_GetObjectItem(document, "scales");
+        r->own = number_of(cJSON_GetObjectItem(document, "motion"), "between") *
+                 number_of(scales, "length");
         r->truth.digits = number_of(document, "digits");
         r->truth.energy_scale = number_of(scales, "energy");
         take_motion(r, document, stride);
@@ -107,7 +112,7 @@ static void fetch_reference(hn_recording *r) {
 /// Largest distance of a drawn point from where the reference has it; NaN: not known.
 static double error_of(const hn_recording *r, const double *points, int frame) {
     const double *at = hn_recording_reference(r, frame);
-    double most = at ? 0 : (double)NAN;
+    double most = at ? r->own : (double)NAN;
     for (int p = 0; at && p < r->n_points; p++) {
         const double d = hypot(hypot(points[3 * p] - at[3 * p], points[3 * p + 1] - at[3 * p + 1]),
                                points[3 * p + 2] - at[3 * p + 2]);
@@ -126,8 +131,6 @@ static void keep_sample(hn_recording *r, int m, int frame, const hn_sample *samp
     to->velocity_gap[frame] = sample->velocity_gap;
     to->energy[frame] = sample->energy_change;
     to->error[frame] = error_of(r, points, frame);
-    to->energy_error[frame] =
-        hn_recording_reference(r, frame) ? sample->energy_change : (double)NAN;
 }
 
 /// A method that ended keeps its last configuration on the screen, but has no numbers any more.
@@ -135,7 +138,6 @@ static void keep_end(hn_recording *r, int m, int frame) {
     track_store *to = &r->stores[m];
     const size_t n = 3 * (size_t)r->n_points;
     to->gap[frame] = to->velocity_gap[frame] = to->energy[frame] = to->error[frame] = (double)NAN;
-    to->energy_error[frame] = (double)NAN;
     for (size_t k = 0; k < n; k++) {
         to->points[(size_t)frame * n + k] =
             frame > 0 ? to->points[(size_t)(frame - 1) * n + k] : (double)NAN;
@@ -152,6 +154,8 @@ static void keep_words(hn_recording *r) {
         const int n = hn_run_incidents(run, &list);
         r->ends[m].failed = summary.state == HN_RUN_FAILED;
         r->ends[m].t = summary.t;
+        const hn_incident *cause = hn_failure_cause(run, summary.status, summary.reason, summary.t);
+        r->ends[m].cause = cause ? hn_incident_kinds()[cause->code]->name : NULL;
         memcpy(r->ends[m].reason, summary.reason, sizeof r->ends[m].reason);
         for (int i = 0; i < n && r->n_incidents < MOST_INCIDENTS; i++) {
             r->incidents[r->n_incidents++] = (told_incident){list[i], m};
@@ -191,6 +195,7 @@ static void *record(void *user) {
     if (r->reference) {
         fetch_reference(r);
     }
+    atomic_store(&r->asked, false);
     while (atomic_load(&r->frames) <= r->last && wait_for_work(r)) {
         const double start = hn_clock_wall();
         hn_comparison_next(r->comparison);
@@ -205,8 +210,8 @@ static void *record(void *user) {
 static bool allocate_track(hn_recording *r, int m) {
     track_store *to = &r->stores[m];
     const size_t frames = (size_t)r->last + 1;
-    double **const columns[] = {&to->gap,          &to->velocity_gap, &to->energy,
-                                &to->energy_error, &to->error,        &to->evaluations};
+    double **const columns[] = {&to->gap, &to->velocity_gap, &to->energy, &to->error,
+                                &to->evaluations};
     bool good = true;
     for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
         *columns[i] = calloc(frames, sizeof(double));
@@ -216,8 +221,6 @@ static bool allocate_track(hn_recording *r, int m) {
     r->tracks[m].gap = to->gap;
     r->tracks[m].velocity_gap = to->velocity_gap;
     r->tracks[m].energy = to->energy;
-    r->tracks[m].energy_error = to->energy_error;
-    r->tracks[m].evaluations = to->evaluations;
     r->tracks[m].error = to->error;
     r->tracks[m].points = to->points;
     r->tracks[m].evaluations = to->evaluations;
@@ -275,6 +278,8 @@ hn_status hn_recording_create(const hn_model *model, const char *const *methods,
     pthread_mutex_init(&r->lock, NULL);
     pthread_cond_init(&r->more, NULL);
 
+    atomic_store(&r->asked, true);
+
     // nothing runs before all memory is there
     hn_status status = open_comparison(r, methods, n_methods, duration, diags);
     if (status == HN_OK && !allocate(r)) {
@@ -313,7 +318,6 @@ void hn_recording_free(hn_recording *r) {
         free(s->gap);
         free(s->velocity_gap);
         free(s->energy);
-        free(s->energy_error);
         free(s->error);
         free(s->evaluations);
         free(s->points);
@@ -393,6 +397,26 @@ int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method,
 hn_recording_truth hn_recording_get_truth(const hn_recording *r) {
     const hn_recording_truth none = {0};
     return atomic_load(&r->reference_frames) > 0 ? r->truth : none;
+}
+
+hn_verdict hn_recording_verdict(const hn_recording *r, int track, int frame) {
+    const hn_system *sys = hn_model_system(r->model);
+    const hn_track *t = &r->tracks[track];
+    const hn_track_end end = hn_recording_end(r, track);
+    const hn_recording_truth truth = hn_recording_get_truth(r);
+    const hn_verdict_history history = {.gap = t->gap,
+                                        .off = t->error,
+                                        .energy = t->energy,
+                                        .shown = frame,
+                                        .t = frame * r->frame_dt,
+                                        .ended = end.failed ? end.t : (double)NAN,
+                                        .cause = end.cause,
+                                        .length = hn_system_length(sys),
+                                        .energy_scale = truth.energy_scale,
+                                        .digits = truth.digits,
+                                        .loops = hn_system_get_info(sys).nc > 0,
+                                        .asked = atomic_load(&r->asked)};
+    return hn_verdict_judge(&history);
 }
 
 double hn_recording_frame_seconds(const hn_recording *r) {

@@ -8,6 +8,7 @@
 //   viewer:         wants a frame; reads frames below hn_recording_frames(), which never change
 
 #include "session/compare/comparison.h"
+#include "session/verdict/verdict.h"
 
 #include <stdbool.h>
 
@@ -22,8 +23,6 @@ typedef struct hn_track {
     bool model_error;        ///< a counter-example: it solves other equations
     const double *gap, *velocity_gap;
     const double *energy; ///< change since the start [J]
-    /// the same less that of the reference [J]; NaN: no reference there
-    const double *energy_error;
     /// largest distance of a drawn point from the reference [m]; NaN: no reference there, and at
     /// frame 0
     const double *error;
@@ -34,7 +33,8 @@ typedef struct hn_track {
 /// How a method ended, as far as it is known now.
 typedef struct hn_track_end {
     bool failed;
-    double t; ///< [s] reached
+    double t;          ///< [s] reached
+    const char *cause; ///< what ended it, in a few words; static; NULL: not known
     char reason[480];
 } hn_track_end;
 
@@ -65,6 +65,8 @@ hn_recording_truth hn_recording_get_truth(const hn_recording *r);
 const double *hn_recording_reference(const hn_recording *r, int frame);
 /// Incidents of all methods so far, copied: at most `most`; method[i] is whose. Returns how many.
 int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method, int most);
+/// The verdict on a method at a frame that is recorded.
+hn_verdict hn_recording_verdict(const hn_recording *r, int track, int frame);
 /// Seconds of wall time that the last frame took; above frame_dt the methods are slower than the
 /// clock.
 double hn_recording_frame_seconds(const hn_recording *r);

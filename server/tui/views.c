@@ -6,7 +6,6 @@
 #include "terminal/plot.h"
 #include "tui/keys.h"
 #include "tui/mechanism_view.h"
-#include "tui/verdict.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,10 +102,6 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
 
 // ---- the method table ----
 
-static bool has_loops(const hn_workbench *w) {
-    return hn_system_get_info(hn_model_system(w->model)).nc > 0;
-}
-
 static int put_quantity(hn_cells *c, hn_area area, int x, int y, const char *label, double value,
                         const char *unit) {
     char text[HN_SI_TEXT];
@@ -126,8 +121,7 @@ static int put_quantity(hn_cells *c, hn_area area, int x, int y, const char *lab
 
 static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, int frame) {
     const hn_track *track = hn_recording_track(w->recording, m);
-    const double length = hn_system_length(hn_model_system(w->model));
-    const hn_verdict v = hn_verdict_at(w->recording, m, frame, length, has_loops(w));
+    const hn_verdict v = hn_recording_verdict(w->recording, m, frame);
     const int style = m == w->selected ? HN_CELL_REVERSE : HN_CELL_PLAIN;
     int x = hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
                             hn_look_get(track->slot)->glyph);

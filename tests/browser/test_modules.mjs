@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's own modules, without a browser: keys, numbers, spellings, history, words.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
   bound,
@@ -320,6 +321,63 @@ test("the verdict takes the worst of gap, error and energy", () => {
     verdictOf({ gap: (t) => 4.3e-8 * t * t, off: () => 3e-6 }),
     "right to 5 digits, gap 4.3 µm and growing",
   );
+});
+
+test("verdicts are those of the terminal, by the cases that both tests read", () => {
+  const file = new URL("../support/verdicts.json", import.meta.url);
+  readIndex({
+    limits: { methods: 8 },
+    studies: [],
+    incidents: [{ code: "diverged", name: "diverged", rule: "" }],
+  });
+  const { cases } = JSON.parse(readFileSync(file, "utf8"));
+  assert.ok(cases.length > 20);
+  for (const one of cases) {
+    const { gap, off, energy, loops = true, length = 1, energy_scale = 10, digits = 12.4 } = one;
+    const { ended = Infinity, shown = gap.length - 1 } = one;
+    const history = createHistory(1, 1);
+    gap.forEach((value, k) => {
+      const method = frame(k, value).methods[0];
+      const failed = k >= ended;
+      history.push({
+        frame: k,
+        t: k,
+        methods: [
+          {
+            ...method,
+            state: failed ? "failed" : "running",
+            t: failed ? ended : k,
+            failure: failed ? { code: one.cause } : null,
+            gap: value,
+            energy_change: energy[k],
+            points: [off[k] ?? NaN, 0, 0],
+          },
+        ],
+      });
+    });
+    const known = off.some((value) => value !== null);
+    const none = { state: one.asked ? "asked" : "none" };
+    const data = {
+      history,
+      methods: [{ label: "raw" }],
+      scene: { m: loops ? 2 : 0, length },
+      reference: known
+        ? {
+            state: "ready",
+            digits,
+            own: 0,
+            energyScale: energy_scale,
+            stride: 1,
+            points: gap.map(() => Float64Array.from([0, 0, 0])),
+          }
+        : none,
+      view: { hidden: new Set() },
+    };
+    const verdict = verdictAt(data, 0, shown);
+    assert.equal(verdict.words, one.text, one.name);
+    assert.equal(verdict.tone, one.tone, one.name);
+    assert.equal(trendOf(history, 0, shown).arrow, one.arrow, one.name);
+  }
 });
 
 test("a closed loop is no praise: without a reference the error is unknown", () => {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The verdict on a method: one phrase from its loop gap, its error against the reference solution
-// and its energy. Table, sentence, drawing and live region all use these words.
+// and its energy. Table, sentence, drawing and live region all use these words, and so does the
+// terminal (core/session/verdict): tests/support/verdicts.json holds cases that both tests read.
 import { incidentOf } from "./catalogue.js";
 import { ROUNDING, quantity, seconds } from "./format.js";
 import { errorsOf } from "./errors.js";

@@ -7,10 +7,12 @@
 /// An incident counts as the end of the run when it was reported no earlier than this share of t.
 static const double AT_END = 1e-9;
 
-/// The incident that ended the run: the one whose message is the reason, else the last one at the
-/// end of the time; NULL when there is none.
-static const hn_incident *find_cause(const hn_run *run, const char *reason, double t) {
+const hn_incident *hn_failure_cause(const hn_run *run, hn_status ended, const char *reason,
+                                    double t) {
     const hn_incident *list, *cause = NULL;
+    if (ended == HN_OK || ended == HN_ERR_BUDGET) {
+        return NULL;
+    }
     const int n = hn_run_incidents(run, &list);
     for (int i = 0; i < n; i++) {
         if (strcmp(list[i].message, reason) == 0) {
@@ -30,7 +32,7 @@ void hn_failure_put_json(hn_strbuf *b, const hn_run *run, hn_status ended, const
         hn_json_null(b);
         return;
     }
-    const hn_incident *cause = ended == HN_ERR_BUDGET ? NULL : find_cause(run, reason, t);
+    const hn_incident *cause = hn_failure_cause(run, ended, reason, t);
     hn_json_object(b);
     hn_json_put_string(b, "code",
                        cause ? hn_incident_spelling(cause->code) : hn_status_name(ended));

@@ -15,4 +15,8 @@
 /// `t` the time reached [s].
 void hn_failure_put_json(hn_strbuf *b, const hn_run *run, hn_status ended, const char *reason,
                          double t);
+/// Returns the incident that ended the run: the one whose message is the reason, otherwise the last
+/// one at the end of the time; NULL: none did, or computing time ran out. Borrowed from the run.
+const hn_incident *hn_failure_cause(const hn_run *run, hn_status ended, const char *reason,
+                                    double t);
 #endif
