@@ -473,7 +473,7 @@ run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
 
 # ---- checking -------------------------------------------------------------------------------------------------
-.PHONY: check check-house test-map check-layers check-width check-names check-circles check-licence check-openapi check-headers check-format check-web format
+.PHONY: check check-house test-map check-layers check-width check-contracts check-names check-circles check-licence check-openapi check-headers check-format check-web format
 check: build/.packages-check check-house
 	@$(MAKE) -s --no-print-directory check-headers
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
@@ -483,7 +483,7 @@ check: build/.packages-check check-house
 	@echo 'check: all good'
 
 # what the tree promises about itself; tests/house/test_checks.sh runs it inside `make test`
-check-house: check-layers check-names check-circles check-licence check-width
+check-house: check-layers check-names check-circles check-licence check-width check-contracts
 
 # awk gets the table above as layer:need,need and layer.room:room,room
 SPACE := $(subst x,,x x)
@@ -496,6 +496,9 @@ check-layers:
 
 check-width:
 	@LC_ALL=C awk -f tests/tools/check-width.awk $(ALL_C) $(EXAMPLES) $(HEADERS)
+
+check-contracts:
+	@awk -f tests/tools/check-contracts.awk $(filter-out tests/%,$(HEADERS))
 
 check-names:
 	@python3 tests/tools/check-names.py tests/tools/names.txt $(LAYERED_C) $(SUPPORT)

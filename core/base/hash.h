@@ -8,9 +8,11 @@
 
 #define HN_HASH_START 0xcbf29ce484222325ull
 
+/// Continue a hash, which begins with HN_HASH_START, with n bytes or with a text.
 uint64_t hn_hash_bytes(uint64_t hash, const void *bytes, size_t n);
 uint64_t hn_hash_text(uint64_t hash, const char *text);
 uint64_t hn_hash_double(uint64_t hash, double value); ///< -0 and 0 hash alike
+/// The last step: spreads a change of any bit over all of them.
 uint64_t hn_hash_mix(uint64_t hash);
 /// 16 lower-case hex digits and a zero.
 void hn_hash_hex(uint64_t hash, char out[17]);

@@ -56,6 +56,7 @@ typedef enum hn_status {
 /// A programmer's error (NULL, wrong size, wrong order of calls): active in every build.
 #define HN_ASSERT(cond) ((cond) ? (void)0 : hn_assert_failed(#cond, __FILE__, __LINE__))
 
+/// Prints the condition and its place to standard error and aborts. Called by HN_ASSERT() alone.
 _Noreturn void hn_assert_failed(const char *cond, const char *file, int line);
 
 /// "input" and "the input is at fault"; static text, never NULL.

@@ -21,6 +21,7 @@ typedef struct hn_strbuf {
     int after_key;
 } hn_strbuf;
 
+/// An empty buffer; it allocates nothing yet.
 void hn_strbuf_init(hn_strbuf *b);
 void hn_strbuf_reset(hn_strbuf *b); ///< frees the text; the buffer can be used again
 void hn_strbuf_clear(hn_strbuf *b); ///< keeps the memory, forgets the text

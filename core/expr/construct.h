@@ -10,6 +10,7 @@
 #include "expr/graph.h"
 
 hn_ex hn_num(double value); ///< value must be finite
+/// a + b, a - b, -a, k a, a b.
 hn_ex hn_add(hn_graph *g, hn_ex a, hn_ex b);
 hn_ex hn_sub(hn_graph *g, hn_ex a, hn_ex b);
 hn_ex hn_neg(hn_ex a);

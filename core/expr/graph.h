@@ -36,6 +36,7 @@ enum { HN_NODE_ONE = 0 };
 #define HN_CANCEL_TOL 1e-13 ///< |c1 + c2| below this times max(|c1|, |c2|) counts as cancelled
 
 hn_graph *hn_graph_create(void); ///< returns owned; NULL when memory is out
+/// Frees all nodes; NULL is legal. Whether memory ran out while building.
 void hn_graph_free(hn_graph *g);
 bool hn_graph_failed(const hn_graph *g);
 int hn_graph_size(const hn_graph *g); ///< nodes so far

@@ -26,6 +26,8 @@ typedef struct hn_native_opts {
     double build_after;   ///< [s] of interpretation before the compiler is started; 0.02
 } hn_native_opts;
 
+/// The options that the program uses; `folder` (borrowed) keeps compiled code; NULL: nothing is
+/// kept.
 hn_native_opts hn_native_opts_default(const char *folder);
 
 /// Switches the service on for tapes compiled from now on. Call it once, before other threads

@@ -50,6 +50,7 @@ typedef struct hn_ir {
     int failed; ///< memory ran out
 } hn_ir;
 
+/// Frees what the instructions hold; the list is then empty.
 void hn_ir_reset(hn_ir *ir);
 
 // Each gives the node's id and sets *fresh (may be NULL) to 1 if it was new. They return 0 once

@@ -11,6 +11,7 @@ typedef struct hn_im_frame {
     double p[3]; ///< [m]
 } hn_im_frame;
 
+/// The frame that is its outer one.
 hn_im_frame hn_im_frame_unit(void);
 /// a b: the frame b, given in a, seen from outside.
 hn_im_frame hn_im_frame_mul(const hn_im_frame *a, const hn_im_frame *b);

@@ -68,6 +68,7 @@ void hn_import_free(hn_import *import); ///< NULL is legal
 
 const char *hn_import_format(const hn_import *import);           ///< "MJCF" or "URDF"
 const char *hn_import_scene(const hn_import *import, size_t *n); ///< JSON text
+/// What was said about elements of the file: how many notes, note i, and how many of this outcome.
 int hn_import_note_count(const hn_import *import);
 const hn_import_note *hn_import_note_at(const hn_import *import, int i);
 int hn_import_count(const hn_import *import, hn_import_outcome outcome);

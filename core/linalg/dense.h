@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 
+/// x' y, both of n entries.
 double hn_dot(int n, const double *x, const double *y);
 double hn_norm2(int n, const double *x);    ///< Euclidean, safe against overflow of the squares
 double hn_norm_max(int n, const double *x); ///< max |x_i|; 0 for n = 0

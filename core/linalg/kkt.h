@@ -48,6 +48,7 @@ typedef struct hn_kkt_opts {
     double rank_tol, residual_tol, noise, motion, row_floor; ///< as in hn_saddle_opts
     const double *row_unit;                                  ///< likewise
 } hn_kkt_opts;
+/// The options that the program uses.
 hn_kkt_opts hn_kkt_opts_default(void);
 
 typedef struct hn_kkt_info {

@@ -23,6 +23,7 @@ HN_MUST_CHECK hn_status hn_lu_factor(int n, double *A, int *pivot, double *scale
 /// x <- A^-1 x
 void hn_lu_solve(int n, const double *A, const int *pivot, double *x);
 
+/// The same two for complex matrices.
 HN_MUST_CHECK hn_status hn_lu_factor_complex(int n, hn_complex *A, int *pivot, double *scale);
 void hn_lu_solve_complex(int n, const hn_complex *A, const int *pivot, hn_complex *x);
 

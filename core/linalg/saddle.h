@@ -67,6 +67,7 @@ typedef struct hn_saddle_info {
     double cond;
 } hn_saddle_info;
 
+/// The options that the program uses.
 hn_saddle_opts hn_saddle_opts_default(void);
 /// NULL when memory is out.
 HN_MUST_CHECK hn_saddle_ws *hn_saddle_ws_create(hn_arena *arena, int nv, int nc);

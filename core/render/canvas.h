@@ -44,6 +44,7 @@ typedef struct hn_stroke {
     const double *dash; ///< on, off, ... as seen, round ends included [px]
 } hn_stroke;
 
+/// One opaque colour, 0xRRGGBB: a filling, and a line of this width [px].
 hn_paint hn_paint_solid(uint32_t rgb);
 hn_stroke hn_stroke_solid(uint32_t rgb, double width);
 

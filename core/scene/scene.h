@@ -197,6 +197,7 @@ typedef enum hn_shape_kind {
     HN_SHAPE_POLYGON, ///< p, q, r, ... closed (n points from `first`)
     HN_SHAPE_TRACE    ///< p leaves a trace
 } hn_shape_kind;
+/// The word of the scene file.
 const char *hn_shape_kind_name(hn_shape_kind kind);
 
 typedef struct hn_shape {
@@ -260,6 +261,7 @@ HN_MUST_CHECK hn_status hn_scene_load_file(const char *path, const hn_setting *s
 void hn_scene_free(hn_scene *scene); ///< NULL is legal
 
 int hn_scene_find_coordinate(const hn_scene *scene, const char *name); ///< index by name, or -1
+/// Index of the parameter; -1: there is none of this name.
 int hn_scene_find_param(const hn_scene *scene, const char *name);
 /// Returns the coordinate or rate that a setting moves the start of ("th1" of "start.th1"); NULL
 /// when the setting is a parameter's, or NULL.

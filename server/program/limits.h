@@ -13,6 +13,7 @@ typedef struct hn_program_limits {
     int stderr_kept;      ///< [bytes] of its standard error that are kept
 } hn_program_limits;
 
+/// The limits of the table in server/program/README.md.
 hn_program_limits hn_program_limits_default(void);
 
 #endif

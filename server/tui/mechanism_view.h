@@ -6,5 +6,6 @@
 
 #include "tui/workbench.h"
 
+/// Draws the mechanism of every method into this area.
 void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w);
 #endif

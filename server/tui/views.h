@@ -16,6 +16,7 @@
 /// Least size of a screen that shows everything; smaller ones show what fits.
 enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24 };
 
+/// Draws the whole screen.
 void hn_views_draw(hn_cells *c, const hn_workbench *w);
 /// The places where the last frame of this size has its table and plot, for the mouse.
 typedef struct hn_places {

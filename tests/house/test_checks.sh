@@ -75,6 +75,28 @@ expect 'layers: a fault is an exit status' 1 $?
 expect 'width: a line of 101 columns is found, 100 columns of any letters are not' \
     "$work/wide.c:3: 101 columns, 100 are allowed" "$(LC_ALL=C awk -f tests/tools/check-width.awk "$work/wide.c")"
 
+# ---- contracts ----
+cat >"$work/said.h" <<'EOF'
+/// Both.
+int hn_a(void);
+int hn_b(void);
+
+int hn_c(void); ///< behind it
+typedef int (*hn_not_one)(void);
+EOF
+cat >"$work/unsaid.h" <<'EOF'
+/// Said.
+int hn_a(void);
+
+HN_MUST_CHECK hn_status hn_b(int a,
+                             int b);
+EOF
+expect 'contracts: a comment above, above the paragraph, or behind it is one' '' \
+    "$(awk -f tests/tools/check-contracts.awk "$work/said.h")"
+expect 'contracts: a function without a comment is found' \
+    "$work/unsaid.h:4: hn_b has no comment that says what it does" \
+    "$(awk -f tests/tools/check-contracts.awk "$work/unsaid.h")"
+
 # ---- names ----
 mkdir -p "$work/names" && touch "$work/names/both.c" "$work/names/both.h" "$work/names/row.c" "$work/names/lost.c"
 names() { # the list of exceptions on standard input

@@ -17,6 +17,7 @@ typedef struct hn_entries {
 } hn_entries;
 
 void hn_entries_add(hn_entries *list, int row, int col, hn_ex e); ///< a zero is not kept
+/// Frees the entries; the list is then empty and can be used again.
 void hn_entries_reset(hn_entries *list);
 /// Sorts by row, then column.
 void hn_entries_sort(hn_entries *list);

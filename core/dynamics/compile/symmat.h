@@ -11,8 +11,10 @@
 typedef struct hn_symmat hn_symmat;
 
 hn_symmat *hn_symmat_create(int n); ///< returns owned; NULL when memory is out
+/// NULL is legal.
 void hn_symmat_free(hn_symmat *m);
 bool hn_symmat_failed(const hn_symmat *m); ///< memory ran out on the way
+/// Entry (i, j), which is entry (j, i); zero where nothing was set.
 hn_ex hn_symmat_get(const hn_symmat *m, int i, int j);
 void hn_symmat_set(hn_symmat *m, int i, int j, hn_ex e);
 /// Unknowns that share an entry with i (i itself not among them), zero or not; in the order they

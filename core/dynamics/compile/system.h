@@ -29,6 +29,7 @@
 
 typedef struct hn_system hn_system;
 
+/// Borrowed: the scene that it was compiled from.
 const hn_scene *hn_system_scene(const hn_system *sys);
 
 typedef struct hn_system_info {

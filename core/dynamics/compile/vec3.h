@@ -22,6 +22,7 @@ typedef struct hn_sym3 {
     hn_ex x[6];
 } hn_sym3;
 
+/// Vectors: of zeros, of numbers; whether all components are zero; sums, multiples and products.
 hn_vec3 hn_vec3_zero(void);
 hn_vec3 hn_vec3_num(const double v[3]);
 bool hn_vec3_is_zero(hn_vec3 a);
@@ -32,6 +33,7 @@ hn_vec3 hn_vec3_cross(hn_graph *g, hn_vec3 a, hn_vec3 b);
 hn_ex hn_vec3_cross_z(hn_graph *g, hn_vec3 a, hn_vec3 b); ///< only the z component
 hn_ex hn_vec3_dot(hn_graph *g, hn_vec3 a, hn_vec3 b);
 
+/// Matrices: the identity, of numbers; m a, m' a, a b, and column j of m.
 hn_mat3 hn_mat3_identity(void);
 hn_mat3 hn_mat3_num(double m[3][3]);
 hn_vec3 hn_mat3_apply(hn_graph *g, const hn_mat3 *m, hn_vec3 a);
@@ -44,6 +46,7 @@ hn_mat3 hn_mat3_turn_z(hn_ex c, hn_ex s);
 /// Number entries within 1e-14 of 0, 1 and -1 become exactly that.
 void hn_mat3_snap(hn_mat3 *m);
 
+/// m a, and a + b.
 hn_vec3 hn_sym3_apply(hn_graph *g, const hn_sym3 *m, hn_vec3 a);
 hn_sym3 hn_sym3_add(hn_graph *g, const hn_sym3 *a, const hn_sym3 *b);
 /// R m R'.

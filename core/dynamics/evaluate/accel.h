@@ -62,8 +62,11 @@ typedef struct hn_accel_info {
 /// correction costs more than the tape.
 #define HN_PIVOT_DOUBT 1e-3
 
+/// Compiles the terms that the options ask for into one tape. Returns in *out, which lives in the
+/// arena. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
                                         hn_arena *arena, hn_accel **out);
+/// Frees what is outside the arena. NULL is legal.
 void hn_accel_free(hn_accel *s);
 /// Solves for the accelerations a (nv) and multipliers lambda (nc, may be NULL) at one state.
 /// alpha and beta [1/s] count only with opts.baumgarte; `info` may be NULL. Allocates nothing.

@@ -31,6 +31,8 @@
 
 #include <stdbool.h>
 
+/// Compiles what the chart needs; with_rate: the rate of its basis as well. The memory is in the
+/// arena, the rest is freed by hn_chart_destroy(). Fails: HN_ERR_MEMORY, reported in diag.
 HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate,
                                       hn_arena *arena, hn_diag *diag);
 void hn_chart_destroy(hn_chart *chart);

@@ -14,8 +14,11 @@ typedef struct hn_orthonormal_state {
     double *q, *v, *delta; ///< nq, nv, nv; scratch
 } hn_orthonormal_state;
 
+/// Prepares the state. tracked 1: the basis is carried along. Fails: HN_ERR_MEMORY, reported in
+/// diag.
 HN_MUST_CHECK hn_status hn_orthonormal_init(hn_orthonormal_state *s, const hn_system *sys,
                                             int tracked, hn_arena *arena, hn_diag *diag);
+/// The slots of hn_formulation for formulations that have this state; `self` begins with it.
 void hn_orthonormal_destroy(void *self);
 void hn_orthonormal_ode(void *self, hn_ode *out);
 hn_status hn_orthonormal_set_state(void *self, double t, const double *q, const double *v,

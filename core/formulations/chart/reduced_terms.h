@@ -60,6 +60,8 @@ typedef struct hn_reduced_terms {
     hn_qr rows;
 } hn_reduced_terms;
 
+/// Compiles the terms of the reduced equations; end with hn_reduced_terms_destroy(). Fails:
+/// HN_ERR_MEMORY, reported in diag.
 HN_MUST_CHECK hn_status hn_reduced_terms_init(hn_reduced_terms *w, const hn_system *sys,
                                               hn_arena *arena, hn_diag *diag);
 void hn_reduced_terms_destroy(hn_reduced_terms *w);

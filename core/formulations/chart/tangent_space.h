@@ -65,6 +65,8 @@ typedef struct hn_tspace {
     char why[HN_TSPACE_TEXT];
 } hn_tspace;
 
+/// Compiles what the basis needs; end with hn_tspace_destroy(). Fails: HN_ERR_MEMORY, reported in
+/// diag.
 HN_MUST_CHECK hn_status hn_tspace_init(hn_tspace *ts, const hn_system *sys, hn_arena *arena,
                                        hn_diag *diag);
 void hn_tspace_destroy(hn_tspace *ts);
@@ -96,6 +98,7 @@ void hn_tspace_coordinates(const hn_tspace *ts, const double *v, double *u);
 /// u' of (3) at the place last located, with speeds v.
 HN_MUST_CHECK hn_status hn_tspace_accel(hn_tspace *ts, const double *v, double *u_dot);
 
+/// Adds what its tapes and factorisations have cost so far.
 void hn_tspace_add_cost(const hn_tspace *ts, hn_cost *cost);
 
 #endif

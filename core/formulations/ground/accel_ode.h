@@ -21,6 +21,8 @@ typedef struct hn_accel_ode {
     double alpha, beta; ///< [1/s], used with baumgarte
 } hn_accel_ode;
 
+/// Compiles the accelerations; baumgarte: with the feedback of gap and velocity violation. Fails:
+/// HN_ERR_MEMORY, reported in diag.
 HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, bool baumgarte,
                                           hn_solver solver, hn_arena *arena, hn_diag *diag);
 /// The option "solver" of the formulations that use this; the value is an hn_solver.

@@ -43,6 +43,7 @@ void hn_dense_ode_add_rows(const hn_dense_ode *ode, const double *y, double *x);
 /// Name of the user coordinate behind system coordinate i, for telling.
 const char *hn_dense_ode_name(const hn_dense_ode *ode, int i);
 
+/// The slots of hn_formulation for formulations that begin with a dense_ode.
 void hn_dense_ode_destroy(void *self);
 void hn_dense_ode_get(void *self, hn_ode *out);
 void hn_dense_ode_add_cost(const void *self, hn_cost *cost);

@@ -7,6 +7,7 @@
 
 double hn_flops_qr(int m, int n);       ///< Householder QR with pivoting, m x n
 double hn_flops_qr_solve(int m, int n); ///< Q' b and R^-1
+/// L L' of an n x n matrix, and one solution with it.
 double hn_flops_cholesky(int n);
 double hn_flops_cholesky_solve(int n);
 double hn_flops_product(int m, int k, int n); ///< (m x k) (k x n)

@@ -31,6 +31,7 @@
 HN_FORMULATION_LIST(HN_FORMULATION_DECLARE)
 #undef HN_FORMULATION_DECLARE
 
+/// The table of formulations: its length, and row i of it.
 int hn_formulation_count(void);
 const hn_formulation *hn_formulation_at(int i);
 /// The formulation of this name ("baumgarte"); NULL when unknown.

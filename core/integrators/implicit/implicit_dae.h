@@ -25,6 +25,8 @@ typedef struct hn_implicit_dae_opts {
     double rtol, atol;
 } hn_implicit_dae_opts;
 
+/// Prepares the collocation method `col` for constraints of this form. Returns in *self, which
+/// lives in the arena. Fails: HN_ERR_MEMORY and what the compilation of its terms reports, in diag.
 HN_MUST_CHECK hn_status hn_implicit_dae_create(const hn_system *sys, hn_dae_form form,
                                                const hn_collocation *col,
                                                const hn_implicit_dae_opts *opts, hn_arena *arena,

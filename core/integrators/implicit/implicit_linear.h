@@ -67,6 +67,8 @@ typedef struct hn_implicit_linear {
     double ops; ///< of what is not in `terms`, `matrix` and `check`
 } hn_implicit_linear;
 
+/// Compiles the matrix of Newton's method; end with hn_implicit_linear_free(). Fails:
+/// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys,
                                                 hn_dae_form form, hn_arena *arena);
 void hn_implicit_linear_free(hn_implicit_linear *l);

@@ -38,6 +38,7 @@
 HN_STEPPER_LIST(HN_STEPPER_DECLARE)
 #undef HN_STEPPER_DECLARE
 
+/// The table of integrators: its length, and row i of it.
 int hn_stepper_count(void);
 const hn_stepper *hn_stepper_at(int i);
 /// The integrator of this name ("rk4"); NULL when unknown.

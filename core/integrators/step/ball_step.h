@@ -25,6 +25,7 @@ typedef struct hn_ball_step {
     int *owner; ///< nv: the first speed of the ball that this speed belongs to; -1: none
 } hn_ball_step;
 
+/// Memory for the balls of a mechanism, in the arena. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_ball_step_init(hn_ball_step *b, const hn_system *sys, hn_arena *arena);
 /// The largest angle of a ball in D (nv) [rad].
 double hn_ball_step_angle(const hn_ball_step *b, const double *D);

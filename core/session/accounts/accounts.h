@@ -58,8 +58,10 @@ bool hn_accounts_stopped(const hn_accounts *accounts),
 
 bool hn_accounts_lost(const hn_accounts *accounts);   ///< the journal could not be written
 int hn_accounts_resumed(const hn_accounts *accounts); ///< budgets kept from an earlier run
+/// Methods of the budget, and the account of method i.
 int hn_accounts_n(const hn_accounts *accounts);
 const hn_account_row *hn_accounts_at(const hn_accounts *accounts, int i);
+/// Borrowed: what it was computed for.
 const hn_model *hn_accounts_model(const hn_accounts *accounts);
 double hn_accounts_time(const hn_accounts *accounts); ///< [s]
 

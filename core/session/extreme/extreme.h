@@ -44,6 +44,7 @@ typedef enum hn_extreme_verdict {
 #undef HN_VERDICT_ENUM
         HN_EXTREME_VERDICTS
 } hn_extreme_verdict;
+/// The word of the table: "pass" and so on.
 const char *hn_extreme_verdict_name(hn_extreme_verdict verdict);
 
 /// What is predicted: a band for a number, or a word for an outcome.

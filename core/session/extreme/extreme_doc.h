@@ -5,6 +5,7 @@
 
 #include "session/extreme/extreme.h"
 
+/// The whole matrix as JSON.
 void hn_extreme_json(hn_strbuf *b, const hn_extreme *x);
 void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x); ///< a row a trial, with a head
 #endif

@@ -36,6 +36,9 @@ void hn_xr_suggest(char hint[HN_DIAG_HINT], const char *word, const char *const 
 /// Returns 1 for an object; members not among `fields`, or given twice, are reported as faults.
 bool hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields);
 
+/// The member of this name, NULL: there is none. The others report what is wrong with it and
+/// return something legal: a text (NULL where it may be absent), a number within its bounds (the
+/// lower one; `otherwise` where it is absent), true or false (absent: false).
 const cJSON *hn_xr_get(const cJSON *object, const char *key);
 const char *hn_xr_keep(hn_xr *r, const char *text); ///< a copy in the arena
 const char *hn_xr_text(hn_xr *r, const cJSON *object, const char *key, bool required);

@@ -65,6 +65,7 @@ holonom_status holonom_set(holonom_mechanism *m, const char *parameter, double v
                            holonom_fault *fault);
 void holonom_free(holonom_mechanism *m);
 
+/// How many numbers its arrays have.
 holonom_sizes holonom_get_sizes(const holonom_mechanism *m);
 /// Name of coordinate i ("th1"), or of its rate ("w1"); NULL when there is no such coordinate.
 const char *holonom_coordinate_name(const holonom_mechanism *m, int i);

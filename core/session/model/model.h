@@ -30,9 +30,12 @@ typedef struct hn_model_source {
     bool allow_open;
 } hn_model_source;
 
+/// Reads and compiles the scene of `source`. Returns owned in *out. Fails: HN_ERR_INPUT,
+/// HN_ERR_LIMIT, HN_ERR_MEMORY and others, reported in diags.
 HN_MUST_CHECK hn_status hn_model_load(const hn_library *lib, const hn_model_source *source,
                                       hn_model **out, hn_diags *diags);
 void hn_model_free(hn_model *model);
+/// Borrowed: what was read.
 const hn_scene *hn_model_scene(const hn_model *model);
 /// Returns the path at which the reference solution of the shipped scene of this id is stored
 /// (references.h); NULL when no shipped scene has this id.

@@ -41,6 +41,7 @@ typedef struct hn_study_part_text {
     size_t n;
 } hn_study_part_text;
 
+/// Borrowed: the points, and what they were computed for.
 const hn_wp *hn_study_wp(const hn_study *study);
 const hn_class *hn_study_classes(const hn_study *study); ///< one per method, after a run
 const hn_model *hn_study_model(const hn_study *study);

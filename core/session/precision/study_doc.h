@@ -5,6 +5,7 @@
 
 #include "session/precision/study.h"
 
+/// The whole study as JSON.
 void hn_study_json(hn_strbuf *b, const hn_study *study);
 /// Writes a table with a header line and one line per point.
 void hn_study_csv(hn_strbuf *b, const hn_study *study);

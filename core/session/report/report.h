@@ -59,6 +59,7 @@ typedef struct hn_report_scene {
     hn_strip *strips;   ///< one a method of the study where it is singular, else NULL
 } hn_report_scene;
 
+/// Scenes of the report, and scene i.
 int hn_report_n_scenes(const hn_report *report);
 const hn_report_scene *hn_report_scene_at(const hn_report *report, int i);
 double hn_report_elapsed(const hn_report *report); ///< wall time [s]

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 
+/// Plots of the report, and plot i.
 int hn_report_n_plots(const hn_report *report);
 hn_report_plot hn_report_plot_at(const hn_report *report, int i);
 /// Writes a standalone SVG file in the light theme. Returns false when there is nothing to draw.

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 
+/// The cell of method m at this column and row, and the column; both counted from 0.
 hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row);
 hn_map_column *hn_map_column_at(const hn_map *map, int m, int column);
 /// Returns the scene of a cell, with its motion if there is one; loads it on first use.

@@ -87,6 +87,7 @@ void hn_map_free(hn_map *map); ///< NULL is legal
 /// Runs the cells that have no outcome. Returns whether finished; false: stopped, or out of time.
 bool hn_map_run(hn_map *map);
 
+/// Borrowed: what the map was computed for, its axes, and how many methods it has.
 const hn_model *hn_map_model(const hn_map *map);
 const hn_map_axis *hn_map_x(const hn_map *map);
 const hn_map_axis *hn_map_y(const hn_map *map);

@@ -22,9 +22,11 @@ typedef struct hn_map_class_look {
     int slot;          ///< of the table of colours; -1: tear, -2: muted, -3: hairline
     double opacity;
 } hn_map_class_look;
+/// How a cell of this class is drawn, and its colour 0xRRGGBB.
 const hn_map_class_look *hn_map_class_look_get(hn_stability_class kind);
 uint32_t hn_map_class_colour(hn_stability_class kind, hn_theme theme);
 
+/// Of the whole picture [px].
 int hn_map_height(const hn_map *map);
 /// Returns the top of method m's field.
 double hn_map_field_top(int m);

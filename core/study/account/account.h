@@ -43,6 +43,7 @@ typedef enum hn_cause {
 #undef HN_CAUSE_ENUM
         HN_CAUSE_COUNT
 } hn_cause;
+/// Columns 2 and 3 of HN_CAUSE_LIST.
 const char *hn_cause_name(hn_cause cause);
 const char *hn_cause_about(hn_cause cause);
 
@@ -59,6 +60,7 @@ typedef enum hn_bill_item {
 #undef HN_BILL_ENUM
         HN_BILL_COUNT
 } hn_bill_item;
+/// Columns 2 and 3 of HN_BILL_LIST.
 const char *hn_bill_name(hn_bill_item item);
 const char *hn_bill_about(hn_bill_item item);
 

@@ -32,6 +32,7 @@ typedef enum hn_class_kind {
 #undef HN_CLASS_ENUM
         HN_CLASS_COUNT
 } hn_class_kind;
+/// The word of the documents.
 const char *hn_class_name(hn_class_kind kind);
 
 typedef struct hn_class {

@@ -23,6 +23,7 @@ typedef enum hn_survival_end {
 #undef HN_SURVIVAL_ENUM
         HN_SURVIVAL_ENDS
 } hn_survival_end;
+/// Columns 2 and 3 of HN_SURVIVAL_LIST.
 const char *hn_survival_name(hn_survival_end end);
 const char *hn_survival_about(hn_survival_end end);
 

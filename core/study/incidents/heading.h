@@ -6,7 +6,9 @@
 
 #include "study/incidents/watch.h"
 
+/// Prepares the watch's part for the direction; in the arena of the run. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_heading_create(hn_watch *w);
+/// Takes the present direction as the first one.
 void hn_heading_start(hn_watch *w);
 /// Compares the direction of motion with its smooth continuation, past a singular configuration or
 /// where the step looks like a jump. Returns the angle between the two [rad] where they were

@@ -24,6 +24,7 @@ typedef struct hn_run_opts {
     double warn_gap;     ///< times the characteristic length; 0: HN_RUN_WARN_GAP
     int raw_lambda;      ///< samples carry the scheme's own multipliers too, where it has some
 } hn_run_opts;
+/// The options that the program uses.
 hn_run_opts hn_run_opts_default(void);
 
 typedef struct hn_run_summary {

@@ -46,8 +46,11 @@ typedef struct hn_sampling {
     double *user_q, *user_v, *user_a, *lambda, *points, *raw_copy;
 } hn_sampling;
 
+/// A second engine of the same method, for samples inside a step. Fails: as hn_engine_create(),
+/// HN_ERR_MEMORY, reported in diag.
 HN_MUST_CHECK hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda,
                                            hn_sampling *s, hn_diag *diag);
+/// Frees what is outside the arena.
 void hn_sampling_free(hn_sampling *s);
 /// The sample at time t: the present time, a time within the last step, or one less than a step
 /// ahead (fixed steps, `failed` false). Fails with HN_ERR_INPUT for other times, or as a step of

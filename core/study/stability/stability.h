@@ -39,6 +39,7 @@ typedef enum hn_stability_class {
 #undef HN_STABILITY_ENUM
         HN_STABILITY_CLASS_COUNT
 } hn_stability_class;
+/// The word of the documents.
 const char *hn_stability_class_name(hn_stability_class kind);
 /// 1: it came to its end without growth (accurate or not).
 bool hn_stability_is_stable(hn_stability_class kind);

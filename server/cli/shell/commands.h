@@ -6,6 +6,7 @@
 
 #include "cli/shell/args.h"
 
+/// A function for each row of command_table.c, which says what it does. Returns the exit code.
 hn_exit hn_command_list(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_terms(const hn_library *lib, const hn_args *args);

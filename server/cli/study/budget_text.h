@@ -5,5 +5,6 @@
 
 #include "session/accounts/accounts.h"
 
+/// The budget for people.
 void hn_accounts_text(hn_strbuf *b, const hn_accounts *accounts);
 #endif

@@ -5,5 +5,6 @@
 
 #include "session/extreme/extreme.h"
 
+/// The matrix for people.
 void hn_extreme_text(hn_strbuf *b, const hn_extreme *x);
 #endif

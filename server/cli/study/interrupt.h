@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 
+/// Between the two calls the signals are taken; before and after they end the program.
 void hn_interrupt_begin(void);
 void hn_interrupt_end(void);
 int hn_is_interrupted(void *unused); ///< 1 once asked: the `stop` of a job

@@ -5,5 +5,6 @@
 
 #include "session/report/report.h"
 
+/// The summary of the report for people.
 void hn_report_text(hn_strbuf *b, const hn_report *report);
 #endif

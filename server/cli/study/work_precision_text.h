@@ -6,5 +6,6 @@
 
 #include "session/precision/study.h"
 
+/// The study for people: table, orders, plot.
 void hn_study_text(hn_strbuf *b, const hn_study *study);
 #endif

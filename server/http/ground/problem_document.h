@@ -54,6 +54,7 @@ typedef struct hn_http_problem_info {
     const char *code, *title, *about;
 } hn_http_problem_info;
 
+/// Status, type and title of a kind of problem.
 const hn_http_problem_info *hn_http_problem_get_info(hn_http_problem kind);
 
 /// The document. `instance` (the address asked) may be NULL; `diags` may be NULL; `offset` < 0 is

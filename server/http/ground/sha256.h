@@ -8,5 +8,6 @@
 
 enum { HN_SHA256_BASE64 = 45 };
 
+/// The digest of n bytes, in base64, with a zero at its end.
 void hn_sha256_base64(const void *bytes, size_t n, char out[HN_SHA256_BASE64]);
 #endif

@@ -24,6 +24,7 @@ typedef enum hn_event_kind {
 #undef HN_EVENT_ENUM
         HN_EVENT_COUNT
 } hn_event_kind;
+/// The word after "event:" in a stream.
 const char *hn_event_name(hn_event_kind kind);
 
 typedef struct hn_event {
@@ -43,6 +44,7 @@ typedef struct hn_history {
     uint64_t last_id, last_frame_id; ///< 0: none yet
 } hn_history;
 
+/// An empty history that keeps at most so many events and bytes. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_history_init(hn_history *h, int max_events, size_t max_bytes);
 void hn_history_reset(hn_history *h); ///< frees; a zeroed one is legal
 /// Takes the buffer's text. The newest event is always kept, however large.

@@ -67,6 +67,7 @@ HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *n
                                               hn_status (*see)(void *user, const char *value),
                                               void *user);
 
+/// Adds a header to the reply; the value is printed as by printf().
 void hn_reply_header_add(hn_request *r, const char *name, const char *format, ...) HN_PRINTF(3, 4);
 /// Takes the buffer's text (the buffer is empty afterwards). A buffer whose memory ran out becomes
 /// a problem.

@@ -13,6 +13,7 @@ struct hn_request;
 /// Loads the scene in the path, with the settings of the query; NULL with a problem as reply.
 hn_model *hn_catalogue_load_scene(struct hn_request *r, bool allow_open);
 
+/// A function for each row of routes.c, which says method and path; the reply is in `r`.
 void hn_handle_index(struct hn_request *r);
 void hn_handle_health(struct hn_request *r);
 void hn_handle_scenes(struct hn_request *r);

@@ -16,6 +16,7 @@ typedef struct hn_dispatch {
     hn_connections *connections;
 } hn_dispatch;
 
+/// A part of a request has come; one is finished; a connection opens or closes.
 enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection, const char *url,
                                     const char *method, const char *version, const char *data,
                                     size_t *n_data, void **req_cls);

@@ -5,6 +5,7 @@
 
 struct hn_request;
 
+/// A function for each row of routes.c, which says method and path; the reply is in `r`.
 void hn_handle_terms(struct hn_request *r);
 void hn_handle_assemble(struct hn_request *r);
 void hn_handle_drag(struct hn_request *r);

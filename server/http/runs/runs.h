@@ -6,6 +6,7 @@
 struct hn_request;
 struct hn_kept_run;
 
+/// A function for each row of routes.c, which says method and path; the reply is in `r`.
 void hn_handle_runs_create(struct hn_request *r); ///< asynchronous
 void hn_handle_runs_list(struct hn_request *r);
 void hn_handle_run_get(struct hn_request *r); ///< asynchronous
