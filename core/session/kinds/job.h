@@ -28,10 +28,18 @@ typedef struct hn_job_end {
     bool lost;        ///< what is done could not be written into the journal: it is not kept
 } hn_job_end;
 
+/// What the words of the command line are to a kind.
+typedef enum hn_job_words {
+    HN_JOB_WORDS_SCENES, ///< scenes; none: those of the standard report
+    HN_JOB_WORDS_SCENE,  ///< one scene, and the kind's name
+    HN_JOB_WORDS_IDS     ///< names that the kind knows itself
+} hn_job_words;
+
 typedef struct hn_job_kind {
     const char *name;       ///< "work-precision"
     const char *about;      ///< one clause
-    const char *command;    ///< of the command line; "study": the kind's name is its second word
+    const char *command;    ///< of the command line
+    hn_job_words words;     ///< of the command line
     const char *pieces;     ///< what of an unfinished job is kept: "points"
     const char *chooses;    ///< options of methods that it sets itself, separated by blanks
     bool served;            ///< offered by the server
@@ -46,6 +54,9 @@ typedef struct hn_job_kind {
     /// Computes the remaining pieces. Fails: reported in diags; there is then no document.
     hn_status (*run)(void *work, const hn_job_request *request, hn_job_end *end, hn_diags *diags);
     void (*release)(void *work);
+    /// Writes the file that --out names, whatever its ending. Fails: HN_ERR_IO, reported in diag.
+    /// NULL: its ending chooses a form.
+    hn_status (*save)(const void *work, const char *path, hn_diag *diag);
 } hn_job_kind;
 
 /// Returns kind i of the registry; NULL beyond the last.

@@ -41,6 +41,7 @@ const hn_job_kind hn_kind_budget = {
     .name = "budget",
     .about = "where the error at the end and the energy come from",
     .command = "study",
+    .words = HN_JOB_WORDS_SCENE,
     .pieces = "methods",
     .chooses = "",
     .served = true,

@@ -57,6 +57,7 @@ const hn_job_kind hn_kind_extreme = {
     .name = "extreme",
     .about = "cases in which methods break, predicted and observed",
     .command = "extreme",
+    .words = HN_JOB_WORDS_IDS,
     .pieces = "trials",
     .chooses = "",
     .fields = FIELDS,

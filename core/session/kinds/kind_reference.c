@@ -81,6 +81,12 @@ static void write_json(hn_strbuf *b, const hn_reference_work *w) {
 }
 HN_JOB_FORM(json, hn_reference_work, write_json)
 
+/// The form in which scenes ship their references.
+static hn_status save(const void *work, const char *path, hn_diag *diag) {
+    const hn_reference_work *w = work;
+    return hn_reference_save(path, w->model, w->ref, diag);
+}
+
 const hn_job_kind hn_kind_reference = {
     .name = "reference",
     .about = "the reference solution: by two means, and the digits they share",
@@ -92,4 +98,5 @@ const hn_job_kind hn_kind_reference = {
     .open = open_reference,
     .run = run,
     .release = release,
+    .save = save,
 };

@@ -78,6 +78,7 @@ const hn_job_kind hn_kind_stability = {
     .name = "stability",
     .about = "where steps are stable: the limit predicted from the spectrum, and tried",
     .command = "study",
+    .words = HN_JOB_WORDS_SCENE,
     .pieces = "cells",
     .chooses = "h",
     .served = true,

@@ -48,6 +48,7 @@ const hn_job_kind hn_kind_work_precision = {
     .name = "work-precision",
     .about = "error against cost of each method",
     .command = "study",
+    .words = HN_JOB_WORDS_SCENE,
     .pieces = "points",
     .chooses = "h rtol",
     .served = true,

@@ -18,7 +18,6 @@
 #include "cli/study/stability_text.h"
 #include "cli/study/study_part.h"
 #include "cli/study/work_precision_text.h"
-#include "session/references/reference_store.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -142,10 +141,9 @@ static hn_status read_body(command *c, hn_diags *diags) {
 
 /// Loads the scenes that the words name; for the extreme matrix the words are names of cases.
 static hn_status load_words(command *c, hn_diags *diags) {
-    const bool of_study = strcmp(c->kind->command, "study") == 0;
-    int n = of_study ? 1 : c->args->words.n;
+    int n = c->kind->words == HN_JOB_WORDS_SCENE ? 1 : c->args->words.n;
     const char *const *words = c->args->words.word;
-    if (strcmp(c->kind->name, "extreme") == 0) {
+    if (c->kind->words == HN_JOB_WORDS_IDS) {
         c->request.ids = words;
         c->request.n_ids = n;
         return HN_OK;
@@ -162,7 +160,7 @@ static hn_status load_words(command *c, hn_diags *diags) {
 }
 
 static hn_status check_output(const command *c, hn_diags *diags) {
-    if (strcmp(c->kind->name, "reference") == 0) {
+    if (c->kind->save) {
         return hn_cli_check_folder(c->args->out, diags); // any name will do
     }
     HN_TRY(hn_forms_check(c->kind->forms, c->args, diags));
@@ -204,8 +202,8 @@ static void report_end(const command *c, const hn_job_end *end) {
     }
 }
 
-/// Writes what a kind has besides its forms (a part of a study, the plots of a report, a reference
-/// as it is shipped), then the forms.
+/// Writes what a kind has besides its forms (a part of a study, the plots of a report, a file of
+/// its own), then the forms.
 static hn_exit write_job(const command *c, const hn_job *job) {
     const hn_args *args = c->args;
     const void *work = hn_job_work(job);
@@ -223,11 +221,10 @@ static hn_exit write_job(const command *c, const hn_job *job) {
         }
     }
 
-    // a reference with --out is saved in the form that lessons ship
-    if (args->out && strcmp(c->kind->name, "reference") == 0) {
-        const hn_reference_work *w = work;
+    // a kind with a file of its own, whatever the name ends in
+    if (args->out && c->kind->save) {
         hn_diag diag = {0};
-        if (hn_reference_save(args->out, w->model, w->ref, &diag) != HN_OK) {
+        if (c->kind->save(work, args->out, &diag) != HN_OK) {
             hn_report_diag(args, &diag);
             return HN_EXIT_PROGRAM; // the output is at fault, not the scene
         }
@@ -286,7 +283,7 @@ static void hint_kinds(const char *word, char *out, size_t size) {
     size_t used = 0;
     int n = 0;
     for (int i = 0; (kind = hn_job_kind_at(i)) != NULL && n < MOST_KINDS && used < size; i++) {
-        if (strcmp(kind->command, "study") == 0) {
+        if (kind->words == HN_JOB_WORDS_SCENE) {
             used += (size_t)snprintf(out + used, size - used, "%s%s", used ? ", " : "there is ",
                                      kind->name);
             names[n++] = kind->name;
@@ -301,7 +298,7 @@ static void hint_kinds(const char *word, char *out, size_t size) {
 hn_exit hn_command_study(const hn_library *lib, const hn_args *args) {
     const char *word = args->words.n > 1 ? args->words.word[1] : hn_job_kind_at(0)->name;
     const hn_job_kind *kind = hn_job_kind_find(word);
-    if (kind && strcmp(kind->command, "study") == 0) {
+    if (kind && kind->words == HN_JOB_WORDS_SCENE) {
         return hn_run_job(lib, args, kind);
     }
     hn_diag diag = {0};
