@@ -45,7 +45,8 @@ static void describe_all(hn_strbuf *b) {
                      "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...],\n"
                      "as projection@rk4:h=1e-3.\n"
                      "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault,\n"
-                     "4 a run ended early and said why.\n");
+                     "4 a run ended early and said why, or a prediction failed.\n"
+                     "lessons, problems, scenes and methods are short for list lessons etc.\n");
 }
 
 static void describe_one(hn_strbuf *b, const hn_command *command) {
@@ -88,6 +89,17 @@ static hn_diag unknown_command(const char *name) {
     return diag;
 }
 
+/// "scenes", "methods", "lessons" and "problems" are short for "list scenes" ...
+static bool is_list(const char *word) {
+    static const char *const kinds[] = {"scenes", "methods", "lessons", "problems"};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (strcmp(word, kinds[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static hn_exit print_help(const hn_library *lib, const hn_args *args) {
     (void)lib;
     hn_strbuf b;
@@ -96,9 +108,10 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
         describe_all(&b);
         return hn_cli_print(&b);
     }
-    const hn_command *command = hn_command_find(args->words.word[0]);
+    const char *word = args->words.word[0];
+    const hn_command *command = hn_command_find(is_list(word) ? "list" : word);
     if (!command) {
-        hn_diag diag = unknown_command(args->words.word[0]);
+        hn_diag diag = unknown_command(word);
         return hn_report_diag(args, &diag);
     }
     describe_one(&b, command);
@@ -219,17 +232,6 @@ static hn_exit complete(int n, char **words) {
     fputs(hn_strbuf_text(&b), stdout);
     hn_strbuf_reset(&b);
     return HN_EXIT_DONE;
-}
-
-/// "scenes", "methods", "lessons" and "problems" are short for "list scenes" ...
-static bool is_list(const char *word) {
-    static const char *const kinds[] = {"scenes", "methods", "lessons", "problems"};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        if (strcmp(word, kinds[i]) == 0) {
-            return true;
-        }
-    }
-    return false;
 }
 
 int hn_cli_main(int argc, char **argv) {

@@ -75,7 +75,8 @@ static const hn_command COMMANDS[] = {
      "--seed --student --hint --seeds --check --wide", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...",
      "verdicts as --format text, json, gradescope, junit, csv or html; into --out DIR",
-     "--format --out -o --seed --student --wide", 2, HN_CLI_MAX_WORDS, hn_command_grade},
+     "--format --out -o --seed --student --show-expected --no-pictures --wide", 2, HN_CLI_MAX_WORDS,
+     hn_command_grade},
     {"class", "ID FOLDER",
      "grade the submissions of a class, a folder, file or zip for each student, whose name chooses "
      "the variant unless --seed does; --out FILE.ndjson or .csv",

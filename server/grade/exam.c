@@ -31,10 +31,14 @@ static int find_name(const hn_exercise *p, const char *name) {
 
 static int lookup(void *user, const char *name, hn_ex *out) {
     hn_exam *exam = user;
-    char joined[64];
+    char joined[64], other[64];
     int i = find_name(exam->problem, name);
     if (i < 0 && hn_spelling_join(name, joined, sizeof joined)) {
         i = find_name(exam->problem, joined);
+        name = joined;
+    }
+    for (int k = 0; i < 0 && hn_spelling_alias(name, k, other, sizeof other); k++) {
+        i = find_name(exam->problem, other);
     }
     if (i >= 0) {
         *out = hn_graph_symbol_expr(exam->graph, exam->symbol[i]);

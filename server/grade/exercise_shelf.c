@@ -103,8 +103,12 @@ hn_status hn_shelf_verdict_png(hn_strbuf *png, const hn_library *lib, const hn_v
     if (status == HN_OK) {
         const hn_entry_verdict *e = &v->entry[v->shown_entry];
         char caption[160];
-        snprintf(caption, sizeof caption, "%s is %.6g here, expected %.6g", e->name, e->given_value,
-                 e->expected_value);
+        const int n_text =
+            snprintf(caption, sizeof caption, "%s is %.6g here", e->name, e->given_value);
+        if (v->show_expected) {
+            snprintf(caption + n_text, sizeof caption - (size_t)n_text, ", expected %.6g",
+                     e->expected_value);
+        }
         hn_picture_request request = {.entries = entries, .n_entries = n, .caption = caption};
         status = hn_model_picture(png, NULL, model, &request, NULL, diags);
     }

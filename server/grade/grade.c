@@ -9,6 +9,7 @@
 #include "grade/mistakes.h"
 #include "grade/parts/spelling.h"
 #include "grade/submission.h"
+#include "grade/submission_text.h"
 #include "grade/variant.h"
 
 #include <math.h>
@@ -41,12 +42,13 @@ static hn_status parse_entry(hn_verdict *v, hn_exam *exam, const char *text, hn_
     hn_diag diag = {0};
     hn_strbuf plain;
     hn_strbuf_init(&plain);
-    hn_spelling_normalise(&plain, text);
+    hn_status status = hn_spelling_normalise(&plain, text, &diag);
+    const bool spelt = status == HN_OK;
     const char *formula = hn_strbuf_text(&plain);
-    hn_status status = plain.failed ? HN_ERR_MEMORY : hn_exam_parse(exam, formula, given, &diag);
+    HN_THEN(status, hn_exam_parse(exam, formula, given, &diag));
 
     if (status == HN_ERR_INPUT || status == HN_ERR_LIMIT) {
-        const int same = strcmp(formula, text) == 0;
+        const bool same = !spelt || strcmp(formula, text) == 0;
         set_mistake(v, e, "unreadable");
         v->n_unreadable++;
         snprintf(e->explanation, sizeof e->explanation,
@@ -382,29 +384,62 @@ static void keep_submission(hn_verdict *v, const char *text, size_t n) {
     }
 }
 
+/// Grades text in UTF-8 after its slips of JSON are put right, with a remark.
+static hn_status grade_text(hn_verdict *v, const char *text, size_t n, bool chosen) {
+    hn_strbuf mended;
+    hn_diag diag = {0};
+    int commas, backslashes;
+    hn_strbuf_init(&mended);
+    hn_submission_mend(&mended, text, n, &commas, &backslashes);
+    if (commas) {
+        hn_submission_remark(v, "commas before a closing bracket were left out: %d", commas);
+    }
+    if (backslashes) {
+        hn_submission_remark(
+            v, "single backslashes were read as LaTeX: %d (in JSON write two, as \\\\theta)",
+            backslashes);
+    }
+
+    // the text is checked before a parser sees it
+    hn_status status = mended.failed ? HN_ERR_MEMORY : HN_OK;
+    const char *json = hn_strbuf_text(&mended);
+    if (status == HN_OK && hn_json_text_check(json, mended.n, MAX_DEPTH, &diag) != HN_OK) {
+        hn_submission_refuse(v, diag.hint, "the submission is not JSON: %s", diag.message);
+    } else if (status == HN_OK) {
+        cJSON *root = cJSON_ParseWithLength(json, mended.n);
+        status = root ? grade_tree(v, root, chosen) : HN_ERR_MEMORY;
+        cJSON_Delete(root);
+    }
+    hn_strbuf_reset(&mended);
+    return status;
+}
+
 hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n, uint64_t seed,
                         hn_verdict *out) {
     HN_ASSERT(problem && out && (text || n == 0));
     begin(out, problem, seed);
-    keep_submission(out, text, n);
-    hn_diag diag = {0};
     if (n > HN_GRADE_MAX_BYTES) {
         hn_submission_refuse(out, NULL, "the submission has more than the %d bytes allowed",
                              HN_GRADE_MAX_BYTES);
         return HN_OK;
     }
-    if (!hn_submission_decode(out, &text, &n)) {
-        return HN_OK;
-    }
 
-    // the text is checked before a parser sees it
-    if (hn_json_text_check(text, n, MAX_DEPTH, &diag) != HN_OK) {
-        hn_submission_refuse(out, diag.hint, "the submission is not JSON: %s", diag.message);
-        return HN_OK;
+    // what is kept, and what its hash is of, is the text, whatever its encoding
+    hn_strbuf plain;
+    bool utf16;
+    hn_strbuf_init(&plain);
+    hn_status status = hn_submission_decode(&plain, text, n, &utf16);
+    if (status == HN_ERR_INPUT) {
+        hn_submission_refuse(out, "save it as UTF-8", "the submission is broken UTF-16");
+        status = HN_OK;
+    } else if (status == HN_OK) {
+        keep_submission(out, hn_strbuf_text(&plain), plain.n);
+        if (utf16) {
+            hn_submission_remark(out, "the file is UTF-16; UTF-8 is the encoding of JSON");
+        }
+        status = grade_text(out, hn_strbuf_text(&plain), plain.n, seed != 0);
     }
-    cJSON *root = cJSON_ParseWithLength(text, n);
-    hn_status status = root ? grade_tree(out, root, seed != 0) : HN_ERR_MEMORY;
-    cJSON_Delete(root);
+    hn_strbuf_reset(&plain);
     return status;
 }
 

@@ -15,6 +15,17 @@ int hn_submission_refuse(hn_verdict *v, const char *hint, const char *format, ..
     return 0;
 }
 
+void hn_submission_remark(hn_verdict *v, const char *format, ...) {
+    va_list args;
+    size_t used = strlen(v->note);
+    if (used > 0 && used + 2 < sizeof v->note) {
+        used += (size_t)snprintf(v->note + used, sizeof v->note - used, "; ");
+    }
+    va_start(args, format);
+    vsnprintf(v->note + used, sizeof v->note - used, format, args);
+    va_end(args);
+}
+
 static const char *kind_of(const cJSON *node) {
     return cJSON_IsNumber(node)   ? "a number"
            : cJSON_IsString(node) ? "a text"
@@ -28,13 +39,15 @@ static const char *kind_of(const cJSON *node) {
 static int check_fields(hn_verdict *v, const cJSON *root) {
     const hn_exercise *p = v->problem;
     const char *fields[] = {p->answer, "problem", "student", "seed", "comment"};
+    bool noted = false;
     for (const cJSON *m = root->child; m; m = m->next) {
         int known = 0;
         for (int i = 0; i < 5; i++) {
             known |= strcmp(m->string, fields[i]) == 0;
         }
-        if (!known && !v->note[0]) {
-            snprintf(v->note, sizeof v->note, "the field '%.60s' was not read", m->string);
+        if (!known && !noted) {
+            hn_submission_remark(v, "the field '%.60s' was not read", m->string);
+            noted = true;
         }
     }
 
@@ -131,17 +144,4 @@ int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, i
     *transposed = 0;
     *answer = cJSON_GetObjectItemCaseSensitive(root, v->problem->answer);
     return check_fields(v, root) && check_answer(v, root) && check_shape(v, *answer, transposed);
-}
-
-int hn_submission_decode(hn_verdict *v, const char **text, size_t *n) {
-    const unsigned char *bytes = (const unsigned char *)*text;
-    if (*n >= 3 && bytes[0] == 0xef && bytes[1] == 0xbb && bytes[2] == 0xbf) {
-        *text += 3;
-        *n -= 3;
-    }
-    if (*n >= 2 &&
-        ((bytes[0] == 0xff && bytes[1] == 0xfe) || (bytes[0] == 0xfe && bytes[1] == 0xff))) {
-        return hn_submission_refuse(v, "save it as UTF-8", "the submission is UTF-16");
-    }
-    return 1;
 }

@@ -9,8 +9,8 @@
 
 /// Makes the verdict ungradable, with a reason and what to do; returns 0. `hint` may be NULL.
 int hn_submission_refuse(hn_verdict *v, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
-/// Steps over a byte-order mark; refuses UTF-16.
-int hn_submission_decode(hn_verdict *v, const char **text, size_t *n);
+/// Adds a remark to the verdict's note.
+void hn_submission_remark(hn_verdict *v, const char *format, ...) HN_PRINTF(2, 3);
 /// Checks fields and shape. `answer` receives the list of rows, `transposed` whether its shape is
 /// that of the transposed matrix.
 int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, int *transposed);

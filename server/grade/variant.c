@@ -249,6 +249,7 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     // each field is a part, or one that every submission may have
     const cJSON *m;
     int answers = 0;
+    bool noted = false;
     cJSON_ArrayForEach(m, submission) {
         int known = has_part(x, m->string);
         answers += known;
@@ -257,8 +258,9 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
         }
 
         // the note names the first of the others
-        if (!known && !v->note[0]) {
-            snprintf(v->note, sizeof v->note, "the field '%.60s' was not read", m->string);
+        if (!known && !noted) {
+            hn_submission_remark(v, "the field '%.60s' was not read", m->string);
+            noted = true;
         }
     }
 

@@ -24,7 +24,8 @@ static void add_number(hn_strbuf *b, double x) {
 }
 
 /// What is to be said under one entry; nothing for one that is simply right.
-static void add_entry_detail(hn_strbuf *b, const hn_entry_verdict *e, const char *indent) {
+static void add_entry_detail(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
+                             const char *indent) {
     if (e->explanation[0]) {
         hn_strbuf_printf(b, "%s%s\n", indent, e->explanation);
     }
@@ -32,14 +33,16 @@ static void add_entry_detail(hn_strbuf *b, const hn_entry_verdict *e, const char
         return;
     }
     hn_strbuf_printf(b, "%sgiven     %s", indent, e->given);
-    if (e->state < 0 && e->expected[0] && e->max_points > 0) {
+    if (e->state < 0 && e->expected[0] && e->max_points > 0 && v->show_expected) {
         hn_strbuf_printf(b, "\n%sexpected  %s", indent, e->expected);
     }
     if (e->state >= 0) {
         hn_strbuf_add(b, " = ");
         add_number(b, e->given_value);
-        hn_strbuf_printf(b, "\n%sexpected  ", indent);
-        add_number(b, e->expected_value);
+        if (v->show_expected) {
+            hn_strbuf_printf(b, "\n%sexpected  ", indent);
+            add_number(b, e->expected_value);
+        }
         hn_strbuf_printf(b, " (a difference of %.2g is allowed)", e->allowed);
     }
     hn_strbuf_add(b, "\n");
@@ -64,7 +67,7 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         const hn_entry_verdict *e = &v->entry[k];
         hn_strbuf_printf(b, "  %-5s %4g / %g  %s\n", e->name, e->points, e->max_points,
                          e->mistake[0] ? e->mistake : "right");
-        add_entry_detail(b, e, "        ");
+        add_entry_detail(b, v, e, "        ");
         if (k == v->shown_entry) {
             hn_strbuf_add(b, "        at        ");
             add_state(b, v);
@@ -80,7 +83,7 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
     }
 }
 
-static void put_entry(hn_strbuf *b, const hn_entry_verdict *e) {
+static void put_entry(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
     hn_json_object(b);
     hn_json_put_string(b, "name", e->name);
     hn_json_put_number(b, "points", e->points);
@@ -90,11 +93,15 @@ static void put_entry(hn_strbuf *b, const hn_entry_verdict *e) {
     hn_json_put_string(b, "mistake", e->mistake);
     hn_json_put_string(b, "explanation", e->explanation);
     hn_json_put_string(b, "given", e->given);
-    hn_json_put_string(b, "expected", e->expected);
+    if (v->show_expected) {
+        hn_json_put_string(b, "expected", e->expected);
+    }
     if (e->state >= 0) {
         hn_json_put_int(b, "state", e->state);
         hn_json_put_number(b, "given_value", e->given_value);
-        hn_json_put_number(b, "expected_value", e->expected_value);
+        if (v->show_expected) {
+            hn_json_put_number(b, "expected_value", e->expected_value);
+        }
         hn_json_put_number(b, "allowed", e->allowed);
     }
     hn_json_end_object(b);
@@ -153,7 +160,7 @@ void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
     hn_json_key(b, "entries");
     hn_json_array(b);
     for (int k = 0; k < v->n_entries; k++) {
-        put_entry(b, &v->entry[k]);
+        put_entry(b, v, &v->entry[k]);
     }
     hn_json_end_array(b);
 
@@ -164,7 +171,7 @@ static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     char number[32];
     hn_strbuf detail;
     hn_strbuf_init(&detail);
-    add_entry_detail(&detail, e, "");
+    add_entry_detail(&detail, v, e, "");
 
     // the keys are Gradescope's
     snprintf(number, sizeof number, "%d.%d", e->row + 1, e->column + 1);

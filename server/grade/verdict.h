@@ -30,7 +30,7 @@ typedef struct hn_verdict {
     char reason[HN_GRADE_TEXT];  ///< ungradable: why, and where
     char hint[HN_GRADE_TEXT];    ///< ungradable: what to do
     char summary[HN_GRADE_TEXT]; ///< one sentence on the whole
-    char note[HN_GRADE_TEXT];    ///< fields that were not read, "" if none
+    char note[HN_GRADE_TEXT]; ///< remarks: fields that were not read, slips put right; "" if none
     double score, max_score;
     int n_entries, n_right;
     int n_unreadable; ///< entries whose formula cannot be read
@@ -44,7 +44,8 @@ typedef struct hn_verdict {
     int n_states;                          ///< states at which entries were compared
     uint64_t seed;
     const hn_exercise *problem; ///< borrowed
-    char student[80];           ///< whose variant it is; "" when the seed was given
+    bool show_expected; ///< the reference's formulas and numbers are written too: not for students
+    char student[80];   ///< whose variant it is; "" when the seed was given
     uint64_t submission_hash;
     char submission[HN_VERDICT_KEPT]; ///< the submission itself, "" when it is longer
 } hn_verdict;

@@ -115,6 +115,22 @@ def forms(folder):
     expect("a form is suggested", near.returncode == 2 and "junit" in near.stderr, near.stderr)
 
 
+def for_teachers(folder):
+    """Right numbers are in no verdict of a student, and numbers say how exact they must be."""
+    path = write(folder, "half.json", {"a": 1, "d": [1, 2]})
+    told = [run("grade", "fourbar", path, "--format", form, *more).stdout for form in ("text", "json", "gradescope", "junit", "html", "csv")
+            for more in ([], ["--show-expected"])]  # fmt: skip
+    right = run("grade", "fourbar", path, "--show-expected").stdout.split("expected  ")[1].split()[0]
+    expect("no verdict of a student has the right number", not any(right in text for text in told[::2]), right)
+    expect("a teacher's verdict has it", all(right in text for text in told[1:5:2]), str(told[1:5:2]))
+    asked = run("problem", "fourbar").stdout
+    expect("a number says how exact it must be", "; right to 0.5 %" in asked, asked)
+    said = run("grade", "fourbar", write(folder, "unit.json", {"a": "3 furlongs", "d": ["1,5", 2]})).stdout
+    expect("an unknown unit is named, with what is asked for", "'furlongs' at column 3 is no unit known here; asked for: kg m^2" in said, said)
+    expect("a comma in a number is named", "a comma at column 2; write decimals with a point" in said, said)
+    expect("a list of commands has help", run("help", "problems").returncode == 0)
+
+
 def broken_exercise(folder):
     """An exercise that is at fault is the program's fault, whatever is handed in."""
     home = os.path.join(folder, "home")
@@ -143,6 +159,7 @@ def main():
         statuses(folder)
         own_variant(folder)
         forms(folder)
+        for_teachers(folder)
         broken_exercise(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):
         if not good:

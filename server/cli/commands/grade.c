@@ -130,7 +130,7 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
     hn_strbuf_printf(&path, "%s.%s", t->target, ending_of(t->form));
     hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), &b);
     hn_strbuf_reset(&path);
-    if (result == HN_EXIT_DONE) {
+    if (result == HN_EXIT_DONE && !t->args->no_pictures) {
         result = write_picture(t, v);
     }
     printf("%s: %s\n", t->submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
@@ -151,6 +151,7 @@ static hn_exit grade_one(const task *t) {
     hn_exit result = HN_EXIT_PROGRAM;
     if (status == HN_OK) {
         snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");
+        v->show_expected = t->args->show_expected;
         result = write_result(t, v, hn_clock_wall() - start);
         result =
             result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE ? HN_EXIT_INPUT : result;

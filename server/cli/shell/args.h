@@ -36,7 +36,7 @@ typedef struct hn_args {
         expiry, keep_alive;
     int guests;
     int json, csv, wide, allow_programs, trust_programs, open, help, raw_lambda, reactions;
-    int once, ascii, blocks, plot, check, no_native;
+    int once, ascii, blocks, plot, check, no_native, show_expected, no_pictures;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;
 

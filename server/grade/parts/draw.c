@@ -28,18 +28,14 @@ static int find_name(const hn_draw *d, const char *name) {
     return -1;
 }
 
-/// theta1 stands for th1, and q1 too where there is no q1.
-static int find_angle(const hn_draw *d, const char *name) {
+/// theta1 stands for th1, omega1 for w1, and q1 for th1 where there is no q1.
+static int find_alias(const hn_draw *d, const char *name) {
     char other[MAX_WORD];
-    static const char *const long_names[] = {"theta", "q"};
-    for (int k = 0; k < 2; k++) {
-        const size_t n = strlen(long_names[k]);
-        if (strncmp(name, long_names[k], n) == 0) {
-            snprintf(other, sizeof other, "th%s", name + n);
-            return find_name(d, other);
-        }
+    int found = -1;
+    for (int i = 0; found < 0 && hn_spelling_alias(name, i, other, sizeof other); i++) {
+        found = find_name(d, other);
     }
-    return -1;
+    return found;
 }
 
 static int lookup(void *user, const char *name, hn_ex *out) {
@@ -50,7 +46,7 @@ static int lookup(void *user, const char *name, hn_ex *out) {
         i = find_name(d, joined);
         name = joined;
     }
-    i = i < 0 ? find_angle(d, name) : i;
+    i = i < 0 ? find_alias(d, name) : i;
     if (i >= 0) {
         *out = hn_graph_symbol_expr(d->graph, i);
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/matrix_text.h"
 
+#include "grade/parts/latex_letters.h"
+
 #include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -96,34 +98,9 @@ static const struct {
 
 enum { N_LETTERS = sizeof LETTERS / sizeof *LETTERS };
 
-/// Commands of LaTeX that are letters, and those that are a letter behind their "var".
-static const char *const GREEK[] = {
-    "alpha",   "beta",   "gamma", "delta",   "epsilon", "zeta",  "eta",   "theta", "iota",
-    "kappa",   "lambda", "mu",    "nu",      "xi",      "pi",    "rho",   "sigma", "tau",
-    "upsilon", "phi",    "chi",   "psi",     "omega",   "Gamma", "Delta", "Theta", "Lambda",
-    "Xi",      "Pi",     "Sigma", "Upsilon", "Phi",     "Psi",   "Omega", NULL};
-static const char *const VARIANTS[] = {"varphi", "vartheta", "varepsilon", "varrho", NULL};
 /// Commands that stand before an operand, or for a product.
 static const char *const COMMANDS[] = {"dot", "mathbf", "boldsymbol", "mathrm", "mathsf",
                                        "bm",  "cdot",   "times",      NULL};
-
-/// The word at `at` is one of the words, as a whole.
-static bool is_word(const char *at, const char *const *words) {
-    size_t n = 0;
-    while (isalpha((unsigned char)at[n])) {
-        n++;
-    }
-    for (int i = 0; words[i]; i++) {
-        if (strlen(words[i]) == n && strncmp(at, words[i], n) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool is_letter(const char *at) {
-    return is_word(at, GREEK) || is_word(at, VARIANTS);
-}
 
 /// The letter in UTF-8 that stands at `at`; N_LETTERS when none does.
 static size_t find_letter(const char *at) {
@@ -141,10 +118,10 @@ static void read_name(parser *p, char name[MAX_NAME]) {
     name[0] = 0;
     if (*p->at == '\\') {
         // of the commands the letters alone are names
-        if (!is_letter(p->at + 1)) {
+        if (!hn_latex_is_letter(p->at + 1)) {
             return;
         }
-        p->at += is_word(p->at + 1, VARIANTS) ? 1 + strlen("var") : 1;
+        p->at += hn_latex_is_variant(p->at + 1) ? 1 + strlen("var") : 1;
     }
 
     // letters, digits behind the first, and indices
@@ -221,8 +198,8 @@ static hn_status read_word(parser *p, hn_matrix *out) {
     // the modules before a function, unless a matrix has that name
     do {
         read_name(p, name);
-    } while (is_word(name, modules) && !p->names->lookup(p->names->user, name) && *p->at == '.' &&
-             isalpha((unsigned char)p->at[1]) && p->at++);
+    } while (hn_latex_is_word(name, modules) && !p->names->lookup(p->names->user, name) &&
+             *p->at == '.' && isalpha((unsigned char)p->at[1]) && p->at++);
     if (!name[0]) {
         return fault(p, *p->at == '\\' ? "this command of LaTeX is not known here"
                         : *p->at       ? "expected a matrix, a number or a bracket"
@@ -345,7 +322,7 @@ static bool is_latex(const parser *p) {
     for (const char *at = p->start; (at = strchr(at, '\\')) != NULL; at++) {
         const bool open =
             at == p->start || strchr(" +-*(", at[-1]) || isdigit((unsigned char)at[-1]);
-        if (is_word(at + 1, COMMANDS) || (open && is_letter(at + 1))) {
+        if (hn_latex_is_word(at + 1, COMMANDS) || (open && hn_latex_is_letter(at + 1))) {
             return true;
         }
     }
@@ -357,10 +334,10 @@ static bool is_latex(const parser *p) {
 static joint read_backslash(parser *p) {
     const char *next = p->at + 1;
     const bool blank = p->at > p->start && p->at[-1] == ' ', latex = is_latex(p);
-    if (is_word(next, COMMANDS)) {
+    if (hn_latex_is_word(next, COMMANDS)) {
         return BESIDE;
     }
-    if (is_letter(next)) {
+    if (hn_latex_is_letter(next)) {
         return blank || latex ? BESIDE : UNCLEAR;
     }
 
@@ -377,8 +354,8 @@ static joint read_backslash(parser *p) {
         return BESIDE;
     }
     static const char *const functions[] = {"inv", "transpose", "Inverse", "Transpose", NULL};
-    if (*ahead.at == '\\' ||
-        (name[0] && !is_word(name, functions) && !p->names->lookup(p->names->user, name))) {
+    if (*ahead.at == '\\' || (name[0] && !hn_latex_is_word(name, functions) &&
+                              !p->names->lookup(p->names->user, name))) {
         return BESIDE; // reported as an unknown command
     }
     p->at++;
@@ -387,7 +364,8 @@ static joint read_backslash(parser *p) {
 
 static joint read_joint(parser *p) {
     skip(p);
-    if (*p->at == '\\' && !is_word(p->at + 1, (const char *const[]){"cdot", "times", NULL})) {
+    if (*p->at == '\\' &&
+        !hn_latex_is_word(p->at + 1, (const char *const[]){"cdot", "times", NULL})) {
         return read_backslash(p);
     }
     if (take(p, ".*")) {

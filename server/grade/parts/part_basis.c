@@ -32,8 +32,8 @@ static hn_status read_entry(hn_draw *d, const cJSON *node, hn_ex *e, hn_diag *di
     }
     hn_strbuf plain;
     hn_strbuf_init(&plain);
-    hn_spelling_normalise(&plain, text);
-    const hn_status status = hn_draw_parse(d, hn_strbuf_text(&plain), e, diag);
+    hn_status status = hn_spelling_normalise(&plain, text, diag);
+    HN_THEN(status, hn_draw_parse(d, hn_strbuf_text(&plain), e, diag));
     hn_strbuf_reset(&plain);
     return status;
 }

@@ -12,6 +12,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_CHARS = 2000 };
@@ -52,32 +53,54 @@ static int uses_names(const hn_value_sheet *s, hn_ex e) {
     return uses;
 }
 
+/// The reason why a formula cannot be read.
+static void refuse_formula(const char *text, const hn_diag *diag, hn_part_result *r) {
+    hn_part_unreadable(r, "'%.60s' cannot be read: %.180s%s%.80s", text, diag->message,
+                       diag->hint[0] ? "; " : "", diag->hint);
+}
+
+/// The reason why a number cannot be read, with the slip that is most frequent.
+static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_result *r) {
+    const char *unit = hn_part_text(s->p->node, "unit");
+    char *end;
+    strtod(text, &end);
+    const char *tail = end + strspn(end, " ");
+    if (end == text || !*tail) {
+        hn_part_unreadable(r, "'%.60s' is no number; a number is asked for%s%s", text,
+                           unit[0] ? ", if you like with its unit: 1.2 " : "", unit);
+    } else if (*tail == ',') {
+        hn_part_unreadable(r, "'%.60s' has a comma at column %d; write decimals with a point", text,
+                           (int)(tail - text) + 1);
+    } else {
+        hn_part_unreadable(r, "'%.60s': '%.30s' at column %d is no unit known here; asked for: %s",
+                           text, tail, (int)(tail - text) + 1, unit[0] ? unit : "a plain number");
+    }
+}
+
 /// Reads text as the student wrote it; 0 after it has said why it cannot be read.
 static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *unit,
                      hn_part_result *r) {
     hn_diag diag = {0};
     hn_strbuf plain;
     hn_strbuf_init(&plain);
-    hn_status status;
+    hn_status status = HN_ERR_INPUT;
 
-    // a formula, or a number with its unit
-    if (s->symbolic) {
-        hn_spelling_normalise(&plain, text);
-        status = hn_draw_parse(s->draw, hn_strbuf_text(&plain), e, &diag);
-    } else {
-        status = strlen(text) < MAX_CHARS ? read_quantity(s, text, e, unit, &diag) : HN_ERR_LIMIT;
-        if (status != HN_OK) { // once more, in the parser's own spelling
-            hn_spelling_normalise(&plain, text);
+    // a number with its unit, as it stands or in the parser's own spelling; or a formula
+    if (!s->symbolic && strlen(text) < MAX_CHARS) {
+        status = read_quantity(s, text, e, unit, &diag);
+    }
+    if (status != HN_OK) {
+        status = hn_spelling_normalise(&plain, text, &diag);
+        if (status == HN_OK && s->symbolic) {
+            status = hn_draw_parse(s->draw, hn_strbuf_text(&plain), e, &diag);
+        } else if (status == HN_OK) {
             status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
         }
     }
-
-    // the reason, with the slip that is most frequent
-    if (status != HN_OK) {
-        const int comma = strchr(text, ',') && !s->symbolic;
-        hn_part_unreadable(r, "'%.60s' cannot be read: %.160s%s%.80s%s", text, diag.message,
-                           diag.hint[0] ? "; " : "", diag.hint,
-                           comma ? "; write decimals with a point" : "");
+    if (status != HN_OK && s->symbolic) {
+        refuse_formula(text, &diag, r);
+    } else if (status != HN_OK) {
+        refuse_number(s, text, r);
     }
     hn_strbuf_reset(&plain);
     return status == HN_OK;
@@ -163,8 +186,8 @@ static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_resu
             hn_part_keep_given(&results[k], k ? NULL : given);
             hn_part_wrong(&results[k], transposed ? "transposed" : "shape", 0,
                           transposed ? "rows and columns are exchanged: %d columns are asked for"
-                                     : "the answer needs %d entries",
-                          transposed ? s->reference.columns : s->reference.n);
+                                     : "entries asked for: %d; handed in: %d",
+                          transposed ? s->reference.columns : s->reference.n, count);
         }
         return HN_OK;
     }
@@ -278,6 +301,17 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
     return status;
 }
 
+/// "; right to 0.5 %": how exact a number must be.
+static void put_tolerance(hn_strbuf *b, const hn_part *p) {
+    double relative, absolute;
+    hn_value_tolerance(p, &relative, &absolute);
+    const char *unit = hn_part_text(p->node, "unit");
+    hn_strbuf_printf(b, "; right to %.3g %%", 100 * relative);
+    if (absolute > 1e-9) {
+        hn_strbuf_printf(b, " or %.3g %s", absolute, unit);
+    }
+}
+
 static void ask(hn_strbuf *b, const hn_part *p) {
     const cJSON *answer = cJSON_GetObjectItemCaseSensitive(p->node, "answer");
     const int n = cJSON_IsArray(answer) ? cJSON_GetArraySize(answer) : 0;
@@ -298,6 +332,10 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     // the unit, which may be left out
     hn_strbuf_printf(b, unit[0] ? " in %s, or with its unit: \"1.2 %s\"" : "%s%s", unit,
                      unit[0] ? unit : "");
+
+    if (!hn_value_is_symbolic(p)) {
+        put_tolerance(b, p);
+    }
 
     // the names that a formula may use
     const cJSON *states = cJSON_GetObjectItemCaseSensitive(p->node, "states"), *m;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/spelling.h"
 
+#include "grade/parts/latex_letters.h"
+
 #include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -81,27 +83,48 @@ static bool is_one_of(const char *const *words, const char *word) {
 static const char *const MODULES[] = {"np",    "numpy", "math", "Math",  "sp",
                                       "sympy", "cmath", "jnp",  "torch", NULL};
 /// Commands of LaTeX that say nothing about the value.
-static const char *const SILENT[] = {"left", "right", "big",    "Big",          "bigl", "bigr",
-                                     "quad", "qquad", "mathrm", "operatorname", "text", NULL};
-/// Commands that set the word in braces behind them upright; a function may be that word.
-static const char *const UPRIGHT[] = {"mathrm", "operatorname", "text", NULL};
+static const char *const SILENT[] = {"left",         "right",     "big",    "Big",  "bigl",
+                                     "bigr",         "bigg",      "Bigg",   "quad", "qquad",
+                                     "displaystyle", "textstyle", "limits", NULL};
+/// Commands that set the word in braces behind them in another face: a name or a function.
+static const char *const FACES[] = {"mathrm", "operatorname", "text", "mathbf", "mathit",
+                                    "mathsf", "boldsymbol",   "bm",   NULL};
+/// Commands that are a space, a thin one or one that is taken back.
+static const char SPACES[] = " ,;:!>";
 /// Letters of LaTeX that are written in two ways.
-static const char *const LETTERS[][2] = {
-    {"varphi", "phi"}, {"vartheta", "theta"}, {"varrho", "rho"}, {"ell", "l"}};
+static const char *const LETTERS[][2] = {{"varphi", "phi"},
+                                         {"vartheta", "theta"},
+                                         {"varrho", "rho"},
+                                         {"varepsilon", "epsilon"},
+                                         {"ell", "l"}};
+static const char *const ELL[] = {"ell", NULL};
+static const char *const DOT[] = {"dot", NULL};
 static const char *const PRODUCTS[] = {"cdot", "times", "ast", NULL};
 static const char *const FRACTIONS[] = {"frac", "dfrac", "tfrac", NULL};
 
 // ---- rewriting ----
 
+/// What stands side by side.
+typedef enum operand { NOTHING, A_NAME, A_NUMBER, A_FUNCTION, A_BARE_ARGUMENT } operand;
+
 typedef struct rewriter {
-    const char *at;
+    const char *start, *at, *word; ///< word: where the operand that is read begins
     hn_strbuf *out;
-    int latex;   ///< 1: factors side by side are multiplied
-    int operand; ///< 1: the output ends in an operand
+    int latex;       ///< 1: a name before a bracket is a factor, no function
+    operand operand; ///< what the output ends in; a bare argument: sin a, without brackets
+    int below;       ///< 1: a / was written last, 2: that operand stands below a /
     int nesting;
+    const char *fault_at, *fault; ///< the first place that cannot be read; NULL: none
 } rewriter;
 
 static void rewrite(rewriter *w, char stop);
+
+static void refuse(rewriter *w, const char *at, const char *why) {
+    if (!w->fault) {
+        w->fault_at = at;
+        w->fault = why;
+    }
+}
 
 static void skip_spaces(rewriter *w) {
     while (*w->at == ' ' || *w->at == '\t' || *w->at == '\n' || *w->at == '\r') {
@@ -109,12 +132,27 @@ static void skip_spaces(rewriter *w) {
     }
 }
 
-/// Called before an operand is written.
-static void begin_operand(rewriter *w) {
-    if (w->latex && w->operand) {
+/// Called before an operand is written. Factors side by side are multiplied; two numbers are not:
+/// 1 000 is no product.
+static void begin_operand(rewriter *w, operand next) {
+    const char *before = hn_strbuf_text(w->out);
+    const bool blank = w->out->n > 0 && before[w->out->n - 1] == ' ';
+    const bool halves = w->below == 2 && w->operand == A_NUMBER && blank; // 1/2 m: half of m
+    if (w->operand && !(w->operand == A_NUMBER && next == A_NUMBER)) {
+        if (w->operand == A_BARE_ARGUMENT && next != A_FUNCTION) {
+            refuse(w, w->word, "sin a b may be sin(a)*b or sin(a*b); write the brackets");
+        } else if (w->below == 2 && !halves) {
+            refuse(w, w->word, "a/b c may be (a/b)*c or a/(b*c); write the product with *");
+        }
         hn_strbuf_add(w->out, "*");
+        w->below = 0;
     }
-    w->operand = 0;
+    w->operand = NOTHING;
+}
+
+static void end_operand(rewriter *w, operand written) {
+    w->operand = written;
+    w->below = w->below ? 2 : 0;
 }
 
 /// A name with its index: theta_1, theta_{12}; the backslash has been read.
@@ -133,7 +171,7 @@ static void read_name(rewriter *w, char name[MAX_NAME]) {
 }
 
 static void write_number(rewriter *w) {
-    begin_operand(w);
+    begin_operand(w, A_NUMBER);
     while (isdigit((unsigned char)*w->at) || *w->at == '.') {
         hn_strbuf_add_n(w->out, w->at++, 1);
     }
@@ -146,36 +184,42 @@ static void write_number(rewriter *w) {
             hn_strbuf_add_n(w->out, w->at++, 1);
         }
     }
-    w->operand = 1;
+    end_operand(w, A_NUMBER);
 }
 
 /// What stands between this bracket and its partner, in round brackets.
 static void write_group(rewriter *w) {
     const char close = *w->at == '(' ? ')' : *w->at == '[' ? ']' : '}';
+    begin_operand(w, A_NAME);
+    const int below = w->below;
     w->at++;
-    begin_operand(w);
     hn_strbuf_add(w->out, "(");
     rewrite(w, close);
     if (*w->at == close) {
         w->at++;
         hn_strbuf_add(w->out, ")");
     }
-    w->operand = 1;
+    w->below = below;
+    end_operand(w, A_NAME);
 }
 
 /// \frac{a}{b} as ((a)/(b)); without its braces it is left to the parser to report.
 static void write_fraction(rewriter *w) {
-    begin_operand(w);
+    begin_operand(w, A_NAME);
+    const int below = w->below;
+    w->below = 0;
     hn_strbuf_add(w->out, "(");
     for (int part = 0; part < 2; part++) {
         skip_spaces(w);
         if (*w->at == '{') {
             write_group(w);
         }
-        w->operand = 0;
+        w->operand = NOTHING;
+        w->below = 0;
         hn_strbuf_add(w->out, part == 0 ? "/" : ")");
     }
-    w->operand = 1;
+    w->below = below;
+    end_operand(w, A_NAME);
 }
 
 static void write_word(rewriter *w);
@@ -200,43 +244,86 @@ static void read_exponent(rewriter *w, char exponent[MAX_NAME]) {
     }
 }
 
-/// A function and its argument: a group or, in LaTeX, the one name that follows. A number without
-/// brackets (sin 2x) is left to the parser to refuse: its end would be a guess.
-static void write_function(rewriter *w, const char *function) {
-    char exponent[MAX_NAME];
-    begin_operand(w);
-    hn_strbuf_add(w->out, function);
-    read_exponent(w, exponent);
-    skip_spaces(w);
-    if (w->latex && strncmp(w->at, "\\left", 5) == 0) {
-        w->at += 5;
-    }
-
-    // the argument, then the exponent that stood before it
+/// The argument of a function: a group, or the one name that follows. A number without brackets
+/// (sin 2x) is left to the parser to refuse: its end would be a guess.
+static void write_argument(rewriter *w) {
     if (*w->at == '(' || *w->at == '[' || *w->at == '{') {
         write_group(w);
-    } else if (w->latex && (isalpha((unsigned char)*w->at) || *w->at == '\\')) {
+    } else if (isalpha((unsigned char)*w->at) || *w->at == '\\') {
         hn_strbuf_add(w->out, "(");
         write_word(w);
         hn_strbuf_add(w->out, ")");
     }
-    if (exponent[0]) {
+}
+
+static void write_function(rewriter *w, const char *function) {
+    char exponent[MAX_NAME];
+    const char *root = w->at;
+    begin_operand(w, A_FUNCTION);
+    const int below = w->below;
+    hn_strbuf_add(w->out, function);
+    read_exponent(w, exponent);
+    if (w->latex && *root == '[' && strcmp(function, "sqrt") == 0) {
+        refuse(w, root, "\\sqrt[n] is not read; write (...)^(1/n)");
+    }
+
+    // the argument, without the space and the \left that may stand before it
+    w->below = 0;
+    const char *ahead = w->at + strspn(w->at, " \t\r\n");
+    w->at = *ahead == '(' || *ahead == '[' || *ahead == '{' || *ahead == '\\' ||
+                    isalpha((unsigned char)*ahead)
+                ? ahead
+                : w->at;
+    if (w->latex && strncmp(w->at, "\\left", 5) == 0 && !isalpha((unsigned char)w->at[5])) {
+        w->at += 5;
+    }
+    const bool bare = *w->at == '\\' || isalpha((unsigned char)*w->at);
+    write_argument(w);
+    if (exponent[0]) { // it stood before the argument
         hn_strbuf_printf(w->out, "^%s", exponent);
+    }
+    w->below = below;
+    w->operand = NOTHING;
+    if (bare || w->at[-1] == ')' || w->at[-1] == ']' || w->at[-1] == '}') {
+        end_operand(w, bare ? A_BARE_ARGUMENT : A_FUNCTION);
     }
 }
 
-/// \operatorname{sin} is \sin: reads the braces when a function stands in them.
-static void read_upright(rewriter *w, char name[MAX_NAME]) {
+/// \operatorname{sin} is \sin, \mathrm{l}_1 is l_1: reads the braces when one word stands in them.
+static void read_face(rewriter *w, char name[MAX_NAME]) {
     rewriter ahead = *w;
-    char word[MAX_NAME];
+    char word[MAX_NAME], index[MAX_NAME] = "";
     if (*ahead.at++ != '{') {
         return;
     }
+    ahead.at += *ahead.at == '\\' && hn_latex_is_letter(ahead.at + 1);
     read_name(&ahead, word);
-    if (*ahead.at == '}' && find_function(word)) {
-        w->at = ahead.at + 1;
-        snprintf(name, MAX_NAME, "%s", word);
+    if (!word[0] || *ahead.at != '}') {
+        return;
     }
+    w->at = ahead.at + 1;
+    if (*w->at == '_') {
+        read_name(w, index);
+    }
+    snprintf(name, MAX_NAME, "%.30s%.30s", word, index);
+}
+
+/// \dot\theta_1, \dot{\theta}_1: the name with "dot" before its index, as thetadot_1.
+static void read_dot(rewriter *w, char name[MAX_NAME]) {
+    char word[MAX_NAME], index[MAX_NAME] = "";
+    skip_spaces(w);
+    const int brace = *w->at == '{';
+    w->at += brace;
+    w->at += *w->at == '\\' && hn_latex_is_letter(w->at + 1);
+    read_name(w, word);
+    if (brace && *w->at == '}') {
+        w->at++;
+        if (*w->at == '_') {
+            read_name(w, index);
+        }
+    }
+    const size_t n = strcspn(word, "_0123456789");
+    snprintf(name, MAX_NAME, "%.*sdot%.20s%.20s", (int)(n < 20 ? n : 20), word, word + n, index);
 }
 
 /// Puts the plain letter for \varphi, \ell_1 and their like.
@@ -251,41 +338,76 @@ static void plain_letter(char name[MAX_NAME]) {
     }
 }
 
-/// A name, a function, a module or a command of LaTeX.
-static void write_word(rewriter *w) {
-    const int command = *w->at == '\\';
-    char name[MAX_NAME];
-    w->at += command;
-    if (command && !isalpha((unsigned char)*w->at)) {
-        w->at += *w->at != 0; // "\," and other spaces
+/// Whether a command of LaTeX is one that is read here; `name` may have an index behind it.
+static bool is_known(const char *name) {
+    char lower[MAX_NAME];
+    snprintf(lower, sizeof lower, "%.*s", (int)strcspn(name, "_0123456789"), name);
+    return hn_latex_is_letter(name) || find_function(lower) || hn_latex_is_word(name, SILENT) ||
+           hn_latex_is_word(name, FACES) || hn_latex_is_word(name, ELL) ||
+           hn_latex_is_word(name, DOT) || hn_latex_is_word(name, PRODUCTS) ||
+           hn_latex_is_word(name, FRACTIONS);
+}
+
+/// Reads a word: a name, or the name that a command of LaTeX stands for. Empty when it has no value.
+static void read_word(rewriter *w, char name[MAX_NAME], bool *command) {
+    const char *start = w->at;
+    *command = *w->at == '\\';
+    w->at += *command;
+    name[0] = 0;
+    if (*command && !isalpha((unsigned char)*w->at)) {
+        if (!*w->at || !strchr(SPACES, *w->at)) {
+            refuse(w, start, "this backslash begins no command of LaTeX that is read here");
+        }
+        w->at += *w->at != 0;
         return;
     }
     read_name(w, name);
-    if (command && is_one_of(UPRIGHT, name)) {
-        read_upright(w, name);
-    } else if (command) {
+    if (*command && !is_known(name)) {
+        refuse(w, start, "this command of LaTeX is not read here");
+    }
+
+    // the commands that stand for a name, and those without a value
+    if (*command && is_one_of(FACES, name)) {
+        read_face(w, name);
+    } else if (*command && is_one_of(DOT, name)) {
+        read_dot(w, name);
+    } else if (*command) {
         plain_letter(name);
     }
-    if (command && is_one_of(SILENT, name)) {
-        return;
+    if (*command && (is_one_of(SILENT, name) || is_one_of(FACES, name))) {
+        name[0] = 0;
     }
-    if (is_one_of(MODULES, name) && *w->at == '.') {
-        w->at++;
+}
+
+/// Whether the name before a bracket is a function that only the parser knows, as max(a, b).
+static bool calls(const rewriter *w) {
+    return *w->at == '(' && !w->latex;
+}
+
+/// A name, a function, a module or a command of LaTeX.
+static void write_word(rewriter *w) {
+    char name[MAX_NAME];
+    bool command;
+    read_word(w, name, &command);
+    if (!name[0] || (is_one_of(MODULES, name) && *w->at == '.' && w->at++)) {
         return;
     }
 
     const char *function = find_function(name);
     if (command && is_one_of(PRODUCTS, name)) {
         hn_strbuf_add(w->out, "*");
-        w->operand = 0;
+        w->operand = NOTHING;
+        w->below = 0;
     } else if (command && is_one_of(FRACTIONS, name) && w->nesting < MAX_NESTING) {
         write_fraction(w);
     } else if (function && w->nesting < MAX_NESTING) {
         write_function(w, function);
     } else {
-        begin_operand(w);
+        begin_operand(w, A_NAME);
         hn_strbuf_add(w->out, strcasecmp(name, "pi") == 0 ? "pi" : name);
-        w->operand = 1;
+        if (!calls(w)) {
+            end_operand(w, A_NAME);
+        }
     }
 }
 
@@ -294,15 +416,19 @@ static void write_operator(rewriter *w) {
         w->at++;
         return;
     }
-    w->operand = *w->at == ')' || *w->at == ']' || *w->at == '}';
+    const bool closes = *w->at == ')' || *w->at == ']' || *w->at == '}';
+    w->operand = closes ? A_NAME : NOTHING;
+    w->below = *w->at == '/';
     hn_strbuf_add_n(w->out, w->at++, 1);
 }
 
 /// Rewrites up to the bracket `stop`, or to the end of the text.
 static void rewrite(rewriter *w, char stop) {
     w->nesting++;
-    w->operand = 0;
+    w->operand = NOTHING;
+    w->below = 0;
     for (skip_spaces(w); *w->at && *w->at != stop; skip_spaces(w)) {
+        w->word = w->at;
         const int opens = *w->at == '(' || *w->at == '[' || *w->at == '{';
         if (isdigit((unsigned char)*w->at) || *w->at == '.') {
             write_number(w);
@@ -317,15 +443,45 @@ static void rewrite(rewriter *w, char stop) {
     w->nesting--;
 }
 
-void hn_spelling_normalise(hn_strbuf *out, const char *text) {
+/// The column of the k-th character in ASCII, counted in the characters that were typed.
+static int column_of(const char *text, const char *ascii, const char *at) {
+    hn_strbuf prefix;
+    int column = 1;
+    hn_strbuf_init(&prefix);
+    for (const char *p = text; *p; column++) {
+        const char *next = p + 1;
+        while (((unsigned char)*next & 0xc0) == 0x80) {
+            next++;
+        }
+        hn_strbuf_clear(&prefix);
+        char one[8];
+        snprintf(one, sizeof one, "%.*s", (int)(next - p < 7 ? next - p : 7), p);
+        to_ascii(&prefix, one);
+        if (ascii + prefix.n > at) {
+            break;
+        }
+        ascii += prefix.n;
+        p = next;
+    }
+    hn_strbuf_reset(&prefix);
+    return column;
+}
+
+hn_status hn_spelling_normalise(hn_strbuf *out, const char *text, hn_diag *diag) {
     hn_strbuf ascii;
     hn_strbuf_init(&ascii);
     to_ascii(&ascii, text);
     rewriter w = {.at = hn_strbuf_text(&ascii), .out = out};
+    w.start = w.at;
     w.latex = strchr(w.at, '\\') != NULL;
     rewrite(&w, 0);
-    out->failed |= ascii.failed;
+    hn_status status = ascii.failed || out->failed ? HN_ERR_MEMORY : HN_OK;
+    if (status == HN_OK && w.fault) {
+        status = hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "column %d, at '%.12s': %s",
+                             column_of(text, w.start, w.fault_at), w.fault_at, w.fault);
+    }
     hn_strbuf_reset(&ascii);
+    return status;
 }
 
 int hn_spelling_join(const char *name, char *out, size_t size) {
@@ -337,4 +493,18 @@ int hn_spelling_join(const char *name, char *out, size_t size) {
     }
     out[n] = 0;
     return n > 0 && n < strlen(name) && strlen(name) < size;
+}
+
+int hn_spelling_alias(const char *name, int i, char *out, size_t size) {
+    static const char *const aliases[][2] = {
+        {"thetadot", "w"}, {"thetadot", "om"}, {"theta", "th"}, {"q", "th"},     {"omega", "w"},
+        {"omega", "om"},   {"alpha", "al"},    {"beta", "be"},  {"gamma", "ga"}, {"lambda", "la"},
+    };
+    for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++) {
+        const size_t n = strlen(aliases[k][0]);
+        if (strncmp(name, aliases[k][0], n) == 0 && !isalpha((unsigned char)name[n]) && i-- == 0) {
+            return snprintf(out, size, "%s%s", aliases[k][1], name + n) < (int)size;
+        }
+    }
+    return 0;
 }

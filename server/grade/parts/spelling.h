@@ -6,16 +6,22 @@
 //     np.sin(θ1)   Sin[th1]   \sin\theta_{1}   sin^2(th1)   −l₁·sin(th1)
 //     sin(theta1)  sin(th1)   sin(theta_1)     sin(th1)^2   -l1*sin(th1)
 
+#include "base/diag.h"
 #include "base/strbuf.h"
 
 /// Rewrites a formula for hn_parse(); a text in that spelling already is copied as it is.
 ///
 /// Typographic signs, Greek letters, sub- and superscript digits become ASCII; `np.`, `math.` and
 /// their like are dropped; square brackets and capital letters of functions (Sin[x], ArcTan)
-/// become those of the parser. In a text with a backslash LaTeX commands are read, and factors that
-/// stand side by side are multiplied. Text that is no formula comes out as some other text that is
-/// none: the parser reports it. Output is bounded by a few times the input.
-void hn_spelling_normalise(hn_strbuf *out, const char *text);
+/// become those of the parser. Factors that stand side by side are multiplied, two numbers never.
+/// In a text with a backslash LaTeX commands are read. Text that is no formula comes out as some
+/// other text that is none: the parser reports it. Output is bounded by a few times the input.
+/// Fails: HN_ERR_INPUT (a command of LaTeX that is not known, or a/b c, which may be read in two
+/// ways; `diag` says the column of what was typed), HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_spelling_normalise(hn_strbuf *out, const char *text, hn_diag *diag);
+/// The i-th shorter name that a name may stand for: theta1 is th1, omega1 is w1 or om1, q1 is th1.
+/// Returns 0 when there is none.
+int hn_spelling_alias(const char *name, int i, char *out, size_t size);
 /// Copies `name` without underscores: theta_1 is theta1. Returns 0 when it has none or is too long.
 int hn_spelling_join(const char *name, char *out, size_t size);
 #endif

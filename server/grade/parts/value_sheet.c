@@ -78,10 +78,16 @@ hn_status hn_value_read(hn_value_sheet *s, const cJSON *node, const hn_values *b
     return HN_OK;
 }
 
+void hn_value_tolerance(const hn_part *p, double *relative, double *absolute) {
+    const int symbolic = hn_value_is_symbolic(p);
+    const cJSON *tolerance = cJSON_GetObjectItemCaseSensitive(p->node, "tolerance");
+    *relative = hn_part_number(tolerance, "relative", symbolic ? 1e-6 : 5e-3);
+    *absolute = hn_part_number(tolerance, "absolute", symbolic ? 1e-9 : 1e-12);
+}
+
 static hn_status set_tolerance(hn_value_sheet *s) {
-    const cJSON *tolerance = cJSON_GetObjectItemCaseSensitive(s->p->node, "tolerance");
-    const double relative = hn_part_number(tolerance, "relative", s->symbolic ? 1e-6 : 5e-3);
-    const double absolute = hn_part_number(tolerance, "absolute", s->symbolic ? 1e-9 : 1e-12);
+    double relative, absolute;
+    hn_value_tolerance(s->p, &relative, &absolute);
     for (int k = 0; k < s->reference.n; k++) {
         double size = 0;
         for (int i = 0; i < s->draw->n_states; i++) {

@@ -165,9 +165,57 @@ static void the_encoding_of_a_file_is_no_reason_to_refuse_it(void **state) {
     hn_verdict v;
     grade(*state, "\xef\xbb\xbf{\"J\": [[1,1,1,1],[1,1,1,1]]}", &v);
     assert_int_equal(v.kind, HN_VERDICT_GRADED);
-    assert_int_equal(hn_grade_json(*state, "\xff\xfe{\0}\0", 6, 0, &v), HN_OK);
-    assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
-    assert_non_null(strstr(v.reason, "UTF-16"));
+
+    // UTF-16 of both orders, with a mark and without
+    static const char text[] = "{\"J\": [[1,1,1,1],[1,1,1,1]]}";
+    for (int k = 0; k < 4; k++) {
+        char wide[2 * sizeof text + 2] = {0};
+        const int big = k & 1, mark = k < 2 ? 2 : 0;
+        memcpy(wide, big ? "\xfe\xff" : "\xff\xfe", (size_t)mark);
+        for (size_t i = 0; i + 1 < sizeof text; i++) {
+            wide[(size_t)mark + 2 * i + (size_t)big] = text[i];
+        }
+        const size_t n = (size_t)mark + 2 * (sizeof text - 1);
+        assert_int_equal(hn_grade_json(*state, wide, n, 0, &v), HN_OK);
+        if (v.kind != HN_VERDICT_GRADED) {
+            fail_msg("encoding %d: %s", k, v.reason);
+        }
+        assert_non_null(strstr(v.note, "UTF-16"));
+        assert_string_equal(v.submission, text);
+        assert_int_equal(hn_grade_json(*state, wide, n - 1, 0, &v), HN_OK);
+        assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+    }
+}
+
+static void two_slips_of_json_are_put_right_with_a_remark(void **state) {
+    hn_verdict v;
+    grade(*state, "{\"J\": [[1,1,1,1,],[1,1,1,1, ],\n],}", &v);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_non_null(strstr(v.note, "commas before a closing bracket were left out: 4"));
+    assert_string_equal(v.submission, "{\"J\": [[1,1,1,1,],[1,1,1,1, ],\n],}");
+
+    // \t and \s: a tabulator, and an escape that JSON does not know
+    grade(*state, "{\"J\": [[\"-l_1 \\sin(\\theta_1)\",\"a,]\",1,1],[1,1,1,1]]}", &v);
+    assert_true(v.entry[0].right);
+    assert_non_null(strstr(v.note, "single backslashes were read as LaTeX: 2"));
+    assert_string_equal(v.entry[1].given, "a,]");
+}
+
+static void the_right_answers_are_shown_to_teachers_alone(void **state) {
+    hn_verdict v;
+    grade(*state, "{\"J\": [[1,1,1,1],[1,1,1,\"(\"]]}", &v);
+    for (int shown = 0; shown < 2; shown++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        v.show_expected = shown != 0;
+        hn_verdict_text(&b, &v);
+        hn_verdict_json(&b, &v);
+        hn_verdict_gradescope(&b, &v, 0);
+        assert_int_equal(strstr(hn_strbuf_text(&b), "\"expected") != NULL, shown);
+        assert_int_equal(strstr(hn_strbuf_text(&b), "expected  ") != NULL, shown);
+        assert_int_equal(strstr(hn_strbuf_text(&b), v.entry[0].expected) != NULL, shown);
+        hn_strbuf_reset(&b);
+    }
 }
 
 static void a_formula_that_uses_the_closed_loop_is_right_and_told(void **state) {
@@ -493,6 +541,7 @@ static void json_and_text_tell_the_same_verdict(void **state) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     grade_with(*state, 0, "l1*sin(th1)", &v);
+    v.show_expected = true;
     hn_verdict_json(&b, &v);
     cJSON *root = parse(&b);
     assert_near(number_of(root, "score"), 7.5, 0);
@@ -574,6 +623,8 @@ int main(void) {
         cmocka_unit_test(unreadable_formulas_are_in_the_summary),
         cmocka_unit_test(a_submission_without_a_readable_formula_is_ungradable),
         cmocka_unit_test(the_encoding_of_a_file_is_no_reason_to_refuse_it),
+        cmocka_unit_test(two_slips_of_json_are_put_right_with_a_remark),
+        cmocka_unit_test(the_right_answers_are_shown_to_teachers_alone),
         cmocka_unit_test(a_formula_that_uses_the_closed_loop_is_right_and_told),
         cmocka_unit_test(each_known_mistake_is_named_and_shown_at_a_state),
         cmocka_unit_test(the_state_shown_closes_the_loop_and_holds_the_expected_value),

@@ -125,8 +125,8 @@ static void mistakes_in_numbers_are_named(void **state) {
 
 static void formulas_are_right_in_any_form(void **state) {
     static const char *const right[] = {
-        "\"-l*sin(th1)*w1\"",  "\"-l*np.sin(th1)*w1\"",         "\"-w1*l*Sin[th1]\"",
-        "\"−l·sin(θ1)·w1\"",   "\"-l \\\\sin\\\\theta_1 w_1\"", "\"l*w1*cos(th1+pi/2)\"",
+        "\"-l*sin(th1)*w1\"",  "\"-l*np.sin(th1)*w1\"",           "\"-w1*l*Sin[th1]\"",
+        "\"−l·sin(θ1)·w1\"",   "\"-l \\\\sin(\\\\theta_1) w_1\"", "\"l*w1*cos(th1+pi/2)\"",
         "\"-l*w1*sin(th_1)\"",
     };
     for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
