@@ -348,7 +348,7 @@ static bool is_known(const char *name) {
            hn_latex_is_word(name, FRACTIONS);
 }
 
-/// Reads a word: a name, or the name that a command of LaTeX stands for. Empty when it has no value.
+/// Reads a word: a name, or the name that a command of LaTeX stands for. Empty: it has no value.
 static void read_word(rewriter *w, char name[MAX_NAME], bool *command) {
     const char *start = w->at;
     *command = *w->at == '\\';
