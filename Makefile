@@ -214,12 +214,16 @@ RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsu
                  libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core bwrap:bubblewrap
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux
+# for make languages alone: some 700 MB
+LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile
 	@tests/tools/packages.sh $@ $(RUN_PACKAGES)
 build/.packages-test: Makefile
 	@tests/tools/packages.sh $@ $(TEST_PACKAGES)
+build/.packages-languages: Makefile
+	@tests/tools/packages.sh $@ $(LANGUAGE_PACKAGES)
 build/.packages-check: Makefile
 	@tests/tools/packages.sh $@ $(CHECK_PACKAGES)
 
@@ -301,6 +305,7 @@ help:
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
 	@echo 'make book         all lessons for print: build/book.html and build/book.pdf'
+	@echo 'make languages    every scene as a program in every language that Debian has: tests/tables/languages.txt'
 	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
@@ -311,7 +316,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises book run-suite run-unit run-server run-bench run-fuzz reports accuracy
+.PHONY: test test-quick asan tsan fuzz load bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages book run-suite run-unit run-server run-bench run-fuzz reports accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -388,6 +393,12 @@ book: all build/.packages-test
 	@node lessons/book.mjs $(PROGRAM) build/book.html
 	@chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/book.pdf "file://$(CURDIR)/build/book.html" 2>/dev/null
 	@echo 'book: build/book.html, build/book.pdf'
+
+# half an hour on two processors; fails where a program disagrees with the workbench
+languages: build/.packages-languages
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/cli/test_export.py --all >build/languages.txt; status=$$?; \
+	cp build/languages.txt tests/tables/languages.txt && cat tests/tables/languages.txt; exit $$status
 
 # some minutes on one processor; fails where a variant is bad
 exercises: all

@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_BYTES = 4 << 20, LONGEST = 160 }; // of all code; of a piece inside a line
@@ -32,6 +33,15 @@ void hn_code_number(hn_strbuf *b, const hn_language *language, double value) {
             break;
         }
     }
+    char *const e = language->power ? strchr(text, 'e') : NULL;
+    if (e) {
+        // the power of ten as a number of its own, without its sign of plus and leading zeros
+        *e = '\0';
+        char exponent[16];
+        snprintf(exponent, sizeof exponent, "%d", atoi(e + 1));
+        hn_code_fill(b, language->power, (const char *[]){text, exponent});
+        return;
+    }
     hn_strbuf_add(b, text);
     if (language->needs_point && !strpbrk(text, ".e")) {
         hn_strbuf_add(b, ".0");
@@ -51,10 +61,34 @@ static bool lists(const char *list, const char *word) {
 }
 
 void hn_code_name(hn_strbuf *b, const hn_language *language, const char *name) {
-    hn_strbuf_add(b, name);
-    if (lists(language->reserved, name)) {
-        hn_strbuf_add(b, "_");
+    char whole[128];
+    snprintf(whole, sizeof whole, "%s%s", name, lists(language->reserved, name) ? "_" : "");
+    if (language->put_name) {
+        language->put_name(b, whole);
+    } else {
+        hn_strbuf_add(b, whole);
     }
+}
+
+void hn_code_words(hn_strbuf *b, const hn_language *language, const char *words) {
+    hn_strbuf plain;
+    hn_strbuf_init(&plain);
+    for (; *words; words++) {
+        const unsigned char c = (unsigned char)*words;
+        const char kept[2] = {(char)(c < 32 || c == 127 ? ' '
+                                     : c == '"'         ? '\''
+                                     : c == '\\'        ? '/'
+                                                        : c),
+                              0};
+        hn_strbuf_add(&plain, kept);
+    }
+    if (language->put_words) {
+        language->put_words(b, hn_strbuf_text(&plain));
+    } else {
+        hn_strbuf_add(b, hn_strbuf_text(&plain));
+    }
+    b->failed |= plain.failed;
+    hn_strbuf_reset(&plain);
 }
 
 void hn_code_fill(hn_strbuf *b, const char *form, const char *const *texts) {
@@ -114,6 +148,17 @@ static const char *choose_prefix(const hn_graph *g) {
 
 static void put_ex(writer *w, hn_ex e, level around);
 
+static const char *times(const writer *w) {
+    return w->language->times ? w->language->times : "*";
+}
+
+/// The name of a shared piece's variable.
+static void put_variable(hn_strbuf *b, const writer *w, int number) {
+    char name[32];
+    snprintf(name, sizeof name, "%s%d", w->prefix, number);
+    hn_code_name(b, w->language, name);
+}
+
 /// A call by its form, or as name(arguments).
 static void put_call(writer *w, const hn_node_view *view) {
     const char *form = w->language->call[view->op];
@@ -148,7 +193,7 @@ static void put_sum(writer *w, const hn_node_view *view) {
 static void put_node(writer *w, int32_t node, level around) {
     const hn_node_view view = hn_graph_node(w->g, node);
     if (w->variable[node] > 0) {
-        hn_strbuf_printf(w->b, "%s%d", w->prefix, w->variable[node]);
+        put_variable(w->b, w, w->variable[node]);
         return;
     }
 
@@ -165,7 +210,7 @@ static void put_node(writer *w, int32_t node, level around) {
         put_sum(w, &view);
     } else if (view.op == HN_OP_MUL) {
         put_ex(w, view.args[0], LEVEL_PRODUCT);
-        hn_strbuf_add(w->b, "*");
+        hn_strbuf_add(w->b, times(w));
         put_ex(w, view.args[1], LEVEL_PRODUCT);
     } else {
         put_call(w, &view);
@@ -194,7 +239,7 @@ static void put_ex(writer *w, hn_ex e, level around) {
         hn_strbuf_add(w->b, "-");
     } else {
         hn_code_number(w->b, w->language, e.c);
-        hn_strbuf_add(w->b, "*");
+        hn_strbuf_add(w->b, times(w));
     }
     put_node(w, e.n, LEVEL_ATOM);
     hn_strbuf_add(w->b, parentheses ? ")" : "");
@@ -226,29 +271,44 @@ static void write_shared(writer *w, hn_strbuf *text) {
         if (w->uses[node] < 2 && text->n <= LONGEST) {
             continue;
         }
-        char name[32];
-        snprintf(name, sizeof name, "%s%d", w->prefix, ++w->n_shared);
+        hn_strbuf name;
+        hn_strbuf_init(&name);
+        put_variable(&name, w, ++w->n_shared);
         begin_line(w);
-        hn_code_fill(w->b, w->language->constant, (const char *[]){name, hn_strbuf_text(text)});
+        hn_code_fill(w->b, w->language->constant,
+                     (const char *[]){hn_strbuf_text(&name), hn_strbuf_text(text)});
         hn_strbuf_add(w->b, "\n");
+        w->b->failed |= name.failed;
+        hn_strbuf_reset(&name);
         w->variable[node] = w->n_shared;
     }
 }
 
 static void write_entry(writer *w, const hn_code_entry *e, hn_strbuf *text) {
     char row[16], column[16];
+    hn_strbuf array;
+    hn_strbuf_init(&array);
+    if (w->language->put_array) {
+        w->language->put_array(&array, e->array);
+    } else {
+        hn_strbuf_add(&array, e->array);
+    }
+
+    // the statement: an entry of a vector or of a matrix
+    const char *const name = hn_strbuf_text(&array);
     text_of(w, e->value, text);
     snprintf(row, sizeof row, "%d", e->row + w->language->first);
     snprintf(column, sizeof column, "%d", e->column + w->language->first);
     begin_line(w);
     if (e->column < 0) {
-        hn_code_fill(w->b, w->language->vector,
-                     (const char *[]){e->array, row, hn_strbuf_text(text)});
+        hn_code_fill(w->b, w->language->vector, (const char *[]){name, row, hn_strbuf_text(text)});
     } else {
         hn_code_fill(w->b, w->language->matrix,
-                     (const char *[]){e->array, row, column, hn_strbuf_text(text)});
+                     (const char *[]){name, row, column, hn_strbuf_text(text)});
     }
     hn_strbuf_add(w->b, "\n");
+    w->b->failed |= array.failed;
+    hn_strbuf_reset(&array);
 }
 
 hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,

@@ -24,6 +24,9 @@ HN_MUST_CHECK hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_
 void hn_code_number(hn_strbuf *b, const hn_language *language, double value);
 /// Writes a symbol's name; a reserved word gets a '_' behind it.
 void hn_code_name(hn_strbuf *b, const hn_language *language, const char *name);
+/// Writes words of the scene (its title, what a parameter means) so that they stay inside a comment
+/// or a text: control characters become spaces, quotes single, and a backslash a slash.
+void hn_code_words(hn_strbuf *b, const hn_language *language, const char *words);
 /// Writes a form with #1, #2, ... replaced by the texts.
 void hn_code_fill(hn_strbuf *b, const char *form, const char *const *texts);
 

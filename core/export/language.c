@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "export/language.h"
 
+#include "expr/print.h"
+
+#include <stdio.h>
 #include <string.h>
 
 /// Names that the texts with places use beside those of the scene.
@@ -8,6 +11,9 @@
     " q v mass force jacobian bias closure closure_rate energy NQ NV NC START_Q START_V START_A " \
     "ENERGY "                                                                                     \
     "CHECK_T CHECK_Q CHECK_V CHECK_A ALPHA BETA rates terms move slope close "
+#define WOLFRAM_OWN                                                                          \
+    "startQ startV startA startEnergy checkQ checkV checkA checkT rate nQ nV nC end motion " \
+    "checks "
 #define C_WORDS                                                                                  \
     " auto break case char const continue default do double else enum extern float for goto if " \
     "inline int long register restrict return short signed sizeof static struct switch typedef " \
@@ -20,6 +26,33 @@
     [HN_OP_MIN] = "fmin(#1, #2)", [HN_OP_MAX] = "fmax(#1, #2)"
 
 #define JAVA(name) "Math." #name "(#1)"
+
+/// A name without '_', which makes a pattern in Wolfram's language.
+static void put_wolfram_name(hn_strbuf *b, const char *name) {
+    for (; *name; name++) {
+        hn_strbuf_add_n(b, *name == '_' ? "$" : name, 1);
+    }
+}
+
+/// Words without the end of a comment.
+static void put_wolfram_words(hn_strbuf *b, const char *words) {
+    for (; *words; words++) {
+        hn_strbuf_add_n(b, words, 1);
+        hn_strbuf_add(b, words[0] == '*' && words[1] == ')' ? " " : "");
+    }
+}
+
+/// Words with TeX's special characters spelled as characters.
+static void put_latex_words(hn_strbuf *b, const char *words) {
+    for (; *words; words++) {
+        if (strchr("\\^~", *words)) {
+            hn_strbuf_printf(b, "\\char`\\%c{}", *words);
+        } else {
+            hn_strbuf_add(b, strchr("_%#&${}", *words) ? "\\" : "");
+            hn_strbuf_add_n(b, words, 1);
+        }
+    }
+}
 
 static const hn_language LANGUAGES[] = {
     {.name = "python",
@@ -107,6 +140,87 @@ static const hn_language LANGUAGES[] = {
               [HN_OP_POW] = "(#1)^(#2)",
               [HN_OP_ATAN2] = "atan(#1, #2)",
               [HN_OP_STEP] = "Float64((#1) >= 0)"}},
+    {.name = "wolfram",
+     .suffix = ".wl",
+     .about = "Wolfram Language, with NDSolve",
+     .comment = "(*",
+     .comment_end = " *)",
+     .constant = "#1 = #2;",
+     .vector = "#1[[#2]] = #3;",
+     .matrix = "#1[[#2, #3]] = #4;",
+     .entry = "#1[[#2]]",
+     .first = 1,
+     .power = "#1*^#2",
+     .reserved =
+         OWN WOLFRAM_OWN "alpha beta y time difference sameSign stiff soft drift matrix right "
+                         "scale solution accelerations C D E I K N O",
+     .put_name = put_wolfram_name,
+     .put_array = put_wolfram_name,
+     .put_words = put_wolfram_words,
+     .call = {[HN_OP_RECIP] = "1/(#1)",    [HN_OP_POW] = "(#1)^(#2)",
+              [HN_OP_SQRT] = "Sqrt[#1]",   [HN_OP_SIN] = "Sin[#1]",
+              [HN_OP_COS] = "Cos[#1]",     [HN_OP_TAN] = "Tan[#1]",
+              [HN_OP_ASIN] = "ArcSin[#1]", [HN_OP_ACOS] = "ArcCos[#1]",
+              [HN_OP_ATAN] = "ArcTan[#1]", [HN_OP_ATAN2] = "ArcTan[#2, #1]",
+              [HN_OP_SINH] = "Sinh[#1]",   [HN_OP_COSH] = "Cosh[#1]",
+              [HN_OP_TANH] = "Tanh[#1]",   [HN_OP_EXP] = "Exp[#1]",
+              [HN_OP_LOG] = "Log[#1]",     [HN_OP_ABS] = "Abs[#1]",
+              [HN_OP_SIGN] = "Sign[#1]",   [HN_OP_STEP] = "UnitStep[#1]",
+              [HN_OP_MIN] = "Min[#1, #2]", [HN_OP_MAX] = "Max[#1, #2]"}},
+    {.name = "modelica",
+     .suffix = ".mo",
+     .about = "Modelica with its standard library",
+     .comment = "//",
+     .constant = "#1 := #2;",
+     .vector = "#1[#2] := #3;",
+     .matrix = "#1[#2, #3] := #4;",
+     .entry = "#1[#2]",
+     .first = 1,
+     .reserved = OWN "algorithm and annotation assert block break class connect connector constant "
+                     "constrainedby der discrete each else elseif elsewhen encapsulated end "
+                     "enumeration equation expandable extends external false final flow for "
+                     "function if import impure in initial inner input loop model not operator or "
+                     "outer output package parameter partial protected public pure record "
+                     "redeclare replaceable return stream then true type when while within time "
+                     "abs min max sum Real Integer Boolean String",
+     .call = {[HN_OP_RECIP] = "1/(#1)",
+              [HN_OP_POW] = "(#1)^(#2)",
+              [HN_OP_STEP] = "(if (#1) >= 0 then 1.0 else 0.0)"}},
+    {.name = "latex",
+     .suffix = ".tex",
+     .about = "LaTeX: the equations to read, with every term",
+     .comment = "\\remark{",
+     .comment_end = "}",
+     .constant = "\\eq{#1}{#2}",
+     .vector = "\\eq{\\term{#1}_{#2}}{#3}",
+     .matrix = "\\eq{\\term{#1}_{#2,#3}}{#4}",
+     .entry = "#1_{#2}",
+     .first = 1,
+     .times = "\\, ",
+     .power = "\\ensuremath{#1\\cdot 10^{#2}}",
+     .reserved = "",
+     .put_name = hn_print_latex_name,
+     .put_words = put_latex_words,
+     .call = {[HN_OP_RECIP] = "\\frac{1}{#1}",
+              [HN_OP_POW] = "(#1)^{#2}",
+              [HN_OP_SQRT] = "\\sqrt{#1}",
+              [HN_OP_SIN] = "\\sin(#1)",
+              [HN_OP_COS] = "\\cos(#1)",
+              [HN_OP_TAN] = "\\tan(#1)",
+              [HN_OP_ASIN] = "\\arcsin(#1)",
+              [HN_OP_ACOS] = "\\arccos(#1)",
+              [HN_OP_ATAN] = "\\arctan(#1)",
+              [HN_OP_ATAN2] = "\\operatorname{atan2}(#1, #2)",
+              [HN_OP_SINH] = "\\sinh(#1)",
+              [HN_OP_COSH] = "\\cosh(#1)",
+              [HN_OP_TANH] = "\\tanh(#1)",
+              [HN_OP_EXP] = "\\exp(#1)",
+              [HN_OP_LOG] = "\\ln(#1)",
+              [HN_OP_ABS] = "\\lvert #1\\rvert",
+              [HN_OP_SIGN] = "\\operatorname{sign}(#1)",
+              [HN_OP_STEP] = "\\operatorname{step}(#1)",
+              [HN_OP_MIN] = "\\min(#1, #2)",
+              [HN_OP_MAX] = "\\max(#1, #2)"}},
 };
 enum { N_LANGUAGES = sizeof LANGUAGES / sizeof LANGUAGES[0] };
 

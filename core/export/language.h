@@ -5,22 +5,30 @@
 // number, an operator and an assignment are spelled; the rest of a program is a text with places to
 // fill, core/export/NAME.txt.
 
+#include "base/strbuf.h"
 #include "expr/ops.h"
 
 #include <stdbool.h>
 
 typedef struct hn_language {
-    const char *name;     ///< "python"; also the name of the text with places: python.txt
-    const char *suffix;   ///< of a file: ".py"
-    const char *about;    ///< one line for a list: what the program needs
-    const char *comment;  ///< begins a comment
-    const char *constant; ///< declares a number: #1 the name, #2 the value
-    const char *vector;   ///< assigns an entry: #1 the array, #2 its index, #3 the value
-    const char *matrix;   ///< likewise: #1, #2 row, #3 column, #4 the value
-    const char *entry;    ///< reads an entry of a vector: #1 the array, #2 its index
-    int first;            ///< index of the first entry
-    bool needs_point;     ///< 1 / 2 would divide whole numbers
-    const char *reserved; ///< words that no symbol may have, separated by spaces
+    const char *name;        ///< "python"; also the name of the text with places: python.txt
+    const char *suffix;      ///< of a file: ".py"
+    const char *about;       ///< one line for a list: what the program needs
+    const char *comment;     ///< begins a comment
+    const char *comment_end; ///< ends it where the end of the line does not; else NULL
+    const char *constant;    ///< declares a number: #1 the name, #2 the value
+    const char *vector;      ///< assigns an entry: #1 the array, #2 its index, #3 the value
+    const char *matrix;      ///< likewise: #1, #2 row, #3 column, #4 the value
+    const char *entry;       ///< reads an entry of a vector: #1 the array, #2 its index
+    int first;               ///< index of the first entry
+    bool needs_point;        ///< 1 / 2 would divide whole numbers
+    const char *times;       ///< between factors; NULL: "*"
+    const char *power;       ///< a number with a power of ten: #1 times 10^#2; NULL: as 1e-7
+    const char *reserved;    ///< words that no symbol may have, separated by spaces
+    /// writes a name of the scene, the name of an array, words in a comment; NULL: as they are
+    void (*put_name)(hn_strbuf *b, const char *name);
+    void (*put_array)(hn_strbuf *b, const char *name);
+    void (*put_words)(hn_strbuf *b, const char *words);
     /// how functions are called: #1 and #2 for the arguments; NULL: as in a scene, name(#1, #2)
     const char *call[HN_OP_COUNT];
 } hn_language;

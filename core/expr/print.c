@@ -103,12 +103,11 @@ static const char *const GREEK[][2] = {
     {"rho", "\\rho"},     {"eta", "\\eta"},   {"kappa", "\\kappa"},
 };
 
-/// th12 -> \theta_{12}, d_x -> \dot{x}, l1 -> l_{1}, mass_b -> \mathrm{mass}_{b}
-static void put_latex_name(printer *p, const char *name) {
+void hn_print_latex_name(hn_strbuf *b, const char *name) {
     if (strncmp(name, "d_", 2) == 0 && name[2]) {
-        put(p, "\\dot{");
-        put_latex_name(p, name + 2);
-        put(p, "}");
+        hn_strbuf_add(b, "\\dot{");
+        hn_print_latex_name(b, name + 2);
+        hn_strbuf_add(b, "}");
         return;
     }
 
@@ -125,9 +124,9 @@ static void put_latex_name(printer *p, const char *name) {
         greek = strcmp(GREEK[i][0], stem) == 0 ? GREEK[i][1] : greek;
     }
     if (greek) {
-        put(p, greek);
+        hn_strbuf_add(b, greek);
     } else {
-        hn_strbuf_printf(p->b, n > 1 ? "\\mathrm{%s}" : "%s", stem);
+        hn_strbuf_printf(b, n > 1 ? "\\mathrm{%s}" : "%s", stem);
     }
 
     // everything behind it is the index
@@ -135,11 +134,11 @@ static void put_latex_name(printer *p, const char *name) {
         rest++;
     }
     if (*rest) {
-        put(p, "_{");
+        hn_strbuf_add(b, "_{");
         for (; *rest; rest++) {
-            hn_strbuf_printf(p->b, *rest == '_' ? "\\_" : "%c", *rest);
+            hn_strbuf_printf(b, *rest == '_' ? "\\_" : "%c", *rest);
         }
-        put(p, "}");
+        hn_strbuf_add(b, "}");
     }
 }
 
@@ -150,7 +149,7 @@ static void put_symbol(printer *p, int symbol) {
     } else if (s->latex) {
         put(p, s->latex);
     } else {
-        put_latex_name(p, s->name);
+        hn_print_latex_name(p->b, s->name);
     }
 }
 

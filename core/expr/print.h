@@ -13,4 +13,7 @@ typedef enum hn_print_form { HN_PRINT_TEXT, HN_PRINT_LATEX, HN_PRINT_C } hn_prin
 /// or 2,000 levels of nesting the buffer is marked failed.
 void hn_print(hn_strbuf *b, const hn_graph *g, hn_ex e, hn_print_form form, int digits);
 
+/// Appends a name as LaTeX: th12 becomes \theta_{12}, d_x \dot{x}, mass_b \mathrm{mass}_{b}.
+void hn_print_latex_name(hn_strbuf *b, const char *name);
+
 #endif

@@ -25,8 +25,8 @@ static const hn_command COMMANDS[] = {
     {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
      MODEL_OPTIONS " --format --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
-     "the mechanism as a program that checks itself: --language python, c, cpp, java, octave or "
-     "julia",
+     "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
+     "julia, wolfram or modelica; latex: its equations to read",
      MODEL_OPTIONS " --language --out -o", 1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java",
      "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,

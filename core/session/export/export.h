@@ -12,6 +12,8 @@
 //   @UNPACK@                 t, q and v under the names of the scene
 //   @TERMS@                  statements for mass, force, jacobian, bias, closure, closure_rate,
 //                            energy
+//   @PARAMETER_LOCALS@       a declaration of each parameter (Modelica)
+//   @LOCALS@                 a declaration of each name that @UNPACK@ and @TERMS@ assign (Modelica)
 //   @RATES@                  statements for rate: the time derivative of q
 //   @START_Q@ @START_V@      the assembled start, numbers separated by commas
 //   @START_A@ @ENERGY@       accelerations and energy there
@@ -23,12 +25,12 @@
 #include "session/model/model.h"
 #include "study/run/walk.h"
 
-/// What is asked for. `suffix` and `comment` are answers: the ending of a file's name, and what
-/// begins a comment.
+/// What is asked for. The last three are answers: the ending of a file's name, and what
+/// begins and ends a comment.
 typedef struct hn_export_request {
     const char *language;  ///< a row of export/language.h
     hn_walk_limits limits; ///< of the run to the later state; zero: none
-    const char *suffix, *comment;
+    const char *suffix, *comment, *comment_end;
 } hn_export_request;
 
 /// Writes the program for `model` to `b`.

@@ -71,7 +71,7 @@ static const option OPTIONS[] = {
     {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
      "rates that differ from the assembled start"},
     {"--language", "NAME", OPTION_TEXT, AT(language),
-     "of the program: python, c, cpp, java, octave or julia"},
+     "of the program: python, c, cpp, java, octave, julia, wolfram, modelica or latex"},
     {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
     {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
     {"--loops", "FILE", OPTION_TEXT, AT(loops),

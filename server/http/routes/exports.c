@@ -8,6 +8,7 @@
 #include "integrators/method/method_spec.h"
 #include "session/export/export.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -77,7 +78,10 @@ static void reply_program(hn_request *r, hn_model *model, const char *language,
 
     // the method of the workbench is for the reader: the program has a solver of its own
     if (spelling[0]) {
-        hn_strbuf_printf(&b, "\n%s in the workbench: %s\n", request.comment, spelling);
+        const bool is_document =
+            strcmp(request.suffix, ".tex") == 0; // what is behind its end is not read
+        hn_strbuf_printf(&b, "\n%s in the workbench: %s%s\n", is_document ? "%" : request.comment,
+                         spelling, is_document ? "" : request.comment_end);
     }
     hn_reply_bytes(r, MHD_HTTP_OK, "text/plain; charset=utf-8", &b);
     name_file(r, model, request.suffix);

@@ -102,6 +102,39 @@ static void a_number_reads_back_to_the_same_double(void **state) {
     }
 }
 
+/// What a function writes for a language, kept until the next call.
+static const char *words_of(fixture *f, const char *language,
+                            void (*put)(hn_strbuf *, const hn_language *, const char *),
+                            const char *text) {
+    hn_strbuf_clear(&f->b);
+    put(&f->b, hn_language_find(language), text);
+    return hn_strbuf_text(&f->b);
+}
+
+static void names_and_numbers_are_spelled_as_the_language_reads_them(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    assert_string_equal(words_of(&f, "wolfram", hn_code_name, "th_1"), "th$1");
+    assert_string_equal(words_of(&f, "wolfram", hn_code_name, "K"), "K$");
+    assert_string_equal(words_of(&f, "latex", hn_code_name, "th12"), "\\theta_{12}");
+    assert_string_equal(code_of(&f, "wolfram", hn_num(-1e-7)), "m[[1]] = -1*^-7;\n");
+    assert_string_equal(code_of(&f, "latex", hn_num(2.5e+20)),
+                        "\\eq{\\term{m}_{1}}{\\ensuremath{2.5\\cdot 10^{20}}}\n");
+    end(&f);
+}
+
+static void words_of_a_scene_do_not_leave_their_comment(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    assert_string_equal(words_of(&f, "python", hn_code_words, "a\"\"\"\nb\\c"), "a''' b/c");
+    assert_string_equal(words_of(&f, "wolfram", hn_code_words, "a *) b"), "a * ) b");
+    assert_string_equal(words_of(&f, "latex", hn_code_words, "5 % of m_1^2"),
+                        "5 \\% of m\\_1\\char`\\^{}2");
+    end(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_two_entries_share_is_computed_once),
@@ -110,6 +143,8 @@ int main(void) {
         cmocka_unit_test(a_reserved_word_is_no_name),
         cmocka_unit_test(variables_keep_clear_of_the_scenes_names),
         cmocka_unit_test(a_number_reads_back_to_the_same_double),
+        cmocka_unit_test(names_and_numbers_are_spelled_as_the_language_reads_them),
+        cmocka_unit_test(words_of_a_scene_do_not_leave_their_comment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

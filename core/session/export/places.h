@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_EXPORT_PLACES_H
+#define HN_SESSION_EXPORT_PLACES_H
+// Fills the places of a program's text: @NQ@, @TERMS@ ... The list of them is in export.h.
+
+#include "base/arena.h"
+#include "base/strbuf.h"
+#include "dynamics/compile/system.h"
+#include "export/language.h"
+#include "session/model/model.h"
+#include "study/run/walk.h"
+
+/// A state with its accelerations, in system coordinates.
+typedef struct hn_export_state {
+    double t, *q, *v, *a;
+} hn_export_state;
+
+typedef struct hn_exporter {
+    hn_arena *arena;
+    const hn_model *model;
+    hn_system *sys; ///< with parameters as symbols, where that can be compiled
+    hn_system_info info;
+    hn_system_exprs x;
+    const hn_language *language;
+    hn_walk_limits limits;
+    double started; ///< hn_clock_thread()
+    hn_export_state start, later;
+    double energy;
+} hn_exporter;
+
+/// Adds the text to `b`, line by line, with its places filled.
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (the code is too long).
+HN_MUST_CHECK hn_status hn_export_fill(hn_strbuf *b, const hn_exporter *e, const char *text);
+
+#endif
