@@ -78,6 +78,43 @@ class Stability(unittest.TestCase):
         stiff = strict(self.call(*STUDY, "--json").stdout)
         self.assertEqual((stiff["stiff"], stiff["telling"]), (True, None))
 
+    def test_the_default_question_tells_the_largest_accurate_step_and_the_first_that_breaks(self):
+        # delta-robot has a parameter h of its own: the axis is the step all the same
+        for scene in ("four-bar", "pendulum", "delta-robot", "watt-six-bar", "heavy-top"):
+            done = self.call("study", scene, "stability", "--time-limit", "0", "--json")
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            study = strict(done.stdout)
+            self.assertEqual((study["y"]["name"], study["y"]["kind"]), ("h", "step"))
+            column = study["methods"][0]["columns"][0]  # projection@rk4
+            self.assertGreater(column["accurate"], 0, scene)
+            self.assertLess(column["accurate"], column["first_unstable"], scene)
+            # the error at that step is the error of its own trial: below 1 %, and above it a little further on
+            near = [column["accurate"] / 1.01, column["accurate"] * 1.3]
+            over = f"step={near[0]:.6g}..{near[1]:.6g}"
+            words = ["study", scene, "stability", "--over", over, "--grid", "2x2", "--time", str(study["time"]), "--time-limit", "0"]
+            cells = strict(self.call(*words, "--methods", "projection@rk4", "--json").stdout)["methods"][0]["rows"]
+            self.assertLessEqual(cells[0][0]["error"], 1e-2, scene)
+            self.assertGreater(cells[1][0]["error"], 1e-2, scene)
+            for method in study["methods"]:
+                self.assertNotIn("nan", method["columns"][0]["how"])
+
+    def test_energy_that_loads_put_in_is_no_instability(self):
+        # the squeezer is driven: beyond the scene's 0.03 s its energy grows; half a millisecond a step is exact to 1 %
+        study = strict(self.call("study", "seven-body-squeezer", "stability", "--methods", "projection@rk4", "--time-limit", "0", "--json").stdout)
+        column = study["methods"][0]["columns"][0]
+        self.assertGreater(column["accurate"], 5e-4)
+        self.assertGreater(column["first_unstable"], column["accurate"])
+
+    def test_the_present_values_are_on_the_axes(self):
+        # alpha = 7 lies below 0.05 / h, and k = 1e9 beyond the slider
+        words = ["--preset", "baumgarte", "--methods", "baumgarte:alpha=7,beta=9@rk4:h=1e-3", "--grid", "3x3", "--time", "0.1"]
+        study = strict(self.call("study", "four-bar", "stability", *words, "--json").stdout)
+        self.assertLessEqual(study["x"]["values"][0], 7)
+        self.assertLessEqual(study["y"]["values"][0], 9)
+        words = ["--preset", "stiffness", "--set", "k=2e9", "--grid", "3x3", "--time", "0.01"]
+        study = strict(self.call(*STUDY, *words, "--json").stdout)
+        self.assertAlmostEqual(study["x"]["values"][-1], 2e9, delta=1)
+
     def test_an_implicit_method_ends_where_newton_does_and_says_so(self):
         done = self.call(*STUDY, "--methods", "index3@genalpha", "projection@radau5")
         self.assertEqual(done.returncode, DONE, done.stderr)

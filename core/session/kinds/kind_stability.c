@@ -26,7 +26,7 @@ static const hn_field FIELDS[] = {
      .type = HN_FIELD_TEXT,
      .argument = "AXES",
      .about = "one or two axes in place of a preset, as in h=1e-4..1e-1,k=1e2..1e8, each with :lin "
-              "or :log behind it if wanted"},
+              "or :log behind it if wanted; step names the step where h is a parameter"},
     {.name = "columns",
      .type = HN_FIELD_INTEGER,
      .min = 2,

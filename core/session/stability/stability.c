@@ -17,7 +17,7 @@ static void blank(hn_map *map) {
     for (int m = 0; m < map->n_methods; m++) {
         for (int i = 0; i < map->x.n; i++) {
             hn_map_column *c = hn_map_column_at(map, m, i);
-            c->stable = c->unstable = c->visible = (double)NAN;
+            c->stable = c->unstable = c->visible = c->accurate = (double)NAN;
             for (int j = 0; j < map->y.n; j++) {
                 hn_map_cell_at(map, m, i, j)->margin = (double)NAN;
             }
@@ -120,7 +120,8 @@ static bool try_round(hn_map *map, int stride) {
 static bool observe(hn_map *map) {
     for (int i = 0; map->y.is_step && i < map->x.n; i++) {
         for (int m = 0; m < map->n_methods; m++) {
-            if (hn_map_must_end(map) || !hn_map_observe_column(map, m, i)) {
+            if (hn_map_must_end(map) || !hn_map_observe_column(map, m, i) ||
+                (map->x.n == 1 && !hn_map_observe_accuracy(map, m))) {
                 return false;
             }
         }

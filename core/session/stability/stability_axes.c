@@ -14,6 +14,7 @@ static const double LOG_FROM = 15;      // positive ranges of this ratio have a 
 static const double PRESET_SPAN = 1e3;  // a preset varies a parameter by this factor up and down
 static const double FINEST = 0.3, COARSEST = 12; // h times the fastest rate, for steps of a preset
 static const double PRESET_STEPS = 2e4;          // steps of the finest trial of a preset
+static const char STEP[] = "step"; // name of the axis of steps, whatever the scene's parameters are
 
 static const char *const STANDARD[] = {"projection@rk4", "projection@dop853:h=1e-3",
                                        "projection@symplectic-euler"};
@@ -31,33 +32,48 @@ static void fill_axis(hn_map_axis *a, double low, double high, int n) {
     }
 }
 
+/// Whether an axis of this name is the step: "step" always is, "h" where no parameter of the scene
+/// has that name.
+static bool names_step(const hn_map *map, const char *name) {
+    return strcmp(name, STEP) == 0 ||
+           (strcmp(name, "h") == 0 && hn_scene_find_param(hn_model_scene(map->model), name) < 0);
+}
+
+/// A parameter of the scene: the range must lie within its limits, or end at the present value.
+static hn_status name_param(const hn_param *param, hn_map_axis *a, double low, double high,
+                            hn_diags *diags) {
+    a->is_param = 1;
+    snprintf(a->unit, sizeof a->unit, "%s", param->unit);
+    if (low < fmin(param->min, param->value) || high > fmax(param->max, param->value)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
+                            "%s may be %g to %g %s in this scene, not %g to %g", a->name,
+                            param->min, param->max, param->unit, low, high);
+    }
+    return HN_OK;
+}
+
 static hn_status name_axis(hn_map *map, hn_map_axis *a, double low, double high, hn_diags *diags) {
     const hn_scene *scene = hn_model_scene(map->model);
-    const int p = hn_scene_find_param(scene, a->name);
     hn_diag diag = {0};
 
-    // a parameter of the scene: the range must lie within its limits
+    // a parameter of the scene, or the step under either of its names
+    a->is_step = names_step(map, a->name);
+    const int p = a->is_step ? -1 : hn_scene_find_param(scene, a->name);
     if (p >= 0) {
-        const hn_param *param = &scene->params[p];
-        a->is_param = 1;
-        snprintf(a->unit, sizeof a->unit, "%s", param->unit);
-        if (low < param->min || high > param->max) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
-                                "%s may be %g to %g %s in this scene, not %g to %g", a->name,
-                                param->min, param->max, param->unit, low, high);
-        }
-        return HN_OK;
+        return name_param(&scene->params[p], a, low, high, diags);
+    }
+    if (a->is_step) {
+        snprintf(a->name, sizeof a->name, "h"); // the option's name
     }
 
     // an option of the method: every method needs it
-    a->is_step = strcmp(a->name, "h") == 0;
     for (int m = 0; m < map->n_methods; m++) {
         const hn_option *info = NULL;
 
         // the method has an option of this name, and it is a number
         if (!hn_method_find_option(&map->specs[m], a->name, &info) || info->choices) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over",
-                                "name a parameter of the scene, h, or a setting of every method",
+                                "name a parameter of the scene, step, or an option of every method",
                                 "'%s' is no parameter of the scene and no number that %s takes",
                                 a->name, map->names[m]);
         }
@@ -124,7 +140,7 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
         }
 
         // the vertical axis has as many points as the map has rows
-        const int vertical = strcmp(name, "h") == 0 || (n == 1 && !axes[0].is_step);
+        const int vertical = names_step(map, name) || (n == 1 && !axes[0].is_step);
         const int side = vertical ? map->n_rows : map->n_columns;
         const hn_status status = make_axis(map, &axes[n], name, low, high, side, form, diags);
         if (status != HN_OK) {
@@ -134,7 +150,7 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
     }
 
     // two axes must differ
-    if (n == 2 && strcmp(axes[0].name, axes[1].name) == 0) {
+    if (n == 2 && axes[0].is_step == axes[1].is_step && strcmp(axes[0].name, axes[1].name) == 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL, "both axes are %s", axes[0].name);
     }
 
@@ -196,7 +212,7 @@ static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diag
     if (map->shortens) {
         map->T = fmin(map->T, PRESET_STEPS * low);
     }
-    return make_axis(map, &map->y, "h", low, fmax(high, 40 * low), n, 'l', diags);
+    return make_axis(map, &map->y, STEP, low, fmax(high, 40 * low), n, 'l', diags);
 }
 
 // Takes a parameter of one of these units over its range, and the step sizes that the spectra at
@@ -215,10 +231,10 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
                             "this scene has no parameter that is %s", what);
     }
 
-    // its range: a factor of PRESET_SPAN up and down, within its limits
+    // its range: a factor of PRESET_SPAN up and down, within its limits; the present value is on it
     const double middle = found->value > 0 ? found->value : sqrt(found->max);
-    const double low = fmax(found->min, middle / PRESET_SPAN),
-                 high = fmin(found->max, middle * PRESET_SPAN);
+    const double low = fmin(middle, fmax(found->min, middle / PRESET_SPAN)),
+                 high = fmax(middle, fmin(found->max, middle * PRESET_SPAN));
 
     // the fastest rates at both ends bound the step sizes
     double first, last;
@@ -228,12 +244,19 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
     return steps_for(map, fmin(first, last), fmax(first, last), map->n_rows, diags);
 }
 
+/// The axis of alpha or beta: around 1 / h, and the present value is on it.
+static hn_status feedback_axis(hn_map *map, hn_map_axis *a, const char *name, int n,
+                               hn_diags *diags) {
+    const hn_method_spec *spec = &map->specs[0];
+    const double h = hn_method_option(spec, "h", 1e-3), low = 0.05 / h, high = 5 / h;
+    const double present = hn_method_option(spec, name, low);
+    return make_axis(map, a, name, present > 0 ? fmin(low, present) : low, fmax(high, present), n,
+                     'l', diags);
+}
+
 static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
-    const double h = hn_method_option(&map->specs[0], "h", 1e-3);
-    hn_status status =
-        make_axis(map, &map->x, "alpha", 0.05 / h, 5 / h, map->n_columns, 'l', diags);
-    HN_THEN(status, make_axis(map, &map->y, "beta", 0.05 / h, 5 / h, map->n_rows, 'l', diags));
-    return status;
+    HN_TRY(feedback_axis(map, &map->x, "alpha", map->n_columns, diags));
+    return feedback_axis(map, &map->y, "beta", map->n_rows, diags);
 }
 
 static hn_status stiffness_axes(hn_map *map, hn_diags *diags) {
@@ -298,12 +321,19 @@ static hn_status take_methods(hn_map *map, hn_diags *diags) {
     const int preset = map->preset ? find_preset(map->preset) : -1;
     const int stabilised = map->preset ? preset >= 0 && PRESETS[preset].preset.stabilised
                                        : strstr(map->over, "alpha=") || strstr(map->over, "beta=");
-    if (r->n_methods == 0) {
+    const bool chosen_here = r->n_methods == 0;
+    if (chosen_here) {
         HN_TRY(hn_job_request_set_methods(r, stabilised ? STABILISED : STANDARD, stabilised ? 2 : 3,
                                           diags));
     }
     HN_TRY(hn_job_complete(r, DEFAULT_LIMIT, HN_MAP_METHODS, map->specs, diags));
     map->n_methods = r->n_methods;
+
+    // methods that were chosen here take the scene's step
+    const double step = hn_model_scene(map->model)->step;
+    for (int m = 0; chosen_here && step > 0 && m < map->n_methods; m++) {
+        *hn_method_find_option(&map->specs[m], "h", NULL) = step;
+    }
     for (int m = 0; m < map->n_methods; m++) {
         snprintf(map->names[m], HN_SPEC_MAX, "%s@%s", map->specs[m].formulation->name,
                  map->specs[m].stepper->name);

@@ -184,6 +184,65 @@ bool hn_map_observe_column(hn_map *map, int m, int column) {
     return true;
 }
 
+/// Tries one step of method m; `accurate`: 1 its error is small, 0 it is not, -1 no observation.
+/// Returns false when stopped.
+static bool try_accuracy(hn_map *map, int m, double h, int *accurate) {
+    hn_stability_trial trial;
+    const hn_method_spec spec = hn_map_spec_at(map, m, 0, h);
+    if (!hn_map_try(map, hn_map_scene_of(map, 0, 0), &spec, &trial)) {
+        return false;
+    }
+    *accurate = trial.kind == HN_STABILITY_FINE                             ? 1
+                : hn_stability_is_stable(trial.kind) || is_over(trial.kind) ? 0
+                                                                            : -1;
+    return true;
+}
+
+/// The steps of the axis between which accuracy ends: `low` 0 where it ends below the axis, `high`
+/// its last step where it does not end. Returns false where the first cell that is not accurate
+/// tells nothing.
+static bool find_accuracy(hn_map *map, int m, double *low, double *high) {
+    int j = 0;
+    while (j < map->y.n && hn_map_cell_at(map, m, 0, j)->trial.kind == HN_STABILITY_FINE) {
+        j++;
+    }
+    const int end = j < map->y.n ? j : map->y.n - 1;
+    const hn_stability_class kind = hn_map_cell_at(map, m, 0, end)->trial.kind;
+    *low = j > 0 ? map->y.value[j - 1] : 0;
+    *high = map->y.value[end];
+    return hn_stability_is_stable(kind) || is_over(kind);
+}
+
+bool hn_map_observe_accuracy(hn_map *map, int m) {
+    hn_map_column *c = hn_map_column_at(map, m, 0);
+    double low, high;
+    int accurate = 0;
+    if (!isnan(c->accurate) || !find_accuracy(map, m, &low, &high)) {
+        return true; // found by an earlier run, or no observation
+    }
+
+    // below the axis, as long as a trial takes no more than its steps
+    while (low == 0 && accurate == 0 && 2 * map->T / high <= HN_MAP_ACCURATE_STEPS) {
+        const double h = high / 2;
+        if (!try_accuracy(map, m, h, &accurate)) {
+            return false;
+        }
+        *(accurate == 1 ? &low : &high) = h;
+    }
+
+    // halve the interval until it is narrow
+    while (low > 0 && accurate >= 0 && high / low > HN_MAP_ACCURATE_WITHIN) {
+        const double middle = sqrt(low * high);
+        if (!try_accuracy(map, m, middle, &accurate)) {
+            return false;
+        }
+        *(accurate == 1 ? &low : &high) = middle;
+    }
+    c->accurate = low;
+    hn_map_keep_accuracy(map, m);
+    return true;
+}
+
 void hn_map_judge_column(hn_map *map, int m, int column) {
     hn_map_column *c = hn_map_column_at(map, m, column);
     const double limit = c->n_predicted ? c->predicted[0] : (double)NAN;
@@ -306,10 +365,14 @@ const char *hn_map_telling(const hn_map *map) {
 static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_column *c) {
     hn_strbuf_printf(b,
                      "not stiff: at the predicted limit, %.3g s, one step moves the mechanism by "
-                     "%.2g rad, so its error ends the motion and not its stability",
+                     "%.2g rad, so accuracy bounds the step and not stability",
                      c->predicted[0], c->turn);
+    if (c->accurate > 0) {
+        hn_strbuf_printf(b, ": the velocities err by less than %g %% up to h = %.3g s",
+                         100 * HN_STABILITY_ACCURATE, c->accurate);
+    }
     if (c->stable > 0) {
-        hn_strbuf_printf(b, ", at %.3g s", c->unstable);
+        hn_strbuf_printf(b, ", and the error ends the motion at h = %.3g s", c->unstable);
     }
     if (hn_map_telling(map)) {
         hn_strbuf_printf(b, "; the preset %s maps error and gap over alpha and beta",

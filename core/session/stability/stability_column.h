@@ -17,5 +17,8 @@ void hn_map_predict_column(hn_map *map, int m, int column);
 /// Step axis: halves the interval between the last stable and the first other step.
 /// Returns false when stopped.
 bool hn_map_observe_column(hn_map *map, int m, int column);
+/// Map of one column: finds the largest accurate step to HN_MAP_ACCURATE_WITHIN. Returns false when
+/// stopped.
+bool hn_map_observe_accuracy(hn_map *map, int m);
 void hn_map_judge_column(hn_map *map, int m, int column);
 #endif

@@ -51,6 +51,7 @@ static void put_column(hn_strbuf *b, const hn_map_column *c) {
     hn_json_put_number(b, "visible", c->visible);
     hn_json_put_number(b, "last_stable", c->stable);
     hn_json_put_number(b, "first_unstable", c->unstable);
+    hn_json_put_number(b, "accurate", c->accurate);
     hn_json_put_string(b, "how", c->how);
     hn_json_put_string(b, "verdict", verdicts[c->verdict]);
     hn_json_end_object(b);

@@ -264,7 +264,8 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
     hn_strbuf_add(b, "<thead><tr><th>method</th>");
     hn_strbuf_printf(b, "<th class=\"n\">%s</th>", hn_map_x(map)->name);
     hn_strbuf_add(
-        b, "<th class=\"n\">predicted [s]</th><th class=\"n\">last stable [s]</th>"
+        b, "<th class=\"n\">velocities to 1 %% [s]</th>"
+           "<th class=\"n\">predicted [s]</th><th class=\"n\">last stable [s]</th>"
            "<th class=\"n\">first not [s]</th><th>how it ended there</th></tr></thead><tbody>");
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         for (int i = 0; i < hn_map_x(map)->n; i++) {
@@ -278,10 +279,11 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
                                                     : "</th><td class=\"n\">–</td>",
                              hn_map_x(map)->value[i]);
 
-            // the predicted limit and the two steps that enclose the measured one
-            const double list[] = {c->n_predicted ? c->predicted[0] : (double)NAN, c->stable,
-                                   c->unstable};
-            for (int k = 0; k < 3; k++) {
+            // the largest accurate step, the predicted limit, and the two steps that enclose the
+            // measured one
+            const double list[] = {c->accurate, c->n_predicted ? c->predicted[0] : (double)NAN,
+                                   c->stable, c->unstable};
+            for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
                 hn_strbuf_printf(
                     b, isfinite(list[k]) ? "<td class=\"n\">%.4g</td>" : "<td class=\"n\">–</td>",
                     list[k]);

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-enum { FORMAT = 1 }; // counts up when the meaning of a line changes
+enum { FORMAT = 2 }; // counts up when the meaning of a line changes
 
 static uint64_t hash_axis(uint64_t hash, const hn_map_axis *a) {
     hash = hn_hash_text(hash, a->name);
@@ -74,6 +74,9 @@ static int take_line(void *user, const cJSON *o) {
         !hn_stored_int(o, "column", map->x.n, &column)) {
         return 0;
     }
+    if (cJSON_HasObjectItem(o, "accurate")) {
+        return hn_stored_numbers(o, "accurate", &hn_map_column_at(map, m, column)->accurate, 1);
+    }
     if (!cJSON_HasObjectItem(o, "row")) {
         return take_column(hn_map_column_at(map, m, column), o);
     }
@@ -112,5 +115,12 @@ void hn_map_keep_column(hn_map *map, int m, int column) {
     begin_line(&b, m, column);
     hn_json_put_string(&b, "reason", c->how);
     hn_json_put_numbers(&b, "between", between, 2);
+    hn_journal_write(&map->journal, &b);
+}
+
+void hn_map_keep_accuracy(hn_map *map, int m) {
+    hn_strbuf b;
+    begin_line(&b, m, 0);
+    hn_json_put_numbers(&b, "accurate", &hn_map_column_at(map, m, 0)->accurate, 1);
     hn_journal_write(&map->journal, &b);
 }

@@ -324,11 +324,17 @@ typedef struct trial {
     hn_stability_trial *out;
     double *v, *difference;
     int looks;          ///< of this trial: those past HN_STABILITY_LOOKS are past the path's end
+    double work;        ///< of drives, dampers and loads up to the path's end [J]
     double early, late; ///< highest energy above the path's in the first and the last third
 } trial;
 
 static void tell_growth(hn_stability_trial *o, double energy) {
     o->kind = HN_STABILITY_GREW;
+    if (!isfinite(energy)) {
+        snprintf(o->reason, sizeof o->reason, "the energy stopped being finite, at t = %.4g s",
+                 o->t_reached);
+        return;
+    }
     snprintf(o->reason, sizeof o->reason,
              "the energy stands above that of the motion by %.3g times its range, at t = %.4g s",
              energy, o->t_reached);
@@ -385,7 +391,13 @@ static bool look(trial *t, hn_run *run, int k, double time) {
     if (!there && hn_run_sample(run, hn_run_time(run), &s) != HN_OK) {
         return false;
     }
-    const double energy = (s.energy - (beyond ? p->highest : p->energy[k])) / p->scale;
+
+    // beyond the path's end the energy that loads put in is no growth
+    if (!beyond) {
+        t->work = s.work;
+    }
+    const double put_in = beyond ? fmax(0, s.work - t->work) : 0; // 0 where it is not known
+    const double energy = (s.energy - put_in - (beyond ? p->highest : p->energy[k])) / p->scale;
     t->out->t_reached = s.t;
     note_third(t, k, energy);
     if (ran_away(t, energy, s.gap / p->length)) {

@@ -77,8 +77,13 @@ static void put_limit(hn_table *t, const hn_map *map, int m) {
         isnan(c->unstable) &&
         hn_stability_is_stable(hn_map_get(map, m, 0, hn_map_y(map)->n - 1)->trial.kind);
 
-    // the method, its predicted limit, and the largest stable step
+    // the method, the largest accurate step, the predicted limit, and the largest stable step
     hn_table_cell(t, "%s", hn_map_method(map, m));
+    if (c->accurate == 0) {
+        hn_table_cell(t, "%s", "none");
+    } else {
+        hn_table_quantity(t, c->accurate, "s");
+    }
     hn_table_quantity(t, predicted, "s");
     if (c->stable == 0) {
         hn_table_cell(t, "%s", "none");
@@ -100,12 +105,14 @@ static void put_limit(hn_table *t, const hn_map *map, int m) {
 }
 
 static void put_limits(hn_strbuf *b, const hn_map *map) {
-    static const char *const heads[] = {"method",    "predicted", "last stable",
-                                        "first not", "ratio",     "how it ended there"};
+    static const char *const heads[] = {
+        "method", "velocities to 1 %", "predicted", "last stable", "first not",
+        "ratio",  "how it ended there"};
+    enum { N_HEADS = sizeof heads / sizeof *heads };
     hn_table t;
     hn_table_init(&t);
-    for (int i = 0; i < 6; i++) {
-        hn_table_column(&t, heads[i], i > 0 && i < 5);
+    for (int i = 0; i < N_HEADS; i++) {
+        hn_table_column(&t, heads[i], i > 0 && i < N_HEADS - 1);
     }
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         put_limit(&t, map, m);
