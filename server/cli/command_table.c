@@ -45,7 +45,7 @@ static const hn_command COMMANDS[] = {
      "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
      ".json or .csv (maps also .svg, .png)",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --methods --time --grid --csv "
-                   "--out -o --wide",
+                   "--out -o --plot --wide",
      1, 2, hn_command_study},
     {"report", "[SCENE...]",
      "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
@@ -75,8 +75,8 @@ static const hn_command COMMANDS[] = {
      "--seed --student --hint --seeds --check --wide", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...",
      "verdicts as --format text, json, gradescope, junit, csv or html; into --out DIR",
-     "--format --out -o --seed --student --show-expected --no-pictures --wide", 2, HN_CLI_MAX_WORDS,
-     hn_command_grade},
+     "--format --out -o --seed --student --plot --show-expected --no-pictures --wide", 2,
+     HN_CLI_MAX_WORDS, hn_command_grade},
     {"class", "ID FOLDER",
      "grade the submissions of a class, a folder, file or zip for each student, whose name chooses "
      "the variant unless --seed does; --out FILE.ndjson or .csv",

@@ -399,24 +399,24 @@ hn_recording_truth hn_recording_get_truth(const hn_recording *r) {
     return atomic_load(&r->reference_frames) > 0 ? r->truth : none;
 }
 
-hn_verdict hn_recording_verdict(const hn_recording *r, int track, int frame) {
+hn_motion_verdict hn_recording_verdict(const hn_recording *r, int track, int frame) {
     const hn_system *sys = hn_model_system(r->model);
     const hn_track *t = &r->tracks[track];
     const hn_track_end end = hn_recording_end(r, track);
     const hn_recording_truth truth = hn_recording_get_truth(r);
-    const hn_verdict_history history = {.gap = t->gap,
-                                        .off = t->error,
-                                        .energy = t->energy,
-                                        .shown = frame,
-                                        .t = frame * r->frame_dt,
-                                        .ended = end.failed ? end.t : (double)NAN,
-                                        .cause = end.cause,
-                                        .length = hn_system_length(sys),
-                                        .energy_scale = truth.energy_scale,
-                                        .digits = truth.digits,
-                                        .loops = hn_system_get_info(sys).nc > 0,
-                                        .asked = atomic_load(&r->asked)};
-    return hn_verdict_judge(&history);
+    const hn_motion_history history = {.gap = t->gap,
+                                       .off = t->error,
+                                       .energy = t->energy,
+                                       .shown = frame,
+                                       .t = frame * r->frame_dt,
+                                       .ended = end.failed ? end.t : (double)NAN,
+                                       .cause = end.cause,
+                                       .length = hn_system_length(sys),
+                                       .energy_scale = truth.energy_scale,
+                                       .digits = truth.digits,
+                                       .loops = hn_system_get_info(sys).nc > 0,
+                                       .asked = atomic_load(&r->asked)};
+    return hn_motion_judge(&history);
 }
 
 double hn_recording_frame_seconds(const hn_recording *r) {

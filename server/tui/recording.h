@@ -66,7 +66,7 @@ const double *hn_recording_reference(const hn_recording *r, int frame);
 /// Incidents of all methods so far, copied: at most `most`; method[i] is whose. Returns how many.
 int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method, int most);
 /// The verdict on a method at a frame that is recorded.
-hn_verdict hn_recording_verdict(const hn_recording *r, int track, int frame);
+hn_motion_verdict hn_recording_verdict(const hn_recording *r, int track, int frame);
 /// Seconds of wall time that the last frame took; above frame_dt the methods are slower than the
 /// clock.
 double hn_recording_frame_seconds(const hn_recording *r);

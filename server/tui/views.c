@@ -121,7 +121,7 @@ static int put_quantity(hn_cells *c, hn_area area, int x, int y, const char *lab
 
 static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, int frame) {
     const hn_track *track = hn_recording_track(w->recording, m);
-    const hn_verdict v = hn_recording_verdict(w->recording, m, frame);
+    const hn_motion_verdict v = hn_recording_verdict(w->recording, m, frame);
     const int style = m == w->selected ? HN_CELL_REVERSE : HN_CELL_PLAIN;
     int x = hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
                             hn_look_get(track->slot)->glyph);

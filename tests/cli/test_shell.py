@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
 
 PROGRAM = os.path.abspath(driver.PROGRAM)
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 
 def call(*words):
@@ -216,6 +217,69 @@ class Plots(unittest.TestCase):
         self.assertTrue(done.stdout.isascii())
         self.assertIn("energy change since the start", done.stdout)
         self.assertNotIn("t,th", done.stdout)
+
+
+    @staticmethod
+    def draw(*words):
+        with tempfile.TemporaryDirectory() as cache:
+            env = {**os.environ, "COLUMNS": "80", "LC_ALL": "C.UTF-8", "HOLONOM_CACHE": cache}
+            done = subprocess.run([PROGRAM, *words, "--plot"], capture_output=True, text=True, timeout=300, env=env)
+        assert done.returncode == 0, done.stderr
+        assert max(map(len, done.stdout.splitlines())) <= 80, done.stdout
+        return done.stdout
+
+    def test_a_work_precision_study_draws_a_glyph_for_every_point(self):
+        drawn = self.draw("study", "pendulum", "work-precision", "--time", "0.5", "--levels", "3", "--samples", "0",
+                          "--methods", "index1@rk4", "projection@dop853")
+        plot, legend = drawn.split("  ● index1@rk4\n")
+        # three steps of the first method, and what is not hidden of the second
+        self.assertEqual(plot.count("●"), 3)
+        self.assertGreaterEqual(plot.count("■"), 1)
+        self.assertIn("■ projection@dop853", legend)
+        self.assertNotIn("Reference:", drawn)
+
+    def test_a_stability_map_draws_every_cell(self):
+        drawn = self.draw("study", "four-bar", "stability", "--preset", "baumgarte", "--grid", "6x4", "--methods", "baumgarte@rk4:h=1e-2",
+                          "--time", "0.5")
+        rows = re.findall(r"│(.+)$", drawn, re.M)
+        self.assertEqual(len(rows), 4)
+        # beyond h beta = 2.8 nothing is stable, far below everything is
+        self.assertEqual(rows[0].split(), ["▲"] * 6)
+        self.assertRegex(rows[3], r"^[░▒▓█]{4}")
+
+    def test_an_error_budget_draws_a_bar_for_every_cause(self):
+        drawn = self.draw("study", "fb0", "budget", "--time", "0.2", "--methods", "index1@rk4:h=1e-3")
+        first = drawn.split("Energy put in")[0]
+        causes = re.findall(r"^  (\w+) +[█▒░]+  [+-]?[\d.e+-]+ rad$", first, re.M)
+        self.assertEqual(causes, ["truncation", "formulation", "projection", "drift", "solve", "rounding"])
+        self.assertRegex(first, r"█{20}")
+
+    def test_a_grade_draws_a_bar_for_every_entry(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "answer.json")
+            with open(os.path.join(ROOT, "lessons", "01-closed-loops", "answers", "p3.json"), encoding="utf-8") as f:
+                answer = f.read()
+            with open(path, "w", encoding="utf-8") as f:
+                f.write(answer.replace("sin", "cos", 1))
+            drawn = self.draw("grade", "p3", path)
+        self.assertEqual(len(re.findall(r"^  J\d\d +█+  1 of 1$", drawn, re.M)), 7)
+        self.assertRegex(drawn, r"(?m)^  J\d\d +░+  0 of 1  \S+$")
+        self.assertRegex(drawn, r"(?m)^  score +█+░+  7 of 8$")
+
+
+class Budget(unittest.TestCase):
+    def test_no_cause_falls_out_of_eighty_columns(self):
+        text = {}
+        for columns in ("80", "200"):
+            env = {**os.environ, "COLUMNS": columns, "LC_ALL": "C.UTF-8"}
+            done = subprocess.run([PROGRAM, "study", "fb0", "budget", "--time", "0.2"], capture_output=True, text=True, timeout=300, env=env)
+            text[columns] = done.stdout
+        numbers = re.findall(r"-?\d\.\d\de-\d\d", text["200"])
+        self.assertGreater(len(numbers), 20)
+        self.assertNotIn("left out", text["80"])
+        # every number of the wide table stands in the narrow one
+        for number in numbers:
+            self.assertIn(number, text["80"])
 
 
 class Manual(unittest.TestCase):

@@ -35,13 +35,13 @@ static double worst(const double *column, int from, int to) {
 
 typedef enum trend { CLOSED_TREND, STARTED, GROWING, SHRINKING, HELD } trend;
 
-static trend trend_of(const hn_verdict_history *h) {
+static trend trend_of(const hn_motion_history *h) {
     const int half = h->shown / 2;
     const double late = worst(h->gap, half, h->shown);
     if (!(late > ROUNDING)) {
         return CLOSED_TREND;
     }
-    if (h->shown < HN_VERDICT_EARLIEST) {
+    if (h->shown < HN_MOTION_EARLIEST) {
         return STARTED;
     }
     const double early = worst(h->gap, 0, half);
@@ -55,7 +55,7 @@ typedef struct sizes {
     bool loops, grows, asked;
 } sizes;
 
-static sizes measure(const hn_verdict_history *h, trend is) {
+static sizes measure(const hn_motion_history *h, trend is) {
     return (sizes){.gap_now = h->gap[h->shown],
                    .gap = worst(h->gap, 0, h->shown),
                    .off = worst(h->off, 0, h->shown),
@@ -93,7 +93,7 @@ static void quantity(double value, const char *unit, int digits, char out[HN_SI_
     }
 }
 
-static void put(hn_verdict *v, hn_tone tone, const char *first, const char *joint,
+static void put(hn_motion_verdict *v, hn_tone tone, const char *first, const char *joint,
                 const char *second) {
     v->tone = tone;
     snprintf(v->text, sizeof v->text, "%.70s%.6s%.70s", first, first[0] && second[0] ? joint : "",
@@ -117,7 +117,7 @@ static void closed_words(const sizes *s, char *out, size_t size) {
 }
 
 /// A closed loop does not make a motion right, and an open one is one fault more.
-static void judge_wrong(hn_verdict *v, const sizes *s, double value, const char *unit,
+static void judge_wrong(hn_motion_verdict *v, const sizes *s, double value, const char *unit,
                         const char *what) {
     char first[64], number[HN_SI_TEXT], second[96];
     closed_words(s, first, sizeof first);
@@ -133,7 +133,7 @@ static double right_digits(const sizes *s) {
     return fmin(floor(fmin(MOST_DIGITS, s->digits)), floor(-log10(share)));
 }
 
-static void judge_right(hn_verdict *v, const sizes *s) {
+static void judge_right(hn_motion_verdict *v, const sizes *s) {
     char drift[64] = "", first[64], number[HN_SI_TEXT];
     const bool drifts = s->loops && s->grows;
     const hn_tone tone = drifts ? HN_TONE_WARN : HN_TONE_CALM;
@@ -153,14 +153,14 @@ static void judge_right(hn_verdict *v, const sizes *s) {
 }
 
 /// A gap that grows is said as it is now, one that does not as the largest so far.
-static void judge_open(hn_verdict *v, const sizes *s) {
+static void judge_open(hn_motion_verdict *v, const sizes *s) {
     char text[96], gap[HN_SI_TEXT];
     quantity(s->grows ? s->gap_now : s->gap, "m", 2, gap);
     snprintf(text, sizeof text, "open by %s%s", gap, s->grows ? " and growing" : "");
     put(v, HN_TONE_BAD, text, "", "");
 }
 
-static void judge_sizes(hn_verdict *v, const sizes *s) {
+static void judge_sizes(hn_motion_verdict *v, const sizes *s) {
     if (s->loops && s->gap > OPEN * s->length) {
         judge_open(v, s);
     } else if (s->off > WRONG * s->length) {
@@ -174,9 +174,9 @@ static void judge_sizes(hn_verdict *v, const sizes *s) {
     }
 }
 
-hn_verdict hn_verdict_judge(const hn_verdict_history *h) {
+hn_motion_verdict hn_motion_judge(const hn_motion_history *h) {
     static const char *const arrows[] = {"→", "→", "↗", "↘", "→"};
-    hn_verdict v = {.tone = HN_TONE_CALM, .arrow = "■"};
+    hn_motion_verdict v = {.tone = HN_TONE_CALM, .arrow = "■"};
 
     // a method that had ended by now
     if (h->ended <= h->t) {
@@ -187,7 +187,7 @@ hn_verdict hn_verdict_judge(const hn_verdict_history *h) {
     }
     const trend is = trend_of(h);
     v.arrow = arrows[is];
-    if (h->shown < HN_VERDICT_EARLIEST) {
+    if (h->shown < HN_MOTION_EARLIEST) {
         snprintf(v.text, sizeof v.text, "starts closed");
         return v;
     }

@@ -11,10 +11,10 @@
 
 typedef enum hn_tone { HN_TONE_CALM, HN_TONE_WARN, HN_TONE_BAD } hn_tone;
 
-enum { HN_VERDICT_TEXT = 160, HN_VERDICT_EARLIEST = 6 };
+enum { HN_MOTION_VERDICT_TEXT = 160, HN_MOTION_EARLIEST = 6 };
 
 /// Frames 0 .. shown of one method at equal distances of time, and what they are compared with.
-typedef struct hn_verdict_history {
+typedef struct hn_motion_history {
     const double *gap; ///< constraint violation [m]; NaN: the method had ended
     const double *off; ///< largest distance of a drawn point from the reference [m]; NaN: unknown
     const double *energy; ///< energy change, less the work of drives, dampers and loads [J]
@@ -27,15 +27,15 @@ typedef struct hn_verdict_history {
     double digits;        ///< of the reference that are right
     bool loops;           ///< the scene has closure equations
     bool asked;           ///< the reference is being fetched
-} hn_verdict_history;
+} hn_motion_history;
 
-typedef struct hn_verdict {
+typedef struct hn_motion_verdict {
     hn_tone tone;
     const char *arrow; ///< of the gap: grows, shrinks, is held, or the method has stopped
-    char text[HN_VERDICT_TEXT];
-} hn_verdict;
+    char text[HN_MOTION_VERDICT_TEXT];
+} hn_motion_verdict;
 
-/// Returns the verdict at the frame shown. Before frame HN_VERDICT_EARLIEST there is nothing to
+/// Returns the verdict at the frame shown. Before frame HN_MOTION_EARLIEST there is nothing to
 /// judge: "starts closed".
-hn_verdict hn_verdict_judge(const hn_verdict_history *h);
+hn_motion_verdict hn_motion_judge(const hn_motion_history *h);
 #endif

@@ -12,6 +12,8 @@
 #include "grade/grade.h"
 #include "grade/variant.h"
 #include "grade/verdict_forms.h"
+#include "terminal/bars.h"
+#include "terminal/width.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -54,6 +56,22 @@ static hn_status choose_form(const hn_args *args, verdict_form *form, hn_diag *d
 
 static const char *ending_of(verdict_form form) {
     return FORM_ENDINGS[form];
+}
+
+/// A bar for every entry, and one for the score.
+static void write_bars(hn_strbuf *b, const hn_verdict *v) {
+    static hn_bar bars[HN_GRADE_MAX_ENTRIES + 1];
+    for (int i = 0; i <= v->n_entries; i++) {
+        const hn_entry_verdict *e = i < v->n_entries ? &v->entry[i] : NULL;
+        const double points = e ? e->points : v->score, most = e ? e->max_points : v->max_score;
+        snprintf(bars[i].label, sizeof bars[i].label, "%s", e ? e->name : "score");
+        snprintf(bars[i].value, sizeof bars[i].value, "%g of %g%s%s", points, most,
+                 e && e->mistake[0] ? "  " : "", e ? e->mistake : "");
+        bars[i].share = most > 0 ? points / most : (double)NAN;
+        bars[i].colour = e && !e->right ? HN_CELL_ALARM : HN_CELL_INK;
+    }
+    hn_strbuf_printf(b, "%s: %s\n", v->problem->id, v->summary);
+    hn_bars_text(b, bars, v->n_entries + 1, hn_terminal_columns(), hn_terminal_colours());
 }
 
 /// `first`: of several verdicts on one output.
@@ -121,9 +139,13 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
         hn_strbuf_printf(&b, "== %s\n", t->submission);
     }
     const int first = t->target || t->submission == t->args->words.word[1];
-    write_verdict(&b, v, t->form, seconds, first);
+    if (t->args->plot && t->form == FORM_TEXT && v->kind == HN_VERDICT_GRADED) {
+        write_bars(&b, v);
+    } else {
+        write_verdict(&b, v, t->form, seconds, first);
+    }
     if (!t->target) {
-        return hn_cli_print(&b);
+        return t->form == FORM_TEXT ? hn_cli_print_text(&b) : hn_cli_print(&b);
     }
 
     // into files, with one line here

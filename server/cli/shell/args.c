@@ -86,7 +86,7 @@ static const option OPTIONS[] = {
     {"--csv", NULL, OPTION_FLAG, AT(csv), "one row a point on standard output"},
     {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},
     {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
-    {"--plot", NULL, OPTION_FLAG, AT(plot), "gap and energy over time, drawn in characters"},
+    {"--plot", NULL, OPTION_FLAG, AT(plot), "plots drawn in characters, in place of numbers"},
     {"--size", "COLUMNSxROWS", OPTION_TEXT, AT(size), "of the frame as text; 80x24 when left out"},
     {"--once", NULL, OPTION_FLAG, AT(once), "one frame as text, at --t"},
     {"--frames", "N", OPTION_COUNT, AT(frames), "end after N pictures"},

@@ -270,7 +270,7 @@ static void write_row(hn_strbuf *b, const hn_table *t, const layout *l, const ch
 }
 
 /// "left out at 80 columns: evals, ops (--wide shows them)"
-static void name_left_out(hn_strbuf *b, const hn_table *t, const layout *l) {
+static void name_left_out(hn_strbuf *b, hn_table *t, const layout *l) {
     hn_strbuf line;
     int n = 0;
     hn_strbuf_init(&line);
@@ -279,6 +279,7 @@ static void name_left_out(hn_strbuf *b, const hn_table *t, const layout *l) {
             hn_strbuf_printf(&line, n++ ? ", %s" : "%s", t->heads[c]);
         }
     }
+    t->n_left_out = n;
     if (n > 0) {
         hn_strbuf whole;
         hn_strbuf_init(&whole);

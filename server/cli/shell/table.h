@@ -27,6 +27,7 @@ typedef struct hn_table {
     int to_right[HN_TABLE_COLUMNS];
     int spare[HN_TABLE_COLUMNS]; ///< 0: never left out; else the smallest goes first
     hn_table_item *cells;
+    int n_left_out; ///< columns that the table written last had no room for
     int failed;
 } hn_table;
 

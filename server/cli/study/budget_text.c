@@ -2,69 +2,150 @@
 #include "cli/study/budget_text.h"
 
 #include "cli/shell/table.h"
+#include "render/look.h"
+#include "terminal/bars.h"
+#include "terminal/width.h"
 
-static void put_errors(hn_strbuf *b, const hn_accounts *a) {
-    hn_table t;
-    hn_table_init(&t);
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
 
-    // columns: the error, the part of each cause, and their sum
-    hn_table_column(&t, "method", 0);
-    hn_table_column(&t, "error of", 0);
-    hn_table_column(&t, "at the end", 1);
-    for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-        hn_table_column(&t, hn_cause_name((hn_cause)i), 1);
-    }
-    hn_table_column(&t, "their sum", 1);
+/// One of the two tables: the error at the end by cause, or the change of energy by item.
+typedef struct sheet {
+    const hn_accounts *accounts;
+    int energy, n_parts;
+    int n;
+    const hn_account_row *rows[HN_ACCOUNTS_METHODS]; ///< those that have something to tell
+} sheet;
 
-    // a line for each method that has an error at its end
+static sheet gather(const hn_accounts *a, int energy) {
+    sheet s = {a, energy, energy ? HN_BILL_COUNT : HN_CAUSE_COUNT, 0, {NULL}};
     for (int m = 0; m < hn_accounts_n(a); m++) {
         const hn_account_row *row = hn_accounts_at(a, m);
-        const hn_coordinate *c = hn_account_coordinate(hn_accounts_model(a), row);
-        if (!c) {
-            continue;
+        const bool has = energy ? row->status == HN_OK
+                                : hn_account_coordinate(hn_accounts_model(a), row) != NULL;
+        if (has && s.n < HN_ACCOUNTS_METHODS) {
+            s.rows[s.n++] = row;
         }
-        const char *unit = c->kind == HN_LENGTH ? "m" : "rad";
-        hn_table_cell(&t, "%s", row->spelling);
-        hn_table_cell(&t, "%s", c->name);
-        hn_table_quantity(&t, row->account.error, unit);
-        for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-            hn_table_quantity(&t, hn_account_part(row, 0, i), unit);
-        }
-        hn_table_quantity(&t, row->account.sum, unit);
     }
-
-    hn_table_write(b, &t);
-    hn_table_reset(&t);
+    return s;
 }
 
-static void put_energies(hn_strbuf *b, const hn_accounts *a) {
+static const char *name_of(const sheet *s, int part) {
+    return s->energy ? hn_bill_name((hn_bill_item)part) : hn_cause_name((hn_cause)part);
+}
+
+static const char *unit_of(const sheet *s, int i) {
+    const hn_coordinate *c = hn_account_coordinate(hn_accounts_model(s->accounts), s->rows[i]);
+    return s->energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
+}
+
+/// "a2", or the time that an account of energy goes to.
+static void put_subject(hn_table *t, const sheet *s, int i) {
+    if (s->energy) {
+        hn_table_quantity(t, s->rows[i]->account.t, "s");
+    } else {
+        const hn_model *model = hn_accounts_model(s->accounts);
+        hn_table_cell(t, "%s", hn_account_coordinate(model, s->rows[i])->name);
+    }
+}
+
+static double whole_of(const sheet *s, int i) {
+    return s->energy ? s->rows[i]->account.energy : s->rows[i]->account.error;
+}
+
+/// A line a method, a column a cause.
+static void fill_by_method(hn_table *t, const sheet *s) {
+    hn_table_column(t, "method", 0);
+    hn_table_column(t, s->energy ? "to t" : "error of", s->energy);
+    hn_table_column(t, s->energy ? "change" : "at the end", 1);
+    for (int k = 0; k < s->n_parts; k++) {
+        hn_table_column(t, name_of(s, k), 1);
+    }
+    if (!s->energy) {
+        hn_table_column(t, "their sum", 1);
+    }
+
+    // the parts of every method
+    for (int i = 0; i < s->n; i++) {
+        hn_table_cell(t, "%s", s->rows[i]->spelling);
+        put_subject(t, s, i);
+        hn_table_quantity(t, whole_of(s, i), unit_of(s, i));
+        for (int k = 0; k < s->n_parts; k++) {
+            hn_table_quantity(t, hn_account_part(s->rows[i], s->energy, k), unit_of(s, i));
+        }
+        if (!s->energy) {
+            hn_table_quantity(t, s->rows[i]->account.sum, unit_of(s, i));
+        }
+    }
+}
+
+/// One line of the narrow form: a cause, and a number of every method of the block.
+static void put_line(hn_table *t, const sheet *s, int from, int to, const char *name, int part) {
+    hn_table_cell(t, "%s", name);
+    for (int i = from; i < to; i++) {
+        const double value = part == -1   ? whole_of(s, i)
+                             : part == -2 ? s->rows[i]->account.sum
+                                          : hn_account_part(s->rows[i], s->energy, part);
+        hn_table_quantity(t, value, unit_of(s, i));
+    }
+}
+
+/// For narrow terminals: a line a cause, a column a method, at most BLOCK methods side by side;
+/// every cause is shown.
+static void put_by_cause(hn_strbuf *b, const sheet *s) {
+    enum { BLOCK = 4 };
+    static const char *const heads[HN_ACCOUNTS_METHODS] = {
+        "1",  "2",  "3",  "4",  "5",  "6",  "7",  "8",  "9",  "10", "11", "12",
+        "13", "14", "15", "16", "17", "18", "19", "20", "21", "22", "23", "24"};
+    for (int from = 0; from < s->n; from += BLOCK) {
+        const int to = from + BLOCK < s->n ? from + BLOCK : s->n;
+        hn_table t;
+        hn_table_init(&t);
+        hn_table_column(&t, "", 0);
+        for (int i = from; i < to; i++) {
+            hn_table_column(&t, heads[i], 1);
+            hn_table_spare(&t, 0);
+        }
+
+        // the whole, its parts, and their sum
+        put_line(&t, s, from, to, s->energy ? "change" : "at the end", -1);
+        for (int k = 0; k < s->n_parts; k++) {
+            put_line(&t, s, from, to, name_of(s, k), k);
+        }
+        if (!s->energy) {
+            put_line(&t, s, from, to, "their sum", -2);
+        }
+        hn_table_write(b, &t);
+        hn_table_reset(&t);
+    }
+    for (int i = 0; i < s->n; i++) {
+        const hn_coordinate *c = hn_account_coordinate(hn_accounts_model(s->accounts), s->rows[i]);
+        hn_strbuf_printf(b, "  %-2d %s", i + 1, s->rows[i]->spelling);
+        if (s->energy) {
+            hn_strbuf_printf(b, ", to t = %g s\n", s->rows[i]->account.t);
+        } else {
+            hn_strbuf_printf(b, ", error of %s\n", c->name);
+        }
+    }
+}
+
+/// A line a method where there is room for every column.
+static void put_sheet(hn_strbuf *b, const hn_accounts *a, int energy) {
+    const sheet s = gather(a, energy);
+    hn_strbuf wide;
     hn_table t;
+    hn_strbuf_init(&wide);
     hn_table_init(&t);
-
-    // columns: the change of energy, and the part of each cause
-    hn_table_column(&t, "method", 0);
-    hn_table_column(&t, "to t", 1);
-    hn_table_column(&t, "change", 1);
-    for (int i = 0; i < HN_BILL_COUNT; i++) {
-        hn_table_column(&t, hn_bill_name((hn_bill_item)i), 1);
+    fill_by_method(&t, &s);
+    hn_table_write(&wide, &t);
+    if (t.n_left_out == 0) {
+        hn_strbuf_add(b, hn_strbuf_text(&wide));
+    } else {
+        put_by_cause(b, &s);
     }
-
-    // a line for each method that has an account
-    for (int m = 0; m < hn_accounts_n(a); m++) {
-        const hn_account_row *row = hn_accounts_at(a, m);
-        if (row->status != HN_OK) {
-            continue;
-        }
-        hn_table_cell(&t, "%s", row->spelling);
-        hn_table_quantity(&t, row->account.t, "s");
-        hn_table_quantity(&t, row->account.energy, "J");
-        for (int i = 0; i < HN_BILL_COUNT; i++) {
-            hn_table_quantity(&t, hn_account_part(row, 1, i), "J");
-        }
-    }
-
-    hn_table_write(b, &t);
     hn_table_reset(&t);
+    hn_strbuf_reset(&wide);
 }
 
 static void put_reasons(hn_strbuf *b, const hn_accounts *a) {
@@ -100,9 +181,44 @@ void hn_accounts_text(hn_strbuf *b, const hn_accounts *a) {
     const hn_scene *scene = hn_model_scene(hn_accounts_model(a));
     hn_strbuf_printf(b, "%s, to t = %g s\n\nWhere the error at the end comes from\n",
                      scene->title ? scene->title : scene->id, hn_accounts_time(a));
-    put_errors(b, a);
-    hn_strbuf_add(b, "\nWho put energy in (+) or took it out (-)\n");
-    put_energies(b, a);
+    put_sheet(b, a, 0);
+    hn_strbuf_add(b, "\nEnergy put in (+) or taken out (-)\n");
+    put_sheet(b, a, 1);
     put_reasons(b, a);
     put_legend(b);
+}
+
+/// The parts of one error, each against the largest of them.
+static void put_bars(hn_strbuf *b, const sheet *s, int i) {
+    hn_bar bars[HN_CAUSE_COUNT + HN_BILL_COUNT];
+    double most = 0;
+    for (int k = 0; k < s->n_parts; k++) {
+        most = fmax(most, fabs(hn_account_part(s->rows[i], s->energy, k)));
+    }
+    for (int k = 0; k < s->n_parts; k++) {
+        const double part = hn_account_part(s->rows[i], s->energy, k);
+        bars[k].share = most > 0 ? part / most : (double)NAN;
+        bars[k].colour = hn_look_slot(i);
+        snprintf(bars[k].label, sizeof bars[k].label, "%s", name_of(s, k));
+        if (isnan(part)) {
+            snprintf(bars[k].value, sizeof bars[k].value, "not known");
+        } else {
+            snprintf(bars[k].value, sizeof bars[k].value, part == 0 ? "%.0f %s" : "%+.2e %s", part,
+                     unit_of(s, i));
+        }
+    }
+    hn_strbuf_printf(b, "\n%s: %.3g %s\n", s->rows[i]->spelling, whole_of(s, i), unit_of(s, i));
+    hn_bars_text(b, bars, s->n_parts, hn_terminal_columns(), hn_terminal_colours());
+}
+
+void hn_accounts_bars_text(hn_strbuf *b, const hn_accounts *a) {
+    for (int energy = 0; energy < 2; energy++) {
+        const sheet s = gather(a, energy);
+        hn_strbuf_add(b, energy ? "\nEnergy put in (+) or taken out (-)\n"
+                                : "Where the error at the end comes from\n");
+        for (int i = 0; i < s.n; i++) {
+            put_bars(b, &s, i);
+        }
+    }
+    put_reasons(b, a);
 }

@@ -7,4 +7,6 @@
 
 /// The budget for people.
 void hn_accounts_text(hn_strbuf *b, const hn_accounts *accounts);
+/// A bar for every part of every error.
+void hn_accounts_bars_text(hn_strbuf *b, const hn_accounts *accounts);
 #endif

@@ -29,6 +29,9 @@
 HN_JOB_FORM(work_precision, hn_study, hn_study_text)
 HN_JOB_FORM(stability, hn_map, hn_map_text)
 HN_JOB_FORM(budget, hn_accounts, hn_accounts_text)
+HN_JOB_FORM(work_precision_plot, hn_study, hn_study_plot_text)
+HN_JOB_FORM(stability_plot, hn_map, hn_map_plots_text)
+HN_JOB_FORM(budget_plot, hn_accounts, hn_accounts_bars_text)
 HN_JOB_FORM(report, hn_report, hn_report_text)
 HN_JOB_FORM(extreme, hn_extreme, hn_extreme_text)
 HN_JOB_FORM(reference, hn_reference_work, hn_reference_text)
@@ -36,20 +39,22 @@ HN_JOB_FORM(reference, hn_reference_work, hn_reference_text)
 static const struct {
     const char *kind;
     void (*put)(hn_strbuf *b, const void *work);
+    void (*plot)(hn_strbuf *b, const void *work); ///< NULL: none
 } TEXTS[] = {
-    {"work-precision", put_work_precision},
-    {"stability", put_stability},
-    {"budget", put_budget},
-    {"report", put_report},
-    {"extreme", put_extreme},
-    {"reference", put_reference},
+    {"work-precision", put_work_precision, put_work_precision_plot},
+    {"stability", put_stability, put_stability_plot},
+    {"budget", put_budget, put_budget_plot},
+    {"report", put_report, NULL},
+    {"extreme", put_extreme, NULL},
+    {"reference", put_reference, NULL},
 };
 
-/// Returns NULL where a kind has no text of its own: its JSON is printed.
-static hn_text_writer text_of(const hn_job_kind *kind) {
+/// Returns NULL where a kind has no text of its own: its JSON is printed. With --plot: the plots
+/// alone.
+static hn_text_writer text_of(const hn_job_kind *kind, const hn_args *args) {
     for (size_t i = 0; i < sizeof TEXTS / sizeof *TEXTS; i++) {
         if (strcmp(TEXTS[i].kind, kind->name) == 0) {
-            return TEXTS[i].put;
+            return args->plot && TEXTS[i].plot ? TEXTS[i].plot : TEXTS[i].put;
         }
     }
     return NULL;
@@ -228,9 +233,9 @@ static hn_exit write_job(const command *c, const hn_job *job) {
             hn_report_diag(args, &diag);
             return HN_EXIT_PROGRAM; // the output is at fault, not the scene
         }
-        return hn_forms_print(c->kind->forms, text_of(c->kind), args, work);
+        return hn_forms_print(c->kind->forms, text_of(c->kind, args), args, work);
     }
-    return hn_forms_write(c->kind->forms, text_of(c->kind), args, work);
+    return hn_forms_write(c->kind->forms, text_of(c->kind, args), args, work);
 }
 
 static hn_exit run_prepared(command *c) {

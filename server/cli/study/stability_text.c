@@ -1,71 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/table.h"
 #include "cli/study/stability_text.h"
-#include "session/stability/stability_frame.h"
 #include "session/stability/stability_column.h"
+#include "terminal/map_plot.h"
+#include "terminal/width.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const char PREDICTED[] = "\xe2\x94\x81"; // a heavy line
-
-static double near_row(const hn_map_axis *y, double value) {
-    const double low = y->value[0], high = y->value[y->n - 1];
-    return y->is_log ? log(value / low) / log(high / low) * (y->n - 1)
-                     : (value - low) / (high - low) * (y->n - 1);
-}
-
-/// Returns 1 when the predicted boundary of this column passes between row j and the one above.
-static bool is_boundary(const hn_map *map, int m, int column, int row) {
-    const hn_map_column *c = hn_map_get_column(map, m, column);
-    for (int k = 0; k < c->n_predicted; k++) {
-        if (c->predicted[k] > 0 && lround(near_row(hn_map_y(map), c->predicted[k])) == row) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void put_row(hn_strbuf *b, const hn_map *map, int m, int row) {
-    const hn_map_axis *x = hn_map_x(map), *y = hn_map_y(map);
-    hn_strbuf_printf(b, "%10.3g \xe2\x94\x82", y->value[row]);
-    for (int i = 0; i < x->n; i++) {
-        const hn_stability_class kind = hn_map_get(map, m, i, row)->trial.kind;
-        const char *glyph = hn_map_class_look_get(kind)->glyph;
-        // two characters for each cell: the outcome, and the predicted boundary if it passes here
-        hn_strbuf_add(b, glyph[0] ? glyph : " ");
-        hn_strbuf_add(b, is_boundary(map, m, i, row) ? PREDICTED : " ");
-    }
+static void put_map(hn_strbuf *b, hn_map_plot *plot, const hn_map *map, int m) {
+    hn_map_plot_take(plot, map, m);
     hn_strbuf_add(b, "\n");
-}
-
-static void put_map(hn_strbuf *b, const hn_map *map, int m) {
-    const hn_map_axis *x = hn_map_x(map), *y = hn_map_y(map);
-    char title[96];
-    hn_map_axis_title(y, title);
-    hn_strbuf_printf(b, "\n%s\n%10s\n", hn_map_method(map, m), title);
-    for (int row = y->n - 1; row >= 0; row--) {
-        put_row(b, map, m, row);
-    }
-    hn_map_axis_title(x, title);
-    hn_strbuf_printf(b, "%11s\xe2\x94\x94", "");
-    if (x->name[0]) {
-        hn_strbuf_printf(b, "%.3g .. %.3g   %s", x->value[0], x->value[x->n - 1], title);
-    }
-    hn_strbuf_add(b, "\n  ");
+    hn_map_plot_text(b, plot, hn_terminal_columns(), hn_terminal_colours());
+    hn_strbuf_add(b, "  ");
     hn_map_agreement_text(b, map, m);
     hn_strbuf_add(b, "\n");
 }
 
-static void put_legend(hn_strbuf *b) {
-    hn_strbuf_add(b, "\n");
-    for (int k = HN_STABILITY_FINE; k < HN_STABILITY_CLASS_COUNT; k++) {
-        const hn_map_class_look *look = hn_map_class_look_get((hn_stability_class)k);
-        hn_strbuf_printf(b, "%s %s   ", look->glyph, look->words);
+static void put_maps(hn_strbuf *b, const hn_map *map) {
+    hn_map_plot *plot = malloc(sizeof *plot);
+    for (int m = 0; plot && m < hn_map_n_methods(map); m++) {
+        put_map(b, plot, map, m);
     }
-    hn_strbuf_printf(b, "%s predicted limit\n", PREDICTED);
+    b->failed |= !plot;
+    free(plot);
 }
 
 static void put_limit(hn_table *t, const hn_map *map, int m) {
@@ -135,8 +96,9 @@ void hn_map_text(hn_strbuf *b, const hn_map *map) {
         put_limits(b, map);
         return;
     }
-    for (int m = 0; m < hn_map_n_methods(map); m++) {
-        put_map(b, map, m);
-    }
-    put_legend(b);
+    put_maps(b, map);
+}
+
+void hn_map_plots_text(hn_strbuf *b, const hn_map *map) {
+    put_maps(b, map);
 }

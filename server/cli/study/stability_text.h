@@ -8,4 +8,6 @@
 /// Writes a map of characters for each method, with the predicted boundary in it and the agreement
 /// below; a map with one column is a table of limits.
 void hn_map_text(hn_strbuf *b, const hn_map *map);
+/// The maps alone.
+void hn_map_plots_text(hn_strbuf *b, const hn_map *map);
 #endif

@@ -3,17 +3,16 @@
 
 #include "base/units.h"
 #include "cli/shell/args.h"
-#include "cli/shell/braille.h"
 #include "cli/shell/table.h"
 #include "render/look.h"
+#include "terminal/cost_plot.h"
+#include "terminal/width.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-
-enum { PLOT_COLUMNS = 68, PLOT_ROWS = 20, AXIS_WIDTH = 7 };
-static const char FAILED_MARK[] = "\xe2\x95\xb3"; // a large cross
 
 static const char *glyph_of(int m) {
     return hn_look_get(hn_look_slot(m))->glyph;
@@ -104,120 +103,15 @@ static void put_verdicts(hn_strbuf *b, const hn_study *study) {
 
 // the plot ----
 
-/// Logarithmic ranges over all finished points, whole decades for the error.
-typedef struct range {
-    double cost_low, cost_high, error_low, error_high; ///< powers of ten
-    hn_cost_kind cost;
-} range;
-
-static double plotted_error(const hn_wp *wp, const hn_wp_point *p) {
-    const double e = fmax(p->worst[HN_ERROR_Q], HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q]);
-    return log10(fmin(1, fmax(e, 1e-16)));
-}
-
-static bool is_plotted(const hn_wp_point *p, hn_cost_kind cost) {
-    return p->state == HN_WP_DONE && hn_wp_cost(p, cost) > 0;
-}
-
-static bool has_times(const hn_wp *wp) {
-    for (int m = 0; m < wp->n_methods; m++) {
-        for (int k = 0; k < wp->n_levels; k++) {
-            if (wp->methods[m].point[k].n_samples > 0) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-static bool find_range(const hn_wp *wp, range *r) {
-    *r = (range){HUGE_VAL, -HUGE_VAL, 0, 0, has_times(wp) ? HN_COST_TIME : HN_COST_OPS};
-    for (int m = 0; m < wp->n_methods; m++) {
-        for (int k = 0; k < wp->n_levels; k++) {
-            const hn_wp_point *p = &wp->methods[m].point[k];
-            if (is_plotted(p, r->cost)) {
-                r->cost_low = fmin(r->cost_low, log10(hn_wp_cost(p, r->cost)));
-                r->cost_high = fmax(r->cost_high, log10(hn_wp_cost(p, r->cost)));
-                r->error_low = fmin(r->error_low, floor(plotted_error(wp, p)));
-            }
-        }
-    }
-    const double margin = 0.03 * (r->cost_high - r->cost_low) + 0.02;
-    r->cost_low -= margin;
-    r->cost_high += margin;
-    return r->cost_high > r->cost_low && r->error_low < r->error_high;
-}
-
-static double across(const range *r, double cost) {
-    return (log10(cost) - r->cost_low) / (r->cost_high - r->cost_low);
-}
-
-static double down(const range *r, double error) {
-    return (r->error_high - error) / (r->error_high - r->error_low);
-}
-
-static void draw_method(hn_braille *c, const hn_wp *wp, const range *r, int m) {
-    const hn_wp_point *before = NULL;
-    for (int k = 0; k < wp->n_levels; k++) {
-        const hn_wp_point *p = &wp->methods[m].point[k];
-        if (is_plotted(p, r->cost)) {
-            const double x = across(r, hn_wp_cost(p, r->cost)), y = down(r, plotted_error(wp, p));
-            hn_braille_put(c, x, y, glyph_of(m));
-            if (before) {
-                hn_braille_line(c, across(r, hn_wp_cost(before, r->cost)),
-                                down(r, plotted_error(wp, before)), x, y);
-            }
-            before = p;
-        } else if (p->state == HN_WP_FAILED && p->first_cpu > 0) {
-            // where it ended is on the upper edge, at what it had cost by then
-            const double cost = r->cost == HN_COST_TIME ? p->first_cpu : p->cost.ops;
-            hn_braille_put(c, cost > 0 ? fmin(1, fmax(0, across(r, cost))) : 0, 0, FAILED_MARK);
-        }
-    }
-}
-
-static void put_plot(hn_strbuf *b, const hn_wp *wp) {
-    hn_braille c;
-    range r;
-    char low[HN_SI_TEXT], high[HN_SI_TEXT];
-
-    // nothing to draw where the points span no range
-    if (!find_range(wp, &r)) {
+static void put_plot(hn_strbuf *b, const hn_wp *wp, bool legend) {
+    hn_cost_plot *plot = malloc(sizeof *plot);
+    if (!plot) {
+        b->failed = 1;
         return;
     }
-
-    // draw every method on the canvas
-    const char *unit = r.cost == HN_COST_TIME ? "s" : "op";
-    hn_braille_init(&c, PLOT_COLUMNS, PLOT_ROWS);
-    for (int m = 0; m < wp->n_methods; m++) {
-        draw_method(&c, wp, &r, m);
-    }
-
-    // the heading names both axes
-    hn_strbuf_printf(b,
-                     "\nError of the coordinates against %s (both logarithmic; %s: ended early)\n",
-                     r.cost == HN_COST_TIME ? "CPU time" : "operations", FAILED_MARK);
-
-    // the rows, with a label where a whole decade begins
-    int told = 1;
-    for (int row = 0; row < PLOT_ROWS; row++) {
-        const double top = r.error_high - (r.error_high - r.error_low) * row / PLOT_ROWS;
-        const int decade = (int)floor(top);
-        if (decade < told) {
-            hn_strbuf_printf(b, "%*s%-3d \xe2\x94\xa4", AXIS_WIDTH - 4, "1e", decade);
-            told = decade;
-        } else {
-            hn_strbuf_printf(b, "%*s\xe2\x94\x82", AXIS_WIDTH, "");
-        }
-        hn_braille_row(b, &c, row);
-        hn_strbuf_add(b, "\n");
-    }
-
-    // the ends of the cost axis
-    hn_si_format(pow(10, r.cost_low), unit, 2, low);
-    hn_si_format(pow(10, r.cost_high), unit, 2, high);
-    hn_strbuf_printf(b, "%*s%-*s%*s\n", AXIS_WIDTH + 1, "", PLOT_COLUMNS / 2, low, PLOT_COLUMNS / 2,
-                     high);
+    hn_cost_plot_take(plot, wp);
+    hn_cost_plot_text(b, plot, hn_terminal_columns(), legend, hn_terminal_colours());
+    free(plot);
 }
 
 // answers ----
@@ -234,7 +128,8 @@ static void put_front(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     hn_pareto p;
     const hn_error_kind error = hn_wp_ranked_error(wp);
-    for (int cost = has_times(wp) ? HN_COST_TIME : HN_COST_OPS; cost <= HN_COST_OPS; cost++) {
+    for (int cost = hn_cost_plot_has_times(wp) ? HN_COST_TIME : HN_COST_OPS; cost <= HN_COST_OPS;
+         cost++) {
         hn_wp_pareto(wp, hn_study_classes(study), error, (hn_cost_kind)cost, &p);
         hn_strbuf_printf(b, "\nCheapest by %s%s\n", hn_cost_name((hn_cost_kind)cost),
                          error == HN_ERROR_Q ? "" : ", for the error of the energy");
@@ -382,8 +277,13 @@ void hn_study_text(hn_strbuf *b, const hn_study *study) {
     put_head(b, study);
     put_methods(b, wp);
     put_verdicts(b, study);
-    put_plot(b, wp);
+    hn_strbuf_add(b, "\n");
+    put_plot(b, wp, false);
     put_front(b, study);
     put_race(b, study);
     put_failures(b, wp);
+}
+
+void hn_study_plot_text(hn_strbuf *b, const hn_study *study) {
+    put_plot(b, hn_study_wp(study), true);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/near.h"
 
-#include "cli/shell/braille.h"
 #include "cli/shell/plain.h"
+#include "terminal/dots.h"
 #include "render/look.h"
 
 #include <string.h>
@@ -54,23 +54,25 @@ static void marks_of_methods_stay_apart(void **state) {
 
 static void lines_stay_where_they_are(void **state) {
     (void)state;
-    hn_braille c;
+    hn_dots dots = {0};
+    hn_cells cells = {0};
     hn_strbuf utf8, plain;
-    hn_braille_init(&c, 20, 4);
-    hn_braille_line(&c, 0, 0, 1, 0);
-    hn_braille_line(&c, 0, 1, 1, 1);
-    hn_braille_line(&c, 0, 0, 0, 1);
-    const char *const rows[4] = {"|'''''''''''''''''''", "|                   ",
-                                 "|                   ", "|..................."};
-    for (int row = 0; row < 4; row++) {
-        hn_strbuf_init(&utf8);
-        hn_strbuf_init(&plain);
-        hn_braille_row(&utf8, &c, row);
-        hn_plain_add(&plain, hn_strbuf_text(&utf8));
-        assert_string_equal(hn_strbuf_text(&plain), rows[row]);
-        hn_strbuf_reset(&utf8);
-        hn_strbuf_reset(&plain);
-    }
+    const hn_area all = {0, 0, 20, 4};
+    assert_true(hn_dots_resize(&dots, 20, 4) && hn_cells_resize(&cells, 20, 4));
+    hn_dots_line(&dots, 0, 0, 39, 0, 0, 1, 0);
+    hn_dots_line(&dots, 0, 15, 39, 15, 0, 1, 0);
+    hn_dots_line(&dots, 0, 0, 0, 15, 0, 1, 0);
+    hn_dots_show(&cells, all, &dots, HN_DOTS_BRAILLE);
+    hn_strbuf_init(&utf8);
+    hn_strbuf_init(&plain);
+    hn_cells_text(&utf8, &cells, false);
+    hn_plain_add(&plain, hn_strbuf_text(&utf8));
+    assert_string_equal(hn_strbuf_text(&plain),
+                        "|'''''''''''''''''''\n|\n|\n|...................\n");
+    hn_strbuf_reset(&utf8);
+    hn_strbuf_reset(&plain);
+    hn_dots_free(&dots);
+    hn_cells_free(&cells);
 }
 
 int main(void) {

@@ -64,7 +64,7 @@ static void every_shared_case_has_its_words_tone_and_arrow(void **state) {
         read_column(one, "off", off);
         read_column(one, "energy", energy);
         const int shown = (int)number(one, "shown", FRAMES - 1);
-        const hn_verdict_history history = {
+        const hn_motion_history history = {
             .gap = gap,
             .off = off,
             .energy = energy,
@@ -79,7 +79,7 @@ static void every_shared_case_has_its_words_tone_and_arrow(void **state) {
             .asked = cJSON_IsTrue(cJSON_GetObjectItem(one, "asked"))};
 
         // what the page says too
-        const hn_verdict v = hn_verdict_judge(&history);
+        const hn_motion_verdict v = hn_motion_judge(&history);
         print_message("%s\n", cJSON_GetStringValue(cJSON_GetObjectItem(one, "name")));
         assert_string_equal(v.text, cJSON_GetStringValue(cJSON_GetObjectItem(one, "text")));
         assert_string_equal(tones[v.tone], cJSON_GetStringValue(cJSON_GetObjectItem(one, "tone")));

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terminal/map_plot.h"
+
+#include "base/units.h"
+#include "session/stability/stability_frame.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LABEL_COLUMNS = 12, FOOT_ROWS = 4, SHADES = 4 };
+
+static const char PREDICTED[] = "━";
+static const char *const SHADE[SHADES] = {"░", "▒", "▓", "█"};
+
+// ---- what is shown ----
+
+static double near_row(const hn_map_axis *y, double value) {
+    const double low = y->value[0], high = y->value[y->n - 1];
+    return y->is_log ? log(value / low) / log(high / low) * (y->n - 1)
+                     : (value - low) / (high - low) * (y->n - 1);
+}
+
+/// Whether the predicted boundary passes in this cell: of a step by the column's limits, otherwise
+/// where the margin passes 1 to the right or above.
+static bool is_limit(const hn_map *map, int m, int column, int row) {
+    const hn_map_axis *x = hn_map_x(map), *y = hn_map_y(map);
+    const hn_map_column *c = hn_map_get_column(map, m, column);
+    for (int k = 0; y->is_step && k < c->n_predicted; k++) {
+        if (c->predicted[k] > 0 && lround(near_row(y, c->predicted[k])) == row) {
+            return true;
+        }
+    }
+    if (y->is_step) {
+        return false;
+    }
+    const double here = hn_map_get(map, m, column, row)->margin;
+    const double right = column + 1 < x->n ? hn_map_get(map, m, column + 1, row)->margin : here;
+    const double above = row + 1 < y->n ? hn_map_get(map, m, column, row + 1)->margin : here;
+    return here <= 1 && (right > 1 || above > 1);
+}
+
+void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m) {
+    const double length = hn_system_length(hn_model_system(hn_map_model(map)));
+    p->x = *hn_map_x(map);
+    p->y = *hn_map_y(map);
+    p->heat = !p->y.is_step && !p->x.is_step;
+    snprintf(p->name, sizeof p->name, "%s", hn_map_method(map, m));
+    for (int row = 0; row < p->y.n; row++) {
+        for (int column = 0; column < p->x.n; column++) {
+            const hn_map_cell *cell = hn_map_get(map, m, column, row);
+            p->cell[row * p->x.n + column] =
+                (hn_map_plot_cell){.kind = (unsigned char)cell->trial.kind,
+                                   .limit = is_limit(map, m, column, row),
+                                   .gap = cell->trial.gap * length,
+                                   .margin = cell->margin};
+        }
+    }
+}
+
+static int nearest(const hn_map_axis *a, double value) {
+    int best = 0;
+    for (int i = 1; i < a->n; i++) {
+        const double d = a->is_log ? fabs(log(a->value[i] / value)) : fabs(a->value[i] - value);
+        const double b =
+            a->is_log ? fabs(log(a->value[best] / value)) : fabs(a->value[best] - value);
+        best = d < b ? i : best;
+    }
+    return best;
+}
+
+hn_map_place hn_map_plot_place(const hn_map_plot *p, double x, double y) {
+    const hn_map_place none = {-1, -1};
+    const bool shown =
+        p->x.n > 0 && p->y.n > 0 && (x > 0 || !p->x.is_log) && (y > 0 || !p->y.is_log);
+    return shown ? (hn_map_place){nearest(&p->x, x), nearest(&p->y, y)} : none;
+}
+
+// ---- shades ----
+
+typedef struct range {
+    double low, high; ///< powers of ten of the gaps
+} range;
+
+static range find_range(const hn_map_plot *p) {
+    range r = {HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < p->x.n * p->y.n; i++) {
+        if (hn_stability_is_stable((hn_stability_class)p->cell[i].kind) && p->cell[i].gap > 0) {
+            r.low = fmin(r.low, log10(p->cell[i].gap));
+            r.high = fmax(r.high, log10(p->cell[i].gap));
+        }
+    }
+    return r.low <= r.high ? r : (range){0, 0};
+}
+
+static int shade_of(range r, double gap) {
+    const double share = r.high > r.low && gap > 0 ? (log10(gap) - r.low) / (r.high - r.low) : 0;
+    const int i = (int)(share * SHADES);
+    return i < 0 ? 0 : i >= SHADES ? SHADES - 1 : i;
+}
+
+static int colour_of(hn_stability_class kind) {
+    const int slot = hn_map_class_look_get(kind)->slot;
+    return slot >= 0 ? slot : slot == -1 ? HN_CELL_ALARM : HN_CELL_MUTED;
+}
+
+static const char *glyph_of(const hn_map_plot *p, range r, const hn_map_plot_cell *cell) {
+    const hn_stability_class kind = (hn_stability_class)cell->kind;
+    if (p->heat && hn_stability_is_stable(kind)) {
+        return SHADE[shade_of(r, cell->gap)];
+    }
+    const char *glyph = hn_map_class_look_get(kind)->glyph;
+    return glyph[0] ? glyph : " ";
+}
+
+// ---- drawing ----
+
+int hn_map_plot_rows(const hn_map_plot *p) {
+    return p->y.n + FOOT_ROWS;
+}
+
+/// A cell takes two columns where there is room: the outcome, then the predicted limit.
+static void draw_cell(hn_cells *c, hn_area area, const hn_map_plot *p, range r, int column, int row,
+                      bool wide) {
+    const hn_map_plot_cell *cell = &p->cell[row * p->x.n + column];
+    const int x = LABEL_COLUMNS + column * (wide ? 2 : 1), y = p->y.n - 1 - row;
+    const int colour = colour_of((hn_stability_class)cell->kind);
+    const char *glyph = glyph_of(p, r, cell);
+    const bool limit_alone = !wide && cell->limit;
+    hn_cells_put(c, area, x, y, limit_alone ? HN_CELL_INK : colour, 0,
+                 limit_alone ? PREDICTED : glyph);
+    if (wide) {
+        const bool shaded = p->heat && hn_stability_is_stable((hn_stability_class)cell->kind);
+        hn_cells_put(c, area, x + 1, y, cell->limit ? HN_CELL_INK : colour, 0,
+                     cell->limit ? PREDICTED
+                     : shaded    ? glyph
+                                 : " ");
+    }
+}
+
+static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, int width) {
+    char title[96], other[96];
+    for (int row = 0; row < p->y.n; row++) {
+        hn_cells_printf(c, area, 0, p->y.n - 1 - row, HN_CELL_MUTED, 0, "%10.3g │",
+                        p->y.value[row]);
+    }
+    hn_map_axis_title(&p->y, title);
+    hn_map_axis_title(&p->x, other);
+    hn_cells_put(c, area, LABEL_COLUMNS - 1, p->y.n, HN_CELL_MUTED, 0, "└");
+    if (!p->x.name[0]) {
+        hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n, HN_CELL_MUTED, 0, " vertical: %s", title);
+        return;
+    }
+    const int end = LABEL_COLUMNS + width;
+    char last[32];
+    const int n = snprintf(last, sizeof last, "%.3g", p->x.value[p->x.n - 1]);
+    hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n, HN_CELL_MUTED, 0, "%.3g", p->x.value[0]);
+    hn_cells_put(c, area, end - n > LABEL_COLUMNS + 8 ? end - n : LABEL_COLUMNS + 8, p->y.n,
+                 HN_CELL_MUTED, 0, last);
+    hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n + 1, HN_CELL_MUTED, 0, "across: %s, up: %s",
+                    other, title);
+}
+
+static void add_legend(hn_strbuf *b, const hn_map_plot *p, range r) {
+    char low[HN_SI_TEXT], high[HN_SI_TEXT];
+    for (int k = HN_STABILITY_FINE; k < HN_STABILITY_CLASS_COUNT; k++) {
+        const hn_map_class_look *look = hn_map_class_look_get((hn_stability_class)k);
+        if (!p->heat || !hn_stability_is_stable((hn_stability_class)k)) {
+            hn_strbuf_printf(b, "%s %s   ", look->glyph, look->words);
+        }
+    }
+    if (p->heat && r.high > r.low) {
+        hn_si_format(pow(10, r.low), "m", 2, low);
+        hn_si_format(pow(10, r.high), "m", 2, high);
+        hn_strbuf_printf(b, "%s to %s worst loop gap, %s to %s   ", SHADE[0], SHADE[SHADES - 1],
+                         low, high);
+    }
+    hn_strbuf_printf(b, "%s predicted limit", PREDICTED);
+}
+
+static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place at, bool wide,
+                 int style, const char *glyph) {
+    if (at.column >= 0) {
+        hn_cells_put(c, area, LABEL_COLUMNS + at.column * (wide ? 2 : 1), p->y.n - 1 - at.row,
+                     HN_CELL_INK, style, glyph);
+    }
+}
+
+void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
+                      hn_map_place cursor) {
+    const bool wide = LABEL_COLUMNS + 2 * p->x.n <= area.columns;
+    const range r = find_range(p);
+    hn_strbuf legend;
+    for (int row = 0; row < p->y.n; row++) {
+        for (int column = 0; column < p->x.n; column++) {
+            draw_cell(c, area, p, r, column, row, wide);
+        }
+    }
+    draw_axes(c, area, p, p->x.n * (wide ? 2 : 1));
+    mark(c, area, p, present, wide, HN_CELL_BOLD, "★");
+    mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "◆");
+    hn_strbuf_init(&legend);
+    add_legend(&legend, p, r);
+    hn_cells_fold(c, area, p->y.n + 2, HN_CELL_MUTED, hn_strbuf_text(&legend));
+    hn_strbuf_reset(&legend);
+}
+
+// ---- words ----
+
+static void add_value(hn_strbuf *b, const hn_map_axis *a, int i) {
+    if (a->name[0]) {
+        hn_strbuf_printf(b, "%s%s = %.3g%s%s", b->n > 0 ? ", " : "", a->name, a->value[i],
+                         a->unit[0] ? " " : "", a->unit);
+    }
+}
+
+void hn_map_plot_words(hn_strbuf *b, const hn_map_plot *p, hn_map_place at) {
+    const hn_map_plot_cell *cell = &p->cell[at.row * p->x.n + at.column];
+    char gap[HN_SI_TEXT];
+    add_value(b, &p->x, at.column);
+    add_value(b, &p->y, at.row);
+    hn_strbuf_printf(b, ": %s", hn_map_class_look_get((hn_stability_class)cell->kind)->words);
+    if (hn_stability_is_stable((hn_stability_class)cell->kind)) {
+        hn_si_format(cell->gap, "m", 2, gap);
+        hn_strbuf_printf(b, "; worst gap %s", gap);
+    }
+    if (isfinite(cell->margin) && cell->margin > 0) {
+        hn_strbuf_printf(b, "; the step is %.3g of the predicted limit", cell->margin);
+    }
+}
+
+void hn_map_plot_text(hn_strbuf *b, const hn_map_plot *p, int columns, bool colours) {
+    const hn_map_place none = {-1, -1};
+    hn_cells cells = {0};
+    const int rows = hn_map_plot_rows(p) + FOOT_ROWS; // a legend folds in narrow terminals
+    if (!hn_cells_resize(&cells, columns, rows)) {
+        hn_strbuf_add(b, "no memory for the map\n");
+        return;
+    }
+    hn_map_plot_draw(&cells, (hn_area){0, 0, columns, rows}, p, none, none);
+    hn_strbuf_printf(b, "%s\n", p->name);
+    hn_cells_text(b, &cells, colours);
+    while (b->n > 1 && b->text[b->n - 1] == '\n' && b->text[b->n - 2] == '\n') {
+        b->text[--b->n] = '\0';
+    }
+    hn_cells_free(&cells);
+}

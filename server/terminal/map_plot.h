@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TERMINAL_MAP_PLOT_H
+#define HN_TERMINAL_MAP_PLOT_H
+// A stability map in character cells: the outcome of every cell and the predicted limit. Where
+// neither axis is the step, cells that came to their end are shaded by their worst loop gap.
+
+#include "session/stability/stability.h"
+#include "terminal/cells.h"
+
+typedef struct hn_map_plot_cell {
+    unsigned char kind; ///< hn_stability_class
+    bool limit;         ///< the predicted limit passes here
+    double gap;         ///< worst loop gap [m]
+    double margin;      ///< step over the predicted limit; NaN: nothing is predicted
+} hn_map_plot_cell;
+
+/// One method of a map as it is now; a copy that outlives it.
+typedef struct hn_map_plot {
+    hn_map_axis x, y;
+    bool heat; ///< shaded by the gap
+    char name[HN_SPEC_MAX];
+    hn_map_plot_cell cell[HN_MAP_SIDE * HN_MAP_SIDE]; ///< y.n rows of x.n, the lowest y first
+} hn_map_plot;
+
+/// A cell of a map; column -1: none.
+typedef struct hn_map_place {
+    int column, row;
+} hn_map_place;
+
+/// Copies what is done so far of method m.
+void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m);
+/// The cell whose values are nearest.
+hn_map_place hn_map_plot_place(const hn_map_plot *p, double x, double y);
+/// Rows that the map takes, with its axis and its legend.
+int hn_map_plot_rows(const hn_map_plot *p);
+/// Draws the map, its axes and its legend at the top left of the area. present, cursor: cells to
+/// mark.
+void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
+                      hn_map_place cursor);
+/// "alpha = 12, beta = 40: stable, error below 1e-2; worst gap 73 µm; 0.35 of the predicted limit"
+void hn_map_plot_words(hn_strbuf *b, const hn_map_plot *p, hn_map_place at);
+/// Adds the method's name and the map, as wide as `columns`.
+void hn_map_plot_text(hn_strbuf *b, const hn_map_plot *p, int columns, bool colours);
+#endif

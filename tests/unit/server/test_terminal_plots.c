@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plots in character cells: points, maps and bars stand where their numbers say.
+#include "support/near.h"
+
+#include "terminal/bars.h"
+#include "terminal/map_plot.h"
+#include "terminal/scatter.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *glyph(const hn_cells *c, int x, int y) {
+    return c->at[y * c->columns + x].glyph;
+}
+
+static void points_stand_in_their_decades_and_failures_on_the_upper_edge(void **state) {
+    (void)state;
+    hn_cells c = {0};
+    assert_true(hn_cells_resize(&c, 40, 9));
+    const hn_scatter s = {.x_unit = "s",
+                          .y_high = 1,
+                          .n = 1,
+                          .series = {{.n = 3,
+                                      .colour = 2,
+                                      .glyph = "*",
+                                      .point = {{.x = 1e-3, .y = 1e-1},
+                                                {.x = 1e-1, .y = 1e-7},
+                                                {.x = 1e-2, .on_edge = true}}}}};
+    assert_true(hn_scatter_draw(&c, (hn_area){0, 0, 40, 9}, &s, HN_DOTS_ASCII));
+
+    // 8 columns of labels, then 32 columns and 8 rows: a decade a row from 1 to 1e-7
+    assert_string_equal(glyph(&c, 9, 1), "*");
+    assert_string_equal(glyph(&c, 38, 7), "*");
+    assert_string_equal(glyph(&c, 24, 0), "╳");
+    assert_int_equal(c.at[1 * 40 + 9].colour, 2);
+    assert_int_equal(c.at[0 * 40 + 24].colour, HN_CELL_ALARM);
+    hn_cells_free(&c);
+}
+
+static void one_point_spans_no_range_and_draws_nothing(void **state) {
+    (void)state;
+    hn_cells c = {0};
+    assert_true(hn_cells_resize(&c, 40, 9));
+    hn_scatter s = {.x_unit = "s", .y_high = 1};
+    assert_false(hn_scatter_draw(&c, (hn_area){0, 0, 40, 9}, &s, HN_DOTS_BRAILLE));
+    assert_false(hn_scatter_draw(&c, (hn_area){0, 0, 10, 3}, &s, HN_DOTS_BRAILLE));
+    for (int i = 0; i < 40 * 9; i++) {
+        assert_string_equal(c.at[i].glyph, "");
+    }
+    hn_cells_free(&c);
+}
+
+/// Three columns by two rows: a gap of 1 um to 1 mm where it ran, one cell that grew.
+static void fill_map(hn_map_plot *p) {
+    *p = (hn_map_plot){.heat = true};
+    p->x =
+        (hn_map_axis){.name = "alpha", .unit = "1/s", .is_log = 1, .n = 3, .value = {1, 10, 100}};
+    p->y = (hn_map_axis){.name = "beta", .unit = "1/s", .is_log = 1, .n = 2, .value = {1, 100}};
+    for (int i = 0; i < 6; i++) {
+        p->cell[i] = (hn_map_plot_cell){.kind = HN_STABILITY_FINE, .gap = 1e-6, .margin = 0.5};
+    }
+    p->cell[1].gap = 1e-3;
+    p->cell[5] = (hn_map_plot_cell){.kind = HN_STABILITY_GREW, .margin = 2};
+    p->cell[4].limit = true;
+}
+
+static void a_map_shades_what_ran_by_its_gap_and_marks_what_grew(void **state) {
+    (void)state;
+    static hn_map_plot p;
+    hn_cells c = {0};
+    const hn_map_place none = {-1, -1};
+    fill_map(&p);
+    assert_true(hn_cells_resize(&c, 60, 12));
+    hn_map_plot_draw(&c, (hn_area){0, 0, 60, 12}, &p, none, none);
+    assert_string_equal(glyph(&c, 12, 1), "░"); // 1 um, the lowest row is at the bottom
+    assert_string_equal(glyph(&c, 14, 1), "█"); // 1 mm
+    assert_string_equal(glyph(&c, 16, 0), "▲");
+    assert_string_equal(glyph(&c, 15, 0), "━"); // the predicted limit passes there
+    hn_cells_free(&c);
+}
+
+static void a_map_finds_the_nearest_cell_and_says_what_is_in_it(void **state) {
+    (void)state;
+    static hn_map_plot p;
+    hn_strbuf b;
+    fill_map(&p);
+    const hn_map_place at = hn_map_plot_place(&p, 8, 3); // on logarithmic axes
+    assert_int_equal(at.column, 1);
+    assert_int_equal(at.row, 0);
+    hn_strbuf_init(&b);
+    hn_map_plot_words(&b, &p, at);
+    assert_string_equal(hn_strbuf_text(&b),
+                        "alpha = 10 1/s, beta = 1 1/s: stable, error below 1e-2; "
+                        "worst gap 1.0 mm; the step is 0.5 of the predicted limit");
+    hn_strbuf_reset(&b);
+    assert_int_equal(hn_map_plot_place(&p, -1, 3).column, -1);
+}
+
+static void bars_have_lengths_in_proportion_and_a_negative_one_is_lighter(void **state) {
+    (void)state;
+    const hn_bar bars[] = {{.label = "a", .value = "1 of 1", .share = 1},
+                           {.label = "bb", .value = "1 of 2", .share = 0.5},
+                           {.label = "c", .value = "-1", .share = -0.5},
+                           {.label = "d", .value = "not known", .share = (double)NAN}};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_bars_text(&b, bars, 4, 27, false);
+    assert_string_equal(hn_strbuf_text(&b), "  a   ██████████  1 of 1\n"
+                                            "  bb  █████░░░░░  1 of 2\n"
+                                            "  c   ▒▒▒▒▒░░░░░  -1\n"
+                                            "  d               not known\n");
+    hn_strbuf_reset(&b);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_stand_in_their_decades_and_failures_on_the_upper_edge),
+        cmocka_unit_test(one_point_spans_no_range_and_draws_nothing),
+        cmocka_unit_test(a_map_shades_what_ran_by_its_gap_and_marks_what_grew),
+        cmocka_unit_test(a_map_finds_the_nearest_cell_and_says_what_is_in_it),
+        cmocka_unit_test(bars_have_lengths_in_proportion_and_a_negative_one_is_lighter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
