@@ -43,12 +43,12 @@ ROOMS_integrators  := step: explicit:step implicit:step constrained:step externa
 ROOMS_study        := spectrum: stepping: incidents:stepping run:spectrum,stepping,incidents \
                       truth:stepping,incidents,run account:stepping,incidents,run \
                       stability:spectrum,stepping,incidents,run cost:stepping,incidents,run,truth
-ROOMS_session      := verdict: store: model:store job:model compare:store,model references:store,model face:model export:model \
-                      precision:store,model,job,compare,references \
-                      accounts:store,model,job,references,precision \
+ROOMS_session      := style: verdict: store: model:store job:model compare:store,model references:store,model face:model export:model \
+                      precision:style,store,model,job,compare,references \
+                      accounts:style,store,model,job,references,precision \
                       stability:store,model,job,references,precision \
-                      extreme:store,model,job,compare,references,precision \
-                      report:store,model,job,compare,references,precision,accounts,stability,extreme \
+                      extreme:style,store,model,job,compare,references,precision \
+                      report:style,store,model,job,compare,references,precision,accounts,stability,extreme \
                       kinds:job,model,references,precision,accounts,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
 ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson class:grade,grade/parts \
@@ -145,14 +145,25 @@ $(OUT)/generated/bundle.o: $(BUNDLE)
 	@printf '%s\n' '.section .rodata' '.globl hn_bundle_start, hn_bundle_end' 'hn_bundle_start:' '.incbin "$(BUNDLE)"' \
 	    'hn_bundle_end:' '.byte 0' '.section .note.GNU-stack,"",@progbits' | $(CC) -x assembler -c -o $@ -
 
+# style sheets of documents, as texts in C
+STYLES := $(sort $(wildcard core/session/style/*.css))
+$(OUT)/generated/style.c: $(STYLES)
+	@mkdir -p $(@D)
+	@for f in $(STYLES); do \
+	    echo "extern const char hn_style_$$(basename $$f .css)[];"; echo "const char hn_style_$$(basename $$f .css)[] ="; \
+	    sed -e '/^\/\*.*\*\/$$/d' -e '/^$$/d' -e 's/^ *//' -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/.*/    "&"/' $$f; \
+	    echo '    "";'; done >$@
+$(OUT)/generated/style.o: $(OUT)/generated/style.c
+	@$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
+
 # made anew each time: an archive would keep the object of a source that is gone
-$(LIBRARY): $(CORE_OBJECTS)
+$(LIBRARY): $(CORE_OBJECTS) $(OUT)/generated/style.o
 	@mkdir -p $(@D)
 	@rm -f $@
 	@ar rcs $@ $^
 
 define layer_rules
-$(call archive,$(1)): $(call objects,$(SOURCES_$(1)))
+$(call archive,$(1)): $(call objects,$(SOURCES_$(1))) $(if $(filter session,$(1)),$(OUT)/generated/style.o)
 	@mkdir -p $$(@D)
 	@rm -f $$@
 	@ar rcs $$@ $$^
@@ -182,7 +193,7 @@ SOURCES_HASH := $(OUT)/generated/sources_hash.h
 .PHONY: sources-hash
 sources-hash:
 	@mkdir -p $(dir $(SOURCES_HASH))
-	@hash=$$(LC_ALL=C cat $(sort $(wildcard core/*/*.[ch] core/*/*/*.[ch] server/*.[ch] server/*/*.[ch] server/*/*/*.[ch])) | sha256sum | cut -c 1-12); \
+	@hash=$$(LC_ALL=C cat $(sort $(STYLES) $(wildcard core/*/*.[ch] core/*/*/*.[ch] server/*.[ch] server/*/*.[ch] server/*/*/*.[ch])) | sha256sum | cut -c 1-12); \
 	    echo "#define HN_SOURCES_HASH \"$$hash\"" >$(SOURCES_HASH).new; \
 	    cmp -s $(SOURCES_HASH).new $(SOURCES_HASH) && rm $(SOURCES_HASH).new || mv $(SOURCES_HASH).new $(SOURCES_HASH)
 $(SOURCES_HASH): sources-hash ;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/style/style.h"
 #include "session/accounts/accounts_html.h"
 
 #include "session/accounts/accounts_internal.h"
@@ -10,12 +11,6 @@
 
 #include <math.h>
 #include <stdio.h>
-
-static const char STYLE[] =
-    "main{max-width:1080px}.scroll>svg{min-width:640px;margin:16px 0}dl{margin:8px "
-    "0;font-size:13px}"
-    "dt{font-weight:500;float:left;clear:left;width:104px}dd{margin:0 0 4px 104px}"
-    "@media print{.scroll>svg{min-width:0}}";
 
 static void put_quantity(hn_strbuf *b, double value, const char *unit) {
     char text[HN_SI_TEXT] = "\xe2\x80\x93";
@@ -125,7 +120,7 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
     char title[300];
     snprintf(title, sizeof title, "%.250s: errors and energy",
              scene->title ? scene->title : scene->id);
-    hn_page_head(b, title, STYLE);
+    hn_page_head(b, title, hn_style_budget);
 
     // the heading, and what was compared with what
     hn_strbuf_add(b, "<h1>");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/style/style.h"
 #include "session/extreme/extreme_html.h"
 
 #include "session/extreme/extreme_internal.h"
@@ -7,13 +8,6 @@
 #include "session/precision/study_html.h"
 
 #include <stdio.h>
-
-static const char STYLE[] =
-    "main{max-width:1080px}h2{margin-bottom:4px}p{margin:4px 0 8px}a{color:inherit}"
-    "table{font-size:14px}th,td{vertical-align:top}tbody th{vertical-align:top}"
-    "td.v{white-space:nowrap;min-width:0}td .why{display:block;color:var(--muted);font-size:12px}"
-    ".warn{font-weight:600}.fail{font-weight:600;color:var(--tear)}.none{color:var(--muted)}"
-    "@media print{table{font-size:8pt}}";
 
 static const char *css_class(hn_extreme_verdict verdict) {
     return verdict <= HN_EXTREME_FAIL ? hn_extreme_verdict_name(verdict) : "none";
@@ -84,7 +78,7 @@ static void put_summary(hn_strbuf *b, const hn_extreme *x) {
 }
 
 void hn_extreme_html(hn_strbuf *b, const hn_extreme *x) {
-    hn_page_head(b, "holonom: the extreme matrix", STYLE);
+    hn_page_head(b, "holonom: the extreme matrix", hn_style_extreme);
     hn_strbuf_add(b, "<h1>The extreme matrix</h1><p>Where methods break, and whether theory said "
                      "so. Each line states what was expected, with its reason, before it was run. "
                      "Pass: inside the band. Warn: outside, by no more than three times the "

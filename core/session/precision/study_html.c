@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/style/style.h"
 #include "session/precision/study_html.h"
 
 #include "session/precision/study_page.h"
@@ -12,35 +13,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-
-static const char STYLE[] =
-    "*{box-sizing:border-box}"
-    "body{margin:0;background:var(--paper);color:var(--ink);font:15px/1.5 system-ui,sans-serif}"
-    "main{max-width:1180px;margin:0 auto;padding:32px 24px 64px}"
-    "h1{font-size:24px;font-weight:600;margin:0 0 "
-    "4px}h2{font-size:17px;font-weight:600;margin:40px 0 8px}"
-    "p{margin:8px 0;max-width:76ch}.quiet{color:var(--muted);font-size:13px}"
-    "ul.answers{margin:8px 0;padding-left:20px}ul.answers li{margin:4px 0}"
-    "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;width:100%}"
-    "th{font-weight:500;color:var(--muted);text-align:left;vertical-align:bottom}"
-    "th,td{padding:4px 10px 4px 0;border-bottom:1px solid var(--hairline)}"
-    "td.n,th.n{text-align:right;white-space:nowrap}tbody "
-    "th{font-weight:400;color:var(--ink);vertical-align:middle}.m{white-space:nowrap}td.v{min-"
-    "width:190px}"
-    ".scroll{overflow-x:auto}.scroll:focus-visible{outline:2px solid "
-    "var(--ink)}.wrong{color:var(--tear)}"
-    ".choice{position:absolute;opacity:0;pointer-events:none}"
-    ".bar{display:flex;flex-wrap:wrap;gap:4px 16px;font-size:13px;color:var(--muted);margin:8px 0}"
-    ".bar span{margin-right:4px}.bar label{cursor:pointer;padding:2px "
-    "6px;border-radius:4px;color:var(--ink)}"
-    ".plot{display:none}details{margin:8px 0}summary{cursor:pointer}"
-    "@media print{@page{size:A4;margin:14mm}body{font-size:10.5pt}main{max-width:none;padding:0}"
-    "table{font-size:7pt}th,td{padding:2px 5px 2px "
-    "0}td.v{min-width:60px}"
-    ".scroll{overflow:visible}svg.key{width:15px}.bar{display:none}h2{break-after:avoid;margin-top:"
-    "20px}"
-    "tr,svg,li{break-inside:avoid}"
-    ".all{display:none}}";
 
 void hn_page_theme(hn_strbuf *b, hn_theme theme) {
     const hn_surface *s = hn_surface_get(theme);
@@ -93,8 +65,8 @@ void hn_page_head(hn_strbuf *b, const char *title, const char *style) {
     hn_strbuf_add(b, "}@media screen and (prefers-color-scheme:dark){:root{");
     hn_page_theme(b, HN_THEME_DARK);
     hn_strbuf_add(b, "}}");
-    hn_strbuf_add(b, hn_plot_style());
-    hn_strbuf_add(b, STYLE);
+    hn_strbuf_add(b, hn_style_plots);
+    hn_strbuf_add(b, hn_style_page);
     put_choices_style(b);
     hn_strbuf_add(b, style);
     hn_strbuf_add(b, "</style></head><body><main>\n");

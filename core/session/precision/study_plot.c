@@ -14,28 +14,6 @@ static const double MARKER = 4.2; // half its size
 static const double SMALLEST = 1e-17;
 static const double SLOPE_MARGIN = 0.05; // of the range of costs, left and right
 
-static const char STYLE[] =
-    "svg{display:block;width:100%;height:auto}svg.key{display:inline-block;width:28px;vertical-"
-    "align:-2px}"
-    ".grid{stroke:var(--hairline);stroke-width:1;fill:none}.axis{stroke:var(--muted);stroke-width:"
-    "1;fill:none}"
-    ".curve{fill:none;stroke-width:2}.again{stroke-width:1.2}.lap{fill:none;stroke-width:1}."
-    "elsewhere{opacity:.55}.leader{fill:none;stroke:var(--"
-    "hairline)}"
-    ".open{fill:none;stroke-width:.5}.solid{stroke:none}.failed path{fill:none;stroke-width:2}"
-    ".part rect{stroke:var(--paper);stroke-width:1}svg .inside{fill:var(--paper);font-size:11px}"
-    ".sign{fill:none;stroke:var(--tear);stroke-width:1.8}.sign.survived{stroke:var(--ink)}"
-    ".sign.off{stroke:var(--muted)}.sign.told,.sign.silent{fill:var(--tear)}"
-    ".way{stroke:var(--hairline);stroke-width:1;fill:none}"
-    ".band{fill:var(--muted);opacity:.14}"
-    "svg text{fill:var(--ink);font:12px system-ui,sans-serif}svg .tick,svg .note{fill:var(--muted)}"
-    "svg .power{font-size:9px}svg "
-    ".title{font-size:13px}.end{text-anchor:end}.middle{text-anchor:middle}";
-
-const char *hn_plot_style(void) {
-    return STYLE;
-}
-
 typedef struct frame {
     hn_error_kind error;
     hn_cost_kind cost;

@@ -13,11 +13,9 @@
 void hn_study_plot(hn_strbuf *b, const hn_study *study, hn_error_kind error, hn_cost_kind cost);
 /// Writes the line and the marker of method m, for legends.
 void hn_study_key(hn_strbuf *b, int m);
-/// Returns the style rules that plots need besides the variables.
-const char *hn_plot_style(void);
 /// Opens an <svg> of this size; `about` is its accessible name.
 void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about);
-/// Writes a text at (x, y) in a class of hn_plot_style().
+/// Writes a text at (x, y) in a class of style/plots.css.
 void hn_plot_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text);
 /// Writes a text with &, <, > and " escaped.
 void hn_html_text(hn_strbuf *b, const char *text);

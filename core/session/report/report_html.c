@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/style/style.h"
 #include "session/report/report_html.h"
 
 #include "session/report/report_internal.h"
@@ -12,40 +13,6 @@
 
 #include <math.h>
 #include <stdio.h>
-
-static const char STYLE[] =
-    "h1{font-size:26px}h2{margin-top:56px;padding-top:8px;border-top:1px solid var(--hairline)}"
-    ".top h2,details h2,h2:first-child{border:0;margin-top:24px;padding-top:0}"
-    ".top td,.top th{padding:3px 12px 3px 0}.top td,.top th,.top a{white-space:nowrap}.top "
-    "th[scope=row]{white-space:normal}"
-    ".top small{color:var(--muted);font-size:12px}.top .wrong{color:var(--tear)}"
-    ".top .none{color:var(--muted)}.top a{color:inherit}"
-    ".lines>*{margin:16px 0}"
-    ".bars{position:sticky;top:0;z-index:2;background:var(--paper);padding:6px 0;"
-    "border-bottom:1px solid var(--hairline);margin-top:32px}.bars .bar{margin:2px 0}"
-    ".names{display:flex;flex-wrap:wrap;gap:2px 12px;margin:2px 0}"
-    ".names button{all:unset;cursor:pointer;font-size:12px;padding:1px 4px;border-radius:4px}"
-    ".names button:focus-visible{outline:2px solid var(--ink)}"
-    ".names button[aria-pressed=false]{opacity:.4;text-decoration:line-through}"
-    ".script .entry,.script .point,.script .failed,.script .part,.script .mark{cursor:pointer}"
-    ".tip{position:fixed;z-index:9;max-width:420px;padding:6px 10px;white-space:pre-line;"
-    "background:var(--raised);color:var(--ink);border:1px solid var(--muted);border-radius:4px;"
-    "font-size:13px;pointer-events:none}"
-    "h3{font-size:15px;font-weight:600;margin:24px 0 4px}"
-    ".scroll>svg,.plot>svg{min-width:640px}section>details{margin:12px 0}"
-    "@media (max-width:760px){main{padding:16px 12px 48px}"
-    ".bars{position:static}.names{font-size:12px}}"
-    // folded details are printed: by the style sheet, or by the script in browsers that need it
-    "@media print{.names{display:none}.bars{display:none}section>details>summary{display:none}"
-    "section>details{break-before:page}section>details::details-content{content-visibility:visible;"
-    "block-size:auto}"
-    "section{break-before:page}section:last-of-type{break-before:auto}h2{border:0}"
-    ".scroll>svg,.plot>svg{min-width:0;max-height:88mm}h3{break-after:avoid}"
-    ".top table{font-size:8pt}.top small{font-size:7pt}h1{font-size:16pt}p{max-width:none}"
-    "h2,.top h2{font-size:12pt;margin-top:12px}.quiet{font-size:8pt;margin:4px 0}"
-    ".answers{margin:4px 0}.answers li{font-size:9pt;margin:1px 0}h3{font-size:10pt;margin:10px 0 "
-    "2px}"
-    ".lines>*{margin:4px 0}}";
 
 static const char SCRIPT[] =
     "(function(){'use strict';var "
@@ -392,7 +359,7 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     // the head of the page, with the style of hidden methods
     hn_strbuf style;
     hn_strbuf_init(&style);
-    hn_strbuf_add(&style, STYLE);
+    hn_strbuf_add(&style, hn_style_report);
     put_hiding_style(&style);
     hn_page_head(b, "Methods for mechanisms with closed loops: the report", hn_strbuf_text(&style));
     b->failed |= style.failed;

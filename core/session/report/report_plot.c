@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/style/style.h"
 #include "session/report/report_plot.h"
 
 #include "session/report/report_internal.h"
@@ -223,7 +224,7 @@ bool hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *p) {
         hn_strbuf_add_n(&whole, hn_strbuf_text(&inner) + 5,
                         (size_t)(body - hn_strbuf_text(&inner)) - 5);
         hn_strbuf_add(&whole, "<style>");
-        hn_strbuf_add(&whole, hn_plot_style());
+        hn_strbuf_add(&whole, hn_style_plots);
         hn_strbuf_add(&whole, "</style><rect x=\"-12\" y=\"-12\" width=\"120%\" height=\"120%\" "
                               "style=\"fill:var(--paper)\"/>");
         hn_strbuf_add(&whole, body);
