@@ -74,7 +74,8 @@ static const hn_command COMMANDS[] = {
      "an exercise with the numbers of a variant; --check proves it over --seeds A..B",
      "--seed --student --hint --seeds --check --wide", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...",
-     "verdicts as --format text, json, gradescope, junit, csv or html; into --out DIR",
+     "verdicts as --format text, json, gradescope, prairielearn, autolab, coderunner, lti-score, "
+     "junit, csv or html; into --out DIR",
      "--format --out -o --seed --student --plot --show-expected --no-pictures --wide", 2,
      HN_CLI_MAX_WORDS, hn_command_grade},
     {"class", "ID FOLDER",

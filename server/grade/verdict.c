@@ -23,9 +23,8 @@ static void add_number(hn_strbuf *b, double x) {
     }
 }
 
-/// What is to be said under one entry; nothing for one that is simply right.
-static void add_entry_detail(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
-                             const char *indent) {
+void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
+                           const char *indent) {
     if (e->explanation[0]) {
         hn_strbuf_printf(b, "%s%s\n", indent, e->explanation);
     }
@@ -67,7 +66,7 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         const hn_entry_verdict *e = &v->entry[k];
         hn_strbuf_printf(b, "  %-5s %4g / %g  %s\n", e->name, e->points, e->max_points,
                          e->mistake[0] ? e->mistake : "right");
-        add_entry_detail(b, v, e, "        ");
+        hn_verdict_entry_text(b, v, e, "        ");
         if (k == v->shown_entry) {
             hn_strbuf_add(b, "        at        ");
             add_state(b, v);
@@ -171,7 +170,7 @@ static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     char number[32];
     hn_strbuf detail;
     hn_strbuf_init(&detail);
-    add_entry_detail(&detail, v, e, "");
+    hn_verdict_entry_text(&detail, v, e, "");
 
     // the keys are Gradescope's
     snprintf(number, sizeof number, "%d.%d", e->row + 1, e->column + 1);

@@ -1,134 +1,84 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/verdict_forms.h"
 
+#include "grade/verdict_platforms.h"
+#include "grade/verdict_reports.h"
+
 #include <string.h>
 
-/// Text in XML and HTML: markup escaped, control characters that XML forbids left out.
-static void put_escaped(hn_strbuf *b, const char *text) {
-    for (; *text; text++) {
-        const unsigned char c = (unsigned char)*text;
-        if (c == '<' || c == '>' || c == '&' || c == '"') {
-            hn_strbuf_printf(b, "&#%d;", c);
-        } else if (c >= ' ' || c == '\n' || c == '\t') {
-            hn_strbuf_add_n(b, text, 1);
+static void write_text(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    (void)x;
+    hn_verdict_text(b, v);
+}
+
+static void write_json(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    (void)x;
+    hn_verdict_json(b, v);
+}
+
+static void write_gradescope(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    hn_verdict_gradescope(b, v, x->seconds);
+}
+
+static void write_junit(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    (void)x;
+    hn_verdict_junit(b, v);
+}
+
+static void write_csv(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    hn_verdict_csv(b, v, x->first);
+}
+
+static void write_html(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    hn_verdict_html(b, v, x->png);
+}
+
+static void write_prairielearn(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    hn_verdict_prairielearn(b, v, x->png);
+}
+
+static void write_autolab(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    (void)x;
+    hn_verdict_autolab(b, v);
+}
+
+static void write_coderunner(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    (void)x;
+    hn_verdict_coderunner(b, v);
+}
+
+static void write_lti(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
+    (void)x;
+    hn_verdict_lti_score(b, v);
+}
+
+static const hn_verdict_form FORMS[] = {
+    {"text", "txt", false, false, write_text},
+    {"json", "json", false, false, write_json},
+    {"gradescope", "json", true, false, write_gradescope},
+    {"prairielearn", "json", true, true, write_prairielearn},
+    {"autolab", "txt", false, false, write_autolab},
+    {"coderunner", "json", false, false, write_coderunner},
+    {"lti-score", "json", false, false, write_lti},
+    {"junit", "xml", false, false, write_junit},
+    {"csv", "csv", false, false, write_csv},
+    {"html", "html", false, true, write_html},
+};
+enum { N_FORMS = sizeof FORMS / sizeof *FORMS };
+
+hn_status hn_verdict_form_find(const char *name, const hn_verdict_form **out, hn_diag *diag) {
+    const char *names[N_FORMS];
+    for (int i = 0; i < N_FORMS; i++) {
+        names[i] = FORMS[i].name;
+        if (strcmp(name, FORMS[i].name) == 0) {
+            *out = &FORMS[i];
+            return HN_OK;
         }
     }
-}
-
-static int is_full(const hn_entry_verdict *e) {
-    return e->points >= e->max_points;
-}
-
-static void put_case(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
-    hn_strbuf_add(b, "    <testcase classname=\"");
-    put_escaped(b, v->problem->id);
-    hn_strbuf_add(b, "\" name=\"");
-    put_escaped(b, e->name);
-    if (is_full(e)) {
-        hn_strbuf_add(b, "\"/>\n");
-        return;
-    }
-    hn_strbuf_add(b, "\">\n      <failure type=\"");
-    put_escaped(b, e->mistake);
-    hn_strbuf_printf(b, "\" message=\"%g of %g points\">", e->points, e->max_points);
-    put_escaped(b, e->explanation);
-    hn_strbuf_add(b, "</failure>\n    </testcase>\n");
-}
-
-void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v) {
-    const int graded = v->kind == HN_VERDICT_GRADED;
-    int failures = 0;
-    for (int k = 0; k < v->n_entries && graded; k++) {
-        failures += !is_full(&v->entry[k]);
-    }
-    hn_strbuf_add(b,
-                  "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"");
-    put_escaped(b, v->problem->title);
-    hn_strbuf_printf(b, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n",
-                     graded ? v->n_entries : 1, failures, !graded);
-
-    // one case an entry, or one error
-    for (int k = 0; k < v->n_entries && graded; k++) {
-        put_case(b, v, &v->entry[k]);
-    }
-    if (!graded) {
-        hn_strbuf_add(b, "    <testcase classname=\"");
-        put_escaped(b, v->problem->id);
-        hn_strbuf_add(b, "\" name=\"submission\"><error type=\"ungradable\">");
-        put_escaped(b, v->reason);
-        hn_strbuf_add(b, "</error></testcase>\n");
-    }
-    hn_strbuf_add(b, "  </testsuite>\n</testsuites>\n");
-}
-
-static void put_row(hn_strbuf *b, const hn_entry_verdict *e) {
-    hn_strbuf_printf(b, "<tr class=\"%s\"><td>", e->right ? "right" : "wrong");
-    put_escaped(b, e->name);
-    hn_strbuf_printf(b, "</td><td>%g of %g</td><td>", e->points, e->max_points);
-    put_escaped(b, e->right ? "right" : e->explanation);
-    hn_strbuf_add(b, "</td><td>");
-    put_escaped(b, e->given);
-    hn_strbuf_add(b, "</td></tr>\n");
-}
-
-void hn_verdict_html(hn_strbuf *b, const hn_verdict *v) {
-    const int graded = v->kind == HN_VERDICT_GRADED;
-    hn_strbuf_add(b, "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>");
-    put_escaped(b, v->problem->title);
-    hn_strbuf_add(b,
-                  "</title>\n<style>body{font:15px/1.5 sans-serif;max-width:50em;margin:2em auto}"
-                  "td{padding:.3em .8em;border-bottom:1px solid #ccc;vertical-align:top}"
-                  ".wrong td:first-child{border-left:3px solid #b5472f}"
-                  ".right td:first-child{border-left:3px solid #2f7d4f}</style>\n<h1>");
-    put_escaped(b, v->problem->title);
-    hn_strbuf_add(b, "</h1>\n<p>");
-    if (graded) {
-        hn_strbuf_printf(b, "%g of %g points: ", v->score, v->max_score);
-    }
-    put_escaped(b, graded ? v->summary : v->reason);
-    hn_strbuf_add(b, graded ? ".</p>\n<table>\n" : ".</p>\n<p>");
-
-    // the entries, or what to do
-    for (int k = 0; k < v->n_entries && graded; k++) {
-        put_row(b, &v->entry[k]);
-    }
-    put_escaped(b, graded ? "" : v->hint);
-    hn_strbuf_printf(b, "%s\n<p>Variant of seed %llu", graded ? "</table>" : "</p>",
-                     (unsigned long long)v->seed);
-    hn_strbuf_add(b, v->student[0] ? ", " : "");
-    put_escaped(b, v->student);
-    hn_strbuf_add(b, ".</p></html>\n");
-}
-
-/// A field in quotes, quotes doubled. One that a spreadsheet would take for a formula gets a blank
-/// in front.
-static void put_field(hn_strbuf *b, const char *text) {
-    hn_strbuf_add(b, *text && strchr("=+-@", *text) ? "\" " : "\"");
-    for (; *text; text++) {
-        hn_strbuf_add(b, *text == '"' ? "\"" : "");
-        hn_strbuf_add_n(b, text, 1);
-    }
-    hn_strbuf_add(b, "\"");
-}
-
-void hn_verdict_csv(hn_strbuf *b, const hn_verdict *v, int head) {
-    const int graded = v->kind == HN_VERDICT_GRADED;
-    hn_strbuf mistakes;
-    hn_strbuf_init(&mistakes);
-    for (int k = 0; k < v->n_entries && graded; k++) {
-        if (!v->entry[k].right) {
-            hn_strbuf_printf(&mistakes, "%s%s: %s", mistakes.n ? "; " : "", v->entry[k].name,
-                             v->entry[k].mistake);
-        }
-    }
-    hn_strbuf_add(b, head ? "problem,student,seed,status,score,max_score,mistakes\n" : "");
-    put_field(b, v->problem->id);
-    hn_strbuf_add(b, ",");
-    put_field(b, v->student);
-    hn_strbuf_printf(b, ",%llu,%s,%g,%g,", (unsigned long long)v->seed,
-                     graded ? "graded" : "ungradable", graded ? v->score : 0, v->max_score);
-    put_field(b, graded ? hn_strbuf_text(&mistakes) : v->reason);
-    hn_strbuf_add(b, "\n");
-    b->failed |= mistakes.failed;
-    hn_strbuf_reset(&mistakes);
+    const char *near = hn_nearest_name(name, names, N_FORMS);
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                       near ? near
+                            : "text, json, gradescope, prairielearn, autolab, coderunner, "
+                              "lti-score, junit, csv or html",
+                       "'%.40s' is not a form of verdicts", name);
 }

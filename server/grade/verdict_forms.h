@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_GRADE_VERDICT_FORMS_H
 #define HN_GRADE_VERDICT_FORMS_H
-// Further forms of a verdict: for test reports, for a browser.
+// The forms in which a verdict can be written: one table.
 
 #include "grade/verdict.h"
 
-/// JUnit's XML: one test case an entry; an entry with less than its points fails, a submission that
-/// cannot be graded is an error.
-void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v);
-/// A page of its own for a person, without scripts.
-void hn_verdict_html(hn_strbuf *b, const hn_verdict *v);
-/// A line of comma-separated values: problem, student, seed, status, score, max_score, and the
-/// mistakes. With its head when `head` is not 0.
-void hn_verdict_csv(hn_strbuf *b, const hn_verdict *v, int head);
+/// What a form may need besides the verdict.
+typedef struct hn_verdict_extra {
+    double seconds;       ///< [s] that grading took
+    bool first;           ///< of several verdicts on one output
+    const hn_strbuf *png; ///< the picture of a state where a wrong entry shows; NULL: none
+} hn_verdict_extra;
+
+typedef struct hn_verdict_form {
+    const char *name, *ending; ///< of the form, and of its files
+    bool results;              ///< the platform reads one file of the name "results"
+    bool pictures;             ///< holds the picture itself
+    void (*write)(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x);
+} hn_verdict_form;
+
+/// The form of a name. Fails: HN_ERR_INPUT, with a suggestion.
+HN_MUST_CHECK hn_status hn_verdict_form_find(const char *name, const hn_verdict_form **out,
+                                             hn_diag *diag);
 #endif

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exercises from the shell: variants, checks, verdicts and their exit statuses, grading again. Speaks TAP."""
 
+import base64
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -115,6 +117,54 @@ def forms(folder):
     expect("a form is suggested", near.returncode == 2 and "junit" in near.stderr, near.stderr)
 
 
+def platforms(folder):
+    """One score in the documents of all platforms, with the fields that each asks for."""
+    some = write(folder, "some.json", {"a": 1, "e": "l_2 l_3 sin(th2-th3)", "d": ["2,5", 1]})
+    told = {form: run("grade", "fourbar", some, "--format", form, "--student", "s7").stdout
+            for form in ("json", "gradescope", "prairielearn", "autolab", "coderunner", "lti-score")}  # fmt: skip
+    lines = told["autolab"].splitlines()
+    d = {form: json.loads(text) for form, text in told.items() if form != "autolab"}
+    score, full = d["json"]["score"], d["json"]["max_score"]
+    expect("the score is neither nothing nor all", 0 < score < full, str(score))
+    expect("Gradescope: score and a test an entry", d["gradescope"]["score"] == score and len(d["gradescope"]["tests"]) == 6)
+    p = d["prairielearn"]
+    expect("PrairieLearn: a share, and tests that sum up", p["gradable"] and abs(p["score"] - score / full) < 1e-12
+           and sum(t["points"] for t in p["tests"]) == score, told["prairielearn"])  # fmt: skip
+    scores, stages = json.loads(lines[-1])["scores"], json.loads(lines[0])
+    expect("Autolab: the last line has a score for each part", list(scores) == ["a", "b", "c", "d", "e"] and sum(scores.values()) == score, lines[-1])
+    expect("Autolab: feedback for each part", stages["_presentation"] == "semantic" and stages["Grade"]["e"] == {"passed": True}
+           and "comma" in stages["Grade"]["d"]["hint"], lines[0])  # fmt: skip
+    c = d["coderunner"]
+    expect("CodeRunner: a fraction and a table with a format a column", abs(c["fraction"] - score / full) < 1e-12
+           and len(c["testresults"]) == 7 and {len(r) for r in c["testresults"]} == {4} and len(c["columnformats"]) == 3, told["coderunner"])  # fmt: skip
+    t = d["lti-score"]
+    expect("LTI: the score of a user", (t["userId"], t["scoreGiven"], t["scoreMaximum"], t["gradingProgress"]) == ("s7", score, full, "FullyGraded"))
+    expect("LTI: a time with parts of a second", bool(re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", t["timestamp"])), t["timestamp"])
+
+    # what cannot be graded costs nothing where the platform knows that
+    none = write(folder, "none.json", {})
+    out = {form: run("grade", "fourbar", none, "--format", form) for form in told}
+    expect("what cannot be graded ends with 2 in every form", {o.returncode for o in out.values()} == {2})
+    p, t = json.loads(out["prairielearn"].stdout), json.loads(out["lti-score"].stdout)
+    expect("PrairieLearn: not gradable, with the reason", p["gradable"] is False and "score" not in p and p["format_errors"])
+    expect("LTI: no score", t["gradingProgress"] == "Failed" and "scoreGiven" not in t)
+    expect("Autolab: the reason is the feedback", "no part" in json.loads(out["autolab"].stdout.splitlines()[0])["Grade"]["fourbar"]["hint"])
+
+    # pictures, as part of the document and beside it
+    matrix = [["l1*sin(th1)"] + ["1"] * 3, ["1"] * 4]
+    wrong = write(folder, "wrong.json", {"J": matrix})
+    done = run("grade", "p3", wrong, "--format", "prairielearn", "--out", os.path.join(folder, "new", "results"))
+    path = os.path.join(folder, "new", "results")
+    with open(os.path.join(path, "results.json"), encoding="utf-8") as f:
+        image = json.load(f)["images"][0]["url"]
+    with open(os.path.join(path, "results.png"), "rb") as f:
+        png = f.read()
+    head, _, data = image.partition(",")
+    expect("the folder is made, and the picture is in the document", done.returncode == 0 and head == "data:image/png;base64" and base64.b64decode(data) == png)
+    with_it, without = (run("grade", "p3", wrong, "--format", "html", *more).stdout for more in ([], ["--no-pictures"]))
+    expect("HTML holds the picture unless told otherwise", "<img" in with_it and "<img" not in without and with_it.count("<tr") == without.count("<tr"))
+
+
 def for_teachers(folder):
     """Right numbers are in no verdict of a student, and numbers say how exact they must be."""
     path = write(folder, "half.json", {"a": 1, "d": [1, 2]})
@@ -159,6 +209,7 @@ def main():
         statuses(folder)
         own_variant(folder)
         forms(folder)
+        platforms(folder)
         for_teachers(folder)
         broken_exercise(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):

@@ -26,38 +26,6 @@ static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_st
     return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
 }
 
-/// The forms a verdict can be written in: the name, and the ending of its file in --out.
-typedef enum verdict_form {
-    FORM_TEXT,
-    FORM_JSON,
-    FORM_GRADESCOPE,
-    FORM_JUNIT,
-    FORM_CSV,
-    FORM_HTML,
-    N_FORMS
-} verdict_form;
-static const char *const FORM_NAMES[N_FORMS] = {"text",  "json", "gradescope",
-                                                "junit", "csv",  "html"};
-static const char *const FORM_ENDINGS[N_FORMS] = {"txt", "json", "json", "xml", "csv", "html"};
-
-static hn_status choose_form(const hn_args *args, verdict_form *form, hn_diag *diag) {
-    const char *wanted = args->format ? args->format : args->json ? "json" : "text";
-    for (int i = 0; i < N_FORMS; i++) {
-        if (strcmp(wanted, FORM_NAMES[i]) == 0) {
-            *form = (verdict_form)i;
-            return HN_OK;
-        }
-    }
-    const char *near = hn_nearest_name(wanted, FORM_NAMES, N_FORMS);
-    return hn_diag_set(diag, HN_ERR_INPUT, NULL,
-                       near ? near : "text, json, gradescope, junit, csv or html",
-                       "'%.40s' is not a form of verdicts", wanted);
-}
-
-static const char *ending_of(verdict_form form) {
-    return FORM_ENDINGS[form];
-}
-
 /// A bar for every entry, and one for the score.
 static void write_bars(hn_strbuf *b, const hn_verdict *v) {
     static hn_bar bars[HN_GRADE_MAX_ENTRIES + 1];
@@ -74,89 +42,74 @@ static void write_bars(hn_strbuf *b, const hn_verdict *v) {
     hn_bars_text(b, bars, v->n_entries + 1, hn_terminal_columns(), hn_terminal_colours());
 }
 
-/// `first`: of several verdicts on one output.
-static void write_verdict(hn_strbuf *b, const hn_verdict *v, verdict_form form, double seconds,
-                          int first) {
-    switch (form) {
-    case FORM_JSON:
-        hn_verdict_json(b, v);
-        break;
-    case FORM_GRADESCOPE:
-        hn_verdict_gradescope(b, v, seconds);
-        break;
-    case FORM_JUNIT:
-        hn_verdict_junit(b, v);
-        break;
-    case FORM_CSV:
-        hn_verdict_csv(b, v, first);
-        break;
-    case FORM_HTML:
-        hn_verdict_html(b, v);
-        break;
-    default:
-        hn_verdict_text(b, v);
-    }
-}
-
 /// One submission, graded: what all of them share, and where its verdict goes.
 typedef struct task {
     const hn_library *lib;
     const hn_args *args;
     const hn_exercise *exercise;
-    verdict_form form;
+    const hn_verdict_form *form;
     const char *submission;
     const char *target; ///< path without ending; NULL: standard output
 } task;
 
-/// The picture of the state at which a wrong entry shows; without one nothing is written.
-static hn_exit write_picture(const task *t, const hn_verdict *v) {
-    hn_strbuf png, path;
-    hn_strbuf_init(&png);
-    hn_strbuf_init(&path);
+/// The picture of the state at which a wrong entry shows; empty where there is none to draw.
+static hn_exit draw_picture(const task *t, const hn_verdict *v, hn_strbuf *png) {
     hn_diags diags = {0};
-    hn_exit result = HN_EXIT_DONE;
-    hn_status status = hn_shelf_verdict_png(&png, t->lib, v, &diags);
-    if (status == HN_OK) {
-        hn_strbuf_printf(&path, "%s.png", t->target);
-        result = hn_cli_write_file(t->args, hn_strbuf_text(&path), &png);
-    } else if (status != HN_ERR_UNSUPPORTED || diags.n > 0) {
-        hn_report_diags(t->args, status, &diags);
-        result = HN_EXIT_PROGRAM;
+    if (t->args->no_pictures || !(t->target || t->form->pictures)) {
+        return HN_EXIT_DONE;
     }
-    hn_strbuf_reset(&png);
+    const hn_status status = hn_shelf_verdict_png(png, t->lib, v, &diags);
+    if (status != HN_OK && (status != HN_ERR_UNSUPPORTED || diags.n > 0)) {
+        hn_report_diags(t->args, status, &diags);
+        return HN_EXIT_PROGRAM;
+    }
+    return HN_EXIT_DONE;
+}
+
+/// The verdict and the picture into files, with one line on standard output.
+static hn_exit write_files(const task *t, const hn_verdict *v, hn_strbuf *b, hn_strbuf *png) {
+    hn_strbuf path;
+    hn_strbuf_init(&path);
+    hn_strbuf_printf(&path, "%s.%s", t->target, t->form->ending);
+    const bool drawn = png->n > 0;
+    hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), b);
+    if (result == HN_EXIT_DONE && drawn) {
+        hn_strbuf_clear(&path);
+        hn_strbuf_printf(&path, "%s.png", t->target);
+        result = hn_cli_write_file(t->args, hn_strbuf_text(&path), png);
+    }
     hn_strbuf_reset(&path);
+    printf("%s: %s\n", t->submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
     return result;
 }
 
 /// The verdict, and under --out the picture and a line on standard output.
 static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) {
-    hn_strbuf b, path;
+    hn_strbuf b, png;
     hn_strbuf_init(&b);
-    hn_strbuf_init(&path);
+    hn_strbuf_init(&png);
+    const hn_exit drawn = draw_picture(t, v, &png);
+    const bool text = strcmp(t->form->name, "text") == 0;
 
-    // the verdict, under the name of its submission where there are several
-    if (t->args->words.n > 2 && t->form == FORM_TEXT && !t->target) {
+    // under the name of its submission where there are several
+    if (t->args->words.n > 2 && text && !t->target) {
         hn_strbuf_printf(&b, "== %s\n", t->submission);
     }
-    const int first = t->target || t->submission == t->args->words.word[1];
-    if (t->args->plot && t->form == FORM_TEXT && v->kind == HN_VERDICT_GRADED) {
+    const hn_verdict_extra extra = {.seconds = seconds,
+                                    .first = t->target || t->submission == t->args->words.word[1],
+                                    .png = png.n > 0 ? &png : NULL};
+    if (t->args->plot && text && v->kind == HN_VERDICT_GRADED) {
         write_bars(&b, v);
     } else {
-        write_verdict(&b, v, t->form, seconds, first);
-    }
-    if (!t->target) {
-        return t->form == FORM_TEXT ? hn_cli_print_text(&b) : hn_cli_print(&b);
+        t->form->write(&b, v, &extra);
     }
 
-    // into files, with one line here
-    hn_strbuf_printf(&path, "%s.%s", t->target, ending_of(t->form));
-    hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), &b);
-    hn_strbuf_reset(&path);
-    if (result == HN_EXIT_DONE && !t->args->no_pictures) {
-        result = write_picture(t, v);
-    }
-    printf("%s: %s\n", t->submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
-    return result;
+    // a picture that cannot be drawn takes no verdict away
+    const hn_exit written = t->target ? write_files(t, v, &b, &png)
+                            : text    ? hn_cli_print_text(&b)
+                                      : hn_cli_print(&b);
+    hn_strbuf_reset(&png);
+    return written != HN_EXIT_DONE ? written : drawn;
 }
 
 static hn_exit grade_one(const task *t) {
@@ -204,7 +157,8 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     hn_exercise *exercise = NULL;
     hn_diags diags = {0};
     hn_diag diag = {0};
-    if (choose_form(args, &t.form, &diag) != HN_OK) {
+    const char *form = args->format ? args->format : args->json ? "json" : "text";
+    if (hn_verdict_form_find(form, &t.form, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
     hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &exercise, &diags);
@@ -216,7 +170,7 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     hn_verdict_names names = {0};
     if (args->out) {
         status = hn_verdict_names_choose(&names, args->out, args->words.word + 1, args->words.n - 1,
-                                         ending_of(t.form), t.form == FORM_GRADESCOPE, &diags);
+                                         t.form->ending, t.form->results, &diags);
     }
     t.exercise = exercise;
     const hn_exit result =

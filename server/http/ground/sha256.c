@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/ground/sha256.h"
 
+#include "base/base64.h"
+
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { BLOCK = 64, DIGEST = 32 };
@@ -74,17 +77,11 @@ static void calc_digest(const unsigned char *bytes, size_t n, unsigned char dige
 }
 
 void hn_sha256_base64(const void *bytes, size_t n, char out[HN_SHA256_BASE64]) {
-    static const char letters[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    unsigned char digest[DIGEST + 1] = {0}; // one zero more, so that the last group is whole
+    unsigned char digest[DIGEST];
+    hn_strbuf text;
+    hn_strbuf_init(&text);
     calc_digest(bytes, n, digest);
-    char *o = out;
-    for (int i = 0; i < DIGEST; i += 3) {
-        uint32_t group = (uint32_t)digest[i] << 16 | (uint32_t)digest[i + 1] << 8 | digest[i + 2];
-        for (int k = 18; k >= 0; k -= 6) {
-            *o++ = letters[group >> k & 63];
-        }
-    }
-    o[-1] = '=';
-    *o = 0;
+    hn_base64(&text, digest, DIGEST);
+    snprintf(out, HN_SHA256_BASE64, "%s", hn_strbuf_text(&text));
+    hn_strbuf_reset(&text);
 }
