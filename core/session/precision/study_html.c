@@ -433,9 +433,9 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(b, "<h1>");
     hn_html_text(b, scene->title ? scene->title : scene->id);
     hn_strbuf_printf(b,
-                     "</h1><p class=\"quiet\">error against cost, to t = %g s, %d methods, %d "
+                     "</h1><p class=\"quiet\">error against cost, to t = %g s, %d method%s, %d "
                      "sizes each; scene ",
-                     wp->ref->T, wp->n_methods, wp->n_levels);
+                     wp->ref->T, wp->n_methods, wp->n_methods == 1 ? "" : "s", wp->n_levels);
     hn_html_text(b, scene->id ? scene->id : "");
     hn_strbuf_printf(b, " %s</p>", hex);
     hn_study_put_chaos(b, s);

@@ -366,7 +366,7 @@ static void put_ranking(hn_strbuf *b, const hn_wp *wp, const hn_band *coarse, co
         put_amount(b, fine->best.cost, cost);
     }
     if (fine->next.level < 0) {
-        hn_strbuf_add(b, "; no other method gets there");
+        hn_strbuf_add(b, wp->n_methods > 1 ? "; no other run of this study gets there" : "");
     } else if (coarse->n_close == 0) {
         hn_strbuf_printf(b, "; next %s at %.3g times that", spelling_of(wp, fine->next),
                          fine->ratio);
