@@ -154,8 +154,11 @@ int32_t hn_graph_lookup_product(const hn_graph *g, const hn_factor *factors, int
 
 // ---- nodes ----
 
-/// Appends a node with room for n arguments; NULL when memory is out.
+/// Appends a node with room for n arguments; NULL when memory is out or the work is to end.
 static hn_node *new_node(hn_graph *g, hn_op op, uint64_t hash, const hn_ex *args, int n_args) {
+    if (g->n % HN_NODES_BETWEEN_QUESTIONS == 0 && hn_graph_is_interrupted(g)) {
+        return NULL;
+    }
     if (g->failed || !grow_nodes(g) || !grow_table(g)) {
         return NULL;
     }
@@ -267,6 +270,20 @@ void hn_graph_free(hn_graph *g) {
 
 bool hn_graph_failed(const hn_graph *g) {
     return g->failed;
+}
+
+hn_status hn_graph_status(const hn_graph *g) {
+    return g->interrupted ? HN_ERR_BUDGET : g->failed ? HN_ERR_MEMORY : HN_OK;
+}
+
+void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt) {
+    g->interrupt = interrupt;
+}
+
+bool hn_graph_is_interrupted(hn_graph *g) {
+    g->interrupted = g->interrupted || hn_interrupt_ask(&g->interrupt);
+    g->failed |= g->interrupted;
+    return g->interrupted;
 }
 
 int hn_graph_size(const hn_graph *g) {

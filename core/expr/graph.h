@@ -16,9 +16,11 @@
 // equal node id.
 //
 // The graph owns its nodes and never frees one before hn_graph_free(); a tape outlives its graph.
-// When memory runs out the graph is marked failed, constructors return zero, and hn_graph_failed()
-// says so: check once after building. A graph belongs to one thread.
+// When memory runs out, or an interrupt ends the work, the graph is marked failed, constructors
+// return zero, and hn_graph_failed() says so: check once after building. A graph belongs to one
+// thread.
 
+#include "base/interrupt.h"
 #include "base/status.h"
 #include "expr/ops.h"
 
@@ -39,6 +41,13 @@ hn_graph *hn_graph_create(void); ///< returns owned; NULL when memory is out
 /// Frees all nodes; NULL is legal. Whether memory ran out while building.
 void hn_graph_free(hn_graph *g);
 bool hn_graph_failed(const hn_graph *g);
+/// Returns HN_OK, HN_ERR_MEMORY, or HN_ERR_BUDGET where the interrupt ended the work.
+hn_status hn_graph_status(const hn_graph *g);
+/// Sets the question that building asks now and then, as does compiling a tape. What it reads must
+/// outlive the graph.
+void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt);
+/// Asks it now. Returns true where the graph has been interrupted, which marks it failed for good.
+bool hn_graph_is_interrupted(hn_graph *g);
 int hn_graph_size(const hn_graph *g); ///< nodes so far
 
 /// A named input: q1, v1, t, alpha, a parameter kept symbolic ... The same name gives the same

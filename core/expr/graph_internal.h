@@ -11,11 +11,15 @@
 #include "base/arena.h"
 #include "expr/graph.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /// Products of more different factors than this stop merging their lists (which would cost n^2
 /// memory on a chain of n): the operands then count as factors themselves.
 enum { HN_MAX_FACTORS = 24 };
+
+/// So many nodes take some 0.1 ms; then the interrupt is asked.
+enum { HN_NODES_BETWEEN_QUESTIONS = 256 };
 
 typedef struct hn_factor {
     int32_t node, power;
@@ -59,6 +63,8 @@ struct hn_graph {
     size_t piece_left;
     hn_sweep *sweep;
     int failed;
+    hn_interrupt interrupt;
+    bool interrupted; ///< and for that reason failed
 };
 
 /// The node of this key, or -1. Nothing is created.

@@ -33,7 +33,7 @@ typedef struct usage {
 
 typedef struct lowering {
     hn_ir *ir;
-    const hn_graph *g;
+    hn_graph *g;
     usage *usage; ///< by position in the sweep
     value *value;
     int32_t *input_of_symbol;
@@ -467,6 +467,10 @@ static void note_uses(lowering *l, const hn_ex *outputs, int n_out) {
 static void lower_all(lowering *l, const hn_ex *outputs, int n_out) {
     note_uses(l, outputs, n_out);
     for (int32_t i = 0; i < l->g->sweep->n && !l->ir->failed; i++) {
+        if (i % HN_NODES_BETWEEN_QUESTIONS == 0 && hn_graph_is_interrupted(l->g)) {
+            l->ir->failed = 1;
+            return;
+        }
         l->value[i] = lower_node(l, &l->g->nodes[l->g->sweep->order[i]], &l->usage[i]);
     }
     for (int i = 0; i < n_out && !l->ir->failed; i++) {
@@ -478,7 +482,7 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
                       int n_sym) {
     *ir = (hn_ir){0};
     if (g->failed || !hn_sweep_collect(g, outputs, n_out, ~0ull)) {
-        return HN_ERR_MEMORY;
+        return g->interrupted ? HN_ERR_BUDGET : HN_ERR_MEMORY;
     }
 
     // scratch by position in the sweep
@@ -503,5 +507,5 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
     free(l.usage);
     free(l.value);
     free(l.input_of_symbol);
-    return ir->failed ? HN_ERR_MEMORY : HN_OK;
+    return g->interrupted ? HN_ERR_BUDGET : ir->failed ? HN_ERR_MEMORY : HN_OK;
 }

@@ -129,6 +129,25 @@ class NobodyWaitsForAnother(Timed):
             peak = next(int(line.split()[1]) for line in f if line.startswith("VmHWM"))
         self.assertLess(peak, 250000 * driver.SLOW)  # 607 MB without the budget
 
+    def test_equations_count_against_the_limit(self):
+        server = driver.Server("--run-cpu", "0.2")
+        ring = {"scene": "ring", "parameters": {"n": 60}}
+        for method, path, body in (("GET", "scenes/ring?set=n:60", None), ("POST", "inspect", ring), ("POST", "terms", ring),
+                                   ("POST", "comparisons", {**ring, "methods": ["projection@rk4:h=1e-2"]}),
+                                   ("POST", "runs", {**ring, "method": "ggl@radau5:rtol=1e-6", "time": 100})):
+            before = server.cpu()
+            answer = server.ask(method, "/api/v1/" + path, body, timeout=120)
+            self.assertEqual(answer.status, 422, path)
+            self.assertIn("take more than 0.2 s of computing", answer.json()["detail"], path)
+            # a run has as much for its scene as for its method; the scene is read before that
+            self.assertLess(server.cpu() - before, (0.4 + 1) * driver.SLOW, path)
+        # a comparison goes on with the scene that it has
+        c = server.compare(scene="ring", methods=["projection@rk4:h=1e-2"])
+        address = "/api/v1/comparisons/" + c["id"]
+        self.assertEqual(server.ask("PATCH", address, {"parameters": {"n": 60}}, timeout=120).status, 422)
+        self.assertEqual(server.ask("PATCH", address, {"methods": ["index1@rk4:h=1e-2"], "step": 3}).json()["frame"], 3)
+        self.assertEqual(server.stop(), 0)
+
     def test_a_change_interrupts_a_frame(self):
         slow = ["index1@rk4:h=1e-9", "baumgarte@rk4:h=1e-9", "projection@rk4:h=1e-9"]
         fast = json.dumps({"methods": [m.replace("1e-9", "0.01") for m in slow]})
@@ -260,12 +279,74 @@ class From:
 
 class FairShares(Timed):
     MAKE = ("POST", "/api/v1/comparisons", {"scene": "four-bar", "methods": [RK4]})
+    AT_ONCE = ("POST", "/api/v1/comparisons?wait=0", MAKE[2])
 
     def test_one_client_takes_its_share_of_comparisons_and_no_more(self):
         server = driver.Server("--max-comparisons", "4")
         greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
-        self.assertEqual([greedy.ask(*self.MAKE).status for _ in range(3)], [201, 201, 429])
-        self.assertEqual([modest.ask(*self.MAKE).status for _ in range(3)], [201, 201, 429])
+        self.assertEqual([greedy.ask(*self.AT_ONCE).status for _ in range(3)], [201, 201, 429])
+        self.assertEqual([modest.ask(*self.AT_ONCE).status for _ in range(3)], [201, 201, 429])
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_request_waits_for_a_place(self):
+        server = driver.Server("--max-comparisons", "1")
+        first = server.compare()
+        events, answers = driver.Events(server, first["id"]), []
+        events.take(1)
+
+        def ask(wait):
+            answers.append(server.ask("POST", f"/api/v1/comparisons?wait={wait}", self.MAKE[2], timeout=90))
+
+        def begin(wait):
+            threads.append(threading.Thread(target=ask, args=(wait,)))
+            threads[-1].start()
+            time.sleep(0.5)
+
+        # the first of three waits for longest, the second too short a time, the third goes away
+        threads = []
+        begin(50)
+        begin(2)
+        left = socket.create_connection(("127.0.0.1", server.port))
+        body = json.dumps(self.MAKE[2]).encode()
+        left.sendall(b"POST /api/v1/comparisons HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+                     + f"Content-Length: {len(body)}\r\n\r\n".encode() + body)
+        time.sleep(0.5)
+        busy = server.ask("POST", "/api/v1/comparisons?wait=0", self.MAKE[2])
+        self.assertEqual(busy.status, 429)
+        self.assertRegex(busy.json()["detail"], r"\b[23] requests wait for a place before this one")
+        left.close()
+        threads[1].join()
+        self.assertEqual((answers[0].status, answers[0].headers["retry-after"]), (429, "5"))
+        self.assertIn("1 requests wait", answers[0].json()["detail"])
+
+        # a place that is given up goes to who waits, and nobody made one for who had gone
+        self.assertEqual(server.ask("DELETE", "/api/v1/comparisons/" + first["id"]).status, 204)
+        threads[0].join()
+        self.assertEqual(answers[1].status, 201)
+        self.assertEqual(server.ask("GET", "/api/v1/comparisons").json()["comparisons"], [answers[1].json()["id"]])
+        events.close()
+        self.assertEqual(server.stop(), 0)
+
+    def test_who_waits_for_a_place_is_told_when_the_server_ends(self):
+        server = driver.Server("--max-comparisons", "1")
+        events, answers = driver.Events(server, server.compare()["id"]), []
+        events.take(1)
+        thread = threading.Thread(target=lambda: answers.append(server.ask(*self.MAKE, timeout=90)))
+        thread.start()
+        time.sleep(0.5)
+        self.assertEqual(server.stop(), 0)
+        thread.join()
+        self.assertEqual(answers[0].status, 503)
+
+    def test_one_client_takes_no_place_from_another_by_waiting(self):
+        """A client with its share is not given the place that another client has left."""
+        server = driver.Server("--max-comparisons", "4")
+        greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
+        theirs = modest.ask(*self.MAKE).json()["id"]
+        time.sleep(6)
+        own = [greedy.ask(*self.MAKE).status for _ in range(2)]
+        self.assertEqual((own, greedy.ask(*self.AT_ONCE).status), ([201, 201], 429))
+        self.assertIn(theirs, server.ask("GET", "/api/v1/comparisons").json()["comparisons"])
         self.assertEqual(server.stop(), 0)
 
     def test_one_that_was_left_makes_room(self):
@@ -273,12 +354,12 @@ class FairShares(Timed):
         first = server.compare()
         events = driver.Events(server, first["id"])
         events.take(1)
-        busy = server.ask(*self.MAKE)
+        busy = server.ask(*self.AT_ONCE)
         self.assertEqual(busy.status, 429)
         events.close()
         # after the time that it was told, and on a busy machine a little later; 60 s when nobody needs the place
         time.sleep(int(busy.headers["retry-after"]))
-        self.assertTrue(driver.until(lambda: server.ask(*self.MAKE).status == 201, 10))
+        self.assertTrue(driver.until(lambda: server.ask(*self.AT_ONCE).status == 201, 10))
         self.assertEqual(server.ask("GET", "/api/v1/comparisons/" + first["id"]).status, 404)
         self.assertEqual(server.stop(), 0)
 
@@ -348,6 +429,13 @@ class GoingDown(Timed):
             threading.Thread(target=ask, daemon=True).start()
         time.sleep(1)
         return server
+
+    def test_while_equations_are_formed(self):
+        ring = {"scene": "ring", "parameters": {"n": 100}}
+        requests = [("GET", "/api/v1/scenes/ring?set=n:100", None), ("POST", "/api/v1/inspect", ring),
+                    ("POST", "/api/v1/comparisons", {**ring, "methods": ["projection@rk4:h=1e-2"]}),
+                    ("POST", "/api/v1/runs", {**ring, "methods": ["ggl@radau5:rtol=1e-6"], "time": 100})]
+        self.end(lambda: self.beginning(*requests))
 
     def test_while_steps_are_computed(self):
         def begin():

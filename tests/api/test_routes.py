@@ -395,14 +395,15 @@ class Stateless(driver.ServerCase):
 
 
 class Bounded(driver.ServerCase):
-    options = ("--run-cpu", "0.5")
+    LIMIT = 0.5 * driver.SLOW  # a sanitised program forms its equations within it too
+    options = ("--run-cpu", str(LIMIT))
 
     def ask_cut(self, **fields):
         """A run that is cut at the bound; its document. Computing time is counted, so a busy machine changes nothing."""
         run = self.server.ask("POST", "/api/v1/runs", fields, timeout=300).json()
-        self.assertEqual(run["status"], "budget", f"at t = {run['t_reached']} s")
+        self.assertEqual(run["status"], "budget", run.get("detail"))
         self.assertIn("computing time", run["reason"])
-        self.assertLess(run["cost"]["cpu_seconds"], 1, "half a second, and the look at the clock after it")
+        self.assertLess(run["cost"]["cpu_seconds"], 2 * self.LIMIT, "the limit, and the look at the clock after it")
         return run
 
     def test_a_run_is_cut_however_often_its_samples_are_asked_for(self):
@@ -410,7 +411,7 @@ class Bounded(driver.ServerCase):
         self.assertGreater(len(run["samples"]["t"]), 10)
 
     def test_a_run_is_cut_however_long_one_step_takes(self):
-        self.ask_cut(scene="ring", parameters={"n": 60}, method="nullspace@rk4:h=1e-3", time=100, every=10)
+        self.ask_cut(scene="ring", parameters={"n": 30}, method="nullspace@rk4:h=1e-3", time=100, every=10)
 
 
 class Document(driver.ServerCase):

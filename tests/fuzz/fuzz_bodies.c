@@ -37,7 +37,8 @@ static void run(const cJSON *body) {
     hn_strbuf_init(&b);
     hn_status status = hn_run_question_read(&q, body, context.lib, &diags), ended;
     if (status == HN_OK) {
-        status = hn_scene_request_load(&q.scene, context.lib, 0, &model, &diags);
+        status = hn_scene_request_load(&q.scene, context.lib, 0, (hn_interrupt){NULL, NULL}, &model,
+                                       &diags);
     }
     if (status == HN_OK) {
         const hn_run_request request = {.method = q.methods[0],
@@ -62,7 +63,7 @@ static void run(const cJSON *body) {
 }
 
 static void study(const cJSON *body) {
-    hn_study_work work = {.lib = context.lib};
+    hn_study_work work = {.lib = context.lib, .stopping = &context.stopping};
     hn_diags diags = {0};
     hn_fuzz_check(hn_study_work_read(&work, body, &context.opts, &diags), &diags);
     hn_study_work_reset(&work);

@@ -77,7 +77,8 @@ static hn_session *make_session(const cJSON *body, hn_scene_request *scene, cons
                                       .n_methods = n,
                                       .frame_dt = hn_fields_number(body, "frame_dt", 0),
                                       .duration = hn_fields_number(body, "duration", 0),
-                                      .speed = hn_fields_number(body, "speed", 1)};
+                                      .speed = hn_fields_number(body, "speed", 1),
+                                      .stopping = &context.stopping};
     hn_session *session = NULL;
     hn_diags diags = {0};
     hn_fuzz_check(

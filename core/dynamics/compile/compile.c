@@ -122,13 +122,15 @@ static hn_status compile(hn_system *sys) {
     if (!sys->arena || !sys->g) {
         return HN_ERR_MEMORY;
     }
+    hn_graph_set_interrupt(sys->g, sys->opts.interrupt);
     sys->length = characteristic_length(sys->scene);
     sys->kinetic = sys->potential = hn_num(0);
     const hn_status status =
         sys->scene->is_lagrangian ? hn_lagrangian_compile(sys) : hn_bodies_compile(sys);
 
-    // a graph or an arena without memory hands out zeros, which look like faults of the scene
-    if (hn_graph_failed(sys->g) || hn_arena_failed(sys->arena)) {
+    // a graph or an arena that failed hands out zeros, which look like faults of the scene
+    HN_TRY(hn_graph_status(sys->g));
+    if (hn_arena_failed(sys->arena)) {
         return HN_ERR_MEMORY;
     }
     HN_TRY(status);

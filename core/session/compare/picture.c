@@ -167,6 +167,7 @@ static hn_status choose_view(scene_picture *p, hn_diags *diags) {
 
     // fit the frame
     hn_model_envelope(p->model, p->request->view ? &asked : NULL, &e);
+    HN_TRY(hn_graph_status(hn_system_graph(hn_model_system(p->model))));
     p->opts = hn_snapshot_opts_default();
     p->opts.look = e.look;
     if (p->request->methods && e.box[2] > e.box[0]) {

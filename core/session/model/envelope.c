@@ -138,6 +138,9 @@ static void grow_by_motion(reach *r, const char *skipped, const hn_model *model)
     for (int k = 1; k <= ENVELOPE_SAMPLES; k++) {
         double t = end * k / ENVELOPE_SAMPLES;
         hn_sample sample;
+        if (hn_graph_is_interrupted(hn_system_graph(hn_model_system(model)))) {
+            break;
+        }
         if (hn_run_advance(run, t) != HN_OK || hn_run_sample(run, t, &sample) != HN_OK) {
             break;
         }

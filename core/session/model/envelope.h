@@ -31,7 +31,8 @@ typedef struct hn_envelope {
 
 /// Computes the envelope of the start and of the next seconds of motion (bounded work). `look`: a
 /// view with y upwards, turned where z is up; NULL: the default view. A scene without points gives
-/// zeros.
+/// zeros. A model that is interrupted (hn_model_source) meanwhile gives the part of the motion that
+/// was seen.
 void hn_model_envelope(const hn_model *model, const hn_view *look, hn_envelope *out);
 
 #endif

@@ -97,7 +97,9 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     // scene, equations, consistent start
     model->arena = arena;
     hn_status status = load_scene(lib, source, &model->scene, diags);
-    HN_THEN(status, hn_system_compile(model->scene, NULL, &model->system, diags));
+    hn_system_opts opts = hn_system_opts_default();
+    opts.interrupt = source->interrupt;
+    HN_THEN(status, hn_system_compile(model->scene, &opts, &model->system, diags));
     HN_THEN(status, assemble(model, source->allow_open, diags));
 
     // the compiler's limit has no message of its own

@@ -240,6 +240,7 @@ static void put_points(hn_strbuf *b, const hn_model *model) {
     if (points && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
         hn_envelope e;
         hn_model_envelope(model, NULL, &e);
+        b->failed |= hn_graph_failed(hn_system_graph(hn_model_system(model)));
         hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
         put_ground_points(b, model, arena);
 

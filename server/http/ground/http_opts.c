@@ -17,6 +17,7 @@ hn_http_opts hn_http_opts_default(void) {
                           .pool = 3,
                           .queue = 32,
                           .quick_pool = 2,
+                          .quick_queue = 256,
 
                           // sizes of what is kept and sent
                           .max_events = 20000,

@@ -28,6 +28,7 @@ typedef struct hn_http_opts {
     double client_share; ///< of the places, for one client [-]
     int pool, queue;     ///< threads for long requests; how many may wait
     int quick_pool;      ///< threads for requests that read a shipped scene or open a comparison
+    int quick_queue;     ///< how many of them may wait: a class that opens the page at once
 
     // sizes
     long long max_body, max_event_bytes; ///< [byte]; event bytes per comparison

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/live/comparisons.h"
 
+#include "base/clock.h"
+#include "http/ground/jobs.h"
 #include "session/job/field.h"
 #include "http/live/session.h"
 #include "http/live/stream.h"
 #include "http/request/context.h"
+#include "http/request/gzip.h"
 #include "http/request/request.h"
 
 #include <stdbool.h>
@@ -13,7 +16,9 @@
 #include <string.h>
 #include <time.h>
 
-enum { MAX_LINGERING = 8 };
+enum { MAX_LINGERING = 8, MOST_ZIPPED = 8 << 20 };
+/// A request waits so long for a place unless it says otherwise, and at most [s].
+static const double PLACE_WAIT = 25, MAX_WAIT = 60;
 /// A comparison that nobody has read or asked for so long makes room for another [s].
 static const double FORSAKEN = 5;
 
@@ -26,6 +31,8 @@ struct hn_comparisons {
     int n, n_reserved;     ///< there, and being made
     int n_threads, stopping;
     int n_threads_before; ///< at the keeper's last look
+    hn_request *waiting;  ///< requests that wait for a place, oldest first
+    int n_waiting;
     hn_shares *places;
     pthread_t keeper;
     int has_keeper;
@@ -57,14 +64,16 @@ static void tick(hn_comparisons *all) {
     }
 }
 
-/// Makes room by ending the comparison that was left alone for longest, if any was. With the lock
-/// held. Returns 1 when there is room.
-static bool end_forsaken(hn_comparisons *all) {
+/// Makes room for a client by ending the comparison that was left alone for longest, if any was:
+/// one of its own where the client has its share, else anybody's. With the lock held. Returns true
+/// when there is room.
+static bool end_forsaken(hn_comparisons *all, hn_client client) {
+    const bool full = hn_shares_taken(all->places) >= all->opts->max_comparisons;
     double longest = FORSAKEN;
     int oldest = -1;
     for (int i = 0; i < all->n; i++) {
         const double seconds = hn_session_untouched(all->sessions[i]);
-        if (seconds > longest) {
+        if (seconds > longest && (full || hn_session_client(all->sessions[i]) == client)) {
             longest = seconds;
             oldest = i;
         }
@@ -73,6 +82,79 @@ static bool end_forsaken(hn_comparisons *all) {
         let_go(all, take_out(all, oldest), 1);
     }
     return oldest >= 0;
+}
+
+/// Takes a place for a client. One that was deleted may still be busy with its last step: only so
+/// many may linger. With the lock held.
+static bool take_place(hn_comparisons *all, hn_client client) {
+    const int lingering = all->n_threads - all->n - all->n_reserved;
+    return !all->stopping && lingering < MAX_LINGERING &&
+           (hn_shares_take(all->places, client) ||
+            (end_forsaken(all, client) && hn_shares_take(all->places, client)));
+}
+
+// ---- those who wait for a place ----
+
+static void refuse(hn_comparisons *all, hn_request *r, int n_before) {
+    if (all->stopping) {
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        return;
+    }
+    hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed, or wait",
+                     "there are %d comparisons, and yours may be %d of %d; %d requests wait for a "
+                     "place before this one",
+                     hn_shares_taken(all->places),
+                     hn_http_opts_share(all->opts, all->opts->max_comparisons),
+                     all->opts->max_comparisons, n_before);
+    hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
+}
+
+/// Gives places to those who wait, the oldest first, and refuses those who have waited long enough.
+/// With the lock held.
+static void serve_waiting(hn_comparisons *all) {
+    const double now = hn_clock_wall();
+    int n_before = 0;
+    for (hn_request **at = &all->waiting; *at;) {
+        hn_request *r = *at;
+        const bool ends = all->stopping || now >= r->wait_until || hn_request_is_left(r);
+        r->has_place = !ends && take_place(all, r->client);
+        if (!ends && !r->has_place) {
+            n_before++;
+            at = &r->next;
+            continue;
+        }
+
+        // from here on the request is another thread's
+        *at = r->next;
+        all->n_waiting--;
+        if (ends) {
+            refuse(all, r, n_before);
+            hn_request_finish(r);
+        } else if (!hn_jobs_push(r->context->quick, r, r->client)) {
+            hn_shares_give(all->places, r->client);
+            refuse(all, r, n_before);
+            hn_request_finish(r);
+        }
+    }
+}
+
+/// Lets a request wait for a place. With the lock held. Returns false when too many wait already.
+static bool wait_for_place(hn_comparisons *all, hn_request *r, double seconds) {
+    hn_request **end = &all->waiting;
+    int n_of_client = 0;
+    for (; *end; end = &(*end)->next) {
+        n_of_client += (*end)->client == r->client;
+    }
+    if (all->stopping || seconds <= 0 || all->n_waiting >= all->opts->quick_queue ||
+        (r->client && n_of_client >= hn_http_opts_share(all->opts, all->opts->quick_queue))) {
+        return false;
+    }
+    r->wait_until = hn_clock_wall() + seconds;
+    r->next = NULL;
+    *end = r;
+    all->n_waiting++;
+    pthread_cond_broadcast(&all->changed);
+    return true;
 }
 
 /// Gives the memory of comparisons that have ended back to the system. Their threads have heaps of
@@ -91,10 +173,11 @@ static void give_back_memory(hn_comparisons *all) {
 
 static void *keep(void *arg) {
     hn_comparisons *all = arg;
-    // a look per second, oftener when the bounds are tighter than that
-    double every = all->opts->keep_alive < 2 || all->opts->expiry < 2 ? 0.1 : 1;
+    // a look per second, oftener when the bounds are tighter than that or somebody waits
+    const bool tight = all->opts->keep_alive < 2 || all->opts->expiry < 2;
     pthread_mutex_lock(&all->lock);
     while (!all->stopping) {
+        const double every = tight || all->n_waiting > 0 ? 0.1 : 1;
         struct timespec ts;
         clock_gettime(CLOCK_MONOTONIC, &ts);
         long ns = ts.tv_nsec + (long)(every * 1e9);
@@ -102,6 +185,7 @@ static void *keep(void *arg) {
         ts.tv_nsec = ns % 1000000000;
         pthread_cond_timedwait(&all->changed, &all->lock, &ts);
         tick(all);
+        serve_waiting(all);
         give_back_memory(all);
     }
     pthread_mutex_unlock(&all->lock);
@@ -144,6 +228,7 @@ void hn_comparisons_stop(hn_comparisons *all) {
     while (all->n > 0) {
         let_go(all, take_out(all, all->n - 1), 0);
     }
+    serve_waiting(all);
     pthread_cond_broadcast(&all->changed);
     while (all->n_threads > 0) {
         pthread_cond_wait(&all->changed, &all->lock);
@@ -192,28 +277,20 @@ static hn_session *find_session(hn_request *r) {
     return found;
 }
 
-/// A place for one more; 0 with a problem as reply. One that was deleted may still be busy with its
-/// last step: only so many may linger.
-static int reserve(hn_comparisons *all, hn_request *r) {
+/// A place for one more. Returns false where the request waits for one, or is refused.
+static bool reserve(hn_comparisons *all, hn_request *r, double wait) {
     pthread_mutex_lock(&all->lock);
-    int stopping = all->stopping;
-    int lingering = all->n_threads - all->n - all->n_reserved;
-    int placed = !stopping && lingering < MAX_LINGERING &&
-                 (hn_shares_take(all->places, r->client) ||
-                  (end_forsaken(all) && hn_shares_take(all->places, r->client)));
+    const bool placed = r->has_place || (all->n_waiting == 0 && take_place(all, r->client));
+    const bool waits = !placed && wait_for_place(all, r, wait);
     if (placed) {
         all->n_reserved++;
         all->n_threads++; // the thread it will have
+    } else if (!waits) {
+        refuse(all, r, all->n_waiting);
     }
     pthread_mutex_unlock(&all->lock);
-
-    if (stopping) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
-    } else if (!placed) {
-        hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed",
-                         "there are %d comparisons already, or yours have their share of %d",
-                         hn_shares_taken(all->places), all->opts->max_comparisons);
-        hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
+    if (!placed && !waits) {
+        hn_request_finish(r);
     }
     return placed;
 }
@@ -279,6 +356,7 @@ static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **s
         .duration = hn_fields_number(body, "duration", 0),
         .speed = hn_fields_number(body, "speed", 1),
         .client = r->client,
+        .stopping = &r->context->stopping,
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };
     hn_status status = hn_scene_request_read(&scene, body, diags);
@@ -292,21 +370,30 @@ void hn_handle_comparisons_create(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
     hn_session *session = NULL;
     hn_diags diags = {0};
-    if (!reserve(all, r)) {
+    double wait = PLACE_WAIT;
+    if (!hn_request_query_number(r, "wait", 0, MAX_WAIT, false, &wait)) {
+        hn_request_finish(r);
         return;
     }
+    if (!reserve(all, r, wait)) {
+        return;
+    }
+
+    // made in its place
     hn_status status = create(all, r, &session, &diags);
     settle(all, r->client, session);
-    if (status != HN_OK) {
+    if (status == HN_OK) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_session_json(&b, session);
+        hn_reply_json(r, MHD_HTTP_CREATED, &b);
+        hn_reply_header_add(r, "Location", "/api/v1/comparisons/%s", hn_session_id(session));
+        hn_session_release(session);
+    } else {
         hn_reply_diags(r, status, &diags);
-        return;
     }
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_session_json(&b, session);
-    hn_reply_json(r, MHD_HTTP_CREATED, &b);
-    hn_reply_header_add(r, "Location", "/api/v1/comparisons/%s", hn_session_id(session));
-    hn_session_release(session);
+    hn_reply_compress(r, MOST_ZIPPED);
+    hn_request_finish(r);
 }
 
 void hn_handle_comparison_get(hn_request *r) {
@@ -342,6 +429,7 @@ void hn_handle_comparison_delete(hn_request *r) {
             let_go(all, take_out(all, i), 1);
         }
     }
+    pthread_cond_broadcast(&all->changed);
     pthread_mutex_unlock(&all->lock);
     hn_session_release(session);
     hn_reply_empty(r, MHD_HTTP_NO_CONTENT);

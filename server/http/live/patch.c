@@ -218,9 +218,15 @@ void hn_session_apply(hn_session *session, hn_request *r) {
     hn_subject fresh = {0};
     hn_diags diags = {0};
     hn_status status = HN_OK;
+    hn_session_limit_equations(session, c.settings != NULL);
     if (c.methods || c.settings) {
         status = build(session, &c, &fresh, &diags);
     }
+    if (session->interrupted) {
+        diags.n = 0;
+        status = HN_ERR_BUDGET;
+    }
+    hn_session_limit_equations(session, false);
     if (status == HN_OK && c.set) {
         status = set_running(fresh.comparison ? &fresh : &session->bench, c.set, &diags);
     }

@@ -151,6 +151,7 @@ static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
     session->speed = order->speed;
     session->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
     session->client = order->client;
+    session->stopping = order->stopping;
     session->touched = hn_clock_wall();
     session->patches_end = &session->patches;
     return session;
@@ -178,6 +179,7 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
     }
     session->gone = gone;
     session->user = user;
+    hn_session_limit_equations(session, true);
     hn_status status =
         hn_history_init(&session->history, opts->max_events, (size_t)opts->max_event_bytes);
     HN_THEN(status, hn_subject_create(session, order->scene, order->methods, order->n_methods,
@@ -188,8 +190,13 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
             hn_comparison_duration(session->bench.comparison), opts->max_duration);
     }
     HN_THEN(status, hn_session_publish_setup(session));
+    if (session->interrupted) {
+        diags->n = 0;
+        status = HN_ERR_BUDGET;
+    }
     if (status == HN_OK) {
         hn_session_publish_frame(session);
+        hn_session_limit_equations(session, false);
         status = start_thread(session);
     }
     if (status != HN_OK) {

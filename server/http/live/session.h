@@ -12,6 +12,8 @@
 #include "session/compare/comparison.h"
 #include "session/model/library.h"
 
+#include <stdatomic.h>
+
 struct hn_request;
 struct hn_stream;
 
@@ -31,11 +33,12 @@ typedef struct hn_session_request {
     double frame_dt, duration; ///< 0: chosen, the scene's
     double speed;
     int running;
-    hn_client client; ///< who asks
+    hn_client client;           ///< who asks
+    const atomic_int *stopping; ///< the server ends
 } hn_session_request;
 
 /// Loads, compiles, and starts the thread. `gone(user)` is called when the thread ends. Returns one
-/// reference.
+/// reference. HN_ERR_BUDGET where equations took longer than run_cpu_s, or the server ends.
 HN_MUST_CHECK hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
                                           const hn_session_request *order, void (*gone)(void *user),
                                           void *user, hn_session **out, hn_diags *diags);

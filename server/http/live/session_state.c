@@ -5,6 +5,7 @@
 #include "session/compare/incident_json.h"
 #include "session/model/model_json.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,12 +30,26 @@ hn_status hn_subject_compare(const hn_session *session, const hn_model *model,
     return hn_comparison_create(model, methods, n_methods, &opts, out, diags);
 }
 
-hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
+void hn_session_limit_equations(hn_session *session, bool limited) {
+    session->load_end = limited ? hn_clock_thread() + session->opts->max_run_cpu : (double)HUGE_VAL;
+    session->interrupted = false;
+}
+
+/// Whether equations are no longer wanted, or take too long.
+static bool must_end(void *user) {
+    hn_session *session = user;
+    session->interrupted |= atomic_load(&session->interrupt) == HN_INTERRUPT_END ||
+                            atomic_load(session->stopping) || hn_clock_thread() > session->load_end;
+    return session->interrupted;
+}
+
+hn_status hn_subject_create(hn_session *session, const hn_scene_request *scene,
                             const char *const *methods, int n_methods, hn_subject *bench,
                             hn_diags *diags) {
     *bench = (hn_subject){0};
     hn_status status = hn_scene_request_copy(&bench->scene, scene);
-    HN_THEN(status, hn_scene_request_load(scene, session->lib, 0, &bench->model, diags));
+    HN_THEN(status, hn_scene_request_load(scene, session->lib, 0, (hn_interrupt){must_end, session},
+                                          &bench->model, diags));
     HN_THEN(status, hn_subject_compare(session, bench->model, methods, n_methods,
                                        &bench->comparison, diags));
     if (status != HN_OK) {

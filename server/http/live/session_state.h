@@ -9,6 +9,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 
 /// What is being compared; replaced as a whole.
 typedef struct hn_subject {
@@ -43,7 +44,10 @@ struct hn_session {
     hn_subject bench;
     const hn_model *published; ///< whose description scene_json is
     double asked_frame_dt, asked_duration;
-    double undisturbed; ///< until then no request interrupts [s, wall clock]
+    double undisturbed;         ///< until then no request interrupts [s, wall clock]
+    double load_end;            ///< until then equations must be there [s, thread's own clock]
+    bool interrupted;           ///< they were given up
+    const atomic_int *stopping; ///< the server ends
 
     // published: written by the thread under the lock, read by all under the lock
     hn_session_state state;
@@ -67,7 +71,7 @@ struct hn_session {
 };
 
 /// A model and its runs. On failure nothing is left in *bench.
-HN_MUST_CHECK hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
+HN_MUST_CHECK hn_status hn_subject_create(hn_session *session, const hn_scene_request *scene,
                                           const char *const *methods, int n_methods,
                                           hn_subject *bench, hn_diags *diags);
 /// The runs alone, on a model that is there.
@@ -77,6 +81,9 @@ HN_MUST_CHECK hn_status hn_subject_compare(const hn_session *session, const hn_m
 void hn_subject_reset(hn_subject *bench);
 
 // for the thread; none may be called with the lock held
+/// From here on the thread has run_cpu_s for equations (1), or they have no limit (0). The end of
+/// the session, or of the server, ends them in any case.
+void hn_session_limit_equations(hn_session *session, bool limited);
 /// Writes out what does not change from frame to frame. HN_ERR_MEMORY leaves the old texts.
 HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *session);
 /// The present frame as an event, then its incidents, then the end if it is reached.

@@ -28,6 +28,7 @@ typedef struct hn_context {
     struct hn_runs *runs;
     hn_kept_text scenes;       ///< the list of shipped scenes, as JSON
     struct hn_shares *streams; ///< places of open streams
+    struct hn_jobs *quick;     ///< threads of requests that take no time
     atomic_int open_requests;  ///< begun and not completed
     _Atomic long long unread;  ///< bytes of answers that wait for their readers
     atomic_int stopping;       ///< 1: the server ends; nothing new is started

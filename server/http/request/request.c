@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // POLLRDHUP
 #include "http/request/request.h"
 
+#include "base/clock.h"
 #include "base/json_text.h"
+#include "http/request/context.h"
 #include "session/job/field.h"
 
+#include <math.h>
+#include <poll.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +19,34 @@ enum { MAX_JSON_DEPTH = 64 };
 
 const char *hn_request_query(const hn_request *r, const char *name) {
     return MHD_lookup_connection_value(r->connection, MHD_GET_ARGUMENT_KIND, name);
+}
+
+bool hn_request_query_number(hn_request *r, const char *name, double low, double high, bool whole,
+                             double *out) {
+    const char *text = hn_request_query(r, name);
+    char *end = NULL;
+    if (!text) {
+        return true;
+    }
+    const double value = strtod(text, &end);
+    if (end == text || *end || !(value >= low && value <= high) ||
+        (whole && value != floor(value))) {
+        char pointer[32];
+        hn_diags diags = {0};
+        snprintf(pointer, sizeof pointer, "/%s", name);
+        hn_diags_add(&diags, HN_ERR_INPUT, pointer, NULL,
+                     "'%s' is '%.40s'; %s from %g to %g is allowed", name, text,
+                     whole ? "a whole number" : "a number", low, high);
+        hn_reply_diags(r, HN_ERR_INPUT, &diags);
+        return false;
+    }
+    *out = value;
+    return true;
+}
+
+bool hn_request_is_left(const hn_request *r) {
+    struct pollfd look = {.fd = hn_request_socket(r), .events = POLLRDHUP};
+    return look.fd >= 0 && poll(&look, 1, 0) > 0 && look.revents;
 }
 
 int hn_request_socket(const hn_request *r) {
@@ -59,7 +93,23 @@ void hn_reply_header_add(hn_request *r, const char *name, const char *format, ..
     va_end(args);
 }
 
+/// The reply to what was ended early.
+static void reply_interrupted(hn_request *r) {
+    if (atomic_load(&r->context->stopping)) {
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+    } else {
+        hn_reply_problem(r, HN_PROBLEM_INPUT, "take fewer bodies, or shorter chains",
+                         "the equations of this scene take more than %g s of computing",
+                         r->context->opts.max_run_cpu);
+    }
+}
+
 void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_strbuf *bytes) {
+    if (bytes->failed && r->interrupted) {
+        hn_strbuf_reset(bytes);
+        reply_interrupted(r);
+        return;
+    }
     if (bytes->failed) {
         hn_strbuf_reset(bytes);
         hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
@@ -120,14 +170,32 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 }
 
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags) {
+    if (r->interrupted || (status == HN_ERR_BUDGET && diags->n == 0)) {
+        reply_interrupted(r);
+        return;
+    }
     int ours = status == HN_ERR_MEMORY || status == HN_ERR_INTERNAL || status == HN_ERR_IO;
     hn_http_problem kind = ours ? HN_PROBLEM_INTERNAL : HN_PROBLEM_INPUT;
     const char *detail = diags->n > 0 ? diags->item[0].message : hn_status_text(status);
     reply_document(r, kind, detail, diags->n > 0 ? diags->item[0].hint : NULL, -1, diags);
 }
 
+void hn_request_add_time(hn_request *r) {
+    r->cpu_end = fmax(r->cpu_end, hn_clock_thread()) + r->context->opts.max_run_cpu;
+}
+
+static bool must_end(void *user) {
+    hn_request *r = user;
+    r->interrupted |= atomic_load(&r->context->stopping) || hn_clock_thread() > r->cpu_end;
+    return r->interrupted;
+}
+
+hn_interrupt hn_request_interrupt(hn_request *r) {
+    return (hn_interrupt){must_end, r};
+}
+
 int hn_request_read_body(hn_request *r) {
-    if (!r->route->fields) {
+    if (!r->route->fields || r->json) {
         return 1;
     }
     hn_diag fault = {0};

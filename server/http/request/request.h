@@ -7,6 +7,7 @@
 
 #include "http/ground/microhttpd.h"
 #include "base/diag.h"
+#include "base/interrupt.h"
 #include "base/strbuf.h"
 #include "http/ground/problem_document.h"
 #include "http/ground/shares.h"
@@ -46,6 +47,9 @@ typedef struct hn_request {
     struct hn_request *next; ///< in a queue
     double wait_until;       ///< in a queue of those who wait for a run [s, wall clock]
     int is_new;              ///< it has begun what it asks for
+    double cpu_end;          ///< of the thread that works on it [s]
+    bool interrupted;        ///< the work was ended early
+    bool has_place;          ///< it has waited for a place, and has it
 
     // the reply
     long long n_unread; ///< bytes handed to the HTTP library, until the request is completed
@@ -59,6 +63,10 @@ typedef struct hn_request {
 
 /// The query argument, or NULL. Light routes and heavy ones alike.
 const char *hn_request_query(const hn_request *r, const char *name);
+/// Reads a number of the query from `low` to `high`, whole if asked; *out stays where it is not
+/// given. Returns false with a problem as reply.
+bool hn_request_query_number(hn_request *r, const char *name, double low, double high, bool whole,
+                             double *out);
 int hn_request_socket(const hn_request *r); ///< descriptor of the connection, -1 if unknown
 const char *hn_request_header(const hn_request *r, const char *name);
 /// Calls `see` for each argument `name=value` of the query in turn; stops when it returns not
@@ -66,6 +74,9 @@ const char *hn_request_header(const hn_request *r, const char *name);
 HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *name,
                                               hn_status (*see)(void *user, const char *value),
                                               void *user);
+
+/// Whether the client of a suspended request has closed its connection, which nobody else looks at.
+bool hn_request_is_left(const hn_request *r);
 
 /// Adds a header to the reply; the value is printed as by printf().
 void hn_reply_header_add(hn_request *r, const char *name, const char *format, ...) HN_PRINTF(3, 4);
@@ -82,8 +93,15 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 
+/// Gives the thread that works on the request so much more computing time: `run_cpu_s` each time.
+void hn_request_add_time(hn_request *r);
+/// The question of the work on this request: whether the computing time is used up, or the server
+/// ends. The reply to what was ended early is then a problem that says which.
+hn_interrupt hn_request_interrupt(hn_request *r);
+
 /// Parses the body and checks it against the fields of the route. Returns 0 with a problem as
-/// reply. Cost: the length of the body; not for the connection's thread.
+/// reply. Cost: the length of the body; not for the connection's thread. A body that was read is
+/// not read again.
 int hn_request_read_body(hn_request *r);
 /// Suspends the connection: from here on another thread owns the request, until
 /// hn_request_finish().

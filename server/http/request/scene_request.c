@@ -104,14 +104,16 @@ static void prefix_pointers(hn_diags *diags, int first) {
 }
 
 hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library *lib,
-                                bool allow_open, hn_model **out, hn_diags *diags) {
+                                bool allow_open, hn_interrupt interrupt, hn_model **out,
+                                hn_diags *diags) {
     int first = diags->n;
     hn_model_source source = {.name = order->name,
                               .text = order->text,
                               .n_text = order->text ? strlen(order->text) : 0,
                               .settings = order->settings,
                               .n_settings = order->n,
-                              .allow_open = allow_open};
+                              .allow_open = allow_open,
+                              .interrupt = interrupt};
     hn_status status = hn_model_load(lib, &source, out, diags);
     prefix_pointers(diags, first);
     return status;

@@ -5,6 +5,7 @@
 // kept, loaded.
 
 #include "base/diag.h"
+#include "base/interrupt.h"
 #include "base/strbuf.h"
 #include "scene/scene.h"
 #include "session/model/library.h"
@@ -32,9 +33,11 @@ HN_MUST_CHECK hn_status hn_scene_request_add(hn_scene_request *order, const char
                                              size_t n_name, double value, hn_diags *diags);
 HN_MUST_CHECK hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from);
 void hn_scene_request_reset(hn_scene_request *order);
-/// Loads; pointers of faults inside a scene object begin with "/scene".
+/// Loads; pointers of faults inside a scene object begin with "/scene". `interrupt` ends the work
+/// early, now or when the model is used later: HN_ERR_BUDGET. What it reads must outlive the model.
 HN_MUST_CHECK hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library *lib,
-                                              bool allow_open, hn_model **out, hn_diags *diags);
+                                              bool allow_open, hn_interrupt interrupt,
+                                              hn_model **out, hn_diags *diags);
 /// {"l1": 1.2}
 void hn_scene_request_settings_json(hn_strbuf *b, const hn_scene_request *order);
 #endif

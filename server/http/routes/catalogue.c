@@ -49,6 +49,7 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
                 {"long_requests_at_once", o->pool},
                 {"long_requests_waiting", o->queue},
                 {"quick_requests_at_once", o->quick_pool},
+                {"quick_requests_waiting", o->quick_queue},
                 {"share_of_one_client", o->client_share},
                 {"unread_bytes", (double)o->max_unread},
                 {"answer_numbers", (double)o->max_numbers},
@@ -187,7 +188,8 @@ hn_model *hn_catalogue_load_scene(hn_request *r, bool allow_open) {
     // with the parameters of the query
     hn_status status =
         order.name ? hn_request_each_query(r, "set", see_setting, &settings) : HN_ERR_MEMORY;
-    HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags));
+    HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open,
+                                          hn_request_interrupt(r), &model, &diags));
     hn_scene_request_reset(&order);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);

@@ -132,6 +132,7 @@ static void take_body(hn_request *r, const char *data, size_t n) {
 
 void hn_dispatch_job(void *job) {
     hn_request *r = job;
+    hn_request_add_time(r);
     if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
     } else if (hn_request_read_body(r)) {

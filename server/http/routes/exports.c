@@ -101,7 +101,8 @@ void hn_handle_export(hn_request *r) {
     hn_model *model = NULL;
     hn_status status = hn_scene_request_read(&order, r->json, &diags);
     if (status == HN_OK) {
-        status = hn_scene_request_load(&order, r->context->lib, 0, &model, &diags);
+        status = hn_scene_request_load(&order, r->context->lib, 0, hn_request_interrupt(r), &model,
+                                       &diags);
     }
     hn_scene_request_reset(&order);
     if (status == HN_OK) {

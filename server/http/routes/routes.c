@@ -270,6 +270,10 @@ static const hn_route_query PROBLEM_QUERY[] = {
 static const hn_route_query RUN_QUERY[] = {
     {"wait", "number", "seconds to wait for the end, at most 60; POST: 25 when left out, GET: 0"},
     {NULL, NULL, NULL}};
+static const hn_route_query COMPARISON_QUERY[] = {
+    {"wait", "number",
+     "seconds to wait for a place where there is none, at most 60; 25 when left out"},
+    {NULL, NULL, NULL}};
 static const hn_route_query SAMPLES_QUERY[] = {
     {"fields", "string", "columns, separated by commas: t,q,gap; all when left out"},
     {"stride", "integer", "every so many samples"},
@@ -381,8 +385,8 @@ static const hn_route ROUTES[] = {
      "\",\"l4*sin(th4)\"],[\"l1*cos(th1)\",\"l2*cos(th2)\",\"-l3*cos(th3)\",\"-l4*cos(th4)\"]]}}"},
     {"GET", "/api/v1/comparisons", HN_WORK_LIGHT, hn_handle_comparisons_list, NULL, JSON, "200",
      "ComparisonList", "Ids of the comparisons there are", NULL, NULL},
-    {"POST", "/api/v1/comparisons", HN_WORK_QUICK, hn_handle_comparisons_create, COMPARISON, JSON,
-     "201", "Comparison", "Makes a comparison", NULL,
+    {"POST", "/api/v1/comparisons", HN_WORK_QUICK_OWN, hn_handle_comparisons_create, COMPARISON,
+     JSON, "201", "Comparison", "Makes a comparison", COMPARISON_QUERY,
      "{\"scene\":\"four-bar\",\"methods\":[\"index1@rk4:h=1e-2\",\"projection@rk4:h=1e-2\"]}"},
     {"GET", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_get, NULL, JSON, "200",
      "Comparison", "A comparison and its latest frame", NULL, NULL},

@@ -72,7 +72,9 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     HN_TRY(hn_static_files_create(hn_library_web(c->lib), &c->files, diag));
     s->dispatch.context = c;
     s->dispatch.heavy = hn_jobs_create(o->pool, o->queue, waiting, hn_dispatch_job);
-    s->dispatch.quick = hn_jobs_create(o->quick_pool, o->queue, waiting, hn_dispatch_job);
+    s->dispatch.quick = hn_jobs_create(o->quick_pool, o->quick_queue,
+                                       hn_http_opts_share(o, o->quick_queue), hn_dispatch_job);
+    c->quick = s->dispatch.quick;
     s->dispatch.connections = hn_connections_create(o);
     c->streams = hn_shares_create(o->max_streams, hn_http_opts_share(o, o->max_streams));
     c->comparisons = hn_comparisons_create(o, c->lib);

@@ -30,7 +30,8 @@ static hn_model *load_model(hn_request *r, bool allow_open) {
     hn_diags diags = {0};
     hn_model *model = NULL;
     hn_status status = hn_scene_request_read(&order, r->json, &diags);
-    HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags));
+    HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open,
+                                          hn_request_interrupt(r), &model, &diags));
     hn_scene_request_reset(&order);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);
@@ -188,6 +189,7 @@ void hn_handle_snapshot(hn_request *r) {
     if (!model) {
         return;
     }
+    hn_request_add_time(r); // the runs have a time of their own
     const char *methods[HN_COMPARISON_MAX_METHODS], *theme = hn_fields_text(r->json, "theme");
     const cJSON *item;
     int n = 0;

@@ -304,6 +304,7 @@ typedef struct allowance {
     hn_kept_run *run;
     double cpu_end;
     int method;
+    bool used_up;
 } allowance;
 
 static int may_go_on(void *user, double share) {
@@ -345,14 +346,31 @@ static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model
     return status;
 }
 
+/// Whether the equations, of the scene and of the methods, take too long or are no longer wanted.
+static bool must_end(void *user) {
+    allowance *a = user;
+    a->used_up |= hn_clock_thread() > a->cpu_end;
+    return a->used_up || atomic_load(&a->run->stop);
+}
+
 static hn_status run_all(const hn_runs *all, hn_kept_run *run) {
+    // as much time for equations as for all steps
     hn_model *model = NULL;
-    hn_status status =
-        hn_scene_request_load(&run->question.scene, all->lib, 0, &model, &run->diags);
+    const double seconds = all->opts->max_run_cpu;
+    allowance a = {.run = run, .cpu_end = hn_clock_thread() + seconds};
+    hn_status status = hn_scene_request_load(&run->question.scene, all->lib, 0,
+                                             (hn_interrupt){must_end, &a}, &model, &run->diags);
+    a.cpu_end += seconds;
     for (int i = 0; i < run->question.n_methods && status == HN_OK; i++) {
         status = run_method(all, run, model, i);
     }
     hn_model_free(model);
+    if (status != HN_OK && a.used_up) {
+        run->diags.n = 0;
+        status = hn_diags_add(
+            &run->diags, HN_ERR_LIMIT, "/scene", "take fewer bodies, or shorter chains",
+            "the equations of this scene take more than %g s of computing", seconds);
+    }
     return status;
 }
 

@@ -133,32 +133,6 @@ static void reply_unknown(hn_request *r) {
                      "there is no run '%.40s' (any more)", r->parts[0]);
 }
 
-// ---- queries ----
-
-/// A number of the query from `low` to `high`; 0 with a problem as reply.
-static bool read_number(hn_request *r, const char *name, double low, double high, int whole,
-                        double *out) {
-    const char *text = hn_request_query(r, name);
-    char *end = NULL;
-    if (!text) {
-        return true;
-    }
-    const double value = strtod(text, &end);
-    if (end == text || *end || !(value >= low && value <= high) ||
-        (whole && value != floor(value))) {
-        char pointer[32];
-        hn_diags diags = {0};
-        snprintf(pointer, sizeof pointer, "/%s", name);
-        hn_diags_add(&diags, HN_ERR_INPUT, pointer, NULL,
-                     "'%s' is '%.40s'; %s from %g to %g is allowed", name, text,
-                     whole ? "a whole number" : "a number", low, high);
-        hn_reply_diags(r, HN_ERR_INPUT, &diags);
-        return false;
-    }
-    *out = value;
-    return true;
-}
-
 // ---- handlers ----
 
 void hn_handle_runs_create(hn_request *r) {
@@ -167,7 +141,7 @@ void hn_handle_runs_create(hn_request *r) {
     hn_kept_run *run = NULL;
     hn_diags diags = {0};
     double wait = POST_WAIT;
-    if (!read_number(r, "wait", 0, MAX_WAIT, 0, &wait)) {
+    if (!hn_request_query_number(r, "wait", 0, MAX_WAIT, 0, &wait)) {
         hn_request_finish(r);
         return;
     }
@@ -206,7 +180,7 @@ void hn_handle_run_get(hn_request *r) {
     hn_runs *all = r->context->runs;
     double wait = 0;
     hn_kept_run *run = NULL;
-    if (read_number(r, "wait", 0, MAX_WAIT, 0, &wait)) {
+    if (hn_request_query_number(r, "wait", 0, MAX_WAIT, 0, &wait)) {
         run = hn_runs_find(all, r->parts[0]);
         if (!run) {
             reply_unknown(r);
@@ -231,7 +205,7 @@ void hn_handle_run_delete(hn_request *r) {
 /// The document that `method` names by its index; 0 with a problem as reply.
 static bool choose_document(hn_request *r, const hn_kept_run *run, const char **document) {
     double method = 0;
-    if (!read_number(r, "method", 0, run->n - 1, 1, &method)) {
+    if (!hn_request_query_number(r, "method", 0, run->n - 1, 1, &method)) {
         return false;
     }
     *document = run->documents[(int)method];
@@ -244,11 +218,11 @@ static bool read_samples_request(hn_request *r, hn_samples_request *q) {
     double stride = 1, cursor = 0, limit = MAX_ROWS;
     *q = (hn_samples_request){
         .fields = hn_request_query(r, "fields"), .from = -HUGE_VAL, .to = HUGE_VAL};
-    if (!read_number(r, "stride", 1, 1e9, 1, &stride) ||
-        !read_number(r, "cursor", 0, 1e15, 1, &cursor) ||
-        !read_number(r, "limit", 1, MAX_ROWS, 1, &limit) ||
-        !read_number(r, "from", 0, 1e12, 0, &q->from) ||
-        !read_number(r, "to", 0, 1e12, 0, &q->to)) {
+    if (!hn_request_query_number(r, "stride", 1, 1e9, 1, &stride) ||
+        !hn_request_query_number(r, "cursor", 0, 1e15, 1, &cursor) ||
+        !hn_request_query_number(r, "limit", 1, MAX_ROWS, 1, &limit) ||
+        !hn_request_query_number(r, "from", 0, 1e12, 0, &q->from) ||
+        !hn_request_query_number(r, "to", 0, 1e12, 0, &q->to)) {
         return false;
     }
     q->stride = (long long)stride;

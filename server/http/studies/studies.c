@@ -381,6 +381,7 @@ void hn_handle_studies_create(hn_request *r) {
     if (s) {
         s->all = all;
         s->work.lib = all->lib;
+        s->work.stopping = &r->context->stopping;
         name_study(s);
         status = hn_study_work_read(&s->work, r->json, all->opts, &diags);
     }

@@ -10,17 +10,28 @@
 
 // ---- what is asked for ----
 
+/// Whether equations are no longer wanted. A study that is stopped shows what was done, and may
+/// need its scene for that: only the end of the server ends it.
+static bool must_end(void *user) {
+    const hn_study_work *w = user;
+    return atomic_load(w->stopping) || hn_clock_thread() > w->load_end;
+}
+
+static hn_interrupt interrupt_of(hn_study_work *w) {
+    return (hn_interrupt){must_end, w};
+}
+
 /// The scene as it was asked for, with these parameters on top.
 static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_model **out,
                            hn_diags *diags) {
-    const hn_study_work *w = user;
+    hn_study_work *w = user;
     hn_scene_request scene = {0};
     hn_status status = hn_scene_request_copy(&scene, &w->scene);
     for (int i = 0; i < n && status == HN_OK; i++) {
         status = hn_scene_request_add(&scene, parameters[i].name, strlen(parameters[i].name),
                                       parameters[i].value, diags);
     }
-    HN_THEN(status, hn_scene_request_load(&scene, w->lib, 0, out, diags));
+    HN_THEN(status, hn_scene_request_load(&scene, w->lib, 0, interrupt_of(w), out, diags));
     hn_scene_request_reset(&scene);
     return status;
 }
@@ -91,7 +102,9 @@ hn_status hn_study_work_read(hn_study_work *w, const cJSON *body, const hn_http_
 
     // the scene, and how long it may last
     HN_TRY(hn_scene_request_read(&w->scene, body, diags));
-    HN_TRY(hn_scene_request_load(&w->scene, w->lib, 0, &w->model, diags));
+    w->load_end = hn_clock_thread() + opts->max_run_cpu;
+    HN_TRY(hn_scene_request_load(&w->scene, w->lib, 0, interrupt_of(w), &w->model, diags));
+    w->load_end = HUGE_VAL;
     const double duration = hn_model_scene(w->model)->duration;
     if (isnan(w->request.time) && !(duration <= opts->max_duration)) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "say until when",

@@ -24,8 +24,10 @@ typedef struct hn_study_work {
     cJSON *body; ///< owned: the values of the kind's fields; the job borrows its texts
     hn_model *model;
     hn_job_request request;
-    hn_job *job;    ///< NULL before hn_study_work_run(), for kinds that open slowly
-    double cpu_end; ///< [s] of the thread's own clock
+    hn_job *job;                ///< NULL before hn_study_work_run(), for kinds that open slowly
+    double cpu_end;             ///< [s] of the thread's own clock
+    const atomic_int *stopping; ///< the server ends
+    double load_end; ///< until then the scene must have its equations [s, thread's own clock]
     int cpu_used_up;
     _Atomic double share; ///< of the whole study that is done
     atomic_int stop;
@@ -39,7 +41,8 @@ typedef struct hn_study_result {
     char reason[HN_DIAG_MESSAGE], hint[HN_DIAG_HINT];
 } hn_study_result;
 
-/// Reads and checks a body and loads its scene; start from a zeroed work with `lib` set. Fails:
+/// Reads and checks a body and loads its scene; start from a zeroed work with `lib` and
+/// `stopping` set. Fails:
 /// HN_ERR_INPUT, HN_ERR_LIMIT and what the kind refuses before its computation; reported in diags
 /// with pointers into the body. hn_study_work_reset() afterwards in any case.
 HN_MUST_CHECK hn_status hn_study_work_read(hn_study_work *w, const cJSON *body,

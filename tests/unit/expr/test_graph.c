@@ -4,6 +4,7 @@
 #include "expr/construct.h"
 #include "expr/diff.h"
 #include "expr/graph.h"
+#include "expr/tape.h"
 #include "support/alloc.h"
 
 #include <math.h>
@@ -284,6 +285,57 @@ static void out_of_memory_marks_the_graph(void **state) {
     assert_true(failures >= 3);
 }
 
+/// Says yes from the k-th question on.
+static bool ends_after(void *user) {
+    return --*(int *)user < 0;
+}
+
+/// A nest of sines and products: some nodes for each of `n` levels.
+static hn_ex make_nodes(hn_graph *g, const hn_ex x[N], int n) {
+    hn_ex sum = hn_num(0);
+    for (int i = 0; i < n; i++) {
+        sum = hn_mul(g, x[i % 2], hn_add(g, hn_num(i + 1), hn_sin(g, sum)));
+    }
+    return sum;
+}
+
+static void an_interrupt_ends_building_and_compiling(void **state) {
+    (void)state;
+    hn_graph *g = hn_graph_create();
+    hn_ex x[N];
+    int left = 3;
+    make_symbols(g, x);
+    hn_graph_set_interrupt(g, (hn_interrupt){ends_after, &left});
+
+    // a question for every so many nodes; the graph stops growing at the one that says yes
+    make_nodes(g, x, 5000);
+    assert_true(hn_graph_failed(g));
+    assert_int_equal(hn_graph_status(g), HN_ERR_BUDGET);
+    const int size = hn_graph_size(g);
+    assert_in_range(size, 3 * 256, 4 * 256);
+    make_nodes(g, x, 5000);
+    assert_int_equal(hn_graph_size(g), size);
+    hn_graph_free(g);
+
+    // a tape of a graph that is there already asks too
+    const int symbols[2] = {0, 1};
+    hn_tape *tape = NULL;
+    g = hn_graph_create();
+    make_symbols(g, x);
+    const hn_ex last = make_nodes(g, x, 5000);
+    left = 3;
+    hn_graph_set_interrupt(g, (hn_interrupt){ends_after, &left});
+    assert_int_equal(hn_tape_compile(g, &last, 1, symbols, 2, &tape), HN_ERR_BUDGET);
+    assert_null(tape);
+    assert_int_equal(hn_graph_status(g), HN_ERR_BUDGET);
+    hn_graph_free(g);
+
+    // memory that runs out has its own status
+    g = hn_graph_create();
+    assert_int_equal(hn_graph_status(g), HN_OK);
+    hn_graph_free(g);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(equal_structure_is_one_node),
@@ -297,6 +349,7 @@ int main(void) {
         cmocka_unit_test(substitution_happens_all_at_once),
         cmocka_unit_test(a_deep_graph_does_not_need_a_deep_stack),
         cmocka_unit_test(out_of_memory_marks_the_graph),
+        cmocka_unit_test(an_interrupt_ends_building_and_compiling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
