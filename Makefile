@@ -418,6 +418,7 @@ exercises: all
 
 pictures: all
 	@python3 tests/scenes/pictures.py $(PROGRAM)
+	@python3 lessons/figures.py $(PROGRAM)
 
 references: all
 	@python3 tests/scenes/references.py $(PROGRAM)

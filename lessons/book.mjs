@@ -39,7 +39,8 @@ function figure(node) {
     faults.push(`${lesson.id}: there is no picture ${path}`);
     return "";
   }
-  const image = `data:image/png;base64,${readFileSync(path).toString("base64")}`;
+  const type = path.endsWith(".svg") ? "image/svg+xml" : "image/png";
+  const image = `data:${type};base64,${readFileSync(path).toString("base64")}`;
   const caption = all(node.children);
   return `<figure><img src="${image}" alt="${caption.replace(/<[^>]*>/g, "").replace(/"/g, "")}"><figcaption>Figure ${lesson.number}.${++figures}. ${caption}</figcaption></figure>`;
 }

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_COLUMNS = 12, INDENT = 4 };
+enum { MAX_COLUMNS = 12, INDENT = 4, GUTTER = 2, MIN_COLUMN = 6 };
 
 static const char *text_of(const cJSON *node, const char *key) {
     const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(node, key));
@@ -207,42 +207,93 @@ static void measure_row(const cJSON *row, int widths[MAX_COLUMNS]) {
     }
 }
 
+/// Narrows the widest columns until a row fits into `room` characters.
+static void fit_columns(int widths[MAX_COLUMNS], int room) {
+    int total = -GUTTER;
+    for (int k = 0; k < MAX_COLUMNS && widths[k]; k++) {
+        total += widths[k] + GUTTER;
+    }
+
+    for (; total > room; total--) {
+        int widest = 0;
+        for (int k = 1; k < MAX_COLUMNS; k++) {
+            widest = widths[k] > widths[widest] ? k : widest;
+        }
+        if (widths[widest] <= MIN_COLUMN) {
+            return; // more columns than the terminal can hold: the row runs over
+        }
+        widths[widest]--;
+    }
+}
+
+/// Appends one line of a cell with the blanks of its column, and steps `*rest` behind it.
+static void put_cell_line(hn_strbuf *b, const char **rest, int width, bool right, bool last) {
+    const size_t bytes = strcspn(*rest, "\n");
+    const int used = (int)word_columns(*rest, bytes);
+    const int blank = width > used ? width - used : 0;
+    hn_strbuf_printf(b, "%*s%.*s%*s", right ? blank : 0, "", (int)bytes, *rest,
+                     right || last ? 0 : blank, "");
+    *rest += bytes + ((*rest)[bytes] == '\n');
+}
+
 static void put_row(hn_strbuf *b, const cJSON *row, const int widths[MAX_COLUMNS], int indent) {
-    int k = 0;
+    hn_strbuf cells[MAX_COLUMNS];
+    const char *rest[MAX_COLUMNS];
+    bool right[MAX_COLUMNS];
+    int n = 0;
+
+    // the text of each cell, folded to its column
     const cJSON *cell;
-    hn_strbuf_printf(b, "%*s", indent, "");
     cJSON_ArrayForEach(cell, children_of(row)) {
-        hn_strbuf line;
-        hn_strbuf_init(&line);
-        put_line(&line, children_of(cell));
-        const int n = hn_text_columns(hn_strbuf_text(&line));
-        const int blank = k < MAX_COLUMNS && widths[k] > n ? widths[k] - n : 0;
-        const bool right = strcmp(text_of(cell, "align"), "right") == 0;
-        const char *after = cell->next ? "  " : "";
-        hn_strbuf_printf(b, "%*s%s%*s%s", right ? blank : 0, "", hn_strbuf_text(&line),
-                         right || !cell->next ? 0 : blank, "", after);
-        hn_strbuf_reset(&line);
-        k++;
+        if (n < MAX_COLUMNS) {
+            hn_strbuf_init(&cells[n]);
+            put_inline(&cells[n], children_of(cell), 0, widths[n], "");
+            rest[n] = hn_strbuf_text(&cells[n]);
+            right[n] = strcmp(text_of(cell, "align"), "right") == 0;
+            n++;
+        }
+    }
+
+    // line by line, until every cell is at its end
+    for (bool more = n > 0; more;) {
+        more = false;
+        hn_strbuf_printf(b, "%*s", indent, "");
+        for (int k = 0; k < n; k++) {
+            put_cell_line(b, &rest[k], widths[k], right[k], k == n - 1);
+            hn_strbuf_printf(b, "%*s", k < n - 1 ? GUTTER : 0, "");
+            more = more || *rest[k];
+        }
+        hn_strbuf_add(b, "\n");
+    }
+
+    for (int k = 0; k < n; k++) {
+        b->failed |= cells[k].failed;
+        hn_strbuf_reset(&cells[k]);
+    }
+}
+
+static void put_rule(hn_strbuf *b, const int widths[MAX_COLUMNS], int indent) {
+    for (int k = 0; k < MAX_COLUMNS && widths[k]; k++) {
+        hn_strbuf_printf(b, "%*s", k == 0 ? indent : GUTTER, "");
+        for (int column = 0; column < widths[k]; column++) {
+            hn_strbuf_add(b, "-");
+        }
     }
     hn_strbuf_add(b, "\n");
 }
 
-static void put_table(hn_strbuf *b, const cJSON *node, int indent) {
+static void put_table(hn_strbuf *b, const cJSON *node, int indent, int width) {
     int widths[MAX_COLUMNS] = {0};
     const cJSON *row;
     cJSON_ArrayForEach(row, children_of(node)) {
         measure_row(row, widths);
     }
+    fit_columns(widths, width - indent);
+
     cJSON_ArrayForEach(row, children_of(node)) {
         put_row(b, row, widths, indent);
         if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(row, "head"))) {
-            for (int k = 0, column = 0; k < MAX_COLUMNS && widths[k]; k++) {
-                hn_strbuf_printf(b, "%*s", k == 0 ? indent : 2, "");
-                for (column = 0; column < widths[k]; column++) {
-                    hn_strbuf_add(b, "-");
-                }
-            }
-            hn_strbuf_add(b, "\n");
+            put_rule(b, widths, indent);
         }
     }
 }
@@ -255,9 +306,28 @@ static void put_code(hn_strbuf *b, const char *text, int indent) {
     }
 }
 
+/// A command on lines of its own. A longer one goes on behind a backslash, as a shell takes it.
+static void put_command(hn_strbuf *b, const char *command, int indent, int width) {
+    hn_strbuf_printf(b, "%*sholonom", indent, "");
+    int column = indent + (int)strlen("holonom");
+
+    while (*command) {
+        // the next word, with room for the backslash
+        const size_t n = strcspn(command, " ");
+        if (column + 1 + (int)n + 2 > width) {
+            hn_strbuf_printf(b, " \\\n%*s", indent + INDENT - 1, "");
+            column = indent + INDENT - 1;
+        }
+        hn_strbuf_printf(b, " %.*s", (int)n, command);
+        column += 1 + (int)n;
+        command += n + (command[n] == ' ');
+    }
+    hn_strbuf_add(b, "\n");
+}
+
 static void put_exhibit(hn_strbuf *b, const cJSON *node, int indent, int width) {
-    hn_strbuf_printf(b, "%*sTry it:\n%*sholonom %s\n", indent, "", indent + INDENT, "",
-                     text_of(node, "command"));
+    hn_strbuf_printf(b, "%*sTry it:\n", indent, "");
+    put_command(b, text_of(node, "command"), indent + INDENT, width);
     put_blocks(b, children_of(node), indent, width);
 }
 
@@ -278,7 +348,7 @@ static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
     } else if (is_kind(node, "list")) {
         put_list(b, node, indent, width);
     } else if (is_kind(node, "table")) {
-        put_table(b, node, indent);
+        put_table(b, node, indent, width);
     } else if (is_kind(node, "code")) {
         put_code(b, text_of(node, "text"), indent + INDENT);
     } else if (is_kind(node, "quote")) {

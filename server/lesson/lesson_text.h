@@ -7,7 +7,9 @@
 
 #include <cjson/cJSON.h>
 
-/// Appends the lesson in lines of at most `columns` characters (tables and code keep their own).
+/// Appends the lesson in lines of at most `columns` characters (code keeps its own lines).
+///
+/// A table that is wider has its cells folded within their columns.
 ///
 /// Predictions show question and choices; the answers follow at the end of the lesson. Pictures
 /// are named by caption and file.

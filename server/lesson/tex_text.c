@@ -18,7 +18,7 @@ static const struct {
     {"tau", "τ"}, {"phi", "φ"}, {"varphi", "φ"}, {"psi", "ψ"}, {"omega", "ω"},
     {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Lambda", "Λ"}, {"Phi", "Φ"}, {"Psi", "Ψ"},
     {"Omega", "Ω"}, {"Sigma", "Σ"}, {"Theta", "Θ"}, {"ell", "ℓ"}, {"partial", "∂"},
-    {"cdot", "·"}, {"times", "×"}, {"le", "≤"}, {"leq", "≤"}, {"ge", "≥"},
+    {"le", "≤"}, {"leq", "≤"}, {"ge", "≥"},
     {"geq", "≥"}, {"ne", "≠"}, {"neq", "≠"}, {"approx", "≈"}, {"sim", "~"},
     {"in", "∈"}, {"to", "→"}, {"mapsto", "↦"}, {"sum", "Σ"}, {"int", "∫"},
     {"infty", "∞"}, {"pm", "±"}, {"mp", "∓"}, {"forall", "∀"}, {"Rightarrow", "⇒"},
@@ -181,6 +181,22 @@ static bool read_known(reader *r, const char *name) {
     return false;
 }
 
+/// A blank, unless the text begins or ends with one.
+static void put_blank(hn_strbuf *b) {
+    const bool apart = b->n == 0 || strchr(" \n", hn_strbuf_text(b)[b->n - 1]);
+    hn_strbuf_add(b, apart ? "" : " ");
+}
+
+/// A function such as \sin, apart from the factor before it and from what follows.
+static void put_function(reader *r, const char *name) {
+    const char *text = hn_strbuf_text(r->out);
+    if (r->out->n > 0 && !strchr("([{-+/", text[r->out->n - 1])) {
+        put_blank(r->out);
+    }
+    const bool apart = isalnum((unsigned char)*r->at) || *r->at == '\\';
+    hn_strbuf_printf(r->out, "%s%s", name, apart ? " " : "");
+}
+
 /// A command; the backslash has been read. Returns 0 at \end, which is left to the block.
 static int read_command(reader *r) {
     char name[MAX_NAME];
@@ -213,10 +229,12 @@ static int read_command(reader *r) {
         hn_strbuf_init(&inner);
         read_argument(r, &inner);
         hn_strbuf_reset(&inner);
+    } else if (strcmp(name, "cdot") == 0 || strcmp(name, "times") == 0) {
+        put_blank(r->out);
+        hn_strbuf_add(r->out, name[0] == 'c' ? "· " : "× ");
+        r->at += strspn(r->at, " ");
     } else if (!read_known(r, name)) {
-        // a function such as \sin, apart from what follows
-        const bool apart = isalnum((unsigned char)*r->at) || *r->at == '\\';
-        hn_strbuf_printf(r->out, "%s%s", name, apart ? " " : "");
+        put_function(r, name);
     }
     return 1;
 }

@@ -160,6 +160,19 @@ def exhibits(texts):
     return faults
 
 
+def charts():
+    """Commands in the boxes of the flow charts that do not run; a figure without a title, or that no text shows."""
+    faults = []
+    for path in sorted(glob.glob("lessons/*/pictures/*.svg")):
+        drawing, text = read(path), read(os.path.join(os.path.dirname(os.path.dirname(path)), "text.md"))
+        faults += [] if f"(pictures/{os.path.basename(path)})" in text else [f"{path}: no text shows it"]
+        faults += [] if re.search(r"<title>[^<]{10,}</title>", drawing) else [f"{path}: no title"]
+        for command in re.findall(r'class="command"[^>]*>holonom ([^<]*)<', drawing):
+            done = subprocess.run([PROGRAM, *shlex.split(command)], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL)
+            faults += [f"{path}: {command}: {done.stderr[-200:]}"] if done.returncode else []
+    return faults
+
+
 def programs(texts):
     """Python programs of the texts that end with a fault; the one with NumPy is Debian's."""
     faults = []
@@ -188,6 +201,7 @@ def main():
     results.append(("every slip of the printed lesson is in a text and in an exercise", slips(texts)))
     results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))
     results.append(("every exhibit runs", exhibits(texts)))
+    results.append(("every figure has a title and is shown, and the commands in its boxes run", charts()))
     results.append(("the programs of the texts run", programs(texts)))
     results.append(("every text of a lesson is listed", [t for t in texts if t not in all_facts]))
     for n, (name, faults) in enumerate(results, 1):

@@ -25,7 +25,9 @@ static void formulas_become_text(void **state) {
     expect_tex("\\tfrac12 m\\ell_1^2", "½ mℓ₁²");
     expect_tex("\\frac{a+b}{2c}", "(a+b)/2c");
     expect_tex("\\begin{bmatrix} M & -J^{\\top} \\\\ J & 0 \\end{bmatrix}", "[ M, -Jᵀ; J, 0 ]");
-    expect_tex("\\ell_1\\sin\\theta_1", "ℓ₁sin θ₁");
+    expect_tex("\\ell_1\\sin\\theta_1", "ℓ₁ sin θ₁");
+    expect_tex("-\\sin x", "-sin x");
+    expect_tex("2\\cdot 3\\times4", "2 · 3 × 4");
     expect_tex("x^{-12}", "x⁻¹²");
 }
 
@@ -129,6 +131,33 @@ static void lines_keep_to_the_width(void **state) {
     cJSON_Delete(lesson);
 }
 
+/// A table's cells are folded, each within its column; a command goes on behind a backslash.
+static void tables_and_commands_keep_to_the_width(void **state) {
+    (void)state;
+    cJSON *lesson = cJSON_CreateObject();
+    cJSON_AddItemToObject(
+        lesson, "blocks",
+        parse("| step | what is seen in a long cell | another long cell |\n| --- | --- | ---: |\n"
+              "| 0.01 | one two three four five six | seven eight |\n\n"
+              "```exhibit\nscene: four-bar\nmethods: a@rk4:h=1 b@rk4:h=1\ntime: 20\n\nLook.\n"
+              "```\n"));
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_lesson_text(&b, lesson, 40);
+    for (const char *p = hn_strbuf_text(&b); *p;) {
+        const size_t n = strcspn(p, "\n");
+        assert_true(n <= 40);
+        p += n + (p[n] == '\n');
+    }
+
+    // the second line of a row stands below its own cells
+    assert_non_null(strstr(hn_strbuf_text(&b), "\n0.01  one two three"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "\n      four five six"));
+    assert_non_null(strstr(hn_strbuf_text(&b), " --methods \\\n        a@rk4:h=1 b@rk4:h=1"));
+    hn_strbuf_reset(&b);
+    cJSON_Delete(lesson);
+}
+
 static void deep_nesting_is_refused(void **state) {
     (void)state;
     char text[400];
@@ -161,6 +190,7 @@ int main(void) {
         cmocka_unit_test(a_prediction_has_its_right_choice),
         cmocka_unit_test(faults_of_a_text_are_named),
         cmocka_unit_test(lines_keep_to_the_width),
+        cmocka_unit_test(tables_and_commands_keep_to_the_width),
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(every_shipped_lesson_can_be_read),
     };
