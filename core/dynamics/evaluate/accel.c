@@ -22,6 +22,8 @@ const char *const hn_solver_names[HN_SOLVER_COUNT] = {
 #undef HN_SOLVER_NAME
 };
 
+// Far above the bounds at which an answer is in doubt: roundings of the comparison do not matter.
+static const double SURE_PIVOT = 2 * HN_PIVOT_DOUBT, SURE_ROW = 2 * HN_ROW_LOST;
 static const double ROW_RESIDUAL = 1e-2; // by which rows that have all but vanished may disagree
 
 struct hn_accel {
@@ -30,6 +32,7 @@ struct hn_accel {
     hn_accel_opts opts;
     hn_inputs in;
     hn_accel_tape tape;
+    double tape_ops; ///< of one run
     hn_row_groups rows;
     // the dense solve
     hn_eval *terms;
@@ -82,6 +85,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     if (!s->tape.available) {
         return HN_OK;
     }
+    s->tape_ops = hn_tape_get_info(s->in.tape).ops;
     HN_TRY(hn_row_groups_init(sys, arena, &s->rows));
     return hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor);
 }
@@ -393,15 +397,24 @@ static double find_row_ratio(hn_accel *s) {
     return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->tape.n_out - s->nc);
 }
 
-/// Takes the tape's answer. HN_ERR_SINGULAR: a pivot is lost, or so small that the answer needs
-/// correction (*doubtful).
-static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
-                               int *doubtful) {
+/// Runs the tape, and takes its answer where nothing is in doubt and nobody asks for more.
+static bool solve_at_once(hn_accel *s, double *a, double *lambda, const hn_accel_info *info) {
+    if (!s->tape.available) {
+        return false;
+    }
+    hn_tape_run(s->in.tape, s->in.x);
+    s->ops += s->tape_ops;
+    return !info && hn_accel_tape_is_sure(&s->tape, &s->in, SURE_PIVOT, SURE_ROW) &&
+           hn_accel_tape_take(&s->tape, &s->in, a, lambda);
+}
+
+/// Takes the answer of the tape that has been run. HN_ERR_SINGULAR: a pivot is lost, or so small
+/// that the answer needs correction (*doubtful).
+static hn_status judge_answer(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
+                              int *doubtful) {
     if (!s->tape.available) {
         return HN_ERR_SINGULAR;
     }
-    hn_tape_run(s->in.tape, s->in.x);
-    s->ops += hn_tape_get_info(s->in.tape).ops;
     info->pivot_ratio = hn_accel_tape_worst_pivot(&s->tape, &s->in);
     info->row_ratio = find_row_ratio(s);
     info->solver = HN_SOLVER_LDL;
@@ -422,12 +435,17 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     int doubtful = 0;
 
     // the tape first
-    info = info ? info : &own;
     s->count++;
     s->refusal[0] = '\0';
     hn_inputs_set(&s->in, t, q, v, alpha, beta);
+    if (solve_at_once(s, a, lambda, info)) {
+        return HN_OK;
+    }
+
+    // what it found, where that matters
+    info = info ? info : &own;
     *info = (hn_accel_info){.solver = solver, .rank = s->nc, .massless = -1, .row_ratio = 1};
-    hn_status status = solve_by_tape(s, a, lambda, info, &doubtful);
+    hn_status status = judge_answer(s, a, lambda, info, &doubtful);
     if (status == HN_OK) {
         return HN_OK;
     }

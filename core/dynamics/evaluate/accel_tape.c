@@ -5,6 +5,7 @@
 #include "dynamics/evaluate/ldl.h"
 #include "expr/construct.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -91,6 +92,26 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
     return status;
 }
 
+bool hn_accel_tape_is_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
+                           double row) {
+    const double *x = in->x;
+    const uint16_t *guard = in->slots + tape->n_answer, *rows = guard + 2 * tape->n_guards;
+    const int n_rows = tape->n_out - tape->n_answer - 2 * tape->n_guards;
+    bool sure = true;
+    for (int k = 0; k < tape->n_guards; k++) { // a NaN is not above anything
+        sure &= fabs(x[guard[2 * k]]) > pivot * fabs(x[guard[2 * k + 1]]);
+    }
+
+    double least = HUGE_VAL, most = 0;
+    for (int i = 0; i < n_rows; i++) {
+        const double square = fabs(x[rows[i]]);
+        least = square < least ? square : least;
+        most = square > most ? square : most;
+        sure &= square == square;
+    }
+    return sure && (n_rows == 0 || least > row * most);
+}
+
 double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in) {
     const double *x = in->x;
     const uint16_t *slots = in->slots + tape->n_answer;
@@ -107,11 +128,11 @@ double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in)
 bool hn_accel_tape_take(const hn_accel_tape *tape, const hn_inputs *in, double *a, double *lambda) {
     const double *x = in->x;
     const uint16_t *slots = in->slots;
-    double zero = 0;
+    bool finite = true;
     for (int k = 0; k < tape->n_answer; k++) {
-        zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
+        finite &= fabs(x[slots[k]]) <= DBL_MAX;
     }
-    if (!(zero == 0)) {
+    if (!finite) {
         return false;
     }
     for (int i = 0; i < in->nv; i++) {

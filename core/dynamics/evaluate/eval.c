@@ -176,11 +176,8 @@ void hn_eval_run(hn_eval *e, double t, const double *q, const double *v) {
 }
 
 static int term_index(hn_term term) {
-    int k = 0;
-    while (k < HN_TERM_COUNT && (1u << k) != (unsigned)term) {
-        k++;
-    }
-    HN_ASSERT(k < HN_TERM_COUNT);
+    const int k = __builtin_ctz((unsigned)term);
+    HN_ASSERT(k < HN_TERM_COUNT && (1u << k) == (unsigned)term);
     return k;
 }
 

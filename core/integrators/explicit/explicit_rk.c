@@ -4,17 +4,25 @@
 #include "integrators/step/compensated.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { MAX_STAGES = 16, HERMITE_TERMS = 4, MAX_DENSE_TERMS = 8 };
+
+/// One row of a tableau without its zeros: sum of w[m] times slope number at[m].
+typedef struct weights {
+    int n, at[MAX_STAGES];
+    double w[MAX_STAGES];
+} weights;
 
 typedef struct explicit_rk {
     const hn_tableau *tab;
     int n;
     double *k[MAX_STAGES];
-    double *stage; // n
-    double *y0;    // n, start of the last step
-    double *y1;    // n, its end
+    weights stage_of[MAX_STAGES], b, e, e2, *dense_of; // the tableau's rows
+    double *stage;                                     // n
+    double *y0;                                        // n, start of the last step
+    double *y1;                                        // n, its end
     double *dense[MAX_DENSE_TERMS];
     double *near;          // n: what the stiff stage was evaluated at
     double near_h, rate_h; // of the step it belongs to; |h lambda| found from it
@@ -24,6 +32,35 @@ typedef struct explicit_rk {
     int has_last;  // the slope at y1 is known
     int has_near;  // the stiff stage of an accepted step waits for the slope at its end
 } explicit_rk;
+
+static weights list_weights(const double *row, int n) {
+    weights out = {0};
+    for (int i = 0; row && i < n; i++) {
+        if (row[i] != 0) {
+            out.at[out.n] = i;
+            out.w[out.n++] = row[i];
+        }
+    }
+    return out;
+}
+
+/// The rows of the tableau, once.
+static bool list_rows(explicit_rk *rk, hn_arena *arena) {
+    const hn_tableau *tab = rk->tab;
+    const int all = tab->stages + tab->extra;
+    for (int i = 0; i < all; i++) {
+        rk->stage_of[i] = list_weights(tab->A + (size_t)i * (size_t)all, i);
+    }
+    rk->b = list_weights(tab->b, tab->stages);
+    rk->e = list_weights(tab->e, tab->stages);
+    rk->e2 = list_weights(tab->e2, tab->stages);
+
+    rk->dense_of = hn_arena_get(arena, ((size_t)tab->dense_rows + 1) * sizeof *rk->dense_of);
+    for (int r = 0; rk->dense_of && tab->d && r < tab->dense_rows; r++) {
+        rk->dense_of[r] = list_weights(tab->d + r * all, all);
+    }
+    return rk->dense_of != NULL;
+}
 
 void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
     HN_ASSERT(tableau->stages + tableau->extra <= MAX_STAGES && n >= 0);
@@ -50,7 +87,8 @@ void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
         rk->y0 = hn_arena_doubles(arena, (size_t)n);
         rk->y1 = hn_arena_doubles(arena, (size_t)n);
     }
-    return hn_compensated_init(&rk->sum, n, arena) && !hn_arena_failed(arena) ? rk : NULL;
+    const bool made = hn_compensated_init(&rk->sum, n, arena) && list_rows(rk, arena);
+    return made && !hn_arena_failed(arena) ? rk : NULL;
 }
 
 void hn_explicit_rk_configure(void *self, const double *options) {
@@ -58,15 +96,28 @@ void hn_explicit_rk_configure(void *self, const double *options) {
     hn_compensated_switch(&rk->sum, options[HN_FIXED_STEP_SUM] != 0);
 }
 
-// out = base + h sum_{i < n_terms} w_i k_i
-static void combine(const explicit_rk *rk, const double *w, int n_terms, const double *base,
-                    double h, double *out) {
-    for (int j = 0; j < rk->n; j++) {
+// out = base + h sum_m w_m k_m, the terms of each entry added in their order
+static void combine(const explicit_rk *rk, const weights *w, const double *base, double h,
+                    double *out) {
+    const int n = rk->n;
+
+    // one slope, as in every stage of the classical method
+    if (w->n == 1 && base) {
+        const double *k = rk->k[w->at[0]], weight = w->w[0];
+        for (int j = 0; j < n; j++) {
+            out[j] = base[j] + h * (0 + weight * k[j]);
+        }
+        return;
+    }
+
+    const double *k[MAX_STAGES];
+    for (int m = 0; m < w->n; m++) {
+        k[m] = rk->k[w->at[m]];
+    }
+    for (int j = 0; j < n; j++) {
         double sum = 0;
-        for (int i = 0; i < n_terms; i++) {
-            if (w[i] != 0) {
-                sum += w[i] * rk->k[i][j];
-            }
+        for (int m = 0; m < w->n; m++) {
+            sum += w->w[m] * k[m][j];
         }
         out[j] = (base ? base[j] : 0) + h * sum;
     }
@@ -74,19 +125,18 @@ static void combine(const explicit_rk *rk, const double *w, int n_terms, const d
 
 static hn_status eval_stage(explicit_rk *rk, const hn_ode *ode, int i, double t, double h,
                             const double *y) {
-    const hn_tableau *tab = rk->tab;
-    combine(rk, tab->A + i * (tab->stages + tab->extra), i, y, h, rk->stage);
-    return ode->rhs(ode->self, t + tab->c[i] * h, rk->stage, rk->k[i]);
+    combine(rk, &rk->stage_of[i], y, h, rk->stage);
+    return ode->rhs(ode->self, t + rk->tab->c[i] * h, rk->stage, rk->k[i]);
 }
 
 // eq. (2), and (3) where there are two; the scratch is free once all stages are known
 static void estimate_error(explicit_rk *rk, double h, double *err) {
     const hn_tableau *tab = rk->tab;
-    combine(rk, tab->e, tab->stages, NULL, h, err);
+    combine(rk, &rk->e, NULL, h, err);
     if (!tab->e2) {
         return;
     }
-    combine(rk, tab->e2, tab->stages, NULL, h, rk->stage);
+    combine(rk, &rk->e2, NULL, h, rk->stage);
     for (int j = 0; j < rk->n; j++) {
         const double size = hypot(err[j], 0.1 * rk->stage[j]);
         err[j] = size > 0 ? err[j] * (fabs(err[j]) / size) : err[j];
@@ -148,7 +198,7 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
     if (tab->fsal) {
         memcpy(y_new, rk->stage, (size_t)rk->n * sizeof *y_new);
     } else {
-        combine(rk, tab->b, tab->stages, NULL, h, rk->stage);
+        combine(rk, &rk->b, NULL, h, rk->stage);
         hn_compensated_add(&rk->sum, 0, rk->n, y, rk->stage, y_new);
     }
 
@@ -181,7 +231,6 @@ hn_status hn_explicit_rk_finish(void *self, const hn_ode *ode) {
 static void make_dense(explicit_rk *rk) {
     const hn_tableau *tab = rk->tab;
     const double h = rk->h, *first = rk->k[0], *last = rk->k[last_stage(tab)];
-    const int all = tab->stages + tab->extra;
     for (int j = 0; j < rk->n; j++) {
         const double diff = rk->y1[j] - rk->y0[j], slope = h * first[j] - diff;
         rk->dense[0][j] = rk->y0[j];
@@ -190,7 +239,7 @@ static void make_dense(explicit_rk *rk) {
         rk->dense[3][j] = diff - h * last[j] - slope;
     }
     for (int r = 0; r < tab->dense_rows; r++) {
-        combine(rk, tab->d + r * all, all, NULL, h, rk->dense[HERMITE_TERMS + r]);
+        combine(rk, &rk->dense_of[r], NULL, h, rk->dense[HERMITE_TERMS + r]);
     }
 }
 

@@ -44,7 +44,7 @@ void hn_heading_start(hn_watch *w) {
 
 static bool has_heading(hn_watch *w) {
     hn_heading_record *r = &w->heading;
-    r->driven |= hn_norm_max(w->run->info.nc, hn_eval_get(w->eval, HN_TERM_PHI_T)) > 0;
+    r->driven |= hn_norm_max(w->run->info.nc, w->phi_t) > 0;
     return hn_motion_dof(w) == (r->driven ? 0 : 1);
 }
 

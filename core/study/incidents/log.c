@@ -22,10 +22,14 @@ void hn_incident_over(hn_incident_log *log, hn_incident_code code) {
     log->active &= ~(1u << code);
 }
 
+bool hn_incident_is_taken(const hn_incident_log *log, hn_incident_code code) {
+    return !hn_incident_holds(log, code) && log->reported[code] < MOST_OF_ONE_KIND &&
+           log->n < HN_RUN_MAX_INCIDENTS;
+}
+
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report) {
     const hn_incident_code code = report->code;
-    if (hn_incident_holds(log, code) || log->reported[code] == MOST_OF_ONE_KIND ||
-        log->n == HN_RUN_MAX_INCIDENTS) {
+    if (!hn_incident_is_taken(log, code)) {
         return NULL;
     }
     log->active |= 1u << code;

@@ -21,6 +21,9 @@ void hn_incident_log_clear(hn_incident_log *log);
 bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code);
 /// The condition has ceased: the next time it begins it is reported again.
 void hn_incident_over(hn_incident_log *log, hn_incident_code code);
+/// Says whether a report of this kind would be taken: its condition does not hold already, and
+/// there is room.
+bool hn_incident_is_taken(const hn_incident_log *log, hn_incident_code code);
 /// Adds a report without remedies. Returns NULL where the condition is known already or no room is
 /// left.
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report);

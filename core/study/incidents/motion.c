@@ -14,8 +14,9 @@ double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
     double moved = least, rest = 0, *step = w->scratch;
     hn_system_difference(s->sys, from->q, to->q, step);
     for (int i = 0; i < s->info.nv; i++) {
-        moved = fmax(moved, fabs(step[i]));
-        rest = fmax(rest, fabs(step[i] - half * (to->v[i] + from->v[i])));
+        const double way = fabs(step[i]), other = fabs(step[i] - half * (to->v[i] + from->v[i]));
+        moved = way > moved ? way : moved;
+        rest = other > rest ? other : rest;
     }
     return moved > 0 ? rest / moved : 0;
 }
@@ -71,15 +72,12 @@ double hn_motion_unexplained(const hn_watch *w, double least) {
 
 double hn_motion_way(const hn_watch *w, const double *from, double *step) {
     const hn_stepping *s = w->run;
-    const double *J = hn_eval_get(w->eval, HN_TERM_J);
     double most = 0;
     hn_system_difference(s->sys, from, s->now.q, step);
     for (int i = 0; i < s->info.nc; i++) {
         const double unit = hn_system_row_is_length(s->sys, i) ? w->length : 1;
-        const double *row = J + (size_t)i * (size_t)s->info.nv;
-        for (int j = 0; j < s->info.nv; j++) {
-            most = fmax(most, fabs(row[j] * step[j]) / unit);
-        }
+        const double way = hn_closure_rows_largest(&w->rows, i, step) / unit;
+        most = way > most ? way : most;
     }
     return most;
 }
@@ -87,11 +85,9 @@ double hn_motion_way(const hn_watch *w, const double *from, double *step) {
 // Where all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured
 // against its own row, do not see that.
 double hn_motion_shortest_row(const hn_watch *w) {
-    const size_t nv = (size_t)w->run->info.nv;
-    const double *J = hn_eval_get(w->eval, HN_TERM_J);
     double least = 1;
     for (int i = 0; i < w->run->info.nc; i++) {
-        const double size = hn_norm2((int)nv, J + (size_t)i * nv);
+        const double size = hn_closure_rows_length(&w->rows, i);
         const double largest = fmax(w->row_size[i], size);
         least = fmin(least, largest > 0 ? size / largest : 1);
     }

@@ -18,6 +18,9 @@ static void offer_remedies(const hn_watch *w, const hn_incident_kind *kind, hn_i
 
 hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
                                 double value, double limit, const char *format, ...) {
+    if (!hn_incident_is_taken(&w->log, kind->code)) { // a condition that goes on costs nothing
+        return NULL;
+    }
     hn_incident *i = hn_incident_add(&w->log, &(hn_incident){.code = kind->code,
                                                              .t = w->run->now.t,
                                                              .quantity = quantity,

@@ -41,6 +41,10 @@ static hn_status create_evaluators(hn_watch *w) {
     const hn_system *sys = w->run->sys;
     hn_arena *arena = w->run->arena;
     HN_TRY(hn_eval_create(sys, terms, arena, &w->eval));
+    w->phi = hn_eval_get(w->eval, HN_TERM_PHI);
+    w->phi_t = hn_eval_get(w->eval, HN_TERM_PHI_T);
+    w->energies = hn_eval_get(w->eval, HN_TERM_ENERGY);
+    HN_TRY(hn_closure_rows_create(w->eval, w->run->info.nc, w->run->info.nv, arena, &w->rows));
     HN_TRY(hn_limits_create(sys, arena, &w->limits));
     HN_TRY(hn_mode_watch_create(sys, arena, &w->mode));
     const size_t loops = (size_t)hn_mode_watch_count(w->mode);
@@ -71,21 +75,19 @@ void hn_watch_free(hn_watch *w) {
 // ---- measuring ----
 
 hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v) {
-    const int nv = w->run->info.nv, nc = w->run->info.nc;
+    const int nc = w->run->info.nc;
     hn_eval_run(w->eval, t, q, v);
-    hn_mat_vec(nc, nv, hn_eval_get(w->eval, HN_TERM_J), v, w->velocity_gap);
-    hn_axpy(nc, 1, hn_eval_get(w->eval, HN_TERM_PHI_T), w->velocity_gap);
-    return (hn_measure){.gap = hn_norm2(nc, hn_eval_get(w->eval, HN_TERM_PHI)),
+    hn_closure_rows_times(&w->rows, v, w->velocity_gap);
+    hn_axpy(nc, 1, w->phi_t, w->velocity_gap);
+    return (hn_measure){.gap = hn_norm2(nc, w->phi),
                         .velocity_gap = hn_norm2(nc, w->velocity_gap),
-                        .kinetic = hn_eval_get(w->eval, HN_TERM_ENERGY)[0],
-                        .potential = hn_eval_get(w->eval, HN_TERM_ENERGY)[1]};
+                        .kinetic = w->energies[0],
+                        .potential = w->energies[1]};
 }
 
 static void measure_rows(hn_watch *w) {
-    const double *J = hn_eval_get(w->eval, HN_TERM_J);
-    const size_t nv = (size_t)w->run->info.nv;
     for (int i = 0; i < w->run->info.nc; i++) {
-        w->row_size[i] = fmax(w->row_size[i], hn_norm2((int)nv, J + (size_t)i * nv));
+        w->row_size[i] = fmax(w->row_size[i], hn_closure_rows_length(&w->rows, i));
     }
 }
 
@@ -120,14 +122,17 @@ static void measure_present(hn_watch *w) {
 
 // ---- when the full check is due ----
 
-/// The incidents whose end needs no full check, as bits of hn_incident_log.active.
-static unsigned find_own_pace(void) {
-    unsigned bits = 0;
+/// Finds the incidents that are checked after every step, and those whose end needs no full check.
+static void find_own_pace(hn_watch *w) {
+    w->n_each_step = 0;
+    w->own_pace = 0;
     for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
         const hn_incident_kind *kind = hn_incident_kinds()[i];
-        bits |= kind->each_step || !kind->check ? 1u << kind->code : 0;
+        w->own_pace |= kind->each_step || !kind->check ? 1u << kind->code : 0;
+        if (kind->check && kind->each_step) {
+            w->each_step[w->n_each_step++] = kind;
+        }
     }
-    return bits;
 }
 
 // Gap and energy are checked after every step. The rest costs as much as two steps of a small
@@ -164,9 +169,15 @@ static bool is_full_check_due(hn_watch *w) {
 // ---- checking ----
 
 static void check_kinds(hn_watch *w, bool full) {
+    if (!full) {
+        for (int i = 0; i < w->n_each_step; i++) {
+            w->each_step[i]->check(w);
+        }
+        return;
+    }
     for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
         const hn_incident_kind *kind = hn_incident_kinds()[i];
-        if (kind->check && (full || kind->each_step)) {
+        if (kind->check) {
             kind->check(w);
         }
     }
@@ -199,7 +210,7 @@ static void forget(hn_watch *w) {
     hn_singularity_reset(s->monitor);
 
     // when the next full check is due
-    w->own_pace = find_own_pace();
+    find_own_pace(w);
     w->calm = false;
     w->checks = 0;
 

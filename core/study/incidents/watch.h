@@ -9,6 +9,7 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/limits.h"
 #include "study/incidents/log.h"
+#include "study/incidents/rows.h"
 #include "study/incidents/work.h"
 #include "study/stepping/stepping.h"
 
@@ -107,7 +108,9 @@ struct hn_watch {
     hn_measure measure;
 
     // of the state checked in full last
-    double *checked_q; ///< nq
+    double *checked_q;                                    ///< nq
+    const hn_incident_kind *each_step[HN_INCIDENT_COUNT]; ///< those checked after every step
+    int n_each_step;
     unsigned own_pace; ///< incidents that end without one, as bits of hn_incident_log.active
     long long checks;  ///< full checks so far
     bool calm;         ///< it found nothing that the next step has to be compared with
@@ -131,7 +134,9 @@ struct hn_watch {
     char *beyond;       ///< per limit: it is passed at present
     double *limited;    ///< values of the coordinates with limits
 
-    hn_eval *eval; ///< phi, phi_t, J, energy
+    hn_eval *eval;                        ///< phi, phi_t, J, energy
+    const double *phi, *phi_t, *energies; ///< its values
+    hn_closure_rows rows;
     hn_mode_watch *mode;
     hn_limits *limits;
     double *velocity_gap; ///< nc

@@ -19,7 +19,7 @@
 
 /// What the stepping has cost so far.
 typedef struct cost_clock {
-    hn_cost cost, mark; ///< in all; of the engine when the present interval began
+    hn_cost cost, mark; ///< in all; of the engine when the last interval ended
     hn_step_clock time;
 } cost_clock;
 
@@ -42,9 +42,14 @@ hn_run_opts hn_run_opts_default(void) {
 
 // ---- the clock ----
 
-/// Everything between start_clock and stop_clock is the method's own work.
-static void start_clock(hn_run *run) {
+/// What a sample between steps has cost the engine is not the stepping's.
+static void mark_cost(hn_run *run) {
     run->clock.mark = hn_engine_cost(&run->stepping.engine);
+}
+
+/// Everything between start_clock and stop_clock is the method's own work. Checks between steps
+/// leave the engine alone.
+static void start_clock(hn_run *run) {
     hn_step_clock_start(&run->clock.time);
 }
 
@@ -54,6 +59,7 @@ static void stop_clock(hn_run *run) {
     const hn_cost now = hn_engine_cost(&run->stepping.engine);
     const hn_cost spent = hn_cost_between(&c->mark, &now);
     hn_cost_add(&c->cost, &spent);
+    c->mark = now;
     hn_chart_check(&run->watch, spent.chart_changes);
 }
 
@@ -128,6 +134,7 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
         return run->status;
     }
 
+    mark_cost(run);
     run->state = HN_RUN_RUNNING;
     s->t_asked = t_end;
     if (hn_headway_check_budget(s, t_end) != HN_OK) {

@@ -337,6 +337,10 @@ hn_status hn_engine_read(hn_engine *e, double t, const double *y, double *q, dou
     return e->kind->read(e, t, y, q, v);
 }
 
+bool hn_engine_has_chart(const hn_engine *e) {
+    return (e->spec->formulation->traits & (HN_TRAIT_HAS_CHART | HN_TRAIT_HAS_BASIS)) != 0;
+}
+
 bool hn_engine_has_dense(const hn_engine *e) {
     return e->kind->has_dense(e);
 }

@@ -63,6 +63,9 @@ void hn_engine_accepted(hn_engine *e, int changed);
 /// y -> (q, v).
 HN_MUST_CHECK hn_status hn_engine_read(hn_engine *e, double t, const double *y, double *q,
                                        double *v);
+/// Says whether its state is one of a chart or a basis, which may change on the way: then reading a
+/// state may cost something, too.
+bool hn_engine_has_chart(const hn_engine *e);
 bool hn_engine_has_dense(const hn_engine *e);
 /// y at the share theta of the step accepted last.
 void hn_engine_dense(hn_engine *e, double theta, double *y);

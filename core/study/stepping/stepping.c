@@ -298,23 +298,26 @@ static bool change_chart(hn_stepping *s) {
     return true;
 }
 
+static long long count_charts(const hn_stepping *s) {
+    return hn_engine_has_chart(&s->engine) ? hn_engine_cost(&s->engine).chart_changes : 0;
+}
+
 hn_status hn_stepping_step(hn_stepping *s) {
     if (s->steps + s->rejected >= s->max_steps) {
         snprintf(s->reason, sizeof s->reason,
                  "%lld steps were allowed and are used up at t = %.6g s", s->max_steps, s->now.t);
         return HN_ERR_BUDGET;
     }
-    long long charts = hn_engine_cost(&s->engine).chart_changes;
+    long long charts = count_charts(s);
     s->has_dense = true;
     s->dense_valid = false;
     hn_status status = take_step(s);
     if (status == HN_ERR_CHART && change_chart(s)) {
-        charts = hn_engine_cost(&s->engine).chart_changes;
+        charts = count_charts(s);
         status = take_step(s);
     }
     HN_TRY(status);
-    s->dense_valid = hn_engine_has_dense(&s->engine) && s->has_dense &&
-                     hn_engine_cost(&s->engine).chart_changes == charts;
+    s->dense_valid = s->has_dense && hn_engine_has_dense(&s->engine) && count_charts(s) == charts;
     return HN_OK;
 }
 

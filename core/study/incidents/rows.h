@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_INCIDENT_ROWS_H
+#define HN_STUDY_INCIDENT_ROWS_H
+// The rows of J without their zeros. A loop moves with a few coordinates however many the mechanism
+// has, so what is watched after every step goes over the entries alone, in their order: the sums
+// are those over the whole rows, to the last bit.
+
+#include "dynamics/evaluate/eval.h"
+
+typedef struct hn_closure_rows {
+    int n;           ///< rows
+    const double *J; ///< n x nv, of the evaluator; its values change with every state
+    int *first;      ///< n + 1: entries first[i] .. first[i + 1] - 1 belong to row i
+    int *col;        ///< of an entry, ascending in a row
+    size_t *at;      ///< of an entry in J
+} hn_closure_rows;
+
+/// Finds the entries of HN_TERM_J of `eval`, whose values are borrowed. Memory from `arena`. Fails:
+/// HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_closure_rows_create(const hn_eval *eval, int nc, int nv, hn_arena *arena,
+                                               hn_closure_rows *rows);
+/// out = J v: v (nv), out (nc).
+void hn_closure_rows_times(const hn_closure_rows *rows, const double *v, double *out);
+/// Length of row i, as hn_norm2().
+double hn_closure_rows_length(const hn_closure_rows *rows, int i);
+/// The largest |J_ij x_j| of row i.
+double hn_closure_rows_largest(const hn_closure_rows *rows, int i, const double *x);
+#endif
