@@ -120,8 +120,12 @@ static void explain(hn_verdict *v, hn_exam *exam, hn_entry_verdict *e, hn_ex giv
     }
     hn_grade_mistake found = hn_grade_find_mistake(exam, e->row, e->column, given, value);
     set_mistake(v, e, found.id);
-    snprintf(e->explanation, sizeof e->explanation, "%s%s%s%s", found.text, found.by[0] ? " (" : "",
-             found.by, found.by[0] ? ")" : "");
+    snprintf(e->explanation, sizeof e->explanation, "%s%s%s%s%s%s", found.text,
+             found.by[0] ? " (" : "", found.by, found.by[0] ? ")" : "", found.also ? "; and " : "",
+             found.also ? found.also : "");
+    if (found.second) {
+        e->points *= partial_share(v->problem, found.second);
+    }
 }
 
 static hn_status grade_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_verdict *e) {

@@ -207,6 +207,63 @@ static bool agrees(const place *at, hn_ex e, const double *value) {
     return worst <= hn_exam_allowed(at->exam, size);
 }
 
+/// Second mistakes that go with any other: a factor, or coordinates that are turned into others.
+static const struct second {
+    const char *id, *text;
+    double factor, a, b; ///< every coordinate x is a + b x
+} SECONDS[] = {
+    {"sign", "the sign is wrong as well", -1, 0, 1},
+    {"factor", "a factor of 2 is wrong as well", 2, 0, 1},
+    {"factor", "a factor of 1/2 is wrong as well", 0.5, 0, 1},
+    {"swapped", "sine and cosine are exchanged as well", 1, 1.5707963267948966, -1},
+    {"degrees", "this looks like degrees as well; angles are in radians", 1, 0,
+     0.017453292519943295},
+};
+
+/// 1 if the formula with the second mistake has the values of the entry at all states.
+static bool agrees_turned(const place *at, hn_ex e, const double *value,
+                          const struct second *also) {
+    double worst = 0, size = 0;
+    const hn_exercise *p = at->exam->problem;
+    for (int s = 0; s < at->exam->n_states; s++) {
+        double state[HN_GRADE_MAX_NAMES];
+        for (int i = 0; i < p->n_names; i++) {
+            const double x = at->exam->state[s][i];
+            state[i] = i < p->n_params ? x : also->a + also->b * x;
+        }
+        const double x = also->factor * hn_graph_eval(at->exam->graph, e, state);
+        worst = fmax(worst, fabs(x - value[s]));
+        size = fmax(size, fabs(x));
+        if (!isfinite(x) || !(worst <= hn_exam_allowed(at->exam, fmax(size, fabs(value[s]))))) {
+            return false;
+        }
+    }
+    return worst <= hn_exam_allowed(at->exam, size);
+}
+
+/// Two mistakes at once: one of the rows, and a second on top of it.
+static hn_grade_mistake find_pair(const place *at, const double *value) {
+    for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
+        variants v = {.n = 0};
+        MISTAKES[k].make(at, &v);
+        for (size_t m = 0; m < sizeof SECONDS / sizeof SECONDS[0]; m++) {
+            for (int i = 0; i < v.n; i++) {
+                if (agrees_turned(at, v.e[i], value, &SECONDS[m])) {
+                    hn_grade_mistake found = {.id = MISTAKES[k].id,
+                                              .text = MISTAKES[k].text,
+                                              .second = SECONDS[m].id,
+                                              .also = SECONDS[m].text};
+                    memcpy(found.by, v.by[i], sizeof found.by);
+                    return found;
+                }
+            }
+        }
+    }
+    return (hn_grade_mistake){
+        .id = "other",
+        .text = "no known mistake gives this: differentiate the row once more, term by term"};
+}
+
 hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
                                        const double *value) {
     place at = {.exam = exam, .row = row, .column = column, .given = given};
@@ -224,7 +281,5 @@ hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex
             }
         }
     }
-    return (hn_grade_mistake){
-        .id = "other",
-        .text = "no known mistake gives this: differentiate the row once more, term by term"};
+    return find_pair(&at, value);
 }

@@ -12,6 +12,7 @@
 typedef struct hn_grade_mistake {
     const char *id, *text; ///< static
     char by[32];
+    const char *second, *also; ///< a second mistake at once: its id and words; NULL: none
 } hn_grade_mistake;
 hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
                                        const double *value);

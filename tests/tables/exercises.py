@@ -2,17 +2,21 @@
 """Every exercise over 200 seeds: a row each. usage: exercises.py PROGRAM [SEEDS]
 
 A row says how many variants were drawn, how many differ, how many right answers got full marks, how many listed mistakes were
-named, and how many variants are bad. Right answers of formulas are handed in in five spellings besides. Exit status 1 if any
-variant is bad or a right answer loses a point.
+named, and how many variants are bad. Right formulas and numbers are handed in in five spellings besides, for every seed. Below the
+rows stands how fast formulas are graded. Exit status 1 if any variant is bad, a right answer loses a point, or fewer than 500
+submissions a second are graded.
 """
 
 import glob
 import json
 import os
+import random
 import re
+import resource
 import subprocess
 import sys
 import tempfile
+import time
 
 PROGRAM = sys.argv[1]
 SEEDS = int(sys.argv[2]) if len(sys.argv) > 2 else 200
@@ -45,47 +49,138 @@ def spell(answer, form, matrix):
     return {k: a if k == "unknowns" else spell(a, form, matrix) for k, a in answer.items()} if isinstance(answer, dict) else answer
 
 
-def spellings(exercise, folder):
-    """(tried, accepted) of the formulas in five spellings, with seed 1."""
+def number_in(form, expected, unit):
+    """The number that a teacher's verdict expects, as text in one of five spellings."""
+    x = float(expected)
+    return {"blanks": f"  {x:.6g} {unit} ", "python": x, "capital": f"{x:.6E}", "typeset": f"{x:.6g}".replace("-", "−"), "underscore": f"{x:.6f}{unit}"}[form]
+
+
+def grade(exercise, paths, seed, *more):
+    """The entries of each file's verdict."""
+    done = subprocess.run([PROGRAM, "grade", exercise, *paths, "--format", "json", "--seed", str(seed), *more],
+                          capture_output=True, text=True, check=False)  # fmt: skip
+    return [json.loads(line)["entries"] for line in done.stdout.splitlines()]
+
+
+def write(folder, name, content):
+    path = os.path.join(folder, name)
+    with open(path, "w", encoding="utf-8") as f:
+        json.dump(content, f)
+    return path
+
+
+def respelt(exercise, form, expected):
+    """All parts whose answers are formulas or numbers, in one spelling."""
+    answers = {}
+    for part in exercise["parts"]:
+        kind = part["kind"]
+        if kind in ("formula", "formulas", "matrix", "blocks", "basis"):
+            answers[part["id"]] = spell(part["answer"], form, kind in ("matrix", "blocks"))
+        elif kind in ("number", "vector"):
+            numbers = [e.split()[0] for name, e in expected if name.split(".")[0] == part["id"]]
+            told = [number_in(form, x, part.get("unit", "")) for x in numbers]
+            answers[part["id"]] = told if isinstance(part["answer"], list) else told[0]
+    return answers
+
+
+def spellings(exercise, folder, seeds):
+    """(tried, accepted) of formulas and numbers in five spellings, for each seed."""
     tried = accepted = 0
-    for part in exercise.get("parts", []):
-        if part["kind"] not in ("formula", "formulas", "matrix", "blocks", "basis"):
-            continue
-        for form in FORMS:
-            path = os.path.join(folder, "answer.json")
-            with open(path, "w", encoding="utf-8") as f:
-                json.dump({part["id"]: spell(part["answer"], form, part["kind"] in ("matrix", "blocks"))}, f)
-            done = subprocess.run([PROGRAM, "grade", exercise["id"], path, "--format", "json"], capture_output=True, text=True, check=False)
-            entries = [e for e in json.loads(done.stdout)["entries"] if e["name"].split(".")[0] == part["id"]]
-            good = bool(entries) and all(e["right"] for e in entries)
-            tried += 1
-            accepted += good
-            if not good:
-                print(f"# {exercise['id']} {part['id']} {form}: {entries[0]['explanation'] if entries else done.stdout}")
+    numbers = [p for p in exercise["parts"] if p["kind"] in ("number", "vector")]
+    # an answer to learn the numbers from; no reference is this large
+    asked = {p["id"]: [1e150] * len(p["answer"]) if isinstance(p["answer"], list) else 1e150 for p in numbers}
+    for seed in range(1, seeds + 1):
+        expected = []
+        if asked:
+            entries = grade(exercise["id"], [write(folder, "ask.json", asked)], seed, "--show-expected")[0]
+            expected = [(e["name"], e["expected"]) for e in entries]
+        answers = [respelt(exercise, form, expected) for form in FORMS]
+        if not answers[0]:
+            return 0, 0
+        paths = [write(folder, f"{form}.json", a) for form, a in zip(FORMS, answers)]
+        for form, told, verdict in zip(FORMS, answers, grade(exercise["id"], paths, seed)):
+            for entry in verdict:
+                if entry["name"].split(".")[0] in told:
+                    tried += 1
+                    accepted += entry["right"]
+                    if not entry["right"]:
+                        print(f"# {exercise['id']} {entry['name']} seed {seed} {form}: {entry['given']}: {entry['explanation']}")
     return tried, accepted
+
+
+def matrix_exercise(exercise, folder, seeds):
+    """A row of an exercise of the first form: the Jacobian, entry by entry, right and with mistakes that must be named."""
+    right = [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
+    mistakes = {
+        "sign": "-({0})", "degrees": "l1*sin(th1*pi/180)", "length": "-sin(th1)", "variable": "-l2*sin(th1)", "zero": "0",
+        "number": "1.5", "swapped": "-l1*cos(th1)", "column": "-l2*sin(th2)", "factor": "2*({0})", "undifferentiated":
+        "l1*cos(th1) + l2*cos(th2) - l3*cos(th3) - l4*cos(th4)",
+    }  # fmt: skip
+    tried = accepted = faults = bad = 0
+    for seed in range(1, seeds + 1):
+        paths = [write(folder, f"{form}.json", {"J": spell(right, form, False)}) for form in FORMS]
+        for name, wrong in mistakes.items():
+            paths.append(write(folder, f"{name}.json", {"J": [[wrong.format(right[0][0]), *right[0][1:]], right[1]]}))
+        verdicts = grade(exercise["id"], paths, seed)
+        for entries in verdicts[: len(FORMS)]:
+            tried += 8
+            accepted += sum(e["right"] for e in entries)
+        for name, entries in zip(mistakes, verdicts[len(FORMS) :]):
+            faults += 1
+            named = entries[0]["mistake"]
+            good = named == name or (name, named) in (("swapped", "row"), ("degrees", "sign"))
+            bad += not good or any(e["mistake"] for e in entries[1:])
+            if not good:
+                print(f"# {exercise['id']} seed {seed}: {name} was taken for {named}")
+    print(f"{exercise['id']:24} {1:5} {seeds:8} {seeds:8} {seeds:6} {faults:8} {bad:4} {f'{accepted} of {tried}':>16}")
+    return bad + tried - accepted
+
+
+def speed(folder):
+    """Formula submissions a second of one core, without pictures: right ones, and ones whose mistakes have to be found."""
+    random.seed(1)
+    right = [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
+    paths = []
+    for i in range(250):
+        rows = [row[:] for row in right]
+        for _ in range(random.choice((0, 0, 1, 2, 8))):
+            row, column = random.randrange(2), random.randrange(4)
+            rows[row][column] = random.choice(("0", f"-({rows[row][column]})", "sin(th1)", "l1", f"2*({rows[row][column]})", "l1*sin(th1)*x"))
+        paths.append(write(folder, f"s{i}.json", {"J": rows}))
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    for _ in range(4):
+        subprocess.run([PROGRAM, "grade", "p3", *paths, "--format", "csv"], capture_output=True, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    print(f"\n1,000 submissions of p3 (8 formulas each, three in five with mistakes): {spent:.2f} s of one core, {1000 / spent:.0f} a second")
+    return 1000 / spent < 500
 
 
 def main():
     bad = 0
-    print(f"# every exercise over seeds 1 to {SEEDS}; answers of formulas in {len(FORMS)} spellings\n")
-    print(f"{'exercise':24} {'parts':>5} {'variants':>8} {'distinct':>8} {'right':>6} {'mistakes':>8} {'bad':>4} {'spellings':>10}")
+    start = time.time()
+    print(f"# every exercise over seeds 1 to {SEEDS}; answers of formulas and numbers in {len(FORMS)} spellings for every seed\n")
+    print(f"{'exercise':24} {'parts':>5} {'variants':>8} {'distinct':>8} {'right':>6} {'mistakes':>8} {'bad':>4} {'spellings':>16}")
     with tempfile.TemporaryDirectory() as folder:
         for path in sorted(glob.glob("lessons/*/problems/*.json"), key=lambda p: (p.split("/")[1], p)):
             with open(path, encoding="utf-8") as f:
                 exercise = json.load(f)
             if "exercise" not in exercise:
+                bad += matrix_exercise(exercise, folder, SEEDS)
                 continue
             slow = any(part["kind"] == "method" for part in exercise["parts"])
             seeds = min(SEEDS, 20) if slow else SEEDS  # a method is run on its scene for each
             done = subprocess.run([PROGRAM, "problem", exercise["id"], "--seeds", f"1..{seeds}", "--check", "--json"],
                                   capture_output=True, text=True, check=False)  # fmt: skip
             report = json.loads(done.stdout)
-            tried, accepted = spellings(exercise, folder)
+            tried, accepted = spellings(exercise, folder, seeds)
             bad += report["bad"] + tried - accepted
             print(f"{exercise['id']:24} {len(exercise['parts']):5} {report['variants']:8} {report['distinct']:8} {report['right_answers']:6} "
-                  f"{report['mistakes']:8} {report['bad']:4} {f'{accepted} of {tried}' if tried else '':>10}")  # fmt: skip
+                  f"{report['mistakes']:8} {report['bad']:4} {f'{accepted} of {tried}' if tried else '':>16}")  # fmt: skip
             if report["first_fault"]:
                 print(f"  {report['first_fault']}")
+        bad += speed(folder)
+    print(f"all of it took {time.time() - start:.0f} s")
     return 1 if bad else 0
 
 

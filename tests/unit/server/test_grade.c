@@ -228,6 +228,29 @@ static void a_formula_that_uses_the_closed_loop_is_right_and_told(void **state) 
     assert_near(v.score, 8, 0);
 }
 
+static void two_mistakes_at_once_are_named(void **state) {
+    static const struct {
+        const char *formula, *mistake, *words;
+        double points;
+    } rows[] = {
+        // the right entry is -l1 sin th1, one of 8 points
+        {"2*sin(th1)", "length", "a factor of 2 is wrong as well", 0},
+        {"l1*cos(th1)/2", "row", "a factor of 1/2 is wrong as well", 0},
+        {"l2*cos(th1)", "variable", "sine and cosine are exchanged as well", 0},
+        {"-l1*sin(th2*pi/180)", "variable", "degrees as well", 0.125},
+        {"-l1*sin(th1)^2", "other", "no known mistake", 0},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        hn_verdict v;
+        grade_with(*state, 0, rows[i].formula, &v);
+        const hn_entry_verdict *e = &v.entry[0];
+        if (strcmp(e->mistake, rows[i].mistake) != 0 || !strstr(e->explanation, rows[i].words)) {
+            fail_msg("%s: %s, %s", rows[i].formula, e->mistake, e->explanation);
+        }
+        assert_near(e->points, rows[i].points, 1e-12);
+    }
+}
+
 static void each_known_mistake_is_named_and_shown_at_a_state(void **state) {
     static const struct {
         int entry;
@@ -627,6 +650,7 @@ int main(void) {
         cmocka_unit_test(the_right_answers_are_shown_to_teachers_alone),
         cmocka_unit_test(a_formula_that_uses_the_closed_loop_is_right_and_told),
         cmocka_unit_test(each_known_mistake_is_named_and_shown_at_a_state),
+        cmocka_unit_test(two_mistakes_at_once_are_named),
         cmocka_unit_test(the_state_shown_closes_the_loop_and_holds_the_expected_value),
         cmocka_unit_test(right_entries_are_never_accused_whatever_the_seed),
         cmocka_unit_test(a_transposed_matrix_earns_its_share_and_is_told),

@@ -123,6 +123,24 @@ static void mistakes_in_numbers_are_named(void **state) {
     assert_near(v.points, 0.5, 1e-12);
 }
 
+static void two_mistakes_in_formulas_are_named(void **state) {
+    static const struct {
+        const char *formula, *id, *words;
+    } rows[] = {
+        {"\"l*sin(th1*pi/180)*w1\"", "degrees", "and the sign is wrong as well"},
+        {"\"sin(th1)*w1\"", "missing-name",
+         "the factor l is missing; and the sign is wrong as well"},
+        {"\"-sin(th1)\"", "missing-name", "the factors l and w1 are missing"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const hn_entry_verdict v = grade(*state, "b", rows[i].formula);
+        if (strcmp(v.mistake, rows[i].id) != 0 || !strstr(v.explanation, rows[i].words)) {
+            fail_msg("%s: %s, %s", rows[i].formula, v.mistake, v.explanation);
+        }
+        assert_true(v.points < 0.5 * v.max_points);
+    }
+}
+
 static void formulas_are_right_in_any_form(void **state) {
     static const char *const right[] = {
         "\"-l*sin(th1)*w1\"",  "\"-l*np.sin(th1)*w1\"",           "\"-w1*l*Sin[th1]\"",
@@ -477,6 +495,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(no_digit_of_a_number_is_taken_for_a_unit, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_numbers_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(formulas_are_right_in_any_form, setup, teardown),
+        cmocka_unit_test_setup_teardown(two_mistakes_in_formulas_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_formulas_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(vectors_are_graded_entry_by_entry, setup, teardown),
         cmocka_unit_test_setup_teardown(what_nobody_can_read_is_ungradable, setup, teardown),
