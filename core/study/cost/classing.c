@@ -18,6 +18,7 @@ static const double WANDER =
 static const double ROUNDING = 1e-13;
 // errors below it may be near what rounding adds up to over a long motion
 static const double BENDS_BELOW = 1e-8;
+static const double SAME_ORDER = 0.3;  // orders that differ by less belong to one error
 static const double LEAST_ORDER = 0.5; // below it nothing converges
 
 static const char *const names[HN_CLASS_COUNT] = {
@@ -36,6 +37,7 @@ typedef struct ladder {
     int n, level[HN_WP_LEVELS];
     double x[HN_WP_LEVELS]; ///< T / steps: the mean step [s]
     double e[HN_WP_LEVELS], end[HN_WP_LEVELS], own[HN_WP_LEVELS];
+    double energy[HN_WP_LEVELS]; ///< error of the energy
 } ladder;
 
 static ladder collect(const hn_wp *wp, int m) {
@@ -47,6 +49,7 @@ static ladder collect(const hn_wp *wp, int m) {
             l.x[l.n] = wp->ref->T / (double)p->steps;
             l.e[l.n] = p->worst[HN_ERROR_Q];
             l.end[l.n] = p->end[HN_ERROR_Q];
+            l.energy[l.n] = p->worst[HN_ERROR_ENERGY];
             l.own[l.n++] = p->own;
         }
     }
@@ -100,7 +103,8 @@ static int find_floor(const ladder *l, double theory, double known) {
 
 /// Puts the order of points first..last, and the slopes between neighbours, into c.
 static void fit_points(const ladder *l, int first, int last, hn_class *c) {
-    double x[HN_WP_LEVELS], e[HN_WP_LEVELS];
+    double x[HN_WP_LEVELS] = {0}, e[HN_WP_LEVELS] = {0}, energy[HN_WP_LEVELS] = {0};
+    bool energy_seen = true;
     c->first = l->level[first];
     c->last = l->level[last];
     c->low = HUGE_VAL;
@@ -108,12 +112,17 @@ static void fit_points(const ladder *l, int first, int last, hn_class *c) {
     for (int i = first; i <= last; i++) {
         x[i - first] = l->x[i];
         e[i - first] = l->e[i];
+        energy[i - first] = l->energy[i];
+        energy_seen &= l->energy[i] > ROUNDING;
         if (i > first) {
             c->low = fmin(c->low, slope(l, i));
             c->high = fmax(c->high, slope(l, i));
         }
     }
-    c->order = hn_fit_order(last - first + 1, x, e);
+    const int n = last - first + 1;
+    c->order = hn_fit_order(n, x, e);
+    c->energy_order = energy_seen ? hn_fit_order(n, x, energy) : (double)NAN;
+    c->finest = slope(l, last);
 }
 
 /// Returns the first of at most `most` points up to `last` that have a slope.
@@ -186,6 +195,19 @@ static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *
              p->reason[0] ? ": " : "", p->reason);
 }
 
+/// Why a straight ladder has another order than its integrator; "" where nothing says why.
+static void explain_order(const hn_class *c, char out[140]) {
+    out[0] = '\0';
+    if (c->order > c->theory && fabs(c->order - c->energy_order) <= SAME_ORDER) {
+        snprintf(out, 140,
+                 ": the coordinates follow the error of the energy, which falls with order %.2f "
+                 "at these sizes",
+                 c->energy_order);
+    } else if (c->order < c->theory && c->finest > c->order && c->finest <= c->theory) {
+        snprintf(out, 140, ": the slope rises, to %.2f at the finest of these sizes", c->finest);
+    }
+}
+
 static void describe_order(const hn_wp *wp, int m, hn_class *c) {
     char floor[120] = "", size[HN_SI_TEXT];
 
@@ -208,9 +230,11 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
         snprintf(c->text, sizeof c->text, "converges with order %.2f (theory %g)%s", c->order,
                  c->theory, floor);
     } else if (c->kind == HN_CLASS_CONVERGES) {
+        char why[140];
+        explain_order(c, why);
         snprintf(c->text, sizeof c->text,
-                 "converges with order %.2f, where its integrator has %g%s", c->order, c->theory,
-                 floor);
+                 "converges with order %.2f, where its integrator has %g%s%s", c->order, c->theory,
+                 why, floor);
     } else if (c->kind == HN_CLASS_FLOOR) {
         snprintf(c->text, sizeof c->text, "at its floor of %.1e from the coarsest sizes on",
                  c->floor);

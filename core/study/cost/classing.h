@@ -37,17 +37,19 @@ const char *hn_class_name(hn_class_kind kind);
 
 typedef struct hn_class {
     hn_class_kind kind;
-    double order;      ///< of the coordinates against the number of steps; NaN: not found
-    double theory;     ///< the integrator's
-    bool as_theory;    ///< observed within the bounds above
-    int first, last;   ///< points the order was fitted to, -1: none
-    int rounding;      ///< first point behind the fitted ones that rounding bends; -1: none
-    double low, high;  ///< slopes between neighbours that were met there
-    double floor;      ///< largest error of the flat end; NaN: there is none
-    double floor_size; ///< coarsest size there
-    double offset;     ///< elsewhere: distance of the limit from the reference
-    double own;        ///< elsewhere: distance of the finest points from each other
-    char text[320];    ///< in words
+    double order;        ///< of the coordinates against the number of steps; NaN: not found
+    double theory;       ///< the integrator's
+    double energy_order; ///< the same of the energy's error; NaN: it is rounding
+    double finest;       ///< slope between the last two points that were fitted
+    bool as_theory;      ///< observed within the bounds above
+    int first, last;     ///< points the order was fitted to, -1: none
+    int rounding;        ///< first point behind the fitted ones that rounding bends; -1: none
+    double low, high;    ///< slopes between neighbours that were met there
+    double floor;        ///< largest error of the flat end; NaN: there is none
+    double floor_size;   ///< coarsest size there
+    double offset;       ///< elsewhere: distance of the limit from the reference
+    double own;          ///< elsewhere: distance of the finest points from each other
+    char text[360];      ///< in words
 } hn_class;
 
 /// Of the coordinates' largest error over the run; beyond the horizon nothing is said.

@@ -76,6 +76,42 @@ static void an_order_that_is_not_the_integrators_is_told_as_such(void **state) {
     assert_non_null(strstr(c.text, "where its integrator has 4"));
 }
 
+// a Runge-Kutta method of order 4 loses energy with order 5: where that carries the phase, the
+// coordinates converge with order 5 too
+static void
+an_order_above_the_integrators_is_put_down_to_the_energy_where_it_follows_it(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {1e-2, 1e-2 / 32, 1e-2 / 1024, 1e-2 / 32768, 1e-2 / 1048576};
+    write_down(&w, 1, 5, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    assert_null(strstr(class_of(&w, 0).text, "energy")); // its error is not known
+
+    for (int k = 0; k < 5; k++) {
+        w.methods[0].point[k].worst[HN_ERROR_ENERGY] = e[k] / 75;
+    }
+    const hn_class c = class_of(&w, 0);
+    assert_near(c.energy_order, 5, 1e-12);
+    assert_non_null(strstr(c.text, "order 5.00, where its integrator has 4: the coordinates follow "
+                                   "the error of the energy, which falls with order 5.00"));
+
+    for (int k = 0; k < 5; k++) {
+        w.methods[0].point[k].worst[HN_ERROR_ENERGY] = 1e-3 / (1 << k);
+    }
+    assert_null(strstr(class_of(&w, 0).text, "energy"));
+}
+
+static void a_slope_that_rises_towards_theory_is_told(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {1e-2, 1e-2 / 11, 1e-2 / 11 / 12, 1e-2 / 11 / 12 / 13,
+                         1e-2 / 11 / 12 / 13 / 14};
+    write_down(&w, 1, 5, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    // log2(14) = 3.81
+    assert_non_null(strstr(class_of(&w, 0).text, "the slope rises, to 3.81 at the finest"));
+}
+
 static void rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone(void **state) {
     (void)state;
     written w;
@@ -415,6 +451,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_fourth_order_ladder_converges_with_order_four),
         cmocka_unit_test(an_order_that_is_not_the_integrators_is_told_as_such),
+        cmocka_unit_test(
+            an_order_above_the_integrators_is_put_down_to_the_energy_where_it_follows_it),
+        cmocka_unit_test(a_slope_that_rises_towards_theory_is_told),
         cmocka_unit_test(rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone),
         cmocka_unit_test(rounding_that_bends_the_fine_end_leaves_the_order_above_it),
         cmocka_unit_test(slopes_that_wander_far_above_rounding_are_told_with_the_reason),
