@@ -493,8 +493,8 @@ hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const doubl
     return status;
 }
 
-const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS] = {"determined", "one of many",
-                                                                "no digit left", "no solution"};
+const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS] = {
+    "determined", "one of many", "no digit left", "no solution", "of open loops"};
 
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info) {

@@ -91,13 +91,15 @@ typedef enum hn_multiplier_mark {
     HN_MULTIPLIERS_ONE_OF_MANY, ///< rows depend on each other: the least-norm choice of many
     HN_MULTIPLIERS_LOST,        ///< condition above HN_CONDITION_LOST
     HN_MULTIPLIERS_NONE,        ///< the system has no solution there
+    HN_MULTIPLIERS_OPEN,        ///< a loop stands open: forces of a mechanism that is torn
     HN_N_MULTIPLIER_MARKS
 } hn_multiplier_mark;
 /// "determined", "one of many", ...
 extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
 /// The mark of the multipliers that hn_accel_eval() found at this state with `info`. Where the tape
 /// answered without a pivot in doubt or a vanishing row, K is far from singular; else its condition
-/// is estimated, at the cost of a dense solve. Allocates nothing.
+/// is estimated, at the cost of a dense solve. Never HN_MULTIPLIERS_OPEN, which is for callers who
+/// know the gap. Allocates nothing.
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);

@@ -10,6 +10,7 @@
 #include "session/model/reactions_json.h"
 #include "session/model/reduced_json.h"
 #include "session/model/state.h"
+#include "study/incidents/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -167,9 +168,17 @@ static void put_condition(hn_strbuf *b, const terms *w) {
     }
 }
 
+/// Whether the loops of the state stand open by more than a run reports.
+static bool is_open(const terms *w) {
+    const double gap = hn_norm2(w->info.nc, hn_eval_get(w->eval, HN_TERM_PHI));
+    return gap > HN_RUN_WARN_GAP * hn_system_length(hn_model_system(w->model));
+}
+
 static void put_mark(hn_strbuf *b, const terms *w) {
     if (w->info.nc > 0) {
-        const hn_multiplier_mark mark = hn_accel_mark(w->accel, w->t, w->q, w->v, &w->accel_info);
+        hn_multiplier_mark mark = hn_accel_mark(w->accel, w->t, w->q, w->v, &w->accel_info);
+        const bool counts = mark == HN_MULTIPLIERS_DETERMINED || mark == HN_MULTIPLIERS_ONE_OF_MANY;
+        mark = counts && is_open(w) ? HN_MULTIPLIERS_OPEN : mark;
         hn_json_put_string(b, "lambda_mark", hn_multiplier_marks[mark]);
     }
 }

@@ -10,7 +10,8 @@
 
 /// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms.
 /// A remedy makes about FINER steps for one of the run.
-enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, FINER = 4, MOST_SPEEDS = 60 };
+/// Its samples are about as dense as those of a run's output.
+enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, PILOT_LOOKS = 100, FINER = 4, MOST_SPEEDS = 60 };
 
 /// How the results of remedies begin.
 #define TRIED "tried to"
@@ -160,6 +161,18 @@ static const hn_state_at *pilot_start(const hn_stepping *s, double event) {
     return !near && s->earlier.t < event ? &s->earlier : &s->start;
 }
 
+/// Runs a pilot to `end`, and takes samples on the way as the output of a run does: what lies inside
+/// the steps counts in its largest gap and energy too.
+static hn_status run_pilot(hn_run *pilot, double from, double end) {
+    for (int k = 1; k <= PILOT_LOOKS; k++) {
+        const double t = k < PILOT_LOOKS ? from + (end - from) * k / PILOT_LOOKS : end;
+        hn_sample sample;
+        HN_TRY(hn_run_advance(pilot, t));
+        HN_TRY(hn_run_sample(pilot, t, &sample));
+    }
+    return HN_OK;
+}
+
 /// Runs a remedy from the state before the event to a time past it and writes the result to `said`.
 static outcome try_remedy(const hn_stepping *s, double event, const char *text, hn_remedy said) {
     hn_run_opts opts = hn_run_opts_default();
@@ -182,7 +195,7 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
     }
 
     // the pilot run and its result
-    const hn_status status = hn_run_advance(pilot, end);
+    const hn_status status = run_pilot(pilot, from->t, end);
     const hn_run_summary sum = hn_run_get_summary(pilot);
     const bool right = is_right(pilot, status);
     hn_run_free(pilot);

@@ -314,8 +314,17 @@ hn_status hn_run_sample(hn_run *run, double t, hn_sample *out) {
 
 hn_multiplier_mark hn_run_sample_mark(hn_run *run) {
     const hn_sampling *s = &run->sampling;
-    return s->status == HN_OK ? hn_accel_mark(run->stepping.accel, s->t, s->q, s->v, &s->info)
-                              : HN_MULTIPLIERS_NONE;
+    const hn_watch *w = &run->watch;
+    if (s->status != HN_OK) {
+        return HN_MULTIPLIERS_NONE;
+    }
+
+    // digits come first: a force without any is worth nothing, whatever the loops do
+    const hn_multiplier_mark mark = hn_accel_mark(run->stepping.accel, s->t, s->q, s->v, &s->info);
+    const bool open = s->gap > w->warn_gap * w->length;
+    return open && (mark == HN_MULTIPLIERS_DETERMINED || mark == HN_MULTIPLIERS_ONE_OF_MANY)
+               ? HN_MULTIPLIERS_OPEN
+               : mark;
 }
 
 const char *hn_run_sample_why(const hn_run *run, hn_status status) {

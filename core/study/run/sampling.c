@@ -132,7 +132,7 @@ static void fill_forces(hn_sampling *s, double t, hn_sample *out) {
 static void fill_measures(hn_sampling *s, double t, hn_sample *out) {
     const hn_measure m = hn_watch_measure(s->watch, t, s->q, s->v);
     const double row = hn_motion_shortest_row(s->watch); // J M^-1 J' has it squared
-    out->gap = m.gap;
+    out->gap = s->gap = m.gap;
     out->velocity_gap = m.velocity_gap;
     out->kinetic = m.kinetic;
     out->potential = m.potential;

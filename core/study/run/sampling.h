@@ -41,6 +41,7 @@ typedef struct hn_sampling {
     double t, *q, *v, *a;
     hn_accel_info info;
     hn_status status;
+    double gap;
     const double *raw;
     // what a sample hands out, in user coordinates
     double *user_q, *user_v, *user_a, *lambda, *points, *raw_copy;

@@ -6,6 +6,7 @@
 #include "support/near.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const hn_incident *last_of(const hn_run *run) {
@@ -47,6 +48,46 @@ static void a_step_above_the_stability_limit_is_named_as_the_cause(void **state)
     for (int i = 0, n = hn_run_incidents(run, &list); i < n; i++) {
         assert_null(strstr(list[i].message, "stability limit"));
     }
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+/// The largest gap that a run shows, with samples 0.02 s apart.
+static double gap_shown(const hn_model *m, const char *method, double t_end) {
+    hn_run *run = hn_motion_start(m, method);
+    for (int k = 1; k <= t_end / 0.02; k++) {
+        (void)hn_motion_at(run, 0.02 * k);
+    }
+    const double gap = hn_run_get_summary(run).worst_gap;
+    hn_run_free(run);
+    return gap;
+}
+
+// Radau's states are closed to rounding at the ends of its steps, and to 1e-8 to 1e-5 between them
+static void the_outcome_of_a_remedy_is_what_running_it_shows(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=0.1");
+    (void)hn_run_advance(run, 2);
+    hn_run_diagnose(run);
+    const hn_incident *list = NULL;
+    const int n = hn_run_incidents(run, &list);
+    int compared = 0;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < HN_REMEDIES && list[i].remedy[j][0]; j++) {
+            double t, gap;
+            if (sscanf(list[i].tried[j], "tried to t = %lf s: largest gap %lf m", &t, &gap) == 2 &&
+                strncmp(list[i].remedy[j], "ggl@radau5", 10) == 0) {
+                const double shown = gap_shown(&m, list[i].remedy[j], t);
+                assert_true(shown > 1e-9);
+                // other times of the same steps: within a decade
+                assert_true(gap > shown / 10 && gap < 10 * shown);
+                compared++;
+            }
+        }
+    }
+    assert_true(compared > 0);
     hn_run_free(run);
     hn_model_close(&m);
 }
@@ -151,6 +192,7 @@ int main(void) {
         cmocka_unit_test(a_step_above_the_stability_limit_is_named_as_the_cause),
         cmocka_unit_test(the_load_that_limits_the_step_is_named),
         cmocka_unit_test(the_reports_of_a_run_agree_on_what_helps),
+        cmocka_unit_test(the_outcome_of_a_remedy_is_what_running_it_shows),
         cmocka_unit_test(remedies_that_do_not_remove_it_are_not_offered),
         cmocka_unit_test(where_finer_steps_fail_an_implicit_method_is_left),
     };
