@@ -161,7 +161,7 @@ static const hn_state_at *pilot_start(const hn_stepping *s, double event) {
     return !near && s->earlier.t < event ? &s->earlier : &s->start;
 }
 
-/// Runs a pilot to `end`, and takes samples on the way as the output of a run does: what lies inside
+/// Runs a pilot to `end` with samples on the way, as the output of a run has: what lies inside
 /// the steps counts in its largest gap and energy too.
 static hn_status run_pilot(hn_run *pilot, double from, double end) {
     for (int k = 1; k <= PILOT_LOOKS; k++) {
