@@ -147,9 +147,9 @@ class Server:
 
 
 class Events:
-    """A reader of a comparison's event stream: yields (event, id or None, data)."""
+    """A reader of a comparison's event stream, or of the one at an address: yields (event, id or None, data)."""
 
-    def __init__(self, server, comparison, last_id=None, query="", timeout=30, receive_buffer=None):
+    def __init__(self, server, comparison, last_id=None, query="", timeout=30, receive_buffer=None, address=None):
         self.connection = server.connect(timeout)
         if receive_buffer:  # must be set before connecting
             self.connection.sock = socket.socket()
@@ -157,7 +157,7 @@ class Events:
             self.connection.sock.settimeout(timeout * SLOW)
             self.connection.sock.connect(("127.0.0.1", server.port))
         headers = {} if last_id is None else {"Last-Event-ID": str(last_id)}
-        self.connection.request("GET", f"/api/v1/comparisons/{comparison}/events{query}", headers=headers)
+        self.connection.request("GET", (address or f"/api/v1/comparisons/{comparison}/events") + query, headers=headers)
         self.socket = self.connection.sock
         self.response = self.connection.getresponse()
         self.status = self.response.status

@@ -5,6 +5,8 @@ import csv
 import io
 import json
 import os
+import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -119,6 +121,129 @@ class Runs(unittest.TestCase):
         self.assertEqual(self.ask({**LONG, "time": 0.05}).json()["state"], "finished")
 
 
+PYTHON = next((p for p in (sys.executable, "/usr/bin/python3") if subprocess.run([p, "-c", "import numpy, scipy"], capture_output=True).returncode == 0), None)
+FALLS_APART = {"scene": "four-bar", "methods": ["index1@euler:h=0.05", "projection@rk4:h=1e-2"], "time": 3, "every": 0.01}
+
+
+class Events(unittest.TestCase):
+    def setUp(self):
+        self.server = driver.Server()
+        self.addCleanup(lambda: self.assertEqual(self.server.stop(), 0, self.server.errors))
+
+    def read(self, address, last=None, query=""):
+        """(name, id or None, data) of every event, to the end of the stream."""
+        answer = self.server.ask("GET", address + query, headers={"Last-Event-ID": str(last)} if last is not None else None)
+        self.assertEqual((answer.status, answer.type), (200, "text/event-stream"), answer.body[:300])
+        events = []
+        for block in answer.body.decode().strip().split("\n\n"):
+            fields = dict(line.split(": ", 1) for line in block.splitlines())
+            events.append((fields["event"], int(fields["id"]) if "id" in fields else None, json.loads(fields["data"])))
+        return events
+
+    def test_samples_and_incidents_come_in_the_order_of_time(self):
+        run = self.server.ask("POST", "/api/v1/runs", FALLS_APART).json()
+        events = self.read(run["links"]["events"])
+        self.assertEqual((events[0][0], events[-1][0]), ("hello", "end"))
+        self.assertEqual([i for _, i, _ in events[1:]], list(range(1, len(events))))
+        for m, document in enumerate(run["runs"]):
+            samples = [d for name, _, d in events if name == "sample" and d["method"] == m]
+            columns = document["samples"]
+            self.assertEqual(samples, [{"method": m, **dict(zip(columns, row))} for row in zip(*columns.values())])
+            incidents = [d for name, _, d in events if name == "incident" and d["method"] == m]
+            self.assertEqual(incidents, [{"method": m, **i} for i in document["incidents"]])
+            times = [d["t"] for name, _, d in events if name in ("sample", "incident") and d["method"] == m]
+            self.assertEqual(times, sorted(times))
+        self.assertGreater(len(run["runs"][0]["incidents"]), 2)
+        self.assertEqual(events[-1][2], self.server.ask("GET", run["links"]["self"]).json())
+
+    def test_a_reader_goes_on_behind_any_event(self):
+        address = self.server.ask("POST", "/api/v1/runs", FALLS_APART).json()["links"]["events"]
+        every = self.read(address, query="?fields=t,gap")
+        self.assertEqual(set(every[1][2]), {"method", "t", "gap"})
+        for last in (1, 2, 57, len(every) - 2):
+            self.assertEqual(self.read(address, last, "?fields=t,gap")[1:], every[last + 1:])
+            self.assertEqual(self.read(address, query=f"?fields=t,gap&last_event_id={last}")[1:], every[last + 1:])
+        whole = self.server.ask("GET", address, headers={"Last-Event-ID": str(len(every) - 1)})
+        self.assertEqual((whole.status, whole.body), (204, b""))
+
+    def test_live_leaves_out_samples_and_no_incident(self):
+        address = self.server.ask("POST", "/api/v1/runs", {**FALLS_APART, "every": 1e-3}).json()["links"]["events"]
+        every, live = self.read(address), self.read(address, query="?mode=live")
+        self.assertTrue(all(event in every for event in live))
+        self.assertEqual([e for e in live if e[0] != "sample"], [e for e in every if e[0] != "sample"])
+        for m in (0, 1):
+            n = sum(e[0] == "sample" and e[2]["method"] == m for e in live)
+            self.assertTrue(100 <= n <= 201, n)
+        middle = live[len(live) // 2][1]
+        self.assertEqual(self.read(address, middle, "?mode=live")[1:], [e for e in live[1:] if e[1] > middle])
+
+    def test_a_run_that_goes_on_tells_its_progress(self):
+        made = self.server.ask("POST", "/api/v1/runs?wait=0", LONG).json()
+        reader = driver.Events(self.server, None, address=made["links"]["events"])
+        seen = reader.until("progress") + reader.until("progress") + reader.until("progress")
+        self.assertEqual(seen[0][0], "hello")
+        self.assertEqual(seen[-1][2]["state"], "running")
+        # who deletes it ends the stream
+        self.assertEqual(self.server.ask("DELETE", made["links"]["self"]).status, 204)
+        self.assertEqual(reader.until("end")[-1][2], {"state": "refused"})
+        reader.close()
+
+    def test_a_stream_is_open_while_the_run_ends(self):
+        question = {**RUN, "method": "index1@rk4:h=1e-5", "time": 20, "every": 1}
+        made = self.server.ask("POST", "/api/v1/runs?wait=0", question).json()
+        reader = driver.Events(self.server, None, address=made["links"]["events"])
+        seen = reader.until("end")
+        self.assertEqual([d["t"] for name, _, d in seen if name == "sample"], [float(t) for t in range(21)])
+        self.assertEqual(seen[-1][2]["state"], "finished")
+
+    def test_the_end_of_the_server_ends_the_stream(self):
+        server = driver.Server()
+        made = server.ask("POST", "/api/v1/runs?wait=0", LONG).json()
+        reader = driver.Events(server, None, address=made["links"]["events"])
+        reader.until("progress")
+        start = time.monotonic()
+        self.assertEqual(server.stop(), 0)
+        self.assertLess(time.monotonic() - start, 10)
+        reader.close()
+
+    def test_faults_are_told(self):
+        run = self.server.ask("POST", "/api/v1/runs", RUN).json()
+        for query, status in (("?mode=some", 400), ("?last_event_id=-1", 422), ("?moode=live", 400)):
+            self.assertEqual(self.server.ask("GET", run["links"]["events"] + query).status, status, query)
+        self.assertEqual(self.server.ask("GET", run["links"]["events"], headers={"Last-Event-ID": "x"}).status, 400)
+        self.assertEqual(self.server.ask("GET", "/api/v1/runs/nothing/events").status, 404)
+        events = self.read(run["links"]["events"], query="?fields=t,qq")
+        self.assertEqual(events[1], ("problem", None, {"detail": "the run has no column 'qq'"}))
+
+
+class Export(unittest.TestCase):
+    def test_a_run_is_exported_with_its_parameters_after_a_restart_too(self):
+        with tempfile.TemporaryDirectory() as folder, open("lessons/01-closed-loops/scenes/four-bar.json") as f:
+            scene = json.load(f)
+            server = driver.Server("--runs", folder)
+            question = {"scene": "four-bar", "parameters": {"l1": 0.45}, "methods": FALLS_APART["methods"], "time": 0.5}
+            made = [server.ask("POST", "/api/v1/runs", {**question, "scene": s}).json() for s in ("four-bar", scene)]
+            self.assertEqual(server.stop(), 0)
+            server = driver.Server("--runs", folder)
+            for run in made:
+                answer = server.ask("GET", run["links"]["export"] + "?language=python&method=1")
+                self.assertEqual((answer.status, answer.type), (200, "text/plain"), answer.body[:300])
+                self.assertIn('filename="four-bar.py"', answer.headers["content-disposition"])
+                self.assertRegex(answer.body.decode(), r"(?m)^l1 = 0\.45\b")
+                self.assertIn("projection@rk4:h=0.01", answer.body.decode().splitlines()[-1])
+                path = os.path.join(folder, "exported.py")
+                with open(path, "wb") as f:
+                    f.write(answer.body)
+                if PYTHON:  # the program needs numpy
+                    done = subprocess.run([PYTHON, path], capture_output=True, text=True, timeout=120)
+                    self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            for query, status, word in (("?language=pyton", 422, "\"hint\":\"python\""), ("?method=2", 422, "method"), ("?lang=c", 400, "language")):
+                answer = server.ask("GET", made[0]["links"]["export"] + query)
+                self.assertEqual(answer.status, status, query)
+                self.assertIn(word, answer.body.decode(), query)
+            self.assertEqual(server.stop(), 0)
+
+
 class Kept(unittest.TestCase):
     def test_a_server_that_was_killed_loses_no_run_and_believes_no_damaged_one(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -145,7 +270,8 @@ class Kept(unittest.TestCase):
 
     def test_what_used_up_its_time_is_computed_again(self):
         server = driver.Server("--run-cpu", "0.2")
-        first, again = (server.ask("POST", "/api/v1/runs", LONG) for _ in range(2))
+        endless = {**RUN, "method": "index1@rk4:h=1e-7", "time": 1000}
+        first, again = (server.ask("POST", "/api/v1/runs", endless) for _ in range(2))
         self.assertEqual((first.status, again.status, first.json()["status"]), (201, 201, "budget"))
         self.assertEqual(server.stop(), 0)
 

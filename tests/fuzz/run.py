@@ -145,7 +145,7 @@ def run(name, options):
     # leaks of the drawing library's own, and null pointers that nothing is added to
     environment = {**os.environ, "ASAN_OPTIONS": "allocator_may_return_null=1:max_allocation_size_mb=2000",
                    "LSAN_OPTIONS": "suppressions=tests/support/lsan.supp:print_suppressions=0"}
-    command = [os.path.join(options.programs, program), f"-max_total_time={round(60 * options.minutes)}", f"-max_len={longest}", "-timeout=60", "-report_slow_units=60",
+    command = [os.path.join(options.programs, program), f"-max_total_time={round(60 * options.minutes)}", f"-max_len={longest}", "-timeout=300", "-report_slow_units=300",
                "-rss_limit_mb=2500", "-print_final_stats=1", f"-artifact_prefix={found}/", "-close_fd_mask=1"]
     if kind:
         path = os.path.join(options.work, kind + ".dict")

@@ -5,6 +5,7 @@
 #include "http/request/request.h"
 #include "http/request/scene_request.h"
 #include "http/routes/catalogue.h"
+#include "http/runs/runs.h"
 #include "integrators/method/method_spec.h"
 #include "session/export/export.h"
 
@@ -110,5 +111,46 @@ void hn_handle_export(hn_request *r) {
                       hn_fields_text(r->json, "method"));
     } else {
         hn_reply_diags(r, status, &diags);
+    }
+}
+
+/// The scene of a run, with its parameters, and the spelling of the method that `method` names by its
+/// index; NULL with a problem as reply.
+static hn_model *load_run(hn_request *r, const char *question, char spelling[HN_SPEC_MAX]) {
+    cJSON *body = cJSON_Parse(question);
+    const cJSON *methods = cJSON_GetObjectItemCaseSensitive(body, "methods");
+    hn_scene_request order = {0};
+    hn_diags diags = {0};
+    hn_model *model = NULL;
+    double method = 0;
+    if (!methods) {
+        cJSON_Delete(body);
+        hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+        return NULL;
+    }
+    if (hn_request_query_number(r, "method", 0, cJSON_GetArraySize(methods) - 1, true, &method)) {
+        snprintf(spelling, HN_SPEC_MAX, "%s",
+                 cJSON_GetArrayItem(methods, (int)method)->valuestring);
+        hn_status status = hn_scene_request_read(&order, body, &diags);
+        HN_THEN(status, hn_scene_request_load(&order, r->context->lib, 0, hn_request_interrupt(r),
+                                              &model, &diags));
+        if (status != HN_OK) {
+            hn_reply_diags(r, status, &diags);
+        }
+    }
+    hn_scene_request_reset(&order);
+    cJSON_Delete(body);
+    return model;
+}
+
+void hn_handle_run_export(hn_request *r) {
+    hn_kept_run *run = hn_run_find(r);
+    if (run) {
+        char spelling[HN_SPEC_MAX];
+        hn_model *model = load_run(r, run->request, spelling);
+        hn_runs_release(r->context->runs, run);
+        if (model) {
+            reply_program(r, model, hn_request_query(r, "language"), spelling);
+        }
     }
 }

@@ -8,6 +8,7 @@
 #include "http/routes/openapi.h"
 #include "http/routes/scene_files.h"
 #include "http/routes/stateless.h"
+#include "http/runs/run_stream.h"
 #include "http/runs/runs.h"
 #include "http/studies/studies.h"
 #include "http/studies/study_fields.h"
@@ -270,6 +271,16 @@ static const hn_route_query PROBLEM_QUERY[] = {
 static const hn_route_query RUN_QUERY[] = {
     {"wait", "number", "seconds to wait for the end, at most 60; POST: 25 when left out, GET: 0"},
     {NULL, NULL, NULL}};
+static const hn_route_query RUN_EVENTS_QUERY[] = {
+    {"mode", "string",
+     "complete (every sample) or live (some 200 samples of each method, and every incident)"},
+    {"last_event_id", "string", "the same as the Last-Event-ID header"},
+    {"fields", "string", "columns of the samples, separated by commas: t,q,gap; all when left out"},
+    {NULL, NULL, NULL}};
+static const hn_route_query RUN_EXPORT_QUERY[] = {
+    {"language", "string", "python when left out; see /languages"},
+    {"method", "integer", "index of the method that the last line names; 0 when left out"},
+    {NULL, NULL, NULL}};
 static const hn_route_query COMPARISON_QUERY[] = {
     {"wait", "number",
      "seconds to wait for a place where there is none, at most 60; 25 when left out"},
@@ -372,6 +383,13 @@ static const hn_route ROUTES[] = {
     {"GET", "/api/v1/runs/{id}/samples", HN_WORK_QUICK, hn_handle_run_samples, NULL,
      JSON " application/x-ndjson text/csv", "200", "Samples", "Rows of a run, a page at a time",
      SAMPLES_QUERY, NULL},
+    {"GET", "/api/v1/runs/{id}/events", HN_WORK_QUICK, hn_handle_run_events, NULL,
+     "text/event-stream", "200", "RunEvents",
+     "Server-sent events of a run: progress, then each sample and incident, then the end",
+     RUN_EVENTS_QUERY, NULL},
+    {"GET", "/api/v1/runs/{id}/export", HN_WORK_HEAVY, hn_handle_run_export, NULL, "text/plain",
+     "200", "Text", "The scene of a run, with its parameters, as a program that checks itself",
+     RUN_EXPORT_QUERY, NULL},
     {"DELETE", "/api/v1/runs/{id}", HN_WORK_LIGHT, hn_handle_run_delete, NULL, JSON, "204", NULL,
      "Stops a run and forgets it", NULL, NULL},
     {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",

@@ -113,6 +113,36 @@ static void name_text(const hn_strbuf *text, char id[HN_RUN_ID]) {
     id[HN_RUN_ID - 1] = 0;
 }
 
+static void put_methods(hn_strbuf *b, const hn_run_question *q) {
+    hn_json_key(b, "methods");
+    hn_json_array(b);
+    for (int i = 0; i < q->n_methods; i++) {
+        hn_json_string(b, q->methods[i]);
+    }
+    hn_json_end_array(b);
+}
+
+void hn_run_question_json(hn_strbuf *b, const hn_run_question *q) {
+    hn_json_object(b);
+    hn_json_key(b, "scene");
+    if (q->scene.name) {
+        hn_json_string(b, q->scene.name);
+    } else {
+        hn_json_raw(b, q->scene.text);
+    }
+    put_parameters(b, &q->scene);
+    put_methods(b, q);
+    hn_json_put_number(b, "time", q->time);
+    if (q->at) {
+        hn_json_put_numbers(b, "at", q->at, (size_t)q->n_at);
+    } else {
+        hn_json_put_number(b, "every", q->every);
+    }
+    hn_json_put_bool(b, "reactions", q->reactions);
+    hn_json_put_bool(b, "raw_lambda", q->raw_lambda);
+    hn_json_end_object(b);
+}
+
 static hn_status name_question(hn_run_question *q, const hn_library *lib) {
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -120,12 +150,7 @@ static hn_status name_question(hn_run_question *q, const hn_library *lib) {
     hn_json_put_string(&b, "build", hn_build_name());
     put_scene(&b, &q->scene, lib);
     put_parameters(&b, &q->scene);
-    hn_json_key(&b, "methods");
-    hn_json_array(&b);
-    for (int i = 0; i < q->n_methods; i++) {
-        hn_json_string(&b, q->methods[i]);
-    }
-    hn_json_end_array(&b);
+    put_methods(&b, q);
 
     // times and columns
     hn_json_put_number(&b, "time", q->time);

@@ -26,4 +26,6 @@ typedef struct hn_run_question {
 HN_MUST_CHECK hn_status hn_run_question_read(hn_run_question *q, const cJSON *body,
                                              const hn_library *lib, hn_diags *diags);
 void hn_run_question_reset(hn_run_question *q);
+/// Writes the question as the body of a request: {"scene","parameters","methods","time",...}.
+void hn_run_question_json(hn_strbuf *b, const hn_run_question *q);
 #endif

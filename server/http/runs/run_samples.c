@@ -140,18 +140,29 @@ static void put_value(hn_strbuf *b, const char *value, const char *end, int csv)
     }
 }
 
+/// Values with their names, as members of an object.
+static void put_members(hn_strbuf *b, const reader *r, const char *const *values) {
+    for (int i = 0; i < r->n; i++) {
+        hn_strbuf_printf(b, "%s\"%s\":", i ? "," : "", r->columns[i].name);
+        put_value(b, values[i], hn_json_skip(values[i]), 0);
+    }
+}
+
 static void put_row(hn_strbuf *b, const reader *r, const char *const *values,
                     hn_samples_form form) {
+    if (form == HN_SAMPLES_NDJSON) {
+        hn_strbuf_add(b, "{");
+        put_members(b, r, values);
+        hn_strbuf_add(b, "}\n");
+        return;
+    }
     const int csv = form == HN_SAMPLES_CSV;
-    hn_strbuf_add(b, csv ? "" : form == HN_SAMPLES_JSON ? "[" : "{");
+    hn_strbuf_add(b, csv ? "" : "[");
     for (int i = 0; i < r->n; i++) {
         hn_strbuf_add(b, i ? "," : "");
-        if (form == HN_SAMPLES_NDJSON) {
-            hn_strbuf_printf(b, "\"%s\":", r->columns[i].name);
-        }
         put_value(b, values[i], hn_json_skip(values[i]), csv);
     }
-    hn_strbuf_add(b, csv ? "\n" : form == HN_SAMPLES_JSON ? "]" : "}\n");
+    hn_strbuf_add(b, csv ? "\n" : "]");
 }
 
 /// Steps all columns to their next row; 0 at the end.
@@ -218,4 +229,51 @@ hn_status hn_run_samples_write(hn_strbuf *b, const char *document,
         }
     }
     return HN_OK;
+}
+
+// ---- rows one after the other ----
+
+struct hn_sample_rows {
+    reader reader;
+    const char *values[MAX_COLUMNS];
+};
+
+hn_status hn_sample_rows_open(const char *document, const char *fields, hn_sample_rows **out,
+                              hn_diags *diags) {
+    const char *samples = hn_json_member(document, "samples");
+    const char *time = samples ? hn_json_member(samples, "t") : NULL;
+    hn_sample_rows *rows = time ? calloc(1, sizeof *rows) : NULL;
+    if (!rows) {
+        return time ? HN_ERR_MEMORY : HN_ERR_INTERNAL;
+    }
+    rows->reader = (reader){.document = document, .time = time};
+    const hn_status status = choose_columns(&rows->reader, fields, samples, diags);
+    if (status != HN_OK) {
+        hn_sample_rows_free(rows);
+        return status;
+    }
+    *out = rows;
+    return HN_OK;
+}
+
+void hn_sample_rows_free(hn_sample_rows *rows) {
+    free(rows);
+}
+
+bool hn_sample_rows_step(hn_sample_rows *rows, double *t) {
+    return next_row(&rows->reader, rows->values, t);
+}
+
+void hn_sample_rows_put(const hn_sample_rows *rows, hn_strbuf *b) {
+    put_members(b, &rows->reader, rows->values);
+}
+
+long long hn_sample_rows_count(const char *document) {
+    const char *samples = hn_json_member(document, "samples");
+    const char *at = samples ? hn_json_member(samples, "t") : NULL;
+    long long n = 0;
+    while (at && hn_json_next(&at)) {
+        n++;
+    }
+    return n;
 }

@@ -6,6 +6,8 @@
 #include "base/diag.h"
 #include "base/strbuf.h"
 
+#include <stdbool.h>
+
 typedef enum hn_samples_form { HN_SAMPLES_JSON, HN_SAMPLES_NDJSON, HN_SAMPLES_CSV } hn_samples_form;
 
 typedef struct hn_samples_request {
@@ -24,4 +26,18 @@ typedef struct hn_samples_request {
 HN_MUST_CHECK hn_status hn_run_samples_write(hn_strbuf *b, const char *document,
                                              const hn_samples_request *request, long long *next,
                                              hn_diags *diags);
+
+/// The rows of a document, one after the other.
+typedef struct hn_sample_rows hn_sample_rows;
+
+/// Opens the rows; `fields` as above. The document must outlive them. Fails: HN_ERR_INPUT (a column
+/// that the run does not have), HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_sample_rows_open(const char *document, const char *fields,
+                                            hn_sample_rows **out, hn_diags *diags);
+void hn_sample_rows_free(hn_sample_rows *rows); ///< NULL is legal
+/// Steps to the next row and returns its time [s] in *t; false at the end.
+bool hn_sample_rows_step(hn_sample_rows *rows, double *t);
+/// Writes the present row as members of an object, without its braces.
+void hn_sample_rows_put(const hn_sample_rows *rows, hn_strbuf *b);
+long long hn_sample_rows_count(const char *document); ///< number of rows
 #endif

@@ -10,6 +10,7 @@
 #include "http/runs/json_scan.h"
 #include "session/compare/run_doc.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -30,6 +31,7 @@ struct hn_runs {
     hn_run_answer answer;
     hn_jobs *jobs;
     hn_kept_run *first;
+    hn_run_reader *readers;
     int n, stop, n_waiting;
     size_t bytes;
     pthread_t thread;
@@ -45,6 +47,7 @@ static void free_run(hn_kept_run *run) {
         free(run->documents[i]);
     }
     hn_run_question_reset(&run->question);
+    free(run->request);
     free(run);
 }
 
@@ -98,8 +101,8 @@ static bool file_path(const hn_runs *all, const char *id, char out[1024]) {
            snprintf(out, 1024, "%s/%s.json", all->opts->runs_folder, id) < 1024;
 }
 
-/// Documents as an array, behind a line with their hash: a file is believed only when it is whole.
-/// It can be computed again, so nobody waits for the disk.
+/// {"request":...,"documents":[...]}, behind a line with its hash: a file is believed only when it
+/// is whole. It can be computed again, so nobody waits for the disk.
 static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
     char path[1024], hash[HN_SHA256_BASE64];
     hn_strbuf body, file;
@@ -108,11 +111,12 @@ static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
     }
     hn_strbuf_init(&body);
     hn_strbuf_init(&file);
+    hn_strbuf_printf(&body, "{\"request\":%s,\"documents\":", run->request);
     for (int i = 0; i < run->n; i++) {
         hn_strbuf_add(&body, i ? "," : "[");
         hn_strbuf_add(&body, run->documents[i]);
     }
-    hn_strbuf_add(&body, "]\n");
+    hn_strbuf_add(&body, "]}\n");
     hn_sha256_base64(hn_strbuf_text(&body), body.n, hash);
     hn_strbuf_printf(&file, "%s\n", hash);
     hn_strbuf_add_n(&file, hn_strbuf_text(&body), body.n);
@@ -131,7 +135,7 @@ static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
 static bool split_file(hn_kept_run *run, const char *text, size_t n) {
     char hash[HN_SHA256_BASE64];
     const size_t head = HN_SHA256_BASE64; // the hash and the end of its line
-    if (n < head + 2 || text[head - 1] != '\n' || text[head] != '[') {
+    if (n < head + 2 || text[head - 1] != '\n' || text[head] != '{') {
         return false;
     }
     hn_sha256_base64(text + head, n - head, hash);
@@ -139,8 +143,13 @@ static bool split_file(hn_kept_run *run, const char *text, size_t n) {
         return false;
     }
 
-    // the documents, one after the other
-    const char *at = text + head;
+    // the question, then the documents, one after the other
+    const char *request = hn_json_member(text + head, "request");
+    const char *at = hn_json_member(text + head, "documents");
+    run->request = request ? strndup(request, (size_t)(hn_json_skip(request) - request)) : NULL;
+    if (!run->request || !at) {
+        return false;
+    }
     for (const char *item = hn_json_next(&at); item && run->n < HN_COMPARISON_MAX_METHODS;
          item = hn_json_next(&at)) {
         hn_strbuf document;
@@ -276,11 +285,52 @@ static hn_kept_run *find_due(hn_runs *all, double now, hn_request **due) {
     return NULL;
 }
 
+/// Wakes the readers of a run, NULL: of all, that are due. With the lock held.
+static void wake_readers(hn_runs *all, const hn_kept_run *run, double now) {
+    for (hn_run_reader *r = all->readers; r; r = r->next) {
+        if (r->waiting && (!run || r->run == run) && now >= r->due) {
+            r->waiting = false;
+            MHD_resume_connection(r->connection);
+        }
+    }
+}
+
+void hn_runs_add_reader(hn_runs *all, hn_run_reader *reader) {
+    pthread_mutex_lock(&all->lock);
+    reader->next = all->readers;
+    all->readers = reader;
+    pthread_mutex_unlock(&all->lock);
+}
+
+void hn_runs_remove_reader(hn_runs *all, hn_run_reader *reader) {
+    pthread_mutex_lock(&all->lock);
+    hn_run_reader **place = &all->readers;
+    while (*place != reader) {
+        place = &(*place)->next;
+    }
+    *place = reader->next;
+    pthread_mutex_unlock(&all->lock);
+}
+
+bool hn_runs_suspend_reader(hn_runs *all, hn_run_reader *reader, double seconds) {
+    pthread_mutex_lock(&all->lock);
+    const bool waits = reader->run->phase < HN_RUN_DONE && !all->stop;
+    if (waits) {
+        reader->waiting = true;
+        reader->due = hn_clock_wall() + seconds;
+        MHD_suspend_connection(reader->connection);
+        pthread_cond_signal(&all->wake);
+    }
+    pthread_mutex_unlock(&all->lock);
+    return waits;
+}
+
 static void *look(void *arg) {
     hn_runs *all = arg;
     pthread_mutex_lock(&all->lock);
     while (!all->stop) {
-        if (all->n_waiting == 0) {
+        wake_readers(all, NULL, hn_clock_wall());
+        if (all->n_waiting == 0 && !all->readers) {
             pthread_cond_wait(&all->wake, &all->lock);
             continue;
         }
@@ -399,6 +449,7 @@ static void compute(void *arg) {
         drop(take_out(all, place));
     }
     hn_request *due = take_waiting(all, run, 0, 1);
+    wake_readers(all, run, HUGE_VAL);
     pthread_mutex_unlock(&all->lock);
     answer_all(all, run, due);
     hn_runs_release(all, run);
@@ -440,6 +491,9 @@ void hn_runs_stop(hn_runs *all) {
 
     // the threads answer those who wait
     hn_jobs_stop(all->jobs);
+    pthread_mutex_lock(&all->lock);
+    wake_readers(all, NULL, HUGE_VAL);
+    pthread_mutex_unlock(&all->lock);
     if (all->has_thread) {
         pthread_join(all->thread, NULL);
         all->has_thread = 0;
@@ -503,10 +557,19 @@ static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client cl
     if (!run) {
         return HN_ERR_MEMORY;
     }
+    hn_strbuf request;
+    hn_strbuf_init(&request);
+    hn_run_question_json(&request, question);
+    run->request = hn_strbuf_take(&request);
+    if (!run->request) {
+        free_run(run);
+        return HN_ERR_MEMORY;
+    }
     run->question = *question;
     run->question.store = all;
     run->refs = 3; // the table, the thread, the caller
     if (!hn_jobs_push(all->jobs, run, client)) {
+        free(run->request);
         free(run);
         return HN_ERR_LIMIT;
     }

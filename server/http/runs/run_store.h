@@ -34,6 +34,7 @@ typedef struct hn_kept_run {
     atomic_int stop;
     hn_client client;
     hn_run_question question;
+    char *request;                              ///< the question as the body of a request
     int n;                                      ///< documents: one for each method
     char *documents[HN_COMPARISON_MAX_METHODS]; ///< hn_model_run_json()
     size_t bytes;
@@ -42,6 +43,15 @@ typedef struct hn_kept_run {
     hn_diags diags;
     struct hn_kept_run *next;
 } hn_kept_run;
+
+/// A stream that reads a run; the first member of it.
+typedef struct hn_run_reader {
+    struct MHD_Connection *connection;
+    hn_kept_run *run;
+    bool waiting; ///< the connection is suspended; under the lock, as are the next two
+    double due;   ///< it is then woken [s, wall clock]
+    struct hn_run_reader *next;
+} hn_run_reader;
 
 /// Fills in the reply to a request that has waited for this run. On any thread, with no lock held.
 typedef void (*hn_run_answer)(struct hn_request *r, const hn_kept_run *run);
@@ -66,6 +76,13 @@ hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run);
 /// Answers a suspended request when the run has ended or `seconds` are over, at once if it has
 /// ended.
 void hn_runs_await(hn_runs *all, hn_kept_run *run, struct hn_request *r, double seconds);
+/// The store wakes a reader that it lists when its run ends, when it is due, and when the server
+/// ends.
+void hn_runs_add_reader(hn_runs *all, hn_run_reader *reader);
+void hn_runs_remove_reader(hn_runs *all, hn_run_reader *reader);
+/// Suspends a reader's connection for at most so many seconds. Returns false where the run, or the
+/// server, has ended.
+bool hn_runs_suspend_reader(hn_runs *all, hn_run_reader *reader, double seconds);
 /// Seconds after which a refused question may be asked again.
 int hn_runs_wait(hn_runs *all);
 /// Ids of the runs in memory, as a JSON array.

@@ -20,7 +20,7 @@ enum { MAX_ROWS = 100000 };
 
 // ---- documents ----
 
-static const char *phase_name(hn_run_phase phase) {
+const char *hn_run_phase_name(hn_run_phase phase) {
     static const char *const names[] = {"waiting", "running", "finished", "refused"};
     return names[phase];
 }
@@ -38,20 +38,26 @@ static void put_document(hn_strbuf *b, const char *document, int from, int with_
     hn_strbuf_add(b, end + (*end == ','));
 }
 
-/// {"id","state","progress","links", and the documents: the members of the one, or "runs".
-static void put_run(hn_strbuf *b, const hn_kept_run *run, hn_run_phase phase, int with_samples) {
-    char self[64];
-    snprintf(self, sizeof self, "/api/v1/runs/%s", run->id);
-    hn_json_object(b);
-    hn_json_put_string(b, "id", run->id);
-    hn_json_put_string(b, "state", phase_name(phase));
-    hn_json_put_number(b, "progress", phase == HN_RUN_DONE ? 1 : atomic_load(&run->share));
+/// The addresses of a run.
+static void put_links(hn_strbuf *b, const hn_kept_run *run) {
+    static const char *const parts[] = {"self", "samples", "events", "export"};
     hn_json_key(b, "links");
     hn_json_object(b);
-    hn_json_put_string(b, "self", self);
-    snprintf(self, sizeof self, "/api/v1/runs/%s/samples", run->id);
-    hn_json_put_string(b, "samples", self);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        char address[64];
+        snprintf(address, sizeof address, "/api/v1/runs/%s%s%s", run->id, i ? "/" : "",
+                 i ? parts[i] : "");
+        hn_json_put_string(b, parts[i], address);
+    }
     hn_json_end_object(b);
+}
+
+void hn_run_put_json(hn_strbuf *b, const hn_kept_run *run, hn_run_phase phase, bool with_samples) {
+    hn_json_object(b);
+    hn_json_put_string(b, "id", run->id);
+    hn_json_put_string(b, "state", hn_run_phase_name(phase));
+    hn_json_put_number(b, "progress", phase == HN_RUN_DONE ? 1 : atomic_load(&run->share));
+    put_links(b, run);
 
     if (phase == HN_RUN_DONE && run->n == 1) {
         hn_strbuf_add(b, ",");
@@ -109,7 +115,7 @@ void hn_run_reply(hn_request *r, const hn_kept_run *run) {
     // the whole for who asked the question, the summary for who asks again
     hn_strbuf b;
     hn_strbuf_init(&b);
-    put_run(&b, run, phase, post);
+    hn_run_put_json(&b, run, phase, post);
     const int done = phase == HN_RUN_DONE;
     hn_reply_json(r,
                   !post       ? MHD_HTTP_OK
@@ -131,6 +137,14 @@ void hn_run_reply(hn_request *r, const hn_kept_run *run) {
 static void reply_unknown(hn_request *r) {
     hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/runs asks the question again",
                      "there is no run '%.40s' (any more)", r->parts[0]);
+}
+
+hn_kept_run *hn_run_find(hn_request *r) {
+    hn_kept_run *run = hn_runs_find(r->context->runs, r->parts[0]);
+    if (!run) {
+        reply_unknown(r);
+    }
+    return run;
 }
 
 // ---- handlers ----
