@@ -39,12 +39,19 @@ class Examples(driver.ServerCase):
         self.assertEqual((lines[0], len(lines)), ('t,"th1","a2","th3",gap', 1 + 21))
 
     @unittest.skipUnless(shutil.which("curl"), "no curl here")
+    def test_the_shell_reads_events_and_a_program(self):
+        _, files = self.run_example(["sh", "-e"], block("sh") + block("sh", 1))
+        self.assertEqual(files["events.txt"].count("event: sample"), 201)
+        self.assertIn("event: end", files["events.txt"])
+        self.assertIn("in the workbench: projection@rk4:h=0.001", files["motion.m"])
+
+    @unittest.skipUnless(shutil.which("curl"), "no curl here")
     def test_the_shell_drags_and_exports(self):
-        _, files = self.run_example(["sh", "-e"], block("sh", 1))
+        _, files = self.run_example(["sh", "-e"], block("sh", 2))
         dragged = json.loads(files["drag.json"])
         self.assertEqual(dragged["end"], "nearest")
         self.assertAlmostEqual(dragged["state"]["th1"], math.atan2(0.9, -0.3), 2)
-        _, files = self.run_example(["sh", "-e"], block("sh", 2))
+        _, files = self.run_example(["sh", "-e"], block("sh", 3))
         self.assertIn("int main(void)", files["motion.c"])
 
     def test_python(self):

@@ -185,7 +185,7 @@ class Events(unittest.TestCase):
         self.assertEqual(seen[-1][2]["state"], "running")
         # who deletes it ends the stream
         self.assertEqual(self.server.ask("DELETE", made["links"]["self"]).status, 204)
-        self.assertEqual(reader.until("end")[-1][2], {"state": "refused"})
+        self.assertEqual(reader.until("end")[-1][2], {"state": "stopped"})
         reader.close()
 
     def test_a_stream_is_open_while_the_run_ends(self):

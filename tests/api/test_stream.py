@@ -250,13 +250,15 @@ class Streams(driver.ServerCase):
     def test_a_reader_that_does_not_read_holds_up_nobody(self):
         c = self.server.compare(methods=METHODS, duration=1000)
         slow = Events(self.server, c["id"], receive_buffer=4096)
+        # more than the system takes for it; less than 30 s, after which a connection that takes nothing is closed
+        n = 1800 // driver.SLOW
         for _ in range(3):
-            self.patch(c["id"], step=600)
+            self.patch(c["id"], step=n // 3)
         reader = Events(self.server, c["id"])
-        self.assertEqual(len(reader.frames_up_to(1800)), 1801)
+        self.assertEqual(len(reader.frames_up_to(n)), n + 1)
         reader.close()
         # and the slow one, when it reads at last, has lost nothing
-        self.assertEqual([f["frame"] for f in slow.frames_up_to(1800)], list(range(1801)))
+        self.assertEqual([f["frame"] for f in slow.frames_up_to(n)], list(range(n + 1)))
         slow.close()
 
 

@@ -114,8 +114,8 @@ void hn_handle_export(hn_request *r) {
     }
 }
 
-/// The scene of a run, with its parameters, and the spelling of the method that `method` names by its
-/// index; NULL with a problem as reply.
+/// The scene of a run, with its parameters, and the spelling of the method that the query names by
+/// its index; NULL with a problem as reply.
 static hn_model *load_run(hn_request *r, const char *question, char spelling[HN_SPEC_MAX]) {
     cJSON *body = cJSON_Parse(question);
     const cJSON *methods = cJSON_GetObjectItemCaseSensitive(body, "methods");

@@ -152,11 +152,12 @@ static const struct {
      "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), "
      "incident (Incident), "
      "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
-    {"RunEvents", "{\"type\":\"string\",\"description\":\"hello (schema, build, id), progress "
-                  "(state, progress), "
-                  "sample (method, the columns), incident (method, Incident), problem (detail: a "
-                  "column that the "
-                  "run does not have), end (Run without samples)\"}"},
+    {"RunEvents",
+     "{\"type\":\"string\",\"description\":\"hello (schema, build, id), progress "
+     "(state, progress), "
+     "sample (method, the columns), incident (method, Incident), problem (detail: a "
+     "column that the "
+     "run does not have), end (Run without samples; state stopped: it was deleted)\"}"},
     {"StudyList",
      "{\"type\":\"object\",\"required\":[\"studies\"],\"properties\":{\"studies\":" OBJECTS "}}"},
     {"Study",

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 1 << 16, SCHEMA = 1, LIVE_SAMPLES = 200 };
+enum { CHUNK = 1 << 16, SCHEMA = 1, LIVE_SAMPLES = 201 };
 static const double PROGRESS = 0.5; // between two events `progress` [s]
 
 typedef struct run_stream {
@@ -77,7 +77,7 @@ static void begin_method(run_stream *s) {
         return;
     }
     s->row = -1;
-    s->stride = s->live ? 1 + hn_sample_rows_count(document) / LIVE_SAMPLES : 1;
+    s->stride = s->live ? (hn_sample_rows_count(document) + LIVE_SAMPLES - 1) / LIVE_SAMPLES : 1;
     s->incidents = hn_json_member(document, "incidents");
     s->incident = s->incidents ? hn_json_next(&s->incidents) : NULL;
     step_row(s);
@@ -154,9 +154,10 @@ static void fill(run_stream *s) {
     }
     if (phase < HN_RUN_DONE) {
         put_progress(s, phase);
-    } else if (phase == HN_RUN_REFUSED && !s->ended) {
+    } else if (!s->ended && (phase == HN_RUN_REFUSED || atomic_load(&s->reader.run->stop))) {
+        const bool stopped = atomic_load(&s->reader.run->stop);
         hn_strbuf_printf(&s->text, "event: end\ndata: {\"state\":\"%s\"}\n\n",
-                         hn_run_phase_name(phase));
+                         stopped ? "stopped" : hn_run_phase_name(phase));
         s->ended = true;
     }
     while (phase == HN_RUN_DONE && !s->ended && s->text.n < CHUNK) {
