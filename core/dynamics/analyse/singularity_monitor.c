@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/singularity_monitor.h"
 
+#include "dynamics/analyse/lookout.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "linalg/dense.h"
@@ -20,14 +21,11 @@ static const double DENSE_BUDGET = 2e5;
 static const double FALLEN = 0.9;
 // that finds what a run reports as nearly dependent: pivots of 1e-4, which are squares
 static const double REACHED = 8e-3;
-static const double AT_END = 0.999; // of a step
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
 static const double WEAK = 0.02; // and none above this of the largest pivot is
 static const double CUSP = 1e-6; // discriminant against the squares of the form's entries
-enum { SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8, PILOT_STEPS = 48, NARROWINGS = 24 };
-enum { CONFIRMING = 4 };             // times as many steps in the run that confirms a prediction
-static const double CONFIRMED = 0.1; // of the time to go: two pilot runs agree
+enum { SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8 };
 
 struct hn_singularity {
     const hn_system *sys;
@@ -45,8 +43,7 @@ struct hn_singularity {
     double *no_speed;
     int first, start_rank, wait;
     double largest, strongest; // sigma_min and sigma_max so far
-    hn_pilot *pilot;
-    double *ahead_q;     // nq: a state of the pilot run
+    hn_lookout *lookout;
     double next_pilot;   // [s] no pilot run before
     double lowest_ahead; // sigma_min where the last one that found something came nearest
     hn_singularity_info last;
@@ -72,7 +69,6 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
         *of_nc[i] = hn_arena_doubles(arena, nc);
     }
     r->basis = hn_arena_doubles(arena, 2 * nv);
-    r->ahead_q = hn_arena_doubles(arena, (size_t)info.nq);
     if (!hn_qr_init(&r->qr, arena, info.nv, info.nc) || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
@@ -84,7 +80,7 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &r->gamma);
     }
     HN_THEN(status, hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor));
-    HN_THEN(status, hn_pilot_create(sys, arena, &r->pilot));
+    HN_THEN(status, hn_lookout_create(sys, arena, &r->lookout));
 
     if (status != HN_OK) {
         hn_singularity_free(r);
@@ -100,8 +96,8 @@ void hn_singularity_free(hn_singularity *r) {
         hn_eval_free(r->rows);
         hn_eval_free(r->gamma);
         hn_factor_free(r->factor);
-        hn_pilot_free(r->pilot);
-        r->pilot = NULL;
+        hn_lookout_free(r->lookout);
+        r->lookout = NULL;
         r->rows = r->gamma = NULL;
         r->factor = NULL;
     }
@@ -111,6 +107,7 @@ void hn_singularity_reset(hn_singularity *r) {
     r->first = 1;
     r->wait = 0;
     r->next_pilot = -HUGE_VAL;
+    hn_lookout_reset(r->lookout);
     r->last = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
     r->largest = r->strongest = 0;
     r->start_rank = r->nc;
@@ -269,86 +266,23 @@ static bool look(hn_singularity *r, double t, const double *q, int sweeps,
     return false;
 }
 
-/// The smallest sigma_min inside the pilot's last step, by golden section; *share: where.
-static double smallest_inside(hn_singularity *r, double *share) {
-    const double golden = 0.6180339887498949, t = hn_pilot_time(r->pilot);
-    double low = 0, high = 1, x[2] = {1 - golden, golden}, sigma[2];
-    for (int i = 0; i < 2; i++) {
-        hn_pilot_inside(r->pilot, x[i], r->ahead_q);
-        sigma[i] = hn_singularity_probe(r, t, r->ahead_q);
-    }
-    for (int k = 0; k < NARROWINGS; k++) {
-        const int left = sigma[0] < sigma[1], fresh = left ? 0 : 1;
-        *(left ? &high : &low) = x[left ? 1 : 0];
-        x[!fresh] = x[fresh];
-        sigma[!fresh] = sigma[fresh];
-        x[fresh] = left ? high - golden * (high - low) : low + golden * (high - low);
-        hn_pilot_inside(r->pilot, x[fresh], r->ahead_q);
-        sigma[fresh] = hn_singularity_probe(r, t, r->ahead_q);
-    }
-    *share = 0.5 * (low + high);
-    return fmin(sigma[0], sigma[1]);
-}
-
-/// Seconds until the pilot run reaches a singular configuration within `horizon`, else HUGE_VAL. It
-/// makes `steps` steps for half a turn, and as many more where the motion becomes faster on the
-/// way.
-///
-/// A zero of sigma_min is passed between two steps, so every step whose ends do not rule it out is
-/// searched: sigma_min falls towards a zero and rises from it like a straight line.
-static double run_pilot(hn_singularity *r, double t, const double *q, const double *v,
-                        double horizon, double sigma_now, int steps) {
-    double before = sigma_now, slope = 0;
-    hn_pilot_start(r->pilot, t, q, v);
-    for (int k = 0; k < 2 * steps && hn_pilot_time(r->pilot) < t + horizon; k++) {
-        // a step of the pilot, short enough for its own rhythm
-        const double half_turn = hn_pilot_half_turn(r->pilot, hn_pilot_v(r->pilot));
-        const double h = fmin(horizon, half_turn) / steps;
-        if (hn_pilot_step(r->pilot, h) != HN_OK) {
-            return HUGE_VAL;
-        }
-
-        // a fall to zero inside the step, where the ends do not rule it out
-        const double sigma = hn_singularity_probe(r, hn_pilot_time(r->pilot), hn_pilot_q(r->pilot));
-        const double steepest = fmax(slope, fabs(sigma - before));
-        double share = 1;
-        if (sigma + before < 2 * steepest || sigma < REACHED * r->largest) {
-            const double lowest = smallest_inside(r, &share);
-            if (lowest < REACHED * r->largest &&
-                share < AT_END) { // lowest at its end: it lies in the next step
-                r->lowest_ahead = lowest;
-                return hn_pilot_time(r->pilot) - (1 - share) * h - t;
-            }
-        }
-
-        slope = fabs(sigma - before);
-        before = sigma;
-    }
-    return HUGE_VAL;
-}
-
-/// The same, confirmed: a second run with finer steps reaches the configuration at the same time.
-static double pilot_ahead(hn_singularity *r, double t, const double *q, const double *v,
-                          double horizon, double sigma_now) {
-    const double coarse = run_pilot(r, t, q, v, horizon, sigma_now, PILOT_STEPS);
-    if (!isfinite(coarse)) {
-        return HUGE_VAL;
-    }
-    const double fine = run_pilot(r, t, q, v, horizon, sigma_now, CONFIRMING * PILOT_STEPS);
-    return fabs(fine - coarse) < CONFIRMED * coarse ? fine : HUGE_VAL;
+static double probe(void *user, double t, const double *q) {
+    return hn_singularity_probe(user, t, q);
 }
 
 /// Decides whether a pilot run is due: sigma_min has fallen, or there has been a singular
 /// configuration already; and the last run is over or was long ago against how fast the motion is.
 static void look_ahead(hn_singularity *r, double t, const double *q, const double *v,
                        hn_singularity_info *info) {
-    const double horizon = hn_pilot_half_turn(r->pilot, v);
+    const double horizon = hn_pilot_half_turn(hn_lookout_pilot(r->lookout), v);
     const bool falls = info->sigma_min < r->last.sigma_min && info->sigma_min < FALLEN * r->largest;
     const bool again = isfinite(r->last.predicted);
     if (!(falls || again) || r->wait > 0 || t < r->next_pilot || !isfinite(horizon)) {
         return;
     }
-    info->ahead = pilot_ahead(r, t, q, v, horizon, info->sigma_min);
+    const hn_lookout_aim aim = {probe, r, REACHED * r->largest};
+    info->ahead =
+        hn_lookout_search(r->lookout, t, q, v, horizon, info->sigma_min, &aim, &r->lowest_ahead);
     info->lowest = r->lowest_ahead;
     info->predicted = isfinite(info->ahead) ? t + info->ahead : info->predicted;
     r->next_pilot = t + (isfinite(info->ahead) ? info->ahead + 0.1 * horizon : 0.25 * horizon);
@@ -420,7 +354,7 @@ const double *hn_singularity_scale(const hn_singularity *r) {
 }
 
 hn_pilot *hn_singularity_pilot(hn_singularity *r) {
-    return r->pilot;
+    return hn_lookout_pilot(r->lookout);
 }
 
 // ---- what waits there ----
