@@ -2,21 +2,24 @@
 // All lessons as one printable page: node lessons/book.mjs PROGRAM OUT.html
 //
 // The text comes from `holonom lesson N --json`, the exercises from `holonom problem ID --json`;
-// formulas are set by KaTeX as MathML, pictures are put into the file, figures are numbered.
+// formulas are set by KaTeX, its style, its fonts and all pictures are put into the file, figures
+// are numbered.
 import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
 const [program, out] = process.argv.slice(2);
-const katex = createRequire(new URL("../web/package.json", import.meta.url))("katex");
+const require = createRequire(new URL("../web/package.json", import.meta.url));
+const katex = require("katex");
 const ask = (...words) => JSON.parse(execFileSync(program, [...words, "--json"], { maxBuffer: 1 << 26 }));
 const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
 const faults = [];
+const embedded = (path, type) => `data:${type};base64,${readFileSync(path).toString("base64")}`;
 let lesson, figures, answers;
 
 function math(node) {
   try {
-    return katex.renderToString(node.tex, { displayMode: node.display, output: "mathml", throwOnError: true });
+    return katex.renderToString(node.tex, { displayMode: node.display, throwOnError: true });
   } catch (error) {
     faults.push(`${lesson.id}: ${node.tex}: ${error.message}`);
     return plain(node.tex);
@@ -39,8 +42,7 @@ function figure(node) {
     faults.push(`${lesson.id}: there is no picture ${path}`);
     return "";
   }
-  const type = path.endsWith(".svg") ? "image/svg+xml" : "image/png";
-  const image = `data:${type};base64,${readFileSync(path).toString("base64")}`;
+  const image = embedded(path, path.endsWith(".svg") ? "image/svg+xml" : "image/png");
   const caption = all(node.children);
   return `<figure><img src="${image}" alt="${caption.replace(/<[^>]*>/g, "").replace(/"/g, "")}"><figcaption>Figure ${lesson.number}.${++figures}. ${caption}</figcaption></figure>`;
 }
@@ -54,10 +56,18 @@ function predict(node) {
 
 const points = (n) => `${n} point${n === 1 ? "" : "s"}`;
 
+/** The question of a part, and the form of its answer with what can be chosen. */
+function question(part) {
+  const form = plain(part.answer_form ?? "").replace(/\n/g, "<br>");
+  return `<li><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})<div class="form">${form}</div></li>`;
+}
+
+/** The exercise as everybody gets it without a name; a student's own has other numbers. */
 function exercise(node) {
   const e = ask("problem", node.id);
-  const parts = e.parts ? `, ${e.parts.length} part${e.parts.length === 1 ? "" : "s"}` : "";
-  return `<div class="box"><b>Exercise ${node.id}: ${plain(e.title)}</b> (${points(e.points)}${parts}) ${all(node.children)}<pre>holonom problem ${node.id} --student NAME</pre></div>`;
+  const statement = [e.statement ?? []].flat().map(plain).join(" ");
+  const parts = (e.parts ?? []).map(question).join("");
+  return `<div class="box exercise"><p><b>Exercise ${node.id}: ${plain(e.title)}</b> (${points(e.points)}) ${all(node.children)}</p><p>${statement}</p><ul>${parts}</ul><pre>holonom problem ${node.id} --student NAME</pre></div>`;
 }
 
 const cell = (tag) => (c) => `<${tag} style="text-align:${c.align || "left"}">${all(c.children ?? [])}</${tag}>`;
@@ -84,17 +94,33 @@ function all(nodes = []) {
   return nodes.map((n) => (inline[n.kind] ?? block[n.kind])(n)).join("");
 }
 
+/** The blocks of a lesson; pictures that follow each other, in a paragraph or not, stand side by side. */
+function page(nodes) {
+  const runs = [];
+  const picturesOf = (n) => (n.kind === "paragraph" ? n.children.filter((c) => c.kind === "figure") : []);
+  for (const node of nodes.flatMap((n) => (picturesOf(n).length ? picturesOf(n) : [n]))) {
+    const last = runs.at(-1);
+    if (node.kind === "figure" && last?.[0].kind === "figure") {
+      last.push(node);
+    } else {
+      runs.push([node]);
+    }
+  }
+  return runs.map((run) => (run.length > 1 ? `<div class="pictures">${all(run)}</div>` : all(run))).join("");
+}
+
 function chapter(id) {
   lesson = ask("lesson", id);
   figures = 0;
   answers = [];
-  const text = all(lesson.blocks);
-  const seen = answers.length ? `<h3>Answers to the predictions</h3><ol>${answers.join("")}</ol>` : "";
+  const text = page(lesson.blocks);
+  const seen = answers.length ? `<h3>Answers to the predictions</h3><ol class="answers">${answers.join("")}</ol>` : "";
   return `<section id="${lesson.id}">${text}${seen}</section>`;
 }
 
 const STYLE = `
-@page { size: A4; margin: 22mm 20mm 20mm; }
+@page { size: A4; margin: 22mm 20mm 20mm; @bottom-center { content: counter(page); font: 9pt "DejaVu Sans", sans-serif; } }
+@page :first { @bottom-center { content: none; } }
 body { font: 10.5pt/1.45 "DejaVu Serif", Georgia, serif; max-width: 42em; margin: 2em auto; color: #1a1a1a; }
 h1, h2, h3, h4 { font-family: "DejaVu Sans", sans-serif; line-height: 1.2; break-after: avoid; }
 section { break-before: page; }
@@ -103,19 +129,30 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .box { border: 1px solid #9aa5b1; border-radius: 3px; padding: .5em .8em; margin: 1em 0; break-inside: avoid; }
 .slip { border-left: 3px solid #b5472f; padding: .1em .8em; margin: 1em 0; break-inside: avoid; }
 .box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
+.exercise { break-inside: auto; } .exercise > p { display: block; break-after: avoid; orphans: 9; widows: 9; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
+.form { font-size: 9pt; color: #444; padding-left: 1.2em; }
+.exercise li { margin: .25em 0; break-inside: avoid; } .answers p { display: inline; }
+.pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
+.katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
 figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; }
 figcaption { font-size: 9pt; color: #444; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 9.5pt; break-inside: avoid; }
 th, td { border-bottom: 1px solid #ccc; padding: .25em .7em; } th { border-bottom: 1px solid #333; }
-math[display="block"] { margin: .7em 0; }
 `;
+
+/** KaTeX's style with its fonts in it. */
+function formulaStyle() {
+  const folder = require.resolve("katex/dist/katex.min.css").replace("katex.min.css", "");
+  const style = readFileSync(`${folder}katex.min.css`, "utf8");
+  return style.replace(/src:url\((fonts\/[^)]*\.woff2)\)[^;}]*/g, (_, font) => `src:url(${embedded(folder + font, "font/woff2")})`);
+}
 
 const lessons = ask("list", "lessons").lessons;
 const chapters = lessons.map((l) => chapter(l.id));
 const contents = lessons.map((l) => `<li><a href="#${l.id}">${plain(l.title.replace(/^\d+\. /, ""))}</a></li>`).join("");
 writeFileSync(
   out,
-  `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Mechanisms with closed loops</title><style>${STYLE}</style>
+  `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Mechanisms with closed loops</title><style>${formulaStyle()}${STYLE}</style>
 <h1>Mechanisms with closed loops</h1><p>A course with the workbench holonom: text, exhibits to run, and exercises that are marked.</p>
 <ol>${contents}</ol>${chapters.join("\n")}</html>\n`,
 );
