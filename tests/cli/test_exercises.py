@@ -175,6 +175,8 @@ def for_teachers(folder):
     expect("a teacher's verdict has it", all(right in text for text in told[1:5:2]), str(told[1:5:2]))
     asked = run("problem", "fourbar").stdout
     expect("a number says how exact it must be", "; right to 0.5 %" in asked, asked)
+    counted = run("problem", "index").stdout
+    expect("a count must be exact", 'answer "a": a number; exact\n' in counted, counted)
     said = run("grade", "fourbar", write(folder, "unit.json", {"a": "3 furlongs", "d": ["1,5", 2]})).stdout
     expect("an unknown unit is named, with what is asked for", "'furlongs' at column 3 is no unit known here; asked for: kg m^2" in said, said)
     expect("a comma in a number is named", "a comma at column 2; write decimals with a point" in said, said)

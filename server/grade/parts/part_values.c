@@ -301,11 +301,17 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
     return status;
 }
 
-/// "; right to 0.5 %": how exact a number must be.
+/// "; right to 0.5 %" or "; exact": how exact a number must be.
 static void put_tolerance(hn_strbuf *b, const hn_part *p) {
     double relative, absolute;
     hn_value_tolerance(p, &relative, &absolute);
     const char *unit = hn_part_text(p->node, "unit");
+
+    // counts have no tolerance but that of their reading
+    if (relative < 1e-8 && absolute < 1e-8) {
+        hn_strbuf_add(b, "; exact");
+        return;
+    }
     hn_strbuf_printf(b, "; right to %.3g %%", 100 * relative);
     if (absolute > 1e-9) {
         hn_strbuf_printf(b, " or %.3g %s", absolute, unit);
