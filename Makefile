@@ -41,15 +41,15 @@ ROOMS_formulations := ground: chart:ground rows:ground,chart list:ground,chart,r
 ROOMS_integrators  := step: explicit:step implicit:step constrained:step external:step \
                       list:step,explicit,implicit,constrained,external method:step,list
 ROOMS_study        := spectrum: stepping: incidents:stepping run:spectrum,stepping,incidents \
-                      truth:stepping,incidents,run account:stepping,incidents,run \
+                      truth:stepping,incidents,run budget:stepping,incidents,run \
                       stability:spectrum,stepping,incidents,run cost:stepping,incidents,run,truth
 ROOMS_session      := style: verdict: store: model:store job:model compare:store,model references:store,model face:model export:model \
                       precision:style,store,model,job,compare,references \
-                      accounts:style,store,model,job,references,precision \
+                      budgets:style,store,model,job,references,precision \
                       stability:store,model,job,references,precision \
                       extreme:style,store,model,job,compare,references,precision \
-                      report:style,store,model,job,compare,references,precision,accounts,stability,extreme \
-                      kinds:job,model,references,precision,accounts,stability,extreme,report
+                      report:style,store,model,job,compare,references,precision,budgets,stability,extreme \
+                      kinds:job,model,references,precision,budgets,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
 ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson class:grade,grade/parts \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \

@@ -20,7 +20,8 @@
     X(HN_ERR_CHART, "chart-lost", "the chosen coordinates stopped being valid here")              \
     X(HN_ERR_DIVERGED, "diverged", "the state left every sensible bound or stopped being finite") \
     X(HN_ERR_STEP_UNDERFLOW, "step-underflow", "the step became too small to make progress")      \
-    X(HN_ERR_BUDGET, "budget", "the budget of steps or time is used up")                          \
+    X(HN_ERR_STOPPED, "stopped",                                                                  \
+      "the limit of steps or time was reached, or it was asked to stop")                          \
     X(HN_ERR_UNSUPPORTED, "unsupported", "this combination is not served")                        \
     X(HN_ERR_INTERNAL, "internal", "the program is at fault")                                     \
     X(HN_ERR_MASS, "mass-singular", "the mass matrix has no inverse")

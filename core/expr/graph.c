@@ -273,7 +273,7 @@ bool hn_graph_failed(const hn_graph *g) {
 }
 
 hn_status hn_graph_status(const hn_graph *g) {
-    return g->interrupted ? HN_ERR_BUDGET : g->failed ? HN_ERR_MEMORY : HN_OK;
+    return g->interrupted ? HN_ERR_STOPPED : g->failed ? HN_ERR_MEMORY : HN_OK;
 }
 
 void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt) {

@@ -41,7 +41,7 @@ hn_graph *hn_graph_create(void); ///< returns owned; NULL when memory is out
 /// Frees all nodes; NULL is legal. Whether memory ran out while building.
 void hn_graph_free(hn_graph *g);
 bool hn_graph_failed(const hn_graph *g);
-/// Returns HN_OK, HN_ERR_MEMORY, or HN_ERR_BUDGET where the interrupt ended the work.
+/// Returns HN_OK, HN_ERR_MEMORY, or HN_ERR_STOPPED where the interrupt ended the work.
 hn_status hn_graph_status(const hn_graph *g);
 /// Sets the question that building asks now and then, as does compiling a tape. What it reads must
 /// outlive the graph.

@@ -153,7 +153,7 @@ static hn_status wait_for(const hn_native_builder *b, pid_t child, double start,
             kill(-child, SIGKILL);
             kill(child, SIGKILL);
             waitpid(child, &state, 0);
-            return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL,
+            return hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL,
                                ending ? "%s was stopped" : "%s was killed after %.3g s",
                                b->compiler, b->time_limit);
         }

@@ -42,7 +42,7 @@ HN_MUST_CHECK hn_status hn_native_load(const hn_native_builder *b, const char *t
 
 /// Compiles the text and puts the result into the folder, as a whole or not at all; several
 /// processes may do so at once. *seconds: wall clock of the compiler.
-/// Fails: HN_ERR_BUDGET (time limit), HN_ERR_UNSUPPORTED (the compiler reports an error),
+/// Fails: HN_ERR_STOPPED (time limit), HN_ERR_UNSUPPORTED (the compiler reports an error),
 /// HN_ERR_IO.
 HN_MUST_CHECK hn_status hn_native_build(const hn_native_builder *b, const char *text, size_t n,
                                         double *seconds, hn_diag *diag);

@@ -482,7 +482,7 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
                       int n_sym) {
     *ir = (hn_ir){0};
     if (g->failed || !hn_sweep_collect(g, outputs, n_out, ~0ull)) {
-        return g->interrupted ? HN_ERR_BUDGET : HN_ERR_MEMORY;
+        return g->interrupted ? HN_ERR_STOPPED : HN_ERR_MEMORY;
     }
 
     // scratch by position in the sweep
@@ -507,5 +507,5 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
     free(l.usage);
     free(l.value);
     free(l.input_of_symbol);
-    return g->interrupted ? HN_ERR_BUDGET : ir->failed ? HN_ERR_MEMORY : HN_OK;
+    return g->interrupted ? HN_ERR_STOPPED : ir->failed ? HN_ERR_MEMORY : HN_OK;
 }

@@ -327,7 +327,7 @@ static hn_status run(grading *g, hn_diag *diag) {
     while (status == HN_OK && g->done < g->roster->n) {
         struct pollfd wait[MOST_JOBS];
         if (g->opts->stop && g->opts->stop(g->opts->user)) {
-            return HN_ERR_BUDGET;
+            return HN_ERR_STOPPED;
         }
         give_work(g);
         for (int k = 0; k < g->n_workers; k++) {

@@ -26,7 +26,7 @@ typedef struct hn_class_result {
     int n, resumed, graded;
 } hn_class_result;
 
-/// Grades everybody. Fails: HN_ERR_IO (journal, processes), HN_ERR_MEMORY; HN_ERR_BUDGET when it
+/// Grades everybody. Fails: HN_ERR_IO (journal, processes), HN_ERR_MEMORY; HN_ERR_STOPPED when it
 /// was
 /// stopped, with what is done in *out. hn_class_result_reset() in any case.
 HN_MUST_CHECK hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,

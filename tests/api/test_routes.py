@@ -401,7 +401,7 @@ class Bounded(driver.ServerCase):
     def ask_cut(self, **fields):
         """A run that is cut at the bound; its document. Computing time is counted, so a busy machine changes nothing."""
         run = self.server.ask("POST", "/api/v1/runs", fields, timeout=300).json()
-        self.assertEqual(run["status"], "budget", run.get("detail"))
+        self.assertEqual(run["status"], "stopped", run.get("detail"))
         self.assertIn("computing time", run["reason"])
         self.assertLess(run["cost"]["cpu_seconds"], 2 * self.LIMIT, "the limit, and the look at the clock after it")
         return run

@@ -272,7 +272,7 @@ class Kept(unittest.TestCase):
         server = driver.Server("--run-cpu", "0.2")
         endless = {**RUN, "method": "index1@rk4:h=1e-7", "time": 1000}
         first, again = (server.ask("POST", "/api/v1/runs", endless) for _ in range(2))
-        self.assertEqual((first.status, again.status, first.json()["status"]), (201, 201, "budget"))
+        self.assertEqual((first.status, again.status, first.json()["status"]), (201, 201, "stopped"))
         self.assertEqual(server.stop(), 0)
 
 

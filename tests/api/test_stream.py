@@ -434,7 +434,7 @@ class Crowd(driver.ServerCase):
             t.join()
         # and the long ones were cut at their bound, said so, and told how far they came
         for run in (answer.json() for answer in answers):
-            self.assertEqual(run["status"], "budget")
+            self.assertEqual(run["status"], "stopped")
             self.assertIn("computing time", run["reason"])
             self.assertTrue(0 < run["t_reached"] < 103)
 

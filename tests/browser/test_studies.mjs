@@ -384,9 +384,9 @@ test("E shows the parts of each method's error, that add up to it", async (t) =>
   );
   const sum = Object.values(parts).reduce((total, part) => total + (part ?? 0), 0);
   assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
-  assert.ok((await page.locator(".account .part").count()) > 0);
+  assert.ok((await page.locator(".budget .part").count()) > 0);
   await page.getByRole("button", { name: "energy" }).last().click();
-  assert.match(await page.locator(".accounts").textContent(), /energy at the end has changed by/);
+  assert.match(await page.locator(".budgets").textContent(), /energy at the end has changed by/);
 });
 
 test("an error that is not the sum of its parts has no bar, and the time until which it was one", async (t) => {
@@ -397,9 +397,9 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   const { methods } = await read(page, (data) => data.studies.budget.document);
   const held = methods.filter(({ error }) => error?.holds).length;
   assert.ok(held < methods.length, "ten seconds at this step are too long for one of them");
-  assert.equal(await page.locator(".accounts svg.account").count(), held);
+  assert.equal(await page.locator(".budgets svg.budget").count(), held);
   assert.match(
-    await page.locator(".accounts").textContent(),
+    await page.locator(".budgets").textContent(),
     /first order has ended, its parts add up to .*; they agree until/,
   );
 });

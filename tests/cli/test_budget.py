@@ -37,11 +37,11 @@ class Budget(unittest.TestCase):
             error, energy = m["error"], m["energy"]
             parts = [p for p in error["parts"].values() if p is not None]
             self.assertAlmostEqual(sum(parts) / error["value"], 1, delta=1e-3)  # first order in the error
-            bill = [p for p in energy["parts"].values() if p is not None]
-            self.assertAlmostEqual(sum(bill), energy["change"], delta=1e-12 * energy["swing"])
+            parts = [p for p in energy["parts"].values() if p is not None]
+            self.assertAlmostEqual(sum(parts), energy["change"], delta=1e-12 * energy["swing"])
         self.assertIsNone(methods[2]["error"]["parts"]["formulation"])
         self.assertIsNone(methods[2]["error"]["parts"]["rounding"])
-        # a million steps do not fit, and that is said in place of the account
+        # a million steps do not fit, and that is said in place of the budget
         self.assertEqual(methods[3]["state"], "refused")
         self.assertIn("200000 steps", methods[3]["reason"])
 
@@ -94,7 +94,7 @@ class Budget(unittest.TestCase):
                     self.assertEqual(float(row[name]) if row[name] else None, value, name)
         studies.assert_page(self, page)
         self.assertEqual(page.count("<svg"), 2)
-        for text in (*[m["method"] for m in document["methods"]], "the account is for 200000 steps at most", "Who put energy in"):
+        for text in (*[m["method"] for m in document["methods"]], "an error budget is made of 200000 steps at most", "Who put energy in"):
             self.assertIn(text, page)
         # a block of its colour a part, its number where it is pointed at
         self.assertRegex(page, r"<g class=\"part\"><title>truncation: [+\u2212][0-9.]+ .rad</title>")
@@ -110,7 +110,7 @@ class Budget(unittest.TestCase):
             done = studies.call(SECONDS, folder, text=True)
             self.assertEqual(done.returncode, DONE, done.stderr)
             self.assertIn(f"going on with {states.count('done')} methods from before", done.stderr)
-            self.assertEqual(studies.journals(folder, "budget"), [], "nothing is left of whole accounts")
+            self.assertEqual(studies.journals(folder, "budget"), [], "nothing is left of whole budgets")
 
     def test_time_left_is_shown(self):
         with tempfile.TemporaryDirectory() as folder:

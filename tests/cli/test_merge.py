@@ -295,7 +295,7 @@ class Merge(unittest.TestCase):
         self.assertTrue(skipped)
         self.assertFalse(study["finished"])
         for p in skipped:
-            self.assertIn("budget", p["reason"])
+            self.assertIn("time limit", p["reason"])
         self.assertEqual(self.merged([poor, *rich]), bytes_of(self.whole + ".json"))
 
 

@@ -65,16 +65,16 @@ class Report(unittest.TestCase):
             for run in strip["runs"]:
                 self.assertLessEqual(run["t"], 10)
 
-    def test_parts_of_an_account_add_up(self):
-        accounts = [a for a in self.report["scenes"][0]["accounts"] if a["state"] == "done"]
-        self.assertEqual(len(accounts), 3)
-        for a in accounts:
+    def test_parts_of_a_budget_add_up(self):
+        budgets = [a for a in self.report["scenes"][0]["budgets"] if a["state"] == "done"]
+        self.assertEqual(len(budgets), 3)
+        for a in budgets:
             parts = sum(v for v in a["error"]["parts"].values() if v is not None)
             self.assertAlmostEqual(parts / a["error"]["sum"], 1, delta=1e-9)
             # to first order in the error
             self.assertAlmostEqual(a["error"]["sum"] / a["error"]["value"], 1, delta=0.05)
-            bill = sum(v for v in a["energy"]["parts"].values() if v is not None)
-            self.assertLess(abs(bill - a["energy"]["change"]), 1e-3 * abs(a["energy"]["change"]) + 1e-12)
+            parts = sum(v for v in a["energy"]["parts"].values() if v is not None)
+            self.assertLess(abs(parts - a["energy"]["change"]), 1e-3 * abs(a["energy"]["change"]) + 1e-12)
 
     def test_the_page_is_one_file_that_asks_no_network(self):
         with open(self.page, encoding="utf-8") as f:
@@ -83,7 +83,7 @@ class Report(unittest.TestCase):
         for method in METHODS:
             self.assertIn(method, text)
         self.assertIn("survived 24 of 24", text)
-        self.assertIn("No account of errors and energy", text)
+        self.assertIn("No budget of errors and energy", text)
         self.assertIn("not chaotic: with one freedom", text)
         ids = re.findall(r'\bid="([^"]*)"', text)
         self.assertEqual(len(ids), len(set(ids)), "no id twice")
@@ -121,7 +121,7 @@ class Report(unittest.TestCase):
     def test_every_plot_is_a_file_of_its_own(self):
         names = sorted(os.listdir(self.plots))
         svgs = [n for n in names if n.endswith(".svg")]
-        # six errors by two costs that were counted, for each; accounts of the one that has some, survival of the other
+        # six errors by two costs that were counted, for each; budgets of the one that has some, survival of the other
         self.assertEqual(len(svgs), 2 * 12 + 2 + 1, svgs)
         for name in svgs:
             with open(os.path.join(self.plots, name), encoding="utf-8") as f:

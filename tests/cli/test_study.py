@@ -189,7 +189,7 @@ class Study(unittest.TestCase):
         skipped = [p for m in study["methods"] for p in m["points"] if p["state"] == "skipped"]
         self.assertTrue(skipped or not study["finished"])
         for p in skipped:
-            self.assertIn("budget", p["reason"])
+            self.assertIn("time limit", p["reason"])
 
 
 if __name__ == "__main__":

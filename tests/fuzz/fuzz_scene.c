@@ -20,7 +20,7 @@ static void compare(const hn_model *model, size_t choice) {
     const char *const two[] = {METHODS[choice % N_METHODS],
                                METHODS[choice / N_METHODS % N_METHODS]};
     hn_comparison_opts opts = hn_comparison_opts_default();
-    opts.cpu_budget = 0.05;
+    opts.cpu_limit = 0.05;
     opts.max_steps = MOST_STEPS;
     hn_comparison *c = NULL;
     hn_diags diags = {0};

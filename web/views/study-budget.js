@@ -9,7 +9,7 @@ import { h, s } from "../widgets/dom.js";
 const HEIGHT = 30;
 const LETTERED = 16; // [px] a part at least so long has its letter
 
-const ACCOUNTS = [
+const BUDGETS = [
   { name: "error", word: "position error", order: CAUSES },
   { name: "energy", word: "energy", order: BILL },
 ];
@@ -25,23 +25,23 @@ const numberOf = (value, unit) =>
 /** @param {import("../state/store.js").Store} store */
 export function createStudyBudget(store) {
   const data = store.data;
-  let shown = ACCOUNTS[0];
-  const choices = ACCOUNTS.map((account) =>
+  let shown = BUDGETS[0];
+  const choices = BUDGETS.map((budget) =>
     h(
       "button",
       {
         type: "button",
         class: "quiet",
         onclick: () => {
-          shown = account;
+          shown = budget;
           paint();
         },
       },
-      account.word,
+      budget.word,
     ),
   );
   const about = h("p", { class: "about" });
-  const list = h("div", { class: "accounts" });
+  const list = h("div", { class: "budgets" });
   const legend = h("ul", { class: "legend" });
   const table = h("div", {
     class: "twin-table",
@@ -63,24 +63,24 @@ export function createStudyBudget(store) {
   const labelOf = (m) => data.methods[m]?.label ?? study().methods[m].method;
 
   /** What is accounted for: the total, its unit and its parts; or why there is nothing. */
-  function accountOf(method) {
-    const account = method[shown.name];
-    return account
+  function budgetOf(method) {
+    const budget = method[shown.name];
+    return budget
       ? shown.name === "error"
         ? {
-            total: account.value,
-            unit: account.unit,
-            parts: account.parts,
-            sum: account.sum,
-            holds: account.holds,
-            until: account.holds_until,
-            what: `the error of ${account.coordinate} at the end is`,
+            total: budget.value,
+            unit: budget.unit,
+            parts: budget.parts,
+            sum: budget.sum,
+            holds: budget.holds,
+            until: budget.holds_until,
+            what: `the error of ${budget.coordinate} at the end is`,
           }
         : {
-            total: account.change,
+            total: budget.change,
             unit: "J",
-            parts: account.parts,
-            sum: account.change,
+            parts: budget.parts,
+            sum: budget.change,
             holds: true,
             until: null,
             what: "energy at the end has changed by",
@@ -92,7 +92,7 @@ export function createStudyBudget(store) {
     const width = Math.max(240, list.clientWidth);
     const middle = width / 2;
     const picture = s("svg", {
-      class: `account slot-${data.methods[m]?.slot ?? 0}`,
+      class: `budget slot-${data.methods[m]?.slot ?? 0}`,
       viewBox: `0 0 ${width} ${HEIGHT}`,
       role: "img",
       "aria-label": label,
@@ -122,29 +122,29 @@ export function createStudyBudget(store) {
   }
 
   function row(method, m) {
-    const account = accountOf(method);
+    const budget = budgetOf(method);
     const why =
       method.state === "done" ? "there is no reference solution to compare with" : method.reason;
     const partly = method.state === "failed" ? ` (it ended early: ${method.reason})` : "";
-    const ended = account && !account.holds;
+    const ended = budget && !budget.holds;
     const agree =
-      ended && account.until !== null ? `; they agree until ${seconds(account.until)}` : "";
+      ended && budget.until !== null ? `; they agree until ${seconds(budget.until)}` : "";
     const warning = ended
-      ? `: first order has ended, its parts add up to ${numberOf(account.sum, account.unit)}${agree}`
+      ? `: first order has ended, its parts add up to ${numberOf(budget.sum, budget.unit)}${agree}`
       : "";
-    const words = account
-      ? `${account.what} ${numberOf(account.total, account.unit)}${warning}${partly}`
+    const words = budget
+      ? `${budget.what} ${numberOf(budget.total, budget.unit)}${warning}${partly}`
       : why;
     return h(
       "figure",
       {},
       h("figcaption", {}, h("b", {}, labelOf(m)), ` ${words}`),
-      ...(account && !ended
+      ...(budget && !ended
         ? [
             bar(
               m,
-              account.parts,
-              account.unit,
+              budget.parts,
+              budget.unit,
               `${labelOf(m)}: ${words}; the parts are in the table below`,
             ),
           ]
@@ -172,14 +172,14 @@ export function createStudyBudget(store) {
           "tbody",
           {},
           ...study().methods.map((method, m) => {
-            const account = accountOf(method);
+            const budget = budgetOf(method);
             return h(
               "tr",
               {},
               h("th", { scope: "row" }, labelOf(m)),
-              ...(account
-                ? [account.total, ...shown.order.map(({ name }) => account.parts[name])].map(
-                    (value) => h("td", {}, numberOf(value, account.unit)),
+              ...(budget
+                ? [budget.total, ...shown.order.map(({ name }) => budget.parts[name])].map(
+                    (value) => h("td", {}, numberOf(value, budget.unit)),
                   )
                 : [h("td", { colspan: shown.order.length + 1 }, method.reason || "–")]),
             );
@@ -190,7 +190,7 @@ export function createStudyBudget(store) {
   }
 
   function paint() {
-    choices.forEach((node, i) => node.setAttribute("aria-pressed", String(ACCOUNTS[i] === shown)));
+    choices.forEach((node, i) => node.setAttribute("aria-pressed", String(BUDGETS[i] === shown)));
     if (!study()) {
       return;
     }
@@ -206,7 +206,7 @@ export function createStudyBudget(store) {
           {},
           s(
             "svg",
-            { class: "account key", viewBox: "0 0 18 18", "aria-hidden": "true" },
+            { class: "budget key", viewBox: "0 0 18 18", "aria-hidden": "true" },
             s("rect", { width: 18, height: 18, class: `part part-${i}` }),
             s("text", { x: 9, y: 13, class: "letter" }, letter),
           ),

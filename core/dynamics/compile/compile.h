@@ -9,8 +9,8 @@
 typedef struct hn_system_opts {
     /// parameters stay symbols, for equations that people read; numbers are folded in otherwise
     int symbolic_params;
-    /// ends the work early: the status is then HN_ERR_BUDGET, and no tape of the system is compiled
-    /// any more
+    /// ends the work early: the status is then HN_ERR_STOPPED, and no tape of the system is
+    /// compiled any more
     hn_interrupt interrupt;
 } hn_system_opts;
 hn_system_opts hn_system_opts_default(void);
@@ -21,7 +21,7 @@ hn_system_opts hn_system_opts_default(void);
 ///                       coordinate that moves no mass, a faulty formula
 ///   HN_ERR_UNSUPPORTED  a load or constraint that cannot be written for this joint
 ///   HN_ERR_LIMIT        the equations would be too large
-///   HN_ERR_BUDGET       the interrupt of the options ended the work
+///   HN_ERR_STOPPED       the interrupt of the options ended the work
 ///   HN_ERR_MEMORY
 HN_MUST_CHECK hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts,
                                           hn_system **out, hn_diags *diags);

@@ -9,7 +9,7 @@ static const struct {
     hn_status status;
     const char *words;
 } FLAGS[] = {
-    {IDA_TOO_MUCH_WORK, HN_ERR_BUDGET, "the steps allowed are used up"},
+    {IDA_TOO_MUCH_WORK, HN_ERR_STOPPED, "the steps allowed are used up"},
     {IDA_TOO_MUCH_ACC, HN_ERR_INPUT, "the tolerances are smaller than rounding lets it reach"},
     {IDA_ERR_FAIL, HN_ERR_STEP_UNDERFLOW,
      "the error test failed again and again, or the step fell to the smallest one"},

@@ -26,7 +26,7 @@ typedef struct entry {
     double h;                      ///< fixed step [s], 0 for an adaptive method
     int slot;                      ///< colour and dash, see render/look.h
     char warning[HN_DIAG_MESSAGE]; ///< warning about the spelling, "" if none
-    int over_budget;               ///< stopped by the comparison because one frame cost too much
+    int over_limit;                ///< stopped by the comparison because one frame cost too much
     double slowness;               ///< computing time per simulated time in that frame [-]
     double frame_cpu, frame_t;     ///< computing time and own time when the frame was begun [s]
     long long frame_steps;         ///< steps when the frame was begun
@@ -39,14 +39,14 @@ struct hn_comparison {
     const hn_model *model;
     int n;
     entry entries[HN_COMPARISON_MAX_METHODS];
-    double frame_dt, duration, cpu_budget;
+    double frame_dt, duration, cpu_limit;
     long long frame;
     hn_accuracy *accuracy; ///< one for all methods
     int in_frame;          ///< the frame after the present one was begun, and interrupted
 };
 
 hn_comparison_opts hn_comparison_opts_default(void) {
-    return (hn_comparison_opts){.cpu_budget = 5};
+    return (hn_comparison_opts){.cpu_limit = 5};
 }
 
 /// Returns the colour slot of a formulation: its place in the catalogue, or the next free slot when
@@ -152,8 +152,7 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
     // defaults from the scene and the methods
     c->duration = chosen.duration > 0 ? chosen.duration : hn_model_scene(model)->duration;
     c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
-    c->cpu_budget =
-        chosen.cpu_budget > 0 ? chosen.cpu_budget : hn_comparison_opts_default().cpu_budget;
+    c->cpu_limit = chosen.cpu_limit > 0 ? chosen.cpu_limit : hn_comparison_opts_default().cpu_limit;
     status = hn_accuracy_create(hn_model_system(model), hn_model_q(model), hn_model_v(model),
                                 c->duration, &c->accuracy);
     if (status != HN_OK) {
@@ -199,7 +198,7 @@ int hn_comparison_slot(const hn_comparison *c, int method) {
 }
 
 static bool is_live(const entry *e) {
-    return !e->over_budget && hn_run_get_summary(e->run).state != HN_RUN_FAILED;
+    return !e->over_limit && hn_run_get_summary(e->run).state != HN_RUN_FAILED;
 }
 
 bool hn_comparison_finished(const hn_comparison *c) {
@@ -215,12 +214,12 @@ bool hn_comparison_finished(const hn_comparison *c) {
 }
 
 /// Stops a method whose frame has cost too much; 1 when it did.
-static bool check_budget(const hn_comparison *c, entry *e) {
+static bool check_cpu_limit(const hn_comparison *c, entry *e) {
     const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;
-    if (cpu <= c->cpu_budget) {
+    if (cpu <= c->cpu_limit) {
         return false;
     }
-    e->over_budget = 1;
+    e->over_limit = 1;
     e->slowness = cpu / fmax(hn_run_time(e->run) - e->frame_t, 1e-300);
     return true;
 }
@@ -236,7 +235,7 @@ static bool advance_entry(hn_comparison *c, entry *e, double t, int (*stop)(void
             return true;
         }
         if (hn_pace_is_due(&pace)) {
-            if (check_budget(c, e)) {
+            if (check_cpu_limit(c, e)) {
                 return true;
             }
             if (stop && stop(user)) {
@@ -334,7 +333,7 @@ void hn_comparison_reset(hn_comparison *c) {
     c->in_frame = 0;
     hn_accuracy_reset(c->accuracy);
     for (int i = 0; i < c->n; i++) {
-        c->entries[i].over_budget = 0;
+        c->entries[i].over_limit = 0;
         c->entries[i].track = (hn_accuracy_track){0};
         c->entries[i].n_costs = 0;
         hn_run_reset(
@@ -401,15 +400,15 @@ static const char *state_name(const hn_comparison *c, const entry *e) {
 
 static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
                        const hn_run_summary *s) {
-    if (e->over_budget) {
+    if (e->over_limit) {
         char text[200];
         snprintf(text, sizeof text,
                  "one frame of %.3g s took more than %g s of computing: %.3g times slower than the "
                  "clock; take a larger step",
-                 c->frame_dt, c->cpu_budget, e->slowness);
-        hn_json_put_string(b, "status", hn_status_name(HN_ERR_BUDGET));
+                 c->frame_dt, c->cpu_limit, e->slowness);
+        hn_json_put_string(b, "status", hn_status_name(HN_ERR_STOPPED));
         hn_json_put_string(b, "reason", text);
-        hn_failure_put_json(b, e->run, HN_ERR_BUDGET, text, s->t);
+        hn_failure_put_json(b, e->run, HN_ERR_STOPPED, text, s->t);
     } else {
         hn_json_put_string(b, "status", hn_status_name(s->status));
         hn_json_put_string(b, "reason", s->reason);

@@ -22,8 +22,8 @@ typedef struct hn_comparison_opts {
     double frame_dt;
     double duration; ///< [s]; 0: the scene's
     /// computing time [s] allowed to one method for one frame; beyond it the method is stopped with
-    /// HN_ERR_BUDGET; 0: 5 s
-    double cpu_budget;
+    /// HN_ERR_STOPPED; 0: 5 s
+    double cpu_limit;
     long long max_steps; ///< per method
 } hn_comparison_opts;
 hn_comparison_opts hn_comparison_opts_default(void);

@@ -10,7 +10,7 @@ static const double AT_END = 1e-9;
 const hn_incident *hn_failure_cause(const hn_run *run, hn_status ended, const char *reason,
                                     double t) {
     const hn_incident *list, *cause = NULL;
-    if (ended == HN_OK || ended == HN_ERR_BUDGET) {
+    if (ended == HN_OK || ended == HN_ERR_STOPPED) {
         return NULL;
     }
     const int n = hn_run_incidents(run, &list);

@@ -67,9 +67,9 @@ static hn_status run_methods(scene_picture *p, hn_diags *diags) {
         if (!hn_comparison_work(p->comparison, r->stop, r->user)) {
             return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL, "stopped on request");
         }
-        if (r->cpu_budget > 0 && cpu_used(p->comparison) > r->cpu_budget) {
+        if (r->cpu_limit > 0 && cpu_used(p->comparison) > r->cpu_limit) {
             status = hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a larger step or less time",
-                                  "%g s of computing were used up at t = %g s", r->cpu_budget,
+                                  "%g s of computing were used up at t = %g s", r->cpu_limit,
                                   (k + 1) * opts.frame_dt);
         }
     }

@@ -20,7 +20,7 @@ typedef struct hn_picture_request {
     /// spelling of hn_view_parse(); NULL: the front view, or an oblique view for a spatial
     /// mechanism
     const char *view;
-    double cpu_budget;       ///< computing time allowed [s], then HN_ERR_LIMIT; 0: no limit
+    double cpu_limit;        ///< computing time allowed [s], then HN_ERR_LIMIT; 0: no limit
     int (*stop)(void *user); ///< asked every few milliseconds; 1: HN_ERR_LIMIT. May be NULL
     void *user;
 } hn_picture_request;

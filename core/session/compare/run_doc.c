@@ -312,7 +312,7 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     return r->at ? check_at(r, diags) : HN_OK;
 }
 
-/// Steps until the run reaches t. Returns HN_ERR_BUDGET when `progress` stops it.
+/// Steps until the run reaches t. Returns HN_ERR_STOPPED when `progress` stops it.
 static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r,
                          table *tab) {
     const bool fixed = !hn_method_is_adaptive(hn_run_spec(run));
@@ -329,7 +329,7 @@ static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_requ
         }
         if (r->progress && hn_pace_is_due(pace) &&
             !r->progress(r->user, hn_run_time(run) / r->time)) {
-            return HN_ERR_BUDGET;
+            return HN_ERR_STOPPED;
         }
     }
     return HN_OK;
@@ -353,7 +353,7 @@ static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
     // a sample may cost more than the steps before it
     if (r->progress && hn_pace_is_due(&tab->pace) &&
         !r->progress(r->user, hn_run_time(run) / r->time)) {
-        return HN_ERR_BUDGET;
+        return HN_ERR_STOPPED;
     }
     hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r, tab);
     hn_sample sample;
@@ -471,7 +471,7 @@ static const char *reason_of(const hn_run *run, const hn_run_request *request,
     if (ended == HN_OK || s->status != HN_OK) {
         return s->reason;
     }
-    if (ended == HN_ERR_BUDGET) {
+    if (ended == HN_ERR_STOPPED) {
         return request->stop_reason ? request->stop_reason : "stopped on request";
     }
     return hn_run_sample_why(run, ended);

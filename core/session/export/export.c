@@ -52,7 +52,7 @@ static hn_status advance(const hn_exporter *e, hn_run *run) {
         return hn_run_get_summary(run).status;
     case HN_WALK_OVER:
     case HN_WALK_STOPPED:
-        return HN_ERR_BUDGET;
+        return HN_ERR_STOPPED;
     }
     return HN_ERR_INTERNAL;
 }
@@ -100,7 +100,7 @@ static hn_status find_later(hn_exporter *e, hn_diags *diags) {
                 return HN_OK;
             }
             if (hn_walk_ask(&e->limits, e->started) != HN_WALK_DONE) {
-                return hn_diags_add(diags, HN_ERR_BUDGET, NULL, NULL,
+                return hn_diags_add(diags, HN_ERR_STOPPED, NULL, NULL,
                                     "the later state for the self-check took more computing time "
                                     "than is allowed");
             }

@@ -35,7 +35,7 @@ typedef struct hn_export_request {
 
 /// Writes the program for `model` to `b`.
 /// Fails: HN_ERR_INPUT (unknown language, with the nearest), HN_ERR_IO (the text of the language is
-/// not installed), HN_ERR_LIMIT (the code is too long), HN_ERR_BUDGET (the limits), or as a run
+/// not installed), HN_ERR_LIMIT (the code is too long), HN_ERR_STOPPED (the limits), or as a run
 /// does when the later state cannot be reached.
 HN_MUST_CHECK hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library *lib,
                                         hn_export_request *request, hn_diags *diags);

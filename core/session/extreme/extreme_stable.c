@@ -84,7 +84,7 @@ static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
 
     hn_extreme_check_end(&look);
     if (hn_extreme_is_stopped(bench)) {
-        fail(out, HN_ERR_BUDGET, "stopped");
+        fail(out, HN_ERR_STOPPED, "stopped");
         return -1;
     }
 

@@ -24,7 +24,7 @@ static const struct {
     {HN_ERR_CHART, "chart-lost"},
     {HN_ERR_DIVERGED, "diverged"},
     {HN_ERR_STEP_UNDERFLOW, "step-underflow"},
-    {HN_ERR_BUDGET, "out-of-steps"},
+    {HN_ERR_STOPPED, "out-of-steps"},
 };
 enum { N_OUTCOMES = sizeof OUTCOMES / sizeof *OUTCOMES };
 

@@ -96,7 +96,7 @@ static void walk(hn_extreme_check *look, unsigned needs) {
         each ? walk_steps(look, &limits) : hn_walk(look->run, look->time, 1, &limits, NULL, NULL);
     look->summary = hn_run_get_summary(look->run);
     if (end == HN_WALK_STOPPED || end == HN_WALK_OVER) {
-        fail_look(look, HN_ERR_BUDGET, "stopped");
+        fail_look(look, HN_ERR_STOPPED, "stopped");
     } else if (end == HN_WALK_FAILED) {
         fail_look(look, look->summary.status, look->summary.reason);
     } else {

@@ -28,7 +28,7 @@ typedef struct hn_model_source {
     int n_settings;
     /// 1: a scene that cannot be assembled still gives a model, for `inspect`, which reports why
     bool allow_open;
-    /// ends the work early, now or when the model is used later: HN_ERR_BUDGET
+    /// ends the work early, now or when the model is used later: HN_ERR_STOPPED
     hn_interrupt interrupt;
 } hn_model_source;
 

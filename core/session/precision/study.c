@@ -54,7 +54,7 @@ void hn_study_find_chaos(hn_study *s, const hn_walk_limits *limits) {
         s->chaos = (hn_chaos){.T = s->ref->T};
         snprintf(s->chaos.why, sizeof s->chaos.why,
                  "whether neighbouring motions part is not known: %.120s",
-                 status == HN_ERR_BUDGET ? "it would take too long" : diag.message);
+                 status == HN_ERR_STOPPED ? "it would take too long" : diag.message);
         return;
     }
     const double horizon = hn_chaos_horizon(&s->chaos, HN_STUDY_TINY, HN_STUDY_LARGE);
@@ -75,7 +75,7 @@ static hn_status read_opts(const hn_job_request *r, hn_wp_opts *opts, hn_diags *
     const char *shard = hn_job_text(r, "shard");
     *opts = (hn_wp_opts){.n_levels = (int)hn_job_number(r, "levels", 0),
                          .n_samples = samples > 0 ? (int)samples : -1,
-                         .budget = r->limits.time_limit};
+                         .time_limit = r->limits.time_limit};
     if (shard && !read_shard(shard, &opts->shard, &opts->n_shards)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/shard", "as 2/4: the second of four",
                             "'%.40s' is no part of a study", shard);

@@ -442,7 +442,7 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
     if (wp->stopped || wp->out_of_time) {
         hn_strbuf_printf(b, "<p class=\"wrong\">%s; what was left out is listed below.</p>",
                          wp->stopped ? "This study was stopped before its end"
-                                     : "The budget of time left points or samples out");
+                                     : "The time limit left points or samples out");
     }
 }
 

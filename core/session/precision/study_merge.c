@@ -241,10 +241,10 @@ static hn_status set_up(merging *g) {
         !hn_stored_number(at_path(root, "request"), "step", &opts.step) || !(opts.step > 0)) {
         return refuse(g, &g->parts[0], "fields of its request are missing");
     }
-    opts.budget = largest_limit(g);
+    opts.time_limit = largest_limit(g);
 
     // an empty study to fill
-    s->request = (hn_job_request){.time = s->ref->T, .limits.time_limit = opts.budget};
+    s->request = (hn_job_request){.time = s->ref->T, .limits.time_limit = opts.time_limit};
     status = hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
                           s->ref, specs, n, &opts, &s->wp, &diag);
     return status == HN_OK

@@ -138,7 +138,7 @@ static hn_status step_to(motion *m, double t) {
             return status;
         }
         if (hn_pace_is_due(&m->pace) && hn_walk_ask(m->limits, m->started) != HN_WALK_DONE) {
-            return HN_ERR_BUDGET;
+            return HN_ERR_STOPPED;
         }
     }
     return HN_OK;
@@ -225,7 +225,7 @@ static hn_status move(motion *m, const hn_model *model, hn_diags *diags) {
             return ready;
         }
         status = follow(m);
-        if (status == HN_OK || status == HN_ERR_BUDGET) {
+        if (status == HN_OK || status == HN_ERR_STOPPED) {
             break;
         }
     }

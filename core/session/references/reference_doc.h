@@ -15,7 +15,7 @@ void hn_reference_json(hn_strbuf *b, const hn_model *model, const hn_ref *ref,
 /// through the stored times. `between` is the largest difference from the stored states, and at
 /// least the error of the reference itself.
 /// Fails: HN_ERR_INPUT (`every`, or more samples or numbers than HN_REF_MOTION_SAMPLES and
-/// HN_REF_MOTION_NUMBERS), HN_ERR_BUDGET, or as a run does.
+/// HN_REF_MOTION_NUMBERS), HN_ERR_STOPPED, or as a run does.
 HN_MUST_CHECK hn_status hn_reference_motion_json(hn_strbuf *b, const hn_model *model,
                                                  const hn_ref *ref, hn_ref_source source,
                                                  double every, const hn_walk_limits *limits,

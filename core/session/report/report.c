@@ -11,10 +11,10 @@
 #include <string.h>
 
 static const double DEFAULT_LIMIT = 240; // [s]
-static const double STUDY_SHARE = 0.75;  // of a scene's time; accounts and survival take the rest
-static const double ACCOUNT_SHARE = 0.1;
+static const double STUDY_SHARE = 0.75;  // of a scene's time; budgets and survival take the rest
+static const double BUDGET_SHARE = 0.1;
 static const double SURVIVAL_SHARE = 0.15;
-static const double ACCOUNT_STEP = 4;              // times the scene's
+static const double BUDGET_STEP = 4;               // times the scene's
 static const double NO_LIMIT = 1e9;                // [s]
 static const double FIRST_RTOL = 3, LAST_RTOL = 9; // powers of ten, where survival is counted
 
@@ -25,14 +25,14 @@ static const char *const SCENES[] = {
 };
 
 // a method whose constraints drift, one with stabilised constraints, one with projected ones
-static const char *const ACCOUNTED[HN_REPORT_ACCOUNTS] = {
+static const char *const BUDGETED[HN_REPORT_BUDGETS] = {
     "index1@rk4",
     "baumgarte@rk4",
     "projection@rk4",
 };
 
-// sizes are tried with this stride, so that those a budget leaves out are spread evenly; it has no
-// common factor with HN_REPORT_SIZES
+// sizes are tried with this stride, so that those a time limit leaves out are spread evenly; it
+// has no common factor with HN_REPORT_SIZES
 enum { STRIDE = 7 };
 
 const char *const *hn_report_standard(int *n) {
@@ -71,10 +71,10 @@ static void study_progress(void *user, const char *part, double share) {
     report_progress(user, STUDY_SHARE * share);
 }
 
-static void account_progress(void *user, double part) {
+static void budget_progress(void *user, double part) {
     hn_report *r = user;
     const hn_report_scene *s = &r->scenes[r->at];
-    report_progress(r, STUDY_SHARE + ACCOUNT_SHARE * (s->n_accounts + part) / HN_REPORT_ACCOUNTS);
+    report_progress(r, STUDY_SHARE + BUDGET_SHARE * (s->n_budgets + part) / HN_REPORT_BUDGETS);
 }
 
 // one scene ----
@@ -109,42 +109,40 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     return status;
 }
 
-static void account(hn_report *r, hn_report_scene *s) {
+static void budget(hn_report *r, hn_report_scene *s) {
     const hn_ref *ref = hn_study_wp(s->study)->ref;
 
-    // past a singular pose there is no account; without an exact end it finds that out itself
+    // past a singular pose there is no budget; without an exact end it finds that out itself
     const double *end = ref->q + (size_t)ref->n * (size_t)ref->n_user;
-    const hn_account_opts opts = {.exact = s->singular ? NULL : end,
-                                  .stop = ask_end,
-                                  .progress = account_progress,
-                                  .user = r};
+    const hn_budget_opts opts = {
+        .exact = s->singular ? NULL : end, .stop = ask_end, .progress = budget_progress, .user = r};
 
-    // an account for each listed method
-    for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
-        hn_account_row *a = &s->accounts[s->n_accounts];
+    // a budget for each listed method
+    for (s->n_budgets = 0; s->n_budgets < HN_REPORT_BUDGETS; s->n_budgets++) {
+        hn_budget_row *a = &s->budgets[s->n_budgets];
         a->holds_until = (double)NAN;
 
-        // the method at the account's step size
+        // the method at the budget's step size
         hn_diag diag = {0};
         hn_method_spec spec;
-        snprintf(a->spelling, sizeof a->spelling, "%s:h=%.6g", ACCOUNTED[s->n_accounts],
-                 ACCOUNT_STEP * hn_model_scene(s->model)->step);
+        snprintf(a->spelling, sizeof a->spelling, "%s:h=%.6g", BUDGETED[s->n_budgets],
+                 BUDGET_STEP * hn_model_scene(s->model)->step);
         a->status = hn_method_parse(a->spelling, &spec, &diag);
 
         // compute it while time is left
         if (a->status == HN_OK && ask_end(r)) {
-            a->status = HN_ERR_BUDGET;
+            a->status = HN_ERR_STOPPED;
         } else if (a->status == HN_OK) {
-            a->status = hn_account_make(hn_model_system(s->model), &spec, hn_model_q(s->model),
-                                        hn_model_v(s->model), ref->T, &opts, &a->account, &diag);
+            a->status = hn_budget_make(hn_model_system(s->model), &spec, hn_model_q(s->model),
+                                       hn_model_v(s->model), ref->T, &opts, &a->budget, &diag);
         }
 
         // why there is none, or why its run ended early
-        if (a->status == HN_ERR_BUDGET) {
-            hn_diag_set(&diag, HN_ERR_BUDGET, NULL, NULL, "left out to keep the budget");
+        if (a->status == HN_ERR_STOPPED) {
+            hn_diag_set(&diag, HN_ERR_STOPPED, NULL, NULL, "left out to keep the time limit");
         }
         snprintf(a->reason, sizeof a->reason, "%s",
-                 a->status == HN_OK ? a->account.reason : diag.message);
+                 a->status == HN_OK ? a->budget.reason : diag.message);
     }
 }
 
@@ -211,7 +209,7 @@ static void survive(hn_report *r, hn_report_scene *s) {
             for (int m = 0; m < wp->n_methods && !ask_end(r); m++) {
                 try_size(s, &judge, m, i * STRIDE % HN_REPORT_SIZES);
             }
-            report_progress(r, STUDY_SHARE + ACCOUNT_SHARE +
+            report_progress(r, STUDY_SHARE + BUDGET_SHARE +
                                    SURVIVAL_SHARE * (i + 1) / HN_REPORT_SIZES);
         }
     } else {
@@ -229,10 +227,10 @@ static void make_scene(hn_report *r, double seconds) {
     }
     r->until = hn_clock_wall() + SURVIVAL_SHARE * seconds;
     find_singular(r, s);
-    // without singular poses the time for survival goes to the accounts, which are slow in space
-    const double share = s->singular ? ACCOUNT_SHARE : ACCOUNT_SHARE + SURVIVAL_SHARE;
+    // without singular poses the time for survival goes to the budgets, which are slow in space
+    const double share = s->singular ? BUDGET_SHARE : BUDGET_SHARE + SURVIVAL_SHARE;
     r->until = hn_clock_wall() + share * seconds;
-    account(r, s);
+    budget(r, s);
     if (s->singular) {
         r->until = hn_clock_wall() + SURVIVAL_SHARE * seconds;
         survive(r, s);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_H
 #define HN_SESSION_REPORT_H
-// The full report: for several scenes a work-precision study of the same methods, the account of
+// The full report: for several scenes a work-precision study of the same methods, the budget of
 // errors and energy of a few of them, and, where the scene passes singular poses, how many step
-// sizes each method survives. One budget of time for all.
+// sizes each method survives. One time limit for all.
 //
 // Scenes are taken one after another, and nothing runs beside what is timed: a second process on
 // the other core would share its caches and its clock, and times would be those of the pair. What a
@@ -13,13 +13,13 @@
 // request continues where it was interrupted. Accounts and survivals take seconds and are made
 // anew.
 
-#include "session/accounts/accounts.h"
+#include "session/budgets/budgets.h"
 #include "session/precision/study.h"
 #include "study/cost/survival.h"
 
 #include <stdbool.h>
 
-enum { HN_REPORT_ACCOUNTS = 3, HN_REPORT_SIZES = 24 };
+enum { HN_REPORT_BUDGETS = 3, HN_REPORT_SIZES = 24 };
 
 /// The scenes of a report that names none: plane and space, singular, stiff, one loop and several.
 const char *const *hn_report_standard(int *n);
@@ -52,8 +52,8 @@ typedef struct hn_report_scene {
     const hn_model *model;
     hn_study *study;              ///< NULL: `reason`
     char reason[HN_DIAG_MESSAGE]; ///< why there is no study
-    hn_account_row accounts[HN_REPORT_ACCOUNTS];
-    int n_accounts;
+    hn_budget_row budgets[HN_REPORT_BUDGETS];
+    int n_budgets;
     bool singular;      ///< it passes near singular poses
     double singular_at; ///< the first of them [s]
     hn_strip *strips;   ///< one a method of the study where it is singular, else NULL
@@ -83,7 +83,7 @@ typedef enum hn_verdict_kind {
     HN_VERDICT_FAILS,     ///< all do
     HN_VERDICT_ELSEWHERE, ///< converges to something else
     HN_VERDICT_REFUSED,   ///< the method does not serve the scene
-    HN_VERDICT_NOT_RUN    ///< the budget left it out
+    HN_VERDICT_NOT_RUN    ///< the time limit left it out
 } hn_verdict_kind;
 typedef struct hn_verdict {
     hn_verdict_kind kind;

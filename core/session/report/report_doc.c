@@ -2,7 +2,7 @@
 #include "session/report/report_doc.h"
 
 #include "session/report/report_internal.h"
-#include "session/accounts/accounts_doc.h"
+#include "session/budgets/budgets_doc.h"
 #include "session/precision/study_doc.h"
 #include "session/report/report_words.h"
 
@@ -94,11 +94,11 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s) {
     put_answers(b, s);
     put_study(b, s->study);
 
-    // the accounts of errors and energy
-    hn_json_key(b, "accounts");
+    // the budgets of errors and energy
+    hn_json_key(b, "budgets");
     hn_json_array(b);
-    for (int i = 0; i < s->n_accounts; i++) {
-        hn_account_put(b, s->model, &s->accounts[i]);
+    for (int i = 0; i < s->n_budgets; i++) {
+        hn_budget_put(b, s->model, &s->budgets[i]);
     }
     hn_json_end_array(b);
 

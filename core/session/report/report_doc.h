@@ -6,7 +6,7 @@
 #include "session/report/report.h"
 
 /// {"report","time_limit","elapsed","stopped","scenes":[{"scene","title","reason","study": as
-/// hn_study_json(),"accounts":[as in hn_accounts_json()],
+/// hn_study_json(),"budgets":[as in hn_budgets_json()],
 /// "singular_at","survival":[{"method","survived","tried","runs":[...]}...]}...]}
 void hn_report_json(hn_strbuf *b, const hn_report *report);
 #endif

@@ -6,7 +6,7 @@
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
-#include "session/accounts/accounts_plot.h"
+#include "session/budgets/budgets_plot.h"
 #include "session/precision/study_html.h"
 #include "session/report/report_plot.h"
 #include "session/report/report_words.h"
@@ -223,20 +223,20 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
 
 // a scene ----
 
-static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
+static void put_budgets(hn_strbuf *b, const hn_report_scene *s) {
     // the heading names what there is
-    const int error = hn_accounts_can_plot(s->accounts, s->n_accounts, 0);
-    const int energy = hn_accounts_can_plot(s->accounts, s->n_accounts, 1);
+    const int error = hn_budgets_can_plot(s->budgets, s->n_budgets, 0);
+    const int energy = hn_budgets_can_plot(s->budgets, s->n_budgets, 1);
     if (error || energy) {
         hn_strbuf_printf(b, "<h3>Where %senergy come%s from</h3>", error ? "errors and " : "",
                          error ? "" : "s");
     }
 
-    // why the account of errors, or both, is missing
+    // why the budget of errors, or both, is missing
     if (!error) {
         hn_strbuf_printf(
-            b, "<p class=\"quiet\">No account of %s: ", energy ? "errors" : "errors and energy");
-        hn_html_text(b, s->n_accounts > 0 ? s->accounts[0].reason : "the report was stopped");
+            b, "<p class=\"quiet\">No budget of %s: ", energy ? "errors" : "errors and energy");
+        hn_html_text(b, s->n_budgets > 0 ? s->budgets[0].reason : "the report was stopped");
         hn_strbuf_add(b, ".</p>");
     }
 
@@ -244,8 +244,8 @@ static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
     for (int k = 0; k < 2; k++) {
         if (k ? energy : error) {
             hn_strbuf_add(b, "<div class=\"lines\">");
-            hn_page_scroll(b, k ? "account of energy" : "account of the error");
-            hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, k);
+            hn_page_scroll(b, k ? "budget of energy" : "budget of the error");
+            hn_budgets_plot(b, s->model, s->budgets, s->n_budgets, k);
             hn_strbuf_add(b, "</div></div>\n");
         }
     }
@@ -312,7 +312,7 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
     hn_study_put_chaos(b, s->study);
 
     // errors, energy, survival
-    put_accounts(b, s);
+    put_budgets(b, s);
     put_survival(b, s);
 
     // details are folded away

@@ -6,7 +6,7 @@
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
-#include "session/accounts/accounts_plot.h"
+#include "session/budgets/budgets_plot.h"
 #include "session/precision/study_html.h"
 #include "session/report/report_words.h"
 
@@ -146,7 +146,7 @@ hn_report_plot hn_report_plot_at(const hn_report *r, int i) {
     hn_report_plot p = {.of = r, .scene = i / PER_SCENE};
     const char *id = hn_report_scene_id(&r->scenes[p.scene]);
     const int k = i % PER_SCENE;
-    static const char *const names[] = {"", "where-errors-come-from", "energy-bill", "survival"};
+    static const char *const names[] = {"", "where-errors-come-from", "energy-budget", "survival"};
     p.kind = k < PER_STUDY ? KIND_STUDY : KIND_ERRORS + k - PER_STUDY;
     p.error = k / HN_COST_COUNT;
     p.cost = k % HN_COST_COUNT;
@@ -170,7 +170,7 @@ static bool draw(hn_strbuf *b, const hn_report_plot *p) {
     if (!s->study || (p->kind == KIND_STUDY && p->cost == HN_COST_TIME && !timed) ||
         (p->kind == KIND_SURVIVAL && !s->strips) ||
         ((p->kind == KIND_ERRORS || p->kind == KIND_ENERGY) &&
-         !hn_accounts_can_plot(s->accounts, s->n_accounts, p->kind == KIND_ENERGY))) {
+         !hn_budgets_can_plot(s->budgets, s->n_budgets, p->kind == KIND_ENERGY))) {
         return false;
     }
     if (p->kind == KIND_STUDY) {
@@ -178,7 +178,7 @@ static bool draw(hn_strbuf *b, const hn_report_plot *p) {
     } else if (p->kind == KIND_SURVIVAL) {
         hn_report_survival_plot(b, s);
     } else {
-        hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, p->kind == KIND_ENERGY);
+        hn_budgets_plot(b, s->model, s->budgets, s->n_budgets, p->kind == KIND_ENERGY);
     }
     return strncmp(hn_strbuf_text(b), "<svg ", 5) ==
            0; // a paragraph says that nothing came to its end

@@ -15,7 +15,7 @@ enum { DEFAULT_LEVELS = 7, RESERVED_SAMPLES = 5, RETRIES = 1 };
 static const double FIRST_RTOL = 3, LAST_RTOL = 12; // powers of ten
 static const double COARSER = 4;                    // first step over the scene's
 static const double GROWTH = 3; // of the cost from a tolerance to the next, before it is known
-static const double POINT_SHARE = 0.2; // of the budget that one run may take
+static const double POINT_SHARE = 0.2; // of the time that one run may take
 
 static const char *const state_names[] = {"pending", "done", "failed", "skipped"};
 
@@ -117,10 +117,10 @@ static hn_status check_opts(hn_wp_opts *o, int n, const hn_system *sys, hn_diag 
                            HN_WP_SAMPLES);
     }
 
-    // step and budget
-    if (!(o->step > 0) || !(o->budget >= 0)) {
+    // step and time limit
+    if (!(o->step > 0) || !(o->time_limit >= 0)) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
-                           "a study takes a step above 0 and a budget that is not negative");
+                           "a study takes a step above 0 and a time limit that is not negative");
     }
 
     // part of a divided study
@@ -250,9 +250,9 @@ static void set_failure(const hn_wp *wp, hn_wp_point *p, const hn_run *run, hn_w
     char text[256];
     p->t_reached = fmin(s.t, wp->ref->T);
     if (end == HN_WALK_OVER) {
-        snprintf(text, sizeof text, "one run takes more than %.3g s of the %.3g s budget",
-                 POINT_SHARE * wp->opts.budget, wp->opts.budget);
-        set_reason(p, HN_WP_SKIPPED, HN_ERR_BUDGET, text);
+        snprintf(text, sizeof text, "one run takes more than %.3g s of the time limit of %.3g s",
+                 POINT_SHARE * wp->opts.time_limit, wp->opts.time_limit);
+        set_reason(p, HN_WP_SKIPPED, HN_ERR_STOPPED, text);
     } else {
         set_reason(p, HN_WP_FAILED, s.status == HN_OK ? HN_ERR_DIVERGED : s.status,
                    s.reason[0] ? s.reason : "the state is not finite any more");
@@ -294,7 +294,7 @@ static bool measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
 
     // errors at the times of the reference, then the counts of an undisturbed run
     looker l = {wp, p};
-    const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
+    const hn_walk_limits limits = {POINT_SHARE * wp->opts.time_limit, hooks->stop, hooks->user};
     memset(p->worst, 0, sizeof p->worst);
     hn_walk_end end = hn_walk(run, wp->ref->T, wp->ref->n, &limits, look, &l);
     if (end == HN_WALK_DONE) {
@@ -318,7 +318,7 @@ static bool measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     return true;
 }
 
-// ---- the budget ----
+// ---- the time limit ----
 
 /// Returns the next coarser point of this part of the study, or -1.
 static int coarser_mine(const hn_wp *wp, int m, int k) {
@@ -364,15 +364,15 @@ static double reserved(const hn_wp *wp) {
     return sum;
 }
 
-/// Returns 1 if the rest of the budget is enough for a point; otherwise marks it as left out.
+/// Returns 1 if the rest of the time is enough for a point; otherwise marks it as left out.
 static bool fits(hn_wp *wp, int m, int k, double started) {
-    if (!(wp->opts.budget > 0)) {
+    if (!(wp->opts.time_limit > 0)) {
         return true;
     }
     const int coarser = coarser_mine(wp, m, k);
     if (coarser >= 0 && wp->methods[m].point[coarser].state == HN_WP_SKIPPED) {
-        set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET,
-                   "left out, as the coarser size before it, to keep the budget");
+        set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_STOPPED,
+                   "left out, as the coarser size before it, to keep the time limit");
         return false;
     }
 
@@ -380,17 +380,17 @@ static bool fits(hn_wp *wp, int m, int k, double started) {
     const double cpu = expected_cpu(wp, m, k);
     const double sampling = wp->opts.n_samples > 0 ? RESERVED_SAMPLES * sample_cost(cpu) : 0;
     const double needed = 2 * cpu + sampling;
-    const double left = wp->opts.budget - (hn_clock_wall() - started) - reserved(wp);
+    const double left = wp->opts.time_limit - (hn_clock_wall() - started) - reserved(wp);
     char text[256];
 
-    if (needed <= left && cpu <= POINT_SHARE * wp->opts.budget) {
+    if (needed <= left && cpu <= POINT_SHARE * wp->opts.time_limit) {
         return true;
     }
 
     snprintf(text, sizeof text,
-             "left out: about %.2g s of computing, and %.2g s are left of the budget of %.3g s",
-             needed, fmax(0, left), wp->opts.budget);
-    set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET, text);
+             "left out: about %.2g s of computing, and %.2g s are left of the time limit of %.3g s",
+             needed, fmax(0, left), wp->opts.time_limit);
+    set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_STOPPED, text);
     return false;
 }
 
@@ -461,7 +461,7 @@ static bool sample_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
 /// The coarsest run of the first method that comes to the end of the study: the same one in every
 /// part. 0: none does.
 static bool find_yardstick(hn_wp *wp, const hn_wp_hooks *hooks) {
-    const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
+    const hn_walk_limits limits = {POINT_SHARE * wp->opts.time_limit, hooks->stop, hooks->user};
     for (int m = 0; m < wp->n_methods && !is_stopped(hooks); m++) {
         hn_diag diag = {0};
         hn_run *run = make_run(wp, m, 0, &wp->yardstick_run, &diag);
@@ -507,8 +507,8 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
     }
 
     double share = all > 0 ? done / all : 0;
-    if (wp->opts.budget > 0) { // the study ends at whichever comes first
-        share = fmax(share, (hn_clock_wall() - started) / wp->opts.budget);
+    if (wp->opts.time_limit > 0) { // the study ends at whichever comes first
+        share = fmax(share, (hn_clock_wall() - started) / wp->opts.time_limit);
     }
 
     if (hooks->progress) {
@@ -522,7 +522,7 @@ static bool run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
         for (int m = 0; m < wp->n_methods; m++) {
             hn_wp_point *p = &wp->methods[m].point[k];
             if (p->state == HN_WP_SKIPPED) {
-                p->state = HN_WP_PENDING; // another try, with a budget of its own
+                p->state = HN_WP_PENDING; // another try, with a time limit of its own
                 p->reason[0] = 0;
             }
 
@@ -533,7 +533,7 @@ static bool run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
                 continue;
             }
 
-            // run the point if the budget allows, then report it
+            // run the point if the time limit allows, then report it
             if (fits(wp, m, k, started) && !measure_point(wp, m, k, hooks)) {
                 return false;
             }
@@ -560,9 +560,9 @@ static bool run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double sta
                 continue;
             }
 
-            // no sample that the budget would cut off
-            const double left = wp->opts.budget - (hn_clock_wall() - started);
-            if (wp->opts.budget > 0 && left < sample_cost(p->first_cpu)) {
+            // no sample that the time limit would cut off
+            const double left = wp->opts.time_limit - (hn_clock_wall() - started);
+            if (wp->opts.time_limit > 0 && left < sample_cost(p->first_cpu)) {
                 wp->out_of_time = 1;
                 return false;
             }

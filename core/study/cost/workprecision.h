@@ -4,14 +4,13 @@
 // Error against cost: each method over a ladder of steps (fixed) or tolerances (adaptive), every
 // finished point with six errors against the reference solution, what it counted, and its CPU time.
 //
-// First every method's coarsest point, then the next finer ones, so that a budget that runs out has
-// served all alike. Then
-// time: samples are taken in rounds over all points (ABAB, not AABB), each a batch of runs that
-// lasts 20 ms or more, so that what disturbs the machine for a while disturbs all alike. A sample
-// whose wall time exceeds its CPU time by 5 % is taken again. Halfway all runs are made anew: the
-// first half of the samples and the second are two measurements, apart in time and in memory, and
-// what they disagree on is not ranked (pareto.h). A point that fails, or that the budget leaves
-// out, stays with its reason.
+// First every method's coarsest point, then the next finer ones, so that a time limit that runs out
+// has served all alike. Then time: samples are taken in rounds over all points (ABAB, not AABB),
+// each a batch of runs that lasts 20 ms or more, so that what disturbs the machine for a while
+// disturbs all alike. A sample whose wall time exceeds its CPU time by 5 % is taken again. Halfway
+// all runs are made anew: the first half of the samples and the second are two measurements, apart
+// in time and in memory, and what they disagree on is not ranked (pareto.h). A point that fails, or
+// that the time limit leaves out, stays with its reason.
 //
 // A study may be one part of several (shards.h): then only its own points are run, and one more run
 // is timed in every round, the yardstick. It is the same in all parts, so that parts whose clocks
@@ -30,7 +29,7 @@ typedef enum hn_wp_state {
     HN_WP_PENDING,
     HN_WP_DONE,
     HN_WP_FAILED,  ///< the run ended early, or the method cannot serve the scene: status and reason
-    HN_WP_SKIPPED, ///< left out to keep the budget: reason
+    HN_WP_SKIPPED, ///< left out to keep the time limit: reason
     HN_WP_STATES
 } hn_wp_state;
 const char *hn_wp_state_name(hn_wp_state state); ///< "done"
@@ -71,7 +70,7 @@ typedef struct hn_wp_opts {
     /// the coarsest fixed step is the next below this that divides the reference's intervals [s];
     /// 0: the scene's, times 4
     double step;
-    double budget;       ///< wall time [s]; 0: none
+    double time_limit;   ///< wall time [s]; 0: none
     int shard, n_shards; ///< part 1..n_shards; 0, 0: the whole
 } hn_wp_opts;
 
@@ -104,7 +103,7 @@ typedef struct hn_wp {
     double clocks_apart;
     /// from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
     double horizon;
-    bool out_of_time; ///< the budget left something out
+    bool out_of_time; ///< the time limit left something out
     bool stopped;     ///< stopped on request
     double elapsed;   ///< wall time of hn_wp_run() [s]
 } hn_wp;

@@ -27,8 +27,8 @@ static const hn_incident_kind *kind_of(const hn_watch *w, hn_status status) {
     // limits of the run
     case HN_ERR_STEP_UNDERFLOW:
         return &hn_incident_step_underflow;
-    case HN_ERR_BUDGET:
-        return &hn_incident_budget;
+    case HN_ERR_STOPPED:
+        return &hn_incident_stopped;
 
     // singular matrices of the mechanism
     case HN_ERR_MASS:
@@ -108,10 +108,10 @@ const hn_incident_kind hn_incident_mass = {
     .remedies = {{hn_remedy_singular_mass, 0}},
 };
 
-const hn_incident_kind hn_incident_budget = {
-    .code = HN_INCIDENT_BUDGET,
-    .spelling = "budget",
-    .name = "the time limit was reached",
+const hn_incident_kind hn_incident_stopped = {
+    .code = HN_INCIDENT_STOPPED,
+    .spelling = "stopped",
+    .name = "the limit of steps or time was reached",
     .rule = "Each method may use a limited number of steps and a limited computing time, so that "
             "the other methods do not wait for it.",
     .remedies = {{hn_remedy_finer, 10}},

@@ -32,7 +32,7 @@ typedef enum hn_incident_code {
     HN_INCIDENT_STEP_UNDERFLOW,
     HN_INCIDENT_DIVERGED,
     HN_INCIDENT_MASS,
-    HN_INCIDENT_BUDGET,
+    HN_INCIDENT_STOPPED,
     HN_INCIDENT_COUNT
 } hn_incident_code;
 

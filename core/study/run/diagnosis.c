@@ -200,7 +200,7 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
     const bool right = is_right(pilot, status);
     hn_run_free(pilot);
 
-    if (status == HN_ERR_BUDGET) {
+    if (status == HN_ERR_STOPPED) {
         snprintf(said, sizeof(hn_remedy), "not tried to the end: %lld steps to t = %.3g s",
                  sum.steps, sum.t);
         return UNKNOWN;

@@ -76,7 +76,7 @@ static hn_status fail(hn_run *run, hn_status status) {
     if (!run->reason[0] && s->reason[0]) {
         memcpy(run->reason, s->reason, sizeof run->reason);
     }
-    if (status != HN_ERR_BUDGET && status != HN_ERR_DIVERGED) {
+    if (status != HN_ERR_STOPPED && status != HN_ERR_DIVERGED) {
         why = hn_engine_why(&s->engine);
     }
     if (!run->reason[0] && status == HN_ERR_DIVERGED) {
@@ -137,8 +137,8 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
     mark_cost(run);
     run->state = HN_RUN_RUNNING;
     s->t_asked = t_end;
-    if (hn_headway_check_budget(s, t_end) != HN_OK) {
-        return fail(run, HN_ERR_BUDGET);
+    if (hn_headway_check_steps(s, t_end) != HN_OK) {
+        return fail(run, HN_ERR_STOPPED);
     }
 
     // a fixed step may end just short of the time that was asked for

@@ -127,7 +127,7 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
         status = hn_diag_set(diag, s.status, NULL, NULL, "%s ended at t = %.4g s: %s", means, s.t,
                              s.reason);
     } else if (end != HN_WALK_DONE) {
-        status = hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "%s at t = %.4g s",
+        status = hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "%s at t = %.4g s",
                              end == HN_WALK_OVER ? "the computing time for the path was used up"
                                                  : "stopped on request",
                              s.t);

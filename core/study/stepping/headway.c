@@ -10,7 +10,7 @@
 // one difficult part of the motion does not decide.
 enum { WINDOW = 1000, WINDOWS_TO_END = 4 };
 
-hn_status hn_headway_check_budget(hn_stepping *s, double t_end) {
+hn_status hn_headway_check_steps(hn_stepping *s, double t_end) {
     const double h = s->h_next;
     const double allowed = (double)(s->max_steps - s->steps);
     if (s->adaptive || !(h > 0) || (t_end - s->now.t) / h <= allowed + 1) {
@@ -20,7 +20,7 @@ hn_status hn_headway_check_budget(hn_stepping *s, double t_end) {
              "h = %.3g s needs %.3g steps to reach t = %.6g s, and %.3g are allowed; take a longer "
              "step or a shorter time",
              h, (t_end - s->now.t) / h, t_end, allowed);
-    return HN_ERR_BUDGET;
+    return HN_ERR_STOPPED;
 }
 
 void hn_headway_describe(const hn_stepping *s, char *out, size_t size) {

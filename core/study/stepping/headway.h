@@ -22,8 +22,8 @@ typedef struct hn_headway {
 } hn_headway;
 
 /// Checks that the fixed steps to t_end are within the step limit.
-/// Fails: HN_ERR_BUDGET with the number in the reason of `s`.
-HN_MUST_CHECK hn_status hn_headway_check_budget(struct hn_stepping *s, double t_end);
+/// Fails: HN_ERR_STOPPED with the number in the reason of `s`.
+HN_MUST_CHECK hn_status hn_headway_check_steps(struct hn_stepping *s, double t_end);
 /// Called after each accepted step: measures the pace.
 /// Fails: HN_ERR_STEP_UNDERFLOW with the cause in the reason of `s` where the steps stay collapsed.
 HN_MUST_CHECK hn_status hn_headway_step(struct hn_stepping *s);

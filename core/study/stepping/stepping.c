@@ -234,7 +234,7 @@ static hn_status step_adaptive(hn_stepping *s) {
             return underflow(s, status);
         }
         if (s->steps + s->rejected >= s->max_steps) {
-            return HN_ERR_BUDGET;
+            return HN_ERR_STOPPED;
         }
 
         // a trial, and the next size by its error
@@ -306,7 +306,7 @@ hn_status hn_stepping_step(hn_stepping *s) {
     if (s->steps + s->rejected >= s->max_steps) {
         snprintf(s->reason, sizeof s->reason,
                  "%lld steps were allowed and are used up at t = %.6g s", s->max_steps, s->now.t);
-        return HN_ERR_BUDGET;
+        return HN_ERR_STOPPED;
     }
     long long charts = count_charts(s);
     s->has_dense = true;

@@ -111,7 +111,7 @@ static hn_status asked(const twins *w, hn_diag *diag) {
     const hn_walk_limits *l = w->limits;
     const int stop = (l && l->stop && l->stop(l->user)) ||
                      (l && l->seconds > 0 && hn_clock_thread() - w->started > l->seconds);
-    return stop ? hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request") : HN_OK;
+    return stop ? hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "stopped on request") : HN_OK;
 }
 
 /// The one motion, window by window, and the fastest rate on it.

@@ -32,7 +32,7 @@ typedef struct hn_chaos {
 #define HN_CHAOS_PARTING 2.0 ///< in ln, over half the time: 7.4; regular motions give ln 2
 
 /// From the assembled state (q, v), system coordinates, to T. Fails: HN_ERR_INPUT (T),
-/// HN_ERR_BUDGET (stopped), HN_ERR_NO_CONVERGENCE (a motion did not come to T: told in diag),
+/// HN_ERR_STOPPED (stopped), HN_ERR_NO_CONVERGENCE (a motion did not come to T: told in diag),
 /// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double *v,
                                           double T, const hn_walk_limits *limits, hn_chaos *out,

@@ -244,7 +244,7 @@ hn_status hn_precise_walk(hn_precise_kind kind, const hn_system *sys, const doub
         *end = status == HN_OK ? walk(&p, T, n, see, user, &status) : HN_WALK_FAILED;
     }
     if (*end == HN_WALK_OVER || *end == HN_WALK_STOPPED) {
-        status = HN_ERR_BUDGET;
+        status = HN_ERR_STOPPED;
     }
     if (status != HN_OK) {
         (void)hn_diag_set(diag, status, NULL, NULL, "at t = %.6g s: %s", (double)p.t,

@@ -24,7 +24,7 @@ const char *hn_precise_name(hn_precise_kind kind);
 /// `see` gets the samples at T k / n, k = 0..n, of which t, q, v, lambda, kinetic, potential and
 /// energy are set; it is called from k = 0 again when a tolerance has to be loosened. *end tells
 /// OVER and STOPPED apart. Fails, told in diag: HN_ERR_SINGULAR, HN_ERR_NO_CONVERGENCE,
-/// HN_ERR_STEP_UNDERFLOW, HN_ERR_DIVERGED, HN_ERR_BUDGET, HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// HN_ERR_STEP_UNDERFLOW, HN_ERR_DIVERGED, HN_ERR_STOPPED, HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_precise_walk(hn_precise_kind kind, const hn_system *sys, const double *q,
                                         const double *v, double T, int n,
                                         const hn_walk_limits *limits, hn_walk_see see, void *user,

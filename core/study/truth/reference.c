@@ -115,7 +115,7 @@ static int record(void *user, int k, const hn_sample *s) {
     return 1;
 }
 
-/// One computation in double into `ref`. HN_ERR_BUDGET and the like with the reason in diag.
+/// One computation in double into `ref`. HN_ERR_STOPPED and the like with the reason in diag.
 static hn_status compute_double(const hn_system *sys, const char *spelling, const double *q,
                                 const double *v, const hn_walk_limits *limits, recorder *r,
                                 hn_walk_end *end, hn_diag *diag) {
@@ -134,7 +134,7 @@ static hn_status compute_double(const hn_system *sys, const char *spelling, cons
     }
     const hn_run_summary s = hn_run_get_summary(run);
     if (*end == HN_WALK_OVER) {
-        status = hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "takes more than %g s of computing",
+        status = hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "takes more than %g s of computing",
                              limits->seconds);
     } else if (*end != HN_WALK_DONE) {
         status =
@@ -232,7 +232,7 @@ static hn_status find_two(const hn_system *sys, const double *q, const double *v
             found++;
         } else if (status == HN_ERR_MEMORY || end == HN_WALK_STOPPED) {
             return end == HN_WALK_STOPPED
-                       ? hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request")
+                       ? hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "stopped on request")
                        : status;
         } else {
             note_refusal(refused, name_of(&MEANS[i]), diag);

@@ -50,7 +50,7 @@ typedef struct hn_ref_opts {
 hn_ref_opts hn_ref_opts_default(void);
 
 /// From the assembled state (q, v) in system coordinates to T. Returns owned in *out. Fails:
-/// HN_ERR_NO_CONVERGENCE when fewer than two computations come to the end, HN_ERR_BUDGET when
+/// HN_ERR_NO_CONVERGENCE when fewer than two computations come to the end, HN_ERR_STOPPED when
 /// stopped on request; told in diag. HN_ERR_INPUT (T), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v,
                                       double T, const hn_ref_opts *opts, hn_ref **out,

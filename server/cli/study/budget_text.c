@@ -12,19 +12,19 @@
 
 /// One of the two tables: the error at the end by cause, or the change of energy by item.
 typedef struct sheet {
-    const hn_accounts *accounts;
+    const hn_budgets *budgets;
     int energy, n_parts;
     int n;
-    const hn_account_row *rows[HN_ACCOUNTS_METHODS]; ///< those that have something to tell
+    const hn_budget_row *rows[HN_BUDGETS_METHODS]; ///< those that have something to tell
 } sheet;
 
-static sheet gather(const hn_accounts *a, int energy) {
-    sheet s = {a, energy, energy ? HN_BILL_COUNT : HN_CAUSE_COUNT, 0, {NULL}};
-    for (int m = 0; m < hn_accounts_n(a); m++) {
-        const hn_account_row *row = hn_accounts_at(a, m);
-        const bool has = energy ? row->status == HN_OK
-                                : hn_account_coordinate(hn_accounts_model(a), row) != NULL;
-        if (has && s.n < HN_ACCOUNTS_METHODS) {
+static sheet gather(const hn_budgets *a, int energy) {
+    sheet s = {a, energy, energy ? HN_ENERGY_COUNT : HN_CAUSE_COUNT, 0, {NULL}};
+    for (int m = 0; m < hn_budgets_n(a); m++) {
+        const hn_budget_row *row = hn_budgets_at(a, m);
+        const bool has =
+            energy ? row->status == HN_OK : hn_budget_coordinate(hn_budgets_model(a), row) != NULL;
+        if (has && s.n < HN_BUDGETS_METHODS) {
             s.rows[s.n++] = row;
         }
     }
@@ -32,26 +32,26 @@ static sheet gather(const hn_accounts *a, int energy) {
 }
 
 static const char *name_of(const sheet *s, int part) {
-    return s->energy ? hn_bill_name((hn_bill_item)part) : hn_cause_name((hn_cause)part);
+    return s->energy ? hn_energy_item_name((hn_energy_item)part) : hn_cause_name((hn_cause)part);
 }
 
 static const char *unit_of(const sheet *s, int i) {
-    const hn_coordinate *c = hn_account_coordinate(hn_accounts_model(s->accounts), s->rows[i]);
+    const hn_coordinate *c = hn_budget_coordinate(hn_budgets_model(s->budgets), s->rows[i]);
     return s->energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
 }
 
-/// "a2", or the time that an account of energy goes to.
+/// "a2", or the time that a budget of energy goes to.
 static void put_subject(hn_table *t, const sheet *s, int i) {
     if (s->energy) {
-        hn_table_quantity(t, s->rows[i]->account.t, "s");
+        hn_table_quantity(t, s->rows[i]->budget.t, "s");
     } else {
-        const hn_model *model = hn_accounts_model(s->accounts);
-        hn_table_cell(t, "%s", hn_account_coordinate(model, s->rows[i])->name);
+        const hn_model *model = hn_budgets_model(s->budgets);
+        hn_table_cell(t, "%s", hn_budget_coordinate(model, s->rows[i])->name);
     }
 }
 
 static double whole_of(const sheet *s, int i) {
-    return s->energy ? s->rows[i]->account.energy : s->rows[i]->account.error;
+    return s->energy ? s->rows[i]->budget.energy : s->rows[i]->budget.error;
 }
 
 /// A line a method, a column a cause.
@@ -72,10 +72,10 @@ static void fill_by_method(hn_table *t, const sheet *s) {
         put_subject(t, s, i);
         hn_table_quantity(t, whole_of(s, i), unit_of(s, i));
         for (int k = 0; k < s->n_parts; k++) {
-            hn_table_quantity(t, hn_account_part(s->rows[i], s->energy, k), unit_of(s, i));
+            hn_table_quantity(t, hn_budget_part(s->rows[i], s->energy, k), unit_of(s, i));
         }
         if (!s->energy) {
-            hn_table_quantity(t, s->rows[i]->account.sum, unit_of(s, i));
+            hn_table_quantity(t, s->rows[i]->budget.sum, unit_of(s, i));
         }
     }
 }
@@ -85,8 +85,8 @@ static void put_line(hn_table *t, const sheet *s, int from, int to, const char *
     hn_table_cell(t, "%s", name);
     for (int i = from; i < to; i++) {
         const double value = part == -1   ? whole_of(s, i)
-                             : part == -2 ? s->rows[i]->account.sum
-                                          : hn_account_part(s->rows[i], s->energy, part);
+                             : part == -2 ? s->rows[i]->budget.sum
+                                          : hn_budget_part(s->rows[i], s->energy, part);
         hn_table_quantity(t, value, unit_of(s, i));
     }
 }
@@ -95,7 +95,7 @@ static void put_line(hn_table *t, const sheet *s, int from, int to, const char *
 /// every cause is shown.
 static void put_by_cause(hn_strbuf *b, const sheet *s) {
     enum { BLOCK = 4 };
-    static const char *const heads[HN_ACCOUNTS_METHODS] = {
+    static const char *const heads[HN_BUDGETS_METHODS] = {
         "1",  "2",  "3",  "4",  "5",  "6",  "7",  "8",  "9",  "10", "11", "12",
         "13", "14", "15", "16", "17", "18", "19", "20", "21", "22", "23", "24"};
     for (int from = 0; from < s->n; from += BLOCK) {
@@ -120,10 +120,10 @@ static void put_by_cause(hn_strbuf *b, const sheet *s) {
         hn_table_reset(&t);
     }
     for (int i = 0; i < s->n; i++) {
-        const hn_coordinate *c = hn_account_coordinate(hn_accounts_model(s->accounts), s->rows[i]);
+        const hn_coordinate *c = hn_budget_coordinate(hn_budgets_model(s->budgets), s->rows[i]);
         hn_strbuf_printf(b, "  %-2d %s", i + 1, s->rows[i]->spelling);
         if (s->energy) {
-            hn_strbuf_printf(b, ", to t = %g s\n", s->rows[i]->account.t);
+            hn_strbuf_printf(b, ", to t = %g s\n", s->rows[i]->budget.t);
         } else {
             hn_strbuf_printf(b, ", error of %s\n", c->name);
         }
@@ -131,7 +131,7 @@ static void put_by_cause(hn_strbuf *b, const sheet *s) {
 }
 
 /// A line a method where there is room for every column.
-static void put_sheet(hn_strbuf *b, const hn_accounts *a, int energy) {
+static void put_sheet(hn_strbuf *b, const hn_budgets *a, int energy) {
     const sheet s = gather(a, energy);
     hn_strbuf wide;
     hn_table t;
@@ -148,15 +148,14 @@ static void put_sheet(hn_strbuf *b, const hn_accounts *a, int energy) {
     hn_strbuf_reset(&wide);
 }
 
-static void put_reasons(hn_strbuf *b, const hn_accounts *a) {
-    for (int m = 0; m < hn_accounts_n(a); m++) {
-        const hn_account_row *row = hn_accounts_at(a, m);
+static void put_reasons(hn_strbuf *b, const hn_budgets *a) {
+    for (int m = 0; m < hn_budgets_n(a); m++) {
+        const hn_budget_row *row = hn_budgets_at(a, m);
         if (row->reason[0]) {
-            hn_strbuf_printf(b, "  %s: %s, %s\n", row->spelling, hn_account_state(row),
-                             row->reason);
+            hn_strbuf_printf(b, "  %s: %s, %s\n", row->spelling, hn_budget_state(row), row->reason);
         }
-        char note[HN_ACCOUNT_NOTE];
-        hn_account_note(hn_accounts_model(a), row, note);
+        char note[HN_BUDGET_NOTE];
+        hn_budget_note(hn_budgets_model(a), row, note);
         if (note[0]) {
             hn_strbuf_printf(b, "  %s: %s\n", row->spelling, note);
         }
@@ -169,18 +168,18 @@ static void put_legend(hn_strbuf *b) {
         hn_strbuf_printf(b, "  %-12s %s\n", hn_cause_name((hn_cause)i),
                          hn_cause_about((hn_cause)i));
     }
-    for (int i = HN_BILL_LOOPS; i < HN_BILL_COUNT; i++) {
-        hn_strbuf_printf(b, "  %-12s %s\n", hn_bill_name((hn_bill_item)i),
-                         hn_bill_about((hn_bill_item)i));
+    for (int i = HN_ENERGY_LOOPS; i < HN_ENERGY_COUNT; i++) {
+        hn_strbuf_printf(b, "  %-12s %s\n", hn_energy_item_name((hn_energy_item)i),
+                         hn_energy_item_about((hn_energy_item)i));
     }
     hn_strbuf_add(b, "  A formulation without equations of its own has its part in truncation; "
                      "\"-\": it cannot be determined.\n");
 }
 
-void hn_accounts_text(hn_strbuf *b, const hn_accounts *a) {
-    const hn_scene *scene = hn_model_scene(hn_accounts_model(a));
+void hn_budgets_text(hn_strbuf *b, const hn_budgets *a) {
+    const hn_scene *scene = hn_model_scene(hn_budgets_model(a));
     hn_strbuf_printf(b, "%s, to t = %g s\n\nWhere the error at the end comes from\n",
-                     scene->title ? scene->title : scene->id, hn_accounts_time(a));
+                     scene->title ? scene->title : scene->id, hn_budgets_time(a));
     put_sheet(b, a, 0);
     hn_strbuf_add(b, "\nEnergy put in (+) or taken out (-)\n");
     put_sheet(b, a, 1);
@@ -190,13 +189,13 @@ void hn_accounts_text(hn_strbuf *b, const hn_accounts *a) {
 
 /// The parts of one error, each against the largest of them.
 static void put_bars(hn_strbuf *b, const sheet *s, int i) {
-    hn_bar bars[HN_CAUSE_COUNT + HN_BILL_COUNT];
+    hn_bar bars[HN_CAUSE_COUNT + HN_ENERGY_COUNT];
     double most = 0;
     for (int k = 0; k < s->n_parts; k++) {
-        most = fmax(most, fabs(hn_account_part(s->rows[i], s->energy, k)));
+        most = fmax(most, fabs(hn_budget_part(s->rows[i], s->energy, k)));
     }
     for (int k = 0; k < s->n_parts; k++) {
-        const double part = hn_account_part(s->rows[i], s->energy, k);
+        const double part = hn_budget_part(s->rows[i], s->energy, k);
         bars[k].share = most > 0 ? part / most : (double)NAN;
         bars[k].colour = hn_look_slot(i);
         snprintf(bars[k].label, sizeof bars[k].label, "%s", name_of(s, k));
@@ -211,7 +210,7 @@ static void put_bars(hn_strbuf *b, const sheet *s, int i) {
     hn_bars_text(b, bars, s->n_parts, hn_terminal_columns(), hn_terminal_colours());
 }
 
-void hn_accounts_bars_text(hn_strbuf *b, const hn_accounts *a) {
+void hn_budgets_bars_text(hn_strbuf *b, const hn_budgets *a) {
     for (int energy = 0; energy < 2; energy++) {
         const sheet s = gather(a, energy);
         hn_strbuf_add(b, energy ? "\nEnergy put in (+) or taken out (-)\n"

@@ -28,10 +28,10 @@
 
 HN_JOB_FORM(work_precision, hn_study, hn_study_text)
 HN_JOB_FORM(stability, hn_map, hn_map_text)
-HN_JOB_FORM(budget, hn_accounts, hn_accounts_text)
+HN_JOB_FORM(budget, hn_budgets, hn_budgets_text)
 HN_JOB_FORM(work_precision_plot, hn_study, hn_study_plot_text)
 HN_JOB_FORM(stability_plot, hn_map, hn_map_plots_text)
-HN_JOB_FORM(budget_plot, hn_accounts, hn_accounts_bars_text)
+HN_JOB_FORM(budget_plot, hn_budgets, hn_budgets_bars_text)
 HN_JOB_FORM(report, hn_report, hn_report_text)
 HN_JOB_FORM(extreme, hn_extreme, hn_extreme_text)
 HN_JOB_FORM(reference, hn_reference_work, hn_reference_text)

@@ -79,7 +79,7 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) 
 
     // explain the mark
     if (left) {
-        hn_strbuf_add(b, "(1 left): so many finer sizes were left out to keep the budget\n");
+        hn_strbuf_add(b, "(1 left): so many finer sizes were left out to keep the time limit\n");
     }
 }
 

@@ -224,7 +224,7 @@ void hn_session_apply(hn_session *session, hn_request *r) {
     }
     if (session->interrupted) {
         diags.n = 0;
-        status = HN_ERR_BUDGET;
+        status = HN_ERR_STOPPED;
     }
     hn_session_limit_equations(session, false);
     if (status == HN_OK && c.set) {

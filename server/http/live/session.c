@@ -192,7 +192,7 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
     HN_THEN(status, hn_session_publish_setup(session));
     if (session->interrupted) {
         diags->n = 0;
-        status = HN_ERR_BUDGET;
+        status = HN_ERR_STOPPED;
     }
     if (status == HN_OK) {
         hn_session_publish_frame(session);

@@ -38,7 +38,7 @@ typedef struct hn_session_request {
 } hn_session_request;
 
 /// Loads, compiles, and starts the thread. `gone(user)` is called when the thread ends. Returns one
-/// reference. HN_ERR_BUDGET where equations took longer than run_cpu_s, or the server ends.
+/// reference. HN_ERR_STOPPED where equations took longer than run_cpu_s, or the server ends.
 HN_MUST_CHECK hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
                                           const hn_session_request *order, void (*gone)(void *user),
                                           void *user, hn_session **out, hn_diags *diags);

@@ -26,7 +26,7 @@ hn_status hn_subject_compare(const hn_session *session, const hn_model *model,
     hn_comparison_opts opts = hn_comparison_opts_default();
     opts.frame_dt = session->asked_frame_dt;
     opts.duration = session->asked_duration;
-    opts.cpu_budget = session->opts->frame_cpu;
+    opts.cpu_limit = session->opts->frame_cpu;
     return hn_comparison_create(model, methods, n_methods, &opts, out, diags);
 }
 

@@ -170,7 +170,7 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 }
 
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags) {
-    if (r->interrupted || (status == HN_ERR_BUDGET && diags->n == 0)) {
+    if (r->interrupted || (status == HN_ERR_STOPPED && diags->n == 0)) {
         reply_interrupted(r);
         return;
     }

@@ -34,7 +34,8 @@ HN_MUST_CHECK hn_status hn_scene_request_add(hn_scene_request *order, const char
 HN_MUST_CHECK hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from);
 void hn_scene_request_reset(hn_scene_request *order);
 /// Loads; pointers of faults inside a scene object begin with "/scene". `interrupt` ends the work
-/// early, now or when the model is used later: HN_ERR_BUDGET. What it reads must outlive the model.
+/// early, now or when the model is used later: HN_ERR_STOPPED. What it reads must outlive the
+/// model.
 HN_MUST_CHECK hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library *lib,
                                               bool allow_open, hn_interrupt interrupt,
                                               hn_model **out, hn_diags *diags);

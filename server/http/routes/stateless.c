@@ -207,7 +207,7 @@ void hn_handle_snapshot(hn_request *r) {
                                   .theme = theme && strcmp(theme, "dark") == 0 ? HN_THEME_DARK
                                                                                : HN_THEME_LIGHT,
                                   .view = hn_fields_text(r->json, "view"),
-                                  .cpu_budget = r->context->opts.max_run_cpu,
+                                  .cpu_limit = r->context->opts.max_run_cpu,
                                   .stop = is_stopping,
                                   .user = r->context};
 

@@ -391,7 +391,7 @@ static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model
     if (status == HN_OK && !add_document(run, &b)) {
         status = HN_ERR_MEMORY;
     }
-    run->is_cut |= ended == HN_ERR_BUDGET;
+    run->is_cut |= ended == HN_ERR_STOPPED;
     hn_strbuf_reset(&b);
     return status;
 }
@@ -431,7 +431,7 @@ static void compute(void *arg) {
     pthread_mutex_lock(&all->lock);
     run->phase = HN_RUN_COMPUTES;
     pthread_mutex_unlock(&all->lock);
-    run->refused = atomic_load(&run->stop) ? HN_ERR_BUDGET : run_all(all, run);
+    run->refused = atomic_load(&run->stop) ? HN_ERR_STOPPED : run_all(all, run);
 
     // a run that was stopped is not the answer to its question
     const int stopped = atomic_load(&run->stop);

@@ -310,7 +310,7 @@ static void an_interrupt_ends_building_and_compiling(void **state) {
     // a question for every so many nodes; the graph stops growing at the one that says yes
     make_nodes(g, x, 5000);
     assert_true(hn_graph_failed(g));
-    assert_int_equal(hn_graph_status(g), HN_ERR_BUDGET);
+    assert_int_equal(hn_graph_status(g), HN_ERR_STOPPED);
     const int size = hn_graph_size(g);
     assert_in_range(size, 3 * 256, 4 * 256);
     make_nodes(g, x, 5000);
@@ -325,9 +325,9 @@ static void an_interrupt_ends_building_and_compiling(void **state) {
     const hn_ex last = make_nodes(g, x, 5000);
     left = 3;
     hn_graph_set_interrupt(g, (hn_interrupt){ends_after, &left});
-    assert_int_equal(hn_tape_compile(g, &last, 1, symbols, 2, &tape), HN_ERR_BUDGET);
+    assert_int_equal(hn_tape_compile(g, &last, 1, symbols, 2, &tape), HN_ERR_STOPPED);
     assert_null(tape);
-    assert_int_equal(hn_graph_status(g), HN_ERR_BUDGET);
+    assert_int_equal(hn_graph_status(g), HN_ERR_STOPPED);
     hn_graph_free(g);
 
     // memory that runs out has its own status

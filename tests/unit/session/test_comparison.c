@@ -348,7 +348,7 @@ static void a_run_stops_when_it_is_told_to(void **state) {
                                     .progress = stop_at_once,
                                     .user = &asked};
     cJSON *doc = run_document(model, &request, &ended);
-    assert_int_equal(ended, HN_ERR_BUDGET);
+    assert_int_equal(ended, HN_ERR_STOPPED);
     assert_true(number(doc, "t_reached") < 1);
     cJSON_Delete(doc);
     hn_model_free(model);

@@ -3,7 +3,7 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
-#include "study/account/flow.h"
+#include "study/budget/flow.h"
 #include "support/model.h"
 #include "support/near.h"
 #include "support/odes.h"

@@ -163,12 +163,12 @@ static void it_stops_on_request_and_out_of_time(void **state) {
     hn_walk_limits limits = {.stop = at_once};
     assert_int_equal(hn_precise_walk(HN_PRECISE_SADDLE, trial.sys, trial.q, trial.v, 50, N, &limits,
                                      keep, &r, &end, &diag),
-                     HN_ERR_BUDGET);
+                     HN_ERR_STOPPED);
     assert_int_equal(end, HN_WALK_STOPPED);
     limits = (hn_walk_limits){.seconds = 1e-9};
     assert_int_equal(hn_precise_walk(HN_PRECISE_NULLSPACE, trial.sys, trial.q, trial.v, 50, N,
                                      &limits, keep, &r, &end, &diag),
-                     HN_ERR_BUDGET);
+                     HN_ERR_STOPPED);
     assert_int_equal(end, HN_WALK_OVER);
     hn_trial_close(&trial);
 }

@@ -170,7 +170,7 @@ static void a_reference_that_is_stopped_or_out_of_time_says_so(void **state) {
     hn_ref_opts opts = hn_ref_opts_default();
     opts.limits.stop = at_once;
     assert_int_equal(hn_ref_create(trial.sys, trial.q, trial.v, 50, &opts, &ref, &diag),
-                     HN_ERR_BUDGET);
+                     HN_ERR_STOPPED);
     opts = hn_ref_opts_default();
     opts.limits.seconds = 1e-9;
     assert_int_equal(hn_ref_create(trial.sys, trial.q, trial.v, 50, &opts, &ref, &diag),

@@ -305,10 +305,10 @@ static void the_budget_of_steps_ends_a_run_with_that_reason(void **state) {
         opts.max_steps = 50;
         assert_int_equal(hn_run_create(trial.sys, &spec, trial.q, trial.v, &opts, &run, &diag),
                          HN_OK);
-        assert_int_equal(hn_run_advance(run, 10), HN_ERR_BUDGET);
+        assert_int_equal(hn_run_advance(run, 10), HN_ERR_STOPPED);
         assert_true(hn_run_get_summary(run).steps <= 50);
         const int n = hn_run_incidents(run, &incidents);
-        assert_int_equal(incidents[n - 1].code, HN_INCIDENT_BUDGET);
+        assert_int_equal(incidents[n - 1].code, HN_INCIDENT_STOPPED);
         hn_run_free(run);
     }
 }

@@ -175,7 +175,7 @@ static void a_trial_that_is_stopped_is_pending_and_one_out_of_time_says_so(void 
 
     hn_diag diag = {0};
     assert_int_equal(hn_stability_path_create(m.sys, m.q, m.v, 1e3, &brief, &path, &diag),
-                     HN_ERR_BUDGET);
+                     HN_ERR_STOPPED);
     assert_null(path);
     hn_model_close(&m);
 }

@@ -80,7 +80,7 @@ static void a_budget_that_is_too_small_leaves_points_out_and_says_so(void **stat
     (void)state;
     hn_trial trial;
     static const char *const spellings[1] = {"projection@rk4"};
-    const hn_wp_opts opts = {.n_levels = 4, .budget = 1e-6};
+    const hn_wp_opts opts = {.n_levels = 4, .time_limit = 1e-6};
     hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
     hn_ref *ref = reference_of(&trial, 0.5);
     hn_wp *wp = study_of(&trial, ref, spellings, 1, &opts);
@@ -88,7 +88,7 @@ static void a_budget_that_is_too_small_leaves_points_out_and_says_so(void **stat
     assert_true(wp->out_of_time);
     for (int k = 0; k < 4; k++) {
         assert_int_equal(wp->methods[0].point[k].state, HN_WP_SKIPPED);
-        assert_non_null(strstr(wp->methods[0].point[k].reason, "budget"));
+        assert_non_null(strstr(wp->methods[0].point[k].reason, "time limit"));
     }
     hn_wp_free(wp);
     hn_ref_free(ref);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/accounts/accounts_plot.h"
+#include "session/budgets/budgets_plot.h"
 
-#include "session/accounts/accounts.h"
+#include "session/budgets/budgets.h"
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
@@ -27,28 +27,28 @@ typedef struct parts {
     char of[120]; ///< "th1 at the end"
 } parts;
 
-/// 0 where the account has no such parts.
-static int take_parts(const hn_model *model, const hn_account_row *row, int energy, parts *p) {
-    const hn_account *a = &row->account;
-    const hn_coordinate *c = hn_account_coordinate(model, row);
+/// 0 where the budget has no such parts.
+static int take_parts(const hn_model *model, const hn_budget_row *row, int energy, parts *p) {
+    const hn_budget *a = &row->budget;
+    const hn_coordinate *c = hn_budget_coordinate(model, row);
     if (row->status != HN_OK || (!energy && !c)) {
         return 0;
     }
-    p->n = energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT;
+    p->n = energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT;
     p->unit = energy ? "J" : c->kind == HN_LENGTH ? "m" : "rad";
     p->whole = energy ? a->energy : a->error;
     snprintf(p->of, sizeof p->of, energy ? "change of energy" : "error of %.60s",
              energy ? "" : c->name);
     for (int i = 0; i < p->n; i++) {
-        p->name[i] = energy ? hn_bill_name((hn_bill_item)i) : hn_cause_name((hn_cause)i);
-        p->value[i] = hn_account_part(row, energy, i);
+        p->name[i] = energy ? hn_energy_item_name((hn_energy_item)i) : hn_cause_name((hn_cause)i);
+        p->value[i] = hn_budget_part(row, energy, i);
     }
     return isfinite(p->whole);
 }
 
-bool hn_accounts_can_plot(const hn_account_row *rows, int n, int energy) {
+bool hn_budgets_can_plot(const hn_budget_row *rows, int n, int energy) {
     for (int i = 0; i < n; i++) {
-        if (rows[i].status == HN_OK && (energy || rows[i].account.coordinate >= 0)) {
+        if (rows[i].status == HN_OK && (energy || rows[i].budget.coordinate >= 0)) {
             return true;
         }
     }
@@ -131,24 +131,24 @@ static double largest_side(const parts *p) {
     return fmax(right, left);
 }
 
-static void put_account(hn_strbuf *b, const hn_model *model, const hn_account_row *a, int energy,
-                        double y) {
+static void put_budget(hn_strbuf *b, const hn_model *model, const hn_budget_row *a, int energy,
+                       double y) {
     parts p = {0};
     char amount[SIGNED_TEXT], text[200];
 
-    // the name of the method, or why it has no account
+    // the name of the method, or why it has no budget
     hn_plot_text(b, 0, y + BAR / 2.0 + 4, "label", a->spelling);
     if (!take_parts(model, a, energy, &p)) {
-        snprintf(text, sizeof text, "%.110s", a->reason[0] ? a->reason : "no account");
+        snprintf(text, sizeof text, "%.110s", a->reason[0] ? a->reason : "no budget");
         hn_plot_text(b, LABELS, y + BAR / 2.0 + 4, "note", text);
         return;
     }
 
     // the bars; where the parts do not add up to the error a note replaces them
     const double largest = largest_side(&p);
-    char note[HN_ACCOUNT_NOTE] = "";
+    char note[HN_BUDGET_NOTE] = "";
     if (!energy) {
-        hn_account_note(model, a, note);
+        hn_budget_note(model, a, note);
     }
     if (note[0]) {
         hn_plot_text(b, LABELS, y + BAR / 2.0 + 4, "note", note);
@@ -161,14 +161,14 @@ static void put_account(hn_strbuf *b, const hn_model *model, const hn_account_ro
     format_signed(p.whole, p.unit, amount);
     hn_plot_text(b, RIGHT + 12, y + 10, "label", amount);
     hn_plot_text(b, RIGHT + 12, y + 26, "note", p.of);
-    if (a->account.state == HN_RUN_FAILED) {
-        snprintf(text, sizeof text, "run ended at t = %.3g s", a->account.t);
+    if (a->budget.state == HN_RUN_FAILED) {
+        snprintf(text, sizeof text, "run ended at t = %.3g s", a->budget.t);
         hn_plot_text(b, RIGHT + 12, y + 42, "note", text);
     }
 }
 
-void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row *rows, int n,
-                      int energy) {
+void hn_budgets_plot(hn_strbuf *b, const hn_model *model, const hn_budget_row *rows, int n,
+                     int energy) {
     const char *title = energy ? "who put energy in (right) or took it out (left)"
                                : "where the error at the end comes from, signed";
     hn_plot_begin(b, WIDTH, BAR_TOP + BAR_ROW * n, title);
@@ -178,7 +178,7 @@ void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row 
                         : "each bar to its own scale; the parts add up, to first order, to the "
                           "number at its right");
     for (int i = 0; i < n; i++) {
-        put_account(b, model, &rows[i], energy, BAR_TOP + BAR_ROW * i);
+        put_budget(b, model, &rows[i], energy, BAR_TOP + BAR_ROW * i);
     }
     hn_strbuf_add(b, "</svg>");
 }

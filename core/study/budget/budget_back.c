@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/account/account_back.h"
+#include "study/budget/budget_back.h"
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
@@ -14,7 +14,7 @@
 
 /// Splits a displacement d (2 nv) at the state of `linear` and `saddle`: the part that opens the
 /// loops goes to b->split, the part along their motion stays in d.
-static hn_status split_off(hn_books *b, double *d) {
+static hn_status split_off(hn_budget_work *b, double *d) {
     const int nv = b->info.nv, nc = b->info.nc;
     double *off = b->split;
     memset(off, 0, (size_t)b->nd * sizeof *off);
@@ -42,7 +42,7 @@ static hn_status split_off(hn_books *b, double *d) {
     return status;
 }
 
-static hn_status prepare_split(hn_books *b, double t, const double *y) {
+static hn_status prepare_split(hn_budget_work *b, double t, const double *y) {
     hn_saddle_opts opts = hn_saddle_opts_default();
     hn_saddle_info info;
     opts.residual_tol =
@@ -54,10 +54,10 @@ static hn_status prepare_split(hn_books *b, double t, const double *y) {
 
 /// Adds what the parts of step k have become at T, w being the derivative of the coordinate there
 /// by the state at the step's end.
-static hn_status settle(hn_books *b, size_t k, const double *y_end) {
+static hn_status settle(hn_budget_work *b, size_t k, const double *y_end) {
     static const hn_cause cause_of[HN_PARTS] = {HN_CAUSE_TRUNCATION, HN_CAUSE_FORMULATION,
                                                 HN_CAUSE_PROJECTION};
-    double *r = hn_books_record(b, k), *part = r + 2 + b->ny;
+    double *r = hn_budget_work_record(b, k), *part = r + 2 + b->ny;
     hn_status status = prepare_split(b, r[0] + r[1], y_end);
     for (int p = 0; status == HN_OK && p < HN_PARTS; p++) {
         double *d = part + p * b->nd;
@@ -69,7 +69,7 @@ static hn_status settle(hn_books *b, size_t k, const double *y_end) {
 }
 
 static hn_status slopes_back(void *self, double t, const double *y, const double *w, double *out) {
-    const hn_books *b = self;
+    const hn_budget_work *b = self;
     HN_TRY(hn_accel_jacobian_at(b->slopes, t, y, y + b->info.nq, &(hn_accel_law){0}));
     HN_TRY(hn_accel_jacobian_prepare(b->slopes));
     hn_accel_jacobian_back(b->slopes, w, out);
@@ -77,27 +77,27 @@ static hn_status slopes_back(void *self, double t, const double *y, const double
 }
 
 /// w <- A' w with A the derivative of the flow I over step k by its start.
-static hn_status carry_back(hn_books *b, size_t k) {
-    const double *r = hn_books_record(b, k);
+static hn_status carry_back(hn_budget_work *b, size_t k) {
+    const double *r = hn_budget_work_record(b, k);
     const hn_flow_slopes slopes = {b->nd, b, slopes_back};
     return hn_flow_carry_back(b->carrier, &b->plain, &slopes, TRANSPORT_TOL, r[0], r[1], r + 2,
                               b->w);
 }
 
-static hn_status settle_all(hn_books *b, hn_diag *diag) {
+static hn_status settle_all(hn_budget_work *b, hn_diag *diag) {
     const double *y_end = b->y; // of the last step
     double at = b->out->t;
     hn_status status = HN_OK;
-    hn_books_present(b, b->y);
+    hn_budget_work_present(b, b->y);
     for (size_t k = b->kept; status == HN_OK && k-- > 0;) {
-        at = hn_books_record(b, k)[0];
+        at = hn_budget_work_record(b, k)[0];
         if (k % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
-            hn_books_asked_to_stop(b, 0.4 + 0.6 * (1 - (double)k / (double)b->kept))) {
-            return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request");
+            hn_budget_work_asked_to_stop(b, 0.4 + 0.6 * (1 - (double)k / (double)b->kept))) {
+            return hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "stopped on request");
         }
         status = settle(b, k, y_end);
         status = status == HN_OK && k > 0 ? carry_back(b, k) : status;
-        y_end = hn_books_record(b, k) + 2;
+        y_end = hn_budget_work_record(b, k) + 2;
     }
     return status == HN_OK ? HN_OK
                            : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
@@ -107,7 +107,8 @@ static hn_status settle_all(hn_books *b, hn_diag *diag) {
 
 /// The end of another run to the same time, user coordinates into `out`; 0 when it did not get
 /// there, and then *t is where it got [s].
-static int end_of(const hn_books *b, const hn_method_spec *spec, double T, double *out, double *t) {
+static int end_of(const hn_budget_work *b, const hn_method_spec *spec, double T, double *out,
+                  double *t) {
     hn_run *run = NULL;
     hn_sample sample;
     const hn_run_opts opts = hn_run_opts_default();
@@ -128,9 +129,9 @@ static int end_of(const hn_books *b, const hn_method_spec *spec, double T, doubl
     return arrived;
 }
 
-/// Error of every user coordinate at the end, its largest as the account's; w begins as that
+/// Error of every user coordinate at the end, its largest as the budget's; w begins as that
 /// coordinate's derivative.
-static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag *diag) {
+static hn_status choose_coordinate(hn_budget_work *b, const double *reference, hn_diag *diag) {
     const int n = b->info.n_user, nv = b->info.nv;
     double *q = b->up, *delta = b->split, *user = b->column;
     const hn_scene *scene = hn_system_scene(b->sys);
@@ -169,7 +170,7 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
 /// Returns the difference that one option of the method makes to the coordinate at the end, by a
 /// second run. NaN where the method has no such option, or where it chooses its steps: they would
 /// change with the option.
-static double told_by(const hn_books *b, const char *key, double value, double T) {
+static double told_by(const hn_budget_work *b, const char *key, double value, double T) {
     hn_method_spec spec = *hn_run_spec(b->run);
     double *end = b->up, *delta = b->split, *q = b->down, *user = b->column, t;
     double *setting = hn_method_find_option(&spec, key, NULL);
@@ -186,8 +187,8 @@ static double told_by(const hn_books *b, const char *key, double value, double T
     return user[b->out->coordinate];
 }
 
-static void separate_rounding(hn_books *b, double T) {
-    hn_account *out = b->out;
+static void separate_rounding(hn_budget_work *b, double T) {
+    hn_budget *out = b->out;
     out->part[HN_CAUSE_ROUNDING] = told_by(b, "sum", 1, T);
     out->part[HN_CAUSE_SOLVE] = told_by(b, "solver", HN_SOLVER_DENSE, T);
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
@@ -202,7 +203,7 @@ static void separate_rounding(hn_books *b, double T) {
 
 /// User coordinates of the exact motion at the run's end. The caller's are for the end that was
 /// asked for, which fixed steps may miss.
-static hn_status find_exact(const hn_books *b, double T, double *out, hn_diag *diag) {
+static hn_status find_exact(const hn_budget_work *b, double T, double *out, hn_diag *diag) {
     hn_method_spec spec;
     if (b->opts->exact && fabs(T - b->asked) <= HN_BOOKS_ARRIVED * b->asked) {
         memcpy(out, b->opts->exact, (size_t)b->info.n_user * sizeof *out);
@@ -217,7 +218,7 @@ static hn_status find_exact(const hn_books *b, double T, double *out, hn_diag *d
     return status;
 }
 
-hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag) {
+hn_status hn_budget_work_look_back(hn_budget_work *b, double T, hn_diag *diag) {
     double *exact = b->y_own;
     HN_TRY(find_exact(b, T, exact, diag));
     HN_TRY(choose_coordinate(b, exact, diag));

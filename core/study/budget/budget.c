@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
-#include "study/account/account_back.h"
-#include "study/account/account_state.h"
+#include "study/budget/budget_back.h"
+#include "study/budget/budget_state.h"
 
 #include "linalg/dense.h"
 
@@ -21,10 +21,10 @@ static const char *const cause_names[HN_CAUSE_COUNT][2] = {
     HN_CAUSE_LIST(HN_CAUSE_ROW)
 #undef HN_CAUSE_ROW
 };
-static const char *const bill_names[HN_BILL_COUNT][2] = {
-#define HN_BILL_ROW(code, name, about) {name, about},
-    HN_BILL_LIST(HN_BILL_ROW)
-#undef HN_BILL_ROW
+static const char *const energy_item_names[HN_ENERGY_COUNT][2] = {
+#define HN_ENERGY_ROW(code, name, about) {name, about},
+    HN_ENERGY_LIST(HN_ENERGY_ROW)
+#undef HN_ENERGY_ROW
 };
 
 const char *hn_cause_name(hn_cause cause) {
@@ -35,24 +35,24 @@ const char *hn_cause_about(hn_cause cause) {
     return cause_names[cause][1];
 }
 
-const char *hn_bill_name(hn_bill_item item) {
-    return bill_names[item][0];
+const char *hn_energy_item_name(hn_energy_item item) {
+    return energy_item_names[item][0];
 }
 
-const char *hn_bill_about(hn_bill_item item) {
-    return bill_names[item][1];
+const char *hn_energy_item_about(hn_energy_item item) {
+    return energy_item_names[item][1];
 }
 
 // ---- the equations of motion as index 1, defined off the loops too ----
 
 static hn_status plain_rhs(void *self, double t, const double *y, double *ydot) {
-    hn_books *b = self;
+    hn_budget_work *b = self;
     const double *v = y + b->info.nq;
     hn_system_kinematics(b->sys, y, v, ydot);
     return hn_accel_eval(b->accel, t, y, v, 0, 0, ydot + b->info.nq, b->lambda, NULL);
 }
 
-static double energy_at(hn_books *b, double t, const double *y) {
+static double energy_at(hn_budget_work *b, double t, const double *y) {
     hn_eval_run(b->eval, t, y, y + b->info.nq);
     const double *e = hn_eval_get(b->eval, HN_TERM_ENERGY);
     b->t_max = fmax(b->t_max, e[0]);
@@ -62,7 +62,7 @@ static double energy_at(hn_books *b, double t, const double *y) {
 }
 
 /// lambda'(J v + phi_t): the power of loop forces on loops that are not closed in speed.
-static hn_status loop_power(hn_books *b, double t, const double *y, double *power) {
+static hn_status loop_power(hn_budget_work *b, double t, const double *y, double *power) {
     const int nv = b->info.nv, nc = b->info.nc;
     const double *v = y + b->info.nq;
     const hn_status status = hn_accel_eval(b->accel, t, y, v, 0, 0, b->a, b->lambda, NULL);
@@ -75,7 +75,7 @@ static hn_status loop_power(hn_books *b, double t, const double *y, double *powe
 
 /// The flow I over one step, into b->flowed, and the work of the loop forces on the way, by Gauss
 /// quadrature of order 6.
-static hn_status follow(hn_books *b, double t, double h, const double *y, double *work) {
+static hn_status follow(hn_budget_work *b, double t, double h, const double *y, double *work) {
     static const double at[NODES] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
     static const double weight[NODES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     memcpy(b->flowed, y, (size_t)b->ny * sizeof *y);
@@ -97,13 +97,13 @@ static hn_status follow(hn_books *b, double t, double h, const double *y, double
 
 // ---- one step ----
 
-static bool is_ode(const hn_books *b) {
+static bool is_ode(const hn_budget_work *b) {
     const hn_method_spec *spec = hn_run_spec(b->run);
     return hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;
 }
 
 /// The flow B over one step, into b->owned, from the engine's own unknowns.
-static hn_status follow_own(hn_books *b, hn_engine *e, double t, double h, const double *y) {
+static hn_status follow_own(hn_budget_work *b, hn_engine *e, double t, double h, const double *y) {
     if (!b->own_flow) {
         const hn_status status = hn_flow_create(e->ode.n_pos, e->ode.n_vel, b->arena, &b->own_flow);
         if (status != HN_OK) {
@@ -121,21 +121,21 @@ static hn_status follow_own(hn_books *b, hn_engine *e, double t, double h, const
 
 /// The flow B over a step that is already made, by a copy of the formulation that starts where the
 /// step started.
-static hn_status follow_aside(hn_books *b, double t, double h, const double *y) {
+static hn_status follow_aside(hn_budget_work *b, double t, double h, const double *y) {
     hn_engine *side = hn_run_side_engine(b->run);
     HN_TRY(hn_engine_start(side, t, y, y + b->info.nq));
     return follow_own(b, side, t, h, side->y);
 }
 
 /// The displacement from one state to another, in q along the velocities and in v: out (nd).
-static void difference(const hn_books *b, const double *from, const double *to, double *out) {
+static void difference(const hn_budget_work *b, const double *from, const double *to, double *out) {
     hn_system_difference(b->sys, from, to, out);
     for (int i = 0; i < b->info.nv; i++) {
         out[b->info.nv + i] = to[b->info.nq + i] - from[b->info.nq + i];
     }
 }
 
-static hn_status make_room(hn_books *b, hn_diag *diag) {
+static hn_status make_room(hn_budget_work *b, hn_diag *diag) {
     if (b->kept < b->room) {
         return HN_OK;
     }
@@ -145,7 +145,8 @@ static hn_status make_room(hn_books *b, hn_diag *diag) {
                        : realloc(b->record, room * b->width * sizeof *more);
     if (!more) {
         return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
-                           "an account of more than %zu steps does not fit into memory", b->kept);
+                           "the error budget of more than %zu steps does not fit into memory",
+                           b->kept);
     }
     b->record = more;
     b->room = room;
@@ -154,16 +155,16 @@ static hn_status make_room(hn_books *b, hn_diag *diag) {
 
 /// Records a step of size h from t, at whose start y is: the three parts of (1) as displacements,
 /// and the energy that each part changes. `work` is the work of the loops on the exact flow.
-static void record_step(hn_books *b, double t, double h, const double *y, double work) {
-    hn_account *out = b->out;
-    double *r = hn_books_record(b, b->kept), *part = r + 2 + b->ny;
+static void record_step(hn_budget_work *b, double t, double h, const double *y, double work) {
+    hn_budget *out = b->out;
+    double *r = hn_budget_work_record(b, b->kept), *part = r + 2 + b->ny;
     const double *after_own = is_ode(b) ? b->owned : b->flowed;
     const double *unmended = b->unmended.q; // q and v stand together
 
     // the three parts of (1)
     r[0] = t;
     r[1] = h;
-    hn_books_present(b, b->y);
+    hn_budget_work_present(b, b->y);
     difference(b, after_own, unmended, part + HN_PART_TRUNCATION * b->nd);
     difference(b, b->flowed, after_own, part + HN_PART_FORMULATION * b->nd);
     difference(b, unmended, b->y, part + HN_PART_PROJECTION * b->nd);
@@ -172,25 +173,25 @@ static void record_step(hn_books *b, double t, double h, const double *y, double
     const double e0 = energy_at(b, t, y), e1 = energy_at(b, t + h, b->flowed),
                  e2 = energy_at(b, t + h, after_own), e3 = energy_at(b, t + h, unmended),
                  e4 = energy_at(b, t + h, b->y);
-    out->bill[HN_BILL_LOOPS] += work;
-    out->bill[HN_BILL_OUTSIDE] += e1 - e0 - work;
-    out->bill[HN_BILL_FORMULATION] += e2 - e1;
-    out->bill[HN_BILL_TRUNCATION] += e3 - e2;
-    out->bill[HN_BILL_PROJECTION] += e4 - e3;
+    out->energy_parts[HN_ENERGY_LOOPS] += work;
+    out->energy_parts[HN_ENERGY_OUTSIDE] += e1 - e0 - work;
+    out->energy_parts[HN_ENERGY_FORMULATION] += e2 - e1;
+    out->energy_parts[HN_ENERGY_TRUNCATION] += e3 - e2;
+    out->energy_parts[HN_ENERGY_PROJECTION] += e4 - e3;
     out->loop_work_abs += fabs(work);
     b->kept++;
 }
 
 /// Makes one step of the run and records it: the exact flows over the same time, the differences
 /// between them and the step, and the energies.
-static hn_status book_step(hn_books *b, hn_diag *diag) {
+static hn_status book_step(hn_budget_work *b, hn_diag *diag) {
     hn_stepping *steps = b->steps;
     HN_TRY(make_room(b, diag));
 
     // state at the start of the step, and the step size where it is known beforehand
-    double *y = hn_books_record(b, b->kept) + 2, work = 0;
+    double *y = hn_budget_work_record(b, b->kept) + 2, work = 0;
     const double t = steps->now.t, planned = steps->adaptive ? 0 : steps->h_next;
-    hn_books_present(b, y);
+    hn_budget_work_present(b, y);
 
     // B comes before the step where the step size is known: the formulation still has the chart or
     // basis that the step will use
@@ -218,17 +219,17 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     return HN_OK;
 }
 
-static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
+static hn_status book_steps(hn_budget_work *b, double T, hn_diag *diag) {
     const long long most = b->opts->max_steps > 0 ? b->opts->max_steps : MOST_STEPS;
     hn_status status = HN_OK;
     while (status == HN_OK && b->steps->now.t < T * (1 - HN_BOOKS_ARRIVED)) {
         if ((long long)b->kept >= most) {
             return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
-                               "the account is for %lld steps at most", most);
+                               "an error budget is made of %lld steps at most", most);
         }
         if (b->kept % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
-            hn_books_asked_to_stop(b, 0.3 * b->steps->now.t / T)) {
-            return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request");
+            hn_budget_work_asked_to_stop(b, 0.3 * b->steps->now.t / T)) {
+            return hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "stopped on request");
         }
         if (b->steps->adaptive && b->steps->h_next > T - b->steps->now.t) {
             b->steps->h_next = T - b->steps->now.t; // the last step ends at T
@@ -240,7 +241,7 @@ static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
 
 // ---- the whole ----
 
-static hn_status create_memory(hn_books *b) {
+static hn_status create_memory(hn_budget_work *b) {
     hn_arena *arena = b->arena;
     const size_t ny = (size_t)b->ny, nd = (size_t)b->nd, nv = (size_t)b->info.nv;
 
@@ -269,7 +270,7 @@ static hn_status create_memory(hn_books *b) {
     return HN_OK;
 }
 
-static hn_status create_parts(hn_books *b) {
+static hn_status create_parts(hn_budget_work *b) {
     const hn_accel_opts with = {.want_lambda = 1};
     hn_status status = create_memory(b);
 
@@ -291,7 +292,7 @@ static hn_status create_parts(hn_books *b) {
 
 /// Adds to the message the singular configuration that the run has passed: it is the usual reason
 /// why a flow cannot be followed.
-static void explain(const hn_books *b, hn_diag *diag) {
+static void explain(const hn_budget_work *b, hn_diag *diag) {
     double t;
     if (hn_run_passed_singular(b->run, &t)) {
         const size_t used = strlen(diag->message);
@@ -302,9 +303,9 @@ static void explain(const hn_books *b, hn_diag *diag) {
     }
 }
 
-static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
-    hn_account *out = b->out;
-    hn_books_present(b, b->y);
+static hn_status keep_books(hn_budget_work *b, double T, hn_diag *diag) {
+    hn_budget *out = b->out;
+    hn_budget_work_present(b, b->y);
     const double start = energy_at(b, b->steps->now.t, b->y);
     out->conservative = hn_run_is_conservative(b->run);
 
@@ -319,7 +320,7 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     snprintf(out->reason, sizeof out->reason, "%.255s", s.reason);
     out->t = b->steps->now.t;
     out->steps = (long long)b->kept;
-    hn_books_present(b, b->y);
+    hn_budget_work_present(b, b->y);
     out->energy = energy_at(b, out->t, b->y) - start;
     out->swing = b->t_max + b->v_max - b->v_min;
     if (failed) {
@@ -327,25 +328,25 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     }
 
     // the error at the end and its causes
-    HN_THEN(status, hn_books_look_back(b, out->t, diag));
+    HN_THEN(status, hn_budget_work_look_back(b, out->t, diag));
     if (status == HN_ERR_NO_CONVERGENCE) {
         explain(b, diag);
     }
     return status;
 }
 
-hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, const double *q,
-                          const double *v, double T, const hn_account_opts *opts, hn_account *out,
-                          hn_diag *diag) {
-    static const hn_account_opts none = {0};
-    hn_books b = {.sys = sys,
-                  .info = hn_system_get_info(sys),
-                  .opts = opts ? opts : &none,
-                  .out = out,
-                  .asked = T,
-                  .v_min = HUGE_VAL,
-                  .v_max = -HUGE_VAL};
-    *out = (hn_account){.coordinate = -1};
+hn_status hn_budget_make(const hn_system *sys, const hn_method_spec *spec, const double *q,
+                         const double *v, double T, const hn_budget_opts *opts, hn_budget *out,
+                         hn_diag *diag) {
+    static const hn_budget_opts none = {0};
+    hn_budget_work b = {.sys = sys,
+                        .info = hn_system_get_info(sys),
+                        .opts = opts ? opts : &none,
+                        .out = out,
+                        .asked = T,
+                        .v_min = HUGE_VAL,
+                        .v_max = -HUGE_VAL};
+    *out = (hn_budget){.coordinate = -1};
     b.ny = b.info.nq + b.info.nv;
     b.nd = 2 * b.info.nv;
 

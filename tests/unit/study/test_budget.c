@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The account of a run adds up, and puts errors and energy where they are known to come from.
+// The budget of a run adds up, and puts errors and energy where they are known to come from.
 
-#include "study/account/account.h"
+#include "study/budget/budget.h"
 #include "support/model.h"
 #include "support/near.h"
 #include "support/trial.h"
@@ -9,21 +9,21 @@
 #include <math.h>
 #include <string.h>
 
-static hn_account account_of(const hn_model *m, const char *method, double T) {
+static hn_budget budget_of(const hn_model *m, const char *method, double T) {
     const hn_method_spec spec = hn_trial_spec(method);
-    hn_account a;
+    hn_budget a;
     hn_diag diag = {0};
-    const hn_status status = hn_account_make(m->sys, &spec, m->q, m->v, T, NULL, &a, &diag);
+    const hn_status status = hn_budget_make(m->sys, &spec, m->q, m->v, T, NULL, &a, &diag);
     if (status != HN_OK) {
         fail_msg("%s: %s", method, diag.message);
     }
     return a;
 }
 
-static double bill_of(const hn_account *a) {
+static double sum_of_parts(const hn_budget *a) {
     double sum = 0;
-    for (int i = 0; i < HN_BILL_COUNT; i++) {
-        sum += a->bill[i];
+    for (int i = 0; i < HN_ENERGY_COUNT; i++) {
+        sum += a->energy_parts[i];
     }
     return sum;
 }
@@ -40,15 +40,15 @@ static void parts_add_up_to_the_error_and_the_energy_of_every_kind_of_method(voi
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        const hn_account a = account_of(&m, methods[i], 1);
+        const hn_budget a = budget_of(&m, methods[i], 1);
         assert_int_equal(a.state, HN_RUN_FINISHED);
         // first order: what is left out is the square of the error, against a motion known to 1e-12
         assert_near(a.sum, a.error, 1e-3 * fabs(a.error) + 2e-12);
-        assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
+        assert_near(sum_of_parts(&a), a.energy, 1e-12 * a.swing);
         // nothing comes from outside where nothing acts from outside: flows are followed to 1e-14
         // in each of up to 1000 steps
         assert_true(a.conservative);
-        assert_near(a.bill[HN_BILL_OUTSIDE], 0, 1e-11 * a.swing);
+        assert_near(a.energy_parts[HN_ENERGY_OUTSIDE], 0, 1e-11 * a.swing);
     }
     hn_model_close(&m);
 }
@@ -67,12 +67,12 @@ static void parts_add_up_through_many_loops_and_in_space(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         hn_model m;
         hn_model_open_closed(&m, cases[i].scene, NULL);
-        const hn_account a = account_of(&m, cases[i].method, cases[i].T);
+        const hn_budget a = budget_of(&m, cases[i].method, cases[i].T);
         hn_model_close(&m);
         // as above
         assert_near(a.sum, a.error, 1e-3 * fabs(a.error) + 2e-12);
         assert_true(fabs(a.error) > 1e-11);
-        assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
+        assert_near(sum_of_parts(&a), a.energy, 1e-12 * a.swing);
     }
 }
 
@@ -82,8 +82,8 @@ static void what_is_left_out_is_of_second_order(void **state) {
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
     for (int i = 0; i < 2; i++) {
-        const hn_account a =
-            account_of(&m, i ? "projection@euler:h=5e-5" : "projection@euler:h=1e-4", 1);
+        const hn_budget a =
+            budget_of(&m, i ? "projection@euler:h=5e-5" : "projection@euler:h=1e-4", 1);
         rest[i] = fabs(a.sum - a.error) / fabs(a.error);
     }
     hn_model_close(&m);
@@ -94,24 +94,24 @@ static void the_printed_form_is_wrong_by_its_equations_and_not_by_its_steps(void
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
-    const hn_account full = account_of(&m, "nullspace@rk4:h=1e-2", 0.5),
-                     printed = account_of(&m, "nullspace-as-printed@rk4:h=1e-2", 0.5);
+    const hn_budget full = budget_of(&m, "nullspace@rk4:h=1e-2", 0.5),
+                    printed = budget_of(&m, "nullspace-as-printed@rk4:h=1e-2", 0.5);
     hn_model_close(&m);
     // M_r' v_r is missing whatever the step: orders of magnitude more than RK4 leaves at this one
     assert_true(fabs(printed.part[HN_CAUSE_FORMULATION]) >
                 1e4 * fabs(printed.part[HN_CAUSE_TRUNCATION]));
-    assert_rel(printed.bill[HN_BILL_FORMULATION], printed.energy, 1e-5);
+    assert_rel(printed.energy_parts[HN_ENERGY_FORMULATION], printed.energy, 1e-5);
     // the full form is the equations of motion: flows agree to rounding
     assert_near(full.part[HN_CAUSE_FORMULATION], 0, 1e-12);
-    assert_near(full.bill[HN_BILL_FORMULATION], 0, 1e-12 * full.swing);
+    assert_near(full.energy_parts[HN_ENERGY_FORMULATION], 0, 1e-12 * full.swing);
 }
 
 static void drift_is_what_a_projection_would_have_spared(void **state) {
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
-    const hn_account raw = account_of(&m, "index1@rk4:h=1e-2", 1),
-                     closed = account_of(&m, "projection@rk4:h=1e-2", 1);
+    const hn_budget raw = budget_of(&m, "index1@rk4:h=1e-2", 1),
+                    closed = budget_of(&m, "projection@rk4:h=1e-2", 1);
     hn_model_close(&m);
     // the same steps of the same integrator: along the loops' motion they do the same harm, to a
     // few parts in a thousand of it, because the states they start from are apart by the drift
@@ -124,23 +124,24 @@ static void what_explicit_euler_puts_in_is_of_first_order(void **state) {
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
-    const hn_account coarse = account_of(&m, "projection@euler:h=2e-4", 1),
-                     fine = account_of(&m, "projection@euler:h=1e-4", 1);
+    const hn_budget coarse = budget_of(&m, "projection@euler:h=2e-4", 1),
+                    fine = budget_of(&m, "projection@euler:h=1e-4", 1);
     hn_model_close(&m);
     // one order: half the step, half of what its steps put in
-    assert_rel(coarse.bill[HN_BILL_TRUNCATION] / fine.bill[HN_BILL_TRUNCATION], 2, 0.02);
+    assert_rel(coarse.energy_parts[HN_ENERGY_TRUNCATION] / fine.energy_parts[HN_ENERGY_TRUNCATION],
+               2, 0.02);
 }
 
 static void drives_and_dampers_stand_as_outside(void **state) {
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "driven-crank", NULL);
-    const hn_account a = account_of(&m, "projection@rk4:h=2e-3", 1);
+    const hn_budget a = budget_of(&m, "projection@rk4:h=2e-3", 1);
     hn_model_close(&m);
     assert_false(a.conservative);
-    assert_true(fabs(a.bill[HN_BILL_OUTSIDE]) > 1e-3 * a.swing);
-    assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
-    assert_near(a.bill[HN_BILL_LOOPS], 0, 1e-10 * a.swing);
+    assert_true(fabs(a.energy_parts[HN_ENERGY_OUTSIDE]) > 1e-3 * a.swing);
+    assert_near(sum_of_parts(&a), a.energy, 1e-12 * a.swing);
+    assert_near(a.energy_parts[HN_ENERGY_LOOPS], 0, 1e-10 * a.swing);
 }
 
 static void the_exact_motion_may_be_given_and_is_taken_for_the_end_asked_for_only(void **state) {
@@ -149,7 +150,7 @@ static void the_exact_motion_may_be_given_and_is_taken_for_the_end_asked_for_onl
     hn_model_open_closed(&m, "fb0", NULL);
     hn_diag diag = {0};
     // one digit of it is wrong on purpose: the error is off by just that
-    const hn_account own = account_of(&m, "projection@rk4:h=1e-2", 1);
+    const hn_budget own = budget_of(&m, "projection@rk4:h=1e-2", 1);
     hn_run *run;
     hn_sample sample;
     const hn_method_spec tight = hn_trial_spec("projection@dop853:rtol=1e-13");
@@ -161,16 +162,16 @@ static void the_exact_motion_may_be_given_and_is_taken_for_the_end_asked_for_onl
     memcpy(exact, sample.q, (size_t)m.info.n_user * sizeof *exact);
     hn_run_free(run);
     exact[own.coordinate] -= copysign(1e-3, own.error);
-    const hn_account_opts opts = {.exact = exact};
-    hn_account given, past;
+    const hn_budget_opts opts = {.exact = exact};
+    hn_budget given, past;
     hn_method_spec spec = hn_trial_spec("projection@rk4:h=1e-2");
-    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, &opts, &given, &diag), HN_OK);
+    assert_int_equal(hn_budget_make(m.sys, &spec, m.q, m.v, 1, &opts, &given, &diag), HN_OK);
     assert_int_equal(given.coordinate, own.coordinate);
     assert_near(given.error - own.error, copysign(1e-3, own.error), 1e-11);
     assert_near(given.sum, own.sum, 1e-15); // the parts are of the run alone
     // 0.03 does not divide 1: the run ends at 1.02, where what was given is not the motion
     spec = hn_trial_spec("projection@rk4:h=3e-2");
-    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, &opts, &past, &diag), HN_OK);
+    assert_int_equal(hn_budget_make(m.sys, &spec, m.q, m.v, 1, &opts, &past, &diag), HN_OK);
     assert_near(past.t, 1.02, 1e-9);
     assert_near(past.sum, past.error, 1e-3 * fabs(past.error) + 2e-12);
     hn_model_close(&m);
@@ -186,38 +187,38 @@ static void what_cannot_be_accounted_for_is_told(void **state) {
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
     const hn_method_spec spec = hn_trial_spec("index1@rk4:h=1e-3");
-    hn_account a;
+    hn_budget a;
     hn_diag diag = {0};
-    hn_account_opts opts = {.max_steps = 10};
-    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, &opts, &a, &diag), HN_ERR_LIMIT);
+    hn_budget_opts opts = {.max_steps = 10};
+    assert_int_equal(hn_budget_make(m.sys, &spec, m.q, m.v, 1, &opts, &a, &diag), HN_ERR_LIMIT);
     assert_non_null(strstr(diag.message, "10 steps"));
-    opts = (hn_account_opts){.stop = stop_at_once};
-    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, &opts, &a, &diag), HN_ERR_BUDGET);
-    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, -1, NULL, &a, &diag), HN_ERR_INPUT);
+    opts = (hn_budget_opts){.stop = stop_at_once};
+    assert_int_equal(hn_budget_make(m.sys, &spec, m.q, m.v, 1, &opts, &a, &diag), HN_ERR_STOPPED);
+    assert_int_equal(hn_budget_make(m.sys, &spec, m.q, m.v, -1, NULL, &a, &diag), HN_ERR_INPUT);
     hn_model_close(&m);
 }
 
-static void a_run_that_fails_keeps_its_bill_and_has_no_error_at_the_end(void **state) {
+static void a_run_that_fails_keeps_its_energy_budget_and_has_no_error_at_the_end(void **state) {
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "double-rocker", NULL);
-    const hn_account a = account_of(&m, "reduced@rk4:h=1e-3", 1); // th1 turns back at 0.653 s
+    const hn_budget a = budget_of(&m, "reduced@rk4:h=1e-3", 1); // th1 turns back at 0.653 s
     hn_model_close(&m);
     assert_int_equal(a.state, HN_RUN_FAILED);
     assert_true(a.reason[0] != 0 && a.t < 0.66 && a.steps > 600);
     assert_int_equal(a.coordinate, -1);
-    assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
+    assert_near(sum_of_parts(&a), a.energy, 1e-12 * a.swing);
 }
 
-static void past_a_pose_that_loses_rank_there_is_no_account_and_the_pose_is_told(void **state) {
+static void past_a_pose_that_loses_rank_there_is_no_budget_and_the_pose_is_told(void **state) {
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "n-four-bar", NULL); // all links in one line first at 0.71 s
-    const hn_account before = account_of(&m, "projection@rk4:h=4e-3", 0.4);
+    const hn_budget before = budget_of(&m, "projection@rk4:h=4e-3", 0.4);
     const hn_method_spec spec = hn_trial_spec("projection@rk4:h=4e-3");
-    hn_account past;
+    hn_budget past;
     hn_diag diag = {0};
-    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, NULL, &past, &diag),
+    assert_int_equal(hn_budget_make(m.sys, &spec, m.q, m.v, 1, NULL, &past, &diag),
                      HN_ERR_NO_CONVERGENCE);
     hn_model_close(&m);
     // in the step that goes across it, whatever the size of steps that the flow before it had found
@@ -239,8 +240,8 @@ int main(void) {
         cmocka_unit_test(drives_and_dampers_stand_as_outside),
         cmocka_unit_test(the_exact_motion_may_be_given_and_is_taken_for_the_end_asked_for_only),
         cmocka_unit_test(what_cannot_be_accounted_for_is_told),
-        cmocka_unit_test(past_a_pose_that_loses_rank_there_is_no_account_and_the_pose_is_told),
-        cmocka_unit_test(a_run_that_fails_keeps_its_bill_and_has_no_error_at_the_end),
+        cmocka_unit_test(past_a_pose_that_loses_rank_there_is_no_budget_and_the_pose_is_told),
+        cmocka_unit_test(a_run_that_fails_keeps_its_energy_budget_and_has_no_error_at_the_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/account/flow.h"
+#include "study/budget/flow.h"
 
 #include "integrators/step/control.h"
 #include "integrators/list/stepper_list.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/style/style.h"
-#include "session/accounts/accounts_html.h"
+#include "session/budgets/budgets_html.h"
 
-#include "session/accounts/accounts_internal.h"
+#include "session/budgets/budgets_internal.h"
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
-#include "session/accounts/accounts_plot.h"
+#include "session/budgets/budgets_plot.h"
 #include "session/precision/study_html.h"
 
 #include <math.h>
@@ -24,20 +24,21 @@ static void put_head(hn_strbuf *b, int energy) {
     hn_strbuf_add(b, "<thead><tr><th>method</th><th>");
     hn_strbuf_add(b, energy ? "to t</th><th class=\"n\">change"
                             : "error of</th><th class=\"n\">at the end");
-    for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
+    for (int k = 0; k < (energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT); k++) {
         hn_strbuf_printf(b, "</th><th class=\"n\">%s",
-                         energy ? hn_bill_name((hn_bill_item)k) : hn_cause_name((hn_cause)k));
+                         energy ? hn_energy_item_name((hn_energy_item)k)
+                                : hn_cause_name((hn_cause)k));
     }
     hn_strbuf_add(b, energy ? "</th></tr></thead>"
                             : "</th><th class=\"n\">their sum</th></tr></thead>");
 }
 
-/// Writes a line of the table; none for a row without an account or without an error at its end.
-static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *row, int energy) {
-    const hn_coordinate *c = hn_account_coordinate(a->model, row);
+/// Writes a line of the table; none for a row without a budget or without an error at its end.
+static void put_row(hn_strbuf *b, const hn_budgets *a, const hn_budget_row *row, int energy) {
+    const hn_coordinate *c = hn_budget_coordinate(a->model, row);
     const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
 
-    // a row without an account has no line in this table
+    // a row without a budget has no line in this table
     if (row->status != HN_OK || (!energy && !c)) {
         return;
     }
@@ -47,26 +48,26 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
     hn_html_text(b, row->spelling);
     hn_strbuf_add(b, "</th><td class=\"m\">");
     if (energy) {
-        hn_strbuf_printf(b, "%.4g s", row->account.t);
+        hn_strbuf_printf(b, "%.4g s", row->budget.t);
     } else {
         hn_html_text(b, c->name);
     }
     hn_strbuf_add(b, "</td>");
 
     // the whole, its parts, and for errors their sum
-    put_quantity(b, energy ? row->account.energy : row->account.error, unit);
-    for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
-        put_quantity(b, hn_account_part(row, energy, k), unit);
+    put_quantity(b, energy ? row->budget.energy : row->budget.error, unit);
+    for (int k = 0; k < (energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT); k++) {
+        put_quantity(b, hn_budget_part(row, energy, k), unit);
     }
     if (!energy) {
-        put_quantity(b, row->account.sum, unit);
+        put_quantity(b, row->budget.sum, unit);
     }
     hn_strbuf_add(b, "</tr>\n");
 }
 
 /// error = parts (energy = 0), change of energy = parts (1)
-static void put_table(hn_strbuf *b, const hn_accounts *a, int energy) {
-    hn_page_table(b, energy ? "account of energy" : "account of the error");
+static void put_table(hn_strbuf *b, const hn_budgets *a, int energy) {
+    hn_page_table(b, energy ? "budget of energy" : "budget of the error");
     put_head(b, energy);
     hn_strbuf_add(b, "<tbody>");
     for (int i = 0; i < a->n; i++) {
@@ -75,18 +76,18 @@ static void put_table(hn_strbuf *b, const hn_accounts *a, int energy) {
     hn_strbuf_add(b, "</tbody></table></div>");
 }
 
-static void put_reasons(hn_strbuf *b, const hn_accounts *a) {
+static void put_reasons(hn_strbuf *b, const hn_budgets *a) {
     for (int i = 0; i < a->n; i++) {
-        const hn_account_row *row = &a->rows[i];
+        const hn_budget_row *row = &a->rows[i];
         if (row->reason[0]) {
             hn_strbuf_add(b, "<p class=\"wrong\">");
             hn_html_text(b, row->spelling);
-            hn_strbuf_printf(b, ": %s, ", hn_account_state(row));
+            hn_strbuf_printf(b, ": %s, ", hn_budget_state(row));
             hn_html_text(b, row->reason);
             hn_strbuf_add(b, "</p>");
         }
-        char note[HN_ACCOUNT_NOTE];
-        hn_account_note(a->model, row, note);
+        char note[HN_BUDGET_NOTE];
+        hn_budget_note(a->model, row, note);
         if (note[0]) {
             hn_strbuf_add(b, "<p class=\"wrong\">");
             hn_html_text(b, row->spelling);
@@ -103,15 +104,15 @@ static void put_legend(hn_strbuf *b) {
         hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_cause_name((hn_cause)i),
                          hn_cause_about((hn_cause)i));
     }
-    for (int i = HN_BILL_LOOPS; i < HN_BILL_COUNT; i++) {
-        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_bill_name((hn_bill_item)i),
-                         hn_bill_about((hn_bill_item)i));
+    for (int i = HN_ENERGY_LOOPS; i < HN_ENERGY_COUNT; i++) {
+        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_energy_item_name((hn_energy_item)i),
+                         hn_energy_item_about((hn_energy_item)i));
     }
     hn_strbuf_add(b, "</dl><p class=\"quiet\">A formulation without equations of its own has its "
                      "part in truncation; \xe2\x80\x93: it cannot be determined.</p>");
 }
 
-void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
+void hn_budgets_html(hn_strbuf *b, const hn_budgets *a) {
     static const char *const heads[] = {"Where the error at the end comes from",
                                         "Who put energy in, or took it out"};
 
@@ -131,17 +132,17 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
         "beside the exact flow of its own equations and of the equations of motion.</p>",
         a->request.time);
 
-    // methods without an account, with the reason
+    // methods without a budget, with the reason
     put_reasons(b, a);
 
     // the two budgets: plot above table
     for (int energy = 0; energy < 2; energy++) {
-        if (!hn_accounts_can_plot(a->rows, a->n, energy)) {
+        if (!hn_budgets_can_plot(a->rows, a->n, energy)) {
             continue;
         }
         hn_strbuf_printf(b, "<h2>%s</h2>", heads[energy]);
         hn_page_scroll(b, energy ? "picture of energy" : "picture of the error");
-        hn_accounts_plot(b, a->model, a->rows, a->n, energy);
+        hn_budgets_plot(b, a->model, a->rows, a->n, energy);
         hn_strbuf_add(b, "</div>");
         put_table(b, a, energy);
     }

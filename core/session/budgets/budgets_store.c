@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/accounts/accounts_store.h"
+#include "session/budgets/budgets_store.h"
 
-#include "session/accounts/accounts_internal.h"
+#include "session/budgets/budgets_internal.h"
 #include "session/store/stored_json.h"
 
 #include "base/hash.h"
@@ -11,8 +11,8 @@
 
 enum { FORMAT = 2 }; // counts up when the meaning of a line changes
 
-/// Hashes everything that the accounts depend on.
-static uint64_t accounts_key(const hn_accounts *a) {
+/// Hashes everything that the budgets depend on.
+static uint64_t budgets_key(const hn_budgets *a) {
     const hn_scene *scene = hn_model_scene(a->model);
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &scene->hash, sizeof scene->hash);
     hash = hn_hash_double(hash, FORMAT);
@@ -24,13 +24,13 @@ static uint64_t accounts_key(const hn_accounts *a) {
     return hn_hash_mix(hash);
 }
 
-/// The numbers of an account, in the order they are written.
+/// The numbers of a budget, in the order they are written.
 #define NUMBERS(X) X(t) X(error) X(sum) X(energy) X(loop_work_abs) X(swing)
 #define COUNT(name) +1
 enum { N_NUMBERS = 0 NUMBERS(COUNT) };
 #undef COUNT
 
-static bool take_account(const cJSON *o, int n_user, hn_account *a) {
+static bool take_account(const cJSON *o, int n_user, hn_budget *a) {
     double numbers[N_NUMBERS], steps;
     int state, k = 0;
     if (!hn_stored_int(o, "state", HN_RUN_FAILED + 1, &state) ||
@@ -40,7 +40,7 @@ static bool take_account(const cJSON *o, int n_user, hn_account *a) {
         !hn_stored_int(o, "conservative", 2, &a->conservative) ||
         !hn_stored_numbers(o, "numbers", numbers, N_NUMBERS) ||
         !hn_stored_numbers(o, "parts", a->part, HN_CAUSE_COUNT) ||
-        !hn_stored_numbers(o, "bill", a->bill, HN_BILL_COUNT)) {
+        !hn_stored_numbers(o, "energy_parts", a->energy_parts, HN_ENERGY_COUNT)) {
         return false;
     }
     a->coordinate--; // -1: none
@@ -53,11 +53,11 @@ static bool take_account(const cJSON *o, int n_user, hn_account *a) {
 }
 
 static int take_line(void *user, const cJSON *o) {
-    hn_accounts *a = user;
-    hn_account_row row;
+    hn_budgets *a = user;
+    hn_budget_row row;
     int i, status;
     if (!hn_stored_int(o, "m", a->n, &i) || !hn_stored_int(o, "status", HN_STATUS_COUNT, &status) ||
-        status == HN_ERR_BUDGET) {
+        status == HN_ERR_STOPPED) {
         return 0;
     }
     row = a->rows[i];
@@ -65,20 +65,20 @@ static int take_line(void *user, const cJSON *o) {
     if (!hn_stored_number(o, "holds_until", &row.holds_until) ||
         !hn_stored_text(o, "reason", row.reason, sizeof row.reason) ||
         (status == HN_OK &&
-         !take_account(o, hn_system_get_info(hn_model_system(a->model)).n_user, &row.account))) {
+         !take_account(o, hn_system_get_info(hn_model_system(a->model)).n_user, &row.budget))) {
         return 0;
     }
-    a->resumed += a->rows[i].status == HN_ERR_BUDGET;
+    a->resumed += a->rows[i].status == HN_ERR_STOPPED;
     a->rows[i] = row;
     return 1;
 }
 
-hn_status hn_accounts_open_journal(hn_accounts *a, hn_diags *diags) {
-    return hn_journal_open(&a->journal, a->request.limits.folder, "budget", accounts_key(a),
+hn_status hn_budgets_open_journal(hn_budgets *a, hn_diags *diags) {
+    return hn_journal_open(&a->journal, a->request.limits.folder, "budget", budgets_key(a),
                            take_line, a, diags);
 }
 
-static void put_account(hn_strbuf *b, const hn_account *a) {
+static void put_budget(hn_strbuf *b, const hn_budget *a) {
 #define PUT(name) a->name,
     const double numbers[] = {NUMBERS(PUT)};
 #undef PUT
@@ -89,11 +89,11 @@ static void put_account(hn_strbuf *b, const hn_account *a) {
     hn_json_put_int(b, "conservative", a->conservative);
     hn_json_put_numbers(b, "numbers", numbers, N_NUMBERS);
     hn_json_put_numbers(b, "parts", a->part, HN_CAUSE_COUNT);
-    hn_json_put_numbers(b, "bill", a->bill, HN_BILL_COUNT);
+    hn_json_put_numbers(b, "energy_parts", a->energy_parts, HN_ENERGY_COUNT);
 }
 
-void hn_accounts_keep(hn_accounts *a, int i) {
-    const hn_account_row *row = &a->rows[i];
+void hn_budgets_keep(hn_budgets *a, int i) {
+    const hn_budget_row *row = &a->rows[i];
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
@@ -102,7 +102,7 @@ void hn_accounts_keep(hn_accounts *a, int i) {
     hn_json_put_string(&b, "reason", row->reason);
     hn_json_put_number(&b, "holds_until", row->holds_until);
     if (row->status == HN_OK) {
-        put_account(&b, &row->account);
+        put_budget(&b, &row->budget);
     }
     hn_journal_write(&a->journal, &b);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_STUDY_ACCOUNT_H
-#define HN_STUDY_ACCOUNT_H
+#ifndef HN_STUDY_BUDGET_H
+#define HN_STUDY_BUDGET_H
 // The error budget of a run: what each step adds to the error at the end, and to the energy, split
 // by cause. The parts add up to the whole.
 //
@@ -47,25 +47,25 @@ typedef enum hn_cause {
 const char *hn_cause_name(hn_cause cause);
 const char *hn_cause_about(hn_cause cause);
 
-#define HN_BILL_LIST(X)                                                               \
-    X(HN_BILL_TRUNCATION, "truncation", "steps of the integrator")                    \
-    X(HN_BILL_FORMULATION, "formulation", "terms that the formulation adds")          \
-    X(HN_BILL_PROJECTION, "projection", "projection")                                 \
-    X(HN_BILL_LOOPS, "loops", "loop forces, where the loops are not closed in speed") \
-    X(HN_BILL_OUTSIDE, "outside", "dampers, drives and loads: work that is meant")
+#define HN_ENERGY_LIST(X)                                                               \
+    X(HN_ENERGY_TRUNCATION, "truncation", "steps of the integrator")                    \
+    X(HN_ENERGY_FORMULATION, "formulation", "terms that the formulation adds")          \
+    X(HN_ENERGY_PROJECTION, "projection", "projection")                                 \
+    X(HN_ENERGY_LOOPS, "loops", "loop forces, where the loops are not closed in speed") \
+    X(HN_ENERGY_OUTSIDE, "outside", "dampers, drives and loads: work that is meant")
 
-typedef enum hn_bill_item {
-#define HN_BILL_ENUM(code, name, about) code,
-    HN_BILL_LIST(HN_BILL_ENUM)
-#undef HN_BILL_ENUM
-        HN_BILL_COUNT
-} hn_bill_item;
-/// Columns 2 and 3 of HN_BILL_LIST.
-const char *hn_bill_name(hn_bill_item item);
-const char *hn_bill_about(hn_bill_item item);
+typedef enum hn_energy_item {
+#define HN_ENERGY_ENUM(code, name, about) code,
+    HN_ENERGY_LIST(HN_ENERGY_ENUM)
+#undef HN_ENERGY_ENUM
+        HN_ENERGY_COUNT
+} hn_energy_item;
+/// Columns 2 and 3 of HN_ENERGY_LIST.
+const char *hn_energy_item_name(hn_energy_item item);
+const char *hn_energy_item_about(hn_energy_item item);
 
-typedef struct hn_account {
-    hn_run_state state; ///< of the run; an account of a failed one goes to where it got
+typedef struct hn_budget {
+    hn_run_state state; ///< of the run; a budget of a failed one goes to where it got
     char reason[256];
     double t; ///< reached [s]
     long long steps;
@@ -75,16 +75,16 @@ typedef struct hn_account {
     double sum;                  ///< of the parts: equals `error` as far as first order holds
     /// 0: the integrator takes the constraints as they are: formulation and truncation are one
     int has_equations;
-    double energy;              ///< E(end) - E(start) [J]
-    double bill[HN_BILL_COUNT]; ///< [J], adds up to `energy`
-    /// sum of |work of the loop forces| over the steps [J]: in the bill positive and negative work
+    double energy;                        ///< E(end) - E(start) [J]
+    double energy_parts[HN_ENERGY_COUNT]; ///< [J], adds up to `energy`
+    /// sum of |work of the loop forces| over the steps [J]: in the parts positive and negative work
     /// cancel
     double loop_work_abs;
     double swing;     ///< largest T plus range of V [J]: the scale of energies
     int conservative; ///< nothing should come from outside
-} hn_account;
+} hn_budget;
 
-typedef struct hn_account_opts {
+typedef struct hn_budget_opts {
     long long max_steps; ///< 0: 200,000
     /// n_user: the exact motion at T, in user coordinates; NULL: found here, by a run at tight
     /// tolerance
@@ -92,16 +92,15 @@ typedef struct hn_account_opts {
     int (*stop)(void *user); ///< asked now and then; NULL: never
     void (*progress)(void *user, double share);
     void *user;
-} hn_account_opts;
+} hn_budget_opts;
 
 /// Computes the error budget of one method from the assembled state (q, v) in system coordinates to
 /// the time T [s]. Costs some 100 times the run, whatever the number of degrees of freedom.
-/// Fails: HN_ERR_LIMIT (more steps than can be kept; the message has the number), HN_ERR_BUDGET
+/// Fails: HN_ERR_LIMIT (more steps than can be kept; the message has the number), HN_ERR_STOPPED
 /// (stopped on request), HN_ERR_NO_CONVERGENCE (the flows beside the run, or the exact motion,
 /// could not be followed: past a configuration where J loses rank there is no flow off the loops),
 /// HN_ERR_MEMORY; and as hn_run_create().
-HN_MUST_CHECK hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec,
-                                        const double *q, const double *v, double T,
-                                        const hn_account_opts *opts, hn_account *out,
-                                        hn_diag *diag);
+HN_MUST_CHECK hn_status hn_budget_make(const hn_system *sys, const hn_method_spec *spec,
+                                       const double *q, const double *v, double T,
+                                       const hn_budget_opts *opts, hn_budget *out, hn_diag *diag);
 #endif

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_STUDY_ACCOUNT_STATE_H
-#define HN_STUDY_ACCOUNT_STATE_H
+#ifndef HN_STUDY_BUDGET_STATE_H
+#define HN_STUDY_BUDGET_STATE_H
 // The state of an error budget while it is made: the record of the steps and the workspaces.
-// account.c fills the record from the start of the run to its end; account_back.c reads it from the
+// budget.c fills the record from the start of the run to its end; budget_back.c reads it from the
 // end back to the start.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/linearise.h"
 #include "linalg/saddle.h"
 #include "formulations/ground/accel_jacobian.h"
-#include "study/account/account.h"
-#include "study/account/flow.h"
+#include "study/budget/budget.h"
+#include "study/budget/flow.h"
 #include "study/run/run.h"
 
 enum { HN_BOOKS_BETWEEN_QUESTIONS = 16 }; ///< steps
@@ -20,15 +20,15 @@ enum { HN_BOOKS_BETWEEN_QUESTIONS = 16 }; ///< steps
 /// The three parts of (1), each a displacement in q along the speeds (nv) and one in v (nv).
 enum { HN_PART_TRUNCATION, HN_PART_FORMULATION, HN_PART_PROJECTION, HN_PARTS };
 
-typedef struct hn_books {
+typedef struct hn_budget_work {
     hn_arena *arena;
     const hn_system *sys;
     hn_system_info info;
     int ny, nd; ///< nq + nv, 2 nv
     hn_run *run;
     hn_stepping *steps; ///< of the run
-    const hn_account_opts *opts;
-    hn_account *out;
+    const hn_budget_opts *opts;
+    hn_budget *out;
     double asked; ///< end [s]
     hn_accel *accel;
     hn_eval *eval;     ///< energy, J, phi_t
@@ -46,12 +46,12 @@ typedef struct hn_books {
     double *w, *column, *up, *down, *split; ///< nd, nd, ny, ny, nd
     double *zero, *gap, *a, *lambda;
     double v_min, v_max, t_max;
-} hn_books;
+} hn_budget_work;
 
 /// Returns the record of step k: t, h, y, parts.
-double *hn_books_record(const hn_books *b, size_t k);
+double *hn_budget_work_record(const hn_budget_work *b, size_t k);
 /// Copies the state that the run has reached: y (ny).
-void hn_books_present(const hn_books *b, double *y);
+void hn_budget_work_present(const hn_budget_work *b, double *y);
 /// Reports the share that is done (0 to 1) to the caller and returns 1 if the caller asks to stop.
-int hn_books_asked_to_stop(const hn_books *b, double share);
+int hn_budget_work_asked_to_stop(const hn_budget_work *b, double share);
 #endif
