@@ -102,7 +102,7 @@ static bool run_method(const hn_model *model, const hn_ref *ref, const char *tex
         if (!hn_accuracy_reach(a, s.t, hn_run_get_summary(run).cost.ops)) {
             continue; // where the watch is late it claims nothing
         }
-        hn_accuracy_see(a, &spec, &s, &track);
+        hn_accuracy_see(a, &s, &track);
         for (int i = 0; i < HN_ERROR_COUNT; i++) {
             truth[i] = fmax(truth[i], error[i]);
         }

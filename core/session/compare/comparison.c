@@ -289,7 +289,7 @@ static void watch_accuracy(hn_comparison *c) {
         entry *e = &c->entries[i];
         hn_sample sample;
         if (is_live(e) && hn_run_sample(e->run, t, &sample) == HN_OK) {
-            hn_accuracy_see(c->accuracy, hn_run_spec(e->run), &sample, &e->track);
+            hn_accuracy_see(c->accuracy, &sample, &e->track);
         }
     }
 }
@@ -490,7 +490,8 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
         put_sample(b, c, &sample);
         put_cost(b, &s);
         put_step_cost(b, c, i);
-        hn_estimate_put_json(b, c->accuracy, &c->entries[i].track, s.t);
+        hn_estimate_put_json(b, c->accuracy, hn_run_spec(c->entries[i].run), &c->entries[i].track,
+                             s.t);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
@@ -583,7 +584,7 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         // cost and error totals
         put_cost(b, &s);
         put_step_cost(b, c, i);
-        hn_estimate_put_json(b, c->accuracy, &c->entries[i].track,
+        hn_estimate_put_json(b, c->accuracy, hn_run_spec(c->entries[i].run), &c->entries[i].track,
                              fmin(s.t, (double)c->frame * c->frame_dt));
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);

@@ -3,8 +3,14 @@
 
 #include <math.h>
 
-void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_accuracy_track *track,
-                          double t_run) {
+/// Error of the coordinates over the tolerance that was asked for.
+static double over_tolerance(const hn_estimate *e, const hn_method_spec *spec) {
+    const double rtol = hn_method_is_adaptive(spec) ? hn_method_option(spec, "rtol", 0) : 0;
+    return e->known && rtol > 0 && e->q > e->own ? e->q / rtol : nan("");
+}
+
+void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_method_spec *spec,
+                          const hn_accuracy_track *track, double t_run) {
     const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
     const double none = nan("");
     hn_json_key(b, "error_estimate");
@@ -14,6 +20,7 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_ac
     hn_json_put_number(b, "reaction", e.known ? e.reaction : none);
     hn_json_put_number(b, "own", e.known ? e.own : none);
     hn_json_put_number(b, "t", e.known ? e.t : none);
+    hn_json_put_number(b, "over_rtol", over_tolerance(&e, spec));
     hn_json_put_string(b, "reason", e.reason);
     hn_json_end_object(b);
 }

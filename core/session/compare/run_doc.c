@@ -151,7 +151,7 @@ static void add_points(table *tab, const hn_sample *s, size_t k) {
 /// Shows the accuracy watch a sample, where it wants one.
 static void watch_accuracy(table *tab, const hn_sample *s, const hn_run *run) {
     if (hn_accuracy_reach(tab->accuracy, s->t, hn_run_get_summary(run).cost.ops)) {
-        hn_accuracy_see(tab->accuracy, hn_run_spec(run), s, &tab->track);
+        hn_accuracy_see(tab->accuracy, s, &tab->track);
     }
 }
 
@@ -505,7 +505,7 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     hn_json_put_number(b, "worst_gap", s.worst_gap);
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
     hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
-    hn_estimate_put_json(b, tab->accuracy, &tab->track, fmin(s.t, request->time));
+    hn_estimate_put_json(b, tab->accuracy, hn_run_spec(run), &tab->track, fmin(s.t, request->time));
     put_run_incidents(b, run);
     put_run_cost(b, &s);
     hn_json_end_object(b);

@@ -161,16 +161,17 @@ static const hn_state_at *pilot_start(const hn_stepping *s, double event) {
     return !near && s->earlier.t < event ? &s->earlier : &s->start;
 }
 
-/// Runs a pilot to `end` with samples on the way, as the output of a run has: what lies inside
-/// the steps counts in its largest gap and energy too.
+/// Runs a pilot to `end`. Where it chooses its steps, samples are taken on the way, as the output of
+/// a run has them: what lies inside long steps counts in its largest gap and energy too.
 static hn_status run_pilot(hn_run *pilot, double from, double end) {
-    for (int k = 1; k <= PILOT_LOOKS; k++) {
-        const double t = k < PILOT_LOOKS ? from + (end - from) * k / PILOT_LOOKS : end;
+    const int looks = hn_method_is_adaptive(hn_run_spec(pilot)) ? PILOT_LOOKS : 0;
+    for (int k = 1; k <= looks; k++) {
+        const double t = from + (end - from) * k / (looks + 1);
         hn_sample sample;
         HN_TRY(hn_run_advance(pilot, t));
         HN_TRY(hn_run_sample(pilot, t, &sample));
     }
-    return HN_OK;
+    return hn_run_advance(pilot, end);
 }
 
 /// Runs a remedy from the state before the event to a time past it and writes the result to `said`.
@@ -200,6 +201,10 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
     const bool right = is_right(pilot, status);
     hn_run_free(pilot);
 
+    if (status == HN_ERR_STOPPED && sum.steps == 0) {
+        snprintf(said, sizeof(hn_remedy), "not tried: too many steps to t = %.3g s", end);
+        return UNKNOWN;
+    }
     if (status == HN_ERR_STOPPED) {
         snprintf(said, sizeof(hn_remedy), "not tried to the end: %lld steps to t = %.3g s",
                  sum.steps, sum.t);

@@ -195,21 +195,9 @@ bool hn_accuracy_reach(hn_accuracy *a, double t, double ops) {
 
 // ---- what is seen of the runs ----
 
-/// A run by the same integrator at such a tolerance is as far from the true motion as the pilot:
-/// their difference says nothing.
-static bool is_itself(const hn_method_spec *spec) {
-    hn_method_spec own;
-    hn_diag diag = {0};
-    return hn_method_parse(HN_ACCURACY_METHOD, &own, &diag) == HN_OK &&
-           spec->stepper == own.stepper &&
-           hn_method_option(spec, "rtol", 1) <= 10 * hn_method_option(&own, "rtol", 1);
-}
-
-void hn_accuracy_see(hn_accuracy *a, const hn_method_spec *spec, const hn_sample *s,
-                     hn_accuracy_track *track) {
+void hn_accuracy_see(hn_accuracy *a, const hn_sample *s, hn_accuracy_track *track) {
     double error[HN_ERROR_COUNT];
-    track->itself = is_itself(spec);
-    if (!s->q || track->itself) {
+    if (!s->q) {
         return;
     }
     const hn_sample *r = &a->sample;
@@ -235,8 +223,7 @@ hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *
                                  double t_run) {
     hn_estimate e = {.known = track->n > 0, .t = track->t};
     if (!e.known) {
-        snprintf(e.reason, sizeof e.reason, "%s",
-                 track->itself ? "the method is as accurate as the estimate" : a->reason);
+        memcpy(e.reason, a->reason, sizeof e.reason);
         return e;
     }
     e.q = relative(a, track->worst, HN_ERROR_Q, 1);

@@ -6,8 +6,9 @@
 // A pilot run of the same scene by HN_ACCURACY_METHOD goes beside them; what they differ by from it
 // is their error, as long as the pilot's own is smaller. That is estimated too, by a rough run with
 // a tolerance 1000 times as large: a HN_ACCURACY_OWN-th of the difference of the two, which grows
-// with the time, and exponentially where the motion is chaotic. Local errors of single steps would
-// be cheaper, but they say nothing about the error at the end.
+// with the time, and exponentially where the motion is chaotic. No estimate is below it, so that a
+// run by the pilot's own method, which hardly differs from the pilot, gets that number. Local errors
+// of single steps would be cheaper, but they say nothing about the error at the end.
 //
 // Cost: at most HN_ACCURACY_SHARE of the operations of the runs watched, and HN_ACCURACY_FREE
 // operations (some milliseconds) in any case. Where that is not enough the estimate ends, and says
@@ -36,9 +37,8 @@ typedef struct hn_accuracy hn_accuracy;
 /// What has been seen of one run: largest differences, not yet divided by scales.
 typedef struct hn_accuracy_track {
     double worst[HN_ERROR_COUNT];
-    double t;    ///< last time compared [s]
-    int n;       ///< times compared
-    bool itself; ///< the run is by the method of the estimate: nothing can be said
+    double t; ///< last time compared [s]
+    int n;    ///< times compared
 } hn_accuracy_track;
 
 typedef struct hn_estimate {
@@ -63,8 +63,7 @@ bool hn_accuracy_is_due(const hn_accuracy *a, double t);
 /// runs watched, so far. Returns true when samples of time t can be compared now.
 bool hn_accuracy_reach(hn_accuracy *a, double t, double ops);
 /// Compares a sample of the time reached last. `track` starts as zeros.
-void hn_accuracy_see(hn_accuracy *a, const hn_method_spec *spec, const hn_sample *sample,
-                     hn_accuracy_track *track);
+void hn_accuracy_see(hn_accuracy *a, const hn_sample *sample, hn_accuracy_track *track);
 /// The estimate of a run whose samples were seen; t_run: time that it has reached.
 hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *track,
                                  double t_run);

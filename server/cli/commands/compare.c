@@ -8,6 +8,7 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
+#include "session/compare/estimate.h"
 #include "terminal/motion_plot.h"
 #include "terminal/width.h"
 
@@ -83,7 +84,8 @@ static bool has_failed(const cJSON *method) {
     return strcmp(hn_document_text(method, "state"), "failed") == 0;
 }
 
-/// The larger of the estimates of coordinates and reactions, and where it ends before the run.
+/// The larger of the estimates of coordinates and reactions, and where it ends before the run, or
+/// how many times the tolerance the coordinates are off.
 static void put_estimate(hn_table *t, const cJSON *e) {
     const double q = hn_document_number(e, "q");
     if (!isfinite(q)) {
@@ -91,6 +93,9 @@ static void put_estimate(hn_table *t, const cJSON *e) {
     } else if (hn_document_text(e, "reason")[0]) {
         hn_table_cell(t, "%.1e to %.3g s", fmax(q, hn_document_number(e, "reaction")),
                       hn_document_number(e, "t"));
+    } else if (hn_document_number(e, "over_rtol") > HN_TOLERANCE_KEPT) {
+        hn_table_cell(t, "%.1e, %.0f rtol", fmax(q, hn_document_number(e, "reaction")),
+                      hn_document_number(e, "over_rtol"));
     } else {
         hn_table_cell(t, "%.1e", fmax(q, hn_document_number(e, "reaction")));
     }

@@ -8,6 +8,7 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
+#include "session/compare/estimate.h"
 #include "session/compare/run_doc.h"
 #include "study/truth/accuracy.h"
 #include "terminal/motion_plot.h"
@@ -86,20 +87,29 @@ static void tell_incidents(const cJSON *run) {
 }
 
 /// Says how far the motion may be from the true one, and up to when that is known: to people, and
-/// in any case where it is far.
+/// in any case where it is far, or much further than the tolerance says.
 static void tell_estimate(const cJSON *run) {
     const cJSON *e = hn_document_get(run, "error_estimate");
     const double q = hn_document_number(e, "q"), reaction = hn_document_number(e, "reaction");
     const char *reason = hn_document_text(e, "reason");
-    const bool far = fmax(q, reaction) > HN_ACCURACY_WARN;
-    if (!far && !isatty(STDERR_FILENO)) {
+    const double times = hn_document_number(e, "over_rtol");
+    const bool far = fmax(q, reaction) > HN_ACCURACY_WARN, off = times > HN_TOLERANCE_KEPT;
+    if (!far && !off && !isatty(STDERR_FILENO)) {
         return;
     }
     if (isfinite(q)) {
+        char factor[96] = "";
+        if (off) {
+            snprintf(factor, sizeof factor, " (%.0f times rtol, which bounds the error of a step)",
+                     times);
+        }
         fprintf(stderr,
-                "holonom: error estimate up to t = %.4g s: coordinates %.1e, reactions %.1e of "
+                "holonom: error estimate up to t = %.4g s: coordinates %.1e%s, reactions %.1e of "
                 "their largest%s\n",
-                hn_document_number(e, "t"), q, reaction, far ? "; a smaller step is needed" : "");
+                hn_document_number(e, "t"), q, factor, reaction,
+                !far           ? ""
+                : isnan(times) ? "; a smaller step is needed"
+                               : "; a smaller tolerance is needed");
     }
     if (reason[0]) {
         fprintf(stderr, "holonom: no error estimate%s: %s\n", isfinite(q) ? " beyond that" : "",

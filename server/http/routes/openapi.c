@@ -22,7 +22,7 @@
     "{\"type\":\"object\",\"description\":\"relative errors against a pilot run, the "             \
     "largest up to t; null where not known, reason says why\",\"properties\":{\"q\":" MAYBE_NUMBER \
     ",\"v\":" MAYBE_NUMBER ",\"reaction\":" MAYBE_NUMBER ",\"own\":" MAYBE_NUMBER                  \
-    ",\"t\":" MAYBE_NUMBER ",\"reason\":" TEXT "}}"
+    ",\"t\":" MAYBE_NUMBER ",\"over_rtol\":" MAYBE_NUMBER ",\"reason\":" TEXT "}}"
 #define STATUS_NAME(value, name, text) ",\"" name "\""
 #define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
 #define OBJECTS "{\"type\":\"array\",\"items\":{\"type\":\"object\"}}"
