@@ -161,8 +161,8 @@ static const hn_state_at *pilot_start(const hn_stepping *s, double event) {
     return !near && s->earlier.t < event ? &s->earlier : &s->start;
 }
 
-/// Runs a pilot to `end`. Where it chooses its steps, samples are taken on the way, as the output of
-/// a run has them: what lies inside long steps counts in its largest gap and energy too.
+/// Runs a pilot to `end`. Where it chooses its steps, samples are taken on the way, as the output
+/// of a run has them: what lies inside long steps counts in its largest gap and energy too.
 static hn_status run_pilot(hn_run *pilot, double from, double end) {
     const int looks = hn_method_is_adaptive(hn_run_spec(pilot)) ? PILOT_LOOKS : 0;
     for (int k = 1; k <= looks; k++) {

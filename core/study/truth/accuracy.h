@@ -7,8 +7,8 @@
 // is their error, as long as the pilot's own is smaller. That is estimated too, by a rough run with
 // a tolerance 1000 times as large: a HN_ACCURACY_OWN-th of the difference of the two, which grows
 // with the time, and exponentially where the motion is chaotic. No estimate is below it, so that a
-// run by the pilot's own method, which hardly differs from the pilot, gets that number. Local errors
-// of single steps would be cheaper, but they say nothing about the error at the end.
+// run by the pilot's own method, which hardly differs from the pilot, gets that number. Local
+// errors of single steps would be cheaper, but they say nothing about the error at the end.
 //
 // Cost: at most HN_ACCURACY_SHARE of the operations of the runs watched, and HN_ACCURACY_FREE
 // operations (some milliseconds) in any case. Where that is not enough the estimate ends, and says

@@ -119,8 +119,8 @@ static void the_watch_takes_no_more_than_its_share(void **state) {
     hn_model_close(&m);
 }
 
-// the pilot's own method at its own tolerance, coarser and finer: the estimate is the error, or what
-// the pilot may be off itself, and never below the error
+// the pilot's own method at its own tolerance, coarser and finer: the estimate is the error, or
+// what the pilot may be off itself, and never below the error
 static void a_run_by_the_pilots_method_is_judged_too(void **state) {
     (void)state;
     static const char *const methods[] = {
