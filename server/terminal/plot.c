@@ -47,7 +47,7 @@ static range find_range(const hn_plot *plot) {
 
 static void label_of(const hn_plot *plot, double height, char *out, size_t size) {
     if (plot->logarithmic) {
-        snprintf(out, size, "1e%+03.0f", height);
+        snprintf(out, size, "1e%+03ld", lround(height));
     } else {
         snprintf(out, size, "%.3g", height);
     }

@@ -54,7 +54,7 @@ static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_scatter
     const double step = ceil((r.high - r.low) / (inner.rows / 2));
     for (double h = r.high; h >= r.low - 1e-9; h -= step) {
         const int row = (int)lround((r.high - h) / (r.high - r.low) * (inner.rows - 1));
-        hn_cells_printf(c, area, 0, row, HN_CELL_MUTED, 0, "  1e%+03.0f┤", h);
+        hn_cells_printf(c, area, 0, row, HN_CELL_MUTED, 0, "  1e%+03ld┤", lround(h));
     }
 
     // what stands above, and the ends of the horizontal axis

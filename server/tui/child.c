@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,13 +17,36 @@ extern char **environ;
 enum { MOST_ARGUMENTS = 64, CHUNK = 4096 };
 static const size_t MOST_TEXT = 4u << 20; // [bytes] of one study's text
 
-bool hn_child_start(hn_child *child, const char *const *arguments) {
+/// The environment with COLUMNS in front, where the first entry of a name counts. Owned; NULL: no
+/// memory.
+static char **environment_of(char *columns) {
+    size_t n = 0;
+    while (environ[n]) {
+        n++;
+    }
+    char **copy = calloc(n + 2, sizeof *copy);
+    for (size_t i = 0, used = 1; copy && i < n; i++) {
+        if (strncmp(environ[i], "COLUMNS=", 8) != 0) {
+            copy[used++] = environ[i];
+        }
+    }
+    if (copy) {
+        copy[0] = columns;
+    }
+    return copy;
+}
+
+bool hn_child_start(hn_child *child, const char *const *arguments, int columns) {
+    char width[32];
+    snprintf(width, sizeof width, "COLUMNS=%d", columns);
+    char **environment = environment_of(width);
     char *argv[MOST_ARGUMENTS + 2] = {"holonom"};
     int pipe_ends[2], n = 1;
     while (*arguments && n <= MOST_ARGUMENTS) {
         argv[n++] = (char *)(size_t)*arguments++;
     }
-    if (pipe(pipe_ends) != 0) {
+    if (!environment || pipe(pipe_ends) != 0) {
+        free(environment);
         return false;
     }
     fcntl(pipe_ends[0], F_SETFD, FD_CLOEXEC);
@@ -39,7 +63,8 @@ bool hn_child_start(hn_child *child, const char *const *arguments) {
     posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 2);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     const int failed =
-        posix_spawn(&child->pid, "/proc/self/exe", &actions, &attributes, argv, environ);
+        posix_spawn(&child->pid, "/proc/self/exe", &actions, &attributes, argv, environment);
+    free(environment);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
     close(pipe_ends[1]);

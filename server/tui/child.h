@@ -14,9 +14,9 @@ typedef struct hn_child {
     int output;
 } hn_child;
 
-/// Starts `holonom` with these arguments (NULL ends them; without the program's name). false: it
-/// could not be started.
-bool hn_child_start(hn_child *child, const char *const *arguments);
+/// Starts `holonom` with these arguments (NULL ends them; without the program's name), and tells it
+/// that its text has so many columns. false: it could not be started.
+bool hn_child_start(hn_child *child, const char *const *arguments, int columns);
 /// Adds what has arrived to the text; false when the program has ended (and is forgotten then).
 bool hn_child_read(hn_child *child, hn_strbuf *text);
 /// Ends it, with what it started.

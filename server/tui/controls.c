@@ -4,6 +4,8 @@
 #include "tui/keys.h"
 #include "tui/link.h"
 #include "tui/panels.h"
+#include "tui/prompt.h"
+#include "tui/undo.h"
 
 #include <math.h>
 
@@ -35,11 +37,9 @@ static void play(hn_workbench *w) {
 }
 
 static void copy_link(hn_workbench *w) {
-    hn_strbuf link;
-    hn_strbuf_init(&link);
-    hn_workbench_link(w, &link);
-    hn_workbench_say(w, "%s", hn_strbuf_text(&link));
-    hn_strbuf_reset(&link);
+    hn_strbuf_clear(&w->link);
+    hn_workbench_link(w, &w->link);
+    hn_workbench_say(w, "link copied: %s", hn_strbuf_text(&w->link));
     w->copy = true;
 }
 
@@ -88,6 +88,9 @@ static void act(hn_workbench *w, hn_tui_action action) {
     case HN_TUI_DOWN:
         select_method(w, action == HN_TUI_DOWN ? 1 : -1);
         break;
+    case HN_TUI_CYCLE:
+        select_method(w, 1);
+        break;
     case HN_TUI_HIDE:
         w->hidden[w->selected] = !w->hidden[w->selected];
         break;
@@ -101,6 +104,10 @@ static void act(hn_workbench *w, hn_tui_action action) {
         break;
     case HN_TUI_LINK:
         copy_link(w);
+        break;
+    case HN_TUI_UNDO:
+    case HN_TUI_REDO:
+        hn_undo_go(w, action == HN_TUI_REDO ? 1 : -1);
         break;
     case HN_TUI_QUIT:
         w->quit = true;
@@ -117,6 +124,9 @@ void hn_controls_key(hn_workbench *w, int key) {
         hn_prompt_key(w, key);
     } else if (w->panel != HN_PANEL_MAIN) {
         hn_panel_key(w, key);
+        const hn_tui_action chosen = (hn_tui_action)w->chosen;
+        w->chosen = HN_TUI_NONE;
+        act(w, chosen);
     } else if (key >= '1' && key < '1' + w->n_methods) {
         w->selected = key - '1';
     } else if (key == HN_KEY_ESCAPE) {

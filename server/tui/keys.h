@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_KEYS_H
 #define HN_TUI_KEYS_H
-// The keys of the workbench as one table: the loop obeys it, the help shows it. Letters are those
-// of the page (web/state/keys.js).
+// The keys of the workbench as one table: the loop obeys it, the menu shows it. A key that the page
+// has too does the same there (web/state/keys.js); a test compares the two tables.
 
 #include <stdbool.h>
 
@@ -35,21 +35,24 @@ enum {
     X(FASTER, '=', "=", "faster")                                \
     X(UP, HN_KEY_UP, "↑", "select the method above")             \
     X(DOWN, HN_KEY_DOWN, "↓", "select the method below")         \
+    X(CYCLE, '9', "9", "select the next method")                 \
     X(HIDE, 'v', "v", "hide or show the selected method")        \
     X(PLOT, 'g', "g", "next plot: gap, error, energy")           \
-    X(WHY, 'y', "y", "why: the incidents of the method")         \
+    X(WHY, 'i', "i", "why: the incidents of the method")         \
     X(STEP, 'd', "d", "type another step dt")                    \
     X(PARAMETERS, 'p', "p", "change parameters")                 \
     X(METHODS, 'm', "m", "add, change or remove methods")        \
     X(SCENES, 's', "s", "choose another scene")                  \
     X(FORMULAS, 'f', "f", "formulas: the equations of motion")   \
-    X(LESSONS, 't', "t", "texts of the lessons")                 \
+    X(LESSONS, 't', "t", "texts of lessons and exercises")       \
     X(STUDY, 'w', "w", "what accuracy costs (work-precision)")   \
     X(MAP, 'b', "b", "map of stability over alpha and beta")     \
     X(BUDGET, 'e', "e", "where the error comes from")            \
     X(LINK, 'l', "l", "copy a link that opens this in the page") \
-    X(EXPORT, 'x', "x", "write the recording as CSV")            \
-    X(HELP, '?', "?", "this table")                              \
+    X(EXPORT, 'x', "x", "export: recording, scene, programs")    \
+    X(UNDO, 'z', "z", "undo the last change")                    \
+    X(REDO, 'y', "y", "redo it")                                 \
+    X(HELP, '?', "?", "menu: this table, Enter does it")         \
     X(QUIT, 'q', "q", "quit")
 
 typedef enum hn_tui_action {
@@ -70,4 +73,7 @@ typedef struct hn_tui_key {
 int hn_tui_keys(const hn_tui_key **out);
 /// The action of a key on the main view; HN_TUI_NONE: it has none (digits select methods).
 hn_tui_action hn_tui_action_of(int key);
+/// The next key of a text: a character, or a name in angle brackets, "<Enter>", "<Down>"; *text
+/// moves behind it. 0: the text is over, or names no key (*text stays there).
+int hn_tui_key_read(const char **text);
 #endif

@@ -7,32 +7,36 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ACROSS = 2, DOWN = 4 };
+enum { ACROSS = HN_DOTS_ACROSS, DOWN = HN_DOTS_DOWN };
 
-/// From world points to dots: the envelope of the motion fills the area, as much room to all sides.
 typedef struct placing {
-    const hn_workbench *w;
+    const hn_model *model;
+    const hn_envelope *envelope;
     hn_dots *dots;
     const double *points;
     double scale, x, y; ///< dots per metre; dot of the view's origin
 } placing;
 
-static placing place(const hn_workbench *w, hn_dots *dots) {
-    const double *box = w->envelope.box;
+// a dot of braille is about as wide as it is high
+hn_placing hn_mechanism_place(const hn_envelope *envelope, hn_area area) {
+    const double *box = envelope->box;
     const double wide = fmax(box[2] - box[0], 1e-12), tall = fmax(box[3] - box[1], 1e-12);
-    const double columns = dots->columns * ACROSS, rows = dots->rows * DOWN;
-    // a dot of braille is about as wide as it is high
+    const double columns = area.columns * ACROSS, rows = area.rows * DOWN;
     const double scale = fmin((columns - 4) / wide, (rows - 4) / tall);
-    return (placing){.w = w,
-                     .dots = dots,
-                     .scale = scale,
-                     .x = columns / 2 - scale * (box[0] + box[2]) / 2,
-                     .y = rows / 2 + scale * (box[1] + box[3]) / 2};
+    return (hn_placing){.scale = scale,
+                        .x = columns / 2 - scale * (box[0] + box[2]) / 2,
+                        .y = rows / 2 + scale * (box[1] + box[3]) / 2};
+}
+
+static placing place(const hn_model *model, const hn_envelope *envelope, hn_area area,
+                     hn_dots *dots) {
+    const hn_placing at = hn_mechanism_place(envelope, area);
+    return (placing){model, envelope, dots, NULL, at.scale, at.x, at.y};
 }
 
 static void dot_of(const placing *p, int point, double out[2]) {
     double plane[2];
-    hn_view_project(&p->w->envelope.look, p->points + 3 * point, plane);
+    hn_view_project(&p->envelope->look, p->points + 3 * point, plane);
     out[0] = p->x + p->scale * plane[0];
     out[1] = p->y - p->scale * plane[1];
 }
@@ -105,7 +109,7 @@ static void draw_shape(const placing *p, const hn_shape *s, int colour, bool ful
 
 /// A configuration with its open loops: half-joints that are apart are joined by a line of alarm.
 static void draw_pose(placing *p, const double *points, int colour, bool full) {
-    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->w->model));
+    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
     if (!points || isnan(points[0])) {
         return;
     }
@@ -140,25 +144,48 @@ static void scale_bar(hn_cells *c, hn_area area, const placing *p) {
     hn_cells_put(c, area, 2 + columns, area.rows - 1, HN_CELL_MUTED, 0, text);
 }
 
+/// The methods as they are now, or the mechanism that is dragged.
+static void draw_present(placing *p, const hn_workbench *w) {
+    const int frame = hn_workbench_frame(w);
+    const size_t n = 3 * (size_t)hn_system_get_info(hn_model_system(w->model)).n_points;
+    if (w->drag.on && w->drag.points) {
+        draw_pose(p, w->drag.points, HN_CELL_INK, true);
+        return;
+    }
+
+    // from below: reference, ghosts, the selected method
+    draw_pose(p, hn_recording_reference(w->recording, frame), HN_LOOK_REFERENCE, true);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int m = 0; m < w->n_methods; m++) {
+            const hn_track *track = hn_recording_track(w->recording, m);
+            if (!w->hidden[m] && (m == w->selected) == (pass == 1)) {
+                draw_pose(p, track->points + (size_t)frame * n, track->slot, pass == 1);
+            }
+        }
+    }
+}
+
 void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_dots dots = {0};
     if (area.columns < 4 || area.rows < 3 || !hn_dots_resize(&dots, area.columns, area.rows)) {
         return;
     }
-    const int frame = hn_workbench_frame(w);
-    const size_t n = 3 * (size_t)hn_system_get_info(hn_model_system(w->model)).n_points;
-    placing p = place(w, &dots);
+    placing p = place(w->model, &w->envelope, area, &dots);
+    draw_present(&p, w);
+    scale_bar(c, area, &p);
+    hn_dots_show(c, area, &dots, w->form);
+    hn_dots_free(&dots);
+}
 
-    // from below: reference, ghosts, the selected method
-    draw_pose(&p, hn_recording_reference(w->recording, frame), HN_LOOK_REFERENCE, true);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int m = 0; m < w->n_methods; m++) {
-            const hn_track *track = hn_recording_track(w->recording, m);
-            if (!w->hidden[m] && (m == w->selected) == (pass == 1)) {
-                draw_pose(&p, track->points + (size_t)frame * n, track->slot, pass == 1);
-            }
-        }
+void hn_mechanism_preview(hn_cells *c, hn_area area, const hn_workbench *w) {
+    const hn_preview *v = &w->preview;
+    hn_dots dots = {0};
+    if (!v->model || area.columns < 4 || area.rows < 3 ||
+        !hn_dots_resize(&dots, area.columns, area.rows)) {
+        return;
     }
+    placing p = place(v->model, &v->envelope, area, &dots);
+    draw_pose(&p, v->points, HN_CELL_INK, true);
     scale_bar(c, area, &p);
     hn_dots_show(c, area, &dots, w->form);
     hn_dots_free(&dots);

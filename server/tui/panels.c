@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/panels.h"
 
+#include "base/units.h"
+#include "dynamics/compile/coordinates.h"
 #include "lesson/lesson.h"
 #include "lesson/lesson_text.h"
-#include "session/model/lists.h"
+#include "session/export/export.h"
 #include "session/model/equations.h"
+#include "session/model/lists.h"
 #include "session/model/model_json.h"
+#include "tui/methods.h"
+#include "tui/prompt.h"
+#include "tui/study_panel.h"
+#include "tui/text_panel.h"
 
 #include <cjson/cJSON.h>
 #include <ctype.h>
@@ -14,7 +21,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LESSON_COLUMNS = 78 };
+enum { MOST_TEXT = 100 }; // [columns] a line is easily read
+
+/// What the list says of an exercise.
+static const char EXERCISE[] = "exercise, with numbers of its own";
 
 // ---- lists ----
 
@@ -28,6 +38,7 @@ static void begin_list(hn_workbench *w, hn_list_kind kind, const char *title) {
 static void add_item(hn_workbench *w, const char *name, const char *about) {
     if (w->n_items < HN_TUI_ITEMS) {
         hn_item *item = &w->items[w->n_items++];
+        *item = (hn_item){.value = (double)NAN};
         snprintf(item->name, sizeof item->name, "%s", name);
         snprintf(item->about, sizeof item->about, "%s", about ? about : "");
     }
@@ -65,16 +76,56 @@ static void list_methods(hn_workbench *w) {
     }
 }
 
+/// A number that can be changed, with its range.
+static void add_value(hn_workbench *w, const char *name, double value, const char *unit, double low,
+                      double high, const char *about) {
+    char line[HN_TUI_LINE];
+    if (isfinite(low) && isfinite(high)) {
+        snprintf(line, sizeof line, "%.9g %s   (%g to %g)  %.150s", value, unit, low, high, about);
+    } else {
+        snprintf(line, sizeof line, "%.9g %s   %.150s", value, unit, about);
+    }
+    add_item(w, name, line);
+    if (w->n_items > 0) {
+        hn_item *item = &w->items[w->n_items - 1];
+        item->value = value;
+        item->low = low;
+        item->high = high;
+    }
+}
+
+/// Where coordinates and rates start, under the names that settings give them.
+static void list_starts(hn_workbench *w) {
+    const hn_system *sys = hn_model_system(w->model);
+    const hn_scene *scene = hn_model_scene(w->model);
+    const int n = hn_system_get_info(sys).n_user;
+    double *user = calloc(2 * (size_t)n + 1, sizeof *user);
+    if (!user) {
+        hn_workbench_say(w, "out of memory");
+        return;
+    }
+    hn_system_to_user(sys, hn_model_q(w->model), user);
+    hn_system_rates_to_user(sys, hn_model_v(w->model), user + n);
+    for (int i = 0; i < 2 * n; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(sys, i % n)];
+        const bool rate = i >= n, length = c->kind == HN_LENGTH;
+        char name[HN_TUI_LINE];
+        snprintf(name, sizeof name, "start.%.80s", rate ? c->rate : c->name);
+        add_value(w, name, user[i], length ? (rate ? "m/s" : "m") : (rate ? "rad/s" : "rad"),
+                  (double)NAN, (double)NAN, rate ? "rate at the start" : "at the start");
+    }
+    free(user);
+}
+
 static void list_parameters(hn_workbench *w) {
     const hn_scene *scene = hn_model_scene(w->model);
-    begin_list(w, HN_LIST_PARAMETERS, "parameters: Enter changes, Esc goes back");
+    begin_list(w, HN_LIST_PARAMETERS, "parameters: Enter types, ←→ change, Esc goes back");
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
-        char line[HN_TUI_LINE];
-        snprintf(line, sizeof line, "%.9g %s   (%g to %g)  %.150s", p->value,
-                 p->unit ? p->unit : "", p->min, p->max, p->about ? p->about : "");
-        add_item(w, p->name, line);
+        add_value(w, p->name, p->value, p->unit ? p->unit : "", p->min, p->max,
+                  p->about ? p->about : "");
     }
+    list_starts(w);
 }
 
 static void list_lessons(hn_workbench *w) {
@@ -83,45 +134,51 @@ static void list_lessons(hn_workbench *w) {
     hn_strbuf_init(&b);
     hn_lessons_json(&b, w->library);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
-    begin_list(w, HN_LIST_LESSONS, "lessons: Enter reads, Esc goes back");
+    begin_list(w, HN_LIST_LESSONS, "lessons and exercises: Enter reads, Esc goes back");
     cJSON_ArrayForEach(lesson, cJSON_GetObjectItem(document, "lessons")) {
         add_item(w, text_of(lesson, "id"), text_of(lesson, "title"));
+    }
+    for (int i = 0; i < hn_library_n_problems(w->library); i++) {
+        add_item(w, hn_library_problem_id(w->library, i), EXERCISE);
     }
     cJSON_Delete(document);
     hn_strbuf_reset(&b);
 }
 
-// ---- texts ----
-
-static void begin_text(hn_workbench *w, const char *title) {
-    hn_child_stop(&w->child);
-    w->panel = HN_PANEL_TEXT;
-    w->scroll = 0;
-    hn_strbuf_clear(&w->text);
-    snprintf(w->title, sizeof w->title, "%s", title);
+static void list_exports(hn_workbench *w) {
+    hn_strbuf b;
+    const cJSON *language;
+    hn_strbuf_init(&b);
+    hn_export_languages_json(&b);
+    cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
+    begin_list(w, HN_LIST_EXPORTS, "export: Enter names a file, Esc goes back");
+    add_item(w, HN_TUI_RECORDING, "gap, energy change and error of every method, a row a frame");
+    cJSON_ArrayForEach(language, cJSON_GetObjectItem(document, "languages")) {
+        add_item(w, text_of(language, "name"), text_of(language, "about"));
+    }
+    cJSON_Delete(document);
+    hn_strbuf_reset(&b);
 }
 
-static void show_help(hn_workbench *w) {
+/// The table of keys as a menu.
+static void list_actions(hn_workbench *w) {
     const hn_tui_key *keys;
     const int n = hn_tui_keys(&keys);
-    begin_text(w, "keys: Esc goes back");
+    begin_list(w, HN_LIST_ACTIONS, "keys: Enter does it, Esc goes back");
     for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(&w->text, "%-*s %s\n",
-                         12 + (int)strlen(keys[i].shown) - hn_text_columns(keys[i].shown),
-                         keys[i].shown, keys[i].means);
+        add_item(w, keys[i].shown, keys[i].means);
     }
-    hn_strbuf_add(&w->text,
-                  "1 to 8       select a method\n\n"
-                  "gap     how far the loop stands open: the size of the constraint violation [m]\n"
-                  "error   largest distance of a drawn point from the reference solution [m]\n"
-                  "energy  change of the energy since the start, less the work\n"
-                  "        of drives, dampers and loads [J]\n\n"
-                  "The mouse selects a method in the table and a time in the plot.\n");
+    add_item(w, "1 to 8", "select a method");
+    add_item(w, "mouse",
+             "a joint can be dragged to another start; a click takes a time in the plot, or a "
+             "method in the table");
 }
+
+// ---- texts ----
 
 static void show_equations(hn_workbench *w) {
     hn_diags diags = {0};
-    begin_text(w, "equations of motion: Esc goes back");
+    hn_text_panel_open(w, "equations of motion: Esc goes back");
     if (hn_model_equations(&w->text, w->model, HN_EQUATIONS_TEXT, &diags) != HN_OK) {
         w->panel = HN_PANEL_MAIN;
         hn_workbench_say_fault(w, &diags);
@@ -135,224 +192,79 @@ static void show_lesson(hn_workbench *w, const char *id) {
         hn_workbench_say_fault(w, &diags);
         return;
     }
-    begin_text(w, "lesson: Esc goes back");
-    hn_lesson_text(&w->text, lesson, LESSON_COLUMNS);
+    hn_text_panel_open(w, "lesson: Esc goes back");
+    hn_lesson_text(&w->text, lesson, w->columns > MOST_TEXT + 4 ? MOST_TEXT : w->columns - 4);
     cJSON_Delete(lesson);
 }
 
-/// Runs a study of this scene beside the workbench; its text is shown as it comes.
-static void run_study(hn_workbench *w, const char *kind, const char *option, const char *value) {
-    char settings[HN_TUI_SETTINGS][128];
-    const char *arguments[16 + 2 * HN_TUI_SETTINGS + HN_COMPARISON_MAX_METHODS] = {"study",
-                                                                                   w->scene, kind};
-    int n = 3;
-    if (option) {
-        arguments[n++] = option;
-        arguments[n++] = value;
-    }
-    for (int i = 0; i < w->n_settings; i++) {
-        snprintf(settings[i], sizeof settings[i], "%s=%.17g", w->settings[i].name,
-                 w->settings[i].value);
-        arguments[n++] = "--set";
-        arguments[n++] = settings[i];
-    }
-
-    // the panel names it; Esc stops it
+static void show_budget(hn_workbench *w) {
     char title[HN_TUI_LINE];
-    snprintf(title, sizeof title, "%s of %.180s: Esc stops and goes back", kind, w->scene);
-    begin_text(w, title);
-    hn_strbuf_printf(&w->text, "holonom study %s %s\n\n", w->scene, kind);
-    if (!hn_child_start(&w->child, arguments)) {
-        hn_workbench_say(w, "the study could not be started");
-    }
-}
-
-// ---- prompts ----
-
-static void begin_prompt(hn_workbench *w, hn_prompt_kind kind, const char *initial) {
-    w->prompt = kind;
-    w->n_input = snprintf(w->input, sizeof w->input, "%s", initial);
-}
-
-/// Writes the value of `key` behind the integrator of a spelling, in place of the one that stands
-/// there.
-static void set_integrator_option(char spelling[HN_SPEC_MAX], const char *key, double value) {
-    char head[HN_SPEC_MAX], rest[2 * HN_SPEC_MAX] = "", find[32];
-    snprintf(find, sizeof find, "%s=", key);
-    char *at = strchr(spelling, '@');
-    char *colon = at ? strchr(at, ':') : NULL;
-    if (!at) {
-        return;
-    }
-    // the other options are kept in their order
-    snprintf(head, sizeof head, "%.*s", colon ? (int)(colon - spelling) : (int)strlen(spelling),
-             spelling);
-    for (char *option = colon ? strtok(colon + 1, ",") : NULL; option; option = strtok(NULL, ",")) {
-        if (strncmp(option, find, strlen(find)) != 0) {
-            const size_t used = strlen(rest);
-            snprintf(rest + used, sizeof rest - used, ",%.250s", option);
-        }
-    }
-    snprintf(spelling, HN_SPEC_MAX, "%.180s:%s%.9g%.40s", head, find, value, rest);
-}
-
-static void record_again(hn_workbench *w, char before[][HN_SPEC_MAX], int n_before) {
-    hn_diags diags = {0};
-    if (hn_workbench_record(w, &diags) != HN_OK) {
-        memcpy(w->methods, before, (size_t)n_before * sizeof *before);
-        w->n_methods = n_before;
-        hn_workbench_say_fault(w, &diags);
-    }
-    w->panel = HN_PANEL_MAIN;
-}
-
-static void accept_step(hn_workbench *w) {
-    char before[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
-    char *end;
-    for (char *c = w->input; *c; c++) {
-        *c = *c == ',' ? '.' : *c;
-    }
-    const double h = strtod(w->input, &end);
-    const double scale = strncmp(end + strspn(end, " "), "ms", 2) == 0 ? 1e-3 : 1;
-    if (end == w->input || !(h > 0) || !isfinite(h)) {
-        hn_workbench_say(w, "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms", w->input);
-        return;
-    }
-    memcpy(before, w->methods, sizeof before);
+    const char *words[HN_TUI_WORDS] = {"study", w->scene, "budget", "--time", "2", "--methods"};
+    int n = 6;
     for (int i = 0; i < w->n_methods; i++) {
-        if (!strstr(w->methods[i], "tol=")) {
-            set_integrator_option(w->methods[i], "h", h * scale);
-        }
+        words[n++] = w->methods[i];
     }
-    record_again(w, before, w->n_methods);
+    snprintf(title, sizeof title, "error budget of %.180s: Esc stops and goes back", w->scene);
+    hn_text_panel_run(w, title, words, n);
 }
 
-static void accept_method(hn_workbench *w) {
-    char before[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
-    const int n = w->n_methods, at = w->cursor < n ? w->cursor : n;
-    memcpy(before, w->methods, sizeof before);
-    snprintf(w->methods[at], HN_SPEC_MAX, "%.250s", w->input);
-    w->n_methods = at == n ? n + 1 : n;
-    record_again(w, before, n);
-}
-
-static void accept_parameter(hn_workbench *w) {
-    char *end;
-    const double value = strtod(w->input, &end);
-    const char *name = w->items[w->cursor].name;
-    if (end == w->input || *end || !isfinite(value)) {
-        hn_workbench_say(w, "%s: '%.40s' is not a number", name, w->input);
-        return;
-    }
-    hn_setting settings[HN_TUI_SETTINGS + 1];
-    int n = 0;
-    for (int i = 0; i < w->n_settings; i++) {
-        if (strcmp(w->settings[i].name, name) != 0) {
-            settings[n++] = w->settings[i];
-        }
-    }
-    settings[n++] = (hn_setting){name, value};
-    hn_workbench_reopen(w, w->scene, settings, n, true);
-}
-
-/// One row a frame: time, then gap, energy and error of each method, in a file that was not there.
-static void accept_export(hn_workbench *w) {
-    FILE *file = fopen(w->input, "wx");
-    if (!file) {
-        hn_workbench_say(w, "%.200s: cannot be written, or is there already; type another name",
-                         w->input);
-        return;
-    }
-    fprintf(file, "t");
-    for (int m = 0; m < w->n_methods; m++) {
-        const char *s = hn_recording_track(w->recording, m)->spelling;
-        fprintf(file, ",\"gap %s\",\"energy change %s\",\"error %s\"", s, s, s);
-    }
-    fprintf(file, "\n");
-
-    // one row a frame; what is not known stays empty
-    const int n = hn_recording_frames(w->recording);
-    for (int k = 0; k < n; k++) {
-        fprintf(file, "%.17g", k * hn_recording_frame_dt(w->recording));
-        for (int m = 0; m < w->n_methods; m++) {
-            const hn_track *t = hn_recording_track(w->recording, m);
-            const double values[] = {t->gap[k], t->energy[k], t->error[k]};
-            for (int i = 0; i < 3; i++) {
-                fprintf(file, isfinite(values[i]) ? ",%.17g" : ",", values[i]);
-            }
-        }
-        fprintf(file, "\n");
-    }
-
-    // only a file that was closed well is complete
-    const bool good = fclose(file) == 0;
-    hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames",
-                     w->input, n);
-}
-
-void hn_prompt_key(hn_workbench *w, int key) {
-    static void (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
-                                                     [HN_PROMPT_METHOD] = accept_method,
-                                                     [HN_PROMPT_PARAMETER] = accept_parameter,
-                                                     [HN_PROMPT_EXPORT] = accept_export};
-
-    // Escape forgets the line, Enter hands it over
-    if (key == HN_KEY_ESCAPE) {
-        w->prompt = HN_PROMPT_NONE;
-    } else if (key == HN_KEY_ENTER) {
-        const hn_prompt_kind kind = w->prompt;
-        w->prompt = HN_PROMPT_NONE;
-        accept[kind](w);
-    } else if (key == HN_KEY_BACKSPACE && w->n_input > 0) {
-        w->input[--w->n_input] = '\0';
-    } else if (key >= 32 && key < 127 && w->n_input < HN_TUI_LINE - 1) {
-        w->input[w->n_input++] = (char)key;
-        w->input[w->n_input] = '\0';
-    }
+static void show_exercise(hn_workbench *w, const char *id) {
+    const char *const words[] = {"problem", id};
+    hn_text_panel_run(w, "exercise: Esc goes back", words, 2);
 }
 
 // ---- keys of panels ----
 
 static void choose(hn_workbench *w) {
-    const hn_scene *scene = hn_model_scene(w->model);
+    const hn_item *item = &w->items[w->cursor];
+    const hn_tui_key *keys;
+    char text[HN_TUI_LINE];
     switch (w->list) {
     // another scene: the name is copied, since the list goes with the old one
-    case HN_LIST_SCENES: {
-        char name[HN_TUI_LINE];
-        snprintf(name, sizeof name, "%s", w->items[w->cursor].name);
-        hn_workbench_reopen(w, name, NULL, 0, false);
+    case HN_LIST_SCENES:
+        snprintf(text, sizeof text, "%s", item->name);
+        hn_workbench_reopen(w, text, NULL, 0, NULL, 0);
         break;
-    }
 
     // a value to be typed, beginning with the present one
     case HN_LIST_METHODS:
-        begin_prompt(w, HN_PROMPT_METHOD, w->cursor < w->n_methods ? w->methods[w->cursor] : "");
+        hn_prompt_open(w, HN_PROMPT_METHOD, w->cursor < w->n_methods ? w->methods[w->cursor] : "");
         break;
-    case HN_LIST_PARAMETERS: {
-        char value[40];
-        snprintf(value, sizeof value, "%.17g", scene->params[w->cursor].value);
-        begin_prompt(w, HN_PROMPT_PARAMETER, value);
+    case HN_LIST_PARAMETERS:
+        snprintf(text, sizeof text, "%.17g", item->value);
+        hn_prompt_open(w, HN_PROMPT_PARAMETER, text);
         break;
-    }
+    case HN_LIST_EXPORTS:
+        hn_prompt_export(w);
+        break;
 
     // a text to be read
     case HN_LIST_LESSONS:
-        show_lesson(w, w->items[w->cursor].name);
+        (strcmp(item->about, EXERCISE) == 0 ? show_exercise : show_lesson)(w, item->name);
+        break;
+    case HN_LIST_ACTIONS:
+        w->panel = HN_PANEL_MAIN;
+        w->chosen = w->cursor < hn_tui_keys(&keys) ? (int)keys[w->cursor].action : HN_TUI_NONE;
         break;
     }
 }
 
-static void remove_method(hn_workbench *w) {
-    char before[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
-    const int n = w->n_methods;
-    if (w->list != HN_LIST_METHODS || w->cursor >= n || n < 2) {
+/// A fiftieth of the range up or down, in round numbers; the list stays open.
+static void nudge(hn_workbench *w, int by) {
+    const hn_item *item = &w->items[w->cursor];
+    const int cursor = w->cursor;
+    char name[HN_TUI_LINE];
+    if (w->list != HN_LIST_PARAMETERS || isnan(item->value)) {
         return;
     }
-    memcpy(before, w->methods, sizeof before);
-    memmove(w->methods[w->cursor], w->methods[w->cursor + 1],
-            (size_t)(n - w->cursor - 1) * sizeof *before);
-    w->n_methods = n - 1;
-    record_again(w, before, n);
+    const bool ranged = isfinite(item->low) && isfinite(item->high);
+    const double step = ranged ? hn_round_125((item->high - item->low) / 50) : hn_round_125(0.05);
+    double value = round((item->value + by * step) / step) * step;
+    value = ranged ? fmin(item->high, fmax(item->low, value)) : value;
+    snprintf(name, sizeof name, "%s", item->name);
+    hn_prompt_set_parameter(w, name, value);
+    list_parameters(w);
+    w->cursor = cursor < w->n_items ? cursor : 0;
 }
 
 /// How far a key moves in a list or a text; 0: it does not.
@@ -391,7 +303,9 @@ static void list_key(hn_workbench *w, int key) {
     if (key == HN_KEY_ENTER && w->n_items > 0) {
         choose(w);
     } else if (key == 'x' && w->list == HN_LIST_METHODS) {
-        remove_method(w);
+        hn_methods_remove(w, w->cursor);
+    } else if (key == HN_KEY_LEFT || key == HN_KEY_RIGHT) {
+        nudge(w, key == HN_KEY_RIGHT ? 1 : -1);
     } else if (step_of(key) != 0) {
         w->cursor = to < 0 ? 0 : to >= w->n_items ? w->n_items - 1 : to;
     } else if (key < 128 && isalnum(key)) {
@@ -400,7 +314,9 @@ static void list_key(hn_workbench *w, int key) {
 }
 
 void hn_panel_key(hn_workbench *w, int key) {
-    if (key == HN_KEY_ESCAPE || (key == 'q' && w->panel == HN_PANEL_TEXT)) {
+    if (w->panel == HN_PANEL_STUDY) {
+        hn_study_panel_key(w, key);
+    } else if (key == HN_KEY_ESCAPE || (key == 'q' && w->panel == HN_PANEL_TEXT)) {
         hn_child_stop(&w->child);
         w->panel = HN_PANEL_MAIN;
     } else if (w->panel == HN_PANEL_LIST) {
@@ -412,46 +328,23 @@ void hn_panel_key(hn_workbench *w, int key) {
 }
 
 void hn_panel_open(hn_workbench *w, hn_tui_action action) {
-    switch (action) {
-    // lists and prompts
-    case HN_TUI_STEP:
-        begin_prompt(w, HN_PROMPT_STEP, "");
-        break;
-    case HN_TUI_PARAMETERS:
-        list_parameters(w);
-        break;
-    case HN_TUI_METHODS:
-        list_methods(w);
-        break;
-    case HN_TUI_SCENES:
-        list_scenes(w);
-        break;
-    case HN_TUI_FORMULAS:
-        show_equations(w);
-        break;
-    case HN_TUI_LESSONS:
-        list_lessons(w);
-        break;
+    static const struct {
+        hn_tui_action action;
+        void (*open)(hn_workbench *w);
+    } panels[] = {{HN_TUI_PARAMETERS, list_parameters}, {HN_TUI_METHODS, list_methods},
+                  {HN_TUI_SCENES, list_scenes},         {HN_TUI_FORMULAS, show_equations},
+                  {HN_TUI_LESSONS, list_lessons},       {HN_TUI_BUDGET, show_budget},
+                  {HN_TUI_EXPORT, list_exports},        {HN_TUI_HELP, list_actions}};
+    for (size_t i = 0; i < sizeof panels / sizeof *panels; i++) {
+        if (panels[i].action == action) {
+            panels[i].open(w);
+        }
+    }
 
-    // studies beside the workbench
-    case HN_TUI_STUDY:
-        run_study(w, "work-precision", "--time", "2");
-        break;
-    case HN_TUI_MAP:
-        run_study(w, "stability", "--preset", "baumgarte");
-        break;
-    case HN_TUI_BUDGET:
-        run_study(w, "budget", NULL, NULL);
-        break;
-
-    // files and help
-    case HN_TUI_EXPORT:
-        begin_prompt(w, HN_PROMPT_EXPORT, "recording.csv");
-        break;
-    case HN_TUI_HELP:
-        show_help(w);
-        break;
-    default:
-        break;
+    // a line to type, the studies
+    if (action == HN_TUI_STEP) {
+        hn_prompt_open(w, HN_PROMPT_STEP, "");
+    } else if (action == HN_TUI_STUDY || action == HN_TUI_MAP) {
+        hn_study_panel_open(w, action == HN_TUI_STUDY ? HN_TUI_COST : HN_TUI_STABILITY);
     }
 }

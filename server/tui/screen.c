@@ -5,6 +5,7 @@
 #include "tui/keys.h"
 
 #include <ncurses.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,9 +13,14 @@
 #include <termios.h>
 #include <unistd.h>
 
+enum { MOST_EVENTS = 16 };
+
 static struct {
-    bool open, colours, have_modes;
+    bool open, colours, have_modes, mouse;
     struct termios modes; ///< of the terminal before
+    pid_t parent;         ///< who started this program
+    hn_mouse events[MOST_EVENTS];
+    int n_mouse; ///< events that are still to be handed out
 } screen;
 
 // ---- leaving the terminal as it was ----
@@ -43,9 +49,20 @@ static void watch_signals(void) {
     }
 }
 
+/// Moves of the mouse while a button is held are reported, or not.
+static const char MOVES_ON[] = "\033[?1002h", MOVES_OFF[] = "\033[?1002l";
+
+static void put_sequence(const char *sequence) {
+    fputs(sequence, stdout);
+    fflush(stdout);
+}
+
 void hn_screen_close(void) {
     if (screen.open) {
         screen.open = false;
+        if (screen.mouse) {
+            put_sequence(MOVES_OFF);
+        }
         endwin();
     }
 }
@@ -70,6 +87,9 @@ static void make_colours(int theme) {
 }
 
 bool hn_screen_open(int theme, bool colours) {
+    // a shell that is killed takes the terminal back: modes are set all the same
+    screen.parent = getppid();
+    signal(SIGTTOU, SIG_IGN);
     screen.have_modes = tcgetattr(STDIN_FILENO, &screen.modes) == 0;
     // a fresh description of the terminal rather than initscr(), which ends the program where there
     // is none
@@ -89,11 +109,18 @@ bool hn_screen_open(int theme, bool colours) {
     noecho();
     keypad(stdscr, TRUE);
     curs_set(0);
-    mousemask(BUTTON1_PRESSED | BUTTON1_CLICKED | REPORT_MOUSE_POSITION, NULL);
+    mousemask(BUTTON1_PRESSED | BUTTON1_RELEASED | REPORT_MOUSE_POSITION, NULL);
     mouseinterval(0);
+    screen.mouse = has_mouse();
     atexit(hn_screen_close);
     watch_signals();
     return true;
+}
+
+bool hn_screen_gone(void) {
+    struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
+    const bool closed = poll(&input, 1, 0) > 0 && input.revents & (POLLHUP | POLLERR | POLLNVAL);
+    return closed || getppid() != screen.parent;
 }
 
 void hn_screen_size(int *columns, int *rows) {
@@ -136,25 +163,14 @@ static int translate(int key) {
     // keys of ncurses, and control characters that stand for keys
     static const struct {
         int from, to;
-    } table[] = {{KEY_LEFT, HN_KEY_LEFT},
-                 {KEY_RIGHT, HN_KEY_RIGHT},
-                 {KEY_UP, HN_KEY_UP},
-                 {KEY_DOWN, HN_KEY_DOWN},
-                 {KEY_PPAGE, HN_KEY_PAGE_UP},
-                 {KEY_NPAGE, HN_KEY_PAGE_DOWN},
-                 {KEY_HOME, HN_KEY_HOME},
-                 {KEY_END, HN_KEY_END},
-                 {KEY_BACKSPACE, HN_KEY_BACKSPACE},
-                 {127, HN_KEY_BACKSPACE},
-                 {8, HN_KEY_BACKSPACE},
-                 {KEY_ENTER, HN_KEY_ENTER},
-                 {'\n', HN_KEY_ENTER},
-                 {'\r', HN_KEY_ENTER},
-                 {27, HN_KEY_ESCAPE},
-                 {'\t', HN_KEY_TAB},
-                 {KEY_SLEFT, HN_KEY_SHIFT_LEFT},
-                 {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
-                 {KEY_RESIZE, HN_KEY_RESIZE}};
+    } table[] = {
+        {KEY_LEFT, HN_KEY_LEFT}, {KEY_RIGHT, HN_KEY_RIGHT},      {KEY_UP, HN_KEY_UP},
+        {KEY_DOWN, HN_KEY_DOWN}, {KEY_PPAGE, HN_KEY_PAGE_UP},    {KEY_NPAGE, HN_KEY_PAGE_DOWN},
+        {KEY_HOME, HN_KEY_HOME}, {KEY_END, HN_KEY_END},          {KEY_BACKSPACE, HN_KEY_BACKSPACE},
+        {127, HN_KEY_BACKSPACE}, {8, HN_KEY_BACKSPACE},          {KEY_ENTER, HN_KEY_ENTER},
+        {'\n', HN_KEY_ENTER},    {'\r', HN_KEY_ENTER},           {27, HN_KEY_ESCAPE},
+        {'\t', HN_KEY_TAB},      {KEY_SLEFT, HN_KEY_SHIFT_LEFT}, {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
+        {KEY_F(1), '?'},         {KEY_RESIZE, HN_KEY_RESIZE}};
 
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         if (table[i].from == key) {
@@ -164,16 +180,46 @@ static int translate(int key) {
     return key >= 32 && key < 127 ? key : HN_KEY_NONE;
 }
 
+static hn_mouse mouse_of(const MEVENT *event) {
+    const bool press = event->bstate & BUTTON1_PRESSED, let_go = event->bstate & BUTTON1_RELEASED;
+    return (hn_mouse){event->x, event->y,
+                      press    ? HN_MOUSE_PRESS
+                      : let_go ? HN_MOUSE_RELEASE
+                               : HN_MOUSE_MOVE};
+}
+
+/// ncurses announces events that came together once, and hands them out from the last to the first:
+/// they are put on a stack, whose top is the oldest.
+static void take_mouse(void) {
+    MEVENT event;
+    screen.n_mouse = 0;
+    while (screen.n_mouse < MOST_EVENTS && getmouse(&event) == OK) {
+        screen.events[screen.n_mouse++] = mouse_of(&event);
+    }
+}
+
+static bool next_mouse(hn_mouse *out) {
+    if (screen.n_mouse == 0) {
+        return false;
+    }
+    *out = screen.events[--screen.n_mouse];
+
+    // asked for at every press: a program that was suspended meanwhile has lost it
+    if (out->what == HN_MOUSE_PRESS && screen.mouse) {
+        put_sequence(MOVES_ON);
+    }
+    return true;
+}
+
 int hn_screen_key(double seconds, hn_mouse *mouse) {
+    if (next_mouse(mouse)) {
+        return HN_KEY_MOUSE;
+    }
     timeout((int)(1000 * seconds));
     const int key = getch();
-    MEVENT event;
     if (key == KEY_MOUSE) {
-        if (getmouse(&event) != OK) {
-            return HN_KEY_NONE;
-        }
-        *mouse = (hn_mouse){event.x, event.y};
-        return HN_KEY_MOUSE;
+        take_mouse();
+        return next_mouse(mouse) ? HN_KEY_MOUSE : HN_KEY_NONE;
     }
     return key == ERR ? HN_KEY_NONE : translate(key);
 }

@@ -10,8 +10,11 @@
 
 #include "terminal/cells.h"
 
+typedef enum hn_mouse_what { HN_MOUSE_PRESS, HN_MOUSE_MOVE, HN_MOUSE_RELEASE } hn_mouse_what;
+
 typedef struct hn_mouse {
     int x, y;
+    hn_mouse_what what; ///< of the left button; a move comes while it is held
 } hn_mouse;
 
 enum { HN_KEY_NONE = -1, HN_KEY_MOUSE = 0x110100, HN_KEY_RESIZE };
@@ -21,6 +24,9 @@ enum { HN_KEY_NONE = -1, HN_KEY_MOUSE = 0x110100, HN_KEY_RESIZE };
 /// every signal that ends the program.
 bool hn_screen_open(int theme, bool colours);
 void hn_screen_close(void);
+/// Nobody is there any more: the program that started this one has ended, or the terminal is
+/// closed.
+bool hn_screen_gone(void);
 void hn_screen_size(int *columns, int *rows);
 void hn_screen_show(const hn_cells *c, bool ascii);
 /// The next key within the time [s]: a character, HN_KEY_* of keys.h or of this file; HN_KEY_NONE:

@@ -11,12 +11,14 @@ typedef struct hn_tui_opts {
     int theme;         ///< hn_theme of the terminal's background
     int columns, rows; ///< of hn_tui_frame(); 0: 80 x 24
     double t;          ///< [s] of hn_tui_frame()
-    int frames;        ///< hn_tui_run(): ends after so many frames; 0: when the user does
+    const char
+        *keys;  ///< of hn_tui_frame(): typed before it, as hn_tui_key_read() reads; NULL: none
+    int frames; ///< hn_tui_run(): ends after so many frames; 0: when the user does
 } hn_tui_opts;
 
 /// Works on the terminal until the user quits. false: standard output is no terminal that can be
 /// driven.
 bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts);
-/// One frame as text, at time t: everything up to it is computed first.
+/// One frame as text, at time t, after the keys: everything that it shows is computed first.
 void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts);
 #endif

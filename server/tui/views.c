@@ -6,12 +6,13 @@
 #include "terminal/plot.h"
 #include "tui/keys.h"
 #include "tui/mechanism_view.h"
+#include "tui/study_panel.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_COLUMNS = 14, NUMBER_COLUMNS = 10, MOST_INCIDENTS = 512 };
+enum { MOST_NAME = 16, NUMBER_COLUMNS = 11, VERDICT_COLUMNS = 50, MOST_INCIDENTS = 512 };
 
 /// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
 static const double SMALLEST_PREFIXED = 1e-9;
@@ -51,7 +52,12 @@ static void draw_header(hn_cells *c, const hn_workbench *w) {
     }
 }
 
-/// The last line: what is typed, what was said, or the keys.
+/// Whether what was said does not fit one line; a line that is typed keeps its place.
+static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
+    return w->prompt == HN_PROMPT_NONE && hn_text_columns(w->message) > c->columns - 2;
+}
+
+/// The last line: what is typed, or the keys.
 static void draw_footer(hn_cells *c, const hn_workbench *w) {
     static const char *const asks[] = {[HN_PROMPT_STEP] = "dt [s, or 20 ms]: ",
                                        [HN_PROMPT_METHOD] = "method: ",
@@ -62,13 +68,22 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
         const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);
         const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input);
         hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
-    } else {
+    } else if (!needs_two_lines(c, w)) {
         hn_cells_put(
             c, area, 0, 0, HN_CELL_MUTED, 0,
             area.columns < 92
-                ? "Space run  ←→ step  1-8 method  d dt  g plot  y why  s scene  ? help  q"
-                : "Space run  ←→ step  1-8 method  d dt  g plot  y why  m methods  s scene  p "
-                  "values  ? help  q");
+                ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q"
+                : "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  w cost  m methods  "
+                  "s scene  p values  ? menu  q");
+    }
+}
+
+/// Text that is cut with an ellipsis where it does not fit.
+static void put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int style,
+                       const char *text) {
+    hn_cells_put(c, area, x, y, colour, style, text);
+    if (x + hn_text_columns(text) > area.columns && x < area.columns) {
+        hn_cells_put(c, area, area.columns - 1, y, colour, style, "…");
     }
 }
 
@@ -79,7 +94,9 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
     const double t = hn_workbench_frame(w) * hn_recording_frame_dt(w->recording);
     if (w->message[0]) {
-        hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, w->message);
+        // a long one takes the place of the keys
+        hn_cells_fold(c, (hn_area){area.x, area.y, area.columns, 1 + needs_two_lines(c, w)}, 0,
+                      HN_CELL_INK, w->message);
         return;
     }
 
@@ -94,56 +111,108 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
         }
     }
     if (last >= 0) {
-        hn_cells_printf(c, area, 0, 0, HN_CELL_ALARM, 0, "! %s at %.4g s: %s",
-                        hn_recording_track(w->recording, whose[last])->name, list[last].t,
-                        list[last].message);
+        char line[640];
+        snprintf(line, sizeof line, "! %s at %.4g s: %s",
+                 hn_recording_track(w->recording, whose[last])->name, list[last].t,
+                 list[last].message);
+        put_fitted(c, area, 0, 0, HN_CELL_ALARM, 0, line);
     }
 }
 
 // ---- the method table ----
 
-static int put_quantity(hn_cells *c, hn_area area, int x, int y, const char *label, double value,
-                        const char *unit) {
+/// Columns of numbers, the most important first; those that have no room are left out from the end.
+typedef struct number_column {
+    const char *head, *unit;
+    const double *(*of)(const hn_track *t);
+} number_column;
+
+static const double *gap_of(const hn_track *t) {
+    return t->gap;
+}
+static const double *error_of(const hn_track *t) {
+    return t->error;
+}
+static const double *energy_of(const hn_track *t) {
+    return t->energy;
+}
+static const double *evaluations_of(const hn_track *t) {
+    return t->evaluations;
+}
+
+static const number_column NUMBERS[] = {{"gap", "m", gap_of},
+                                        {"error", "m", error_of},
+                                        {"energy", "J", energy_of},
+                                        {"evals", "", evaluations_of}};
+enum { N_NUMBERS = sizeof NUMBERS / sizeof *NUMBERS };
+
+/// Where the columns of the table are, in columns of its inside.
+typedef struct table_columns {
+    int name, numbers, verdict;
+} table_columns;
+
+static table_columns lay_out(const hn_workbench *w, int width) {
+    int longest = 4;
+    for (int m = 0; m < w->n_methods; m++) {
+        const int n = hn_text_columns(hn_recording_track(w->recording, m)->name);
+        longest = n > longest ? n : longest;
+    }
+    longest = longest < MOST_NAME ? longest : MOST_NAME;
+    const int room = (width - 3 - longest - VERDICT_COLUMNS) / NUMBER_COLUMNS;
+    const int numbers = room < 0 ? 0 : room < N_NUMBERS ? room : N_NUMBERS;
+    return (table_columns){3, numbers, 3 + longest + 1 + numbers * NUMBER_COLUMNS};
+}
+
+static void put_number(hn_cells *c, hn_area area, int right, int y, double value,
+                       const char *unit) {
     char text[HN_SI_TEXT];
     if (!isfinite(value)) {
         snprintf(text, sizeof text, "-");
+    } else if (!unit[0]) {
+        snprintf(text, sizeof text, "%.0f", value);
     } else if (fabs(value) < SMALLEST_PREFIXED && value != 0) {
         snprintf(text, sizeof text, "%.1e %s", value, unit);
     } else {
         hn_si_format(value, unit, 2, text);
     }
-    const int room = NUMBER_COLUMNS - hn_text_columns(text);
-    int used = hn_cells_put(c, area, x, y, HN_CELL_MUTED, 0, label);
-    used += room > 0 ? room : 0;
-    used += hn_cells_put(c, area, x + used, y, HN_CELL_INK, 0, text);
-    return used + 2;
+    hn_cells_put(c, area, right - hn_text_columns(text), y, HN_CELL_INK, 0, text);
 }
 
 static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, int frame) {
     const hn_track *track = hn_recording_track(w->recording, m);
+    const table_columns at = lay_out(w, area.columns);
     const hn_motion_verdict v = hn_recording_verdict(w->recording, m, frame);
     const int style = m == w->selected ? HN_CELL_REVERSE : HN_CELL_PLAIN;
-    int x = hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
-                            hn_look_get(track->slot)->glyph);
-    hn_cells_printf(c, area, x + 1, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%s",
-                    track->name);
-    x += 1 + NAME_COLUMNS;
-    x += put_quantity(c, area, x, m, "gap", track->gap[frame], "m");
+    const bool calm = v.tone == HN_TONE_CALM;
+    hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
+                    hn_look_get(track->slot)->glyph);
+    hn_cells_printf(c, area, at.name, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%.*s",
+                    MOST_NAME, track->name);
+    const int first = at.verdict - at.numbers * NUMBER_COLUMNS;
+    for (int i = 0; i < at.numbers; i++) {
+        put_number(c, area, first + (i + 1) * NUMBER_COLUMNS - 2, m, NUMBERS[i].of(track)[frame],
+                   NUMBERS[i].unit);
+    }
 
-    // narrow terminals leave out the energy, then the error
-    if (area.columns >= 124) {
-        x += put_quantity(c, area, x, m, "energy", track->energy[frame], "J");
-    }
-    if (area.columns >= 98) {
-        x += put_quantity(c, area, x, m, "error", track->error[frame], "m");
-    }
-    hn_cells_printf(c, area, x, m, v.tone == HN_TONE_CALM ? HN_CELL_INK : HN_CELL_ALARM,
-                    v.tone == HN_TONE_CALM ? HN_CELL_PLAIN : HN_CELL_BOLD, "%s %s", v.arrow,
-                    v.text);
+    // the verdict, in words; hidden methods say so
+    char line[HN_MOTION_VERDICT_TEXT + 32];
+    snprintf(line, sizeof line, "%s %s%s", v.arrow, w->hidden[m] ? "(hidden) " : "", v.text);
+    put_fitted(c, area, at.verdict, m, calm ? HN_CELL_INK : HN_CELL_ALARM,
+               calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);
 }
 
+/// The heads of the numbers stand in the upper edge.
 static void draw_table(hn_cells *c, const hn_workbench *w) {
-    const hn_area inside = hn_cells_frame(c, table_area(c->columns, c->rows, w), "methods");
+    const hn_area table = table_area(c->columns, c->rows, w);
+    const hn_area inside = hn_cells_frame(c, table, "methods");
+    const hn_area edge = {inside.x, table.y, inside.columns, 1};
+    const table_columns at = lay_out(w, inside.columns);
+    const int first = at.verdict - at.numbers * NUMBER_COLUMNS;
+    for (int i = 0; i < at.numbers; i++) {
+        const int right = first + (i + 1) * NUMBER_COLUMNS - 2;
+        hn_cells_printf(c, edge, right - (int)strlen(NUMBERS[i].head) - 1, 0, HN_CELL_MUTED, 0,
+                        " %s ", NUMBERS[i].head);
+    }
     const int frame = hn_workbench_frame(w);
     for (int m = 0; m < w->n_methods; m++) {
         draw_row(c, inside, w, m, frame);
@@ -190,7 +259,7 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_track *track = hn_recording_track(w->recording, w->selected);
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     char title[96];
-    snprintf(title, sizeof title, "why: %s (y closes)", track->name);
+    snprintf(title, sizeof title, "why: %s (i closes)", track->name);
     const hn_area in = hn_cells_frame(c, area, title);
     int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
     if (end.failed) {
@@ -220,19 +289,31 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
     }
 }
 
+/// The items; below them what the chosen one is about, and of scenes a picture to the right.
 static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
-    const hn_area in = hn_cells_frame(c, area, w->title);
-    const int below = w->list == HN_LIST_SCENES ? 4 : 2, rows = in.rows - below;
+    const hn_area frame = hn_cells_frame(c, area, w->title);
+    const bool scenes = w->list == HN_LIST_SCENES && frame.columns >= 60;
+    const hn_area in = {frame.x, frame.y, scenes ? frame.columns * 11 / 20 : frame.columns,
+                        frame.rows};
+    enum { NAME_WIDTH = 20 };
+    const int below = 3, rows = in.rows - below;
     const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
     for (int i = first; i < w->n_items && i - first < rows; i++) {
         const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;
-        const int x =
-            hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%-26.60s", w->items[i].name);
-        hn_cells_printf(c, in, x + 3, i - first, HN_CELL_MUTED, 0, "%s", w->items[i].about);
+        const int used = hn_text_columns(w->items[i].name);
+        const int x = used > NAME_WIDTH ? used : NAME_WIDTH;
+        hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%s%*s", w->items[i].name,
+                        x - used, "");
+        put_fitted(c, in, x + 3, i - first, HN_CELL_MUTED, 0, w->items[i].about);
     }
     if (w->n_items > 0) {
         const hn_area foot = {in.x + 1, in.y + in.rows - below + 1, in.columns - 2, below - 1};
         hn_cells_fold(c, foot, 0, HN_CELL_INK, w->items[w->cursor].about);
+    }
+    if (scenes) {
+        const hn_area picture = {in.x + in.columns + 1, in.y, frame.columns - in.columns - 2,
+                                 in.rows};
+        hn_mechanism_preview(c, picture, w);
     }
 }
 
@@ -263,6 +344,8 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
         draw_list(c, whole, w);
     } else if (w->panel == HN_PANEL_TEXT) {
         draw_text(c, whole, w);
+    } else if (w->panel == HN_PANEL_STUDY) {
+        hn_study_panel_draw(c, whole, w);
     } else {
         const hn_places places = hn_views_places(c->columns, c->rows, w);
         const hn_area left = {0, 1, places.plot.x, places.plot.rows};

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/workbench.h"
 
+#include "tui/preview.h"
+#include "tui/versions.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -12,12 +15,18 @@ enum { AHEAD = 60 }; // [frames] recorded before they are shown
 
 // ---- opening ----
 
+hn_model_source hn_workbench_source(const hn_workbench *w) {
+    // a name that is no shipped one and looks like a path is one
+    const bool shipped =
+        hn_library_scene_path(w->library, w->scene) != NULL || !strpbrk(w->scene, "./");
+    return (hn_model_source){.name = shipped ? w->scene : NULL,
+                             .path = shipped ? NULL : w->scene,
+                             .settings = w->settings,
+                             .n_settings = w->n_settings};
+}
+
 static hn_status load(hn_workbench *w, hn_diags *diags) {
-    const bool shipped = hn_library_scene_path(w->library, w->scene) != NULL;
-    const hn_model_source source = {.name = shipped || !strpbrk(w->scene, "./") ? w->scene : NULL,
-                                    .path = shipped || !strpbrk(w->scene, "./") ? NULL : w->scene,
-                                    .settings = w->settings,
-                                    .n_settings = w->n_settings};
+    const hn_model_source source = hn_workbench_source(w);
     HN_TRY(hn_model_load(w->library, &source, &w->model, diags));
     hn_model_envelope(w->model, NULL, &w->envelope);
     return HN_OK;
@@ -46,9 +55,9 @@ hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags) {
     HN_TRY(hn_recording_create(w->model, methods, w->n_methods, 0, &fresh, diags));
     hn_recording_free(w->recording);
     w->recording = fresh;
-    w->clock = 0;
+    w->clock = fmin(w->clock, hn_recording_last(fresh));
     w->selected = w->selected < w->n_methods ? w->selected : 0;
-    hn_recording_want(fresh, AHEAD);
+    hn_recording_want(fresh, (int)w->clock + AHEAD);
     return HN_OK;
 }
 
@@ -67,6 +76,9 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
     // what is not given comes from the scene
     *w = (hn_workbench){.library = library, .speed = 1, .playing = true};
     hn_strbuf_init(&w->text);
+    hn_strbuf_init(&w->link);
+    w->columns = 80;
+    w->rows = 24;
     snprintf(w->scene, sizeof w->scene, "%s", scene);
     keep_settings(w, settings, n_settings);
     w->items = calloc(HN_TUI_ITEMS, sizeof *w->items);
@@ -76,6 +88,12 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
         choose_methods(w, methods, n_methods);
         status = hn_workbench_record(w, diags);
     }
+    if (status == HN_OK) {
+        w->versions = hn_versions_create();
+        status =
+            w->versions ? HN_OK : hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+        hn_versions_keep(w);
+    }
     if (status != HN_OK) {
         hn_workbench_close(w);
     }
@@ -84,10 +102,20 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
 
 void hn_workbench_close(hn_workbench *w) {
     hn_child_stop(&w->child);
+    hn_tui_study_free(w->study);
     hn_recording_free(w->recording);
     hn_model_free(w->model);
+    hn_model_free(w->preview.model);
+    hn_versions_free(w->versions);
     hn_strbuf_reset(&w->text);
+    hn_strbuf_reset(&w->link);
+    free(w->preview.points);
+    free(w->drag.points);
     free(w->items);
+    w->study = NULL;
+    w->versions = NULL;
+    w->preview = (hn_preview){0};
+    w->drag = (hn_tui_drag){0};
     w->recording = NULL;
     w->model = NULL;
     w->items = NULL;
@@ -106,31 +134,46 @@ void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags) {
                      diags->n > 0 && d->hint[0] ? "; " : "", diags->n > 0 ? d->hint : "");
 }
 
+/// What outlives a change of the scene: how it is shown, the panel, what can be undone.
+static void carry_over(hn_workbench *to, hn_workbench *from) {
+    to->form = from->form;
+    to->plot = from->plot;
+    to->speed = from->speed;
+    to->columns = from->columns;
+    to->rows = from->rows;
+    to->versions = from->versions;
+    from->versions = NULL;
+}
+
 // what was open stays open when the change fails
-void hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *settings,
-                         int n_settings, bool keep_methods) {
+bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *settings,
+                         int n_settings, const char *const *methods, int n_methods) {
     hn_workbench fresh;
     hn_diags diags = {0};
-    const char *methods[HN_COMPARISON_MAX_METHODS];
-    for (int i = 0; i < w->n_methods; i++) {
-        methods[i] = w->methods[i];
-    }
-    if (hn_workbench_open(&fresh, w->library, scene, settings, n_settings, methods,
-                          keep_methods ? w->n_methods : 0, &diags) != HN_OK) {
+    if (hn_workbench_open(&fresh, w->library, scene, settings, n_settings, methods, n_methods,
+                          &diags) != HN_OK) {
         hn_workbench_say_fault(w, &diags);
-        return;
+        return false;
     }
-
-    // how it is shown stays as it was
-    fresh.form = w->form;
-    fresh.plot = w->plot;
-    fresh.speed = w->speed;
+    hn_versions_free(fresh.versions);
+    fresh.playing = strcmp(scene, w->scene) != 0 || w->playing;
+    carry_over(&fresh, w);
     hn_workbench_close(w);
     *w = fresh;
     // the names moved with the structure
     for (int i = 0; i < w->n_settings; i++) {
         w->settings[i].name = w->setting_names[i];
     }
+    hn_versions_keep(w);
+    return true;
+}
+
+bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings) {
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    for (int i = 0; i < w->n_methods; i++) {
+        methods[i] = w->methods[i];
+    }
+    return hn_workbench_reopen(w, w->scene, settings, n_settings, methods, w->n_methods);
 }
 
 // ---- time ----
@@ -153,5 +196,8 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
     hn_recording_want(w->recording, (int)w->clock + AHEAD);
     if (w->child.pid != 0 && !hn_child_read(&w->child, &w->text)) {
         hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
+    }
+    if (w->panel == HN_PANEL_LIST && w->list == HN_LIST_SCENES && w->n_items > 0) {
+        hn_preview_load(w, w->items[w->cursor].name);
     }
 }

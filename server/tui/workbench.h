@@ -2,25 +2,29 @@
 #ifndef HN_TUI_WORKBENCH_H
 #define HN_TUI_WORKBENCH_H
 // What the terminal workbench knows: a model, its recording, what is shown, and the panel that lies
-// over it. Keys change it, time moves it on, views (views.h) draw it; it knows neither a screen nor
-// a clock.
+// over it. Keys and the mouse change it, time moves it on, views (views.h) draw it; it knows
+// neither a screen nor a clock.
 
 #include "session/model/envelope.h"
 #include "terminal/dots.h"
 #include "tui/child.h"
 #include "tui/recording.h"
+#include "tui/study_job.h"
 
 typedef enum hn_panel {
     HN_PANEL_MAIN,
-    HN_PANEL_LIST, ///< scenes, methods or parameters to choose from
-    HN_PANEL_TEXT  ///< a text to scroll: help, equations, a lesson, a study
+    HN_PANEL_LIST, ///< scenes, methods, parameters, actions to choose from
+    HN_PANEL_TEXT, ///< a text to scroll: equations, a lesson, an error budget
+    HN_PANEL_STUDY ///< the plot of a study, while it is computed
 } hn_panel;
 
 typedef enum hn_list_kind {
     HN_LIST_SCENES,
     HN_LIST_METHODS,
     HN_LIST_PARAMETERS,
-    HN_LIST_LESSONS
+    HN_LIST_LESSONS,
+    HN_LIST_EXPORTS,
+    HN_LIST_ACTIONS
 } hn_list_kind;
 typedef enum hn_prompt_kind {
     HN_PROMPT_NONE,
@@ -35,7 +39,29 @@ enum { HN_TUI_LINE = 256, HN_TUI_ITEMS = 400, HN_TUI_MESSAGE = 400, HN_TUI_SETTI
 
 typedef struct hn_item {
     char name[HN_TUI_LINE], about[HN_TUI_LINE];
+    double value, low, high; ///< of a parameter
 } hn_item;
+
+/// A scene as it stands at its start, for the list of scenes.
+typedef struct hn_preview {
+    char scene[HN_TUI_LINE]; ///< whose it is; "": none yet
+    hn_model *model;         ///< owned; NULL: it cannot be shown
+    hn_envelope envelope;
+    double *points; ///< owned
+} hn_preview;
+
+/// A mechanism that is dragged: the start that it would have when it is let go.
+typedef struct hn_tui_drag {
+    bool on, moved;
+    int point;      ///< of the drawing
+    double *points; ///< 3 a point, owned; NULL before the first move
+    int n_state;
+    char names[HN_TUI_SETTINGS][64]; ///< coordinates and rates
+    double state[HN_TUI_SETTINGS];
+    char held[HN_DIAG_MESSAGE]; ///< why it does not follow; ""
+} hn_tui_drag;
+
+typedef struct hn_versions hn_versions;
 
 typedef struct hn_workbench {
     const hn_library *library;
@@ -43,6 +69,7 @@ typedef struct hn_workbench {
     hn_setting settings[HN_TUI_SETTINGS];
     char setting_names[HN_TUI_SETTINGS][64];
     int n_settings;
+    hn_versions *versions; ///< owned: what can be undone (versions.h)
     hn_model *model;
     hn_recording *recording;
     hn_envelope envelope;
@@ -58,7 +85,10 @@ typedef struct hn_workbench {
     hn_tui_plot plot;
     hn_dot_form form;
     char message[HN_TUI_MESSAGE];
-    bool copy; ///< `message` holds a link for the clipboard; the screen takes it and puts this back
+    hn_strbuf link;    ///< for the clipboard
+    bool copy;         ///< the screen takes the link and puts this back
+    int columns, rows; ///< of the screen
+    hn_tui_drag drag;
 
     // the panel over it
     hn_panel panel;
@@ -67,7 +97,13 @@ typedef struct hn_workbench {
     int n_items, cursor, scroll;
     char title[HN_TUI_LINE];
     hn_strbuf text;
-    hn_child child; ///< the study whose text this is, while it runs
+    hn_child child; ///< the command whose text this is, while it runs
+    hn_preview preview;
+    hn_tui_study *study; ///< of its panel; owned, NULL otherwise
+    double present[2];   ///< alpha and beta of the method that a map is about
+    hn_map_place at;     ///< cursor of a map
+
+    int chosen; ///< hn_tui_action chosen in the menu, to be done; 0: none
 
     hn_prompt_kind prompt;
     char input[HN_TUI_LINE];
@@ -89,9 +125,14 @@ void hn_workbench_tick(hn_workbench *w, double seconds);
 int hn_workbench_frame(const hn_workbench *w);
 /// Records the methods anew; on failure what was recorded stays.
 HN_MUST_CHECK hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags);
-/// Opens a scene in place of the present one; on failure that one stays and the fault is said.
-void hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *settings,
-                         int n_settings, bool keep_methods);
+/// Opens a scene in place of the present one, with n methods (0: its own). On failure the present
+/// one stays, the fault is said, and false is returned.
+bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *settings,
+                         int n_settings, const char *const *methods, int n_methods);
+/// The same scene with other settings and the same methods.
+bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings);
+/// Where the present model comes from; borrowed.
+hn_model_source hn_workbench_source(const hn_workbench *w);
 void hn_workbench_say(hn_workbench *w, const char *format, ...) HN_PRINTF(2, 3);
 void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags);
 #endif

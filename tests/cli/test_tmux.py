@@ -124,6 +124,47 @@ class Terminal(unittest.TestCase):
                 self.assert_restored()
                 self.stop()
 
+    def test_a_crash_restores_the_terminal(self):
+        for number in ("SEGV", "ABRT", "FPE"):
+            with self.subTest(number):
+                self.start(80, 24, f"ulimit -c 0; {PROGRAM} tui four-bar")
+                self.wait_for("Baumgarte|baumgarte")
+                subprocess.run(["kill", "-" + number, str(self.pid())], check=True)
+                self.assert_restored()
+                self.stop()
+
+    def test_the_shell_that_started_it_is_killed(self):
+        # an inner shell dies, the outer one has the terminal again
+        self.start(80, 24, f"bash --norc -c '{PROGRAM} tui four-bar; true'")
+        self.wait_for("Baumgarte|baumgarte")
+        shell = self.tmux("list-panes", "-F", "#{pane_pid}").strip()
+        inner = subprocess.run(["pgrep", "-P", shell], capture_output=True, text=True, check=True).stdout.split()[0]
+        program = subprocess.run(["pgrep", "-P", inner], capture_output=True, text=True, check=True).stdout.split()[0]
+        subprocess.run(["kill", "-KILL", inner], check=True)
+        deadline = time.monotonic() + PATIENCE
+        while os.path.exists(f"/proc/{program}") and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertFalse(os.path.exists(f"/proc/{program}"), "the program outlived its shell")
+        self.assert_restored()
+
+    def test_the_terminal_is_closed(self):
+        self.start(80, 24, f"{PROGRAM} tui four-bar")
+        self.wait_for("Baumgarte|baumgarte")
+        program = self.pid()
+        self.stop()
+        deadline = time.monotonic() + PATIENCE
+        while os.path.exists(f"/proc/{program}") and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertFalse(os.path.exists(f"/proc/{program}"), "the program outlived its terminal")
+
+    def test_a_terminal_without_utf8_gets_ascii(self):
+        self.start(80, 24, f"LC_ALL=C {PROGRAM} tui four-bar")
+        screen = self.wait_for("Baumgarte|baumgarte")
+        self.assertTrue(screen.isascii(), screen)
+        self.assertRegex(screen, r"[-/|']{3}")
+        self.keys("q")
+        self.assert_restored()
+
     def test_suspended_it_leaves_the_screen_and_comes_back(self):
         self.start(80, 24, f"{PROGRAM} tui four-bar")
         self.wait_for("Baumgarte|baumgarte")

@@ -8,6 +8,7 @@
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
 #include "render/look.h"
+#include "tui/keys.h"
 #include "tui/link.h"
 
 #include <math.h>
@@ -46,7 +47,13 @@ static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) 
     for (int i = 0; i < o->n_methods; i++) {
         o->methods[i] = o->spellings[i];
     }
-    for (int i = 0; i < args->methods.n && i < HN_COMPARISON_MAX_METHODS; i++) {
+    if (args->methods.n > HN_COMPARISON_MAX_METHODS || args->set.n > HN_TUI_SETTINGS) {
+        return hn_diags_add(diags, HN_ERR_LIMIT,
+                            args->methods.n > HN_COMPARISON_MAX_METHODS ? "/methods" : "/set", NULL,
+                            "the workbench compares %d methods with %d changed parameters at most",
+                            HN_COMPARISON_MAX_METHODS, HN_TUI_SETTINGS);
+    }
+    for (int i = 0; i < args->methods.n; i++) {
         o->methods[i] = args->methods.word[i];
         o->n_methods = i + 1;
     }
@@ -62,6 +69,18 @@ static hn_status read_size(const char *text, hn_tui_opts *opts, hn_diags *diags)
         return hn_diags_add(
             diags, HN_ERR_INPUT, "/size", NULL,
             "--size is '%.40s'; COLUMNSxROWS from 20x8 to 1000x500 is needed, as 100x30", text);
+    }
+    return HN_OK;
+}
+
+/// Every key of --keys must be one.
+static hn_status check_keys(const char *text, hn_diags *diags) {
+    const char *rest = text ? text : "";
+    while (hn_tui_key_read(&rest) != 0) {}
+    if (*rest) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/keys",
+                            "as in 'g', 'b<Right><Enter>'; also <Esc>, <Backspace>, <PageDown>",
+                            "--keys: '%.40s' does not begin with a key", rest);
     }
     return HN_OK;
 }
@@ -107,12 +126,14 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     hn_tui_opts opts = {.theme = args->theme && strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT
                                                                                   : HN_THEME_DARK,
                         .frames = isnan(args->frames) ? 0 : (int)args->frames,
+                        .keys = args->keys,
                         .blocks = args->blocks};
     opts.ascii =
         args->ascii || hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"));
 
     // everything is read before anything is opened
     hn_status status = read_size(args->size, &opts, &diags);
+    HN_THEN(status, check_keys(args->keys, &diags));
     status = status == HN_OK ? read_opening(args, &o, &diags) : status;
     HN_THEN(status, hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods,
                                       o.n_methods, &diags));

@@ -88,6 +88,8 @@ static const option OPTIONS[] = {
     {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
     {"--plot", NULL, OPTION_FLAG, AT(plot), "plots drawn in characters, in place of numbers"},
     {"--size", "COLUMNSxROWS", OPTION_TEXT, AT(size), "of the frame as text; 80x24 when left out"},
+    {"--keys", "KEYS", OPTION_TEXT, AT(keys),
+     "typed before the frame of --once: characters, and names as <Enter> or <Down>"},
     {"--once", NULL, OPTION_FLAG, AT(once), "one frame as text, at --t"},
     {"--frames", "N", OPTION_COUNT, AT(frames), "end after N pictures"},
     {"--ascii", NULL, OPTION_FLAG, AT(ascii), "ASCII characters only"},

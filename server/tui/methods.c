@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/methods.h"
+
+#include "base/units.h"
+#include "tui/versions.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct kept {
+    char methods[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
+    int n;
+} kept;
+
+static void keep(kept *before, const hn_workbench *w) {
+    memcpy(before->methods, w->methods, sizeof before->methods);
+    before->n = w->n_methods;
+}
+
+/// Returns whether the methods could be taken; else they are as before and the fault is said.
+static bool record_again(hn_workbench *w, const kept *before) {
+    hn_diags diags = {0};
+    w->panel = HN_PANEL_MAIN;
+    if (hn_workbench_record(w, &diags) == HN_OK) {
+        hn_versions_keep(w);
+        return true;
+    }
+    memcpy(w->methods, before->methods, sizeof before->methods);
+    w->n_methods = before->n;
+    hn_workbench_say_fault(w, &diags);
+    return false;
+}
+
+/// Sets an option of a spelling that has it; returns whether it has.
+static bool set_option(char spelling[HN_SPEC_MAX], const char *key, double value) {
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    double *at = hn_method_parse(spelling, &spec, &diag) == HN_OK
+                     ? hn_method_find_option(&spec, key, NULL)
+                     : NULL;
+    if (at) {
+        *at = value;
+        hn_method_format(&spec, spelling);
+    }
+    return at != NULL;
+}
+
+static bool is_adaptive(const char *spelling) {
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    return hn_method_parse(spelling, &spec, &diag) == HN_OK && hn_method_is_adaptive(&spec);
+}
+
+void hn_methods_set_step(hn_workbench *w, char *text) {
+    kept before;
+    char *end;
+    for (char *c = text; *c; c++) {
+        *c = *c == ',' ? '.' : *c;
+    }
+    const double h = strtod(text, &end);
+    const double scale = strncmp(end + strspn(end, " "), "ms", 2) == 0 ? 1e-3 : 1;
+    if (end == text || !(h > 0) || !isfinite(h)) {
+        hn_workbench_say(w, "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms", text);
+        return;
+    }
+    keep(&before, w);
+    for (int i = 0; i < w->n_methods; i++) {
+        if (!is_adaptive(w->methods[i])) {
+            set_option(w->methods[i], "h", h * scale);
+        }
+    }
+    if (record_again(w, &before)) {
+        hn_workbench_say(w, "dt = %g s", h * scale);
+    }
+}
+
+void hn_methods_put(hn_workbench *w, int at, const char *spelling) {
+    kept before;
+    keep(&before, w);
+    if (at >= HN_COMPARISON_MAX_METHODS) {
+        hn_workbench_say(w, "%d methods are compared at most; remove one first (m, then x)",
+                         HN_COMPARISON_MAX_METHODS);
+        return;
+    }
+    snprintf(w->methods[at], HN_SPEC_MAX, "%.250s", spelling);
+    w->n_methods = at == w->n_methods ? at + 1 : w->n_methods;
+    record_again(w, &before);
+}
+
+void hn_methods_remove(hn_workbench *w, int at) {
+    kept before;
+    keep(&before, w);
+    if (at >= w->n_methods || w->n_methods < 2) {
+        hn_workbench_say(w, "one method stays");
+        return;
+    }
+    memmove(w->methods[at], w->methods[at + 1],
+            (size_t)(w->n_methods - at - 1) * sizeof *w->methods);
+    w->n_methods--;
+    record_again(w, &before);
+}
+
+/// "worst gap until now 2.4 mm, energy change 0.71 J"
+static void worst_so_far(const hn_workbench *w, int m, char *out, size_t size) {
+    const hn_track *t = hn_recording_track(w->recording, m);
+    char gap[HN_SI_TEXT], energy[HN_SI_TEXT];
+    double most[2] = {0, 0};
+    for (int k = 0; k <= hn_workbench_frame(w); k++) {
+        most[0] = fmax(most[0], fabs(t->gap[k]));
+        most[1] = fmax(most[1], fabs(t->energy[k]));
+    }
+    hn_si_format(most[0], "m", 2, gap);
+    hn_si_format(most[1], "J", 2, energy);
+    snprintf(out, size, "; before, until %.2f s: worst gap %s, energy change %s",
+             hn_workbench_frame(w) * hn_recording_frame_dt(w->recording), gap, energy);
+}
+
+void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alpha, double beta) {
+    kept before;
+    char said[160] = "";
+    int at = 0;
+    keep(&before, w);
+    while (at < w->n_methods && strcmp(w->methods[at], spelling) != 0) {
+        at++;
+    }
+    if (at == HN_COMPARISON_MAX_METHODS) {
+        hn_workbench_say(w, "%d methods are compared at most; remove one first (m, then x)", at);
+        return;
+    }
+
+    // what it was before, so that the change can be seen
+    if (at < w->n_methods) {
+        worst_so_far(w, at, said, sizeof said);
+    } else {
+        snprintf(w->methods[w->n_methods++], HN_SPEC_MAX, "%.250s", spelling);
+    }
+    set_option(w->methods[at], "alpha", alpha);
+    set_option(w->methods[at], "beta", beta);
+    if (record_again(w, &before)) {
+        w->selected = at;
+        hn_workbench_say(w, "alpha = %.3g, beta = %.3g%s", alpha, beta, said);
+    }
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_METHODS_H
+#define HN_TUI_METHODS_H
+// Changes of the methods that are compared: each records anew, and leaves everything as it was
+// where a method is refused.
+
+#include "tui/workbench.h"
+
+/// Another step for every method of fixed step: "0.01", "0,01" or "20 ms".
+void hn_methods_set_step(hn_workbench *w, char *text);
+/// Replaces method `at`, or adds one behind the last.
+void hn_methods_put(hn_workbench *w, int at, const char *spelling);
+/// The last one stays.
+void hn_methods_remove(hn_workbench *w, int at);
+/// Alpha and beta of the method with this spelling; it is added where it is not compared yet. Says
+/// what the worst gap and energy change were before.
+void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alpha, double beta);
+#endif

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/prompt.h"
+
+#include "tui/keys.h"
+#include "tui/methods.h"
+#include "tui/text_panel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void hn_prompt_open(hn_workbench *w, hn_prompt_kind kind, const char *initial) {
+    w->prompt = kind;
+    w->n_input = snprintf(w->input, sizeof w->input, "%s", initial);
+}
+
+void hn_prompt_export(hn_workbench *w) {
+    static const struct {
+        const char *language, *suffix;
+    } suffixes[] = {{"python", ".py"},  {"octave", ".m"},    {"java", ".java"},
+                    {"julia", ".jl"},   {"c", ".c"},         {"cpp", ".cpp"},
+                    {"wolfram", ".wl"}, {"modelica", ".mo"}, {"latex", ".tex"}};
+    const char *name = w->items[w->cursor].name, *suffix = ".csv";
+    char file[HN_TUI_LINE];
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+        suffix = strcmp(suffixes[i].language, name) == 0 ? suffixes[i].suffix : suffix;
+    }
+
+    // a name made of the scene's, in which a program can be called so
+    const char *scene = hn_model_scene(w->model)->id;
+    snprintf(file, sizeof file, "%.100s%s", strcmp(name, HN_TUI_RECORDING) == 0 ? name : scene,
+             suffix);
+    for (char *c = file; *c; c++) {
+        *c = *c == '-' ? '_' : *c;
+    }
+    hn_prompt_open(w, HN_PROMPT_EXPORT, file);
+}
+
+// ---- what is done with a line ----
+
+static void accept_step(hn_workbench *w) {
+    hn_methods_set_step(w, w->input);
+}
+
+static void accept_method(hn_workbench *w) {
+    hn_methods_put(w, w->cursor < w->n_methods ? w->cursor : w->n_methods, w->input);
+}
+
+void hn_prompt_set_parameter(hn_workbench *w, const char *name, double value) {
+    hn_setting settings[HN_TUI_SETTINGS + 1];
+    int n = 0;
+    for (int i = 0; i < w->n_settings; i++) {
+        if (strcmp(w->settings[i].name, name) != 0) {
+            settings[n++] = w->settings[i];
+        }
+    }
+    if (n == HN_TUI_SETTINGS) {
+        hn_workbench_say(w, "%d changed parameters are kept at most", n);
+        return;
+    }
+    settings[n++] = (hn_setting){name, value};
+    hn_workbench_set(w, settings, n);
+}
+
+static void accept_parameter(hn_workbench *w) {
+    char *end, name[HN_TUI_LINE];
+    for (char *c = w->input; *c; c++) {
+        *c = *c == ',' ? '.' : *c;
+    }
+    const double value = strtod(w->input, &end);
+    snprintf(name, sizeof name, "%s", w->items[w->cursor].name);
+    if (end == w->input || end[strspn(end, " ")] || !isfinite(value)) {
+        hn_workbench_say(w, "%s: '%.40s' is not a number", name, w->input);
+        return;
+    }
+    hn_prompt_set_parameter(w, name, value);
+}
+
+/// One row a frame: time, then gap, energy and error of each method, in a file that was not there.
+static void write_recording(hn_workbench *w) {
+    FILE *file = fopen(w->input, "wx");
+    if (!file) {
+        hn_workbench_say(w, "%.200s: cannot be written, or is there already; type another name",
+                         w->input);
+        return;
+    }
+    fprintf(file, "t");
+    for (int m = 0; m < w->n_methods; m++) {
+        const char *s = hn_recording_track(w->recording, m)->spelling;
+        fprintf(file, ",\"gap %s\",\"energy change %s\",\"error %s\"", s, s, s);
+    }
+    fprintf(file, "\n");
+
+    // one row a frame; what is not known stays empty
+    const int n = hn_recording_frames(w->recording);
+    for (int k = 0; k < n; k++) {
+        fprintf(file, "%.17g", k * hn_recording_frame_dt(w->recording));
+        for (int m = 0; m < w->n_methods; m++) {
+            const hn_track *t = hn_recording_track(w->recording, m);
+            const double values[] = {t->gap[k], t->energy[k], t->error[k]};
+            for (int i = 0; i < 3; i++) {
+                fprintf(file, isfinite(values[i]) ? ",%.17g" : ",", values[i]);
+            }
+        }
+        fprintf(file, "\n");
+    }
+
+    // only a file that was closed well is complete
+    const bool good = fclose(file) == 0;
+    hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames",
+                     w->input, n);
+}
+
+/// The recording, or the scene as a program in the chosen language.
+static void accept_export(hn_workbench *w) {
+    const char *chosen = w->items[w->cursor].name;
+    if (strcmp(chosen, HN_TUI_RECORDING) == 0) {
+        w->panel = HN_PANEL_MAIN;
+        write_recording(w);
+        return;
+    }
+    FILE *there = fopen(w->input, "r");
+    if (there) {
+        fclose(there);
+        hn_workbench_say(w, "%.200s: is there already; type another name", w->input);
+        return;
+    }
+    const char *const words[] = {"export", w->scene, "--language", chosen, "--out", w->input};
+    hn_text_panel_run(w, "export: Esc goes back", words, 6);
+}
+
+void hn_prompt_key(hn_workbench *w, int key) {
+    static void (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
+                                                     [HN_PROMPT_METHOD] = accept_method,
+                                                     [HN_PROMPT_PARAMETER] = accept_parameter,
+                                                     [HN_PROMPT_EXPORT] = accept_export};
+
+    // Escape forgets the line, Enter hands it over
+    if (key == HN_KEY_ESCAPE) {
+        w->prompt = HN_PROMPT_NONE;
+    } else if (key == HN_KEY_ENTER) {
+        const hn_prompt_kind kind = w->prompt;
+        w->prompt = HN_PROMPT_NONE;
+        accept[kind](w);
+    } else if (key == HN_KEY_BACKSPACE && w->n_input > 0) {
+        w->input[--w->n_input] = '\0';
+    } else if (key >= 32 && key < 127 && w->n_input < HN_TUI_LINE - 1) {
+        w->input[w->n_input++] = (char)key;
+        w->input[w->n_input] = '\0';
+    }
+}

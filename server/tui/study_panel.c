@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/study_panel.h"
+
+#include "tui/keys.h"
+#include "tui/methods.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    MAP_COLUMNS = 24,
+    MOST_MAP_ROWS = 24,
+    LEAST_MAP_ROWS = 6,
+    AROUND_MAP = 12,
+    SIDE_COLUMNS = 46
+};
+
+static const char FALLBACK[] = "baumgarte@rk4:h=0.01";
+
+// ---- opening ----
+
+/// The method of a map: the selected one where it has alpha and beta, else the first that has them,
+/// else Baumgarte's at a usual step.
+static const char *mapped_method(const hn_workbench *w, double *alpha, double *beta) {
+    for (int pass = -1; pass < w->n_methods; pass++) {
+        const char *spelling = w->methods[pass < 0 ? w->selected : pass];
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        if (hn_method_parse(spelling, &spec, &diag) == HN_OK &&
+            hn_method_find_option(&spec, "alpha", NULL) &&
+            hn_method_find_option(&spec, "beta", NULL) &&
+            strcmp(spec.formulation->name, "baumgarte") == 0) {
+            *alpha = hn_method_option(&spec, "alpha", 0);
+            *beta = hn_method_option(&spec, "beta", 0);
+            return spelling;
+        }
+    }
+    *alpha = *beta = (double)NAN;
+    return FALLBACK;
+}
+
+void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
+    const hn_model_source source = hn_workbench_source(w);
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    hn_diags diags = {0};
+    int n = 0;
+    for (; kind == HN_TUI_COST && n < w->n_methods; n++) {
+        methods[n] = w->methods[n];
+    }
+    if (kind == HN_TUI_STABILITY) {
+        methods[n++] = mapped_method(w, &w->present[0], &w->present[1]);
+    }
+
+    // a map as high as the screen has room for
+    const int room = w->rows - AROUND_MAP;
+    const hn_tui_study_request request = {.library = w->library,
+                                          .source = &source,
+                                          .kind = kind,
+                                          .methods = methods,
+                                          .n_methods = n,
+                                          .columns = MAP_COLUMNS,
+                                          .rows = room < LEAST_MAP_ROWS  ? LEAST_MAP_ROWS
+                                                  : room > MOST_MAP_ROWS ? MOST_MAP_ROWS
+                                                                         : room};
+    hn_tui_study_free(w->study);
+    w->study = NULL;
+    if (hn_tui_study_start(&request, &w->study, &diags) != HN_OK) {
+        hn_workbench_say_fault(w, &diags);
+        return;
+    }
+    w->panel = HN_PANEL_STUDY;
+    w->scroll = 0;
+    w->at = (hn_map_place){-1, -1};
+}
+
+// ---- keys ----
+
+/// Enter on a map: alpha and beta of the cell go to the method, which starts again.
+static void take_cell(hn_workbench *w) {
+    static hn_map_plot map;
+    double alpha, beta;
+    hn_tui_study_map(w->study, &map);
+    if (w->at.column < 0) {
+        return;
+    }
+    const char *spelling = mapped_method(w, &alpha, &beta);
+    hn_methods_set_baumgarte(w, spelling, map.x.value[w->at.column], map.y.value[w->at.row]);
+}
+
+static void move_cursor(hn_workbench *w, int dx, int dy) {
+    static hn_map_plot map;
+    hn_tui_study_map(w->study, &map);
+    if (map.x.n == 0) {
+        return;
+    }
+
+    // the first step begins at the present point
+    if (w->at.column < 0) {
+        const hn_map_place here = hn_map_plot_place(&map, w->present[0], w->present[1]);
+        w->at = here.column < 0 ? (hn_map_place){map.x.n / 2, map.y.n / 2} : here;
+    }
+    const int column = w->at.column + dx, row = w->at.row + dy;
+    w->at.column = column < 0 ? 0 : column >= map.x.n ? map.x.n - 1 : column;
+    w->at.row = row < 0 ? 0 : row >= map.y.n ? map.y.n - 1 : row;
+}
+
+void hn_study_panel_key(hn_workbench *w, int key) {
+    const bool map = hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY;
+    const int down = (key == HN_KEY_DOWN) - (key == HN_KEY_UP);
+    const int across = (key == HN_KEY_RIGHT) - (key == HN_KEY_LEFT);
+    if (key == HN_KEY_ESCAPE && hn_tui_study_running(w->study)) {
+        hn_tui_study_stop(w->study);
+    } else if (key == HN_KEY_ESCAPE || key == 'q') {
+        w->panel = HN_PANEL_MAIN;
+        hn_tui_study_free(w->study);
+        w->study = NULL;
+    } else if (map && key == HN_KEY_ENTER) {
+        take_cell(w);
+    } else if (map && (down || across)) {
+        move_cursor(w, across, -down);
+    } else if (down) {
+        w->scroll = w->scroll + down < 0 ? 0 : w->scroll + down;
+    }
+}
+
+// ---- drawing ----
+
+static void draw_words(hn_cells *c, hn_area area, const hn_workbench *w) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_tui_study_words(w->study, &b);
+    const char *text = hn_strbuf_text(&b);
+    for (int line = 0; line < w->scroll && strchr(text, '\n'); line++) {
+        text = strchr(text, '\n') + 1;
+    }
+    hn_cells_fold(c, area, 0, HN_CELL_INK, text);
+    hn_strbuf_reset(&b);
+}
+
+/// A line a method: its glyph, how many points are done, how many ended early.
+static int draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
+    for (int m = 0; m < p->scatter.n && m < area.rows; m++) {
+        hn_cells_put(c, area, 0, m, p->scatter.series[m].colour, HN_CELL_BOLD,
+                     p->scatter.series[m].glyph);
+        int x = 2 + hn_cells_printf(c, area, 2, m, HN_CELL_INK, 0, "%d/%d ", p->done[m], p->levels);
+        if (p->failed[m] > 0) {
+            x += hn_cells_printf(c, area, x, m, HN_CELL_ALARM, 0, "%d ended early ", p->failed[m]);
+        }
+        hn_cells_put(c, area, x, m, HN_CELL_INK, 0, p->name[m]);
+    }
+    return p->scatter.n;
+}
+
+/// The plot, and beside or below it a legend and what there is to read.
+static void draw_cost(hn_cells *c, hn_area in, const hn_workbench *w) {
+    static hn_cost_plot plot;
+    hn_tui_study_cost(w->study, &plot);
+    const bool beside = in.columns >= 60 + SIDE_COLUMNS;
+    const int below = plot.scatter.n + 4;
+    const hn_area left = beside
+                             ? (hn_area){in.x, in.y + 1, in.columns - SIDE_COLUMNS - 2, in.rows - 1}
+                             : (hn_area){in.x, in.y + 1, in.columns, in.rows - below - 1};
+    const hn_area side =
+        beside ? (hn_area){in.x + in.columns - SIDE_COLUMNS, in.y, SIDE_COLUMNS, in.rows}
+               : (hn_area){in.x + 1, in.y + in.rows - below, in.columns - 2, below};
+    if (!hn_cost_plot_draw(c, left, &plot, w->form)) {
+        hn_cells_put(c, in, 1, 2, HN_CELL_MUTED, 0,
+                     hn_tui_study_running(w->study) ? "the reference solution is computed first"
+                                                    : "no points to draw");
+    } else {
+        hn_cells_put(c, in, 1, 0, HN_CELL_MUTED, 0, hn_cost_plot_title(&plot));
+    }
+    const int used = draw_legend(c, side, &plot);
+    draw_words(
+        c, (hn_area){side.x, side.y + used + beside, side.columns, side.rows - used - beside}, w);
+}
+
+static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
+    static hn_map_plot map;
+    hn_tui_study_map(w->study, &map);
+    if (map.x.n == 0) {
+        draw_words(c, (hn_area){in.x + 1, in.y + 1, in.columns - 2, in.rows - 1}, w);
+        return;
+    }
+    const hn_map_place here = hn_map_plot_place(&map, w->present[0], w->present[1]);
+    const int rows = hn_map_plot_rows(&map);
+    hn_cells_printf(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, "%s", map.name);
+    hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
+
+    // the cell under the cursor, or what the map says as a whole
+    const hn_area foot = {in.x + 1, in.y + 1 + rows, in.columns - 2, in.rows - rows - 1};
+    if (w->at.column >= 0) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_map_plot_words(&b, &map, w->at);
+        hn_strbuf_add(&b, " (Enter takes these)");
+        hn_cells_fold(c, foot, 0, HN_CELL_INK, hn_strbuf_text(&b));
+        hn_strbuf_reset(&b);
+    } else {
+        draw_words(c, foot, w);
+    }
+}
+
+void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
+    const bool cost = hn_tui_study_get_kind(w->study) == HN_TUI_COST;
+    const bool running = hn_tui_study_running(w->study);
+    const char *name = cost ? "what accuracy costs" : "stability over alpha and beta";
+    const char *moves = cost ? "" : "arrows move, ★ is now, ";
+    char title[HN_TUI_LINE];
+    if (running) {
+        snprintf(title, sizeof title, "%s: %.0f %% done, %sEsc stops", name,
+                 100 * hn_tui_study_share(w->study), moves);
+    } else {
+        snprintf(title, sizeof title, "%s: %sEsc goes back", name, moves);
+    }
+    const hn_area in = hn_cells_frame(c, area, title);
+    if (cost) {
+        draw_cost(c, in, w);
+    } else {
+        draw_map(c, in, w);
+    }
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_TEXT_PANEL_H
+#define HN_TUI_TEXT_PANEL_H
+// The panel of a text: what it shows, and commands whose text it shows as it comes.
+
+#include "tui/workbench.h"
+
+/// An empty text with this title; a command that was shown ends.
+void hn_text_panel_open(hn_workbench *w, const char *title);
+enum { HN_TUI_WORDS = 16 };
+/// Runs `holonom` with these words, and with the settings of the scene, and shows its text.
+void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *words, int n);
+#endif

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/undo.h"
+
+#include "tui/versions.h"
+
+void hn_undo_go(hn_workbench *w, int by) {
+    hn_versions *v = w->versions;
+    const int to = v->now + by;
+    if (to < 0 || to >= v->n) {
+        hn_workbench_say(w, by < 0 ? "there is nothing to undo" : "there is nothing to redo");
+        return;
+    }
+
+    // opened as it was
+    const hn_version *one = &v->at[to];
+    hn_setting settings[HN_TUI_SETTINGS];
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    for (int i = 0; i < one->n_settings; i++) {
+        settings[i] = (hn_setting){one->names[i], one->values[i]};
+    }
+    for (int i = 0; i < one->n_methods; i++) {
+        methods[i] = one->methods[i];
+    }
+    v->going = true;
+    const bool good =
+        hn_workbench_reopen(w, one->scene, settings, one->n_settings, methods, one->n_methods);
+    v->going = false;
+    if (good) {
+        v->now = to;
+        hn_workbench_say(w, "%s, change %d of %d", by < 0 ? "undone" : "done again", to + 1, v->n);
+    }
+}
