@@ -6,6 +6,7 @@
 
 #include "tui/workbench.h"
 
+/// Draws the methods at the frame shown, or the mechanism that is dragged.
 void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w);
 /// The scene of w->preview as it stands at its start.
 void hn_mechanism_preview(hn_cells *c, hn_area area, const hn_workbench *w);
