@@ -34,9 +34,11 @@ static bool tell_syntax(hn_build *b, const hn_im_file *file, const xmlParserCtxt
         (void)snprintf(text, sizeof text, "elements are nested far too deep");
     }
     b->status = HN_ERR_INPUT;
-    (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, NULL, "%s, column %d: %s",
-                       hn_im_line(b, file, e->line > 0 ? e->line : 1), e->int2 > 0 ? e->int2 : 1,
-                       text);
+    const bool is_none = strstr(text, "Start tag expected") != NULL;
+    (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL,
+                       is_none ? "give an MJCF or a URDF file, which is XML" : NULL,
+                       "%s, column %d: %s", hn_im_line(b, file, e->line > 0 ? e->line : 1),
+                       e->int2 > 0 ? e->int2 : 1, text);
     return false;
 }
 
