@@ -81,16 +81,24 @@ PROBLEM = [
 ]
 
 
+def typed(x, y, command, most=52):
+    """A command in one line or two, marked so that a test can run it."""
+    at = len(command) if len(command) <= most else command.rfind(" ", 0, most)
+    rest = command[at:].strip()
+    more = f'<tspan x="{x:.1f}" dy="16"> {escape(rest)}</tspan>' if rest else ""
+    style = 'class="command" font-family="DejaVu Sans Mono, monospace"'
+    return f'<text x="{x:.1f}" y="{y:.1f}" font-size="13" text-anchor="middle" fill="#1f5c93" {style}>{escape(command[:at])}{more}</text>'
+
+
 def flow(lesson, name, title, boxes, back=None):
     """Boxes below each other with arrows; `back` (from, to, word) is an arrow on the right that returns."""
-    width, tall, gap, left, wide = 640, 50, 22, 40, 500
+    width, tall, gap, left, wide = 544 if back else 474, 66, 20, 14, 446
     parts = []
     for k, (words, command) in enumerate(boxes):
         y = 20 + k * (tall + gap)
         parts.append(f'<rect x="{left}" y="{y}" width="{wide}" height="{tall}" rx="5" fill="#ffffff" stroke="{INK}" stroke-width="1.3"/>')
-        parts.append(text(left + wide / 2, y + 21, f"{k + 1}. {words}", 14))
-        small = 12 if len(command) < 62 else 10.5
-        parts.append(text(left + wide / 2, y + 40, "holonom " + command, small, colour="#1f5c93", style='class="command" font-family="DejaVu Sans Mono, monospace"'))
+        parts.append(text(left + wide / 2, y + 23, f"{k + 1}. {words}", 15))
+        parts.append(typed(left + wide / 2, y + 42, "holonom " + command))
         if k:
             parts.append(line(left + wide / 2, y - gap, left + wide / 2, y - 2, extra='marker-end="url(#head0)"'))
     if back:
@@ -133,8 +141,8 @@ def link(a, b, colour, label, name):
     return [
         line(*a, *b, colour, 5, 'stroke-linecap="round"'),
         f'<circle cx="{mx:.1f}" cy="{my:.1f}" r="5.5" fill="{PAPER}" stroke="{INK}"/><path d="M{mx} {my} V{my - 5.5} A5.5 5.5 0 0 1 {mx + 5.5} {my} z M{mx} {my} V{my + 5.5} A5.5 5.5 0 0 1 {mx - 5.5} {my} z" fill="{INK}"/>',
-        text(mx - 12 * ux, my - 16 * uy + 4, label, 14, "end" if ux > 0 else "start"),
-        text(mx + 12 * ux, my + 16 * uy + 4, name, 12, "start" if ux > 0 else "end", "#555"),
+        text(mx - 12 * ux, my - 16 * uy + 4, label, 16, "end" if ux > 0 else "start"),
+        text(mx + 12 * ux, my + 16 * uy + 4, name, 14, "start" if ux > 0 else "end", "#555"),
     ]
 
 
@@ -154,12 +162,12 @@ def four_bar():
     bars = [part for ends, c, n in zip(((o1, a), (a, b), (o3, b)), COLOURS, names) for part in link(*ends, c, *n)]
     angles = [part for k, (centre, r) in enumerate(((o1, 34), (a, 52), (o3, 34))) for part in (
         line(*centre, centre[0] + r + 18, centre[1], FAINT, 1, 'stroke-dasharray="4 3"'), arc(*centre, r, q[k]),
-        text(centre[0] + r + (14 if k != 1 else -8), centre[1] + (-12 if k != 1 else 16), f"θ{'₁₂₃'[k]} = {q[k]:.3g} rad", 12, "start"))]  # fmt: skip
+        text(centre[0] + r + (14 if k != 1 else -8), centre[1] + (-12 if k != 1 else 16), f"θ{'₁₂₃'[k]} = {q[k]:.3g} rad", 14, "start"))]  # fmt: skip
     below = oy + 46
     base = [ground(*o1), ground(*o3), line(o1[0], below, o3[0], below, INK, 1.2, 'marker-start="url(#head0)" marker-end="url(#head0)"'),
-            text((o1[0] + o3[0]) / 2, below + 18, "d = 2.2 m", 14)]  # fmt: skip
+            text((o1[0] + o3[0]) / 2, below + 18, "d = 2.2 m", 16)]  # fmt: skip
     pins = [pin(*p) for p in (o1, a, b, o3)]
-    tags = [text(o1[0] - 18, o1[1] + 5, "O₁"), text(a[0] - 14, a[1] - 10, "A"), text(b[0] + 14, b[1] - 8, "B"), text(o3[0] - 20, o3[1] + 5, "O₃")]
+    tags = [text(o1[0] - 18, o1[1] + 5, "O₁", 15), text(a[0] - 14, a[1] - 10, "A", 15), text(b[0] + 14, b[1] - 8, "B", 15), text(o3[0] - 20, o3[1] + 5, "O₃", 15)]
     write("01-closed-loops", "four-bar-labelled", "The four-bar fb0 at its start, with lengths, angles and centres of mass", 600, 400,
           base + bars + angles + pins + tags)  # fmt: skip
 
@@ -169,9 +177,9 @@ def four_bar():
     size = 9.0
     force = [line(b[0], b[1], b[0] + size * push[0], b[1] - size * push[1], COLOURS[0], 2.6, 'marker-end="url(#head1)"'),
              line(c[0], c[1], c[0] - size * push[0], c[1] + size * push[1], COLOURS[1], 2.6, 'marker-end="url(#head2)"'),
-             text(b[0] - 12, b[1] - 52, f"λ = ({push[0]:.3g}, {push[1]:.3g}) N on the coupler", 13, "end"),
-             text(c[0] + 14, c[1] + 50, "−λ on the rocker", 13, "start")]  # fmt: skip
-    cut = [line(b[0] + 23, b[1] - 40, b[0] + 23, b[1] + 70, FAINT, 1.2, 'stroke-dasharray="5 4"'), text(b[0] + 28, b[1] - 44, "cut at B", 12, "start", "#555")]
+             text(b[0] - 12, b[1] - 52, f"λ = ({push[0]:.3g}, {push[1]:.3g}) N on the coupler", 15, "end"),
+             text(c[0] + 14, c[1] + 50, "−λ on the rocker", 15, "start")]  # fmt: skip
+    cut = [line(b[0] + 23, b[1] - 40, b[0] + 23, b[1] + 70, FAINT, 1.2, 'stroke-dasharray="5 4"'), text(b[0] + 28, b[1] - 44, "cut at B", 14, "start", "#555")]
     plain = [line(*o1, *a, COLOURS[0], 5), line(*a, *b, COLOURS[1], 5), line(*p3, *c, COLOURS[2], 5)]
     write("02-equations-of-motion", "cut-loop", "The loop cut at B: an open chain, and the pair of forces that closes it again", 660, 380,
           [ground(*o1), ground(*p3), *plain, *[pin(*p) for p in (o1, a, b, c, p3)], *cut, *force])  # fmt: skip
@@ -196,7 +204,7 @@ def label(v, log):
 
 def plot(lesson, name, title, x_name, y_name, curves, logx=False, logy=False, dots=False):
     """Curves [(label, xs, ys)] with axes; not a number and, on a logarithmic axis, zero are left out."""
-    width, height, left, right, top, bottom = 640, 380, 84, 20, 22 + 18 * len(curves), 56
+    width, height, left, right, top, bottom = 480, 330, 78, 16, 22 + 19 * len(curves), 54
     clean = [(w, [(x, y) for x, y in zip(xs, ys) if math.isfinite(y) and (not logy or y > 0)]) for w, xs, ys in curves]
     xs = [x for _, points in clean for x, _ in points]
     ys = [y for _, points in clean for _, y in points]
@@ -212,19 +220,19 @@ def plot(lesson, name, title, x_name, y_name, curves, logx=False, logy=False, do
 
     parts = []
     for v in ticks(10**x0 if logx else x0, 10**x1 if logx else x1, logx):
-        parts += [line(px(v), height - bottom, px(v), top, "#e2dfd6", 1), text(px(v), height - bottom + 18, label(v, logx), 12)]
+        parts += [line(px(v), height - bottom, px(v), top, "#e2dfd6", 1), text(px(v), height - bottom + 18, label(v, logx), 13)]
     rows = ticks(10**y0 if logy else y0, 10**y1 if logy else y1, logy)
     for v in rows[:: max(1, math.ceil(len(rows) / 8))]:
-        parts += [line(left, py(v), width - right, py(v), "#e2dfd6", 1), text(left - 8, py(v) + 4, label(v, logy), 12, "end")]
+        parts += [line(left, py(v), width - right, py(v), "#e2dfd6", 1), text(left - 8, py(v) + 4, label(v, logy), 13, "end")]
     parts += [line(left, height - bottom, width - right, height - bottom), line(left, height - bottom, left, top)]
-    parts += [text((left + width - right) / 2, height - 14, x_name, 13),
-              text(18, (top + height - bottom) / 2, y_name, 13, style=f'transform="rotate(-90 18 {(top + height - bottom) / 2})"')]  # fmt: skip
+    parts += [text((left + width - right) / 2, height - 14, x_name, 14),
+              text(18, (top + height - bottom) / 2, y_name, 14, style=f'transform="rotate(-90 18 {(top + height - bottom) / 2})"')]  # fmt: skip
     for k, (words, points) in enumerate(clean):
         stroke = f'stroke="{COLOURS[k]}" stroke-width="2" stroke-dasharray="{DASHES[k]}"'
         path = " ".join(f"{px(x):.1f},{py(y):.1f}" for x, y in points)
         parts.append(f'<polyline points="{path}" fill="none" {stroke}/>')
         parts += [f'<circle cx="{px(x):.1f}" cy="{py(y):.1f}" r="4" fill="{COLOURS[k]}"/>' for x, y in points] if dots else []
-        parts += [f'<line x1="{left}" y1="{16 + 18 * k}" x2="{left + 34}" y2="{16 + 18 * k}" {stroke}/>', text(left + 42, 20 + 18 * k, words, 12, "start")]
+        parts += [f'<line x1="{left}" y1="{16 + 19 * k}" x2="{left + 34}" y2="{16 + 19 * k}" {stroke}/>', text(left + 42, 20 + 19 * k, words, 13, "start")]
     write(lesson, name, title, width, height, parts)
 
 

@@ -182,6 +182,8 @@ test("every lesson of the server is shown, with no formula in error", async (t) 
   const page = await open(t);
   await page.getByRole("button", { name: "lessons" }).click();
   const lessons = await read(page, (data) => data.lessons.map(({ id }) => id));
+  const names = await page.locator("#lesson option").allTextContents();
+  assert.ok(names.every((name, k) => name.startsWith(`${k + 1}. `) && !/^\d+\. \d/.test(name)));
   for (const id of lessons) {
     await page.selectOption("#lesson", id);
     await page.waitForFunction(

@@ -167,7 +167,9 @@ def charts():
         drawing, text = read(path), read(os.path.join(os.path.dirname(os.path.dirname(path)), "text.md"))
         faults += [] if f"(pictures/{os.path.basename(path)})" in text else [f"{path}: no text shows it"]
         faults += [] if re.search(r"<title>[^<]{10,}</title>", drawing) else [f"{path}: no title"]
-        for command in re.findall(r'class="command"[^>]*>holonom ([^<]*)<', drawing):
+        boxes = re.findall(r'class="command"[^>]*>holonom (.*?)</text>', drawing)
+        faults += [f"{path}: no command"] if "/chart-" in path and not boxes else []
+        for command in (re.sub(r"<[^>]*>", "", box) for box in boxes):
             done = subprocess.run([PROGRAM, *shlex.split(command)], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL)
             faults += [f"{path}: {command}: {done.stderr[-200:]}"] if done.returncode else []
     return faults

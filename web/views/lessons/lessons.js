@@ -85,7 +85,8 @@ export function createLessons(el, store, actions) {
           progress.isRead(id) ? "read" : "",
           solved ? `${solved} of ${problems.length} exercises` : "",
         ].filter(Boolean);
-        const words = `${i + 1}. ${title}${marks.length ? ` (${marks.join(", ")})` : ""}`;
+        const name = title.replace(/^\d+\. /, ""); // a title may hold its number already
+        const words = `${i + 1}. ${name}${marks.length ? ` (${marks.join(", ")})` : ""}`;
         return h("option", { value: id }, words);
       }),
     );
