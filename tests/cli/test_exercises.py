@@ -204,6 +204,42 @@ def broken_exercise(folder):
     expect("a kind that does not exist is named with its near miss", done.returncode == 3 and "number" in done.stderr, done.stderr)
 
 
+def indented(text, start, end):
+    """The indented block of a Markdown text from the line with `start` to the line with `end`, without its indent."""
+    lines = text.splitlines()
+    first = next(k for k, line in enumerate(lines) if start in line and line.startswith("    "))
+    last = next(k for k in range(first, len(lines)) if lines[k].strip() == end)
+    indent = len(lines[first]) - len(lines[first].lstrip())
+    return "\n".join(line[indent:] for line in lines[first : last + 1]) + "\n"
+
+
+def the_guide_for_teachers(folder):
+    """What lessons/README.md shows: an exercise to copy, and a script for Gradescope."""
+    with open("lessons/README.md", encoding="utf-8") as f:
+        text = f.read()
+    exercise = text[text.rindex("    {\n", 0, text.index('"id": "ramp"')) :]
+    ramp = json.loads(exercise[: exercise.index("\n    }\n") + 6])
+    home = os.path.join(folder, "guide")
+    problems = os.path.join(home, "lessons", ramp["lesson"], "problems")
+    os.makedirs(os.path.join(home, "web"))
+    os.makedirs(problems)
+    write(problems, "ramp.json", ramp)
+    done = run("problem", "ramp", "--seeds", "1..200", "--check", "--json", home=home)
+    report = json.loads(done.stdout)
+    expect("the guide's exercise passes its check", done.returncode == 0 and report["variants"] == 200 and report["bad"] == 0, done.stdout)
+
+    # the script, with its folders here and this program
+    place = os.path.join(folder, "autograder")
+    os.makedirs(os.path.join(place, "submission"))
+    write(place, "submission_metadata.json", {"users": [{"email": "ada@example.org"}]})
+    write(os.path.join(place, "submission"), "answer.json", {"student": "ada@example.org", "c": 0})
+    script = indented(text, "#!/bin/sh", "exit 0").replace("/autograder", place).replace("holonom grade", f"{os.path.abspath(PROGRAM)} grade")
+    subprocess.run(["/bin/sh", write(folder, "run_autograder", script)], capture_output=True, text=True, timeout=120, check=True)
+    with open(os.path.join(place, "results", "results.json"), encoding="utf-8") as f:
+        result = json.load(f)
+    expect("the guide's script grades for Gradescope", result["score"] == 1 and len(result["tests"]) >= 3, str(result)[:300])
+
+
 def main():
     variants()
     checks()
@@ -214,6 +250,7 @@ def main():
         platforms(folder)
         for_teachers(folder)
         broken_exercise(folder)
+        the_guide_for_teachers(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):
         if not good:
             print("# " + said.replace("\n", "\n# "))
