@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_CANVAS_H
 #define HN_RENDER_CANVAS_H
-// A small drawing surface: shapes are recorded as triangles, then painted by OSMesa off the screen,
-// tile by tile at four times the size in both directions and averaged down, so that every edge has
+// A small drawing surface: shapes are recorded as triangles, then painted off the screen by OSMesa,
+// or by the built-in renderer where OSMesa is missing (or HOLONOM_RENDERER is "built-in"), tile by
+// tile at four times the size in both directions and averaged down, so that every edge has
 // 17 levels and memory stays small.
 //
 // Coordinates are pixels, x right, y down, (0, 0) the upper left corner. Colours are 0xRRGGBB,
@@ -91,8 +92,10 @@ void hn_canvas_unclip(hn_canvas *c);
 
 // ---- painting: may be called more than once, and from several threads: they take turns ----
 
+/// Returns the name of the renderer: "OSMesa" or "built-in".
+const char *hn_canvas_renderer(void);
 /// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY; HN_ERR_UNSUPPORTED
-/// when OSMesa cannot give a context; HN_ERR_INTERNAL when GL reports a fault.
+/// when OSMesa is there and cannot give a context; HN_ERR_INTERNAL when GL reports a fault.
 HN_MUST_CHECK hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag);
 /// Appends the bytes of a PNG file.
 HN_MUST_CHECK hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag);

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Painting what a canvas has recorded: OSMesa for the pixels, libpng for the file.
+// Painting what a canvas has recorded: OSMesa for the pixels, the built-in renderer where it is
+// missing.
 #include "render/canvas.h"
 
 #include "base/file.h"
 #include "render/canvas_record.h"
 #include "render/osmesa.h"
+#include "render/png_file.h"
+#include "render/raster.h"
 
-#include <png.h>
 #include <pthread.h>
-#include <setjmp.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 // a tile of 256 pixels has 1024 samples a side: 4 MB of colour and 4 MB of stencil, whatever the
@@ -168,15 +170,19 @@ static hn_status paint_with_context(const hn_osmesa *gl, const hn_canvas *c, uns
     return status;
 }
 
-hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
-    HN_ASSERT(c != NULL && rgb != NULL && !c->in_layer);
-    if (c->failed) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "memory ran out while drawing");
-    }
-    const hn_osmesa *gl = hn_osmesa_get(diag);
-    if (gl == NULL) {
-        return HN_ERR_UNSUPPORTED;
-    }
+/// Whether HOLONOM_RENDERER asks for the built-in renderer.
+static bool wants_builtin(void) {
+    const char *wanted = getenv("HOLONOM_RENDERER");
+    return wanted && strcmp(wanted, "built-in") == 0;
+}
+
+const char *hn_canvas_renderer(void) {
+    return !wants_builtin() && hn_osmesa_get(NULL) ? "OSMesa" : "built-in";
+}
+
+/// With OSMesa's samples. HN_ERR_UNSUPPORTED: it gives no context.
+static hn_status paint_with_osmesa(const hn_osmesa *gl, const hn_canvas *c, unsigned char *rgb,
+                                   hn_diag *diag) {
     unsigned char *samples = malloc((size_t)4 * SIDE * SIDE);
     if (samples == NULL) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
@@ -188,63 +194,13 @@ hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag)
     return status;
 }
 
-// ---- PNG ----
-
-static void append_bytes(png_structp png, png_bytep bytes, png_size_t n) {
-    hn_strbuf_add_n(png_get_io_ptr(png), (const char *)bytes, n);
-}
-
-static void flush_nothing(png_structp png) {
-    (void)png;
-}
-
-static void ignore_warning(png_structp png, png_const_charp text) {
-    (void)png;
-    (void)text;
-}
-
-_Noreturn static void leave(png_structp png, png_const_charp text) {
-    (void)text;
-    longjmp(*(jmp_buf *)png_get_error_ptr(png), 1);
-}
-
-/// libpng leaves by longjmp: everything it needs is passed in, so that no local changes between.
-static bool write_png(png_structp png, png_infop info, const hn_canvas *c, const unsigned char *rgb,
-                      jmp_buf *back) {
-    if (setjmp(*back) != 0) {
-        return false;
+hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
+    HN_ASSERT(c != NULL && rgb != NULL && !c->in_layer);
+    if (c->failed) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "memory ran out while drawing");
     }
-    png_set_IHDR(png, info, (png_uint_32)c->width, (png_uint_32)c->height, 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
-    png_write_info(png, info);
-    for (int y = 0; y < c->height; y++) {
-        png_write_row(png, rgb + 3 * (size_t)y * (size_t)c->width);
-    }
-    png_write_end(png, info);
-    return true;
-}
-
-static hn_status encode_png(const hn_canvas *c, const unsigned char *rgb, hn_strbuf *out,
-                            hn_diag *diag) {
-    jmp_buf back;
-    const size_t before = out->n;
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &back, leave, ignore_warning);
-    png_infop info = png != NULL ? png_create_info_struct(png) : NULL;
-    int written = 0;
-    if (info != NULL) {
-        png_set_write_fn(png, out, append_bytes, flush_nothing);
-        written = write_png(png, info, c, rgb, &back);
-    }
-    png_destroy_write_struct(png != NULL ? &png : NULL, info != NULL ? &info : NULL);
-    if (!written || out->failed) {
-        if (!out->failed && out->text != NULL) {
-            out->n = before;
-            out->text[before] = '\0';
-        }
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to write the PNG");
-    }
-    return HN_OK;
+    const hn_osmesa *gl = wants_builtin() ? NULL : hn_osmesa_get(NULL);
+    return gl != NULL ? paint_with_osmesa(gl, c, rgb, diag) : hn_raster_paint(c, rgb, diag);
 }
 
 hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag) {
@@ -255,7 +211,7 @@ hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag) {
                            "no memory for a picture of %d by %d pixels", c->width, c->height);
     }
     hn_status status = hn_canvas_paint(c, rgb, diag);
-    HN_THEN(status, encode_png(c, rgb, png, diag));
+    HN_THEN(status, hn_png_encode(png, c->width, c->height, rgb, diag));
     free(rgb);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "render/snapshot.h"
 
 #include "base/units.h"
+#include "render/snapshot_marks.h"
 #include "render/snapshot_shapes.h"
 #include "render/snapshot_sheet.h"
 #include "render/snapshot_tear.h"
@@ -117,18 +118,19 @@ static double legend_height(const hn_sheet *s, const hn_drawing *d, const hn_sna
                             int n_poses, double font) {
     double height = 0.4 * font;
     for (int i = 0; i < n_poses; i++) {
-        height += legend_pitch(s, d, &poses[i], font);
+        height += poses[i].faint ? 0 : legend_pitch(s, d, &poses[i], font);
     }
     return height;
 }
 
 static void draw_legend_row(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                            const hn_snapshot_pose *pose, double y, double font) {
+                            const hn_snapshot_pose *pose, bool selected, double y, double font) {
     const hn_theme theme = hn_canvas_theme(c);
     const hn_surface *surface = hn_surface_get(theme);
     const double sample = 3.6 * font, x = s->legend.x, text = x + LEGEND_TEXT * font;
     const double room = legend_room(s, font), middle = y - 0.32 * font;
-    const hn_stroke stroke = hn_slot_stroke(theme, pose->slot, s->line);
+    hn_stroke stroke = hn_slot_stroke(theme, pose->slot, s->line);
+    stroke.n_dash = selected ? 0 : stroke.n_dash; // as in the drawing
     hn_canvas_segment(c, x, middle, x + sample, middle, &stroke);
     hn_canvas_disc(c, x + sample / 2, middle, 0.55 * font, hn_paint_solid(surface->paper));
     hn_canvas_marker(c, hn_look_get(pose->slot)->marker, x + sample / 2, middle, 0.75 * font,
@@ -145,8 +147,10 @@ static void draw_legend(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
         font *= 0.96;
     }
     for (int i = 0; i < n_poses; i++) {
-        draw_legend_row(c, s, d, &poses[i], y + font, font);
-        y += legend_pitch(s, d, &poses[i], font);
+        if (!poses[i].faint) {
+            draw_legend_row(c, s, d, &poses[i], i == s->selected, y + font, font);
+            y += legend_pitch(s, d, &poses[i], font);
+        }
     }
 }
 
@@ -221,9 +225,13 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     // from the ground up: what lies on top comes last
     hn_snapshot_ground(c, &sheet, drawing, selected);
     draw_poses(c, &sheet, drawing, poses, n_poses);
+    hn_snapshot_markers(c, &sheet, drawing, poses, n_poses);
+    if (opts->dimensions) {
+        hn_snapshot_dimensions(c, &sheet, drawing, selected);
+    }
     hn_snapshot_loads(c, &sheet, selected, opts);
     if (opts->labels) {
-        hn_snapshot_labels(c, &sheet, drawing, selected);
+        hn_snapshot_labels(c, &sheet, drawing, selected, opts);
     }
     hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
     draw_scale_bar(c, &sheet);
@@ -245,6 +253,7 @@ static void describe_poses(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d,
         hn_json_put_int(b, "slot", poses[i].slot);
         hn_json_put_bool(b, "drawn", hn_pose_is_drawable(d, &poses[i]));
         hn_json_put_bool(b, "selected", i == s->selected);
+        hn_json_put_bool(b, "faint", poses[i].faint);
         hn_json_put_string(b, "note", poses[i].note);
         hn_json_end_object(b);
     }
@@ -299,6 +308,7 @@ hn_status hn_snapshot_describe(hn_strbuf *b, int width, int height, const hn_dra
     describe_tears(b, drawing, poses, n_poses);
     describe_inset(b, &sheet, drawing);
     hn_json_put_number(b, "scale_bar", sheet.scale_bar);
+    hn_snapshot_primitives(b, &sheet, drawing, poses, n_poses, opts);
     hn_json_end_object(b);
     return HN_OK;
 }

@@ -33,6 +33,7 @@ typedef struct hn_snapshot_pose {
     const char *note; ///< "gap 4.2 mm", "stopped at 1.2 s: diverged", or NULL
     int slot;         ///< hn_look slot; HN_LOOK_REFERENCE: the reference solution
     int selected;     ///< opaque and on top; where no pose is, the first one is
+    bool faint;       ///< an earlier pose of a method: pale, and not listed
     /// n_trace world points that were passed (3 each; NaN: a new line begins), or NULL
     const double *trace;
     int n_trace;
@@ -41,7 +42,8 @@ typedef struct hn_snapshot_pose {
 /// A force drawn at a point of the selected pose. Arrows of the drawing have neither size nor
 /// direction of their own: they are drawn from these.
 typedef struct hn_snapshot_load {
-    int point;        ///< of the drawing
+    int point;        ///< of the drawing; -1: at `place`
+    double place[3];  ///< [m], world
     double force[3];  ///< [unit]
     const char *unit; ///< "N"
 } hn_snapshot_load;
@@ -54,7 +56,8 @@ typedef struct hn_snapshot_opts {
     double view[4];
     int n_loads;
     const hn_snapshot_load *loads;
-    bool labels; ///< points with a name show it
+    bool labels;     ///< points with a name show it
+    bool dimensions; ///< bars of the selected pose show their lengths
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);

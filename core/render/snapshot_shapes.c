@@ -10,11 +10,13 @@
 #include <string.h>
 
 static const double GHOST_OPACITY = 0.6;
+static const double FAINT_OPACITY = 0.3;
 static const double SELECTED_TINT = 0.30;
+static const double FARTHEST = 0.45;     // of its colour that the farthest shape in space keeps
 static const double LONGEST_LOAD = 0.20; // of the view
 static const double SAME_PLACE = 2;      // [px]
 enum { COILS = 7, MAX_POLYGON = 1000 };  // the scene format allows no larger one
-enum { LABEL_TEXT = 96, MAX_PLACED = 64 };
+enum { LABEL_TEXT = 96, MAX_PLACED = 64, TRACE_PIECE = 256 };
 
 /// Labels that have been placed: each a line of text, its middle and half its width.
 typedef struct label_places {
@@ -283,6 +285,18 @@ static void sort_by_depth(int *shapes, double *depth, int n) {
     }
 }
 
+/// The pen for a shape at a depth, 0 (farthest) to 1: what is far is paler.
+static pen at_depth(const pen *p, double near) {
+    pen here = *p;
+    const hn_theme theme = hn_canvas_theme(p->c);
+    if (p->has_fill) {
+        const double share = FARTHEST + (1 - FARTHEST) * near;
+        here.fill.rgb = hn_tint(theme, p->fill.rgb, share);
+        here.outline.paint.rgb = hn_tint(theme, p->outline.paint.rgb, share);
+    }
+    return here;
+}
+
 /// Shape and order in one number, so that they are sorted together.
 static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
     int n = 0;
@@ -298,7 +312,10 @@ static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
     sort_by_depth(p->s->shapes, p->s->depth, n);
     for (int k = 0; k < n; k++) {
         const hn_shape *shape = &d->shapes[p->s->shapes[k] / N_ORDERS];
-        row_of(shape->kind, p->s->shapes[k] % N_ORDERS, ground)->draw(p, shape);
+        const double back = p->s->depth[0], deep = p->s->depth[n - 1] - back;
+        const double near = deep > 0 ? (p->s->depth[k] - back) / deep : 1;
+        const pen here = at_depth(p, near);
+        row_of(shape->kind, p->s->shapes[k] % N_ORDERS, ground)->draw(&here, shape);
     }
 }
 
@@ -331,17 +348,18 @@ void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 
 static void draw_trace(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
                        const hn_stroke *stroke) {
-    double last[2] = {(double)NAN, (double)NAN};
+    double xy[2 * TRACE_PIECE];
     hn_stroke thin = *stroke;
     thin.width = 0.6 * s->line;
     thin.n_dash = 0;
-    for (int i = 0; i < pose->n_trace; i++) {
-        double xy[2];
-        hn_sheet_pixel(s, pose->trace + 3 * i, xy);
-        if (isfinite(xy[0] + xy[1] + last[0] + last[1])) {
-            hn_canvas_segment(c, last[0], last[1], xy[0], xy[1], &thin);
+
+    // in pieces that share their ends; what is not finite is left out by the line
+    for (int from = 0; from + 1 < pose->n_trace; from += TRACE_PIECE - 1) {
+        const int left = pose->n_trace - from, n = left < TRACE_PIECE ? left : TRACE_PIECE;
+        for (int i = 0; i < n; i++) {
+            hn_sheet_pixel(s, pose->trace + 3 * (from + i), xy + 2 * i);
         }
-        memcpy(last, xy, sizeof last);
+        hn_canvas_line(c, xy, n, &thin);
     }
 }
 
@@ -355,12 +373,14 @@ void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     p.is_reference = pose->slot == HN_LOOK_REFERENCE && !is_selected;
     p.has_fill = is_selected;
     p.fill = hn_paint_solid(hn_tint(theme, p.outline.paint.rgb, SELECTED_TINT));
-    if (is_selected) {
+    if (is_selected || pose->faint) {
         p.outline.n_dash = 0;
     } else if (p.is_reference) {
         p.outline.width = 0.75 * s->line;
     }
-    hn_canvas_begin_layer(c, is_selected || p.is_reference ? 1 : GHOST_OPACITY);
+    hn_canvas_begin_layer(c, pose->faint                     ? FAINT_OPACITY
+                             : is_selected || p.is_reference ? 1
+                                                             : GHOST_OPACITY);
     draw_trace(c, s, pose, &p.outline);
     draw_shapes(&p, d, 0);
     hn_canvas_end_layer(c);
@@ -462,10 +482,57 @@ static bool names_at(const hn_sheet *s, const hn_drawing *d, const double *point
     return true;
 }
 
+/// An arrow: its tail, its tip, and the place of its text.
+typedef struct arrow {
+    double tail[2], tip[2], text[2], half; ///< [px]; half: of the text's width
+    char value[HN_SI_TEXT];
+} arrow;
+
+static double seen_size(const hn_sheet *s, const hn_snapshot_load *load, double seen[2]) {
+    hn_view_project(&s->look, load->force, seen);
+    return hypot(seen[0], seen[1]);
+}
+
+/// Each arrow ends at its point, as long as its share of the largest, and no shorter than its head;
+/// false: it has no length in this view.
+static bool lay_arrow(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
+                      int i, arrow *out) {
+    const hn_snapshot_load *load = &opts->loads[i];
+    double largest = 0, seen[2];
+    for (int k = 0; k < opts->n_loads; k++) {
+        largest = fmax(largest, seen_size(s, &opts->loads[k], seen));
+    }
+    const double size = seen_size(s, load, seen);
+    if (!(size > 1e-3 * largest) || !isfinite(size)) {
+        return false;
+    }
+
+    // from the tail to the tip, and the text behind the tail
+    const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
+    const double length = fmax(1.5 * s->font, LONGEST_LOAD * view * size / largest);
+    const double u[2] = {seen[0] / size, -seen[1] / size};
+    hn_sheet_pixel(s, load->point < 0 ? load->place : pose->points + 3 * load->point, out->tip);
+    out->tail[0] = out->tip[0] - length * u[0];
+    out->tail[1] = out->tip[1] - length * u[1];
+    const double whole = hypot(hypot(load->force[0], load->force[1]), load->force[2]);
+    hn_si_format(whole, load->unit, 3, out->value);
+    out->half = 0.5 * hn_canvas_text_width(0.9 * s->font, out->value);
+    out->text[0] = out->tail[0] - u[0] * (out->half + 0.3 * s->font);
+    out->text[1] = out->tail[1] - u[1] * 0.8 * s->font;
+    return true;
+}
+
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *pose) {
+                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
     label_places placed = {0};
+    arrow load;
+    for (int i = 0; i < opts->n_loads && placed.n < MAX_PLACED / 2; i++) {
+        if (lay_arrow(s, pose, opts, i, &load)) { // names keep off the values of forces
+            memcpy(placed.at[placed.n], load.text, sizeof load.text);
+            placed.half[placed.n++] = load.half;
+        }
+    }
     for (int i = 0; i < d->n_points; i++) {
         char text[LABEL_TEXT];
         double xy[2];
@@ -486,34 +553,13 @@ void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
                        const hn_snapshot_opts *opts) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
-    double largest = 0;
+    const hn_stroke stroke = hn_stroke_solid(surface->ink, s->line);
     for (int i = 0; i < opts->n_loads; i++) {
-        double seen[2];
-        hn_view_project(&s->look, opts->loads[i].force, seen);
-        largest = fmax(largest, hypot(seen[0], seen[1]));
-    }
-
-    // each arrow ends at its point, as long as its share of the largest
-    const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
-    for (int i = 0; i < opts->n_loads; i++) {
-        const hn_snapshot_load *load = &opts->loads[i];
-        double seen[2];
-        hn_view_project(&s->look, load->force, seen);
-        const double size = hypot(seen[0], seen[1]);
-        const double whole =
-            hypot(hypot(load->force[0], load->force[1]), load->force[2]); // what the text says
-        if (!(size > 0) || !isfinite(size)) {
-            continue;
+        arrow a;
+        if (lay_arrow(s, pose, opts, i, &a)) {
+            hn_canvas_arrow(c, a.tail[0], a.tail[1], a.tip[0], a.tip[1], 0.8 * s->font, &stroke);
+            hn_canvas_text(c, a.text[0], a.text[1] + 0.3 * s->font, 0.9 * s->font, HN_ALIGN_CENTRE,
+                           hn_paint_solid(surface->ink), a.value);
         }
-        double tip[2];
-        hn_sheet_pixel(s, pose->points + 3 * load->point, tip);
-        const double length = LONGEST_LOAD * view * size / largest;
-        const double x = tip[0] - length * seen[0] / size, y = tip[1] + length * seen[1] / size;
-        const hn_stroke stroke = hn_stroke_solid(surface->ink, s->line);
-        hn_canvas_arrow(c, x, y, tip[0], tip[1], s->font, &stroke);
-        char text[HN_SI_TEXT];
-        hn_si_format(whole, load->unit, 3, text);
-        hn_canvas_text(c, x, y - 0.5 * s->font, 0.9 * s->font, HN_ALIGN_CENTRE,
-                       hn_paint_solid(surface->ink), text);
     }
 }

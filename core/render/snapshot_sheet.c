@@ -37,7 +37,8 @@ double hn_tear_gap(const hn_drawing *drawing, const hn_snapshot_pose *pose, int 
 static hn_tear find_widest(const hn_drawing *d, const hn_snapshot_pose *poses, int n_poses) {
     hn_tear widest = {-1, -1, -1};
     for (int i = 0; i < n_poses; i++) {
-        for (int k = 0; k < d->n_tears && hn_pose_is_drawable(d, &poses[i]); k++) {
+        const bool counts = !poses[i].faint && hn_pose_is_drawable(d, &poses[i]);
+        for (int k = 0; k < d->n_tears && counts; k++) {
             const double gap = hn_tear_gap(d, &poses[i], k);
             if (gap > widest.gap) {
                 widest = (hn_tear){i, k, gap};

@@ -60,9 +60,12 @@ static const hn_command COMMANDS[] = {
     {"extreme", "[ID...]",
      "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
      "--csv --out -o --wide", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
-    {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
-     MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --methods --time "
-                   "--out -o --width --height --theme --view",
+    {"snapshot", "SCENE",
+     "a picture of where the methods have taken it, PNG or SVG by the ending of -o",
+     MODEL_OPTIONS
+     " --allow-programs --trust-programs --answer-time --method --methods --time "
+     "--at --ghosts --animate --trace --dimensions --forces --describe --out -o --width "
+     "--height --theme --view",
      1, 1, hn_command_snapshot},
     {"import", "FILE",
      "convert a MuJoCo MJCF or URDF file to a scene; unsupported elements are listed with their "

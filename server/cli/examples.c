@@ -44,7 +44,7 @@ static const struct {
     {"snapshot",
      {"snapshot four-bar -o four-bar.png",
       "snapshot four-bar --method index1@rk4:h=2e-2 --time 2 -o torn.png",
-      "snapshot bennett --view 35,22 --theme dark -o bennett.png --json"}},
+      "snapshot four-bar --at 0,0.2,0.4 --ghosts --dimensions -o motion.svg"}},
     {"import",
      {"import mechanism.xml -o scene.json", "import robot.urdf --loops loops.json -o scene.json",
       "import mechanism.xml --json"}},

@@ -1,163 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/picture.h"
 
-#include "base/arena.h"
 #include "base/units.h"
-#include "render/snapshot.h"
+#include "render/canvas_svg.h"
+#include "render/png_file.h"
+#include "session/compare/picture_moment.h"
 #include "session/model/caption.h"
-#include "session/compare/comparison.h"
 #include "session/model/envelope.h"
-#include "session/model/state.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { DEFAULT_WIDTH = 1200, DEFAULT_HEIGHT = 720, MAX_NOTE = 160, MAX_FRAMES = 1000 };
+enum { DEFAULT_WIDTH = 1200, DEFAULT_HEIGHT = 720, PANEL_WIDTH = 720, PANEL_HEIGHT = 480 };
+enum { COLUMNS = 3 }; // of a strip
 
-/// The data of one picture.
-typedef struct scene_picture {
+/// The data of one file: its moments, and a canvas for each, or one for all of them.
+typedef struct sheet {
     const hn_model *model;
     const hn_picture_request *request;
-    hn_arena *arena;
-    hn_comparison *comparison;
-    int n_poses;
-    hn_snapshot_pose poses[HN_COMPARISON_MAX_METHODS];
-    char names[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
-    char notes[HN_COMPARISON_MAX_METHODS][MAX_NOTE];
-    double *points; ///< 3 n_points per pose
+    hn_drawing drawing;
+    int n_moments, n_canvases, width, height;
+    hn_picture_moment *moments;
+    hn_canvas *canvas[HN_PICTURE_TIMES];
+    hn_snapshot_pose *poses; ///< of the canvas that is drawn: faint ones first
     hn_snapshot_opts opts;
     char caption[160];
-} scene_picture;
-
-static hn_status check_time(double time, hn_diags *diags) {
-    if (!(time >= 0) || !(time <= 1e6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the time is %g s; 0 to 1e6 s are allowed", time);
-    }
-    return HN_OK;
-}
-
-static double cpu_used(const hn_comparison *c) {
-    double sum = 0;
-    for (int i = 0; i < hn_comparison_n_methods(c); i++) {
-        sum += hn_run_get_summary(hn_comparison_run(c, i)).cpu_seconds;
-    }
-    return sum;
-}
-
-/// Runs every method to the requested time. The clock advances in whole frames, so the frame length
-/// divides that time.
-static hn_status run_methods(scene_picture *p, hn_diags *diags) {
-    const hn_picture_request *r = p->request;
-    hn_status status = check_time(r->time, diags);
-    if (status != HN_OK) {
-        return status;
-    }
-
-    // frame length that divides the time asked for
-    const int frames = r->time > 0 ? (int)fmin(MAX_FRAMES, ceil(r->time / 0.05)) : 0;
-    hn_comparison_opts opts = hn_comparison_opts_default();
-    opts.frame_dt = frames > 0 ? fmax(r->time / frames, 1e-6) : 1;
-    opts.duration = fmax(r->time, 1e-6);
-
-    // advance until the time, the stop request or the time limit
-    status = hn_comparison_create(p->model, r->methods, r->n_methods, &opts, &p->comparison, diags);
-    for (int k = 0; k < frames && status == HN_OK; k++) {
-        if (!hn_comparison_work(p->comparison, r->stop, r->user)) {
-            return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL, "stopped on request");
-        }
-        if (r->cpu_limit > 0 && cpu_used(p->comparison) > r->cpu_limit) {
-            status = hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a larger step or less time",
-                                  "%g s of computing were used up at t = %g s", r->cpu_limit,
-                                  (k + 1) * opts.frame_dt);
-        }
-    }
-    return status;
-}
-
-static void note_method(scene_picture *p, int i, const hn_sample *sample, int good) {
-    const hn_run_summary s = hn_run_get_summary(hn_comparison_run(p->comparison, i));
-    char gap[HN_SI_TEXT], t[HN_SI_TEXT];
-    hn_si_format(sample->gap, "m", 2, gap);
-    hn_si_format(s.t, "s", 3, t);
-    if (good) {
-        snprintf(p->notes[i], MAX_NOTE, "gap %s", gap);
-    } else {
-        snprintf(p->notes[i], MAX_NOTE, "stopped at %s: %s", t, hn_status_text(s.status));
-    }
-}
-
-/// Writes the shortest name that distinguishes the methods: "index-1", "index-1, rk4", or the whole
-/// spelling.
-static void name_method(scene_picture *p, int i) {
-    const hn_method_spec *spec = hn_run_spec(hn_comparison_run(p->comparison, i));
-    int alike = 0, twins = 0; // others of the same formulation, of the same integrator too
-    for (int k = 0; k < hn_comparison_n_methods(p->comparison); k++) {
-        const hn_method_spec *other = hn_run_spec(hn_comparison_run(p->comparison, k));
-        if (k != i && other->formulation == spec->formulation) {
-            alike++;
-            twins += other->stepper == spec->stepper;
-        }
-    }
-    if (twins > 0) {
-        hn_method_format(spec, p->names[i]);
-    } else {
-        snprintf(p->names[i], HN_SPEC_MAX, "%s%s%s", spec->formulation->short_name,
-                 alike ? ", " : "", alike ? spec->stepper->name : "");
-    }
-}
-
-/// The pose each method reached; the first method is the selected one.
-static void gather_poses(scene_picture *p, hn_status *ended) {
-    const int n = hn_comparison_n_methods(p->comparison);
-    const size_t width = 3 * (size_t)hn_system_get_info(hn_model_system(p->model)).n_points;
-    for (int i = 0; i < n; i++) {
-        hn_sample sample = {0};
-        const int good = hn_comparison_sample(p->comparison, i, &sample);
-        const hn_run *run = hn_comparison_run(p->comparison, i);
-        hn_snapshot_pose *pose = &p->poses[i];
-
-        // a method without a sample has a pose without points
-        if (sample.points) {
-            memcpy(p->points + (size_t)i * width, sample.points, width * sizeof(double));
-            pose->points = p->points + (size_t)i * width;
-        }
-
-        // legend entry
-        note_method(p, i, &sample, good);
-        name_method(p, i);
-        pose->name = p->names[i];
-        pose->note = p->notes[i];
-        pose->slot = hn_comparison_slot(p->comparison, i);
-        pose->selected = i == 0;
-
-        // the first failure is reported
-        if (!good && *ended == HN_OK) {
-            *ended = hn_run_get_summary(run).status;
-        }
-    }
-    p->n_poses = n;
-}
-
-static hn_status gather_given_pose(scene_picture *p, hn_diags *diags) {
-    const hn_system_info info = hn_system_get_info(hn_model_system(p->model));
-    double *q = hn_arena_doubles(p->arena, (size_t)info.nq + 1);
-    double *v = hn_arena_doubles(p->arena, (size_t)info.nv + 1);
-    if (!q || !v) {
-        return HN_ERR_MEMORY;
-    }
-    hn_status status =
-        hn_model_state(p->model, p->request->entries, p->request->n_entries, q, v, diags);
-    HN_THEN(status, hn_model_points(p->model, q, p->points));
-    p->poses[0] = (hn_snapshot_pose){.points = p->points, .name = "this pose", .selected = 1};
-    p->n_poses = 1;
-    return status;
-}
+} sheet;
 
 /// Fits the view to the whole motion, so that it does not change in a series of pictures. A given
 /// pose may lie outside the motion, so its view is not fitted to it.
-static hn_status choose_view(scene_picture *p, hn_diags *diags) {
+static hn_status choose_view(sheet *p, hn_diags *diags) {
     hn_envelope e;
     hn_view asked;
     hn_diag diag = {0};
@@ -181,7 +55,7 @@ static hn_status choose_view(scene_picture *p, hn_diags *diags) {
     hn_model_caption(p->model, p->caption, sizeof p->caption);
     p->opts.title = hn_model_scene(p->model)->title;
     p->opts.caption = p->request->caption ? p->request->caption : p->caption;
-    p->opts.time = p->request->methods ? p->request->time : (double)NAN;
+    p->opts.dimensions = p->request->dimensions;
     return HN_OK;
 }
 
@@ -190,72 +64,220 @@ static hn_status add_diag(hn_diags *diags, hn_status status, const hn_diag *d) {
                            : hn_diags_add(diags, status, d->pointer, d->hint, "%s", d->message);
 }
 
-static hn_status paint(const scene_picture *p, hn_strbuf *png, hn_diags *diags) {
-    hn_canvas *canvas = NULL;
+/// The poses of a canvas: those of its moment, after the faint ones of all moments before it.
+static int gather(sheet *p, int moment) {
+    int n = 0;
+    for (int i = 0; i < moment && p->request->ghosts; i++) {
+        p->poses[n] = p->moments[i].poses[0];
+        p->poses[n].faint = true;
+        p->poses[n].selected = 0;
+        p->poses[n++].n_trace = 0;
+    }
+    const hn_picture_moment *m = &p->moments[moment];
+    memcpy(p->poses + n, m->poses, (size_t)m->n_poses * sizeof *p->poses);
+    p->opts.time = m->time;
+    p->opts.n_loads = m->n_loads;
+    p->opts.loads = m->loads;
+    return n + m->n_poses;
+}
+
+/// The moment that canvas k shows.
+static int moment_of(const sheet *p, int k) {
+    return p->request->ghosts ? p->n_moments - 1 : k;
+}
+
+static hn_status draw(sheet *p, hn_diags *diags) {
+    const hn_picture_request *r = p->request;
+    const bool strip = p->n_canvases > 1 && r->form != HN_PICTURE_APNG;
     hn_diag diag = {0};
-    const int width = p->request->width ? p->request->width : DEFAULT_WIDTH;
-    const int height = p->request->height ? p->request->height : DEFAULT_HEIGHT;
-    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
-    hn_status status = hn_canvas_create(width, height, p->request->theme, &canvas, &diag);
-    HN_THEN(status, hn_snapshot_draw(canvas, &drawing, p->poses, p->n_poses, &p->opts, &diag));
-    HN_THEN(status, hn_canvas_png(canvas, png, &diag));
-    hn_canvas_free(canvas);
+    hn_status status = HN_OK;
+    p->width = r->width ? r->width : strip ? PANEL_WIDTH : DEFAULT_WIDTH;
+    p->height = r->height ? r->height : strip ? PANEL_HEIGHT : DEFAULT_HEIGHT;
+    for (int k = 0; k < p->n_canvases && status == HN_OK; k++) {
+        const int n = gather(p, moment_of(p, k));
+        status = hn_canvas_create(p->width, p->height, r->theme, &p->canvas[k], &diag);
+        HN_THEN(status, hn_snapshot_draw(p->canvas[k], &p->drawing, p->poses, n, &p->opts, &diag));
+    }
     return add_diag(diags, status, &diag);
 }
 
-static hn_status describe_picture(hn_strbuf *b, const scene_picture *p, hn_diags *diags) {
-    const int width = p->request->width ? p->request->width : DEFAULT_WIDTH;
-    const int height = p->request->height ? p->request->height : DEFAULT_HEIGHT;
-    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
-    hn_diag diag = {0};
+// ---- files ----
 
-    // what was asked for
+/// All canvases as one PNG, COLUMNS of them in a row.
+static hn_status write_strip(const sheet *p, hn_strbuf *out, hn_diag *diag) {
+    const int n = p->n_canvases, across = n < COLUMNS ? n : COLUMNS;
+    const int down = (n + across - 1) / across;
+    const size_t row = 3 * (size_t)p->width, whole = row * (size_t)across;
+    unsigned char *one = malloc(row * (size_t)p->height);
+    unsigned char *all = malloc(whole * (size_t)(p->height * down));
+    hn_status status = one && all ? HN_OK : HN_ERR_MEMORY;
+
+    // empty places are paper
+    const uint32_t paper = hn_surface_get(p->request->theme)->paper;
+    for (size_t i = 0; status == HN_OK && i < whole * (size_t)(p->height * down); i++) {
+        all[i] = (unsigned char)(paper >> (16 - 8 * (i % 3)));
+    }
+    for (int k = 0; k < n && status == HN_OK; k++) {
+        status = hn_canvas_paint(p->canvas[k], one, diag);
+        for (int y = 0; y < p->height && status == HN_OK; y++) {
+            const size_t to =
+                (size_t)(k / across * p->height + y) * whole + (size_t)(k % across) * row;
+            memcpy(all + to, one + (size_t)y * row, row);
+        }
+    }
+    HN_THEN(status, hn_png_encode(out, p->width * across, p->height * down, all, diag));
+    free(one);
+    free(all);
+    return status;
+}
+
+static hn_status write_animation(const sheet *p, hn_strbuf *out, hn_diag *diag) {
+    hn_strbuf frames[HN_PICTURE_TIMES];
+    hn_status status = HN_OK;
+    for (int k = 0; k < p->n_canvases; k++) {
+        hn_strbuf_init(&frames[k]);
+        HN_THEN(status, hn_canvas_png(p->canvas[k], &frames[k], diag));
+    }
+    HN_THEN(status, hn_png_animate(out, frames, p->n_canvases, p->request->delay, diag));
+    for (int k = 0; k < p->n_canvases; k++) {
+        hn_strbuf_reset(&frames[k]);
+    }
+    return status;
+}
+
+// ---- words ----
+
+/// What the picture shows, in sentences.
+static void put_words(hn_strbuf *b, const sheet *p) {
+    hn_strbuf_printf(b, "%s.", p->opts.title ? p->opts.title : "");
+    for (int i = 0; i < p->n_moments; i++) {
+        const hn_picture_moment *m = &p->moments[i];
+        hn_strbuf_add(b, isfinite(m->time) ? "" : " One pose, as given.");
+        if (isfinite(m->time)) {
+            hn_strbuf_printf(b, " At t = %.4g s:", m->time);
+        }
+        for (int k = 0; k < m->n_poses && isfinite(m->time); k++) {
+            hn_strbuf_printf(b, "%s %s, %s", k ? ";" : "", m->poses[k].name, m->poses[k].note);
+        }
+        hn_strbuf_add(b, isfinite(m->time) ? "." : "");
+        for (int k = 0; k < p->drawing.n_points && m->poses[0].points; k++) {
+            const double *at = m->poses[0].points + 3 * k;
+            if (p->drawing.labels[k]) {
+                hn_strbuf_printf(b, " %s at (%.4g, %.4g, %.4g) m.", p->drawing.labels[k], at[0],
+                                 at[1], at[2]);
+            }
+        }
+    }
+}
+
+static hn_status describe(hn_strbuf *b, sheet *p, hn_diags *diags) {
+    hn_diag diag = {0};
+    hn_strbuf words;
+    hn_strbuf_init(&words);
+    put_words(&words, p);
+    hn_status status = HN_OK;
+
+    // what was asked for, and how it was drawn
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(p->model)->id);
-    hn_json_put_int(b, "width", width);
-    hn_json_put_int(b, "height", height);
-    if (p->comparison) {
-        hn_json_put_number(b, "time", p->request->time);
-        hn_json_key(b, "methods");
-        hn_comparison_summary_json(b, p->comparison);
-    }
+    hn_json_put_int(b, "width", p->width);
+    hn_json_put_int(b, "height", p->height);
+    hn_json_put_string(b, "renderer",
+                       p->request->form == HN_PICTURE_SVG ? "none: vector graphics"
+                                                          : hn_canvas_renderer());
+    hn_json_put_string(b, "words", hn_strbuf_text(&words));
+    b->failed |= words.failed;
+    hn_strbuf_reset(&words);
 
-    // what is drawn, element by element
-    hn_json_key(b, "picture");
-    const hn_status status =
-        hn_snapshot_describe(b, width, height, &drawing, p->poses, p->n_poses, &p->opts, &diag);
+    // the last moment, then the others, element by element
+    const hn_picture_moment *last = &p->moments[p->n_moments - 1];
+    if (last->comparison) {
+        hn_json_put_number(b, "time", last->time);
+        hn_json_key(b, "methods");
+        hn_comparison_summary_json(b, last->comparison);
+    }
+    for (int k = p->n_canvases; k-- > 0 && status == HN_OK;) {
+        const int n = gather(p, moment_of(p, k));
+        if (k == p->n_canvases - 2) {
+            hn_json_key(b, "before");
+            hn_json_array(b);
+        } else if (k == p->n_canvases - 1) {
+            hn_json_key(b, "picture");
+        }
+        status =
+            hn_snapshot_describe(b, p->width, p->height, &p->drawing, p->poses, n, &p->opts, &diag);
+    }
+    if (p->n_canvases > 1) {
+        hn_json_end_array(b);
+    }
     hn_json_end_object(b);
     return add_diag(diags, status, &diag);
 }
 
-hn_status hn_model_picture(hn_strbuf *png, hn_strbuf *describe, const hn_model *model,
-                           const hn_picture_request *request, hn_status *ended, hn_diags *diags) {
-    scene_picture p = {.model = model, .request = request, .arena = hn_arena_create(0)};
-    const int n_points = hn_system_get_info(hn_model_system(model)).n_points;
-    hn_status run_status = HN_OK;
-    p.points = p.arena
-                   ? hn_arena_doubles(p.arena, 3 * (size_t)n_points * HN_COMPARISON_MAX_METHODS + 1)
-                   : NULL;
-
-    // poses: reached by methods, or given
-    hn_status status = p.points ? HN_OK : HN_ERR_MEMORY;
-    if (status == HN_OK && request->methods) {
-        status = run_methods(&p, diags);
-        if (status == HN_OK) {
-            gather_poses(&p, &run_status);
-        }
+static hn_status write_file(hn_strbuf *out, const sheet *p, hn_diags *diags) {
+    hn_diag diag = {0};
+    hn_strbuf words;
+    hn_strbuf_init(&words);
+    put_words(&words, p);
+    hn_status status = words.failed ? HN_ERR_MEMORY : HN_OK;
+    if (status == HN_OK && p->request->form == HN_PICTURE_SVG) {
+        status = hn_canvas_svg(out, p->canvas, p->n_canvases, COLUMNS, p->opts.title,
+                               hn_strbuf_text(&words), &diag);
+    } else if (status == HN_OK && p->request->form == HN_PICTURE_APNG) {
+        status = write_animation(p, out, &diag);
     } else if (status == HN_OK) {
-        status = gather_given_pose(&p, diags);
+        status = p->n_canvases == 1 ? hn_canvas_png(p->canvas[0], out, &diag)
+                                    : write_strip(p, out, &diag);
     }
+    hn_strbuf_reset(&words);
+    return add_diag(diags, status, &diag);
+}
+
+// ---- the door ----
+
+/// Runs to every moment, each from the start: a picture of several is what its parts are alone.
+static hn_status make_moments(sheet *p, hn_status *ended, hn_diags *diags) {
+    const hn_picture_request *r = p->request;
+    hn_status status = HN_OK;
+    if (r->n_times > HN_PICTURE_TIMES || (r->n_times > 0 && !r->methods)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
+                            "%d times of a motion were asked for; 1 to %d are drawn", r->n_times,
+                            HN_PICTURE_TIMES);
+    }
+    const int n = r->n_times > 0 ? r->n_times : 1;
+    p->moments = calloc((size_t)n, sizeof *p->moments);
+    p->poses = calloc(HN_PICTURE_TIMES + HN_COMPARISON_MAX_METHODS, sizeof *p->poses);
+    status = p->moments && p->poses ? HN_OK : HN_ERR_MEMORY;
+    for (int i = 0; i < n && status == HN_OK; i++) {
+        const double time = !r->methods ? (double)NAN : r->n_times > 0 ? r->times[i] : r->time;
+        p->n_moments = i + 1;
+        status = hn_picture_moment_make(&p->moments[i], p->model, r, time, ended, diags);
+    }
+    p->n_canvases = r->ghosts ? 1 : n;
+    return status;
+}
+
+hn_status hn_model_picture(hn_strbuf *file, hn_strbuf *description, const hn_model *model,
+                           const hn_picture_request *request, hn_status *ended, hn_diags *diags) {
+    sheet p = {
+        .model = model, .request = request, .drawing = hn_system_drawing(hn_model_system(model))};
+    hn_status run_status = HN_OK;
+    hn_status status = make_moments(&p, &run_status, diags);
     HN_THEN(status, choose_view(&p, diags));
-    HN_THEN(status, paint(&p, png, diags));
-    if (status == HN_OK && describe) {
-        status = describe_picture(describe, &p, diags);
-    }
+    HN_THEN(status, draw(&p, diags));
+    HN_THEN(status, write_file(file, &p, diags));
+    HN_THEN(status, description ? describe(description, &p, diags) : HN_OK);
     if (ended) {
         *ended = run_status;
     }
-    hn_comparison_free(p.comparison);
-    hn_arena_free(p.arena);
+
+    for (int k = 0; k < p.n_canvases; k++) {
+        hn_canvas_free(p.canvas[k]);
+    }
+    for (int i = 0; i < p.n_moments; i++) {
+        hn_picture_moment_reset(&p.moments[i]);
+    }
+    free(p.moments);
+    free(p.poses);
     return status;
 }

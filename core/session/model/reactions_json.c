@@ -117,6 +117,14 @@ static const char *name_of(const hn_reaction_writer *w, int k) {
     return joint ? w->scene->joints[k].name : w->scene->constraints[k - w->scene->n_joints].name;
 }
 
+const char *hn_reaction_writer_force(const hn_reaction_writer *w, int i, double force[3],
+                                     double place[3]) {
+    const hn_wrench *wrench = &w->wrenches[w->carrier[i]];
+    memcpy(force, wrench->force, 3 * sizeof *force);
+    memcpy(place, wrench->place, 3 * sizeof *place);
+    return name_of(w, w->carrier[i]);
+}
+
 static void put_wrench(hn_strbuf *b, const hn_reaction_writer *w, int k) {
     const hn_wrench *wrench = &w->wrenches[k];
     const int joint = k < w->scene->n_joints;

@@ -28,6 +28,10 @@ HN_MUST_CHECK hn_status hn_reaction_writer_eval(hn_reaction_writer *w, double t,
 /// `moment`, one number per effort into `effort`.
 void hn_reaction_writer_rows(const hn_reaction_writer *w, double *force, double *moment,
                              double *effort);
+/// The force [N] and the place [m] of the i-th joint or constraint at the last state; returns its
+/// name.
+const char *hn_reaction_writer_force(const hn_reaction_writer *w, int i, double force[3],
+                                     double place[3]);
 /// Writes the results of the last state. "reactions": a list of
 /// {"name","kind","on","force","moment","place","joint_force","joint_moment","determined"};
 /// "efforts": a list of {"name","kind","coordinate","unit","value","determined"}.

@@ -6,11 +6,36 @@
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
+#include "render/canvas.h"
 #include "session/compare/picture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/// Where it goes, and as what: by the ending.
+static hn_status choose_form(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
+    if (!args->out) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
+                            "where should the picture go?");
+    }
+    const bool svg = hn_path_ends_in(args->out, ".svg");
+    const bool png = strcmp(args->out, "-") == 0 || hn_path_ends_in(args->out, ".png") ||
+                     hn_path_ends_in(args->out, ".apng");
+    if (!svg && !png) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .png or .svg",
+                            "'%.200s' is no name for a picture: snapshots are PNG or SVG",
+                            args->out);
+    }
+    if (!isnan(args->animate) &&
+        (svg || args->at.n < 2 || args->ghosts || args->animate < 1 || args->animate > 65535)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/animate", "--at 0,0.1,0.2 --animate 100",
+                            "an animation is a PNG of several times, each for 1 to 65535 ms");
+    }
+    request->form = svg ? HN_PICTURE_SVG : isnan(args->animate) ? HN_PICTURE_PNG : HN_PICTURE_APNG;
+    request->delay = isnan(args->animate) ? 0 : (int)args->animate;
+    return HN_OK;
+}
 
 static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
     if (!isnan(args->width)) {
@@ -26,18 +51,15 @@ static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_
                             args->theme);
     }
     request->view = args->view;
+    request->times = args->at.value;
+    request->n_times = args->at.n;
+    request->ghosts = args->ghosts;
+    request->dimensions = args->dimensions;
+    request->forces = args->forces;
+    request->traces = args->traces.word;
+    request->n_traces = args->traces.n;
 
-    // where it goes, and as what
-    if (!args->out) {
-        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
-                            "where should the picture go?");
-    }
-    if (strcmp(args->out, "-") != 0 && !hn_path_ends_in(args->out, ".png")) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .png",
-                            "'%.200s' is no name for a picture: snapshots are written as PNG",
-                            args->out);
-    }
-    return HN_OK;
+    return choose_form(args, request, diags);
 }
 
 /// The methods asked for, or the scene's own.
@@ -76,8 +98,12 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
         return hn_report_diags(args, status, &diags);
     }
     hn_exit result = hn_cli_write_file(args, args->out, &png);
-    if (result == HN_EXIT_DONE && args->json && strcmp(args->out, "-") != 0) {
+    if (result == HN_EXIT_DONE && (args->json || args->describe) && strcmp(args->out, "-") != 0) {
         result = hn_cli_print(&description);
+    }
+    if (result == HN_EXIT_DONE && request.form != HN_PICTURE_SVG &&
+        strcmp(hn_canvas_renderer(), "OSMesa") != 0) {
+        fprintf(stderr, "holonom: drawn by the built-in renderer\n");
     }
     hn_strbuf_reset(&description);
     if (result == HN_EXIT_DONE && ended != HN_OK) {

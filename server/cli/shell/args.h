@@ -27,16 +27,17 @@ typedef struct hn_numbers {
 /// texts NULL.
 typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
-    hn_words set, methods, state_q, state_v, allow_hosts;
+    hn_words set, methods, traces, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
         *size, *keys, *runs, *token, *programs, *student, *seeds;
     double time, jobs, answer_time, every, t, port, width, height, seed, frame_dt, frames;
-    double hint, history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause,
-        expiry, keep_alive;
+    double animate, hint, history, max_comparisons, max_streams, max_connections, run_cpu,
+        idle_pause, expiry, keep_alive;
     int guests;
     int json, csv, wide, allow_programs, trust_programs, open, help, raw_lambda, reactions;
     int once, ascii, blocks, plot, check, no_native, show_expected, no_pictures;
+    int ghosts, dimensions, forces, describe;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;
 

@@ -2,6 +2,7 @@
 #include "support/near.h"
 
 #include "render/canvas.h"
+#include "render/raster.h"
 #include "support/alloc.h"
 
 #include <math.h>
@@ -50,6 +51,38 @@ static double ink(const picture *p) {
 }
 
 static const hn_paint BLACK = {0x000000, 1};
+
+static void the_built_in_renderer_paints_what_osmesa_paints(void **state) {
+    (void)state;
+    hn_canvas *c = create(300, 270);
+    const double star[] = {20.3, 40.1, 280, 60, 40, 250.7, 150, 10, 240.2, 240};
+    const hn_stroke dashed = {.paint = {0x1144aa, 0.7}, .width = 5.5};
+    hn_canvas_polygon(c, star, 5, (hn_paint){0x33aa55, 0.5});
+    hn_canvas_begin_layer(c, 0.6);
+    hn_canvas_line(c, star, 5, &dashed);
+    hn_canvas_disc(c, 150, 130, 60.4, (hn_paint){0xcc2200, 1});
+    hn_canvas_end_layer(c);
+    hn_canvas_clip(c, 100, 100, 80, 90);
+    hn_canvas_text(c, 150, 150, 40, HN_ALIGN_CENTRE, BLACK, "gap");
+    hn_canvas_unclip(c);
+
+    picture a = paint(c), b = {a.width, a.height, malloc((size_t)3 * 300 * 270)};
+    assert_non_null(b.rgb);
+    assert_int_equal(hn_raster_paint(c, b.rgb, NULL), HN_OK);
+    double sum = 0;
+    int worst = 0;
+    for (int i = 0; i < 3 * 300 * 270; i++) {
+        const int difference = abs(a.rgb[i] - b.rgb[i]);
+        worst = difference > worst ? difference : worst;
+        sum += difference;
+    }
+    // samples on the very edges may fall to either side: two of sixteen, of 255 levels
+    assert_true(worst <= 2 * 255 / 16 + 1);
+    assert_true(sum / (3 * 300 * 270) < 0.05);
+    free(a.rgb);
+    free(b.rgb);
+    hn_canvas_free(c);
+}
 
 static void an_empty_sheet_is_paper_to_its_last_pixel(void **state) {
     (void)state;
@@ -404,6 +437,7 @@ static void every_failing_allocation_is_told_and_nothing_leaks(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_empty_sheet_is_paper_to_its_last_pixel),
+        cmocka_unit_test(the_built_in_renderer_paints_what_osmesa_paints),
         cmocka_unit_test(a_pixel_sized_square_lands_on_its_pixel_in_every_tile),
         cmocka_unit_test(shapes_have_the_area_of_geometry),
         cmocka_unit_test(edges_are_smooth),

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/raster.h"
+
+#include "render/canvas_record.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TILE = 128, SIDE = HN_CANVAS_SAMPLES * TILE, MAX_NUMBER = 255 };
+
+/// The samples of a tile: colours, and the number of the layer that took each last.
+typedef struct tile {
+    int x0, y0; ///< [px], upper left corner
+    unsigned char rgb[SIDE * SIDE][3];
+    unsigned char taken[SIDE * SIDE];
+} tile;
+
+/// Limits of the samples that a shape may take, within the tile.
+typedef struct window {
+    int x0, y0, x1, y1;
+} window;
+
+static int clamp(double x, int low, int high) {
+    return x < low ? low : x > high ? high : (int)x;
+}
+
+static void blend(unsigned char *under, uint32_t rgb, double alpha) {
+    for (int k = 0; k < 3; k++) {
+        const double over = rgb >> (16 - 8 * k) & 0xff;
+        under[k] = (unsigned char)lround(under[k] + alpha * (over - under[k]));
+    }
+}
+
+/// Widens the span of row `y` by the edge from p to q, where it crosses that row.
+static void cross_row(const double *p, const double *q, double y, double span[2]) {
+    if ((p[1] <= y) == (q[1] <= y)) {
+        return;
+    }
+    const double x = p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
+    span[0] = fmin(span[0], x);
+    span[1] = fmax(span[1], x);
+}
+
+/// Samples of a triangle (in samples of the tile) that no shape of this layer has taken yet.
+static void fill_triangle(tile *t, double corner[3][2], const window *w, int number,
+                          hn_paint paint) {
+    const double top = fmin(corner[0][1], fmin(corner[1][1], corner[2][1]));
+    const double bottom = fmax(corner[0][1], fmax(corner[1][1], corner[2][1]));
+    const int first = clamp(ceil(top - 0.5), w->y0, w->y1);
+    const int end = clamp(floor(bottom - 0.5) + 1, w->y0, w->y1);
+    for (int row = first; row < end; row++) {
+        double span[2] = {HUGE_VAL, -HUGE_VAL};
+        for (int i = 0; i < 3; i++) {
+            cross_row(corner[i], corner[(i + 1) % 3], row + 0.5, span);
+        }
+        const int from = clamp(ceil(span[0] - 0.5), w->x0, w->x1);
+        const int to = clamp(floor(span[1] - 0.5) + 1, w->x0, w->x1);
+        for (int column = from; column < to; column++) {
+            const int k = row * SIDE + column;
+            if (t->taken[k] != number) {
+                t->taken[k] = (unsigned char)number;
+                blend(t->rgb[k], paint.rgb, paint.alpha);
+            }
+        }
+    }
+}
+
+static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, int number) {
+    const int n = HN_CANVAS_SAMPLES;
+    const window w = {
+        clamp(n * (s->clip[0] - t->x0), 0, SIDE), clamp(n * (s->clip[1] - t->y0), 0, SIDE),
+        clamp(n * (s->clip[2] - t->x0), 0, SIDE), clamp(n * (s->clip[3] - t->y0), 0, SIDE)};
+    const hn_paint paint = {s->paint.rgb, s->paint.alpha * c->layers[s->layer]};
+    for (int v = 0; v + 2 < s->count; v += 3) {
+        double corner[3][2];
+        for (int i = 0; i < 3; i++) {
+            const float *xy = c->xy + 2 * (s->first + v + i);
+            corner[i][0] = n * ((double)xy[0] - t->x0);
+            corner[i][1] = n * ((double)xy[1] - t->y0);
+        }
+        fill_triangle(t, corner, &w, number, paint);
+    }
+}
+
+/// Layers in their order; within a layer the last shape first, so that it lies on top.
+static void draw_tile(tile *t, const hn_canvas *c) {
+    const uint32_t paper = hn_surface_get(c->theme)->paper;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        t->rgb[k][0] = (unsigned char)(paper >> 16);
+        t->rgb[k][1] = (unsigned char)(paper >> 8);
+        t->rgb[k][2] = (unsigned char)paper;
+    }
+    memset(t->taken, 0, sizeof t->taken);
+    int number = 0;
+    for (int first = 0, end; first < c->n_shapes; first = end) {
+        for (end = first + 1; end < c->n_shapes && c->shapes[end].layer == c->shapes[first].layer;
+             end++) {}
+        if (++number > MAX_NUMBER) {
+            memset(t->taken, 0, sizeof t->taken);
+            number = 1;
+        }
+        for (int i = end - 1; i >= first; i--) {
+            draw_shape(t, c, &c->shapes[i], number);
+        }
+    }
+}
+
+/// Averages squares of samples into the pixels of the tile that are on the sheet.
+static void average(const tile *t, const hn_canvas *c, unsigned char *rgb) {
+    const int n = HN_CANVAS_SAMPLES, area = n * n;
+    for (int y = t->y0; y < t->y0 + TILE && y < c->height; y++) {
+        for (int x = t->x0; x < t->x0 + TILE && x < c->width; x++) {
+            unsigned char *pixel = rgb + 3 * ((size_t)y * (size_t)c->width + (size_t)x);
+            for (int k = 0; k < 3; k++) {
+                int sum = area / 2;
+                for (int j = 0; j < area; j++) {
+                    sum += t->rgb[(n * (y - t->y0) + j / n) * SIDE + n * (x - t->x0) + j % n][k];
+                }
+                pixel[k] = (unsigned char)(sum / area);
+            }
+        }
+    }
+}
+
+hn_status hn_raster_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
+    tile *t = malloc(sizeof *t);
+    if (!t) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
+    }
+    for (t->y0 = 0; t->y0 < c->height; t->y0 += TILE) {
+        for (t->x0 = 0; t->x0 < c->width; t->x0 += TILE) {
+            draw_tile(t, c);
+            average(t, c, rgb);
+        }
+    }
+    free(t);
+    return HN_OK;
+}

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/snapshot_marks.h"
+
+#include "base/units.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double SHORTEST_DIMENSION = 3; // [letters] a shorter bar has no room for its length
+
+/// The bar that is longest on the sheet, NULL when there is none.
+static const hn_shape *longest_bar(const hn_sheet *s, const hn_drawing *d, const double *points) {
+    const hn_shape *longest = NULL;
+    double most = 0;
+    for (int i = 0; i < d->n_shapes; i++) {
+        double a[2], b[2];
+        if (d->shapes[i].kind == HN_SHAPE_BAR) {
+            hn_sheet_pixel(s, points + 3 * d->shapes[i].p, a);
+            hn_sheet_pixel(s, points + 3 * d->shapes[i].q, b);
+            const double length = hypot(b[0] - a[0], b[1] - a[1]);
+            longest = length > most ? &d->shapes[i] : longest;
+            most = fmax(most, length);
+        }
+    }
+    return longest;
+}
+
+static int count_listed(const hn_snapshot_pose *poses, int n_poses) {
+    int n = 0;
+    for (int i = 0; i < n_poses; i++) {
+        n += !poses[i].faint;
+    }
+    return n;
+}
+
+void hn_snapshot_markers(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                         const hn_snapshot_pose *poses, int n_poses) {
+    const hn_shape *bar = longest_bar(s, d, poses[s->selected].points);
+    const hn_theme theme = hn_canvas_theme(c);
+    const int n = count_listed(poses, n_poses);
+    if (!bar || n < 2) {
+        return;
+    }
+    for (int i = 0, k = 0; i < n_poses; i++) {
+        if (poses[i].faint || !hn_pose_is_drawable(d, &poses[i])) {
+            k += !poses[i].faint;
+            continue;
+        }
+
+        // poses may coincide: every method has a share of the bar of its own
+        double a[2], b[2];
+        const double share = ++k / (n + 1.0);
+        hn_sheet_pixel(s, poses[i].points + 3 * bar->p, a);
+        hn_sheet_pixel(s, poses[i].points + 3 * bar->q, b);
+        const double x = a[0] + share * (b[0] - a[0]), y = a[1] + share * (b[1] - a[1]);
+        hn_canvas_disc(c, x, y, 0.5 * s->font, hn_paint_solid(hn_surface_get(theme)->paper));
+        hn_canvas_marker(c, hn_look_get(poses[i].slot)->marker, x, y, 0.7 * s->font,
+                         hn_paint_solid(hn_look_get(poses[i].slot)->colour[theme]));
+    }
+}
+
+// ---- dimension lines ----
+
+/// 1 when an earlier bar joins the same two points.
+static bool is_repeated(const hn_drawing *d, int shape) {
+    const hn_shape *bar = &d->shapes[shape];
+    for (int i = 0; i < shape; i++) {
+        const hn_shape *other = &d->shapes[i];
+        if (other->kind == HN_SHAPE_BAR && ((other->p == bar->p && other->q == bar->q) ||
+                                            (other->p == bar->q && other->q == bar->p))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The middle of all points on the sheet: dimension lines lie on the other side of their bar.
+static void middle_of(const hn_sheet *s, const hn_drawing *d, const double *points, double out[2]) {
+    out[0] = out[1] = 0;
+    for (int i = 0; i < d->n_points; i++) {
+        double xy[2];
+        hn_sheet_pixel(s, points + 3 * i, xy);
+        out[0] += xy[0] / d->n_points;
+        out[1] += xy[1] / d->n_points;
+    }
+}
+
+/// A line with the text in the middle of it, on paper.
+static void draw_value(hn_canvas *c, const hn_sheet *s, double x, double y, const char *text) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    const double size = 0.85 * s->font, half = 0.5 * hn_canvas_text_width(size, text) + 3;
+    const double box[] = {x - half, y - 0.65 * size, x + half, y - 0.65 * size,
+                          x + half, y + 0.65 * size, x - half, y + 0.65 * size};
+    hn_canvas_polygon(c, box, 4, hn_paint_solid(surface->paper));
+    hn_canvas_text(c, x, y + 0.35 * size, size, HN_ALIGN_CENTRE, hn_paint_solid(surface->ink),
+                   text);
+}
+
+static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], const double b[2],
+                           const double middle[2], const char *text) {
+    const double length = hypot(b[0] - a[0], b[1] - a[1]);
+    const double u[2] = {(b[0] - a[0]) / length, (b[1] - a[1]) / length};
+    double side[2] = {-u[1], u[0]};
+    if (side[0] * (a[0] + b[0] - 2 * middle[0]) + side[1] * (a[1] + b[1] - 2 * middle[1]) < 0) {
+        side[0] = -side[0];
+        side[1] = -side[1];
+    }
+
+    // extension lines from the bar to a little beyond the dimension line
+    const double off = 1.1 * s->bar + 1.1 * s->font, gap = 0.7 * s->bar, beyond = 0.35 * s->font;
+    const hn_stroke thin =
+        hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->muted, 0.6 * s->line);
+    const double *const ends[2] = {a, b};
+    for (int i = 0; i < 2; i++) {
+        const double *e = ends[i];
+        hn_canvas_segment(c, e[0] + gap * side[0], e[1] + gap * side[1],
+                          e[0] + (off + beyond) * side[0], e[1] + (off + beyond) * side[1], &thin);
+    }
+
+    // arrows from the middle to both ends, and the value over them
+    const double x = (a[0] + b[0]) / 2 + off * side[0], y = (a[1] + b[1]) / 2 + off * side[1];
+    for (int i = 0; i < 2; i++) {
+        hn_canvas_arrow(c, x, y, ends[i][0] + off * side[0], ends[i][1] + off * side[1],
+                        0.6 * s->font, &thin);
+    }
+    draw_value(c, s, x, y, text);
+}
+
+void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                            const hn_snapshot_pose *pose) {
+    double middle[2];
+    middle_of(s, d, pose->points, middle);
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *bar = &d->shapes[i];
+        if (bar->kind != HN_SHAPE_BAR || is_repeated(d, i)) {
+            continue;
+        }
+        double a[2], b[2];
+        char text[HN_SI_TEXT];
+        const double *p = pose->points + 3 * bar->p, *q = pose->points + 3 * bar->q;
+        hn_sheet_pixel(s, p, a);
+        hn_sheet_pixel(s, q, b);
+        hn_si_format(hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]), "m", 3, text);
+        if (hypot(b[0] - a[0], b[1] - a[1]) >= SHORTEST_DIMENSION * s->font) {
+            draw_dimension(c, s, a, b, middle, text);
+        }
+    }
+}
+
+// ---- the list of what is drawn ----
+
+static void put_point(hn_strbuf *world, hn_strbuf *pixels, const hn_sheet *s, const double *at) {
+    double xy[2];
+    hn_sheet_pixel(s, at, xy);
+    hn_json_array(world);
+    for (int i = 0; i < 3; i++) {
+        hn_json_number(world, at[i]);
+    }
+    hn_json_end_array(world);
+    hn_json_array(pixels);
+    hn_json_number(pixels, round(100 * xy[0]) / 100);
+    hn_json_number(pixels, round(100 * xy[1]) / 100);
+    hn_json_end_array(pixels);
+}
+
+/// The numbers of a shape's points: one, two, or those of a polygon.
+static int points_of(const hn_shape *shape, int k) {
+    if (shape->kind == HN_SHAPE_POLYGON) {
+        return k < shape->n ? shape->p + k : -1;
+    }
+    const bool two = shape->kind == HN_SHAPE_BAR || shape->kind == HN_SHAPE_SPRING ||
+                     shape->kind == HN_SHAPE_DAMPER || shape->kind == HN_SHAPE_SLIDER ||
+                     shape->kind == HN_SHAPE_GUIDE;
+    return k == 0 ? shape->p : k == 1 && two ? shape->q : -1;
+}
+
+static void put_shape(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d, const hn_shape *shape,
+                      const double *points, int pose) {
+    hn_strbuf world, pixels;
+    hn_strbuf_init(&world);
+    hn_strbuf_init(&pixels);
+    hn_json_array(&world);
+    hn_json_array(&pixels);
+    for (int k = 0, point; (point = points_of(shape, k)) >= 0; k++) {
+        put_point(&world, &pixels, s, points + 3 * point);
+    }
+    hn_json_end_array(&world);
+    hn_json_end_array(&pixels);
+
+    hn_json_object(b);
+    hn_json_put_string(b, "kind", hn_shape_kind_name(shape->kind));
+    hn_json_put_int(b, "pose", pose);
+    hn_json_key(b, "points");
+    hn_json_raw(b, hn_strbuf_text(&world));
+    hn_json_key(b, "pixels");
+    hn_json_raw(b, hn_strbuf_text(&pixels));
+    hn_json_key(b, "labels");
+    hn_json_array(b);
+    for (int k = 0, point; (point = points_of(shape, k)) >= 0; k++) {
+        hn_json_string(b, d->labels[point] ? d->labels[point] : "");
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+    b->failed |= world.failed || pixels.failed;
+    hn_strbuf_reset(&world);
+    hn_strbuf_reset(&pixels);
+}
+
+void hn_snapshot_primitives(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d,
+                            const hn_snapshot_pose *poses, int n_poses,
+                            const hn_snapshot_opts *opts) {
+    hn_json_key(b, "primitives");
+    hn_json_array(b);
+    for (int i = 0; i < n_poses; i++) {
+        for (int k = 0; k < d->n_shapes && hn_pose_is_drawable(d, &poses[i]); k++) {
+            put_shape(b, s, d, &d->shapes[k], poses[i].points, i);
+        }
+    }
+    hn_json_end_array(b);
+
+    // lines that were passed, and forces
+    hn_json_key(b, "traces");
+    hn_json_array(b);
+    for (int i = 0; i < n_poses; i++) {
+        hn_json_int(b, poses[i].trace ? poses[i].n_trace : 0);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "loads");
+    hn_json_array(b);
+    for (int i = 0; i < opts->n_loads; i++) {
+        const hn_snapshot_load *load = &opts->loads[i];
+        const double *at =
+            load->point < 0 ? load->place : poses[s->selected].points + 3 * load->point;
+        hn_json_object(b);
+        hn_json_put_numbers(b, "place", at, 3);
+        hn_json_put_numbers(b, "force", load->force, 3);
+        hn_json_put_string(b, "unit", load->unit);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
