@@ -16,3 +16,11 @@ double hn_clock_wall(void) {
 double hn_clock_thread(void) {
     return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }
+
+double hn_clock_ticks(void) {
+#if defined(__x86_64__)
+    return (double)__builtin_ia32_rdtsc();
+#else
+    return 1e9 * hn_clock_wall();
+#endif
+}

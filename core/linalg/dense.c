@@ -3,14 +3,6 @@
 
 #include <math.h>
 
-double hn_dot(int n, const double *x, const double *y) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
 double hn_norm_max(int n, const double *x) {
     double max = 0;
     for (int i = 0; i < n; i++) {
@@ -43,12 +35,6 @@ bool hn_all_finite(int n, const double *x) {
         }
     }
     return 1;
-}
-
-void hn_axpy(int n, double s, const double *x, double *y) {
-    for (int i = 0; i < n; i++) {
-        y[i] += s * x[i];
-    }
 }
 
 void hn_mat_vec(int rows, int cols, const double *A, const double *x, double *y) {

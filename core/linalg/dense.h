@@ -8,14 +8,25 @@
 
 #include <stdbool.h>
 
-/// x' y, both of n entries.
-double hn_dot(int n, const double *x, const double *y);
+/// x' y, both of n entries. For the handful of entries that most calls have, a call would cost more
+/// than the sum.
+static inline double hn_dot(int n, const double *x, const double *y) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
 double hn_norm2(int n, const double *x);    ///< Euclidean, safe against overflow of the squares
 double hn_norm_max(int n, const double *x); ///< max |x_i|; 0 for n = 0
 bool hn_all_finite(int n, const double *x); ///< true when no entry is NaN or infinite
 
 /// y += s x
-void hn_axpy(int n, double s, const double *x, double *y);
+static inline void hn_axpy(int n, double s, const double *x, double *y) {
+    for (int i = 0; i < n; i++) {
+        y[i] += s * x[i];
+    }
+}
 /// y = A x, A (rows x cols)
 void hn_mat_vec(int rows, int cols, const double *A, const double *x, double *y);
 /// y = A' x, A (rows x cols), x (rows), y (cols)

@@ -34,12 +34,13 @@ struct hn_singularity {
     hn_factor *factor;
     int n_J;
     const int *J_row, *J_col;
-    double *d, *r;     // scales: nv, nc
-    double *w, *top;   // nc: left vectors of the smallest and the largest singular value
-    double *x, *y;     // nv, nc scratch
-    double *v, *basis; // nv, 2 nv
-    double *kept[3];   // nc: r, w and top of the last look, while a probe uses them
-    hn_qr qr;          // nv x nc: (R J D)'
+    const double *J, *M; // values of `rows`
+    double *d, *r;       // scales: nv, nc
+    double *w, *top;     // nc: left vectors of the smallest and the largest singular value
+    double *x, *y;       // nv, nc scratch
+    double *v, *basis;   // nv, 2 nv
+    double *kept[3];     // nc: r, w and top of the last look, while a probe uses them
+    hn_qr qr;            // nv x nc: (R J D)'
     double *no_speed;
     int first, start_rank, wait;
     double largest, strongest; // sigma_min and sigma_max so far
@@ -77,6 +78,8 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
     hn_status status = hn_eval_create(sys, HN_TERM_J | HN_TERM_M, arena, &r->rows);
     if (status == HN_OK) {
         r->n_J = hn_eval_pattern(r->rows, HN_TERM_J, &r->J_row, &r->J_col);
+        r->J = hn_eval_get(r->rows, HN_TERM_J);
+        r->M = hn_eval_get(r->rows, HN_TERM_M);
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &r->gamma);
     }
     HN_THEN(status, hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor));
@@ -119,15 +122,13 @@ void hn_singularity_reset(hn_singularity *r) {
 }
 
 static double entry(const hn_singularity *r, int k) {
-    return hn_eval_get(r->rows,
-                       HN_TERM_J)[(size_t)r->J_row[k] * (size_t)r->nv + (size_t)r->J_col[k]];
+    return r->J[(size_t)r->J_row[k] * (size_t)r->nv + (size_t)r->J_col[k]];
 }
 
 /// D, and R as the reciprocal of the largest length that each row has had.
 static void scale(hn_singularity *r) {
-    const double *M = hn_eval_get(r->rows, HN_TERM_M);
     for (int j = 0; j < r->nv; j++) {
-        const double m = M[(size_t)j * (size_t)r->nv + (size_t)j];
+        const double m = r->M[(size_t)j * (size_t)r->nv + (size_t)j];
         r->d[j] = m > 0 ? 1 / sqrt(m) : 1;
     }
     memset(r->y, 0, (size_t)r->nc * sizeof *r->y);

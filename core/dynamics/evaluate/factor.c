@@ -8,7 +8,9 @@
 #include "dynamics/evaluate/row_groups.h"
 #include "expr/construct.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 struct hn_factor {
@@ -20,7 +22,8 @@ struct hn_factor {
     int n_values, n_out; ///< outputs that are values; then pivot and reference of each guard
     hn_row_groups rows;
     double row_ratio;
-    double *x; ///< right-hand side and solution
+    bool has_row_ratio; ///< of the last update; found when it is asked for
+    double *x;          ///< right-hand side and solution
     hn_factor_info info;
     int ready;
 };
@@ -148,10 +151,44 @@ hn_factor_info hn_factor_get_info(const hn_factor *f) {
     return f->info;
 }
 
-hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivot_ratio) {
+/// Whether every pivot is so far above its guard that roundings of the comparison do not matter.
+static bool is_sure(const hn_factor *f) {
+    const double *x = f->in.x, sure = 2 * HN_PIVOT_GUARD;
+    const uint16_t *slots = f->in.slots;
+    bool all = true;
+    for (int k = f->n_values; k < f->n_out; k += 2) { // a NaN is not above anything
+        all &= fabs(x[slots[k]]) > sure * fabs(x[slots[k + 1]]);
+    }
+    return all;
+}
+
+static double find_worst_pivot(const hn_factor *f) {
+    const double *x = f->in.x;
+    const uint16_t *slots = f->in.slots;
     double worst = 1;
+    for (int k = f->n_values; k < f->n_out; k += 2) {
+        double ratio = fabs(x[slots[k]]) / fabs(x[slots[k + 1]]);
+        worst = ratio >= worst ? worst : ratio >= 0 ? ratio : 0;
+    }
+    return worst;
+}
+
+/// Puts the tape's values in their places; false where one is not finite.
+static bool scatter(hn_factor *f) {
+    const double *x = f->in.x;
+    const uint16_t *slots = f->in.slots;
+    bool finite = true;
+    for (int k = 0; k < f->n_values; k++) {
+        *f->target[k] = x[slots[k]];
+        finite &= fabs(x[slots[k]]) <= DBL_MAX;
+    }
+    return finite;
+}
+
+hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivot_ratio) {
     f->ready = 0;
     f->row_ratio = 1;
+    f->has_row_ratio = true;
 
     // no static order exists
     if (!f->info.available) {
@@ -168,31 +205,24 @@ hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivo
             return HN_ERR_DIVERGED;
         }
     }
+    hn_tape_run(f->in.tape, f->in.x);
 
     // the worst pivot against its reference, 0 where a value is not finite
-    const double *x = f->in.x;
-    const uint16_t *slots = f->in.slots;
-    hn_tape_run(f->in.tape, f->in.x);
-    for (int k = f->n_values; k < f->n_out; k += 2) {
-        double ratio = fabs(x[slots[k]]) / fabs(x[slots[k + 1]]);
-        worst = ratio >= worst ? worst : ratio >= 0 ? ratio : 0;
-    }
-
-    // scatter
-    for (int k = 0; k < f->n_values; k++) {
-        *f->target[k] = x[slots[k]];
-        worst = isfinite(x[slots[k]]) ? worst : 0;
-    }
-
+    double worst = pivot_ratio || !is_sure(f) ? find_worst_pivot(f) : 1;
+    worst = scatter(f) ? worst : 0;
     if (pivot_ratio) {
         *pivot_ratio = worst;
     }
-    f->row_ratio = hn_row_groups_ratio(&f->rows, x, slots + f->n_out);
+    f->has_row_ratio = false;
     f->ready = worst >= HN_PIVOT_GUARD;
     return f->ready ? HN_OK : HN_ERR_SINGULAR;
 }
 
-double hn_factor_row_ratio(const hn_factor *f) {
+double hn_factor_row_ratio(hn_factor *f) {
+    if (f->info.available && !f->has_row_ratio) {
+        f->row_ratio = hn_row_groups_ratio(&f->rows, f->in.x, f->in.slots + f->n_out);
+        f->has_row_ratio = true;
+    }
     return f->info.available ? f->row_ratio : 1;
 }
 

@@ -49,7 +49,7 @@ HN_MUST_CHECK hn_status hn_factor_update(hn_factor *f, double t, const double *q
 
 /// Of the last update: the shortest row of J against the longest of its loop, squared lengths
 /// (row_groups.h); 1 where there is no static order.
-double hn_factor_row_ratio(const hn_factor *f);
+double hn_factor_row_ratio(hn_factor *f);
 
 /// Solves K [x; -y] = [r1; r2] with the last successful factor: x (nv), y (nc); y may be NULL. The
 /// right-hand side and the solution may be the same arrays. r1 or r2 may be NULL, which means zero.

@@ -9,55 +9,66 @@ enum { BLOCK = 64 };
 // A longer time between two intervals is the caller's: it may have slept.
 static const double LONG_BREAK = 1e-4; // [s]
 
-/// The median of some pairs of readings with nothing between.
-static double calc_grain(void) {
+/// Finds the median of some pairs of readings with nothing between, and the ticks of a long break.
+static void calibrate(hn_step_clock *c) {
     enum { PAIRS = 15 };
     double cost[PAIRS];
+    const double wall = hn_clock_wall(), first = hn_clock_ticks();
     for (int i = 0; i < PAIRS; i++) {
-        const double mark = hn_clock_wall();
-        const double d = hn_clock_wall() - mark;
+        const double mark = hn_clock_ticks();
+        const double d = hn_clock_ticks() - mark;
         int k = i;
         for (; k > 0 && cost[k - 1] > d; k--) {
             cost[k] = cost[k - 1];
         }
         cost[k] = d;
     }
-    return cost[PAIRS / 2];
+
+    // a microsecond or less is long enough to know the counter's pace to a few per cent
+    double passed = hn_clock_wall() - wall;
+    while (!(passed > 0)) {
+        passed = hn_clock_wall() - wall;
+    }
+    c->grain = cost[PAIRS / 2];
+    c->pause = LONG_BREAK * (hn_clock_ticks() - first) / passed;
 }
 
 void hn_step_clock_create(hn_step_clock *c) {
-    *c = (hn_step_clock){.grain = calc_grain()};
+    *c = (hn_step_clock){0};
+    calibrate(c);
 }
 
 void hn_step_clock_clear(hn_step_clock *c) {
-    *c = (hn_step_clock){.grain = c->grain};
+    *c = (hn_step_clock){.grain = c->grain, .pause = c->pause};
 }
 
 /// CPU time of the intervals of the present block. Undisturbed it is their wall time. A thread that
 /// had to wait for a processor has used less: then the steps get their share of the block.
 static double calc_block(const hn_step_clock *c) {
-    const double wall = c->own + c->between;
-    if (c->n == 0 || !(wall > 0)) {
+    const double all = c->own + c->between, passed = hn_clock_ticks() - c->mark;
+    if (c->n == 0 || !(all > 0) || !(passed > 0)) {
         return 0;
     }
-    const double cpu = hn_clock_thread() - c->cpu_mark;
-    return fmin(c->own, cpu * c->own / wall);
+    const double cpu = hn_clock_thread() - c->cpu_mark,
+                 tick = (hn_clock_wall() - c->wall_mark) / passed;
+    return fmin(c->own * tick, cpu * c->own / all);
 }
 
 void hn_step_clock_start(hn_step_clock *c) {
     if (c->n == 0) {
         c->cpu_mark = hn_clock_thread();
+        c->wall_mark = hn_clock_wall();
         c->own = c->between = 0;
-        c->started = hn_clock_wall();
+        c->mark = c->started = hn_clock_ticks();
         return;
     }
-    c->started = hn_clock_wall();
+    c->started = hn_clock_ticks();
     const double between = c->started - c->stopped;
-    c->between += between < LONG_BREAK ? between : 0;
+    c->between += between > 0 && between < c->pause ? between : 0;
 }
 
 void hn_step_clock_stop(hn_step_clock *c) {
-    c->stopped = hn_clock_wall();
+    c->stopped = hn_clock_ticks();
     c->own += fmax(0, c->stopped - c->started - c->grain);
     if (++c->n == BLOCK) {
         c->seconds += calc_block(c);

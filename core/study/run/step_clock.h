@@ -3,16 +3,18 @@
 #define HN_STUDY_STEP_CLOCK_H
 // CPU time of the steps alone, of a run that also checks and samples between its steps. The CPU
 // clock of a thread is a call into the kernel and takes as long as a small mechanism's step, so it
-// is read once for a block of intervals. The wall clock, which needs no such call, says which share
-// of the block the steps took.
+// is read once for a block of intervals. The processor's counter, which needs no such call, says
+// which share of the block the steps took.
 
 typedef struct hn_step_clock {
     double seconds; ///< CPU time of the blocks that have ended [s]
-    double grain;   ///< what one pair of wall readings adds to an interval [s]
+    double grain;   ///< what one pair of readings adds to an interval [ticks]
+    double pause;   ///< a longer time between two intervals is the caller's [ticks]
 
     double cpu_mark;         ///< CPU clock at the beginning of the present block [s]
-    double started, stopped; ///< wall clock at the ends of the last interval [s]
-    double own, between;     ///< wall time in the intervals of the block, and between them [s]
+    double started, stopped; ///< counter at the ends of the last interval [ticks]
+    double wall_mark, mark;  ///< wall clock [s] and counter then
+    double own, between;     ///< in the intervals of the block, and between them [ticks]
     int n;                   ///< intervals of the block; 0: the next one opens a block
 } hn_step_clock;
 
