@@ -282,6 +282,12 @@ install: all
 	install -D -m 644 build/libholonom.a $(INSTALLED)/lib/libholonom.a
 	install -D -m 644 core/session/face/holonom.h $(INSTALLED)/include/holonom.h
 	install -D -m 644 server/python/holonom.py $(INSTALLED)/share/holonom/python/holonom.py
+	@mkdir -p $(INSTALLED)/share/man/man1 $(INSTALLED)/share/bash-completion/completions \
+	    $(INSTALLED)/share/zsh/site-functions $(INSTALLED)/share/fish/vendor_completions.d
+	@build/holonom manual >$(INSTALLED)/share/man/man1/holonom.1
+	@build/holonom completion bash >$(INSTALLED)/share/bash-completion/completions/holonom
+	@build/holonom completion zsh >$(INSTALLED)/share/zsh/site-functions/_holonom
+	@build/holonom completion fish >$(INSTALLED)/share/fish/vendor_completions.d/holonom.fish
 	@mkdir -p $(INSTALLED)/lib/pkgconfig
 	@printf '%s\n' "$$PKG_CONFIG" >$(INSTALLED)/lib/pkgconfig/holonom.pc
 	@for f in $(SHIPPED); do \
@@ -300,6 +306,7 @@ help:
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
 	@echo 'make bench        time the engine: CSV on standard output'
+	@echo 'make bench-tui    what drawing six methods in a terminal costs: CSV on standard output'
 	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
 	@echo 'make survival     the ladder of four-bars through its flat poses: which step sizes survive, kept in tests/survival/results.txt'
@@ -327,7 +334,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages book run-suite run-unit run-server run-bench run-fuzz reports accuracy
+.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages book run-suite run-unit run-server run-bench run-fuzz reports accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -351,6 +358,9 @@ fuzz: build/.packages-check
 # a class of 300 readers, 30 browsers, 10,000 questions asked twice with kill -9 between: four minutes, nothing else should run
 load: all
 	@python3 tests/load/load.py $(PROGRAM)
+
+bench-tui: all
+	@HOLONOM=$(PROGRAM) python3 tests/bench/tui_share.py
 
 run-fuzz: $(FUZZERS)
 	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing $(HARNESS)

@@ -14,22 +14,35 @@ void hn_terminal_be_wide(void) {
     wide = true;
 }
 
-int hn_terminal_limit(void) {
-    const char *said = getenv("COLUMNS");
-    const bool known = isatty(STDOUT_FILENO) || (said && atoi(said) > 0);
-    return known && !wide ? hn_terminal_columns() : 0;
-}
-
-int hn_terminal_columns(void) {
+/// Columns of the terminal behind an output, else of COLUMNS, else the usual ones.
+static int columns_of(int output) {
     struct winsize size = {0};
     const char *said = getenv("COLUMNS");
     int columns = USUAL;
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    if (ioctl(output, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
         columns = size.ws_col;
     } else if (said && atoi(said) > 0) {
         columns = atoi(said);
     }
     return columns < LEAST ? LEAST : columns > MOST ? MOST : columns;
+}
+
+int hn_terminal_columns(void) {
+    return columns_of(STDOUT_FILENO);
+}
+
+static int limit_of(int output) {
+    const char *said = getenv("COLUMNS");
+    const bool known = isatty(output) || (said && atoi(said) > 0);
+    return known && !wide ? columns_of(output) : 0;
+}
+
+int hn_terminal_limit(void) {
+    return limit_of(STDOUT_FILENO);
+}
+
+int hn_terminal_error_limit(void) {
+    return limit_of(STDERR_FILENO);
 }
 
 bool hn_terminal_colours(void) {

@@ -6,6 +6,7 @@
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/forms.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "grade/exercise_shelf.h"
@@ -111,8 +112,8 @@ static hn_exit grade_roster(const hn_args *args, const hn_exercise *exercise,
         hn_report_diag(args, &diag);
     } else {
         if (result.resumed > 0) {
-            fprintf(stderr, "holonom: %d of %d submissions were graded before\n", result.resumed,
-                    result.n);
+            hn_cli_note("holonom: %d of %d submissions were graded before\n", result.resumed,
+                        result.n);
         }
         exit = args->out ? write_result(args, &result) : HN_EXIT_DONE;
         hn_strbuf b;

@@ -4,6 +4,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/print.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
@@ -213,9 +214,9 @@ static int tell_failures(const cJSON *summary, int aloud) {
         if (has_failed(m)) {
             failed = 1;
             if (aloud) {
-                fprintf(stderr, "holonom: %s ended early at t = %.6g s: %s\n",
-                        hn_document_text(m, "method"), hn_document_number(m, "t_reached"),
-                        hn_document_text(m, "reason"));
+                hn_cli_note("holonom: %s ended early at t = %.6g s: %s\n",
+                            hn_document_text(m, "method"), hn_document_number(m, "t_reached"),
+                            hn_document_text(m, "reason"));
             }
         }
     }

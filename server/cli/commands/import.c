@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "import/import.h"
@@ -175,45 +176,41 @@ static hn_exit print_json(const hn_args *args, const hn_import *im, const hn_mod
 static void tell_notes(const hn_import *im) {
     for (int i = 0; i < hn_import_note_count(im); i++) {
         const hn_import_note *note = hn_import_note_at(im, i);
-        fprintf(stderr, "%s%sline %d: %s: %s (%s)\n", note->file ? note->file : "",
-                note->file ? ", " : "", note->line, hn_import_outcome_name(note->outcome),
-                note->what, note->where);
+        hn_cli_note("%s%sline %d: %s: %s (%s)\n", note->file ? note->file : "",
+                    note->file ? ", " : "", note->line, hn_import_outcome_name(note->outcome),
+                    note->what, note->where);
     }
 }
 
 static void tell_assembly(const hn_model *model, const hn_diags *why) {
     if (!model) {
-        fprintf(stderr, "holonom: the scene was written, but not compiled: %s\n",
-                why->item[0].message);
+        hn_cli_note("holonom: the scene was written, but not compiled: %s\n", why->item[0].message);
         return;
     }
     const hn_assembly *a = hn_model_assembly(model);
     const hn_diag *open = hn_model_why_open(model);
     if (open) {
-        fprintf(stderr,
-                "holonom: the scene was written, but cannot be assembled: %s\n         %s\n",
-                open->message, open->hint);
+        hn_cli_note("holonom: the scene was written, but cannot be assembled: %s\n         %s\n",
+                    open->message, open->hint);
         return;
     }
-    fprintf(stderr,
-            "holonom: assembled with a gap of %.2g: %d degrees of freedom; of the rows that close "
-            "loops %d are "
-            "redundant, and %d are 0 whatever the pose\n",
-            a->gap, a->freedoms, a->redundant,
-            hn_system_get_info(hn_model_system(model)).rows_dropped);
+    hn_cli_note(
+        "holonom: assembled with a gap of %.2g: %d degrees of freedom; of the rows that close "
+        "loops %d are "
+        "redundant, and %d are 0 whatever the pose\n",
+        a->gap, a->freedoms, a->redundant, hn_system_get_info(hn_model_system(model)).rows_dropped);
 }
 
 static void tell_summary(const hn_import *im) {
     hn_import_info info = hn_import_get_info(im);
-    fprintf(stderr,
-            "holonom: %s with %d bodies%s, %d joints, %d of its joints and constraints closing "
-            "loops; %.6g kg\n",
-            hn_import_format(im), info.n_bodies - info.n_carriers,
-            info.n_carriers ? " (and carriers without mass between joints of one body)" : "",
-            info.n_joints, info.n_closing, info.mass);
-    fprintf(stderr, "holonom: not in the scene: %d ignored, %d approximated, %d refused\n",
-            hn_import_count(im, HN_IMPORT_IGNORED), hn_import_count(im, HN_IMPORT_APPROXIMATED),
-            hn_import_count(im, HN_IMPORT_REFUSED));
+    hn_cli_note("holonom: %s with %d bodies%s, %d joints, %d of its joints and constraints closing "
+                "loops; %.6g kg\n",
+                hn_import_format(im), info.n_bodies - info.n_carriers,
+                info.n_carriers ? " (and carriers without mass between joints of one body)" : "",
+                info.n_joints, info.n_closing, info.mass);
+    hn_cli_note("holonom: not in the scene: %d ignored, %d approximated, %d refused\n",
+                hn_import_count(im, HN_IMPORT_IGNORED), hn_import_count(im, HN_IMPORT_APPROXIMATED),
+                hn_import_count(im, HN_IMPORT_REFUSED));
 }
 
 static hn_exit write_scene(const hn_args *args, const hn_import *im) {

@@ -76,7 +76,7 @@ static hn_exit check(const hn_args *args, const hn_exercise *e) {
     }
     hn_strbuf_init(&b);
     put_report(&b, e, &report, args->json);
-    const hn_exit result = hn_cli_print(&b);
+    const hn_exit result = args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
     return report.bad ? HN_EXIT_PROGRAM : result;
 }
 
@@ -89,7 +89,7 @@ static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant
         hn_strbuf_add(&b, "\n");
     }
     hn_strbuf_add(&b, e->n_hints ? "" : "this exercise has no hints\n");
-    return hn_cli_print(&b);
+    return hn_cli_print_text(&b);
 }
 
 static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {

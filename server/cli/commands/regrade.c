@@ -84,7 +84,7 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
                      v->score, v->max_score);
     put_changes(&b, old, v);
     hn_verdict_text(&b, v);
-    return hn_cli_print(&b);
+    return hn_cli_print_text(&b);
 }
 
 static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJSON *old,

@@ -4,6 +4,7 @@
 #include "cli/commands/run_rows.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/print.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
@@ -52,10 +53,10 @@ static void tell_marks(const cJSON *run) {
             n += (int)cJSON_GetNumberValue(entry) == mark;
         }
         if (n > 0) {
-            fprintf(stderr,
-                    "holonom: multipliers, and reactions that rest on them: %s in %d of %d samples "
-                    "(lambda_mark %d)\n",
-                    word->valuestring, n, cJSON_GetArraySize(marks), mark);
+            hn_cli_note(
+                "holonom: multipliers, and reactions that rest on them: %s in %d of %d samples "
+                "(lambda_mark %d)\n",
+                word->valuestring, n, cJSON_GetArraySize(marks), mark);
         }
     }
 }
@@ -66,7 +67,7 @@ static void tell_remedies(const cJSON *incident) {
     const cJSON *remedy = hn_document_get(incident, "remedies")->child;
     const cJSON *tried = hn_document_get(incident, "tried")->child;
     if (remedy && tried && tried->valuestring[0]) {
-        fprintf(stderr, "holonom:     try %s (%s)\n", remedy->valuestring, tried->valuestring);
+        hn_cli_note("holonom:     try %s (%s)\n", remedy->valuestring, tried->valuestring);
     }
 }
 
@@ -76,13 +77,13 @@ static void tell_incidents(const cJSON *run) {
     int n = 0;
     cJSON_ArrayForEach(incident, incidents) {
         if (n++ < MOST) {
-            fprintf(stderr, "holonom: t = %.4g s: %s\n", hn_document_number(incident, "t"),
-                    hn_document_text(incident, "message"));
+            hn_cli_note("holonom: t = %.4g s: %s\n", hn_document_number(incident, "t"),
+                        hn_document_text(incident, "message"));
             tell_remedies(incident);
         }
     }
     if (n > MOST) {
-        fprintf(stderr, "holonom: %d incidents more (--json lists them all)\n", n - MOST);
+        hn_cli_note("holonom: %d incidents more (--json lists them all)\n", n - MOST);
     }
 }
 
@@ -103,17 +104,17 @@ static void tell_estimate(const cJSON *run) {
             snprintf(factor, sizeof factor, " (%.0f times rtol, which bounds the error of a step)",
                      times);
         }
-        fprintf(stderr,
-                "holonom: error estimate up to t = %.4g s: coordinates %.1e%s, reactions %.1e of "
-                "their largest%s\n",
-                hn_document_number(e, "t"), q, factor, reaction,
-                !far           ? ""
-                : isnan(times) ? "; a smaller step is needed"
-                               : "; a smaller tolerance is needed");
+        hn_cli_note(
+            "holonom: error estimate up to t = %.4g s: coordinates %.1e%s, reactions %.1e of "
+            "their largest%s\n",
+            hn_document_number(e, "t"), q, factor, reaction,
+            !far           ? ""
+            : isnan(times) ? "; a smaller step is needed"
+                           : "; a smaller tolerance is needed");
     }
     if (reason[0]) {
-        fprintf(stderr, "holonom: no error estimate%s: %s\n", isfinite(q) ? " beyond that" : "",
-                reason);
+        hn_cli_note("holonom: no error estimate%s: %s\n", isfinite(q) ? " beyond that" : "",
+                    reason);
     }
 }
 
@@ -154,7 +155,7 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_ro
 
         // the method that was chosen, once the question has turned out to be one
         if (status == HN_OK && !args->method && !args->json) {
-            fprintf(stderr, "holonom: method %s; --method chooses another\n", request.method);
+            hn_cli_note("holonom: method %s; --method chooses another\n", request.method);
         }
     }
     hn_model_free(model);
@@ -240,7 +241,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         }
         b.failed |= rows.failed;
         if (hn_document_text(run, "warning")[0]) {
-            fprintf(stderr, "holonom: %s\n", hn_document_text(run, "warning"));
+            hn_cli_note("holonom: %s\n", hn_document_text(run, "warning"));
         }
         cJSON_Delete(run);
     }
@@ -248,7 +249,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     // a run that ended early has an exit status of its own
     hn_exit result = args->plot ? hn_cli_print_text(&b) : hn_cli_print(&b);
     if (ended != HN_OK && reason[0]) {
-        fprintf(stderr, "holonom: the run ended early %s\n", reason);
+        hn_cli_note("holonom: the run ended early %s\n", reason);
     }
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }

@@ -3,6 +3,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/forms.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
@@ -107,8 +108,8 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     }
     hn_strbuf_reset(&description);
     if (result == HN_EXIT_DONE && ended != HN_OK) {
-        fprintf(stderr, "holonom: a method ended early (%s); the picture says which and where\n",
-                hn_status_text(ended));
+        hn_cli_note("holonom: a method ended early (%s); the picture says which and where\n",
+                    hn_status_text(ended));
         result = HN_EXIT_ENDED;
     }
     return result;

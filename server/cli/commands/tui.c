@@ -4,6 +4,7 @@
 
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/plain.h"
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
@@ -100,8 +101,8 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
         if (name && strcmp(name, "dumb") != 0 && hn_tui_run(w, opts)) {
             return HN_EXIT_DONE;
         }
-        fprintf(stderr, "holonom: the terminal '%s' cannot be driven; this is one frame as text\n",
-                getenv("TERM") ? getenv("TERM") : "");
+        hn_cli_note("holonom: the terminal '%s' cannot be driven; this is one frame as text\n",
+                    getenv("TERM") ? getenv("TERM") : "");
     }
 
     // no terminal, or one frame was asked for

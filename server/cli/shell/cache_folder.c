@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/cache_folder.h"
+#include "cli/shell/notes.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -28,7 +29,7 @@ bool hn_cache_folder_find(char out[400]) {
 const char *hn_cache_folder(const hn_args *args, char out[400]) {
     const bool found = hn_cache_folder_find(out);
     if (!found && !args->json) {
-        fprintf(stderr, "holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
+        hn_cli_note("holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
     }
     return found ? out : NULL;
 }

@@ -2,6 +2,7 @@
 #include "cli/shell/diagnostics.h"
 
 #include "cli/shell/args.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/print.h"
 
 #include <stdbool.h>
@@ -20,18 +21,22 @@ static hn_exit exit_of(hn_status status, const hn_diags *diags) {
 }
 
 static void tell(const hn_diag *d) {
-    fprintf(stderr, "holonom: %s", d->message);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_strbuf_printf(&b, "holonom: %s", d->message);
     if (d->pointer[0]) {
-        fprintf(stderr, " (at %s", d->pointer);
+        hn_strbuf_printf(&b, " (at %s", d->pointer);
         if (d->column > 0) {
-            fprintf(stderr, ", column %d", d->column);
+            hn_strbuf_printf(&b, ", column %d", d->column);
         }
-        fputc(')', stderr);
+        hn_strbuf_add(&b, ")");
     }
-    fputc('\n', stderr);
+    hn_strbuf_add(&b, "\n");
     if (d->hint[0]) {
-        fprintf(stderr, "         %s\n", d->hint);
+        hn_strbuf_printf(&b, "         %s\n", d->hint);
     }
+    hn_cli_note_lines(&b);
+    hn_strbuf_reset(&b);
 }
 
 hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *diags) {
@@ -52,10 +57,10 @@ hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *d
         tell(&diags->item[i]);
     }
     if (diags->n == 0) {
-        fprintf(stderr, "holonom: %s\n", hn_status_text(status));
+        hn_cli_note("holonom: %s\n", hn_status_text(status));
     }
     if (diags->found > diags->n) {
-        fprintf(stderr, "holonom: and %d more\n", diags->found - diags->n);
+        hn_cli_note("holonom: and %d more\n", diags->found - diags->n);
     }
     return exit_of(status, diags);
 }

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "cli/shell/args.h"
+#include "cli/shell/notes.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -76,10 +77,10 @@ static void tell_beyond(const hn_model *model) {
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
         if (p->beyond) {
-            fprintf(stderr,
-                    "holonom: %s = %g is outside its range, %g to %g%s%s, of which the texts of "
-                    "this scene speak\n",
-                    p->name, p->value, p->min, p->max, p->unit[0] ? " " : "", p->unit);
+            hn_cli_note(
+                "holonom: %s = %g is outside its range, %g to %g%s%s, of which the texts of "
+                "this scene speak\n",
+                p->name, p->value, p->min, p->max, p->unit[0] ? " " : "", p->unit);
         }
     }
 }

@@ -10,6 +10,7 @@
 #include "cli/shell/scene_word.h"
 #include "cli/study/budget_text.h"
 #include "cli/shell/cache_folder.h"
+#include "cli/shell/notes.h"
 #include "cli/study/extreme_text.h"
 #include "cli/study/interrupt.h"
 #include "cli/study/reference_text.h"
@@ -191,8 +192,8 @@ static hn_status prepare(command *c, hn_diags *diags) {
 
 static void report_resumed(const command *c, const hn_job *job) {
     if (hn_job_resumed(job) > 0 && !c->args->json) {
-        fprintf(stderr, "holonom: going on with %d %s from before\n", hn_job_resumed(job),
-                c->kind->pieces);
+        hn_cli_note("holonom: going on with %d %s from before\n", hn_job_resumed(job),
+                    c->kind->pieces);
     }
 }
 
@@ -201,9 +202,9 @@ static void report_end(const command *c, const hn_job_end *end) {
                        : end->lost ? "; what was done could not be written and is not kept"
                                    : "; the same command goes on from here";
     if (end->stopped) {
-        fprintf(stderr, "holonom: stopped on request%s\n", kept);
+        hn_cli_note("holonom: stopped on request%s\n", kept);
     } else if (end->out_of_time) {
-        fprintf(stderr, "holonom: the time limit left %s out%s\n", c->kind->pieces, kept);
+        hn_cli_note("holonom: the time limit left %s out%s\n", c->kind->pieces, kept);
     }
 }
 

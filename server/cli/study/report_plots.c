@@ -2,6 +2,7 @@
 #include "cli/study/report_plots.h"
 
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "session/report/report_plot.h"
 
@@ -86,10 +87,9 @@ hn_exit hn_write_plots(const hn_args *args, const hn_report *r) {
         }
     }
     if (!converts) {
-        fprintf(stderr,
-                "holonom: %d plots as SVG; PNG too where there is rsvg-convert (Debian: "
-                "librsvg2-bin)\n",
-                written);
+        hn_cli_note("holonom: %d plots as SVG; PNG too where there is rsvg-convert (Debian: "
+                    "librsvg2-bin)\n",
+                    written);
     }
     return HN_EXIT_DONE;
 }
