@@ -2,7 +2,7 @@
 #include "tui/recording.h"
 
 #include "base/clock.h"
-#include "session/compare/failure.h"
+#include "study/run/ending.h"
 #include "session/references/references.h"
 #include "session/references/reference_doc.h"
 #include "session/references/reference_store.h"
@@ -154,7 +154,7 @@ static void keep_words(hn_recording *r) {
         const int n = hn_run_incidents(run, &list);
         r->ends[m].failed = summary.state == HN_RUN_FAILED;
         r->ends[m].t = summary.t;
-        const hn_incident *cause = hn_failure_cause(run, summary.status, summary.reason, summary.t);
+        const hn_incident *cause = hn_ending_cause(run, summary.status, summary.reason, summary.t);
         r->ends[m].cause = cause ? hn_incident_kinds()[cause->code]->name : NULL;
         memcpy(r->ends[m].reason, summary.reason, sizeof r->ends[m].reason);
         for (int i = 0; i < n && r->n_incidents < MOST_INCIDENTS; i++) {

@@ -81,6 +81,48 @@ def wait(server, study, seconds=60):
         time.sleep(0.05)
 
 
+class Failures(driver.ServerCase):
+    """Why a part of a study failed is the same object as in a run."""
+
+    KEYS = {"code", "quantity", "value", "limit", "t", "message", "remedies"}
+
+    def check(self, failure, reason):
+        self.assertEqual(set(failure), self.KEYS)
+        self.assertTrue(failure["code"])
+        self.assertEqual(failure["message"], reason)
+
+    def test_points_of_a_work_precision_study(self):
+        # the coarsest steps of an explicit method of first order end with the loops open
+        study = wait(self.server, start(self.server, {"scene": "four-bar", "kind": "work-precision", "time": 5, "samples": 0, "levels": 4,
+                                                      "methods": ["index1@euler", "projection@rk4"]}))
+        points = [p for m in study["document"]["methods"] for p in m["points"]]
+        failed = [p for p in points if p["state"] == "failed"]
+        self.assertTrue(failed)
+        for p in failed:
+            self.check(p["failure"], p["reason"])
+            self.assertEqual(p["failure"]["t"], p["t_reached"])
+        self.assertTrue(all(p["failure"]["code"] == "diverged" and p["failure"]["remedies"] for p in failed), failed)
+        self.assertTrue(any(p["state"] == "done" for p in points))
+        self.assertTrue(all(p["failure"] is None for p in points if p["state"] != "failed"))
+
+    def test_cells_of_a_map_and_rows_of_an_error_budget(self):
+        study = wait(self.server, start(self.server, {"scene": "four-bar", "kind": "stability", "time": 2, "methods": ["baumgarte@rk4"]}))
+        cells = [c for m in study["document"]["methods"] for row in m["rows"] for c in row]
+        self.assertEqual({c["failure"] is None for c in cells}, {True, False})
+        for c in cells:
+            self.assertEqual(c["failure"] is None, not c.get("reason"))
+            if c["failure"]:
+                self.check(c["failure"], c["reason"])
+                self.assertEqual(c["failure"]["code"], c["class"])
+        study = wait(self.server, start(self.server, {"scene": "four-bar", "kind": "budget", "time": 1,
+                                                      "methods": ["index1@euler:h=0.5", "projection@rk4:h=0.01"]}))
+        rows = study["document"]["methods"]
+        self.assertEqual([r["failure"] is None for r in rows], [r["state"] == "done" for r in rows])
+        for r in rows:
+            if r["failure"]:
+                self.check(r["failure"], r["reason"])
+
+
 class Studies(driver.ServerCase):
     def test_work_precision_is_the_document_of_the_command_line(self):
         done = wait(self.server, start(self.server, QUICK))

@@ -91,7 +91,7 @@ def seeds(name):
     if name == "reference":
         return [read(p) for p in sorted(glob.glob("lessons/*/references/pendulum.json"))]
     if name == "journal":
-        line = {"m": 0, "k": 0, "state": 1, "status": 0, "reason": "", "numbers": [1, 2, 3], "worst": [0] * 4, "end": [0] * 4, "q": [0] * 3,
+        line = {"m": 0, "k": 0, "state": 1, "status": 0, "reason": "", "failure": None, "numbers": [1, 2, 3], "worst": [0] * 4, "end": [0] * 4, "q": [0] * 3,
                 "cost": [0] * 11, "first_cpu": 1e-3}
         cell = {"m": 0, "column": 1, "row": 1, "kind": 1, "status": 0, "numbers": [1, 1, 1, 1, 1], "reason": ""}
         column = {"m": 0, "column": 1, "between": [0.1, 0.2], "reason": "x"}

@@ -2,6 +2,7 @@
 #include "session/budgets/budgets_doc.h"
 
 #include "session/budgets/budgets_internal.h"
+#include "session/store/ending_json.h"
 #include "session/store/csv.h"
 
 #include <math.h>
@@ -56,6 +57,13 @@ void hn_budget_put(hn_strbuf *b, const hn_model *model, const hn_budget_row *row
     hn_json_put_string(b, "method", row->spelling);
     hn_json_put_string(b, "state", hn_budget_state(row));
     hn_json_put_string(b, "reason", row->reason);
+    const bool refused = row->status != HN_OK && row->status != HN_ERR_STOPPED;
+    const bool failed = row->status == HN_OK && row->budget.state == HN_RUN_FAILED;
+    const hn_ending ending = hn_ending_named(refused  ? hn_status_name(row->status)
+                                             : failed ? hn_budget_state(row)
+                                                      : "");
+    hn_ending_put_json(b, &ending, row->reason,
+                       row->status == HN_OK ? row->budget.t : (double)NAN);
     if (row->status == HN_OK) {
         hn_json_put_number(b, "t", row->budget.t);
         hn_json_put_int(b, "steps", row->budget.steps);

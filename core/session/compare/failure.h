@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_FAILURE_H
 #define HN_SESSION_FAILURE_H
-// The reason why a run ended early, as data: the same object in runs, comparisons and on the
-// command line.
+// The reason why a run ended early, as data: the same object in runs, comparisons, studies
+// and on the command line.
 
 #include "base/strbuf.h"
 #include "study/run/run.h"
@@ -15,8 +15,4 @@
 /// `t` the time reached [s].
 void hn_failure_put_json(hn_strbuf *b, const hn_run *run, hn_status ended, const char *reason,
                          double t);
-/// Returns the incident that ended the run: the one whose message is the reason, otherwise the last
-/// one at the end of the time; NULL: none did, or computing time ran out. Borrowed from the run.
-const hn_incident *hn_failure_cause(const hn_run *run, hn_status ended, const char *reason,
-                                    double t);
 #endif

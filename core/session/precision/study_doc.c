@@ -2,6 +2,7 @@
 #include "session/precision/study_doc.h"
 
 #include "session/store/csv.h"
+#include "session/store/ending_json.h"
 #include "session/precision/study_internal.h"
 
 #include "base/hash.h"
@@ -110,6 +111,7 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     hn_json_put_string(b, "state", hn_wp_state_name(p->state));
     hn_json_put_string(b, "status", hn_status_name(p->status));
     hn_json_put_string(b, "reason", p->reason);
+    hn_ending_put_json(b, &p->ending, p->reason, p->t_reached);
 
     // cost until the end or the failure
     if (p->state == HN_WP_DONE || p->state == HN_WP_FAILED) {

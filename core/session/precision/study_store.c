@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/store/ending_json.h"
 #include "session/precision/study_store.h"
 
 #include "session/store/stored_json.h"
@@ -74,6 +75,7 @@ void hn_store_put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     hn_json_put_int(b, "state", p->state);
     hn_json_put_int(b, "status", p->status);
     hn_json_put_string(b, "reason", p->reason);
+    hn_ending_put_json(b, &p->ending, p->reason, p->t_reached);
     hn_json_put_numbers(b, "numbers", numbers, 3);
     hn_json_put_numbers(b, "worst", p->worst, HN_ERROR_COUNT);
     hn_json_put_numbers(b, "end", p->end, HN_ERROR_COUNT);
@@ -95,7 +97,7 @@ bool hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
     double state, status, numbers[3], counts[N_COUNTS];
     if (!hn_stored_number(o, "state", &state) || !hn_stored_number(o, "status", &status) ||
         !hn_stored_text(o, "reason", p->reason, sizeof p->reason) ||
-        !hn_stored_numbers(o, "numbers", numbers, 3) ||
+        !hn_ending_take_json(o, &p->ending) || !hn_stored_numbers(o, "numbers", numbers, 3) ||
         !hn_stored_numbers(o, "worst", p->worst, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "end", p->end, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "q", p->end_q, (size_t)s->ref->n_user) ||

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_doc.h"
 
+#include "session/store/ending_json.h"
 #include "session/store/csv.h"
 #include "session/stability/stability.h"
 #include "session/stability/stability_column.h"
@@ -29,6 +30,8 @@ static void put_cell(hn_strbuf *b, const hn_map_cell *cell) {
     if (t->reason[0]) {
         hn_json_put_string(b, "reason", t->reason);
     }
+    const hn_ending ending = hn_ending_named(t->reason[0] ? hn_stability_class_name(t->kind) : "");
+    hn_ending_put_json(b, &ending, t->reason, t->t_reached);
     hn_json_put_number(b, "t", t->t_reached);
     hn_json_put_number(b, "error", t->error);
     hn_json_put_number(b, "energy", t->energy);

@@ -241,6 +241,7 @@ static int look(void *user, int k, const hn_sample *s) {
 static void set_reason(hn_wp_point *p, hn_wp_state state, hn_status status, const char *reason) {
     p->state = state;
     p->status = status;
+    p->ending = hn_ending_named(state == HN_WP_FAILED ? hn_status_name(status) : "");
     snprintf(p->reason, sizeof p->reason, "%s", reason);
 }
 
@@ -256,6 +257,7 @@ static void set_failure(const hn_wp *wp, hn_wp_point *p, const hn_run *run, hn_w
     } else {
         set_reason(p, HN_WP_FAILED, s.status == HN_OK ? HN_ERR_DIVERGED : s.status,
                    s.reason[0] ? s.reason : "the state is not finite any more");
+        p->ending = hn_ending_of(run, p->status, p->reason, s.t);
     }
 }
 

@@ -16,6 +16,7 @@
 // is timed in every round, the yardstick. It is the same in all parts, so that parts whose clocks
 // ran differently are found out.
 
+#include "study/run/ending.h"
 #include "study/truth/errors.h"
 #include "study/truth/reference.h"
 
@@ -39,6 +40,7 @@ typedef struct hn_wp_point {
     hn_wp_state state;
     hn_status status;
     char reason[HN_DIAG_MESSAGE];
+    hn_ending ending;             ///< of a failed point, as data
     double t_reached;             ///< [s]
     double worst[HN_ERROR_COUNT]; ///< over the reference's times
     double end[HN_ERROR_COUNT];

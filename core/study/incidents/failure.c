@@ -47,7 +47,12 @@ void hn_failure_report(hn_watch *w, hn_status status, const char *reason) {
     const hn_incident_kind *kind = kind_of(w, status);
     hn_incident_make_room(&w->log, kind->code);
     w->failure = status;
-    hn_incident_report(w, kind, "t", w->run->now.t, 0, "%s", reason);
+    const double lost = HN_RUN_LOST_GAP * w->length;
+    if (status == HN_ERR_DIVERGED && w->measure.gap > lost) {
+        hn_incident_report(w, kind, "gap", w->measure.gap, lost, "%s", reason);
+    } else {
+        hn_incident_report(w, kind, "t", w->run->now.t, 0, "%s", reason);
+    }
 }
 
 const hn_incident_kind hn_incident_chart_lost = {

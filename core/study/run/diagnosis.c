@@ -78,8 +78,8 @@ static void describe_part(const fastest_part *part, char *out, size_t size) {
 }
 
 /// Writes why the run ended where the step is above the stability limit; false where that is not
-/// the cause.
-static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
+/// the cause. *limit: that step [s].
+static bool explain_instability(const hn_stepping *s, double *limit, char *out, size_t size) {
     const double h = hn_method_option(&s->spec, "h", 0);
     const bool is_ode = hn_method_form(s->spec.formulation, s->spec.stepper) == HN_FORM_ODE;
     char what[128];
@@ -95,6 +95,7 @@ static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
     if (!(h > part.limit)) {
         return false;
     }
+    *limit = part.limit;
     describe_part(&part, what, sizeof what);
     const bool decays = is_decay(part.value);
     snprintf(out, size, "h = %.4g s is above the stability limit of %s here, %.3g s: %s at %.2g %s",
@@ -106,14 +107,18 @@ static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
 static void name_cause(hn_run *run) {
     hn_watch *w = hn_run_watching(run);
     char cause[256], message[400];
+    double limit;
     const bool ended = w->failure == HN_ERR_DIVERGED || w->failure == HN_ERR_NO_CONVERGENCE ||
                        w->failure == HN_ERR_INCONSISTENT || w->failure == HN_ERR_SINGULAR;
-    if (!ended || w->log.n == 0 || !explain_instability(w->run, cause, sizeof cause)) {
+    if (!ended || w->log.n == 0 || !explain_instability(w->run, &limit, cause, sizeof cause)) {
         return;
     }
     hn_incident *last = &w->log.list[w->log.n - 1];
     memcpy(message, last->message, sizeof message);
     last->message[0] = '\0';
+    last->quantity = "h";
+    last->value = hn_method_option(&w->run->spec, "h", 0);
+    last->limit = limit;
     hn_incident_append(&w->log, last, "%s; %s", cause, message);
     hn_run_set_reason(run, last->message);
 }
