@@ -62,8 +62,7 @@ void hn_budget_put(hn_strbuf *b, const hn_model *model, const hn_budget_row *row
     const hn_ending ending = hn_ending_named(refused  ? hn_status_name(row->status)
                                              : failed ? hn_budget_state(row)
                                                       : "");
-    hn_ending_put_json(b, &ending, row->reason,
-                       row->status == HN_OK ? row->budget.t : (double)NAN);
+    hn_ending_put_json(b, &ending, row->reason, row->status == HN_OK ? row->budget.t : (double)NAN);
     if (row->status == HN_OK) {
         hn_json_put_number(b, "t", row->budget.t);
         hn_json_put_int(b, "steps", row->budget.steps);
