@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "build.h"
 #include "grade/grade.h"
+#include "grade/rubric.h"
 #include "grade/variant.h"
 
 #include <cjson/cJSON.h>
@@ -71,7 +72,9 @@ static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     hn_strbuf_init(&text);
     const hn_status status = hn_roster_load(e, &text, file, &diag);
     uint64_t hash = hn_hash_text(HN_HASH_START, hn_build_name());
+    const uint64_t rubric = hn_rubric_hash(g->exercise->rubric);
     hash = hn_hash_bytes(hash, &g->exercise->hash, sizeof g->exercise->hash);
+    hash = hn_hash_bytes(hash, &rubric, sizeof rubric);
     const uint64_t seed = seed_of(g, e);
     hash = hn_hash_bytes(hash, &seed, sizeof seed);
     hash = hn_hash_text(hash, e->student);

@@ -7,6 +7,7 @@
 #include "grade/exam.h"
 #include "grade/mistakes.h"
 #include "grade/parts/part_list.h"
+#include "grade/rubric.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -302,6 +303,7 @@ hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *d
 void hn_exercise_free(hn_exercise *problem) {
     if (problem) {
         cJSON_Delete(problem->root);
+        hn_rubric_free(problem->rubric);
         hn_arena_free(problem->arena); // the problem itself lives in it
     }
 }

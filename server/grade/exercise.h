@@ -61,7 +61,8 @@ typedef struct hn_exercise {
     hn_part parts[HN_GRADE_MAX_PARTS]; ///< without a draw
     int n_hints;
     const char *hints[HN_GRADE_MAX_HINTS];
-    const hn_library *lib; ///< scenes that parts run; NULL: none
+    const hn_library *lib;    ///< scenes that parts run; NULL: none
+    struct hn_rubric *rubric; ///< owned; NULL: the exercise's own points and shares
 } hn_exercise;
 
 /// Reads an exercise (lessons/NN-topic/problems/ID.json). Returns owned.

@@ -8,6 +8,7 @@
 #include "grade/exam.h"
 #include "grade/mistakes.h"
 #include "grade/parts/spelling.h"
+#include "grade/rubric.h"
 #include "grade/submission.h"
 #include "grade/submission_text.h"
 #include "grade/variant.h"
@@ -22,13 +23,17 @@ enum { MAX_DEPTH = 16 };
 
 // ---- one entry ----
 
-static double partial_share(const hn_exercise *p, const char *mistake) {
+static double own_share(const hn_exercise *p, const char *mistake) {
     for (int i = 0; i < p->n_partial; i++) {
         if (strcmp(p->partial[i].key, mistake) == 0) {
             return p->partial[i].value;
         }
     }
     return 0;
+}
+
+static double partial_share(const hn_exercise *p, const char *mistake) {
+    return hn_rubric_share(p->rubric, mistake, own_share(p, mistake));
 }
 
 static void set_mistake(hn_verdict *v, hn_entry_verdict *e, const char *id) {

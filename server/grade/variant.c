@@ -2,6 +2,7 @@
 #include "grade/variant.h"
 
 #include "base/hash.h"
+#include "grade/rubric.h"
 #include "grade/submission.h"
 
 #include <math.h>
@@ -193,7 +194,9 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
         *e = (hn_entry_verdict){.row = v->n_entries - 1, .state = -1};
         snprintf(e->name, sizeof e->name, "%s%s%.12s", p->id, r->name[0] ? "." : "", r->name);
         e->max_points = p->points / n;
-        e->points = e->max_points * r->share;
+        const hn_rubric *rubric = v->problem->rubric;
+        e->points =
+            e->max_points * (r->right ? r->share : hn_rubric_share(rubric, r->mistake, r->share));
         e->right = r->right;
         e->mistake = r->mistake;
         snprintf(e->explanation, sizeof e->explanation, "%s", r->explanation);
@@ -244,7 +247,8 @@ static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *
 
 /// Fields that no part asks for; the file of another exercise or another seed.
 static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
-    static const char *const others[] = {"problem", "exercise", "student", "seed", "comment"};
+    static const char *const others[] = {"problem", "exercise", "student",
+                                         "seed",    "comment",  "hints"};
 
     // each field is a part, or one that every submission may have
     const cJSON *m;
@@ -253,7 +257,7 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     cJSON_ArrayForEach(m, submission) {
         int known = has_part(x, m->string);
         answers += known;
-        for (int i = 0; i < 5 && !known; i++) {
+        for (int i = 0; i < 6 && !known; i++) {
             known = strcmp(m->string, others[i]) == 0;
         }
 
@@ -314,6 +318,17 @@ static void refuse_unreadable(hn_verdict *v) {
     }
 }
 
+/// Takes off what the hints that the submission says it used cost by the rubric.
+static void charge_hints(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
+    const double said = hn_part_number(submission, "hints", 0);
+    const int n = said >= 1 && said <= HN_GRADE_MAX_HINTS ? (int)said : 0;
+    const double cost = fmin(hn_rubric_hints_cost(x->exercise->rubric, n), v->score);
+    if (cost > 0) {
+        v->score -= cost;
+        hn_submission_remark(v, "%d hint%s cost %g points", n, n == 1 ? "" : "s", cost);
+    }
+}
+
 hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v, hn_diag *diag) {
     if (!cJSON_IsObject(submission)) {
         hn_submission_refuse(v, "as in {\"a\": 1.2, \"b\": \"...\"}",
@@ -331,6 +346,7 @@ hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v
                               diag));
         add_results(v, p, results, n);
     }
+    charge_hints(x, submission, v);
     summarise(v);
     refuse_unreadable(v);
     return HN_OK;

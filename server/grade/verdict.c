@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "build.h"
+#include "grade/rubric.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -117,6 +118,11 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     hn_json_put_string(b, "problem_hash", hash);
     hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
     hn_json_put_int(b, "states", v->n_states);
+
+    if (v->problem->rubric) {
+        hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);
+        hn_json_put_string(b, "rubric_hash", hash);
+    }
 
     // who handed in what, and which build graded it
     hn_json_put_string(b, "student", v->student);

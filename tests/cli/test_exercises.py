@@ -165,6 +165,45 @@ def platforms(folder):
     expect("HTML holds the picture unless told otherwise", "<img" in with_it and "<img" not in without and with_it.count("<tr") == without.count("<tr"))
 
 
+def rubrics(folder):
+    """A teacher's points, tolerances, shares and hints; each fault with its line."""
+    own = run("rubric", "write", "fourbar").stdout
+    path = write(folder, "own.json", own)
+    told = run("rubric", "check", path)
+    expect("an exercise's own rubric is sound", told.returncode == 0 and "8 points" in told.stdout and "rounded to 3 digits" in told.stdout, told.stdout)
+    slip = write(folder, "slip.json", {"b": "-m2*l1*l2*cos(th1-th2)/2", "e": "l2*l3*sin(th2-th3)", "hints": 2})
+    before, same = (json.loads(run("grade", "fourbar", slip, "--json", *more).stdout)["score"] for more in ([], ["--rubric", path]))
+    expect("it changes no score", before == same == 2, f"{before}, {same}")
+
+    # b is worth 6, a sign a quarter of it, and two hints cost 0.5
+    other = dict(json.loads(own), total=12, shares={"sign": 0.25}, hints=[0.25, 0.25], points={"a": 1, "b": 6, "c": 2, "d": 2, "e": 1})
+    path = write(folder, "other.json", other)
+    verdict = run("grade", "fourbar", slip, "--json", "--rubric", path).stdout
+    v = json.loads(verdict)
+    expect("points, shares and hints are the rubric's", (v["score"], v["max_score"]) == (6 * 0.25 + 1 - 0.5, 12) and "hints cost 0.5" in v["note"], verdict)
+    kept = write(folder, "kept.json", verdict)
+    expect("a verdict names its rubric", "name it with --rubric" in run("regrade", kept).stdout)
+    expect("and is reproduced with it", json.loads(run("regrade", kept, "--rubric", path, "--json").stdout)["same"])
+    loose = write(folder, "loose.json", dict(other, tolerance={"d": {"relative": 0.3}}))
+    d = json.loads(run("grade", "fourbar", write(folder, "ask.json", {"d": [1e150, 1e150]}), "--show-expected", "--json").stdout)["entries"]
+    near = write(folder, "near.json", {"d": [1.2 * float(e["expected"].split()[0]) for e in d if e["name"].startswith("d")]})
+    marks = [json.loads(run("grade", "fourbar", near, "--json", "--rubric", r).stdout)["score"] for r in (path, loose)]
+    expect("a tolerance is the rubric's", marks == [0, 2], str(marks))
+
+    # every kind of fault, with its line
+    for what, change, said in (("part", {"points": {"bb": 1}}, "no part 'bb'"), ("mistake", {"shares": {"sgn": 1}}, "no mistake 'sgn'"),
+                               ("field", {"hint": []}, "no field 'hint'"), ("total", {"total": 3}, "sum up to 12, not 3"),
+                               ("tolerance", {"tolerance": {"a": {"relative": 1e-12}}}, "below the error of the reference"),
+                               ("share", {"shares": {"sign": 2}}, "from 0 to 1"), 
+                               ("number", {"points": {"a": "x"}}, "needs a number")):  # fmt: skip
+        text = json.dumps(dict(other, **change), indent=1)
+        done = run("rubric", "check", write(folder, "bad.json", text))
+        line = re.search(r"line (\d+)", done.stderr)
+        key = list(next(iter(change.values())))[0] if isinstance(next(iter(change.values())), dict) else next(iter(change))
+        good = done.returncode == 2 and said in done.stderr and line and f'"{key}"' in text.splitlines()[int(line[1]) - 1]
+        expect(f"a wrong {what} is named with its line", bool(good), done.stderr)
+
+
 def for_teachers(folder):
     """Right numbers are in no verdict of a student, and numbers say how exact they must be."""
     path = write(folder, "half.json", {"a": 1, "d": [1, 2]})
@@ -248,6 +287,7 @@ def main():
         own_variant(folder)
         forms(folder)
         platforms(folder)
+        rubrics(folder)
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)

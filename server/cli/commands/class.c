@@ -2,6 +2,7 @@
 // holonom class: the submissions of a class, one line each as it is graded, then a summary.
 #include "class/class_grading.h"
 #include "class/class_summary.h"
+#include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
@@ -134,6 +135,7 @@ hn_exit hn_command_class(const hn_library *lib, const hn_args *args) {
     hn_diag diag = {0};
     hn_status status = hn_cli_check_folder(args->out, &diags);
     HN_THEN(status, hn_shelf_exercise_load(lib, args->words.word[0], &exercise, &diags));
+    HN_THEN(status, hn_cli_apply_rubric(args, exercise, &diags));
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }

@@ -3,6 +3,7 @@
 // cannot be read, or a word that is wrong; 3 an exercise that does not load, an output that cannot
 // be written.
 #include "base/clock.h"
+#include "cli/commands/rubric_file.h"
 #include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -165,10 +166,11 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     if (status != HN_OK) {
         return report_exercise(lib, args, status, &diags);
     }
+    status = hn_cli_apply_rubric(args, exercise, &diags);
 
     // every name is chosen, and every folder made, before the first verdict is written
     hn_verdict_names names = {0};
-    if (args->out) {
+    if (status == HN_OK && args->out) {
         status = hn_verdict_names_choose(&names, args->out, args->words.word + 1, args->words.n - 1,
                                          t.form->ending, t.form->results, &diags);
     }

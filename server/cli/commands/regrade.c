@@ -4,11 +4,13 @@
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "build.h"
+#include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
+#include "grade/rubric.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -49,6 +51,11 @@ static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     hn_hash_hex(v->problem->hash, hash);
     if (strcmp(text_of(old, "problem_hash"), hash) != 0) {
         hn_strbuf_add(b, "  the exercise has changed since the verdict\n");
+    }
+    hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);
+    if (strcmp(text_of(old, "rubric_hash"), v->problem->rubric ? hash : "") != 0) {
+        hn_strbuf_printf(b, "  the rubric is another one than was used%s\n",
+                         v->problem->rubric ? "" : ": name it with --rubric");
     }
     hn_hash_hex(v->submission_hash, hash);
     if (strcmp(text_of(old, "submission_hash"), hash) != 0) {
@@ -96,6 +103,7 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
 
     // the submission: the file named, or the copy that the verdict holds
     hn_status status = hn_shelf_exercise_load(lib, text_of(old, "problem"), &e, &diags);
+    HN_THEN(status, hn_cli_apply_rubric(args, e, &diags));
     if (status == HN_OK && args->words.n > 1) {
         status = hn_grade_file(e, args->words.word[1], seed, v);
     } else if (status == HN_OK && submission[0]) {

@@ -116,6 +116,8 @@ static const option OPTIONS[] = {
      "the variants that --check tries; 1..20 when left out"},
     {"--check", NULL, OPTION_FLAG, AT(check),
      "prove the exercise: references by two means, right answers accepted, mistakes named"},
+    {"--rubric", "FILE", OPTION_TEXT, AT(rubric),
+     "a teacher's points, tolerances, shares and costs of hints: see 'rubric write'"},
     {"--show-expected", NULL, OPTION_FLAG, AT(show_expected),
      "verdicts hold the right answers too: for teachers, not for students"},
     {"--no-pictures", NULL, OPTION_FLAG, AT(no_pictures), "draw no pictures"},

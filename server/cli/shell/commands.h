@@ -24,6 +24,7 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_lesson(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_regrade(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_rubric(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_class(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_import(const hn_library *lib, const hn_args *args);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom rubric: checks a teacher's rubric against its exercise, or writes one to start from. Exit
+// status 2: the rubric is at fault.
+#include "cli/commands/rubric_file.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/output_file.h"
+#include "cli/shell/print.h"
+#include "grade/exercise_shelf.h"
+#include "grade/rubric_apply.h"
+
+#include <string.h>
+
+static hn_exit check(const hn_library *lib, const hn_args *args, const char *path) {
+    hn_rubric *rubric = NULL;
+    hn_exercise *e = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_status status = hn_rubric_load_file(path, &rubric, &diags);
+    HN_THEN(status, hn_shelf_exercise_load(lib, hn_rubric_exercise(rubric), &e, &diags));
+    HN_THEN(status, hn_rubric_apply(rubric, e, &diags));
+    if (status != HN_OK) {
+        hn_exercise_free(e);
+        hn_rubric_free(rubric);
+        return hn_report_diags(args, status, &diags);
+    }
+    hn_strbuf_init(&b);
+    hn_rubric_text(&b, e);
+    hn_exercise_free(e);
+    return hn_cli_print(&b);
+}
+
+static hn_exit write(const hn_library *lib, const hn_args *args, const char *id) {
+    hn_exercise *e = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    const hn_status status = hn_shelf_exercise_load(lib, id, &e, &diags);
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, &diags);
+    }
+    hn_strbuf_init(&b);
+    hn_rubric_write(&b, e);
+    hn_exercise_free(e);
+    return hn_cli_write_file(args, args->out, &b);
+}
+
+hn_exit hn_command_rubric(const hn_library *lib, const hn_args *args) {
+    static const char *const deeds[] = {"check", "write"};
+    const char *deed = args->words.word[0], *what = args->words.word[1];
+    if (strcmp(deed, "check") == 0) {
+        return check(lib, args, what);
+    }
+    if (strcmp(deed, "write") == 0) {
+        return write(lib, args, what);
+    }
+    hn_diag diag;
+    const char *near = hn_nearest_name(deed, deeds, 2);
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, near ? near : "rubric check FILE, rubric write ID",
+                "a rubric cannot be '%.40s'ed", deed);
+    return hn_report_diag(args, &diag);
+}
+
+hn_status hn_cli_apply_rubric(const hn_args *args, hn_exercise *exercise, hn_diags *diags) {
+    hn_rubric *rubric = NULL;
+    if (!args->rubric) {
+        return HN_OK;
+    }
+    HN_TRY(hn_rubric_load_file(args->rubric, &rubric, diags));
+    const hn_status status = hn_rubric_apply(rubric, exercise, diags);
+    if (status != HN_OK) {
+        hn_rubric_free(rubric);
+    }
+    return status;
+}

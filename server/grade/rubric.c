@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/rubric.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/json_text.h"
+#include "grade/parts/part.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_BYTES = 1 << 16, MAX_DEPTH = 8 };
+static const double TIGHTEST = 1e-9; // references are confirmed to this share of their size
+static const double LOOSEST = 0.5;
+
+struct hn_rubric {
+    hn_strbuf text;
+    cJSON *root;
+    uint64_t hash;
+    const char *exercise; ///< borrowed from the tree
+};
+
+// ---- faults ----
+
+/// The line of `key` within the field `section`; of the field itself for key NULL.
+static int line_of(const hn_rubric *r, const char *section, const char *key) {
+    char quoted[80];
+    const char *text = hn_strbuf_text(&r->text), *at = text;
+    const char *const words[] = {section, key};
+    for (int i = 0; i < 2 && words[i]; i++) {
+        snprintf(quoted, sizeof quoted, "\"%.70s\"", words[i]);
+        const char *found = strstr(at, quoted);
+        at = found ? found : at;
+    }
+    int line = 1;
+    for (const char *p = text; p < at; p++) {
+        line += *p == '\n';
+    }
+    return line;
+}
+
+hn_status hn_rubric_fault(const hn_rubric *r, hn_diags *diags, const char *section, const char *key,
+                          const char *hint, const char *format, ...) {
+    char what[HN_DIAG_MESSAGE];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(what, sizeof what, format, list);
+    va_end(list);
+    return hn_diags_add(diags, HN_ERR_INPUT, section, hint, "line %d: %.300s",
+                        line_of(r, section, key), what);
+}
+
+const cJSON *hn_rubric_section(const hn_rubric *r, const char *name) {
+    return cJSON_GetObjectItemCaseSensitive(r->root, name);
+}
+
+// ---- reading ----
+
+static const char *const FIELDS[] = {"rubric",    "exercise", "total", "points",
+                                     "tolerance", "shares",   "hints", "about"};
+enum { N_FIELDS = sizeof FIELDS / sizeof *FIELDS };
+
+/// Every member is a number from 0 to `most`.
+static hn_status check_numbers(const hn_rubric *r, const char *section, double most,
+                               hn_diags *diags) {
+    const cJSON *m, *node = hn_rubric_section(r, section);
+    hn_status status = HN_OK;
+    cJSON_ArrayForEach(m, node) {
+        if (!cJSON_IsNumber(m) || !(m->valuedouble >= 0 && m->valuedouble <= most)) {
+            const char *name = m->string ? m->string : section;
+            status = hn_rubric_fault(r, diags, section, m->string, NULL,
+                                     "'%.40s' in \"%s\" needs a number from 0 to %g", name, section,
+                                     most);
+        }
+    }
+    return status;
+}
+
+static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
+    const cJSON *m, *x;
+    hn_status status = HN_OK;
+    cJSON_ArrayForEach(m, hn_rubric_section(r, "tolerance")) {
+        cJSON_ArrayForEach(x, m) {
+            const bool relative = strcmp(x->string, "relative") == 0;
+            if (!relative && strcmp(x->string, "absolute") != 0) {
+                status = hn_rubric_fault(r, diags, "tolerance", x->string, "relative, absolute",
+                                         "a tolerance has no '%.40s'", x->string);
+            } else if (!cJSON_IsNumber(x) || !(x->valuedouble >= 0)) {
+                status = hn_rubric_fault(r, diags, "tolerance", m->string, NULL,
+                                         "the %s tolerance of part %.20s needs a number from 0",
+                                         x->string, m->string);
+            } else if (relative && !(x->valuedouble >= TIGHTEST && x->valuedouble <= LOOSEST)) {
+                status = hn_rubric_fault(
+                    r, diags, "tolerance", m->string, "\"relative\": 0.005",
+                    "the relative tolerance %g of part %.20s is %s; %g to %g is allowed",
+                    x->valuedouble, m->string,
+                    x->valuedouble < TIGHTEST ? "below the error of the reference"
+                                              : "too wide to tell mistakes apart",
+                    TIGHTEST, LOOSEST);
+            }
+        }
+    }
+    return status;
+}
+
+static hn_status check_fields(hn_rubric *r, hn_diags *diags) {
+    hn_status status = HN_OK;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, r->root) {
+        int k = 0;
+        while (k < N_FIELDS && strcmp(FIELDS[k], m->string) != 0) {
+            k++;
+        }
+        if (k == N_FIELDS) {
+            status = hn_rubric_fault(r, diags, m->string, NULL,
+                                     hn_nearest_name(m->string, FIELDS, N_FIELDS),
+                                     "a rubric has no field '%.40s'", m->string);
+        }
+    }
+    r->exercise = cJSON_GetStringValue(hn_rubric_section(r, "exercise"));
+    if (hn_part_number(r->root, "rubric", 0) != 1 || !r->exercise) {
+        return hn_rubric_fault(
+            r, diags, "rubric", NULL, "holonom rubric write ID",
+            "a rubric begins with \"rubric\": 1 and the \"exercise\" that it is for");
+    }
+    const hn_status checked[] = {status, check_numbers(r, "points", 1e6, diags),
+                                 check_numbers(r, "shares", 1, diags),
+                                 check_numbers(r, "hints", 1e6, diags), check_tolerances(r, diags)};
+    for (size_t i = 0; i < sizeof checked / sizeof *checked; i++) {
+        status = status == HN_OK ? checked[i] : status;
+    }
+    return status;
+}
+
+hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags) {
+    HN_ASSERT(path && out);
+    hn_diag diag = {0};
+    hn_rubric *r = calloc(1, sizeof *r);
+    *out = NULL;
+    if (!r) {
+        return HN_ERR_MEMORY;
+    }
+    hn_strbuf_init(&r->text);
+    hn_status status = hn_file_load(path, MAX_BYTES, &r->text, diags);
+    if (status == HN_OK) {
+        const char *text = hn_strbuf_text(&r->text);
+        status = hn_json_text_check(text, r->text.n, MAX_DEPTH, &diag);
+        if (status != HN_OK) {
+            hn_diags_add(diags, status, "", diag.hint, "%s", diag.message);
+        } else {
+            r->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, text, r->text.n));
+            r->root = cJSON_ParseWithLength(text, r->text.n);
+            status = r->root ? check_fields(r, diags) : HN_ERR_MEMORY;
+        }
+    }
+    if (status != HN_OK) {
+        hn_rubric_free(r);
+        return status;
+    }
+    *out = r;
+    return HN_OK;
+}
+
+void hn_rubric_free(hn_rubric *rubric) {
+    if (rubric) {
+        hn_strbuf_reset(&rubric->text);
+        cJSON_Delete(rubric->root);
+        free(rubric);
+    }
+}
+
+const char *hn_rubric_exercise(const hn_rubric *r) {
+    return r->exercise;
+}
+
+uint64_t hn_rubric_hash(const hn_rubric *r) {
+    return r ? r->hash : 0;
+}
+
+double hn_rubric_share(const hn_rubric *r, const char *mistake, double otherwise) {
+    return r ? hn_part_number(hn_rubric_section(r, "shares"), mistake, otherwise) : otherwise;
+}
+
+double hn_rubric_hints_cost(const hn_rubric *r, int n) {
+    double cost = 0;
+    for (int i = 0; r && i < n; i++) {
+        const cJSON *m = cJSON_GetArrayItem(hn_rubric_section(r, "hints"), i);
+        cost += cJSON_IsNumber(m) ? m->valuedouble : 0;
+    }
+    return cost;
+}

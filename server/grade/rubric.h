@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_RUBRIC_H
+#define HN_GRADE_RUBRIC_H
+// A rubric: a teacher's own points, tolerances, shares for mistakes and costs of hints for an
+// exercise, in a file beside it.
+//
+//     {"rubric": 1, "exercise": "fourbar", "total": 10,
+//      "points": {"a": 1, "b": 3}, "tolerance": {"a": {"relative": 0.01}},
+//      "shares": {"sign": 0.5, "degrees": 0}, "hints": [0.5, 1]}
+//
+// All but the first two fields may be left out; the exercise's own values then hold. A part has the
+// name of the exercise's file; an exercise with one matrix has one part, of the matrix's name.
+
+#include "base/diag.h"
+
+#include <cjson/cJSON.h>
+#include <stdint.h>
+
+typedef struct hn_rubric hn_rubric;
+
+/// Reads a rubric. Faults say their line, and a nearest name. Returns owned.
+/// Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags);
+void hn_rubric_free(hn_rubric *rubric);             ///< NULL is legal
+const char *hn_rubric_exercise(const hn_rubric *r); ///< id of the exercise that it is for
+uint64_t hn_rubric_hash(const hn_rubric *r);        ///< of the file's text; 0 for NULL
+/// The share of the points that a mistake earns; `otherwise` where the rubric, which may be NULL,
+/// says nothing.
+double hn_rubric_share(const hn_rubric *r, const char *mistake, double otherwise);
+/// The points that the first n hints cost.
+double hn_rubric_hints_cost(const hn_rubric *r, int n);
+
+// ---- for rubric_apply.c ----
+
+/// A field of the file; NULL when it is not there.
+const cJSON *hn_rubric_section(const hn_rubric *r, const char *name);
+/// Reports a fault at the line of `key` (may be NULL) within a field. Returns HN_ERR_INPUT.
+hn_status hn_rubric_fault(const hn_rubric *r, hn_diags *diags, const char *section, const char *key,
+                          const char *hint, const char *format, ...) HN_PRINTF(6, 7);
+#endif

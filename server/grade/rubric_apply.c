@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/rubric_apply.h"
+
+#include "grade/mistakes.h"
+#include "grade/parts/value_sheet.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_NAMES = 160 };
+
+/// Names of the parts, or of the one matrix. Returns how many.
+static int list_parts(const hn_exercise *e, const char *names[HN_GRADE_MAX_PARTS]) {
+    for (int i = 0; i < e->n_parts; i++) {
+        names[i] = e->parts[i].id;
+    }
+    names[0] = e->n_parts ? names[0] : e->answer;
+    return e->n_parts ? e->n_parts : 1;
+}
+
+/// Mistakes that every exercise can have; those that its parts list come on top.
+static const char *const GENERAL[] = {
+    "sign",       "half",         "double",       "degrees",   "radians",     "milli",   "kilo",
+    "gravity",    "sine",         "missing-name", "sign-term", "other-entry", "other",   "choice",
+    "transposed", "missing-term", "not-finite",   "shape",     "unit",        "not-null"};
+enum { N_GENERAL = sizeof GENERAL / sizeof *GENERAL };
+
+static int list_mistakes(const hn_exercise *e, const char *names[MAX_NAMES]) {
+    int n = 0;
+    for (; n < N_GENERAL; n++) {
+        names[n] = GENERAL[n];
+    }
+    for (int i = 0; i < e->n_parts; i++) {
+        const cJSON *m;
+        cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "faults")) {
+            if (n < MAX_NAMES) {
+                names[n++] = hn_part_text(m, "id");
+            }
+        }
+    }
+    return n;
+}
+
+static bool is_listed(const char *const *names, int n, const char *name) {
+    for (int i = 0; i < n; i++) {
+        if (strcmp(names[i], name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Every member of a section has one of these names.
+static hn_status check_names(const hn_rubric *r, const char *section, const char *what,
+                             const char *const *names, int n, hn_diags *diags) {
+    const cJSON *m;
+    hn_status status = HN_OK;
+    cJSON_ArrayForEach(m, hn_rubric_section(r, section)) {
+        const bool known = is_listed(names, n, m->string) ||
+                           (strcmp(section, "shares") == 0 && hn_grade_is_mistake(m->string));
+        if (!known) {
+            status = hn_rubric_fault(
+                r, diags, section, m->string, hn_nearest_name(m->string, names, n),
+                "exercise %s has no %s '%.40s'", hn_rubric_exercise(r), what, m->string);
+        }
+    }
+    return status;
+}
+
+static const cJSON *member(const hn_rubric *r, const char *section, const char *name) {
+    return cJSON_GetObjectItemCaseSensitive(hn_rubric_section(r, section), name);
+}
+
+/// A tolerance belongs to numbers and formulas that are compared by value.
+static hn_status check_kinds(const hn_rubric *r, const hn_exercise *e, hn_diags *diags) {
+    hn_status status = HN_OK;
+    for (int i = 0; i < e->n_parts; i++) {
+        const hn_part *p = &e->parts[i];
+        if (member(r, "tolerance", p->id) && !strstr(p->kind->fields, "tolerance")) {
+            status = hn_rubric_fault(r, diags, "tolerance", p->id, NULL,
+                                     "part %s is of the kind '%s', which has no tolerance", p->id,
+                                     hn_part_text(p->node, "kind"));
+        }
+    }
+    return status;
+}
+
+static hn_status check_total(const hn_rubric *r, const hn_exercise *e, hn_diags *diags) {
+    const cJSON *total = hn_rubric_section(r, "total");
+    const char *names[HN_GRADE_MAX_PARTS];
+    const int n = list_parts(e, names);
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        const double own = e->n_parts ? e->parts[i].points : hn_exercise_points(e);
+        sum += hn_part_number(hn_rubric_section(r, "points"), names[i], own);
+    }
+    if (total && !(cJSON_IsNumber(total) && fabs(sum - total->valuedouble) <= 1e-9 * (sum + 1))) {
+        return hn_rubric_fault(r, diags, "total", NULL, NULL,
+                               "the points of the parts sum up to %g, not %g", sum,
+                               total->valuedouble);
+    }
+    return HN_OK;
+}
+
+static void apply_part(const hn_rubric *r, hn_part *p) {
+    cJSON *node = (cJSON *)p->node; // the exercise's own tree
+    const cJSON *tolerance = member(r, "tolerance", p->id);
+    p->points = hn_part_number(hn_rubric_section(r, "points"), p->id, p->points);
+    if (tolerance) {
+        cJSON_DeleteItemFromObjectCaseSensitive(node, "tolerance");
+        cJSON_AddItemToObject(node, "tolerance", cJSON_Duplicate(tolerance, 1));
+    }
+}
+
+hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *e, hn_diags *diags) {
+    const char *parts[HN_GRADE_MAX_PARTS], *mistakes[MAX_NAMES];
+    const int n_parts = list_parts(e, parts), n_mistakes = list_mistakes(e, mistakes);
+    if (strcmp(hn_rubric_exercise(r), e->id) != 0) {
+        return hn_rubric_fault(r, diags, "exercise", NULL, NULL,
+                               "the rubric is for exercise '%.40s', not %s", hn_rubric_exercise(r),
+                               e->id);
+    }
+    const hn_status checked[] = {check_names(r, "points", "part", parts, n_parts, diags),
+                                 check_names(r, "tolerance", "part", parts, n_parts, diags),
+                                 check_names(r, "shares", "mistake", mistakes, n_mistakes, diags),
+                                 check_kinds(r, e, diags), check_total(r, e, diags)};
+    for (size_t i = 0; i < sizeof checked / sizeof *checked; i++) {
+        HN_TRY(checked[i]);
+    }
+
+    // the parts, or the one matrix
+    double sum = 0;
+    for (int i = 0; i < e->n_parts; i++) {
+        apply_part(r, &e->parts[i]);
+        sum += e->parts[i].points;
+    }
+    const double entries = (double)e->n_rows * e->n_columns;
+    const cJSON *tolerance = member(r, "tolerance", e->n_parts ? "" : e->answer);
+    e->points = e->n_parts ? sum
+                           : hn_part_number(hn_rubric_section(r, "points"), e->answer,
+                                            e->points * entries) /
+                                 entries;
+    e->relative = hn_part_number(tolerance, "relative", e->relative);
+    e->absolute = hn_part_number(tolerance, "absolute", e->absolute);
+    e->rubric = r;
+    return HN_OK;
+}
+
+// ---- words ----
+
+/// "passes every answer rounded to 3 digits": a number rounded to d digits errs by at most half of
+/// the last, which is 0.5 * 10^(1 - d) of a number that begins with 1.
+static void put_meaning(hn_strbuf *b, double relative, double absolute, bool symbolic) {
+    const int digits = (int)ceil(1 - log10(2 * relative) - 1e-9);
+    if (symbolic) {
+        hn_strbuf_printf(b, "%g of the largest value over the random states", relative);
+    } else {
+        hn_strbuf_printf(b, "%g %%: passes every answer rounded to %d digit%s", 100 * relative,
+                         digits, digits == 1 ? "" : "s");
+    }
+    if (absolute > 1e-9) {
+        hn_strbuf_printf(b, "; or a difference of %g", absolute);
+    }
+}
+
+void hn_rubric_text(hn_strbuf *b, const hn_exercise *e) {
+    hn_strbuf_printf(b, "%s: %s, %g points\n", e->id, e->title, hn_exercise_points(e));
+    for (int i = 0; i < e->n_parts; i++) {
+        const hn_part *p = &e->parts[i];
+        hn_strbuf_printf(b, "  %-8s %5g point%s  %-9s", p->id, p->points,
+                         p->points == 1 ? " " : "s", hn_part_text(p->node, "kind"));
+        if (strstr(p->kind->fields, "tolerance")) {
+            double relative, absolute;
+            hn_value_tolerance(p, &relative, &absolute);
+            put_meaning(b, relative, absolute, hn_value_is_symbolic(p));
+        }
+        hn_strbuf_add(b, "\n");
+    }
+    if (!e->n_parts) {
+        hn_strbuf_printf(b, "  %-8s %5g points for each of %d entries  ", e->answer, e->points,
+                         e->n_rows * e->n_columns);
+        put_meaning(b, e->relative, e->absolute, true);
+        hn_strbuf_add(b, "\n");
+    }
+    for (int i = 1; i <= e->n_hints && e->rubric; i++) {
+        hn_strbuf_printf(b, "  hint %d costs %g points\n", i,
+                         hn_rubric_hints_cost(e->rubric, i) -
+                             hn_rubric_hints_cost(e->rubric, i - 1));
+    }
+}
+
+static void put_tolerance(hn_strbuf *b, const char *name, double relative, double absolute,
+                          bool first) {
+    hn_strbuf_printf(b, "%s\n    \"%s\": {\"relative\": %g, \"absolute\": %g}", first ? "" : ",",
+                     name, relative, absolute);
+}
+
+void hn_rubric_write(hn_strbuf *b, const hn_exercise *e) {
+    const char *names[HN_GRADE_MAX_PARTS];
+    const int n = list_parts(e, names);
+    hn_strbuf_printf(b, "{\n  \"rubric\": 1,\n  \"exercise\": \"%s\",\n  \"total\": %g,\n", e->id,
+                     hn_exercise_points(e));
+    hn_strbuf_add(b, "  \"points\": {");
+    for (int i = 0; i < n; i++) {
+        hn_strbuf_printf(b, "%s\"%s\": %g", i ? ", " : "", names[i],
+                         e->n_parts ? e->parts[i].points : hn_exercise_points(e));
+    }
+    hn_strbuf_add(b, "},\n  \"tolerance\": {");
+    bool first = true;
+    for (int i = 0; i < e->n_parts; i++) {
+        double relative, absolute;
+        if (strstr(e->parts[i].kind->fields, "tolerance")) {
+            hn_value_tolerance(&e->parts[i], &relative, &absolute);
+            put_tolerance(b, names[i], relative, absolute, first);
+            first = false;
+        }
+    }
+    if (!e->n_parts) {
+        put_tolerance(b, e->answer, e->relative, e->absolute, true);
+    }
+    hn_strbuf_add(b, "\n  },\n  \"shares\": {\"sign\": 0.5, \"degrees\": 0.5},\n  \"hints\": [");
+    for (int i = 0; i < e->n_hints; i++) {
+        hn_strbuf_add(b, i ? ", 0" : "0");
+    }
+    hn_strbuf_add(b, "]\n}\n");
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_RUBRIC_APPLY_H
+#define HN_GRADE_RUBRIC_APPLY_H
+// A rubric and its exercise: checked against each other, put together, and told in words.
+
+#include "grade/exercise.h"
+#include "grade/rubric.h"
+
+/// Puts the rubric's points and tolerances into the exercise, which owns the rubric from then on.
+/// Fails: HN_ERR_INPUT (a part, a mistake or a tolerance that the exercise cannot have; points that
+/// do not sum up to "total"); the rubric then stays the caller's.
+HN_MUST_CHECK hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *exercise, hn_diags *diags);
+/// What points and tolerances mean, part by part, after hn_rubric_apply().
+void hn_rubric_text(hn_strbuf *b, const hn_exercise *exercise);
+/// The exercise's own values as a rubric to start from.
+void hn_rubric_write(hn_strbuf *b, const hn_exercise *exercise);
+#endif
