@@ -18,7 +18,7 @@ static const double PARTED = 0.05;   // pivot, of the largest, of a row that has
 static const double DENSE_BUDGET = 2e5;
 // prediction: a pilot run starts when sigma_min falls below this share of the largest so far, and
 // reports what it finds below the second share
-static const double FALLEN = 0.9;
+static const double FALLEN = 0.97;
 // that finds what a run reports as nearly dependent: pivots of 1e-4, which are squares
 static const double REACHED = 8e-3;
 // singular values within this factor of the smallest are lost together

@@ -5,39 +5,51 @@
 #include "study/incidents/report.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /// Of the largest sigma_min: a configuration this close counts as the one that was announced.
 static const double REACHED = 0.02;
 /// And one that is reached, not only passed.
 static const double LOST = 2e-3;
 
-/// Closes a prediction whose time has passed; its text says so where the run did not reach the
-/// configuration.
-static void conclude(hn_watch *w) {
-    hn_singular_record *s = &w->singular;
-    hn_incident *i = s->announced <= w->log.n ? &w->log.list[s->announced - 1] : NULL;
-    s->announced = 0;
-    hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
-
-    if (!i || s->lowest < REACHED * s->largest) {
-        return;
+/// Whether the run has come to the configuration of a prediction: close to it at the end of a step,
+/// or across it within one, which is reported.
+static bool has_come_true(const hn_watch *w, const hn_incident *i) {
+    const hn_singular_record *s = &w->singular;
+    if (s->lowest < REACHED * s->largest) {
+        return true;
     }
-
-    // a report of the configuration itself confirms the prediction
     for (int k = 0; k < w->log.n; k++) {
         const hn_incident *other = &w->log.list[k];
         const bool singular =
             other->code == HN_INCIDENT_NEAR_SINGULAR || other->code == HN_INCIDENT_RANK_LOSS;
         if (singular && other->t >= i->t) {
-            return;
+            return true;
         }
     }
+    return false;
+}
 
-    hn_incident_append(
-        &w->log, i,
-        "; withdrawn at t = %.4g s: the run did not get there, sigma_min was %.2g or "
-        "more",
-        w->run->now.t, s->lowest);
+/// Closes the latest prediction where its time has passed; its text says so where the run did not
+/// reach the configuration. That is judged some steps after its time; where the next prediction
+/// comes before, by then in its favour.
+static void conclude(hn_watch *w) {
+    hn_singular_record *s = &w->singular;
+    hn_incident *i = s->announced <= w->log.n ? &w->log.list[s->announced - 1] : NULL;
+    const bool true_by_now = !i || has_come_true(w, i);
+    const bool next = s->info.ahead < HUGE_VAL && w->run->now.t > s->due;
+    if (!(w->run->now.t > s->due + 2 * w->run->h) && !(next && true_by_now)) {
+        return;
+    }
+    s->announced = 0;
+    hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
+    if (!true_by_now) {
+        hn_incident_append(
+            &w->log, i,
+            "; withdrawn at t = %.4g s: the run did not get there, sigma_min was %.2g or "
+            "more",
+            w->run->now.t, s->lowest);
+    }
 }
 
 static void check(hn_watch *w) {
@@ -47,8 +59,8 @@ static void check(hn_watch *w) {
     }
     s->lowest = fmin(s->lowest, s->info.sigma_min);
 
-    // what was announced is judged some steps after its time, when a step across it has been seen
-    if (s->announced && w->run->now.t > s->info.predicted + 2 * w->run->h) {
+    // what was announced is judged when a step across it has been seen
+    if (s->announced) {
         conclude(w);
     }
     if (!(s->info.ahead < HUGE_VAL)) {
@@ -65,6 +77,7 @@ static void check(hn_watch *w) {
     if (i) {
         s->announced = 1 + (int)(i - w->log.list);
         s->lowest = s->info.sigma_min;
+        s->due = s->info.predicted;
     }
 }
 

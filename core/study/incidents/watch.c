@@ -143,21 +143,30 @@ static void find_own_pace(hn_watch *w) {
 static const double STRIDE = 0.01;      // of the length: sigma_min changes by 3 % of its largest
 static const double WELL = 0.4;         // sigma_min above this share of the largest so far is far
 static const double PIVOT_MARGIN = 1e2; // times the pivot ratio that is reported
+static const double NEAR_DUE = 10;      // steps before a predicted time: near it
 static const double UNEXPLAINED = 0.1;  // of a step's motion
 
 /// Whether the full check that has just been made is far from everything that is reported.
+/// Whether a prediction is open and its time near or past; before that it needs no full checks.
+static bool is_prediction_due(const hn_watch *w) {
+    const hn_singular_record *s = &w->singular;
+    return s->announced && w->run->now.t > s->due - NEAR_DUE * w->run->h;
+}
+
 static bool is_calm(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     const double row = hn_motion_shortest_row(w);
-    return !s->passing && !s->announced && w->accel_status == HN_OK && !w->accel_info.fallback &&
-           w->accel_info.rank == w->start_rank && s->info.sigma_min > WELL * s->largest &&
+    return !s->passing && !is_prediction_due(w) && w->accel_status == HN_OK &&
+           !w->accel_info.fallback && w->accel_info.rank == w->start_rank &&
+           s->info.sigma_min > WELL * s->largest &&
            row * row * w->accel_info.pivot_ratio > PIVOT_MARGIN * HN_RUN_WARN_PIVOT;
 }
 
 static bool is_full_check_due(hn_watch *w) {
     const hn_stepping *s = w->run;
-    const bool reported =
-        (w->log.active & ~w->own_pace) != 0 || w->singular.fallbacks != w->cost->fallbacks;
+    const unsigned waiting = is_prediction_due(w) ? 0 : 1u << HN_INCIDENT_RANK_AHEAD;
+    const bool reported = (w->log.active & ~w->own_pace & ~waiting) != 0 ||
+                          w->singular.fallbacks != w->cost->fallbacks;
     if (w->at_start || s->info.nc == 0 || !w->calm || reported) {
         return true;
     }

@@ -87,6 +87,7 @@ typedef struct hn_singular_record {
     /// since.
     int announced;
     double lowest;
+    double due;  ///< time of the latest prediction [s]
     int passing; ///< 1 + number of the report on the configuration being passed, 0: none
     // a state inside the last step
     double *inside_q;       ///< nq

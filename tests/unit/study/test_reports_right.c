@@ -76,6 +76,38 @@ static void a_prediction_that_did_not_come_true_is_withdrawn(void **state) {
 
 // Links that all but line up turn by more than a radian within a few steps. That is the motion, as
 // the accelerations say, and no other branch.
+// Bars in line twice a turn. Steps that choose their length are as long as a third of the way from
+// one to the next: the next prediction is due while the last one is hardly over.
+static void every_change_point_is_announced_whatever_the_steps_are(void **state) {
+    (void)state;
+    static const char *const methods[] = {"projection@rk4:h=1e-3", "projection@dop853:rtol=1e-6",
+                                          "projection@dopri5:rtol=1e-5"};
+    hn_model m;
+    hn_model_open_closed(&m, "parallelogram", NULL);
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        hn_run *run = hn_motion_start(&m, methods[k]);
+        assert_int_equal(hn_run_advance(run, 3), HN_OK);
+        const hn_incident *list = NULL;
+        const int n = hn_run_incidents(run, &list);
+        int events = 0;
+        for (int i = 0; i < n; i++) {
+            if (list[i].code != HN_INCIDENT_NEAR_SINGULAR) {
+                continue;
+            }
+            // the report before it is its prediction
+            events++;
+            assert_true(i > 0 && list[i - 1].code == HN_INCIDENT_RANK_AHEAD);
+            assert_near(list[i - 1].t + list[i - 1].value, list[i].t, 0.01);
+            assert_null(strstr(list[i - 1].message, "withdrawn"));
+        }
+        assert_true(events >= 5);
+        // the first one by small steps: 0.2 s before
+        assert_true(k > 0 || list[0].value >= 0.2);
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
 static void a_sharp_turn_is_no_other_branch(void **state) {
     (void)state;
     static const char *const methods[] = {"projection@rk4:h=0.005", "nullspace-tangent@rk4:h=0.005",
@@ -181,6 +213,7 @@ int main(void) {
         cmocka_unit_test(a_long_step_of_high_order_is_no_jump),
         cmocka_unit_test(a_pilot_run_follows_a_motion_that_becomes_faster),
         cmocka_unit_test(unlike_masses_are_no_singular_configuration),
+        cmocka_unit_test(every_change_point_is_announced_whatever_the_steps_are),
         cmocka_unit_test(a_sharp_turn_is_no_other_branch),
         cmocka_unit_test(a_prediction_that_did_not_come_true_is_withdrawn),
     };
