@@ -317,6 +317,7 @@ help:
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
 	@echo 'make similarity   similar mechanisms of 1 nm to 1000 km by every method: tests/tables/similarity.txt'
 	@echo 'make long-runs    10,000 s of a turning crank: tests/tables/long_runs.txt'
+	@echo 'make mechanisms   mechanisms of textbooks against geometry and closed forms: tests/tables/mechanisms.txt'
 	@echo 'make reports      which reports are right, on all scenes and 200 random mechanisms: tests/tables/reports.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make accuracy     error estimates of runs against their errors, over all scenes: tests/tables/accuracy.txt'
@@ -334,7 +335,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages book run-suite run-unit run-server run-bench run-fuzz reports accuracy
+.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -464,6 +465,12 @@ long-runs: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/tables/long_runs.py $(PROGRAM) >build/long_runs.txt && cp build/long_runs.txt tests/tables/long_runs.txt
 	@cat tests/tables/long_runs.txt
+
+# textbook mechanisms against facts computed without the program
+mechanisms: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@HOLONOM=$(PROGRAM) python3 tests/mechanisms/test_mechanisms.py --table >build/mechanisms.txt && cp build/mechanisms.txt tests/tables/mechanisms.txt
+	@cat tests/tables/mechanisms.txt
 
 reports: build/.packages-test
 	@python3 tests/tables/reports.py $(PROGRAM) > build/reports.txt && cp build/reports.txt tests/tables/reports.txt

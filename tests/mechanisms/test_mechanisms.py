@@ -35,14 +35,20 @@ def main():
     cases = [(m, method) for m in ALL if not wanted or m["name"] in wanted for method in m.get("methods", METHODS)]
     if not table:
         print(f"1..{len(cases)}")
+    faults, highest = 0, 0.0
     for number, (mechanism, method) in enumerate(cases, 1):
         worst, fault = check(mechanism, method)
+        faults += bool(fault)
+        highest = max(highest, worst or 0.0)
         if table:
             print(f"{mechanism['name']:28s} {method:34s} " + (fault or f"{worst:.1e} of its tolerance"))
         else:
             print(f"{'not ok' if fault else 'ok'} {number} - {mechanism['name']} by {method}")
             if fault:
                 print(f"# {fault}")
+    if table:
+        mechanisms = len({m["name"] for m, _ in cases})
+        print(f"\n{mechanisms} mechanisms, {len(cases)} runs, {faults} against their fact; the largest deviation is {highest:.2g} of its tolerance")
 
 
 main()
