@@ -5,12 +5,12 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "build.h"
+#include "class/likeness.h"
 #include "grade/grade.h"
 #include "grade/rubric.h"
 #include "grade/variant.h"
 
 #include <cjson/cJSON.h>
-#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -44,8 +44,19 @@ typedef struct grading {
 
 // ---- one line ----
 
+/// Whether a submission belongs to this shard.
+static bool is_mine(const grading *g, int i) {
+    const hn_class_shard *shard = &g->opts->shard;
+    return shard->n == 0 || i % shard->n == shard->i - 1;
+}
+
+static hn_roster_kind kinds_of(const grading *g) {
+    return g->opts->programs ? HN_ROSTER_PROGRAMS : HN_ROSTER_ANSWERS;
+}
+
 static uint64_t seed_of(const grading *g, const hn_roster_entry *e) {
-    return g->opts->seed              ? g->opts->seed
+    return g->opts->programs          ? 0
+           : g->opts->seed            ? g->opts->seed
            : g->exercise->n_parts > 0 ? hn_variant_seed(g->exercise, e->student)
                                       : 0;
 }
@@ -70,7 +81,7 @@ static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     char file[HN_ROSTER_PATH];
     hn_diag diag = {0};
     hn_strbuf_init(&text);
-    const hn_status status = hn_roster_load(e, &text, file, &diag);
+    const hn_status status = hn_roster_load(e, kinds_of(g), &text, file, &diag);
     uint64_t hash = hn_hash_text(HN_HASH_START, hn_build_name());
     const uint64_t rubric = hn_rubric_hash(g->exercise->rubric);
     hash = hn_hash_bytes(hash, &g->exercise->hash, sizeof g->exercise->hash);
@@ -86,24 +97,6 @@ static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     return hn_hash_mix(hash);
 }
 
-/// All texts of a submission without blanks: two that differ in spacing alone are one.
-static uint64_t hash_texts(uint64_t hash, const cJSON *item) {
-    if (cJSON_IsString(item)) {
-        for (const char *p = item->valuestring; *p; p++) {
-            const char c = (char)tolower((unsigned char)*p);
-            hash = isspace((unsigned char)c) ? hash : hn_hash_bytes(hash, &c, 1);
-        }
-        hash = hn_hash_text(hash, "|");
-    } else if (cJSON_IsNumber(item)) {
-        hash = hn_hash_double(hash, item->valuedouble);
-    }
-    const cJSON *part;
-    cJSON_ArrayForEach(part, item) {
-        hash = hash_texts(hash, part);
-    }
-    return hash;
-}
-
 static void begin_line(const grading *g, int i, hn_strbuf *b, const char *status) {
     char hex[17];
     hn_hash_hex(g->key[i], hex);
@@ -111,6 +104,11 @@ static void begin_line(const grading *g, int i, hn_strbuf *b, const char *status
     hn_json_put_string(b, "student", g->roster->entry[i].student);
     hn_json_put_string(b, "status", status);
     hn_json_put_string(b, "key", hex);
+    if (g->opts->shard.n > 0) {
+        // its place in the roster, by which merge puts the parts together
+        hn_json_put_int(b, "place", i);
+        hn_json_put_int(b, "of", g->roster->n);
+    }
     const int same = count_name(g->roster, i);
     if (same > 1) {
         char remark[80];
@@ -126,15 +124,25 @@ static void put_zero(const grading *g, hn_strbuf *b, const char *reason) {
     hn_json_put_string(b, "reason", reason);
 }
 
-static void put_graded(hn_strbuf *b, const hn_verdict *v, const char *text) {
-    char hex[17];
-    cJSON *submission = cJSON_Parse(text);
-    hn_hash_hex(hn_hash_mix(hash_texts(HN_HASH_START, submission)), hex);
+/// What a submission says, and its shape, by which copies are found.
+static void put_likeness(const grading *g, hn_strbuf *b, const char *text) {
+    const bool is_program = g->opts->programs != NULL;
+    cJSON *submission = is_program ? NULL : cJSON_Parse(text);
+    char texts[17], shape[17];
+    hn_hash_hex(is_program ? hn_likeness_program_texts(text) : hn_likeness_texts(submission),
+                texts);
+    hn_hash_hex(is_program ? hn_likeness_program_shape(text) : hn_likeness_shape(submission),
+                shape);
     cJSON_Delete(submission);
+    hn_json_put_string(b, "texts", texts);
+    hn_json_put_string(b, "shape", shape);
+}
+
+static void put_graded(const grading *g, hn_strbuf *b, const hn_verdict *v, const char *text) {
     hn_json_put_number(b, "score", v->score);
     hn_json_put_number(b, "max_score", v->max_score);
     hn_json_put_string(b, "summary", v->summary);
-    hn_json_put_string(b, "texts", hex);
+    put_likeness(g, b, text);
     hn_json_key(b, "mistakes");
     hn_json_array(b);
     for (int k = 0; k < v->n_entries; k++) {
@@ -147,6 +155,28 @@ static void put_graded(hn_strbuf *b, const hn_verdict *v, const char *text) {
     hn_json_end_array(b);
 }
 
+/// A program from an archive or a folder, in a file of its own while it is graded.
+static hn_status grade_program(const grading *g, const char *file, const hn_strbuf *text,
+                               hn_verdict *v) {
+    const char *dot = strrchr(file, '.');
+    const char *folder = getenv("TMPDIR");
+    char path[HN_ROSTER_PATH];
+    if (!dot || !hn_filled_program_is(file)) {
+        dot = "";
+    }
+    snprintf(path, sizeof path, "%.900s/holonom-XXXXXX%.8s", folder ? folder : "/tmp", dot);
+    const int fd = mkstemps(path, (int)strlen(dot));
+    if (fd < 0) {
+        return HN_ERR_IO;
+    }
+    const bool written = write(fd, hn_strbuf_text((hn_strbuf *)text), text->n) == (ssize_t)text->n;
+    close(fd);
+    const hn_status status =
+        written ? hn_filled_program_grade(g->opts->programs, path, v) : HN_ERR_IO;
+    unlink(path);
+    return status;
+}
+
 /// The line of submission i.
 static void grade_one(const grading *g, int i, hn_strbuf *b) {
     const hn_roster_entry *e = &g->roster->entry[i];
@@ -155,9 +185,13 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
     hn_diag diag = {0};
     hn_verdict *v = calloc(1, sizeof *v);
     hn_strbuf_init(&text);
-    hn_status status = v ? hn_roster_load(e, &text, file, &diag) : HN_ERR_MEMORY;
+    hn_status status = v ? hn_roster_load(e, kinds_of(g), &text, file, &diag) : HN_ERR_MEMORY;
     const bool there = status == HN_OK;
-    HN_THEN(status, hn_grade_json(g->exercise, hn_strbuf_text(&text), text.n, seed_of(g, e), v));
+    if (status == HN_OK) {
+        status = g->opts->programs
+                     ? grade_program(g, file, &text, v)
+                     : hn_grade_json(g->exercise, hn_strbuf_text(&text), text.n, seed_of(g, e), v);
+    }
 
     // graded, not gradable by its own fault, or the grader's fault
     const bool failed = there ? status != HN_OK : !v;
@@ -165,7 +199,7 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
     begin_line(g, i, b, failed ? "failed" : graded ? "graded" : "ungradable");
     hn_json_put_string(b, "file", v ? file : "");
     if (graded) {
-        put_graded(b, v, hn_strbuf_text(&text));
+        put_graded(g, b, v, hn_strbuf_text(&text));
     } else {
         put_zero(g, b, failed ? hn_status_text(status) : there ? v->reason : diag.message);
     }
@@ -317,7 +351,8 @@ static void give_work(grading *g) {
         worker *w = &g->workers[k];
         while (w->index < 0 && g->next < g->roster->n) {
             const int i = g->next++;
-            if (!g->out->line[i] && write(w->ask, &i, sizeof i) == (ssize_t)sizeof i) {
+            if (!g->out->line[i] && is_mine(g, i) &&
+                write(w->ask, &i, sizeof i) == (ssize_t)sizeof i) {
                 w->index = i;
                 w->since = hn_clock_wall();
             }
@@ -327,7 +362,7 @@ static void give_work(grading *g) {
 
 static hn_status run(grading *g, hn_diag *diag) {
     hn_status status = HN_OK;
-    while (status == HN_OK && g->done < g->roster->n) {
+    while (status == HN_OK && g->done < g->roster->n - g->out->others) {
         struct pollfd wait[MOST_JOBS];
         if (g->opts->stop && g->opts->stop(g->opts->user)) {
             return HN_ERR_STOPPED;
@@ -350,8 +385,8 @@ static int find_key(const grading *g, const char *student, const char *hex) {
     for (int i = 0; i < g->roster->n; i++) {
         char own[17];
         hn_hash_hex(g->key[i], own);
-        if (strcmp(own, hex) == 0 && strcmp(g->roster->entry[i].student, student) == 0 &&
-            !g->out->line[i]) {
+        if (is_mine(g, i) && strcmp(own, hex) == 0 &&
+            strcmp(g->roster->entry[i].student, student) == 0 && !g->out->line[i]) {
             return i;
         }
     }
@@ -407,13 +442,14 @@ hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,
     hn_status status = out->line && g.key ? HN_OK : HN_ERR_MEMORY;
     for (int i = 0; status == HN_OK && i < roster->n; i++) {
         g.key[i] = calc_key(&g, &roster->entry[i]);
+        out->others += !is_mine(&g, i);
     }
     if (status == HN_OK && opts->journal) {
         status = open_journal(&g, diag);
     }
 
     // no more workers than there is work
-    const int left = roster->n - g.done;
+    const int left = roster->n - out->others - g.done;
     int jobs = opts->jobs < 1 ? 1 : opts->jobs > MOST_JOBS ? MOST_JOBS : opts->jobs;
     jobs = jobs < left ? jobs : left;
     for (int k = 0; status == HN_OK && k < jobs; k++) {

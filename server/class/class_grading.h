@@ -5,13 +5,21 @@
 // worker, costs its own line and nobody else's. Every line is kept in a journal as it is finished,
 // so that a run that was killed goes on; the result does not depend on the order of finishing.
 
+#include "class/filled_program.h"
 #include "class/roster.h"
 #include "grade/exercise.h"
 
 #include <stdint.h>
 
+/// One part of a roster, for several machines: every n-th submission from the i-th on, i = 1 .. n.
+typedef struct hn_class_shard {
+    int i, n; ///< n = 0: the whole roster
+} hn_class_shard;
+
 typedef struct hn_class_opts {
     int jobs;
+    const hn_filled_exam *programs; ///< submissions are programs; NULL: answers in JSON
+    hn_class_shard shard;
     double time_limit;   ///< [s] for one submission
     uint64_t seed;       ///< of all; 0: each student's own for an exercise that draws numbers
     const char *journal; ///< NULL: nothing is kept
@@ -24,6 +32,7 @@ typedef struct hn_class_opts {
 typedef struct hn_class_result {
     char **line; ///< n JSON objects, in the order of the roster; NULL: not graded
     int n, resumed, graded;
+    int others; ///< of the roster, left to other shards
 } hn_class_result;
 
 /// Grades everybody. Fails: HN_ERR_IO (journal, processes), HN_ERR_MEMORY; HN_ERR_STOPPED when it

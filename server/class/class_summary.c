@@ -2,6 +2,7 @@
 #include "class/class_summary.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,6 +13,8 @@ typedef struct count {
     char word[WORD];
     int n;
     hn_strbuf who;
+    char first[24]; ///< the texts of the first of them
+    bool differs;   ///< another one's texts are others
 } count;
 
 typedef struct counts {
@@ -66,8 +69,24 @@ static const char *text_of(const cJSON *o, const char *key) {
 typedef struct tally {
     int graded, ungradable, failed, bin[BINS + 1];
     double sum, most;
-    counts mistakes, equal, names;
+    bool programs; ///< what was handed in
+    counts mistakes, equal, like, names;
 } tally;
+
+/// Who has the same shape: a group counts once two of its texts differ.
+static void add_like(counts *c, const cJSON *o, const char *student) {
+    const char *shape = text_of(o, "shape"), *texts = text_of(o, "texts");
+    const int before = c->n;
+    add_count(c, shape, student);
+    for (int i = 0; i < c->n; i++) {
+        if (strcmp(c->item[i].word, shape) == 0) {
+            c->item[i].differs |= c->n == before && strcmp(c->item[i].first, texts) != 0;
+            if (c->n > before) {
+                snprintf(c->item[i].first, sizeof c->item[i].first, "%s", texts);
+            }
+        }
+    }
+}
 
 static void take_line(tally *t, const cJSON *o) {
     const char *student = text_of(o, "student"), *status = text_of(o, "status");
@@ -94,9 +113,10 @@ static void take_line(tally *t, const cJSON *o) {
     cJSON_ArrayForEach(m, cJSON_GetObjectItem(o, "mistakes")) {
         add_count(&t->mistakes, m->valuestring, student);
     }
-    // right answers are alike by nature; wrong ones are not
-    if (score < most) {
+    // right formulas are alike by nature; wrong ones are not, and programs are not
+    if (score < most || t->programs) {
         add_count(&t->equal, text_of(o, "texts"), student);
+        add_like(&t->like, o, student);
     }
 }
 
@@ -125,8 +145,21 @@ static void put_names(hn_strbuf *b, counts *c) {
     }
 }
 
-void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
-    tally t = {0};
+/// Groups that differ in their names alone.
+static void put_like(hn_strbuf *b, counts *c) {
+    int shown = 0;
+    qsort(c->item, (size_t)c->n, sizeof(count), more_first);
+    for (int k = 0; k < c->n; k++) {
+        if (c->item[k].differs) {
+            hn_strbuf_printf(b, "%s  %s\n",
+                             shown++ ? "" : "near-copies: the same but for the names\n",
+                             hn_strbuf_text(&c->item[k].who));
+        }
+    }
+}
+
+void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
+    tally t = {.programs = programs};
     for (int i = 0; i < r->n; i++) {
         cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
         if (o) {
@@ -135,7 +168,7 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
         cJSON_Delete(o);
     }
     hn_strbuf_printf(b, "%d submissions: %d graded, %d not gradable, %d failed in the grader\n",
-                     r->n, t.graded, t.ungradable, t.failed);
+                     r->n - r->others, t.graded, t.ungradable, t.failed);
     if (t.graded > 0) {
         hn_strbuf_printf(b, "mean of the %d graded: %.2f of %g\n", t.graded, t.sum / t.graded,
                          t.most);
@@ -151,11 +184,15 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r) {
     qsort(t.equal.item, (size_t)t.equal.n, sizeof(count), more_first);
     for (int k = 0; k < t.equal.n && t.equal.item[k].n > 1; k++) {
         hn_strbuf_printf(b, "%s  %s\n",
-                         k == 0 ? "equal wrong answers, blanks and capitals aside\n" : "",
+                         k > 0      ? ""
+                         : programs ? "equal programs, blanks, capitals and comments aside\n"
+                                    : "equal wrong answers, blanks and capitals aside\n",
                          hn_strbuf_text(&t.equal.item[k].who));
     }
+    put_like(b, &t.like);
     put_names(b, &t.names);
     free_counts(&t.names);
     free_counts(&t.mistakes);
     free_counts(&t.equal);
+    free_counts(&t.like);
 }

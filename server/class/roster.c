@@ -158,10 +158,27 @@ void hn_roster_reset(hn_roster *r) {
 
 // ---- one student's file ----
 
-/// The JSON and zip files below a folder: how many, and the first of each by name.
+/// Endings of what is handed in, and how messages name it.
+static const struct {
+    const char *endings[7], *name, *hint;
+} KINDS[] = {[HN_ROSTER_ANSWERS] = {{".json"}, "JSON file", "hand in one file that ends in .json"},
+             [HN_ROSTER_PROGRAMS] = {{".py", ".c", ".cpp", ".java", ".m", ".jl"},
+                                     "program",
+                                     "hand in the one file that export --blanks wrote, filled in"}};
+
+static bool is_kind(const char *name, hn_roster_kind kind) {
+    bool found = false;
+    for (const char *const *ending = KINDS[kind].endings; *ending; ending++) {
+        found |= ends_in(name, *ending);
+    }
+    return found;
+}
+
+/// The files of a kind and the zip files below a folder: how many, and the first of each by name.
 typedef struct finds {
-    int n_json, n_zip;
-    char json[HN_ROSTER_PATH], zip[HN_ROSTER_PATH];
+    hn_roster_kind kind;
+    int n_file, n_zip;
+    char file[HN_ROSTER_PATH], zip[HN_ROSTER_PATH];
 } finds;
 
 static void keep(int *n, char first[HN_ROSTER_PATH], const char *path) {
@@ -188,8 +205,8 @@ static void search(finds *f, const char *folder, int depth) {
 
         if (S_ISDIR(info.st_mode)) {
             search(f, path, depth + 1);
-        } else if (S_ISREG(info.st_mode) && ends_in(path, ".json")) {
-            keep(&f->n_json, f->json, path);
+        } else if (S_ISREG(info.st_mode) && is_kind(path, f->kind)) {
+            keep(&f->n_file, f->file, path);
         } else if (S_ISREG(info.st_mode) && ends_in(path, ".zip")) {
             keep(&f->n_zip, f->zip, path);
         }
@@ -197,20 +214,20 @@ static void search(finds *f, const char *folder, int depth) {
     closedir(dir);
 }
 
-static hn_status refuse_count(int n, hn_diag *diag) {
-    return n == 0 ? hn_diag_set(diag, HN_ERR_INPUT, NULL, "hand in one file that ends in .json",
-                                "no JSON file was handed in")
-                  : hn_diag_set(diag, HN_ERR_INPUT, NULL, "hand in one file that ends in .json",
-                                "%d JSON files were handed in; which one counts cannot be told", n);
+static hn_status refuse_count(int n, hn_roster_kind kind, hn_diag *diag) {
+    const char *name = KINDS[kind].name, *hint = KINDS[kind].hint;
+    return n == 0 ? hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "no %s was handed in", name)
+                  : hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
+                                "%d %ss were handed in; which one counts cannot be told", n, name);
 }
 
-static bool is_answer(const char *name) {
+static bool is_answer(const char *name, hn_roster_kind kind) {
     const char *base = strrchr(name, '/') ? strrchr(name, '/') + 1 : name;
-    return ends_in(name, ".json") && !is_noise(base) && strstr(name, "__MACOSX") == NULL;
+    return is_kind(name, kind) && !is_noise(base) && strstr(name, "__MACOSX") == NULL;
 }
 
-static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER_PATH],
-                          hn_diag *diag) {
+static hn_status load_zip(const char *path, hn_roster_kind kind, hn_strbuf *text,
+                          char file[HN_ROSTER_PATH], hn_diag *diag) {
     hn_strbuf bytes;
     hn_zip_entry *list = NULL;
     int n = 0, found = 0, one = 0;
@@ -220,13 +237,13 @@ static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER
     hn_status status = hn_file_read(path, MOST_ARCHIVE, &bytes, diag);
     HN_THEN(status, hn_zip_list(hn_strbuf_text(&bytes), bytes.n, &list, &n, diag));
     for (int i = 0; status == HN_OK && i < n; i++) {
-        if (is_answer(list[i].name)) {
+        if (is_answer(list[i].name, kind)) {
             found++;
             one = i;
         }
     }
     if (status == HN_OK && found != 1) {
-        status = refuse_count(found, diag);
+        status = refuse_count(found, kind, diag);
     }
 
     // the answer itself
@@ -241,11 +258,11 @@ static hn_status load_zip(const char *path, hn_strbuf *text, char file[HN_ROSTER
     return status;
 }
 
-/// A file that is no submission: a link, or of another kind than JSON and zip.
-static hn_status check_file(const char *path, hn_diag *diag) {
+/// A file that is no submission: a link, or of another kind than is handed in.
+static hn_status check_file(const char *path, hn_roster_kind kind, hn_diag *diag) {
     struct stat info;
     const char *name = strrchr(path, '/') + 1;
-    const char *hint = "hand in one file that ends in .json";
+    const char *hint = KINDS[kind].hint;
     if (lstat(path, &info) != 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%.100s' cannot be read: %s", name,
                            strerror(errno));
@@ -254,33 +271,34 @@ static hn_status check_file(const char *path, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
                            "'%.100s' is a link; links are not followed", name);
     }
-    if (!S_ISREG(info.st_mode) || !(ends_in(name, ".json") || ends_in(name, ".zip"))) {
+    if (!S_ISREG(info.st_mode) || !(is_kind(name, kind) || ends_in(name, ".zip"))) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
-                           "'%.100s' is no .json file, no .zip archive and no folder", name);
+                           "'%.100s' is no %s, no .zip archive and no folder", name,
+                           kind == HN_ROSTER_ANSWERS ? ".json file" : KINDS[kind].name);
     }
     return HN_OK;
 }
 
-hn_status hn_roster_load(const hn_roster_entry *e, hn_strbuf *text, char file[HN_ROSTER_PATH],
-                         hn_diag *diag) {
-    finds f = {0};
+hn_status hn_roster_load(const hn_roster_entry *e, hn_roster_kind kind, hn_strbuf *text,
+                         char file[HN_ROSTER_PATH], hn_diag *diag) {
+    finds f = {.kind = kind};
     snprintf(file, HN_ROSTER_PATH, "%s", e->path);
     if (!e->is_folder) {
-        HN_TRY(check_file(e->path, diag));
+        HN_TRY(check_file(e->path, kind, diag));
     }
     if (e->is_folder) {
         search(&f, e->path, 0);
     } else if (ends_in(e->path, ".zip")) {
         keep(&f.n_zip, f.zip, e->path);
     } else {
-        keep(&f.n_json, f.json, e->path);
+        keep(&f.n_file, f.file, e->path);
     }
-    if (f.n_json == 0 && f.n_zip == 1) {
-        return load_zip(f.zip, text, file, diag);
+    if (f.n_file == 0 && f.n_zip == 1) {
+        return load_zip(f.zip, kind, text, file, diag);
     }
-    if (f.n_json != 1) {
-        return refuse_count(f.n_json, diag);
+    if (f.n_file != 1) {
+        return refuse_count(f.n_file, kind, diag);
     }
-    snprintf(file, HN_ROSTER_PATH, "%s", f.json);
-    return hn_file_read(f.json, HN_ROSTER_BYTES, text, diag);
+    snprintf(file, HN_ROSTER_PATH, "%s", f.file);
+    return hn_file_read(f.file, HN_ROSTER_BYTES, text, diag);
 }

@@ -17,6 +17,12 @@
 
 enum { HN_ROSTER_NAME = 80, HN_ROSTER_PATH = 1024, HN_ROSTER_BYTES = 1 << 20 };
 
+/// What a class hands in.
+typedef enum hn_roster_kind {
+    HN_ROSTER_ANSWERS, ///< .json
+    HN_ROSTER_PROGRAMS ///< .py, .c, .cpp, .java, .m, .jl
+} hn_roster_kind;
+
 typedef struct hn_roster_entry {
     char student[HN_ROSTER_NAME];
     char path[HN_ROSTER_PATH]; ///< of the folder or the file
@@ -33,11 +39,11 @@ typedef struct hn_roster {
 /// HN_ERR_MEMORY. hn_roster_reset() in any case.
 HN_MUST_CHECK hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag);
 void hn_roster_reset(hn_roster *r);
-/// Finds the one JSON file of a student and reads it into `text`; `file` gets its name. Fails, with
-/// a sentence for the student in diag: HN_ERR_INPUT (none, several, no archive, a link, another
-/// kind of file), HN_ERR_LIMIT.
-HN_MUST_CHECK hn_status hn_roster_load(const hn_roster_entry *e, hn_strbuf *text,
-                                       char file[HN_ROSTER_PATH], hn_diag *diag);
+/// Finds the one file of this kind of a student and reads it into `text`; `file` gets its name.
+/// Fails, with a sentence for the student in diag: HN_ERR_INPUT (none, several, no archive, a link,
+/// another kind of file), HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_roster_load(const hn_roster_entry *e, hn_roster_kind kind,
+                                       hn_strbuf *text, char file[HN_ROSTER_PATH], hn_diag *diag);
 /// The student's name in the name of a folder or file, by the rules above.
 void hn_roster_student(const char *name, char out[HN_ROSTER_NAME]);
 

@@ -27,7 +27,7 @@ static const hn_command COMMANDS[] = {
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
      "julia, wolfram or modelica; latex: its equations to read",
-     MODEL_OPTIONS " --language --out -o", 1, 1, hn_command_export},
+     MODEL_OPTIONS " --language --blanks --out -o", 1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java",
      "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,
      hn_command_program},
@@ -76,15 +76,15 @@ static const hn_command COMMANDS[] = {
     {"problem", "ID",
      "an exercise with the numbers of a variant; --check proves it over --seeds A..B",
      "--seed --student --hint --seeds --check --wide", 1, 1, hn_command_problem},
-    {"grade", "ID SUBMISSION...",
+    {"grade", "ID SUBMISSION...|FOLDER",
      "verdicts as --format text, json, gradescope, prairielearn, autolab, coderunner, lti-score, "
-     "junit, csv or html; into --out DIR",
-     "--format --out -o --seed --student --rubric --plot --show-expected --no-pictures --wide", 2,
-     HN_CLI_MAX_WORDS, hn_command_grade},
-    {"class", "ID FOLDER",
-     "grade the submissions of a class, a folder, file or zip for each student, whose name chooses "
-     "the variant unless --seed does; --out FILE.ndjson or .csv",
-     "--jobs --seed --rubric --out -o", 2, 2, hn_command_class},
+     "junit, csv or html; into --out DIR. A folder is a class: a folder, file or zip for each "
+     "student, whose name chooses the variant unless --seed does; --out FILE.ndjson or .csv. ID is "
+     "an exercise, or a scene whose program (export --blanks) was filled in",
+     MODEL_OPTIONS
+     " --format --out -o --seed --student --rubric --plot --show-expected --no-pictures "
+     "--wide --jobs --shard --merge",
+     2, HN_CLI_MAX_WORDS, hn_command_grade},
     {"rubric", "check|write FILE|ID",
      "check a rubric and say what it means, or write an exercise's own as a start", "--out -o", 2,
      2, hn_command_rubric},

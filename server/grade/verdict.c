@@ -74,7 +74,9 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
             hn_strbuf_add(b, "\n");
         }
     }
-    if (v->n_states > 0) {
+    if (v->n_states > 0 && v->seed == 0) {
+        hn_strbuf_printf(b, "compared at %d states of the motion\n", v->n_states);
+    } else if (v->n_states > 0) {
         hn_strbuf_printf(b, "compared at %d random states, seed %llu\n", v->n_states,
                          (unsigned long long)v->seed);
     } else {

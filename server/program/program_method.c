@@ -59,7 +59,7 @@ static hn_status create(const hn_system *sys, const double *set, hn_arena *arena
     *g = (guest){.program = programs[(int)set[0]]};
     *self = g;
     HN_TRY(hn_state_ode_init(&g->base, sys, arena));
-    HN_TRY(hn_sandbox_build(&command, g->program->file, options.trusted, &limits, diag));
+    HN_TRY(hn_sandbox_build(&command, g->program->file, NULL, options.trusted, &limits, diag));
 
     // its greeting says whether it can be talked to
     hn_diag why = {0};
@@ -231,7 +231,7 @@ static hn_status find(const char *name, hn_guest *out, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "the name of the program is too long");
     }
     HN_TRY(find_file(name + strlen(HN_GUEST_PREFIX), file, diag));
-    HN_TRY(hn_sandbox_build(&command, file, options.trusted, &limits, diag));
+    HN_TRY(hn_sandbox_build(&command, file, NULL, options.trusted, &limits, diag));
     pthread_mutex_lock(&lock);
     program *p = find_program(name, file);
     pthread_mutex_unlock(&lock);

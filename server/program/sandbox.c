@@ -101,12 +101,19 @@ static void add_limits(hn_sandbox_command *c, bool trusted, const hn_program_lim
 
 static const struct {
     const char *ending, *words[4];
+    bool is_compiler; ///< it leaves a program in /tmp, which must be the sandbox's own
 } INTERPRETERS[] = {
-    {".py", {"python3", "-B", "-u", NULL}},
-    {".js", {"node", "--max-old-space-size=256", NULL}},
-    {".m", {"octave-cli", "-q", "--no-history", NULL}},
-    {".java", {"java", NULL}},
-    {".jl", {"julia", NULL}},
+    {".py", {"python3", "-B", "-u", NULL}, false},
+    {".js", {"node", "--max-old-space-size=256", NULL}, false},
+    {".m", {"octave-cli", "-q", "--no-history", NULL}, false},
+    {".java", {"java", NULL}, false},
+    {".jl", {"julia", NULL}, false},
+    {".c",
+     {"sh", "-c", "gcc -O1 -w -pipe -o /tmp/run \"$0\" -lm && exec /tmp/run \"$@\"", NULL},
+     true},
+    {".cpp",
+     {"sh", "-c", "g++ -O1 -w -pipe -o /tmp/run \"$0\" && exec /tmp/run \"$@\"", NULL},
+     true},
 };
 
 static bool ends_in(const char *text, const char *ending) {
@@ -114,9 +121,9 @@ static bool ends_in(const char *text, const char *ending) {
     return n > m && strcmp(text + n - m, ending) == 0;
 }
 
-static const char *const *find_interpreter(const char *file) {
+static const char *const *find_interpreter(const char *file, bool trusted) {
     for (size_t i = 0; i < sizeof INTERPRETERS / sizeof *INTERPRETERS; i++) {
-        if (ends_in(file, INTERPRETERS[i].ending)) {
+        if (ends_in(file, INTERPRETERS[i].ending) && !(trusted && INTERPRETERS[i].is_compiler)) {
             return INTERPRETERS[i].words;
         }
     }
@@ -124,7 +131,7 @@ static const char *const *find_interpreter(const char *file) {
 }
 
 /// A trusted program's interpreter is looked up in PATH; the sandbox has /usr/bin alone.
-static hn_status check_file(const char *file, hn_diag *diag) {
+static hn_status check_file(const char *file, bool trusted, hn_diag *diag) {
     struct stat info;
     if (stat(file, &info) != 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "there is no program '%.200s': %s", file,
@@ -134,20 +141,23 @@ static hn_status check_file(const char *file, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, "name the file that is to be started",
                            "'%.200s' is not a file", file);
     }
-    if (!find_interpreter(file) && access(file, X_OK) != 0) {
+    if (!find_interpreter(file, trusted) && access(file, X_OK) != 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL,
-                           "end its name in .py, .js, .m, .java or .jl, or make it executable",
+                           trusted
+                               ? "end its name in .py, .js, .m, .java or .jl, or make it executable"
+                               : "end its name in .py, .js, .m, .java, .jl, .c or .cpp, or make it "
+                                 "executable",
                            "'%.200s' cannot be started", file);
     }
     return HN_OK;
 }
 
-hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file, bool trusted,
-                           const hn_program_limits *limits, hn_diag *diag) {
+hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file, const char *argument,
+                           bool trusted, const hn_program_limits *limits, hn_diag *diag) {
     enum { MOST_PATH = 1000 };
     char whole[MOST_PATH + 1];
     *c = (hn_sandbox_command){0};
-    HN_TRY(check_file(file, diag));
+    HN_TRY(check_file(file, trusted, diag));
     char *path = realpath(file, NULL);
     const bool fits = path && strlen(path) <= MOST_PATH;
     snprintf(whole, sizeof whole, "%s", fits ? path : "");
@@ -165,11 +175,14 @@ hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file, bool trusted
         snprintf(c->file, sizeof c->file, "%s", whole);
     }
     add_limits(c, trusted, limits);
-    const char *const *interpreter = find_interpreter(file);
+    const char *const *interpreter = find_interpreter(file, trusted);
     if (interpreter) {
         add_all(c, interpreter);
     }
     add_format(c, "%s%s", trusted ? "" : "/program/", trusted ? whole : name);
+    if (argument) {
+        add(c, argument);
+    }
     return HN_OK;
 }
 

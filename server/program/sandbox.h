@@ -26,10 +26,12 @@ typedef struct hn_sandbox_command {
 /// Says whether bubblewrap works here: it starts `true` in it, once in the life of the process.
 /// Fails: HN_ERR_UNSUPPORTED with the reason and what to do.
 HN_MUST_CHECK hn_status hn_sandbox_check(hn_diag *diag);
-/// Builds the command line for a program file. The interpreter is chosen by the file's ending (.py,
-/// .js, .m, .java, .jl); any other file must be executable.
+/// Builds the command line for a program file with one argument (borrowed; NULL: none). The
+/// interpreter is chosen by the file's ending (.py, .js, .m, .java, .jl; in the sandbox .c and .cpp
+/// too, which are compiled there); any other file must be executable.
 /// Fails: HN_ERR_INPUT for a file that is none, or cannot be started.
-HN_MUST_CHECK hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file, bool trusted,
+HN_MUST_CHECK hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file,
+                                         const char *argument, bool trusted,
                                          const hn_program_limits *limits, hn_diag *diag);
 
 #endif

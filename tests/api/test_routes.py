@@ -329,6 +329,10 @@ class Stateless(driver.ServerCase):
             subprocess.run(["gcc", "-std=c99", "-O1", "-x", "c", "-", "-o", path, "-lm"], input=answer.body, check=True)
             done = subprocess.run([path], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stdout)
+        # with blanks: the student's parts are marked
+        for answer in (self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=c&blanks=true"),
+                       self.post("export", {"scene": "four-bar", "language": "c", "blanks": True})):
+            self.assertEqual((answer.status, answer.body.count(b"YOUR PART")), (200, 4))
         # every language that is listed, and what is not
         for language in self.server.ask("GET", "/api/v1/languages").json()["languages"]:
             one = self.server.ask("GET", "/api/v1/scenes/pendulum/export?language=" + language["name"])

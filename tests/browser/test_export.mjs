@@ -64,4 +64,7 @@ test("a scene in space is saved with its solids, as a film, and as a program", a
   const code = await fileOf(page, "Program");
   assert.equal(code.name, "rssr.py");
   assert.match(code.bytes.toString(), /import numpy/);
+  assert.doesNotMatch(code.bytes.toString(), /YOUR PART/);
+  await page.check("#export-blanks");
+  assert.match((await fileOf(page, "Program")).bytes.toString(), /YOUR PART 4 of 4/);
 });

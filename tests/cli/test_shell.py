@@ -15,6 +15,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
+from test_programs import TROUBLE  # noqa: E402
 
 PROGRAM = os.path.abspath(driver.PROGRAM)
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
@@ -120,11 +121,12 @@ class Help(unittest.TestCase):
                 f.write(call("grade", "p3", os.path.join(folder, "answer.json"), "--format", "json").stdout)
             os.mkdir(os.path.join(folder, "handed-in"))
             shutil.copy(answer, os.path.join(folder, "handed-in", "ada.json"))
+            call("export", "four-bar", "--language", "c", "--blanks", "-o", os.path.join(folder, "filled-in.c"))
             for command in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M):
                 lines = re.findall(r"^  holonom (.+)$", call("help", command).stdout.split("examples\n")[-1], re.M)
                 self.assertEqual(len(lines), 3, command)
                 for line in lines:
-                    if command not in LEFT_OUT and not re.search(r"[|>]", line) and line != "tui":
+                    if command not in LEFT_OUT and not re.search(r"[|>]", line) and line != "tui" and not (TROUBLE and "filled-in" in line):
                         done = subprocess.run([PROGRAM, *line.split()], capture_output=True, text=True, timeout=300, cwd=folder,
                                               stdin=subprocess.DEVNULL)
                         self.assertEqual((line, done.returncode), (line, 0), done.stderr)
@@ -151,7 +153,7 @@ class Width(unittest.TestCase):
                 ["study", "pendulum", "work-precision", "--time", "0.5", "--levels", "3", "--samples", "1"], ["study", "fb0", "budget", "--time", "0.5"],
                 ["study", "slider-crank", "stability", "--over", "h=1e-4..1e-1,c=1..1000", "--grid", "6x6"], ["reference", "fb0"],
                 ["problem", "p3"], ["problem", "p1", "--seeds", "1..2", "--check"], ["grade", "p3", "bad.json"], ["regrade", "verdict.json"],
-                ["class", "p3", "handed-in"], ["lesson", "1"], ["snapshot", "four-bar", "-o", "a.png"], ["import", "robot.urdf", "-o", "b.json"],
+                ["grade", "p3", "handed-in"], ["lesson", "1"], ["snapshot", "four-bar", "-o", "a.png"], ["import", "robot.urdf", "-o", "b.json"],
                 ["tui", "--once"], ["help"], ["help", "serve"], ["version", "--json"])
     # they wait for somebody, take minutes, or what they print is a program, roff or a script
     NO_TEXT = ("serve", "report", "merge", "export", "program", "manual", "completion")

@@ -137,11 +137,13 @@ export function createExportDialog(el, store, actions, mechanism) {
     ),
   );
   const languages = h("select", { id: "export-language", "aria-label": "Language" });
+  const blanks = h("input", { type: "checkbox", id: "export-blanks" });
   const program = h(
     "li",
     { class: "program" },
     h("button", { type: "button", class: "plain", onclick: writeProgram }, "Program"),
     h("span", {}, "that runs this scene by itself and checks itself: ", languages),
+    h("label", {}, blanks, " with blanks for students"),
   );
 
   /** @type {{name: string, suffix: string, about: string}[]} */
@@ -153,6 +155,7 @@ export function createExportDialog(el, store, actions, mechanism) {
       scene: sourceOf(data),
       parameters: data.settings,
       language: languages.value,
+      blanks: blanks.checked,
       method: data.methods[data.view.selected]?.spelling,
     };
     return write((chosen?.suffix ?? ".txt").slice(1), async () => {

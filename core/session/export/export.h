@@ -19,16 +19,21 @@
 //   @START_A@ @ENERGY@       accelerations and energy there
 //   @T1@ @Q1@ @V1@ @A1@      a later state of the motion, and its accelerations
 //
+//   @IF BLANKS@ @ELSE@ @END@ in lines of their own: lines for programs with blanks, or without
+//
 // A place alone in its line is filled with lines of the same indentation.
 
 #include "session/model/library.h"
 #include "session/model/model.h"
 #include "study/run/walk.h"
 
+#include <stdbool.h>
+
 /// What is asked for. The last three are answers: the ending of a file's name, and what
 /// begins and ends a comment.
 typedef struct hn_export_request {
     const char *language;  ///< a row of export/language.h
+    bool blanks;           ///< leave the parts of exam.h out, and mark them
     hn_walk_limits limits; ///< of the run to the later state; zero: none
     const char *suffix, *comment, *comment_end;
 } hn_export_request;

@@ -128,6 +128,27 @@ static int add_entries(hn_code_entry *list, int n, const char *array, const hn_e
     return n;
 }
 
+/// Marks what is left to the student: a comment for each part, with its shape and meaning.
+static void put_blanks(hn_strbuf *b, const hn_exporter *e, int indent) {
+    static const struct {
+        const char *array, *shape, *meaning;
+    } parts[] = {{"mass", "NV x NV", "the mass matrix M, symmetric"},
+                 {"force", "NV", "f = S' tau - C v - g: M a = f + J' lambda"},
+                 {"jacobian", "NC x NV",
+                  "J: the rate of phi is J v + closure_rate, with phi as closure below"},
+                 {"bias", "NC", "gamma: the second time derivative of phi is J a + gamma"}};
+    const int n = e->info.nc > 0 ? 4 : 2;
+    for (int k = 0; k < n; k++) {
+        char words[200];
+        snprintf(words, sizeof words, "YOUR PART %d of %d: %s, %s, entries from %d: %s", k + 1, n,
+                 parts[k].array, parts[k].shape, e->language->first, parts[k].meaning);
+        hn_strbuf_printf(b, "%*s%s ", indent, "", e->language->comment);
+        hn_code_words(b, e->language, words);
+        end_comment(b, e);
+        hn_strbuf_add(b, "\n");
+    }
+}
+
 static hn_status put_terms(hn_strbuf *b, const hn_exporter *e, int indent) {
     const int nv = e->info.nv, nc = e->info.nc;
     const size_t most = (size_t)nv * (size_t)nv + (size_t)nv + (size_t)nc * ((size_t)nv + 3) + 1;
@@ -138,11 +159,17 @@ static hn_status put_terms(hn_strbuf *b, const hn_exporter *e, int indent) {
 
     // the order of the arrays is that of the texts
     hn_graph *g = hn_system_graph(e->sys);
-    const hn_ex energy = hn_add(g, e->x.kinetic, e->x.potential);
-    int n = add_entries(list, 0, "mass", e->x.M, nv, nv);
-    n = add_entries(list, n, "force", e->x.f, nv, 0);
-    n = add_entries(list, n, "jacobian", e->x.J, nc, nv);
-    n = add_entries(list, n, "bias", e->x.gamma, nc, 0);
+    // the kinetic energy would give the mass matrix away
+    const hn_ex energy = e->blanks ? e->x.potential : hn_add(g, e->x.kinetic, e->x.potential);
+    int n = 0;
+    if (e->blanks) {
+        put_blanks(b, e, indent);
+    } else {
+        n = add_entries(list, n, "mass", e->x.M, nv, nv);
+        n = add_entries(list, n, "force", e->x.f, nv, 0);
+        n = add_entries(list, n, "jacobian", e->x.J, nc, nv);
+        n = add_entries(list, n, "bias", e->x.gamma, nc, 0);
+    }
     n = add_entries(list, n, "closure", e->x.phi, nc, 0);
     n = add_entries(list, n, "closure_rate", e->x.phi_t, nc, 0);
     n = add_entries(list, n, "energy", &energy, 1, 0);
@@ -342,10 +369,26 @@ static hn_status fill_line(hn_strbuf *b, const hn_exporter *e, const char *line,
     return HN_OK;
 }
 
+/// Whether a line of n characters is this one, spaces before it aside.
+static bool is_line(const char *line, size_t n, const char *word) {
+    const size_t indent = strspn(line, " ");
+    return indent < n && n - indent == strlen(word) &&
+           strncmp(line + indent, word, n - indent) == 0;
+}
+
 hn_status hn_export_fill(hn_strbuf *b, const hn_exporter *e, const char *text) {
+    bool wanted = true;
     while (*text) {
         const size_t n = strcspn(text, "\n");
-        HN_TRY(fill_line(b, e, text, n));
+        if (is_line(text, n, "@IF BLANKS@")) {
+            wanted = e->blanks;
+        } else if (is_line(text, n, "@ELSE@")) {
+            wanted = !wanted;
+        } else if (is_line(text, n, "@END@")) {
+            wanted = true;
+        } else if (wanted) {
+            HN_TRY(fill_line(b, e, text, n));
+        }
         text += n + (text[n] == '\n');
     }
     return b->failed ? HN_ERR_MEMORY : HN_OK;

@@ -10,6 +10,8 @@
 #include "session/model/model.h"
 #include "study/run/walk.h"
 
+#include <stdbool.h>
+
 /// A state with its accelerations, in system coordinates.
 typedef struct hn_export_state {
     double t, *q, *v, *a;
@@ -22,6 +24,7 @@ typedef struct hn_exporter {
     hn_system_info info;
     hn_system_exprs x;
     const hn_language *language;
+    bool blanks; ///< the student's parts are left out
     hn_walk_limits limits;
     double started; ///< hn_clock_thread()
     hn_export_state start, later;

@@ -17,7 +17,8 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
 
     // the program, into the file or onto standard output
     if (status == HN_OK) {
-        hn_export_request request = {.language = args->language ? args->language : "python"};
+        hn_export_request request = {.language = args->language ? args->language : "python",
+                                     .blanks = args->blanks};
         status = hn_model_export(&b, model, lib, &request, &diags);
     }
     hn_model_free(model);

@@ -4,11 +4,13 @@
 // be written.
 #include "base/clock.h"
 #include "cli/commands/rubric_file.h"
+#include "cli/commands/grade_folder.h"
 #include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
+#include "cli/shell/scene_word.h"
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
 #include "grade/variant.h"
@@ -19,6 +21,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /// An unknown id is the fault of the command line; an exercise that does not load is the program's.
 static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_status status,
@@ -47,7 +50,7 @@ static void write_bars(hn_strbuf *b, const hn_verdict *v) {
 typedef struct task {
     const hn_library *lib;
     const hn_args *args;
-    const hn_exercise *exercise;
+    hn_grade_subject subject;
     const hn_verdict_form *form;
     const char *submission;
     const char *target; ///< path without ending; NULL: standard output
@@ -118,10 +121,13 @@ static hn_exit grade_one(const task *t) {
     hn_verdict *v = calloc(1, sizeof *v);
 
     // the variant of this student, or of the seed given, or what the file says
-    const uint64_t seed = t->args->student       ? hn_variant_seed(t->exercise, t->args->student)
+    const uint64_t seed = t->args->student ? hn_variant_seed(t->subject.exercise, t->args->student)
                           : isnan(t->args->seed) ? 0
                                                  : (uint64_t)t->args->seed;
-    hn_status status = v ? hn_grade_file(t->exercise, t->submission, seed, v) : HN_ERR_MEMORY;
+    hn_status status = !v ? HN_ERR_MEMORY
+                       : t->subject.programs
+                           ? hn_filled_program_grade(t->subject.programs, t->submission, v)
+                           : hn_grade_file(t->subject.exercise, t->submission, seed, v);
 
     // a submission that cannot be graded is the fault of the input
     hn_exit result = HN_EXIT_PROGRAM;
@@ -153,31 +159,88 @@ static hn_exit grade_all(task t, const hn_verdict_names *names) {
     return worst;
 }
 
-hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
-    task t = {.lib = lib, .args = args};
-    hn_exercise *exercise = NULL;
+/// What ID names, owned.
+typedef struct owned_subject {
+    hn_exercise *exercise;
+    hn_model *model; ///< of a scene whose program is graded
+    hn_filled_exam exam;
+} owned_subject;
+
+/// Finds an exercise, or where there is none of this name the scene whose program was filled in.
+static hn_status find_subject(const hn_library *lib, const hn_args *args, owned_subject *own,
+                              hn_grade_subject *out, hn_diags *diags) {
+    const char *id = args->words.word[0];
+    hn_status status;
+    if (hn_library_problem_path(lib, id) || !hn_library_scene_path(lib, id)) {
+        status = hn_shelf_exercise_load(lib, id, &own->exercise, diags);
+        *out = (hn_grade_subject){.exercise = own->exercise};
+        return status;
+    }
+    status = hn_args_load_model(lib, args, id, 0, &own->model, diags);
+    HN_THEN(status, hn_filled_exam_init(&own->exam, own->model, diags));
+    *out = (hn_grade_subject){.exercise = &own->exam.exercise, .programs = &own->exam};
+    return status;
+}
+
+/// Applies --rubric to an exercise of formulas; the parts of a program have the points they have.
+static hn_status apply_rubric(const hn_args *args, owned_subject *own, hn_diags *diags) {
+    if (own->exercise) {
+        return hn_cli_apply_rubric(args, own->exercise, diags);
+    }
+    return args->rubric ? hn_diags_add(diags, HN_ERR_INPUT, "/rubric", "leave --rubric out",
+                                       "the program of a scene has no rubric")
+                        : HN_OK;
+}
+
+static void free_subject(owned_subject *own) {
+    hn_exercise_free(own->exercise);
+    hn_filled_exam_reset(&own->exam);
+    hn_model_free(own->model);
+}
+
+/// Submissions that are files, each with a verdict of its own.
+static hn_exit grade_files(task t) {
+    const hn_args *args = t.args;
+    const char *form = args->format ? args->format : args->json ? "json" : "text";
+    hn_verdict_names names = {0};
     hn_diags diags = {0};
     hn_diag diag = {0};
-    const char *form = args->format ? args->format : args->json ? "json" : "text";
     if (hn_verdict_form_find(form, &t.form, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
-    hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &exercise, &diags);
-    if (status != HN_OK) {
-        return report_exercise(lib, args, status, &diags);
-    }
-    status = hn_cli_apply_rubric(args, exercise, &diags);
 
     // every name is chosen, and every folder made, before the first verdict is written
-    hn_verdict_names names = {0};
-    if (status == HN_OK && args->out) {
+    hn_status status = HN_OK;
+    if (args->out) {
         status = hn_verdict_names_choose(&names, args->out, args->words.word + 1, args->words.n - 1,
                                          t.form->ending, t.form->results, &diags);
     }
-    t.exercise = exercise;
     const hn_exit result =
         status == HN_OK ? grade_all(t, &names) : hn_report_diags(args, status, &diags);
     hn_verdict_names_reset(&names);
-    hn_exercise_free(exercise);
+    return result;
+}
+
+hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
+    task t = {.lib = lib, .args = args};
+    owned_subject own = {0};
+    hn_diags diags = {0};
+    struct stat info;
+    hn_exit result;
+    const bool folder = stat(args->words.word[1], &info) == 0 && S_ISDIR(info.st_mode);
+    hn_status status = find_subject(lib, args, &own, &t.subject, &diags);
+    const bool found = status == HN_OK;
+    HN_THEN(status, apply_rubric(args, &own, &diags));
+    if (status != HN_OK) {
+        result = found ? hn_report_diags(args, status, &diags)
+                       : report_exercise(lib, args, status, &diags);
+    } else if (args->merge) {
+        result = hn_grade_merge(args, &t.subject);
+    } else if (folder || args->shard) {
+        result = hn_grade_folder(args, &t.subject);
+    } else {
+        result = grade_files(t);
+    }
+    free_subject(&own);
     return result;
 }

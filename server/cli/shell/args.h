@@ -30,7 +30,7 @@ typedef struct hn_args {
     hn_words set, methods, traces, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
-        *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric;
+        *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric, *shard;
     double time, jobs, answer_time, every, t, port, width, height, seed, frame_dt, frames;
     double animate, hint, history, max_comparisons, max_streams, max_connections, run_cpu,
         idle_pause, expiry, keep_alive;
@@ -38,6 +38,7 @@ typedef struct hn_args {
     int json, csv, wide, allow_programs, trust_programs, open, help, raw_lambda, reactions;
     int once, ascii, blocks, plot, check, no_native, show_expected, no_pictures;
     int ghosts, dimensions, forces, describe;
+    int blanks, merge;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;
 

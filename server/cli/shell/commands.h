@@ -25,7 +25,6 @@ hn_exit hn_command_lesson(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_regrade(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_rubric(const hn_library *lib, const hn_args *args);
-hn_exit hn_command_class(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_import(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_tui(const hn_library *lib, const hn_args *args);

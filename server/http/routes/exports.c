@@ -58,9 +58,10 @@ static void name_file(hn_request *r, const hn_model *model, const char *suffix) 
 }
 
 /// Sends the program, or why there is none; frees the model.
-static void reply_program(hn_request *r, hn_model *model, const char *language,
+static void reply_program(hn_request *r, hn_model *model, const char *language, bool blanks,
                           const char *method) {
     hn_export_request request = {.language = language ? language : "python",
+                                 .blanks = blanks,
                                  .limits = {r->context->opts.max_run_cpu, is_stopping, r->context}};
     char spelling[HN_SPEC_MAX];
     hn_diags diags = {0};
@@ -92,7 +93,9 @@ static void reply_program(hn_request *r, hn_model *model, const char *language,
 void hn_handle_scene_export(hn_request *r) {
     hn_model *model = hn_catalogue_load_scene(r, 0);
     if (model) {
-        reply_program(r, model, hn_request_query(r, "language"), hn_request_query(r, "method"));
+        const char *blanks = hn_request_query(r, "blanks");
+        reply_program(r, model, hn_request_query(r, "language"),
+                      blanks && strcmp(blanks, "true") == 0, hn_request_query(r, "method"));
     }
 }
 
@@ -108,6 +111,7 @@ void hn_handle_export(hn_request *r) {
     hn_scene_request_reset(&order);
     if (status == HN_OK) {
         reply_program(r, model, hn_fields_text(r->json, "language"),
+                      cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "blanks")),
                       hn_fields_text(r->json, "method"));
     } else {
         hn_reply_diags(r, status, &diags);
@@ -150,7 +154,7 @@ void hn_handle_run_export(hn_request *r) {
         hn_model *model = load_run(r, run->request, spelling);
         hn_runs_release(r->context->runs, run);
         if (model) {
-            reply_program(r, model, hn_request_query(r, "language"), spelling);
+            reply_program(r, model, hn_request_query(r, "language"), false, spelling);
         }
     }
 }

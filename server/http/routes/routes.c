@@ -90,6 +90,9 @@ static const hn_field EQUATIONS[] = {SCENE_FIELDS,
 static const hn_field EXPORT[] = {
     SCENE_FIELDS,
     {.name = "language", .type = HN_FIELD_TEXT, .about = "python when left out; see /languages"},
+    {.name = "blanks",
+     .type = HN_FIELD_BOOL,
+     .about = "leave out mass, force, jacobian and bias, for students to fill in"},
     {.name = "method",
      .type = HN_FIELD_TEXT,
      .about = "named in the last line; the program has a solver of its own"},
@@ -264,6 +267,7 @@ static const hn_route_query REFERENCE_QUERY[] = {
 static const hn_route_query EXPORT_QUERY[] = {
     {"set", "string", "parameter:value, may be repeated"},
     {"language", "string", "python when left out; see /languages"},
+    {"blanks", "boolean", "true: without mass, force, jacobian and bias, for students to fill in"},
     {"method", "string", "named in the last line; the program has a solver of its own"},
     {NULL, NULL, NULL}};
 static const hn_route_query PROBLEM_QUERY[] = {

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/export/exam.h"
+
+#include "base/clock.h"
+#include "dynamics/compile/compile.h"
+#include "dynamics/evaluate/eval.h"
+#include "session/export/states.h"
+
+#include <string.h>
+
+static const struct {
+    const char *name;
+    hn_term term;
+} PARTS[HN_EXPORT_PARTS] = {
+    {"mass", HN_TERM_M}, {"force", HN_TERM_F}, {"jacobian", HN_TERM_J}, {"bias", HN_TERM_GAMMA}};
+
+const char *hn_export_part_name(hn_export_part part) {
+    return PARTS[part].name;
+}
+
+static const double *copy(hn_arena *arena, const double *x, int n) {
+    double *own = hn_arena_doubles(arena, (size_t)n + 1);
+    if (own && n > 0) {
+        memcpy(own, x, (size_t)n * sizeof *x);
+    }
+    return own;
+}
+
+/// Evaluates every part at a state, and the force at rest.
+static void ask(hn_export_exam *exam, hn_eval *eval, const hn_export_state *at,
+                hn_export_question *out) {
+    out->t = at->t;
+    out->q = copy(exam->arena, at->q, exam->nq);
+    out->v = copy(exam->arena, at->v, exam->nv);
+    hn_eval_run(eval, at->t, at->q, at->v);
+    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
+        out->answer[part] =
+            copy(exam->arena, hn_eval_get(eval, PARTS[part].term), exam->size[part]);
+    }
+    hn_eval_run(eval, at->t, at->q, NULL);
+    out->still = copy(exam->arena, hn_eval_get(eval, HN_TERM_F), exam->nv);
+}
+
+static hn_status ask_all(hn_export_exam *exam, hn_exporter *e, hn_diags *diags) {
+    hn_eval *eval = NULL;
+    const int nv = e->info.nv, nc = e->info.nc;
+    exam->nq = e->info.nq;
+    exam->nv = nv;
+    exam->nc = nc;
+    const int sizes[HN_EXPORT_PARTS] = {nv * nv, nv, nc * nv, nc};
+    const int columns[HN_EXPORT_PARTS] = {nv, 0, nv, 0};
+    memcpy(exam->size, sizes, sizeof sizes);
+    memcpy(exam->columns, columns, sizeof columns);
+
+    // the start, and states on the way to the later one
+    HN_TRY(hn_eval_create(e->sys, HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA, exam->arena,
+                          &eval));
+    hn_status status = HN_OK;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES && status == HN_OK; k++) {
+        hn_export_state at = e->start;
+        if (k > 0) {
+            const double t = e->later.t * k / (HN_EXPORT_EXAM_STATES - 1);
+            status = hn_export_state_at(e, t, &at, diags);
+        }
+        if (status == HN_OK) {
+            ask(exam, eval, &at, &exam->question[k]);
+        }
+    }
+    hn_eval_free(eval);
+    return status == HN_OK && hn_arena_failed(exam->arena) ? HN_ERR_MEMORY : status;
+}
+
+hn_status hn_export_exam_init(hn_export_exam *exam, const hn_model *model,
+                              const hn_walk_limits *limits, hn_diags *diags) {
+    *exam = (hn_export_exam){.arena = hn_arena_create(0)};
+    hn_exporter e = {.model = model,
+                     .arena = exam->arena,
+                     .limits = limits ? *limits : (hn_walk_limits){0},
+                     .started = hn_clock_thread()};
+    if (!exam->arena) {
+        return HN_ERR_MEMORY;
+    }
+    hn_status status = hn_export_states_find(&e, diags);
+    HN_THEN(status, ask_all(exam, &e, diags));
+    hn_system_free(e.sys);
+    return status;
+}
+
+void hn_export_exam_reset(hn_export_exam *exam) {
+    hn_arena_free(exam->arena);
+    *exam = (hn_export_exam){0};
+}

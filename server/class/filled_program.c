@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "class/filled_program.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "export/language.h"
+#include "grade/submission.h"
+#include "program/guest_process.h"
+#include "program/sandbox.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+static const double POINTS = 2; // of a part
+/// Difference that is allowed, relative to the largest entry of the part or 1: the two programs
+/// round in another order, and a student may divide where we multiply.
+static const double ALLOWED = 1e-9;
+
+// ---- what is expected ----
+
+static bool is_asked(const hn_export_exam *exam, int part) {
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        for (int i = 0; i < exam->size[part]; i++) {
+            if (exam->question[k].answer[part][i] != 0) {
+                return true;
+            }
+        }
+    }
+    return false; // all zero: nothing is to be filled in
+}
+
+hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model, hn_diags *diags) {
+    const hn_walk_limits none = {0};
+    hn_diag diag = {0};
+    *f = (hn_filled_exam){0};
+    if (hn_sandbox_check(&diag) != HN_OK) {
+        return hn_diags_add(diags, diag.status, NULL, diag.hint, "%s", diag.message);
+    }
+    HN_TRY(hn_export_exam_init(&f->exam, model, &none, diags));
+
+    // an exercise that no file describes
+    const hn_scene *scene = hn_model_scene(model);
+    snprintf(f->title, sizeof f->title, "the program of %s",
+             scene->title ? scene->title : scene->id);
+    f->exercise =
+        (hn_exercise){.id = scene->id, .title = f->title, .scene = "", .hash = scene->hash};
+    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
+        f->exercise.n_parts += is_asked(&f->exam, part);
+    }
+    f->exercise.points = POINTS * f->exercise.n_parts;
+    return HN_OK;
+}
+
+void hn_filled_exam_reset(hn_filled_exam *f) {
+    hn_export_exam_reset(&f->exam);
+}
+
+static const hn_language *language_of(const char *path) {
+    int n;
+    const hn_language *all = hn_languages(&n);
+    const char *dot = strrchr(path, '.');
+    for (int i = 0; dot && i < n; i++) {
+        if (strcasecmp(dot, all[i].suffix) == 0 && strcmp(all[i].suffix, ".wl") != 0 &&
+            strcmp(all[i].suffix, ".mo") != 0 && strcmp(all[i].suffix, ".tex") != 0) {
+            return &all[i];
+        }
+    }
+    return NULL;
+}
+
+bool hn_filled_program_is(const char *path) {
+    return language_of(path) != NULL;
+}
+
+// ---- asking ----
+
+/// What a program has answered: for each state all parts behind each other.
+typedef struct answers {
+    int n; ///< numbers a state
+    double *value;
+} answers;
+
+/// Sends one state and reads the numbers of its answer.
+static hn_status ask(const hn_export_exam *exam, hn_guest_process *process, int k, double seconds,
+                     answers *out, hn_diag *diag) {
+    const hn_export_question *question = &exam->question[k];
+    hn_strbuf text, line;
+    hn_strbuf_init(&text);
+    hn_strbuf_init(&line);
+    hn_strbuf_printf(&text, "%.17g", question->t);
+    for (int i = 0; i < exam->nq + exam->nv; i++) {
+        hn_strbuf_printf(&text, " %.17g",
+                         i < exam->nq ? question->q[i] : question->v[i - exam->nq]);
+    }
+    hn_strbuf_add(&text, "\n");
+    hn_status status =
+        hn_guest_process_ask(process, hn_strbuf_text(&text), text.n, seconds, &line, diag);
+
+    // as many numbers as the parts have entries
+    const char *at = hn_strbuf_text(&line);
+    int n = 0;
+    for (; status == HN_OK && n < out->n; n++) {
+        char *end;
+        out->value[k * out->n + n] = strtod(at, &end);
+        if (end == at) {
+            break;
+        }
+        at = end;
+    }
+    if (status == HN_OK && (n < out->n || at[strspn(at, " ")] != '\0')) {
+        status = hn_diag_set(
+            diag, HN_ERR_INPUT, NULL, "print nothing of your own while it is asked for states",
+            "its answer to state %d is not the %d numbers of its parts, but '%.40s'", k + 1, out->n,
+            hn_strbuf_text(&line));
+    }
+    hn_strbuf_reset(&text);
+    hn_strbuf_reset(&line);
+    return status;
+}
+
+static hn_status ask_all(const hn_export_exam *exam, const char *path, answers *out,
+                         hn_diag *diag) {
+    const hn_program_limits limits = hn_program_limits_default();
+    hn_sandbox_command command;
+    hn_guest_process process;
+    HN_TRY(hn_sandbox_build(&command, path, "states", false, &limits, diag));
+    HN_TRY(hn_guest_process_start(&process, command.argv, command.file, &limits, diag));
+    hn_status status = HN_OK;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES && status == HN_OK; k++) {
+        status = ask(exam, &process, k, k == 0 ? limits.start : limits.answer, out, diag);
+    }
+    hn_guest_process_end(&process);
+    return status;
+}
+
+// ---- comparing ----
+
+/// One part over all states: what is expected and what was given.
+typedef struct part_view {
+    const hn_export_exam *exam;
+    const answers *given;
+    int part, offset;
+} part_view;
+
+static double expected_at(const part_view *p, int k, int i) {
+    return p->exam->question[k].answer[p->part][i];
+}
+
+static double given_at(const part_view *p, int k, int i) {
+    return p->given->value[k * p->given->n + p->offset + i];
+}
+
+static double force_at_rest(const part_view *p, int k, int i) {
+    return p->exam->question[k].still[i];
+}
+
+static double negative_at(const part_view *p, int k, int i) {
+    return -expected_at(p, k, i);
+}
+
+static double zero_at(const part_view *p, int k, int i) {
+    (void)p, (void)k, (void)i;
+    return 0;
+}
+
+/// The lower triangle of a symmetric matrix, where the upper one was left out.
+static double lower_at(const part_view *p, int k, int i) {
+    const int n = p->exam->nv;
+    return i % n > i / n ? 0 : expected_at(p, k, i);
+}
+
+static double upper_at(const part_view *p, int k, int i) {
+    const int n = p->exam->nv;
+    return i % n < i / n ? 0 : expected_at(p, k, i);
+}
+
+static double size_of(const part_view *p) {
+    double size = 1;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        for (int i = 0; i < p->exam->size[p->part]; i++) {
+            size = fmax(size, fabs(expected_at(p, k, i)));
+        }
+    }
+    return size;
+}
+
+/// Whether every given entry is what `like` says; the largest difference is at *state, *entry.
+static bool is_like(const part_view *p, double (*like)(const part_view *, int, int), int *state,
+                    int *entry) {
+    double worst = -1;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        for (int i = 0; i < p->exam->size[p->part]; i++) {
+            const double d = fabs(given_at(p, k, i) - like(p, k, i));
+            if (!(d <= worst)) {
+                worst = isnan(d) ? HUGE_VAL : d;
+                *state = k;
+                *entry = i;
+            }
+        }
+    }
+    return worst <= ALLOWED * size_of(p);
+}
+
+/// The factor by which every entry is off, 0: there is none.
+static double factor_of(const part_view *p) {
+    double above = 0, below = 0, worst = 0;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        for (int i = 0; i < p->exam->size[p->part]; i++) {
+            above += given_at(p, k, i) * expected_at(p, k, i);
+            below += expected_at(p, k, i) * expected_at(p, k, i);
+        }
+    }
+    const double factor = above / below;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        for (int i = 0; i < p->exam->size[p->part]; i++) {
+            worst = fmax(worst, fabs(given_at(p, k, i) - factor * expected_at(p, k, i)));
+        }
+    }
+    return worst <= ALLOWED * size_of(p) ? factor : 0;
+}
+
+static const struct {
+    const char *id, *text;
+    bool parts[HN_EXPORT_PARTS]; ///< of which it is a mistake
+    double (*like)(const part_view *, int, int);
+} MISTAKES[] = {{"empty",
+                 "every entry is zero: this part was not filled in",
+                 {true, true, true, true},
+                 zero_at},
+                {"sign", "every entry has the wrong sign", {true, true, true, true}, negative_at},
+                {"velocity",
+                 "the terms of the velocities, C v, are missing",
+                 {false, true, false, false},
+                 force_at_rest},
+                {"symmetry",
+                 "the entries above the diagonal are missing",
+                 {true, false, false, false},
+                 lower_at},
+                {"symmetry",
+                 "the entries below the diagonal are missing",
+                 {true, false, false, false},
+                 upper_at}};
+
+static void name_mistake(const part_view *p, hn_entry_verdict *e) {
+    int state, entry;
+    for (size_t i = 0; i < sizeof MISTAKES / sizeof *MISTAKES; i++) {
+        if (MISTAKES[i].parts[p->part] && is_like(p, MISTAKES[i].like, &state, &entry)) {
+            e->mistake = MISTAKES[i].id;
+            snprintf(e->explanation, sizeof e->explanation, "%s", MISTAKES[i].text);
+            return;
+        }
+    }
+    const double factor = factor_of(p);
+    if (factor != 0) {
+        e->mistake = "factor";
+        snprintf(e->explanation, sizeof e->explanation, "every entry is %.6g times the right one",
+                 factor);
+    }
+}
+
+/// The entry with the largest difference, as the student's language counts.
+static void show_entry(const part_view *p, const hn_language *language, int state, int entry,
+                       hn_entry_verdict *e) {
+    const int columns = p->exam->columns[p->part], first = language->first;
+    const char *name = hn_export_part_name((hn_export_part)p->part);
+    e->state = state;
+    e->given_value = given_at(p, state, entry);
+    e->expected_value = expected_at(p, state, entry);
+    e->allowed = ALLOWED * size_of(p);
+    if (columns) {
+        snprintf(e->given, sizeof e->given, "%s[%d, %d]", name, entry / columns + first,
+                 entry % columns + first);
+    } else {
+        snprintf(e->given, sizeof e->given, "%s[%d]", name, entry + first);
+    }
+    if (!e->mistake[0]) {
+        e->mistake = "other";
+        snprintf(e->explanation, sizeof e->explanation,
+                 "the entry that differs most, at the state %d of %d (t = %.4g s)", state + 1,
+                 HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
+    }
+}
+
+static void compare_part(const part_view *p, const hn_language *language, hn_entry_verdict *e) {
+    int state = 0, entry = 0;
+    snprintf(e->name, sizeof e->name, "%s", hn_export_part_name((hn_export_part)p->part));
+    e->max_points = POINTS;
+    e->mistake = "";
+    e->state = -1;
+    e->right = is_like(p, expected_at, &state, &entry);
+    e->points = e->right ? POINTS : 0;
+    if (!e->right) {
+        name_mistake(p, e);
+        show_entry(p, language, state, entry, e);
+    }
+}
+
+static void compare_all(const hn_filled_exam *f, const hn_language *language, const answers *given,
+                        hn_verdict *v) {
+    part_view p = {.exam = &f->exam, .given = given};
+    for (; p.part < HN_EXPORT_PARTS; p.offset += f->exam.size[p.part++]) {
+        if (is_asked(&f->exam, p.part)) {
+            hn_entry_verdict *e = &v->entry[v->n_entries];
+            e->row = v->n_entries++;
+            compare_part(&p, language, e);
+            v->n_right += e->right;
+            v->score += e->points;
+        }
+    }
+    v->n_states = HN_EXPORT_EXAM_STATES;
+    snprintf(v->summary, sizeof v->summary, "%d of %d parts are right", v->n_right, v->n_entries);
+}
+
+// ---- the whole ----
+
+hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path, hn_verdict *v) {
+    const hn_language *language = language_of(path);
+    hn_diag diag = {0};
+    hn_strbuf text;
+    memset(v, 0, sizeof *v);
+    v->problem = &f->exercise;
+    v->max_score = f->exercise.points;
+    v->shown_entry = -1;
+    if (!language) {
+        hn_submission_refuse(v, "hand in the file that export --blanks wrote, filled in",
+                             "its name does not end in .py, .c, .cpp, .java, .m or .jl");
+        return HN_OK;
+    }
+
+    // the text is kept as its hash alone
+    hn_strbuf_init(&text);
+    hn_status status = hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
+    v->submission_hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, hn_strbuf_text(&text), text.n));
+    hn_strbuf_reset(&text);
+
+    // its answers, compared part by part
+    answers given = {0};
+    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
+        given.n += f->exam.size[part];
+    }
+    given.value = calloc((size_t)given.n * HN_EXPORT_EXAM_STATES, sizeof *given.value);
+    if (!given.value) {
+        return HN_ERR_MEMORY;
+    }
+    HN_THEN(status, ask_all(&f->exam, path, &given, &diag));
+    if (status == HN_OK) {
+        compare_all(f, language, &given, v);
+    } else {
+        hn_submission_refuse(v, diag.hint, "%s", diag.message);
+    }
+    free(given.value);
+    return HN_OK;
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "class/likeness.h"
+
+#include "base/hash.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { MOST_NAMES = 512 };
+
+/// Names in the order in which they appeared, as hashes.
+typedef struct names {
+    int n;
+    uint64_t name[MOST_NAMES];
+} names;
+
+typedef struct reader {
+    uint64_t hash;
+    names *names; ///< NULL: names stay as they are
+    bool is_program;
+} reader;
+
+/// The number of a name; one beyond the last that is kept counts as itself.
+static uint64_t number_of(names *list, uint64_t name) {
+    for (int i = 0; i < list->n; i++) {
+        if (list->name[i] == name) {
+            return (uint64_t)i;
+        }
+    }
+    if (list->n == MOST_NAMES) {
+        return name;
+    }
+    list->name[list->n] = name;
+    return (uint64_t)list->n++;
+}
+
+static bool begins_name(char c) {
+    return isalpha((unsigned char)c) || c == '_';
+}
+
+static bool continues_name(char c) {
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+/// Reads a name; the name of a function stands before a bracket and stays.
+static const char *read_name(reader *r, const char *at) {
+    uint64_t name = HN_HASH_START;
+    for (; continues_name(*at); at++) {
+        const char c = (char)tolower((unsigned char)*at);
+        name = hn_hash_bytes(name, &c, 1);
+    }
+    const char *behind = at + strspn(at, " \t");
+    const uint64_t kept = r->names && *behind != '(' ? number_of(r->names, name) : name;
+    r->hash = hn_hash_bytes(r->hash, &kept, sizeof kept);
+    return at;
+}
+
+/// Where a comment that begins here ends; NULL: none begins here.
+static const char *skip_comment(const char *at) {
+    if (*at == '#' || *at == '%' || (at[0] == '/' && at[1] == '/')) {
+        // in C '%' is an operator and '#' a directive: what is behind them counts for nobody
+        return at + strcspn(at, "\n");
+    }
+    if (at[0] == '/' && at[1] == '*') {
+        const char *end = strstr(at + 2, "*/");
+        return end ? end + 2 : at + strlen(at);
+    }
+    return NULL;
+}
+
+static void read_text(reader *r, const char *at) {
+    while (*at) {
+        const char *end = r->is_program ? skip_comment(at) : NULL;
+        if (end) {
+            at = end;
+        } else if (begins_name(*at)) {
+            at = read_name(r, at);
+        } else {
+            const char c = *at++;
+            if (!isspace((unsigned char)c)) {
+                r->hash = hn_hash_bytes(r->hash, &c, 1);
+            }
+        }
+    }
+}
+
+/// All texts and numbers of a submission, in their order.
+static void read_item(reader *r, const cJSON *item) {
+    if (cJSON_IsString(item)) {
+        read_text(r, item->valuestring);
+        r->hash = hn_hash_text(r->hash, "|");
+    } else if (cJSON_IsNumber(item)) {
+        r->hash = hn_hash_double(r->hash, item->valuedouble);
+    }
+    const cJSON *part;
+    cJSON_ArrayForEach(part, item) {
+        read_item(r, part);
+    }
+}
+
+uint64_t hn_likeness_texts(const cJSON *submission) {
+    reader r = {.hash = HN_HASH_START};
+    read_item(&r, submission);
+    return hn_hash_mix(r.hash);
+}
+
+uint64_t hn_likeness_shape(const cJSON *submission) {
+    names list = {0};
+    reader r = {.hash = HN_HASH_START, .names = &list};
+    read_item(&r, submission);
+    return hn_hash_mix(r.hash);
+}
+
+uint64_t hn_likeness_program_texts(const char *text) {
+    reader r = {.hash = HN_HASH_START, .is_program = true};
+    read_text(&r, text);
+    return hn_hash_mix(r.hash);
+}
+
+uint64_t hn_likeness_program_shape(const char *text) {
+    names list = {0};
+    reader r = {.hash = HN_HASH_START, .names = &list, .is_program = true};
+    read_text(&r, text);
+    return hn_hash_mix(r.hash);
+}

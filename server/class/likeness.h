@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLASS_LIKENESS_H
+#define HN_CLASS_LIKENESS_H
+// Hashes by which two submissions are told to be one, or one a copy of the other under new names.
+
+#include <cjson/cJSON.h>
+#include <stdint.h>
+
+/// Hashes what a submission says: its texts without blanks and capitals, and its numbers.
+uint64_t hn_likeness_texts(const cJSON *submission);
+/// Hashes the same with every name replaced by its number in order of appearance; the names of
+/// functions stay. Two submissions that differ in their names alone are equal.
+uint64_t hn_likeness_shape(const cJSON *submission);
+/// The same two for the text of a program: blanks and comments (of all its languages) are left out.
+uint64_t hn_likeness_program_texts(const char *text);
+uint64_t hn_likeness_program_shape(const char *text);
+
+#endif

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The submissions of a class, one line each as it is graded, then a summary.
+#include "cli/commands/grade_folder.h"
+
+#include "base/file.h"
+#include "class/class_grading.h"
+#include "class/class_summary.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/document.h"
+#include "cli/shell/forms.h"
+#include "cli/shell/notes.h"
+#include "cli/shell/output_file.h"
+#include "cli/shell/print.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double TIME_LIMIT = 60; // [s] for one submission
+
+static bool is_graded(const cJSON *o) {
+    return strcmp(hn_document_text(o, "status"), "graded") == 0;
+}
+
+/// One line on standard output as it is finished: JSON, or words.
+static void tell(void *user, const char *line) {
+    const hn_args *args = user;
+    if (args->json) {
+        printf("%s\n", line);
+        fflush(stdout);
+        return;
+    }
+    cJSON *o = cJSON_Parse(line);
+    const char *remark = hn_document_text(o, "remark");
+    if (is_graded(o)) {
+        printf("%s: %g of %g, %s", hn_document_text(o, "student"), hn_document_number(o, "score"),
+               hn_document_number(o, "max_score"), hn_document_text(o, "summary"));
+    } else {
+        printf("%s: %s, %s", hn_document_text(o, "student"), hn_document_text(o, "status"),
+               hn_document_text(o, "reason"));
+    }
+    printf("%s%s\n", remark[0] ? "; " : "", remark);
+    fflush(stdout);
+    cJSON_Delete(o);
+}
+
+/// A field in quotes where it holds a comma or a quote; a formula for a spreadsheet it never is.
+static void put_field(hn_strbuf *b, const char *text) {
+    const char *guard = text[0] && strchr("=+-@", text[0]) ? "'" : "";
+    hn_strbuf_printf(b, "\"%s", guard);
+    for (; *text; text++) {
+        hn_strbuf_add_n(b, text, 1);
+        hn_strbuf_add(b, *text == '"' ? "\"" : "");
+    }
+    hn_strbuf_add(b, "\"");
+}
+
+static void put_csv(hn_strbuf *b, const hn_class_result *r) {
+    hn_strbuf_add(b, "student,status,score,max_score,says,file,remark\n");
+    for (int i = 0; i < r->n; i++) {
+        cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
+        if (!o) {
+            continue; // of another shard
+        }
+        put_field(b, hn_document_text(o, "student"));
+        hn_strbuf_printf(b, ",%s,%.10g,%.10g,", hn_document_text(o, "status"),
+                         hn_document_number(o, "score"), hn_document_number(o, "max_score"));
+        put_field(b, hn_document_text(o, is_graded(o) ? "summary" : "reason"));
+        hn_strbuf_add(b, ",");
+        put_field(b, hn_document_text(o, "file"));
+        hn_strbuf_add(b, ",");
+        put_field(b, hn_document_text(o, "remark"));
+        hn_strbuf_add(b, "\n");
+        cJSON_Delete(o);
+    }
+}
+
+/// The whole result into --out: CSV by its ending, else one JSON object a line.
+static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (hn_path_ends_in(args->out, ".csv")) {
+        put_csv(&b, r);
+    } else {
+        for (int i = 0; i < r->n; i++) {
+            hn_strbuf_add(&b, r->line[i] ? r->line[i] : "");
+            hn_strbuf_add(&b, r->line[i] ? "\n" : "");
+        }
+    }
+    return hn_cli_write_file(args, args->out, &b);
+}
+
+/// The result into --out, and its summary to the terminal.
+static hn_exit finish(const hn_args *args, const hn_class_result *result, bool programs) {
+    const hn_exit exit = args->out ? write_result(args, result) : HN_EXIT_DONE;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_class_summary(&b, result, programs);
+    fputs(hn_strbuf_text(&b), args->json ? stderr : stdout);
+    hn_strbuf_reset(&b);
+    return exit;
+}
+
+/// "2/4": the second of four parts.
+static hn_status read_shard(const char *text, hn_class_shard *out, hn_diag *diag) {
+    char behind;
+    if (!text) {
+        return HN_OK;
+    }
+    if (sscanf(text, "%d/%d%c", &out->i, &out->n, &behind) != 2 || out->i < 1 || out->n < 1 ||
+        out->i > out->n) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/shard", "as 2/4: the second of four",
+                           "'%.40s' is no part of a class", text);
+    }
+    return HN_OK;
+}
+
+static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject,
+                            const hn_roster *roster) {
+    char journal[1100] = "";
+    hn_class_result result;
+    hn_diag diag = {0};
+    hn_class_opts opts = {.jobs = isnan(args->jobs) ? (int)sysconf(_SC_NPROCESSORS_ONLN)
+                                                    : (int)fmin(args->jobs, 1000),
+                          .programs = subject->programs,
+                          .time_limit = TIME_LIMIT,
+                          .seed = isnan(args->seed) ? 0 : (uint64_t)args->seed,
+                          .tell = tell,
+                          .user = (void *)args};
+    if (read_shard(args->shard, &opts.shard, &diag) != HN_OK) {
+        return hn_report_diag(args, &diag);
+    }
+
+    // the journal from which an interrupted run goes on
+    if (args->out) {
+        snprintf(journal, sizeof journal, "%.1000s.part", args->out);
+        opts.journal = journal;
+    }
+
+    // verdicts to the file, the summary to the terminal
+    const hn_status status = hn_class_grade(roster, subject->exercise, &opts, &result, &diag);
+    hn_exit exit = HN_EXIT_PROGRAM;
+    if (status != HN_OK) {
+        hn_report_diag(args, &diag);
+    } else {
+        if (result.resumed > 0) {
+            hn_cli_note("holonom: %d of %d submissions were graded before\n", result.resumed,
+                        result.n - result.others);
+        }
+        exit = finish(args, &result, subject->programs != NULL);
+    }
+
+    hn_class_result_reset(&result);
+    return exit;
+}
+
+hn_exit hn_grade_folder(const hn_args *args, const hn_grade_subject *subject) {
+    hn_roster roster = {0};
+    hn_diags diags = {0};
+    hn_diag diag = {0};
+    const bool many = args->words.n > 2 || args->format || args->student;
+    if (many) {
+        hn_diag_set(&diag, HN_ERR_INPUT, NULL, "--out FILE.ndjson or FILE.csv chooses the form",
+                    args->words.n > 2
+                        ? "'%.200s' is a folder: a class is graded alone"
+                        : "'%.200s' is a folder: --format and --student are for files",
+                    args->words.word[1]);
+        return hn_report_diag(args, &diag);
+    }
+    const hn_status status = hn_cli_check_folder(args->out, &diags);
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, &diags);
+    }
+    const hn_exit exit = hn_roster_read(&roster, args->words.word[1], &diag) == HN_OK
+                             ? grade_roster(args, subject, &roster)
+                             : hn_report_diag(args, &diag);
+    hn_roster_reset(&roster);
+    return exit;
+}
+
+// ---- parts of a class, put together ----
+
+/// A copy of a line as a run of the whole class writes it.
+static char *without_place(const char *line, size_t n, int place, int of) {
+    char words[64];
+    char *own = strndup(line, n);
+    snprintf(words, sizeof words, "\"place\":%d,\"of\":%d,", place, of);
+    char *at = own ? strstr(own, words) : NULL;
+    if (at) {
+        memmove(at, at + strlen(words), strlen(at + strlen(words)) + 1);
+    }
+    return own;
+}
+
+/// Takes one line of a part into its place.
+static hn_status take_line(hn_class_result *r, const char *file, const char *line, size_t n,
+                           hn_diag *diag) {
+    cJSON *o = cJSON_ParseWithLength(line, n);
+    const cJSON *place = cJSON_GetObjectItem(o, "place"), *of = cJSON_GetObjectItem(o, "of");
+    const bool fits = cJSON_IsNumber(place) && cJSON_IsNumber(of) && of->valueint > 0 &&
+                      of->valueint <= 1000000 && place->valueint >= 0 &&
+                      place->valueint < of->valueint && (r->n == 0 || r->n == of->valueint);
+    hn_status status = HN_OK;
+    if (!fits) {
+        status = hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                             "holonom grade ID FOLDER --shard i/n --out FILE.ndjson makes one",
+                             "'%.200s' is not a part of this class", file);
+    } else if (!r->line) {
+        r->n = of->valueint;
+        r->line = calloc((size_t)r->n + 1, sizeof *r->line);
+        status = r->line ? HN_OK : HN_ERR_MEMORY;
+    }
+    char *own = status == HN_OK ? without_place(line, n, place->valueint, of->valueint) : NULL;
+    char **kept = status == HN_OK ? &r->line[place->valueint] : NULL;
+    if (status == HN_OK && !own) {
+        status = HN_ERR_MEMORY;
+    } else if (status == HN_OK && *kept && strcmp(*kept, own) != 0) {
+        status = hn_diag_set(diag, HN_ERR_INPUT, NULL, "grade one of the parts again",
+                             "'%.200s' and a part before it differ about %.80s", file,
+                             hn_document_text(o, "student"));
+    }
+    if (status == HN_OK && !*kept) {
+        *kept = own;
+        own = NULL;
+    }
+    free(own);
+    cJSON_Delete(o);
+    return status;
+}
+
+static hn_status take_part(hn_class_result *r, const char *file, hn_diag *diag) {
+    enum { MOST_BYTES = 256 << 20 };
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_status status = hn_file_read(file, MOST_BYTES, &text, diag);
+    for (const char *at = hn_strbuf_text(&text); status == HN_OK && *at;) {
+        const size_t n = strcspn(at, "\n");
+        status = take_line(r, file, at, n, diag);
+        at += n + (at[n] == '\n');
+    }
+    hn_strbuf_reset(&text);
+    return status;
+}
+
+/// Every place must be filled, else some part is missing.
+static hn_status check_whole(const hn_class_result *r, hn_diag *diag) {
+    int missing = 0;
+    for (int i = 0; i < r->n; i++) {
+        missing += !r->line[i];
+    }
+    return missing == 0 && r->n > 0
+               ? HN_OK
+               : hn_diag_set(diag, HN_ERR_INPUT, "/merge", "name all parts of the class",
+                             "%d of %d submissions are in none of these parts", missing, r->n);
+}
+
+hn_exit hn_grade_merge(const hn_args *args, const hn_grade_subject *subject) {
+    hn_class_result result = {0};
+    hn_diag diag = {0};
+    hn_status status = HN_OK;
+    for (int i = 1; i < args->words.n && status == HN_OK; i++) {
+        status = take_part(&result, args->words.word[i], &diag);
+    }
+    HN_THEN(status, check_whole(&result, &diag));
+    const hn_exit exit = status == HN_OK ? finish(args, &result, subject->programs != NULL)
+                                         : hn_report_diag(args, &diag);
+    hn_class_result_reset(&result);
+    return exit;
+}

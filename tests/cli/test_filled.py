@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Programs with blanks: filled in rightly they get all points in every language, mistakes are named, and a class of them is graded."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+from test_programs import NEEDS, TROUBLE, has_numpy  # noqa: E402
+
+PROGRAM = os.path.abspath(driver.PROGRAM)
+ENDINGS = {"python": ("py", "    return mass"), "c": ("c", "}"), "cpp": ("cpp", "}"), "java": ("java", "        }"), "octave": ("m", "end")}
+POINTS = 8  # of a scene with constraints: four parts
+
+
+def call(*words):
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300 * driver.SLOW)
+
+
+def blank_and_filled(scene, language):
+    """The program with blanks, and the same with the statements of the whole program in their place."""
+    blank, whole = (call("export", scene, "--language", language, *more).stdout.splitlines() for more in (["--blanks"], []))
+    end = ENDINGS[language][1]
+    begins = next(i for i, line in enumerate(blank) if "YOUR PART 1" in line)
+    after = next(i for i in range(begins, len(blank)) if blank[i].startswith(end))
+    start = next(i for i, line in enumerate(whole) if line == blank[begins - 1])
+    # an anchor that stands there twice would cut the wrong piece out
+    assert whole.count(blank[begins - 1]) == 1, blank[begins - 1]
+    stop = next(i for i in range(start, len(whole)) if whole[i].startswith(end))
+    return "\n".join(blank) + "\n", "\n".join(blank[:begins] + whole[start + 1 : stop] + blank[after:]) + "\n"
+
+
+@unittest.skipIf(TROUBLE, TROUBLE)
+class Filled(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+
+    def put(self, name, text):
+        path = os.path.join(self.temporary.name, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as f:
+            f.write(text)
+        return path
+
+    def grade(self, scene, path):
+        done = call("grade", scene, path, "--json")
+        return done.returncode, json.loads(done.stdout)
+
+    def test_a_right_program_gets_all_points_in_every_language_and_a_blank_one_none(self):
+        tried = 0
+        for language, (ending, _) in ENDINGS.items():
+            if not shutil.which(NEEDS[language]) or (language == "python" and not has_numpy()):
+                print(f"# {language} is not here")
+                continue
+            scenes = ("four-bar", "heavy-top", "driven-crank") if language in ("python", "c") else ("four-bar",)
+            for scene in scenes:
+                tried += 1
+                blank, filled = blank_and_filled(scene, language)
+                status, verdict = self.grade(scene, self.put(f"{scene}.{ending}", filled))
+                self.assertEqual((status, verdict["score"]), (0, verdict["max_score"]), (language, scene, verdict))
+                self.assertGreaterEqual(verdict["max_score"], 4)
+                status, verdict = self.grade(scene, self.put(f"{scene}-blank.{ending}", blank))
+                self.assertEqual((status, verdict["score"], {e["mistake"] for e in verdict["entries"]}), (0, 0, {"empty"}), (language, scene))
+        self.assertGreaterEqual(tried, 3)
+
+    def test_the_blanks_do_not_hold_the_answer(self):
+        blank, filled = blank_and_filled("four-bar", "c")
+        self.assertIn("mass[0][0] =", filled)
+        for part in ("mass[", "force[", "jacobian[", "bias["):
+            statements = [line for line in blank.splitlines() if line.strip().startswith(part)]
+            self.assertEqual(statements, [])
+        # and it compiles as it is
+        path = self.put("blank.c", blank)
+        done = subprocess.run(["gcc", "-std=c99", "-Wall", "-Wextra", "-Wno-unused-variable", "-Werror", "-o", path + ".x", path, "-lm"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_mistakes_are_named(self):
+        _, filled = blank_and_filled("four-bar", "c")
+        last = filled.rindex("    energy[0] =")
+        # after every statement of the right answer, one that spoils a part
+        cases = {"sign": ("jacobian", "for (int i = 0; i < NC * NV; i++) jacobian[i / NV][i % NV] *= -1;"),
+                 "factor": ("mass", "for (int i = 0; i < NV * NV; i++) mass[i / NV][i % NV] *= 0.5;"),
+                 "symmetry": ("mass", "mass[0][1] = 0;"),
+                 "empty": ("bias", "bias[0] = bias[1] = 0;"),
+                 "velocity": ("force", "{ double still[NV] = {-0.5*g*l1*(m1 + 2*m2)*cos(th1), -0.5*g*l2*m2*cos(theta_coupler), -0.5*g*l3*m3*cos(th3)}; "
+                                       "memcpy(force, still, sizeof still); }"),
+                 "other": ("force", "force[2] += 0.001;")}  # fmt: skip
+        for mistake, (part, statement) in cases.items():
+            status, verdict = self.grade("four-bar", self.put(f"{mistake}.c", filled[:last] + "    " + statement + "\n" + filled[last:]))
+            entries = {e["name"]: e for e in verdict["entries"]}
+            self.assertEqual((status, verdict["score"], entries[part]["mistake"]), (0, POINTS - 2, mistake), verdict)
+            self.assertTrue(entries[part]["explanation"])
+            self.assertNotIn("expected_value", entries[part])
+
+    def test_a_parameter_that_was_set_for_the_export_is_set_for_the_grade(self):
+        text = call("export", "four-bar", "--language", "c", "--blanks", "--set", "l1=0.45").stdout
+        self.assertIn("l1 = 0.45", text)
+        _, filled = blank_and_filled("four-bar", "c")
+        path = self.put("set.c", filled.replace("l1 = 0.5", "l1 = 0.45"))
+        self.assertLess(self.grade("four-bar", path)[1]["score"], POINTS)
+        done = call("grade", "four-bar", path, "--set", "l1=0.45", "--json")
+        self.assertEqual(json.loads(done.stdout)["score"], POINTS)
+
+    def test_what_does_not_answer_says_which_limit(self):
+        cases = {"ends": ("import sys\nsys.exit(3)", "exit status 3"),
+                 "raises": ("raise ValueError('not done')", "not done"),
+                 "prints": ("for x in iter(input, ''): print('hello', flush=True)", "numbers of its parts"),
+                 "takes all memory": ("x = []\nwhile True: x.append(bytearray(1 << 24))", "MemoryError|MB of memory"),
+                 "floods": ("import os\nwhile True: os.write(1, b'x' * 65536)", "without an end of line"),
+                 "writes away": ("open('/usr/mine', 'w')", "Read-only file system")}  # fmt: skip
+        for name, (text, said) in cases.items():
+            status, verdict = self.grade("four-bar", self.put(f"{name}.py", text + "\n"))
+            self.assertEqual(status, 2, (name, verdict))
+            self.assertRegex(verdict["reason"], said, name)
+        status, verdict = self.grade("four-bar", self.put("a.txt", "x"))
+        self.assertEqual((status, "does not end in" in verdict["reason"]), (2, True))
+
+    def make_class(self):
+        """18 students: right ones, near-copies, wrong ones, hostile ones; the folder."""
+        _, filled = blank_and_filled("four-bar", "c")
+        for k in range(9):
+            # their own numbers of pieces, so that they are no copies of each other
+            self.put(f"class/student{k}.c", filled.replace("    energy[0] =", f"    double own{k} = {k}.0{'+ 1.0' * k}; (void)own{k};\n    energy[0] =", 1))
+        copy = filled.replace("    energy[0] =", "    double mine = 3.0 - 4.0; (void)mine;\n    energy[0] =", 1)
+        self.put("class/ann_4711_assignsubmission_file_/work.c", copy)
+        self.put("class/bob_4712_assignsubmission_file_/work.c", copy.replace("k1", "first").replace("mine", "other") + "// my own work\n")
+        self.put("class/wrong.c", filled.replace("m1*l1*l1", "m1*l1*l4"))
+        self.put("class/floods.py", "import os\nwhile True: os.write(1, b'x' * 65536)\n")
+        self.put("class/dies.py", "import os\nos.kill(os.getpid(), 9)\n")
+        self.put("class/text.txt", "later")
+        return os.path.join(self.temporary.name, "class")
+
+    def test_a_class_of_programs_is_graded_in_parts_through_kills_with_the_same_bytes(self):
+        folder, out = self.make_class(), os.path.join(self.temporary.name, "scores.ndjson")
+        done = call("grade", "four-bar", folder, "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(out, encoding="utf-8") as f:
+            lines = {line["student"]: line for line in map(json.loads, f)}
+        self.assertEqual(len(lines), 15)
+        self.assertEqual({name: line["score"] for name, line in lines.items() if name.startswith("student")}, {f"student{k}": POINTS for k in range(9)})
+        self.assertEqual((lines["wrong"]["score"] < POINTS, lines["floods"]["status"], lines["dies"]["status"], lines["text"]["status"]), (True, *["ungradable"] * 3))
+        self.assertIn("without an end of line", lines["floods"]["reason"])
+        self.assertRegex(done.stdout, r"near-copies: the same but for the names\n +ann, bob\n")
+        self.assertNotIn("student1, student2", done.stdout)
+        with open(out, "rb") as f:
+            calm = f.read()
+
+        # three parts on three machines, put together
+        parts = [os.path.join(self.temporary.name, f"part{i}.ndjson") for i in (1, 2, 3)]
+        for i, part in enumerate(parts, 1):
+            self.assertEqual(call("grade", "four-bar", folder, "--shard", f"{i}/3", "--out", part).returncode, 0)
+        merged = os.path.join(self.temporary.name, "merged.ndjson")
+        done = call("grade", "four-bar", "--merge", *reversed(parts), "--out", merged)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(merged, "rb") as f:
+            self.assertEqual(f.read(), calm)
+        done = call("grade", "four-bar", "--merge", *parts[:2], "--out", merged)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("5 of 15 submissions are in none of these parts", done.stderr)
+        done = call("grade", "four-bar", folder, "--shard", "4/3")
+        self.assertEqual((done.returncode, "is no part of a class" in done.stderr), (2, True))
+
+        # killed in the middle, then on
+        os.remove(out)
+        os.remove(out + ".part")
+        process = subprocess.Popen([PROGRAM, "grade", "four-bar", folder, "--jobs", "1", "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 120
+        while process.poll() is None and time.monotonic() < deadline and not (os.path.exists(out + ".part") and os.path.getsize(out + ".part") > 0):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        done = call("grade", "four-bar", folder, "--out", out)
+        self.assertIn("were graded before", done.stderr)
+        with open(out, "rb") as f:
+            self.assertEqual(f.read(), calm)
+
+
+if __name__ == "__main__":
+    driver.main()
