@@ -8,6 +8,8 @@
 #include <stdbool.h>
 
 enum { SIGMA_ITERATIONS = 60 };
+// a list is gone over more slowly than a row, and costs as much to make
+enum { SHORT_ROWS = 32, LISTED_OF = 4 };
 
 bool hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max) {
     size_t m = (size_t)m_max, n = (size_t)n_max;
@@ -17,7 +19,8 @@ bool hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max) {
     qr->perm = hn_arena_ints(arena, n);
     qr->norm = hn_arena_doubles(arena, 2 * n);
     qr->work = hn_arena_doubles(arena, m > n ? m : n);
-    return qr->a && qr->tau && qr->perm && qr->norm && qr->work;
+    qr->at = hn_arena_ints(arena, m);
+    return qr->a && qr->tau && qr->perm && qr->norm && qr->work && qr->at;
 }
 
 static double *column(const hn_qr *qr, int k) {
@@ -69,6 +72,51 @@ static void apply_reflector(const hn_qr *qr, int k, double *x) {
     double s = qr->tau[k] * (x[k] + hn_dot(tail, v + 1, x + k + 1));
     x[k] -= s;
     hn_axpy(tail, -s, v + 1, x + k + 1);
+}
+
+int hn_qr_reflector(const hn_qr *qr, int k, const int **rows) {
+    const double *v = column(qr, k);
+    int n = 0;
+    for (int i = k + 1; i < qr->m; i++) {
+        if (v[i] != 0) {
+            qr->at[n++] = i;
+        }
+    }
+    *rows = qr->at;
+    return n;
+}
+
+bool hn_qr_is_sparse(const hn_qr *qr, int k, int n) {
+    const int tail = qr->m - k - 1;
+    return tail > SHORT_ROWS && n < tail / LISTED_OF;
+}
+
+/// The same over the n rows where v is not zero: the other terms of the sum are zero.
+static void apply_listed(const hn_qr *qr, int k, int n, const int *rows, double *x) {
+    const double *v = column(qr, k);
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum += v[rows[i]] * x[rows[i]];
+    }
+    const double s = qr->tau[k] * (x[k] + sum);
+    x[k] -= s;
+    for (int i = 0; i < n; i++) {
+        x[rows[i]] += -s * v[rows[i]];
+    }
+}
+
+/// Applies reflector k to the columns behind it.
+static void reflect_others(hn_qr *qr, int k) {
+    const int *rows;
+    const int n = hn_qr_reflector(qr, k, &rows);
+    const bool listed = hn_qr_is_sparse(qr, k, n);
+    for (int j = k + 1; j < qr->n; j++) {
+        if (listed) {
+            apply_listed(qr, k, n, rows, column(qr, j));
+        } else {
+            apply_reflector(qr, k, column(qr, j));
+        }
+    }
 }
 
 /// Norm of the part of column j below row k, from its norm before step k; computed afresh once too
@@ -125,8 +173,8 @@ void hn_qr_factor(hn_qr *qr, int m, int n, double rank_tol) {
         }
         swap_columns(qr, k, p);
         reflect_column(qr, k);
+        reflect_others(qr, k);
         for (int j = k + 1; j < n; j++) {
-            apply_reflector(qr, k, column(qr, j));
             downdate_norm(qr, k, j);
         }
         qr->rank = k + 1;

@@ -29,6 +29,7 @@ typedef struct hn_qr {
     int *perm;    ///< n: column k of A P is column perm[k] of A
     double *norm; ///< 2 n scratch
     double *work; ///< max(m, n) scratch
+    int *at;      ///< m scratch
 } hn_qr;
 
 /// Memory for up to m x n from the arena; returns false when memory is out.
@@ -37,6 +38,11 @@ HN_MUST_CHECK bool hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max);
 /// Factors qr->a, filled by the caller as m x n. Columns whose remaining norm is at most rank_tol *
 /// |R_00| are dropped.
 void hn_qr_factor(hn_qr *qr, int m, int n, double rank_tol);
+/// The rows below k where Householder vector k is not zero, rising; *rows until the next call.
+/// Returns how many. Of the rows of a large mechanism a vector has few.
+int hn_qr_reflector(const hn_qr *qr, int k, const int **rows);
+/// Whether it pays to go over such a list of n of the rows below k, in place of all of them.
+bool hn_qr_is_sparse(const hn_qr *qr, int k, int n);
 /// x <- Q' x and x <- Q x, x (m).
 void hn_qr_apply_qt(const hn_qr *qr, double *x);
 void hn_qr_apply_q(const hn_qr *qr, double *x);

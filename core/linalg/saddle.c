@@ -128,23 +128,92 @@ static void scale_rows(hn_saddle_ws *ws) {
     }
 }
 
+/// p = tau T v, v zero above k: four rows at a time, whose sums do not wait for each other.
+static void times_reflector(const hn_saddle_ws *ws, int k, double tau, const double *v, double *p) {
+    enum { TOGETHER = 4 };
+    const int nv = ws->nv;
+    int i = 0;
+    for (; i + TOGETHER <= nv; i += TOGETHER) {
+        const double *row = ws->T + (size_t)i * nv;
+        double sum[TOGETHER] = {0};
+        for (int j = k; j < nv; j++) {
+            sum[0] += row[j] * v[j];
+            sum[1] += row[(size_t)nv + j] * v[j];
+            sum[2] += row[2 * (size_t)nv + j] * v[j];
+            sum[3] += row[3 * (size_t)nv + j] * v[j];
+        }
+        for (int m = 0; m < TOGETHER; m++) {
+            p[i + m] = tau * sum[m];
+        }
+    }
+    for (; i < nv; i++) {
+        p[i] = tau * hn_dot(nv - k, ws->T + (size_t)i * nv + k, v + k);
+    }
+}
+
 /// T <- H T H for one reflector H = I - tau v v' of the QR: the symmetric rank-two form of Golub &
 /// Van Loan, sec. 8.3.1.
 static void reflect_both_sides(hn_saddle_ws *ws, int k) {
-    int nv = ws->nv;
-    double tau = ws->qr.tau[k], *v = ws->work, *p = ws->fs;
+    const int nv = ws->nv;
+    const double tau = ws->qr.tau[k];
+    double *restrict v = ws->work, *restrict p = ws->fs;
     memset(v, 0, (size_t)nv * sizeof *v);
     memcpy(v + k, ws->qr.a + (size_t)k * nv + k, (size_t)(nv - k) * sizeof *v);
     v[k] = 1;
-
-    for (int i = 0; i < nv; i++) {
-        p[i] = tau * hn_dot(nv - k, ws->T + (size_t)i * nv + k, v + k);
-    }
+    times_reflector(ws, k, tau, v, p);
     hn_axpy(nv, -0.5 * tau * hn_dot(nv, p, v), v, p);
+
+    // above k v is zero, so rows there change from column k on
+    for (int i = 0; i < nv; i++) {
+        double *restrict row = ws->T + (size_t)i * nv;
+        const double vi = v[i], pi = p[i];
+        for (int j = i < k ? k : 0; j < nv; j++) {
+            row[j] -= vi * p[j] + pi * v[j];
+        }
+    }
+}
+
+/// The same where v has few entries that are not zero: 1 at k, and those at the n `rows`. What it
+/// leaves alone is not touched.
+static void reflect_listed(hn_saddle_ws *ws, int k, int n, const int *rows) {
+    const int nv = ws->nv;
+    const double tau = ws->qr.tau[k], *below = ws->qr.a + (size_t)k * nv;
+    double *v = ws->work, *p = ws->fs;
+    memset(v, 0, (size_t)nv * sizeof *v);
+    v[k] = 1;
+    for (int m = 0; m < n; m++) {
+        v[rows[m]] = below[rows[m]];
+    }
+
+    // p = tau T v, less its part along v
+    for (int i = 0; i < nv; i++) {
+        const double *row = ws->T + (size_t)i * nv;
+        double sum = row[k];
+        for (int m = 0; m < n; m++) {
+            sum += row[rows[m]] * v[rows[m]];
+        }
+        p[i] = tau * sum;
+    }
+    double along = p[k];
+    for (int m = 0; m < n; m++) {
+        along += p[rows[m]] * v[rows[m]];
+    }
+    p[k] += -0.5 * tau * along;
+    for (int m = 0; m < n; m++) {
+        p[rows[m]] += -0.5 * tau * along * v[rows[m]];
+    }
+
+    // T <- T - v p' - p v': whole rows where v is not zero, columns of v elsewhere
     for (int i = 0; i < nv; i++) {
         double *row = ws->T + (size_t)i * nv;
-        for (int j = 0; j < nv; j++) {
+        for (int j = 0; v[i] != 0 && j < nv; j++) {
             row[j] -= v[i] * p[j] + p[i] * v[j];
+        }
+        if (v[i] == 0 && p[i] != 0) {
+            row[k] -= p[i];
+            for (int m = 0; m < n; m++) {
+                row[rows[m]] -= p[i] * v[rows[m]];
+            }
         }
     }
 }
@@ -157,7 +226,12 @@ static hn_status factor_kernel_mass(hn_saddle_ws *ws) {
         }
     }
     for (int k = 0; k < rank; k++) {
-        reflect_both_sides(ws, k);
+        const int *rows, n = hn_qr_reflector(&ws->qr, k, &rows);
+        if (hn_qr_is_sparse(&ws->qr, k, n)) {
+            reflect_listed(ws, k, n, rows);
+        } else {
+            reflect_both_sides(ws, k);
+        }
     }
     return hn_cholesky(nv - rank, ws->T + (size_t)rank * nv + rank, nv, MASS_TOL * nv);
 }

@@ -195,6 +195,38 @@ static void iterated_extremes_agree_with_the_singular_values(void **state) {
     }
 }
 
+enum { CHAIN_M = 121, CHAIN_N = 80 };
+
+// Rows of a long chain meet a few coordinates each, so that their Householder vectors are gone over
+// entry by entry: the factors are those of the whole matrix all the same.
+static void a_long_chain_multiplies_back(void **state) {
+    fixture *f = *state;
+    static double a[CHAIN_M * CHAIN_N];
+    hn_qr qr;
+    assert_true(hn_qr_init(&qr, f->arena, CHAIN_M, CHAIN_N));
+    for (int k = 0; k < CHAIN_N; k++) {
+        fill_random(f->rng, 3, a + k * CHAIN_M + k); // rows k .. k + 2
+    }
+    memcpy(qr.a, a, sizeof a);
+    hn_qr_factor(&qr, CHAIN_M, CHAIN_N, 1e-10);
+    assert_int_equal(qr.rank, CHAIN_N);
+
+    // short vectors, in rising order and without zeros
+    const int *rows, n = hn_qr_reflector(&qr, 0, &rows);
+    assert_true(hn_qr_is_sparse(&qr, 0, n));
+    for (int i = 0; i < n; i++) {
+        assert_true(qr.a[rows[i]] != 0 && (i == 0 || rows[i] > rows[i - 1]));
+    }
+
+    // A P = Q R
+    for (int k = 0; k < CHAIN_N; k++) {
+        double column[CHAIN_M] = {0};
+        memcpy(column, qr.a + (size_t)k * CHAIN_M, (size_t)(k + 1) * sizeof *column);
+        hn_qr_apply_q(&qr, column);
+        assert_all_near(column, a + qr.perm[k] * CHAIN_M, CHAIN_M, 1e-13);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(factors_multiply_back_and_show_the_rank, setup, teardown),
@@ -208,6 +240,7 @@ int main(void) {
             singular_values_of_wide_and_tall_matrices_agree_and_nan_is_refused, setup, teardown),
         cmocka_unit_test_setup_teardown(iterated_extremes_agree_with_the_singular_values, setup,
                                         teardown),
+        cmocka_unit_test_setup_teardown(a_long_chain_multiplies_back, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -466,6 +466,46 @@ static void random_systems_agree_with_lu(void **state) {
     }
 }
 
+enum { CHAIN_NV = 121, CHAIN_NC = 80 };
+
+// Masses coupled to their neighbours, rows over three coordinates each: most of the reflectors have
+// few entries. What comes out meets both equations.
+static void a_long_chain_meets_its_equations(void **state) {
+    fixture *f = *state;
+    static double M[CHAIN_NV * CHAIN_NV], J[CHAIN_NC * CHAIN_NV];
+    double force[CHAIN_NV], gamma[CHAIN_NC], a[CHAIN_NV], lambda[CHAIN_NC];
+    for (int i = 0; i < CHAIN_NV; i++) {
+        M[i * CHAIN_NV + i] = 3 + random_unit(f);
+        force[i] = random_unit(f);
+        if (i > 0) {
+            M[i * CHAIN_NV + i - 1] = M[(i - 1) * CHAIN_NV + i] = 0.5 * random_unit(f);
+        }
+    }
+    for (int k = 0; k < CHAIN_NC; k++) {
+        gamma[k] = random_unit(f);
+        for (int j = k; j < k + 3; j++) {
+            J[k * CHAIN_NV + j] = random_unit(f);
+        }
+    }
+
+    hn_saddle_ws *ws = hn_saddle_ws_create(f->arena, CHAIN_NV, CHAIN_NC);
+    hn_saddle_info info;
+    assert_int_equal(
+        hn_saddle_solve(CHAIN_NV, CHAIN_NC, M, J, force, gamma, a, lambda, &info, NULL, ws), HN_OK);
+    assert_int_equal(info.rank, CHAIN_NC);
+    const double size = fmax(hn_norm_max(CHAIN_NV, a), hn_norm_max(CHAIN_NC, lambda));
+    for (int i = 0; i < CHAIN_NV; i++) {
+        double rest = hn_dot(CHAIN_NV, M + i * CHAIN_NV, a) - force[i];
+        for (int k = 0; k < CHAIN_NC; k++) {
+            rest -= J[k * CHAIN_NV + i] * lambda[k];
+        }
+        assert_near(rest, 0, 1e-13 * size); // a few entries of size 3 a row
+    }
+    for (int k = 0; k < CHAIN_NC; k++) {
+        assert_near(hn_dot(CHAIN_NV, J + k * CHAIN_NV, a), -gamma[k], 1e-13 * size);
+    }
+}
+
 static void condition_estimate_follows_a_known_condition_number(void **state) {
     fixture *f = *state;
     hn_saddle_opts opts = hn_saddle_opts_default();
@@ -533,6 +573,7 @@ int main(void) {
         with_fixture(without_constraints_it_is_newtons_law),
         with_fixture(inputs_that_are_not_finite_leave_the_outputs_alone),
         with_fixture(random_systems_agree_with_lu),
+        with_fixture(a_long_chain_meets_its_equations),
         with_fixture(condition_estimate_follows_a_known_condition_number),
         with_fixture(nothing_is_allocated_and_the_bits_repeat),
         with_fixture(one_factor_serves_many_right_hand_sides),
