@@ -177,9 +177,9 @@ def four_bar():
     size = 9.0
     force = [line(b[0], b[1], b[0] + size * push[0], b[1] - size * push[1], COLOURS[0], 2.6, 'marker-end="url(#head1)"'),
              line(c[0], c[1], c[0] - size * push[0], c[1] + size * push[1], COLOURS[1], 2.6, 'marker-end="url(#head2)"'),
-             text(b[0] - 12, b[1] - 52, f"λ = ({push[0]:.3g}, {push[1]:.3g}) N on the coupler", 15, "end"),
-             text(c[0] + 14, c[1] + 50, "−λ on the rocker", 15, "start")]  # fmt: skip
-    cut = [line(b[0] + 23, b[1] - 40, b[0] + 23, b[1] + 70, FAINT, 1.2, 'stroke-dasharray="5 4"'), text(b[0] + 28, b[1] - 44, "cut at B", 14, "start", "#555")]
+             text(b[0] - 12, b[1] - 52, f"λ = ({push[0]:.3g}, {push[1]:.3g}) N on the coupler", 19, "end"),
+             text(c[0] + 14, c[1] + 50, "−λ on the rocker", 19, "start")]  # fmt: skip
+    cut = [line(b[0] + 23, b[1] - 40, b[0] + 23, b[1] + 70, FAINT, 1.2, 'stroke-dasharray="5 4"'), text(b[0] + 28, b[1] - 44, "cut at B", 17, "start", "#555")]
     plain = [line(*o1, *a, COLOURS[0], 5), line(*a, *b, COLOURS[1], 5), line(*p3, *c, COLOURS[2], 5)]
     write("02-equations-of-motion", "cut-loop", "The loop cut at B: an open chain, and the pair of forces that closes it again", 660, 380,
           [ground(*o1), ground(*p3), *plain, *[pin(*p) for p in (o1, a, b, c, p3)], *cut, *force])  # fmt: skip
