@@ -324,6 +324,8 @@ help:
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
 	@echo 'make book         all lessons for print: build/book.html and build/book.pdf'
+	@echo 'make gradescope   the autograder of an exercise, build/gradescope/ID.zip: ID=gears; make prairielearn: the question'
+	@echo 'make classes      1,000 formulas and 200 programs graded through kills, and every hostile program: tests/tables/classes.txt'
 	@echo 'make languages    every scene as a program in every language that Debian has: tests/tables/languages.txt'
 	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
@@ -335,7 +337,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
+.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -415,6 +417,15 @@ book: all build/.packages-test
 	@node lessons/book.mjs $(PROGRAM) build/book.html
 	@chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/book.pdf "file://$(CURDIR)/build/book.html" 2>/dev/null
 	@echo 'book: build/book.html, build/book.pdf'
+
+# what the platform is given for an exercise: ID=gears
+gradescope prairielearn: all
+	@python3 server/deploy/bundle.py $@ $(PROGRAM) '$(ID)' 'build/$@/$(ID)'
+
+# some minutes on two processors; fails where a submission is lost or a file is left
+classes: all build/.packages-test
+	@python3 tests/tables/programs.py $(PROGRAM) >build/classes.txt; status=$$?; \
+	cp build/classes.txt tests/tables/classes.txt && cat tests/tables/classes.txt; exit $$status
 
 # half an hour on two processors; fails where a program disagrees with the workbench
 languages: build/.packages-languages

@@ -212,7 +212,7 @@ CONFINED = {
     "writes into the system": ("open('/usr/mine', 'w')", "Read-only file system"),
     "writes beside itself": ("open('/program/other', 'w')", "Read-only file system"),
     "reads the home of others": ("print(open('/root/.profile').read() + open('/home').read())", "No such file"),
-    "counts its processes": ("greet('step')\nk = 0\ntry:\n    while k < 500:\n        if os.fork() == 0: time.sleep(20)\n        k += 1\nexcept OSError: raise ValueError('%d forked' % k)", "forked|MB of memory"),
+    "counts its processes": ("greet('step')\nk = 0\ntry:\n    while k < 500:\n        if os.fork() == 0: time.sleep(20)\n        k += 1\nexcept OSError: raise ValueError('%d forked' % k)", "forked|MB of memory|processes; 64 are allowed"),
     "looks for other processes": ("greet('step')\nwant = [p for p in os.listdir('/proc') if p.isdigit()]\nraise ValueError('%d processes' % len(want))", "ValueError: [23] processes"),
     "makes itself root": ("import ctypes\ngreet('step')\nlibc = ctypes.CDLL(None, use_errno=True)\nraise OSError(libc.unshare(0x10000000), ctypes.get_errno())", "OSError"),
 }
