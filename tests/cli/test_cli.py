@@ -206,6 +206,14 @@ class CommandLine(unittest.TestCase):
         said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
         self.assertIn("no digit left in 1 of 2 samples (lambda_mark 2)", said)
 
+    def test_a_run_ends_where_it_is_told_to_whatever_its_step_is(self):
+        # the shorter step to the end fails; the whole step of 5 s is none of this run
+        done = call("run", "four-bar", "--method", "index3@genalpha:h=5", "--time", "1", "--at", "1", "--json")
+        self.assertEqual(done.returncode, ENDED)
+        told = json.loads(done.stdout)
+        self.assertEqual((told["status"], told["t_reached"]), ("no-convergence", 0))
+        self.assertEqual([i["code"] for i in told["incidents"]], ["step-long"])
+
     def test_forces_of_loops_that_stand_open_are_marked(self):
         # not stabilised, at a long step, the loop of 1.2 m opens by more than a thousandth of it
         words = ("run", "four-bar", "--method", "index1@rk4:h=0.02", "--time", "3", "--reactions", "--every", "0.5")

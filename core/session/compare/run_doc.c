@@ -335,11 +335,13 @@ static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_requ
     return HN_OK;
 }
 
-/// Takes the sample at t. A run that has not reached t steps there first; the failure of that step
-/// is the reason.
-static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
+/// Takes the sample at t. A run that has not reached t steps there first, unless that step would go
+/// beyond the run's end; the failure of the step is the reason.
+static hn_status sample_at(hn_run *run, double t, double t_end, hn_sample *sample) {
+    const double h =
+        hn_method_is_adaptive(hn_run_spec(run)) ? 0 : hn_method_option(hn_run_spec(run), "h", 0);
     hn_status status = hn_run_sample(run, t, sample);
-    if (status != HN_OK && hn_run_time(run) < t) {
+    if (status != HN_OK && hn_run_time(run) < t && hn_run_time(run) + h <= t_end * (1 + 1e-9)) {
         status = hn_run_step_towards(run, t);
         HN_THEN(status, hn_run_sample(run, t, sample));
     }
@@ -357,7 +359,7 @@ static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
     }
     hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r, tab);
     hn_sample sample;
-    HN_THEN(status, sample_at(run, t, &sample));
+    HN_THEN(status, sample_at(run, t, r->time, &sample));
     if (status == HN_OK) {
         table_add(tab, &sample, run, r);
     }
