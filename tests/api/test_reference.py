@@ -77,10 +77,10 @@ class Reference(driver.ServerCase):
 
 class Bounded(unittest.TestCase):
     def test_computing_ends_where_the_server_says(self):
-        # enough for the equations, which count too; the reference needs many times that
-        server = driver.Server("--run-cpu", str(0.5 * driver.SLOW))
+        # enough for the equations of a four-bar, which count too; 3000 s of it need many times that
+        server = driver.Server("--run-cpu", str(0.2 * driver.SLOW))
         try:
-            answer = server.ask("GET", "/api/v1/scenes/ring/reference?compute=true&time=9")
+            answer = server.ask("GET", "/api/v1/scenes/four-bar/reference?compute=true&time=3000")
             self.assertEqual(answer.status, 422, answer.body[:300])
             self.assertIn("takes more", answer.json()["errors"][0]["detail"])
         finally:
