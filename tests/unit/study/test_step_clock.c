@@ -67,11 +67,26 @@ static void clear_forgets(void **state) {
     assert_true(hn_step_clock_read(&c) == 0);
 }
 
+// what is written of a run between its steps is the same twice
+static void reading_changes_nothing(void **state) {
+    (void)state;
+    hn_step_clock c;
+    hn_step_clock_create(&c);
+    hn_step_clock_start(&c);
+    work(ROUNDS);
+    hn_step_clock_stop(&c);
+    work(3 * ROUNDS); // the CPU clock of the thread is past what the step took
+    const double first = hn_step_clock_read(&c);
+    work(ROUNDS);
+    assert_true(first > 0 && hn_step_clock_read(&c) == first);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_quarter_of_the_work_is_a_quarter_of_the_time),
         cmocka_unit_test(time_asleep_is_nobodys),
         cmocka_unit_test(clear_forgets),
+        cmocka_unit_test(reading_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
