@@ -76,8 +76,8 @@ void hn_step_clock_stop(hn_step_clock *c) {
     }
 }
 
-// The block that is not full yet is read by the counter's own pace, which is known to a few per cent:
-// two readings with no step between them are the same number.
+// The block that is not full yet is read by the counter's own pace, which is known to a few per
+// cent: two readings with no step between them are the same number.
 double hn_step_clock_read(const hn_step_clock *c) {
     const double tick = LONG_BREAK / c->pause;
     return c->seconds + (c->n > 0 ? fmin(c->own * tick, hn_clock_thread() - c->cpu_mark) : 0);
