@@ -7,6 +7,7 @@
 #include "program/conversation.h"
 #include "program/sandbox.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -243,9 +244,26 @@ static hn_status find(const char *name, hn_guest *out, hn_diag *diag) {
     return HN_OK;
 }
 
+/// The programs of the server's folder by name; none where any path may be given.
+static void list(hn_strbuf *b) {
+    struct dirent **entries = NULL;
+    const int n = options.folder ? scandir(options.folder, &entries, NULL, alphasort) : 0;
+    for (int i = 0; i < n; i++) {
+        char file[1024], name[NAME];
+        hn_diag diag = {0};
+        if (find_file(entries[i]->d_name, file, &diag) == HN_OK &&
+            hn_sandbox_can_start(file, options.trusted) &&
+            snprintf(name, sizeof name, "%s%s", HN_GUEST_PREFIX, entries[i]->d_name) < NAME) {
+            hn_json_string(b, name);
+        }
+        free(entries[i]);
+    }
+    free(entries);
+}
+
 void hn_programs_allow(const hn_program_opts *opts) {
     options = *opts;
-    hn_guest_serve(find);
+    hn_guest_serve(find, list);
 }
 
 void hn_programs_report(void) {

@@ -152,6 +152,10 @@ static hn_status check_file(const char *file, bool trusted, hn_diag *diag) {
     return HN_OK;
 }
 
+bool hn_sandbox_can_start(const char *file, bool trusted) {
+    return check_file(file, trusted, NULL) == HN_OK;
+}
+
 hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file, const char *argument,
                            bool trusted, const hn_program_limits *limits, hn_diag *diag) {
     enum { MOST_PATH = 1000 };

@@ -37,9 +37,10 @@ function freePort() {
   });
 }
 
-async function startServer() {
+/** @param {string[]} options of `holonom serve` */
+async function startServer(options = []) {
   assert.ok(existsSync(PROGRAM), `${PROGRAM} is built`);
-  const child = spawn(PROGRAM, ["serve", "--port", String(await freePort())], {
+  const child = spawn(PROGRAM, ["serve", "--port", String(await freePort()), ...options], {
     cwd: ROOT,
     stdio: ["ignore", "pipe", "pipe"],
   });
@@ -200,9 +201,13 @@ export function createBench() {
       t.after(() => line.close());
       return line;
     },
-    /** A server of the test's own, that it may end. @param {import("node:test").TestContext} t */
-    async server(t) {
-      const own = await startServer();
+    /**
+     * A server of the test's own, that it may end.
+     * @param {import("node:test").TestContext} t
+     * @param {string[]} [options] of `holonom serve`
+     */
+    async server(t, options) {
+      const own = await startServer(options);
       t.after(() => own.stop());
       return own;
     },

@@ -281,6 +281,8 @@ class InTheServer(OneFile):
     def test_a_folder_of_programs_is_served_and_nothing_else(self):
         with open(os.path.join(self.folder.name, "mine.py"), "w", encoding="utf-8") as f:
             f.write(GREETING + STEP)
+        with open(os.path.join(self.folder.name, "readme.txt"), "w", encoding="utf-8") as f:
+            f.write("no program")
         body = {"scene": "pendulum", "method": "program:mine.py@own:h=1e-2", "time": 0.1}
         for options, methods in (([], {"program:mine.py@own:h=1e-2": 422}),
                                  (["--programs", self.folder.name], {"program:mine.py@own:h=1e-2": 201, "program:../mine.py": 422, "program:/bin/true": 422})):
@@ -289,6 +291,9 @@ class InTheServer(OneFile):
                 for method, status in methods.items():
                     answer = server.ask("POST", "/api/v1/runs", {**body, "method": method})
                     self.assertIn(answer.status, (status, 200 if status == 201 else status), answer.body[:300])
+                # the page offers what the server lists: files that can be started, of the folder that was given
+                listed = server.ask("GET", "/api/v1/methods").json()["programs"]
+                self.assertEqual(listed, ["program:mine.py"] if options else [])
             finally:
                 server.stop()
 

@@ -118,7 +118,9 @@ def hostile():
     use = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"\n{len(kinds)} kinds, two at a time: {time.monotonic() - begun:.0f} s; largest process {use.ru_maxrss / 1024:.0f} MB; "
           f"highest load of the machine {highest:.1f}, everything else on it included")
-    changed = [path for path in set(before) ^ set(after) if "holonom" in path or "mine" in path]
+    # the workbench's own cache of compiled equations is no doing of a program
+    changed = [path for path in set(before) ^ set(after) if ("holonom" in path or "mine" in path) and "/.cache/" not in path]
+    print("".join(f"  {path}\n" for path in changed), end="")
     print(f"files written outside, into home, /usr/local, /var/tmp, /dev/shm or beside the program: {len(changed) + bad}")
     return bad or changed
 

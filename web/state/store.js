@@ -69,7 +69,7 @@ function initialData() {
   return {
     build: "",
     /** @type {any} */ look: null,
-    /** @type {{formulations: any[], integrators: any[]}} */
+    /** @type {{formulations: any[], integrators: any[], programs?: string[]}} */
     catalogue: { formulations: [], integrators: [] },
     /** @type {{id: string, title: string, duration: number}[]} */ scenes: [],
     /** @type {Lesson[]} */ lessons: [],

@@ -41,6 +41,13 @@ export function createMethodDialog(el, store, actions) {
     "aria-describedby": "pick-error",
     oninput: onTyped,
   });
+  const programs = h("select", { id: "pick-program", onchange: onProgram });
+  const programRow = h(
+    "p",
+    { hidden: true },
+    h("label", { for: "pick-program" }, "A program of your own"),
+    programs,
+  );
   const error = h("p", { id: "pick-error", class: "hint", role: "alert" });
   const remove = h("button", { type: "button", class: "plain", onclick: onRemove }, "Remove");
   const save = h("button", { type: "submit", class: "primary" });
@@ -57,6 +64,7 @@ export function createMethodDialog(el, store, actions) {
     steps,
     others,
     settings,
+    programRow,
     h("label", { for: "pick-spelling" }, "Spelling"),
     spelling,
     error,
@@ -77,6 +85,23 @@ export function createMethodDialog(el, store, actions) {
 
   function fillLists() {
     formulation.replaceChildren(...data.catalogue.formulations.map(option));
+    const known = data.catalogue.programs ?? [];
+    programRow.hidden = known.length === 0; // a server that allows none lists none
+    programs.replaceChildren(
+      h("option", { value: "" }, "none"),
+      ...known.flatMap((/** @type {string} */ name) => [
+        h("option", { value: `${name}@rk4:h=0.01` }, `${name.slice(8)}, accelerations`),
+        h("option", { value: `${name}@own:h=0.01` }, `${name.slice(8)}, its own steps`),
+      ]),
+    );
+  }
+
+  /** A program of the server's folder: it gives accelerations, or makes its own steps. */
+  function onProgram() {
+    if (programs.value) {
+      spelling.value = programs.value;
+      tell("");
+    }
   }
 
   /** Only what fits the formulation can be chosen; for the rest the reason is told. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/method/catalogue.h"
 
+#include "integrators/method/guest.h"
 #include "integrators/method/method_spec.h"
 #include "integrators/list/stepper_list.h"
 #include "formulations/list/formulation_list.h"
@@ -122,6 +123,12 @@ void hn_methods_json(hn_strbuf *b) {
     for (int i = 0; i < hn_stepper_count(); i++) {
         put_stepper(b, hn_stepper_at(i));
     }
+    hn_json_end_array(b);
+
+    // programs of one's own, where they are allowed
+    hn_json_key(b, "programs");
+    hn_json_array(b);
+    hn_guest_list(b);
     hn_json_end_array(b);
     hn_json_end_object(b);
 }

@@ -3,10 +3,18 @@
 
 #include <string.h>
 
-static hn_guest_finder finder; // set once, at the start of the process
+static hn_guest_finder finder; // both set once, at the start of the process
+static hn_guest_lister lister;
 
-void hn_guest_serve(hn_guest_finder wanted) {
+void hn_guest_serve(hn_guest_finder wanted, hn_guest_lister list) {
     finder = wanted;
+    lister = list;
+}
+
+void hn_guest_list(hn_strbuf *b) {
+    if (lister) {
+        lister(b);
+    }
 }
 
 bool hn_guest_is_named(const char *spelling) {

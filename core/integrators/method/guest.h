@@ -7,6 +7,7 @@
 // integrator of its own, "own") for a file; without a finder such a spelling is refused.
 
 #include "base/diag.h"
+#include "base/strbuf.h"
 #include "integrators/step/stepper.h"
 #include "formulations/ground/formulation.h"
 
@@ -24,8 +25,13 @@ typedef struct hn_guest {
 /// HN_ERR_INPUT with the reason in diag.
 typedef hn_status (*hn_guest_finder)(const char *name, hn_guest *out, hn_diag *diag);
 
+/// Adds the names of the guests that there are to a JSON array; called from any thread.
+typedef void (*hn_guest_lister)(hn_strbuf *b);
+
 /// Serves guests from now on. Call it once, before other threads exist.
-void hn_guest_serve(hn_guest_finder finder);
+void hn_guest_serve(hn_guest_finder finder, hn_guest_lister lister);
+/// Adds the names of all guests to a JSON array; none where nobody serves them.
+void hn_guest_list(hn_strbuf *b);
 /// Fails as the finder does; HN_ERR_INPUT where there is none.
 HN_MUST_CHECK hn_status hn_guest_find(const char *name, hn_guest *out, hn_diag *diag);
 /// Whether a method's spelling names a guest.

@@ -67,7 +67,7 @@ static const struct {
      "\"methods\":" TEXTS ",\"duration\":{\"type\":\"number\"},\"step\":{\"type\":\"number\"}}}"},
     {"Methods",
      "{\"type\":\"object\",\"required\":[\"formulations\",\"integrators\"],\"properties\":{"
-     "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS "}}"},
+     "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS ",\"programs\":" TEXTS "}}"},
     {"Drag",
      "{\"type\":\"object\",\"required\":[\"scene\",\"reached\",\"end\",\"reason\",\"distance\","
      "\"gap\","

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A program of one's own beside the other methods in the page.
+import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { createBench, until } from "./support.mjs";
+
+const bench = createBench();
+
+// a bob on a rod, without numpy: a = -g/l sin(th)
+const PENDULUM = `import json, math, sys
+sys.stdin.readline()
+print(json.dumps({"holonom": 1, "provides": "accelerations"}), flush=True)
+for line in sys.stdin:
+    ask = json.loads(line)
+    print(json.dumps({"id": ask["id"], "a": [-9.81 * math.sin(ask["q"][0])]}), flush=True)
+`;
+
+test("a server that allows programs offers them in the dialog of methods, and one runs", async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), "programs-"));
+  t.after(() => rmSync(folder, { recursive: true }));
+  writeFileSync(join(folder, "mine.py"), PENDULUM);
+  writeFileSync(join(folder, "notes.txt"), "no program");
+  const server = await bench.server(t, ["--programs", folder]);
+  const page = await bench.open(t, { url: server.url, hash: "#pendulum" });
+  await page.getByRole("button", { name: "add a method" }).click();
+  const offered = await page.locator("#pick-program option").allTextContents();
+  assert.deepEqual(offered, ["none", "mine.py, accelerations", "mine.py, its own steps"]);
+  await page.selectOption("#pick-program", { label: "mine.py, accelerations" });
+  assert.equal(await page.inputValue("#pick-spelling"), "program:mine.py@rk4:h=0.01");
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await until(page, (data) => data.methods.some((m) => m.spelling.startsWith("program:mine.py")));
+});
+
+test("a server that allows none shows no list of programs", async (t) => {
+  const page = await bench.open(t, { hash: "#pendulum" });
+  await page.getByRole("button", { name: "add a method" }).click();
+  assert.equal(await page.isVisible("#pick-program"), false);
+  assert.equal(await page.isVisible("#pick-spelling"), true);
+});
