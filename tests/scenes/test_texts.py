@@ -147,6 +147,31 @@ def slips(texts):
     return [f"slip {n} is in no {where}" for where, seen in (("text", told), ("exercise", asked)) for n in range(1, 39) if n not in seen]
 
 
+def shown_slips():
+    """Rows of the table of slips in lessons/README.md whose last column names nothing that runs: a command that gives a document,
+    a part of an exercise, or a program in a lesson."""
+    table = read("lessons/README.md").split("## The 38 slips")[1]
+    rows = re.findall(r"^\| (\d+) \|.*\| ([^|]*) \|$", table, flags=re.M)
+    faults = [] if [int(n) for n, _ in rows] == list(range(1, 39)) else ["the table does not have slips 1 to 38, each once"]
+    for number, shown in rows:
+        command = re.fullmatch(r"`holonom (.*)`", shown)
+        part = re.fullmatch(r"exercise ([\w-]+), parts? (\w)(?: and (\w))?", shown)
+        program = re.fullmatch(r"the program in lesson (\d+), section (\d+)", shown)
+        if command:
+            # all cases of the extreme matrix have a test of their own
+            good = command[1] == "extreme" or isinstance(document(f"{command[1]} --json"), dict)
+        elif part:
+            parts = [p["id"] for p in document(f"problem {part[1]} --json")["parts"]]
+            good = {p for p in part.groups()[1:] if p} <= set(parts)
+        elif program:
+            section = re.search(rf"^## {program[2]}\..*?(?=^## )", read(glob.glob(f"lessons/{int(program[1]):02}-*/text.md")[0]), flags=re.M | re.S)
+            good = bool(section) and f"```slip {number}\n" in section[0] and "```python\n" in section[0]
+        else:
+            good = False
+        faults += [] if good else [f"slip {number}: {shown}"]
+    return faults
+
+
 def exhibits(texts):
     """Commands of exhibits that do not run. A method that ends early, and says so (status 4), may be the point of an exhibit."""
     faults = []
@@ -201,6 +226,7 @@ def main():
         results.append((f"{path}: no number without a command", uncovered(text, facts)))
     results.append(("every exercise of a text is there, and every exercise is in a text", exercises(texts)))
     results.append(("every slip of the printed lesson is in a text and in an exercise", slips(texts)))
+    results.append(("what the table of slips names for each of them runs", shown_slips()))
     results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))
     results.append(("every exhibit runs", exhibits(texts)))
     results.append(("every figure has a title and is shown, and the commands in its boxes run", charts()))
