@@ -326,6 +326,7 @@ help:
 	@echo 'make book         all lessons for print: build/book.html and build/book.pdf'
 	@echo 'make gradescope   the autograder of an exercise, build/gradescope/ID.zip: ID=gears; make prairielearn: the question'
 	@echo 'make classes      1,000 formulas and 200 programs graded through kills, and every hostile program: tests/tables/classes.txt'
+	@echo 'make skeletons    the slips of the usual lesson beside the exported programs: tests/tables/skeletons.txt'
 	@echo 'make languages    every scene as a program in every language that Debian has: tests/tables/languages.txt'
 	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
@@ -337,7 +338,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
+.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -417,6 +418,11 @@ book: all build/.packages-test
 	@node lessons/book.mjs $(PROGRAM) build/book.html
 	@chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/book.pdf "file://$(CURDIR)/build/book.html" 2>/dev/null
 	@echo 'book: build/book.html, build/book.pdf'
+
+# fails where a slip no longer does what its row says
+skeletons: all build/.packages-test
+	@/usr/bin/python3 tests/tables/skeletons.py $(PROGRAM) >build/skeletons.txt || { cat build/skeletons.txt; exit 1; }
+	@cp build/skeletons.txt tests/tables/skeletons.txt && cat tests/tables/skeletons.txt
 
 # what the platform is given for an exercise: ID=gears
 gradescope prairielearn: all

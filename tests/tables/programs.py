@@ -9,13 +9,13 @@ import fcntl
 import json
 import os
 import random
-import resource
 import signal
 import struct
 import subprocess
 import sys
 import tempfile
 import termios
+import threading
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -94,11 +94,28 @@ def listing(*folders):
     return sorted(os.path.join(at, name) for folder in folders for at, _, names in os.walk(folder) for name in names)
 
 
+def available():
+    """Memory of the machine that is not in use [MB]."""
+    with open("/proc/meminfo", encoding="ascii") as f:
+        return next(int(line.split()[1]) // 1024 for line in f if line.startswith("MemAvailable"))
+
+
 def hostile():
     kinds = {**test_programs.HOSTILE, **({} if test_programs.TROUBLE else test_programs.CONFINED)}
     case = test_programs.OneFile()
     outside = (os.path.expanduser("~"), "/usr/local", "/var/tmp", "/dev/shm")
     before, begun, highest = listing(*outside), time.monotonic(), 0.0
+
+    # two programs may have 768 MB each
+    done_at, taken = threading.Event(), [0]
+    free = available()
+
+    def watch():
+        while not done_at.wait(0.1):
+            taken[0] = max(taken[0], free - available())
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
 
     def run(name):
         hangs = (kinds[name][1] or "").startswith("did not answer")
@@ -115,9 +132,10 @@ def hostile():
             print(f"  {name:32} {(lines[0] if lines else 'finished').strip()[:150]}")
             highest = max(highest, os.getloadavg()[0])
     after = listing(*outside)
-    use = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"\n{len(kinds)} kinds, two at a time: {time.monotonic() - begun:.0f} s; largest process {use.ru_maxrss / 1024:.0f} MB; "
-          f"highest load of the machine {highest:.1f}, everything else on it included")
+    done_at.set()
+    watcher.join()
+    print(f"\n{len(kinds)} kinds, two at a time: {time.monotonic() - begun:.0f} s; the machine's memory in use rose by at most {taken[0]} MB, "
+          f"its load was at most {highest:.1f}, everything else on it included")
     # the workbench's own cache of compiled equations is no doing of a program
     changed = [path for path in set(before) ^ set(after) if ("holonom" in path or "mine" in path) and "/.cache/" not in path]
     print("".join(f"  {path}\n" for path in changed), end="")
