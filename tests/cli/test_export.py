@@ -172,11 +172,29 @@ def hostile_words(folder):
 def refusals():
     """Requests that must be refused, with a word of the message."""
     cases = [(["four-bar", "--language", "pyton"], 2, "python"), (["four-baar"], 2, "four-bar"),
+             (["four-bar", "--method", "projection@rk4"], 2, "cannot hold its loops by 'projection'"), (["four-bar", "--method", "x@rk4"], 2, "x"),
              (["four-bar", "-o", "no/such/folder/x.py"], 3, "no/such/folder")]  # fmt: skip
     for words, status, said in cases:
         done = call([PROGRAM, "export", *words])
         yield f"{' '.join(words)} is refused", [] if done.returncode == status and said in done.stderr else [
             f"exit {done.returncode}: {done.stderr.strip()}"]
+
+
+def methods(folder):
+    """The method says how the loops are held: its numbers are in the program, and without any the loop opens."""
+    faults, known = [], languages()
+    for method, first, second in (("baumgarte:alpha=3,beta=7@rk4:h=0.01", "3", "7"), ("index1@rk4", "0", "0")):
+        text = call([PROGRAM, "export", "four-bar", "--language", "c", "--method", method]).stdout
+        if f"ALPHA = {first}.0, BETA = {second}.0;" not in text:
+            faults.append(f"{method}: not in the program")
+        file = os.path.join(folder, f"method{first}.c")
+        with open(file, "w", encoding="utf-8") as f:
+            f.write(text)
+        call(["gcc", "-O1", file, "-o", file + ".x", "-lm"])
+        done = call([file + ".x"])
+        if done.returncode != 0:
+            faults.append(f"{method}: {done.stdout}")
+    return faults if "c" in known else ["no C"]
 
 
 def slip(folder):
@@ -215,6 +233,7 @@ def main():
             return table(ran)
         results = [(f"{name}: {scene} agrees with the workbench ({how})", faults) for name, how, scene, faults in ran]
         results.append(("a parameter that is off by 1e-7 is found by the self-check", slip(folder)))
+        results.append(("a method says how the loops are held", methods(folder)))
         results.append(("words of a scene stay words in every language", hostile_words(folder)))
     results += refusals()
     for n, (name, faults) in enumerate(results, 1):

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "dynamics/compile/compile.h"
+#include "integrators/method/method_spec.h"
 #include "session/export/places.h"
 #include "session/export/states.h"
 
@@ -39,6 +40,41 @@ static hn_status choose_language(hn_exporter *e, const char *name, hn_diags *dia
                         "'%.40s' is not a language of export", name);
 }
 
+/// Reads how the loops are held from a method's spelling.
+static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_diags *diags) {
+    static const double USUAL = 10; // [1/s]
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    e->alpha = e->beta = USUAL;
+    if (!method) {
+        return HN_OK;
+    }
+    const hn_status status = hn_method_parse(method, &spec, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
+    }
+
+    // the two that are an ordinary differential equation in the scene's own coordinates
+    const bool is_plain = strcmp(spec.formulation->name, "index1") == 0;
+    if (!is_plain && strcmp(spec.formulation->name, "baumgarte") != 0) {
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/method", "index1@rk4, or baumgarte:alpha=5,beta=5@rk4",
+            "an exported program cannot hold its loops by '%s'", spec.formulation->name);
+    }
+    for (int i = 0; i < spec.formulation->n_options; i++) {
+        const char *key = spec.formulation->options[i].key;
+        double *const place = strcmp(key, "alpha") == 0  ? &e->alpha
+                              : strcmp(key, "beta") == 0 ? &e->beta
+                                                         : NULL;
+        if (place) {
+            *place = spec.formulation_set[i];
+        }
+    }
+    e->alpha = is_plain ? 0 : e->alpha;
+    e->beta = is_plain ? 0 : e->beta;
+    return HN_OK;
+}
+
 static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib, hn_diags *diags) {
     HN_TRY(hn_export_states_find(e, diags));
 
@@ -61,6 +97,7 @@ hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library 
         return HN_ERR_MEMORY;
     }
     hn_status status = choose_language(&e, request->language, diags);
+    HN_THEN(status, choose_stabilisation(&e, request->method, diags));
     HN_THEN(status, export_to(b, &e, lib, diags));
     if (status == HN_OK) {
         request->suffix = e.language->suffix;

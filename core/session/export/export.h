@@ -17,6 +17,7 @@
 //   @RATES@                  statements for rate: the time derivative of q
 //   @START_Q@ @START_V@      the assembled start, numbers separated by commas
 //   @START_A@ @ENERGY@       accelerations and energy there
+//   @ALPHA@ @BETA@           of Baumgarte's stabilisation [1/s]
 //   @T1@ @Q1@ @V1@ @A1@      a later state of the motion, and its accelerations
 //
 //   @IF BLANKS@ @ELSE@ @END@ in lines of their own: lines for programs with blanks, or without
@@ -32,16 +33,19 @@
 /// What is asked for. The last three are answers: the ending of a file's name, and what
 /// begins and ends a comment.
 typedef struct hn_export_request {
-    const char *language;  ///< a row of export/language.h
+    const char *language; ///< a row of export/language.h
+    /// index1@... or baumgarte:alpha=...,beta=...@...: how the program holds its loops; its
+    /// integrator is that of the language. NULL: Baumgarte's, alpha = beta = 10/s
+    const char *method;
     bool blanks;           ///< leave the parts of exam.h out, and mark them
     hn_walk_limits limits; ///< of the run to the later state; zero: none
     const char *suffix, *comment, *comment_end;
 } hn_export_request;
 
 /// Writes the program for `model` to `b`.
-/// Fails: HN_ERR_INPUT (unknown language, with the nearest), HN_ERR_IO (the text of the language is
-/// not installed), HN_ERR_LIMIT (the code is too long), HN_ERR_STOPPED (the limits), or as a run
-/// does when the later state cannot be reached.
+/// Fails: HN_ERR_INPUT (unknown language, with the nearest; another method), HN_ERR_IO (the text
+/// of the language is not there), HN_ERR_LIMIT (the code is too long), HN_ERR_STOPPED (the limits),
+/// or as a run does when the later state cannot be reached.
 HN_MUST_CHECK hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library *lib,
                                         hn_export_request *request, hn_diags *diags);
 /// {"languages":[{"name","suffix","about"}]}

@@ -307,6 +307,8 @@ static void fill_place(hn_strbuf *b, const hn_exporter *e, const char *place) {
                  {"V1", e->later.v, info->nv},
                  {"A1", e->later.a, info->nv},
                  {"T1", &e->later.t, 1},
+                 {"ALPHA", &e->alpha, 1},
+                 {"BETA", &e->beta, 1},
                  {"ENERGY", &e->energy, 1}};
     const struct {
         const char *name;

@@ -24,7 +24,8 @@ typedef struct hn_exporter {
     hn_system_info info;
     hn_system_exprs x;
     const hn_language *language;
-    bool blanks; ///< the student's parts are left out
+    double alpha, beta; ///< Baumgarte's [1/s]
+    bool blanks;        ///< the student's parts are left out
     hn_walk_limits limits;
     double started; ///< hn_clock_thread()
     hn_export_state start, later;

@@ -18,6 +18,7 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
     // the program, into the file or onto standard output
     if (status == HN_OK) {
         hn_export_request request = {.language = args->language ? args->language : "python",
+                                     .method = args->method,
                                      .blanks = args->blanks};
         status = hn_model_export(&b, model, lib, &request, &diags);
     }
