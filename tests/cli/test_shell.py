@@ -153,6 +153,7 @@ class Width(unittest.TestCase):
                 ["study", "pendulum", "work-precision", "--time", "0.5", "--levels", "3", "--samples", "1"], ["study", "fb0", "budget", "--time", "0.5"],
                 ["study", "slider-crank", "stability", "--over", "h=1e-4..1e-1,c=1..1000", "--grid", "6x6"], ["reference", "fb0"],
                 ["problem", "p3"], ["problem", "p1", "--seeds", "1..2", "--check"], ["grade", "p3", "bad.json"], ["regrade", "verdict.json"],
+                ["rubric", "check", "rubric.json"],
                 ["grade", "p3", "handed-in"], ["lesson", "1"], ["snapshot", "four-bar", "-o", "a.png"], ["import", "robot.urdf", "-o", "b.json"],
                 ["tui", "--once"], ["help"], ["help", "serve"], ["version", "--json"])
     # they wait for somebody, take minutes, or what they print is a program, roff or a script
@@ -175,6 +176,8 @@ class Width(unittest.TestCase):
                     file.write(text)
             shutil.copy(os.path.join(ROOT, "tests", "import", "four-bar.urdf"), os.path.join(folder, "robot.urdf"))
             env = {**os.environ, "LC_ALL": "C.UTF-8", "COLUMNS": str(columns), "HOLONOM_CACHE": os.path.join(folder, "cache")}
+            if words[0] == "rubric":
+                subprocess.run([PROGRAM, "rubric", "write", "p3", "-o", "rubric.json"], timeout=60, cwd=folder, env=env, check=True)
             if words[0] == "regrade":
                 with open(os.path.join(folder, "verdict.json"), "w", encoding="utf-8") as file:
                     subprocess.run([PROGRAM, "grade", "p3", "bad.json", "--json"], stdout=file, timeout=60, cwd=folder, env=env, check=True)

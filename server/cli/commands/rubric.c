@@ -27,7 +27,7 @@ static hn_exit check(const hn_library *lib, const hn_args *args, const char *pat
     hn_strbuf_init(&b);
     hn_rubric_text(&b, e);
     hn_exercise_free(e);
-    return hn_cli_print(&b);
+    return hn_cli_print_text(&b);
 }
 
 static hn_exit write(const hn_library *lib, const hn_args *args, const char *id) {
