@@ -97,9 +97,9 @@ static void put_variant(hn_strbuf *b, const hn_variant *x) {
 
 void hn_variant_text(hn_strbuf *b, hn_variant *x) {
     const hn_exercise *p = x->exercise;
-    hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g points; seed %llu)\n\n", p->id,
+    hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g point%s; seed %llu)\n\n", p->id,
                      p->title, p->lesson, p->section, hn_exercise_points(p),
-                     (unsigned long long)x->seed);
+                     hn_exercise_points(p) == 1 ? "" : "s", (unsigned long long)x->seed);
     put_statement(b, x);
     for (int i = 0; i < x->n_parts; i++) {
         const hn_part *part = &x->part[i];
