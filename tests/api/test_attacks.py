@@ -130,7 +130,8 @@ class NobodyWaitsForAnother(Timed):
         self.assertLess(peak, 250000 * driver.SLOW)  # 607 MB without the budget
 
     def test_equations_count_against_the_limit(self):
-        server = driver.Server("--run-cpu", "0.2")
+        limit = 0.2 * driver.SLOW  # the scene that a comparison goes on with has its equations within it
+        server = driver.Server("--run-cpu", str(limit))
         ring = {"scene": "ring", "parameters": {"n": 60}}
         for method, path, body in (("GET", "scenes/ring?set=n:60", None), ("POST", "inspect", ring), ("POST", "terms", ring),
                                    ("POST", "comparisons", {**ring, "methods": ["projection@rk4:h=1e-2"]}),
@@ -138,9 +139,9 @@ class NobodyWaitsForAnother(Timed):
             before = server.cpu()
             answer = server.ask(method, "/api/v1/" + path, body, timeout=120)
             self.assertEqual(answer.status, 422, path)
-            self.assertIn("take more than 0.2 s of computing", answer.json()["detail"], path)
+            self.assertIn(f"take more than {limit:g} s of computing", answer.json()["detail"], path)
             # a run has as much for its scene as for its method; the scene is read before that
-            self.assertLess(server.cpu() - before, (0.4 + 1) * driver.SLOW, path)
+            self.assertLess(server.cpu() - before, 2 * limit + 1 * driver.SLOW, path)
         # a comparison goes on with the scene that it has
         c = server.compare(scene="ring", methods=["projection@rk4:h=1e-2"])
         address = "/api/v1/comparisons/" + c["id"]
@@ -344,9 +345,12 @@ class FairShares(Timed):
         greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
         theirs = modest.ask(*self.MAKE).json()["id"]
         time.sleep(6)
-        own = [greedy.ask(*self.MAKE).status for _ in range(2)]
-        self.assertEqual((own, greedy.ask(*self.AT_ONCE).status), ([201, 201], 429))
+        own = [greedy.ask(*self.MAKE).json()["id"] for _ in range(2)]
+        readers = [driver.Events(server, c) for c in own]  # they are not left alone
+        self.assertEqual(greedy.ask(*self.AT_ONCE).status, 429)
         self.assertIn(theirs, server.ask("GET", "/api/v1/comparisons").json()["comparisons"])
+        for reader in readers:
+            reader.close()
         self.assertEqual(server.stop(), 0)
 
     def test_one_that_was_left_makes_room(self):

@@ -118,7 +118,7 @@ class Runs(unittest.TestCase):
         self.assertEqual(self.ask(LONG, "?wait=0", 202).headers["location"], address)
         self.assertEqual(self.server.ask("DELETE", address).status, 204)
         self.assertEqual(self.server.ask("GET", address).status, 404)
-        self.assertEqual(self.ask({**LONG, "time": 0.05}).json()["state"], "finished")
+        self.assertEqual(self.ask({**LONG, "time": 0.01}).json()["state"], "finished")
 
 
 PYTHON = next((p for p in (sys.executable, "/usr/bin/python3") if subprocess.run([p, "-c", "import numpy, scipy"], capture_output=True).returncode == 0), None)
