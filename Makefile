@@ -224,7 +224,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
                  libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core bwrap:bubblewrap
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
-                 slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux
+                 slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux nginx:nginx-light
 # for make languages alone: some 700 MB
 LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
@@ -305,6 +305,7 @@ help:
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
+	@echo 'make compilers    the numbers of gcc and clang on every shipped scene: none may differ'
 	@echo 'make bench        time the engine: CSV on standard output'
 	@echo 'make bench-tui    what drawing six methods in a terminal costs: CSV on standard output'
 	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
@@ -338,7 +339,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
+.PHONY: test test-quick asan tsan fuzz load compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -365,6 +366,11 @@ load: all
 
 bench-tui: all
 	@HOLONOM=$(PROGRAM) python3 tests/bench/tui_share.py
+
+compilers: build/.packages-check
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=clang build/clang/holonom
+	@python3 tests/tables/compilers.py $(PROGRAM) build/clang/holonom
 
 run-fuzz: $(FUZZERS)
 	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing $(HARNESS)
