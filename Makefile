@@ -524,12 +524,12 @@ run-suite: $(PROGRAM) $(UNIT) $(SLOW) $(COMMA_LOCALE)
 SANITISED = $(if $(filter %san,$(VARIANT)),TEST_TIMEOUT=1800)
 
 run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW)) $(COMMA_LOCALE)
-	@$(SANITISED) LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
+	@$(SANITISED) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(if $(filter asan,$(VARIANT)),$(SLOW)) $(UNIT)
 
 run-server: $(PROGRAM)
 	@$(SANITISED) HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \
-	    LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
+	    LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(SCRIPTS))
 
 run-bench: $(BENCH)

@@ -54,6 +54,12 @@ static int more_first(const void *a, const void *b) {
     return x->n != y->n ? y->n - x->n : strcmp(x->word, y->word);
 }
 
+static void sort(counts *c) {
+    if (c->n > 0) {
+        qsort(c->item, (size_t)c->n, sizeof(count), more_first);
+    }
+}
+
 static void free_counts(counts *c) {
     for (int i = 0; i < c->n; i++) {
         hn_strbuf_reset(&c->item[i].who);
@@ -137,7 +143,7 @@ static void put_histogram(hn_strbuf *b, const tally *t) {
 
 /// Names that more than one submission carries, with their files.
 static void put_names(hn_strbuf *b, counts *c) {
-    qsort(c->item, (size_t)c->n, sizeof(count), more_first);
+    sort(c);
     for (int k = 0; k < c->n && c->item[k].n > 1; k++) {
         hn_strbuf_printf(b, "%s  %s: %s\n",
                          k == 0 ? "more than one submission of a name: keep one\n" : "",
@@ -148,7 +154,7 @@ static void put_names(hn_strbuf *b, counts *c) {
 /// Groups that differ in their names alone.
 static void put_like(hn_strbuf *b, counts *c) {
     int shown = 0;
-    qsort(c->item, (size_t)c->n, sizeof(count), more_first);
+    sort(c);
     for (int k = 0; k < c->n; k++) {
         if (c->item[k].differs) {
             hn_strbuf_printf(b, "%s  %s\n",
@@ -176,12 +182,12 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
     }
 
     // what to talk about in class
-    qsort(t.mistakes.item, (size_t)t.mistakes.n, sizeof(count), more_first);
+    sort(&t.mistakes);
     for (int k = 0; k < t.mistakes.n && k < MOST_NAMED; k++) {
         hn_strbuf_printf(b, "%s  %4d  %s\n", k == 0 ? "commonest mistakes\n" : "",
                          t.mistakes.item[k].n, t.mistakes.item[k].word);
     }
-    qsort(t.equal.item, (size_t)t.equal.n, sizeof(count), more_first);
+    sort(&t.equal);
     for (int k = 0; k < t.equal.n && t.equal.item[k].n > 1; k++) {
         hn_strbuf_printf(b, "%s  %s\n",
                          k > 0      ? ""
