@@ -49,7 +49,7 @@ enum {
     X(MAP, 'b', "b", "map of stability over alpha and beta")     \
     X(BUDGET, 'e', "e", "where the error comes from")            \
     X(LINK, 'l', "l", "copy a link that opens this in the page") \
-    X(EXPORT, 'x', "x", "export: recording, scene, programs")    \
+    X(EXPORT, 'x', "x", "export: recording, programs")           \
     X(UNDO, 'z', "z", "undo the last change")                    \
     X(REDO, 'y', "y", "redo it")                                 \
     X(HELP, '?', "?", "menu: this table, Enter does it")         \

@@ -206,7 +206,7 @@ class GoldenFrames(unittest.TestCase):
     """Frames as they were last looked at and found clear. HOLONOM_RENEW=1 writes them anew."""
 
     FRAMES = {"80x24-braille": ("80x24", "g", ()), "120x40-blocks": ("120x40", "g", ("--blocks",)), "200x60-ascii": ("200x60", "g", ("--ascii",)),
-              "80x24-why": ("80x24", "gi", ()), "80x24-parameters": ("80x24", "p", ()), "80x24-menu": ("80x24", "?", ()),
+              "80x24-why": ("80x24", "gi", ()), "80x24-parameters": ("80x24", "p", ()), "80x24-menu": ("80x24", "?", ()), "120x40-menu": ("120x40", "?", ()),
               "80x24-map": ("80x24", "2b<Right><Up>", ()), "120x40-energy": ("120x40", "gg", ())}
 
     @staticmethod
