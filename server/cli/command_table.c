@@ -26,8 +26,8 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --format --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
-     "julia, wolfram or modelica; latex: its equations to read",
-     MODEL_OPTIONS " --language --method --blanks --out -o", 1, 1, hn_command_export},
+     "julia, wolfram or modelica; latex: its equations to read; or as a model: --format mjcf",
+     MODEL_OPTIONS " --language --method --blanks --format --out -o", 1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java",
      "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,
      hn_command_program},

@@ -1,31 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom export: a mechanism as a program of its own.
+// holonom export: a mechanism as a program of its own, or as a model of another program.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/scene_word.h"
 #include "session/export/export.h"
+#include "session/export/mechanism.h"
+
+/// Fails: HN_ERR_INPUT when options of a program are given with a format.
+static hn_status check_format(const hn_args *args, hn_diags *diags) {
+    const char *other = !args->format    ? NULL
+                        : args->language ? "--language"
+                        : args->method   ? "--method"
+                        : args->blanks   ? "--blanks"
+                                         : NULL;
+    return other ? hn_diags_add(diags, HN_ERR_INPUT, "/format", "leave one of them out",
+                                "--format writes the mechanism and %s a program: not both", other)
+                 : HN_OK;
+}
+
+static hn_status write_program(const hn_library *lib, const hn_args *args, const hn_model *model,
+                               hn_strbuf *b, hn_diags *diags) {
+    hn_export_request request = {.language = args->language ? args->language : "python",
+                                 .method = args->method,
+                                 .blanks = args->blanks};
+    return hn_model_export(b, model, lib, &request, diags);
+}
 
 hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
     hn_model *model = NULL;
     hn_diags diags = {0};
-    hn_strbuf b;
+    hn_strbuf b, left_out;
     hn_strbuf_init(&b);
+    hn_strbuf_init(&left_out);
     hn_status status = hn_cli_check_folder(args->out, &diags);
+    HN_THEN(status, check_format(args, &diags));
     HN_THEN(status, hn_cli_protect_inputs(args, &diags));
     HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags));
 
-    // the program, into the file or onto standard output
+    // the mechanism or a program
     if (status == HN_OK) {
-        hn_export_request request = {.language = args->language ? args->language : "python",
-                                     .method = args->method,
-                                     .blanks = args->blanks};
-        status = hn_model_export(&b, model, lib, &request, &diags);
+        status = args->format
+                     ? hn_model_export_mechanism(&b, &left_out, model, args->format, &diags)
+                     : write_program(lib, args, model, &b, &diags);
     }
     hn_model_free(model);
     if (status != HN_OK) {
         hn_strbuf_reset(&b);
+        hn_strbuf_reset(&left_out);
         return hn_report_diags(args, status, &diags);
     }
-    return hn_cli_write_file(args, args->out, &b);
+
+    // into the file or onto standard output; then what is not in it
+    const hn_exit result = hn_cli_write_file(args, args->out, &b);
+    if (result == HN_EXIT_DONE) {
+        hn_cli_note_lines(&left_out);
+    }
+    hn_strbuf_reset(&left_out);
+    return result;
 }
