@@ -208,6 +208,33 @@ def slip(folder):
     return [] if done.returncode == 1 and "BAD" in done.stdout else [done.stdout]
 
 
+def skeleton():
+    """Without the self-check: every function of the full program, and from the start the same motion, to the last bit."""
+    python, faults = find_python(), []
+    for scene in ("four-bar", "heavy-top") if python else ():
+        full, bare = (call([PROGRAM, "export", scene, "--language", "python", "--style", style]).stdout for style in ("full", "skeleton"))
+        if full != call([PROGRAM, "export", scene, "--language", "python"]).stdout:
+            faults.append(f"{scene}: full is not what is written without --style")
+        if "check" in bare.lower() or "@" in bare.replace(" @ ", "") or not len(bare) < len(full):
+            faults.append(f"{scene}: checks or places are left in the skeleton")
+        ends = []
+        for text in (full, bare):
+            after = "; import numpy; print(repr(list(move(START_Q, START_V, 0.3).y[:, -1])))"
+            done = call([python, "-c", f"__name__ = 'taken'; exec({text!r}){after}"])
+            ends.append(done.stdout or done.stderr)
+        if ends[0] != ends[1] or "[" not in ends[0]:
+            faults.append(f"{scene}: {ends}")
+        done = call([python, "-c", bare])
+        if done.returncode != 0 or not re.search(r"^q \[", done.stdout, re.MULTILINE):
+            faults.append(f"{scene}: {done.stdout} {done.stderr}")
+    for words, said in ((("--language", "c", "--style", "skeleton"), "no skeleton in c"), (("--style", "bare"), "full or skeleton"),
+                        (("--blanks", "--style", "skeleton"), "leave one of them out")):
+        done = call([PROGRAM, "export", "four-bar", *words])
+        if done.returncode != 2 or said not in done.stderr or done.stdout:
+            faults.append(f"{words}: {done.returncode} {done.stderr}")
+    return faults
+
+
 def table(results):
     """What was seen, a line for each language."""
     print("Every shipped scene as a program in every language: run, and compared with the workbench by its own self-check")
@@ -234,6 +261,7 @@ def main():
         results = [(f"{name}: {scene} agrees with the workbench ({how})", faults) for name, how, scene, faults in ran]
         results.append(("a parameter that is off by 1e-7 is found by the self-check", slip(folder)))
         results.append(("a method says how the loops are held", methods(folder)))
+        results.append(("a skeleton is the program without its self-check", skeleton()))
         results.append(("words of a scene stay words in every language", hostile_words(folder)))
     results += refusals()
     for n, (name, faults) in enumerate(results, 1):

@@ -81,6 +81,10 @@ static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib, 
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_status status = read_text(lib, e->language, &text, diags);
+    if (status == HN_OK && e->skeleton && !strstr(hn_strbuf_text(&text), "@IF SKELETON@")) {
+        status = hn_diags_add(diags, HN_ERR_INPUT, "/style", "--language python",
+                              "there is no skeleton in %s", e->language->name);
+    }
     HN_THEN(status, hn_export_fill(b, e, hn_strbuf_text(&text)));
     hn_strbuf_reset(&text);
     return status;
@@ -91,6 +95,7 @@ hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library 
     hn_exporter e = {.model = model,
                      .arena = hn_arena_create(0),
                      .blanks = request->blanks,
+                     .skeleton = request->skeleton,
                      .limits = request->limits,
                      .started = hn_clock_thread()};
     if (!e.arena) {

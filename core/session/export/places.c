@@ -379,16 +379,19 @@ static bool is_line(const char *line, size_t n, const char *word) {
 }
 
 hn_status hn_export_fill(hn_strbuf *b, const hn_exporter *e, const char *text) {
-    bool wanted = true;
+    // one bit for each condition that is open, the innermost lowest: 1 where lines are left out
+    unsigned dropped = 0;
     while (*text) {
         const size_t n = strcspn(text, "\n");
         if (is_line(text, n, "@IF BLANKS@")) {
-            wanted = e->blanks;
+            dropped = dropped << 1 | !e->blanks;
+        } else if (is_line(text, n, "@IF SKELETON@")) {
+            dropped = dropped << 1 | !e->skeleton;
         } else if (is_line(text, n, "@ELSE@")) {
-            wanted = !wanted;
+            dropped ^= 1;
         } else if (is_line(text, n, "@END@")) {
-            wanted = true;
-        } else if (wanted) {
+            dropped >>= 1;
+        } else if (!dropped) {
             HN_TRY(fill_line(b, e, text, n));
         }
         text += n + (text[n] == '\n');

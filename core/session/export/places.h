@@ -26,6 +26,7 @@ typedef struct hn_exporter {
     const hn_language *language;
     double alpha, beta; ///< Baumgarte's [1/s]
     bool blanks;        ///< the student's parts are left out
+    bool skeleton;      ///< without what checks the program and shows the motion
     hn_walk_limits limits;
     double started; ///< hn_clock_thread()
     hn_export_state start, later;

@@ -8,23 +8,43 @@
 #include "session/export/export.h"
 #include "session/export/mechanism.h"
 
+#include <string.h>
+
 /// Fails: HN_ERR_INPUT when options of a program are given with a format.
 static hn_status check_format(const hn_args *args, hn_diags *diags) {
     const char *other = !args->format    ? NULL
                         : args->language ? "--language"
                         : args->method   ? "--method"
                         : args->blanks   ? "--blanks"
+                        : args->style    ? "--style"
                                          : NULL;
     return other ? hn_diags_add(diags, HN_ERR_INPUT, "/format", "leave one of them out",
                                 "--format writes the mechanism and %s a program: not both", other)
                  : HN_OK;
 }
 
+/// Fails: HN_ERR_INPUT for another word, or with --blanks: grade needs what a skeleton lacks.
+static hn_status check_style(const hn_args *args, hn_diags *diags) {
+    if (!args->style) {
+        return HN_OK;
+    }
+    if (strcmp(args->style, "full") != 0 && strcmp(args->style, "skeleton") != 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/style", "full or skeleton",
+                            "'%.40s' is not a style of export", args->style);
+    }
+    return args->blanks && strcmp(args->style, "skeleton") == 0
+               ? hn_diags_add(diags, HN_ERR_INPUT, "/style", "leave one of them out",
+                              "a program with --blanks keeps what grade asks of it: it is no "
+                              "skeleton")
+               : HN_OK;
+}
+
 static hn_status write_program(const hn_library *lib, const hn_args *args, const hn_model *model,
                                hn_strbuf *b, hn_diags *diags) {
     hn_export_request request = {.language = args->language ? args->language : "python",
                                  .method = args->method,
-                                 .blanks = args->blanks};
+                                 .blanks = args->blanks,
+                                 .skeleton = args->style && strcmp(args->style, "skeleton") == 0};
     return hn_model_export(b, model, lib, &request, diags);
 }
 
@@ -36,6 +56,7 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&left_out);
     hn_status status = hn_cli_check_folder(args->out, &diags);
     HN_THEN(status, check_format(args, &diags));
+    HN_THEN(status, check_style(args, &diags));
     HN_THEN(status, hn_cli_protect_inputs(args, &diags));
     HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags));
 

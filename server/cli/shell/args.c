@@ -111,6 +111,8 @@ static const option OPTIONS[] = {
      "processes that work at once; all processors when left out"},
     {"--shard", "I/N", OPTION_TEXT, AT(shard), "every N-th submission from the I-th on"},
     {"--merge", NULL, OPTION_FLAG, AT(merge), "put the parts together that --shard made"},
+    {"--style", "full|skeleton", OPTION_TEXT, AT(style),
+     "skeleton: the functions alone, without self-check (python); full when left out"},
     {"--blanks", NULL, OPTION_FLAG, AT(blanks),
      "leave out mass, force, jacobian and bias, for students to fill in; grade takes the file"},
     {"--seed", "N", OPTION_COUNT, AT(seed),
