@@ -309,6 +309,19 @@ class CommandLine(unittest.TestCase):
         summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", RK4, "--time", "0.5", "--json"), DONE))
         self.assertEqual([m["state"] for m in summary["methods"]], ["finished"])
 
+    def test_a_motion_that_is_wrong_is_not_called_ok(self):
+        # the step is longer than the run: it comes to the end 19 rad off
+        far = "projection@rk4:h=2"
+        text = self.assert_exit(call("compare", "four-bar", "--methods", far, RK4, "--time", "1"), DONE)
+        self.assertRegex(text, r"(?m)^projection@rk4\S* +WRONG +1.00 ")
+        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\.\de\+0\d .*; a smaller step is needed$")
+        self.assertRegex(text, r"(?m)^index1@rk4\S* +ok +1.00 ")
+        self.assertNotRegex(text, r"index1@rk4\S* is wrong")
+        told = call("run", "four-bar", "--method", far, "--time", "1", "--at", "1").stderr.decode()
+        self.assertRegex(told, r"coordinates 1\.9e\+01, .*; the motion is wrong; a smaller step is needed")
+        near = call("run", "four-bar", "--method", "index1@rk4:h=0.05", "--time", "1", "--at", "1").stderr.decode()
+        self.assertNotIn("the motion is wrong", near)
+
     def test_compare_keeps_a_method_that_failed_and_says_which(self):
         done = call("compare", "four-bar", "--methods", "index1@euler:h=0.05", "projection@rk4:h=1e-3", "--time", "60")
         text = self.assert_exit(done, ENDED)
@@ -587,7 +600,7 @@ class CommandLine(unittest.TestCase):
 
     def test_every_run_has_an_estimate_of_its_error(self):
         far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
-        self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; a smaller step is needed")
+        self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; the motion is wrong; a smaller step is needed")
         near = call("run", "four-bar", "--method", "projection@rk4:h=1e-3", "--at", "1", "--json")
         estimate = json.loads(near.stdout)["error_estimate"]
         self.assertEqual((estimate["t"], estimate["reason"]), (1, ""))

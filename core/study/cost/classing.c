@@ -172,16 +172,17 @@ static void fit(const ladder *l, int n, int most, hn_class *c) {
     }
 }
 
-/// Why slopes are not those of an order, and what to try.
-static const char *why_unsettled(const hn_class *c) {
-    const int above = c->high > c->theory + HN_CLASS_SPREAD,
-              below = c->low < c->theory - HN_CLASS_SPREAD;
-    return above && below ? ": the leading terms of the error cancel at some of these sizes; finer "
-                            "sizes (--levels 10) or a shorter --time show the order"
-           : above ? ": the errors still fall faster than theory, so the steps do not resolve "
-                     "the motion yet; take more --levels or a shorter --time"
-           : below ? ": the errors fall more slowly than theory; take a shorter --time"
-                   : ": the slopes change from size to size; take a shorter --time";
+/// Why slopes are not those of an order, and a run to try: over a tenth of the time, errors grow less
+/// and their leading terms hold from longer steps on.
+static void why_unsettled(const hn_class *c, double T, char out[200]) {
+    const bool above = c->high > c->theory + HN_CLASS_SPREAD,
+               below = c->low < c->theory - HN_CLASS_SPREAD;
+    const char *why = above && below ? "the leading terms of the error cancel at some of these sizes"
+                      : above        ? "the errors still fall faster than theory, so the steps do "
+                                       "not resolve the motion yet"
+                      : below        ? "the errors fall more slowly than theory"
+                                     : "the slopes change from size to size";
+    snprintf(out, 200, ": %s; try a shorter run, --time %.3g", why, T / 10);
 }
 
 static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *c) {
@@ -244,9 +245,11 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
                  "(theory %g)%s",
                  c->order, c->theory, floor);
     } else if (c->first >= 0) {
+        char why[200];
+        why_unsettled(c, wp->ref->T, why);
         snprintf(c->text, sizeof c->text,
                  "not in the asymptotic range: slopes from %.1f to %.1f (theory %g)%s%s", c->low,
-                 c->high, c->theory, why_unsettled(c), floor);
+                 c->high, c->theory, why, floor);
     } else {
         snprintf(c->text, sizeof c->text,
                  "not in the asymptotic range: fewer than two points between 0.5 and the floor");

@@ -23,6 +23,7 @@
 #define HN_ACCURACY_OWN 100.0
 #define HN_ACCURACY_FLOOR 1e-7 ///< relative: smaller errors are not told apart
 #define HN_ACCURACY_WARN 1e-2  ///< an estimate above it is worth a remark
+#define HN_ACCURACY_WRONG 1.0  ///< an estimate of q from it on: off by a radian or a length L
 /// Error of the pilot itself, of q, that ends the estimate.
 #define HN_ACCURACY_LOST 1e-3
 #define HN_ACCURACY_SHARE 0.1 ///< of the operations of the runs

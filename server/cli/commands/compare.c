@@ -10,6 +10,7 @@
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
 #include "session/compare/estimate.h"
+#include "study/truth/accuracy.h"
 #include "terminal/motion_plot.h"
 #include "terminal/width.h"
 
@@ -85,6 +86,12 @@ static bool has_failed(const cJSON *method) {
     return strcmp(hn_document_text(method, "state"), "failed") == 0;
 }
 
+/// Whether the coordinates are so far from the true motion that they say nothing of it.
+static bool is_wrong(const cJSON *method) {
+    const cJSON *e = hn_document_get(method, "error_estimate");
+    return hn_document_number(e, "q") >= HN_ACCURACY_WRONG;
+}
+
 /// The larger of the estimates of coordinates and reactions, and where it ends before the run, or
 /// how many times the tolerance the coordinates are off.
 static void put_estimate(hn_table *t, const cJSON *e) {
@@ -109,8 +116,8 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 
     // how the run went
     hn_table_cell(t, "%s", hn_document_text(m, "method"));
-    hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : "ok");
-    if (has_failed(m)) {
+    hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : is_wrong(m) ? "WRONG" : "ok");
+    if (has_failed(m) || is_wrong(m)) {
         hn_table_bad(t);
     }
     hn_table_quantity(t, hn_document_number(m, "t_reached"), "s");
@@ -138,6 +145,16 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_cell(t, "%s to %s", low, high);
 }
 
+/// Says what WRONG stands for.
+static void put_wrong(hn_strbuf *b, const cJSON *m) {
+    const cJSON *e = hn_document_get(m, "error_estimate");
+    hn_strbuf_printf(b,
+                     "! %s is wrong: its coordinates are off by up to %.1e (angles in rad, lengths "
+                     "over the mechanism's); a smaller %s is needed\n",
+                     hn_document_text(m, "method"), hn_document_number(e, "q"),
+                     isnan(hn_document_number(e, "over_rtol")) ? "step" : "tolerance");
+}
+
 /// What a spelling deserves to be told, and the first few incidents of each method; all of them are
 /// in the JSON.
 static void put_incidents(hn_strbuf *b, const cJSON *summary) {
@@ -148,6 +165,9 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
         if (hn_document_text(m, "warning")[0]) {
             hn_strbuf_printf(b, "! %s: %s\n", hn_document_text(m, "method"),
                              hn_document_text(m, "warning"));
+        }
+        if (!has_failed(m) && is_wrong(m)) {
+            put_wrong(b, m);
         }
 
         // its first incidents; the rest are counted

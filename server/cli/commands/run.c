@@ -106,8 +106,9 @@ static void tell_estimate(const cJSON *run) {
         }
         hn_cli_note(
             "holonom: error estimate up to t = %.4g s: coordinates %.1e%s, reactions %.1e of "
-            "their largest%s\n",
+            "their largest%s%s\n",
             hn_document_number(e, "t"), q, factor, reaction,
+            q >= HN_ACCURACY_WRONG ? "; the motion is wrong" : "",
             !far           ? ""
             : isnan(times) ? "; a smaller step is needed"
                            : "; a smaller tolerance is needed");

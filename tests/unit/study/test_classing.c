@@ -196,6 +196,10 @@ static void slopes_that_wander_are_not_in_the_asymptotic_range(void **state) {
     set_ladder(&w, 0, e, 0);
     assert_int_equal(class_of(&w, 0).kind, HN_CLASS_UNSETTLED);
     assert_non_null(strstr(class_of(&w, 0).text, "asymptotic"));
+
+    // the run to try is a tenth of this one, of 25 s
+    w.ref.T = 25;
+    assert_non_null(strstr(class_of(&w, 0).text, "; try a shorter run, --time 2.5"));
 }
 
 static void a_method_that_hardly_ever_finishes_is_failed_with_its_reason(void **state) {
