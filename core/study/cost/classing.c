@@ -172,12 +172,13 @@ static void fit(const ladder *l, int n, int most, hn_class *c) {
     }
 }
 
-/// Why slopes are not those of an order, and a run to try: over a tenth of the time, errors grow less
-/// and their leading terms hold from longer steps on.
+/// Why slopes are not those of an order, and a run to try: over a tenth of the time, errors grow
+/// less and their leading terms hold from longer steps on.
 static void why_unsettled(const hn_class *c, double T, char out[200]) {
     const bool above = c->high > c->theory + HN_CLASS_SPREAD,
                below = c->low < c->theory - HN_CLASS_SPREAD;
-    const char *why = above && below ? "the leading terms of the error cancel at some of these sizes"
+    const char *why = above && below ? "the leading terms of the error cancel at some of these "
+                                       "sizes"
                       : above        ? "the errors still fall faster than theory, so the steps do "
                                        "not resolve the motion yet"
                       : below        ? "the errors fall more slowly than theory"
