@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/screen.h"
 
+#include "base/clock.h"
+#include "base/hash.h"
 #include "cli/shell/plain.h"
 #include "tui/keys.h"
 
+#include <math.h>
 #include <ncurses.h>
 #include <poll.h>
 #include <signal.h>
@@ -13,7 +16,16 @@
 #include <termios.h>
 #include <unistd.h>
 
-enum { MOST_EVENTS = 16 };
+enum { MOST_EVENTS = 16, SUSPEND = 26 /* Ctrl-Z */ };
+
+/// What a terminal answers to the question whether it is well, and the key that stands for it.
+static const char QUESTION[] = "\033[5n", ANSWER[] = "\033[0n";
+enum { KEY_ANSWER = KEY_MAX + 1 };
+
+static const double UNKNOWN = 3.0;  // [s] a terminal that is silent so long does not answer at all
+static const double SPARSE = 0.5;   // [s] between two pictures until that is known
+static const double LOST = 10.0;    // [s] an answer that comes later is not waited for
+static const double FAREWELL = 1.5; // [s] for the last answer, or the shell would read it
 
 static struct {
     bool open, colours, have_modes, mouse;
@@ -21,6 +33,11 @@ static struct {
     pid_t parent;         ///< who started this program
     hn_mouse events[MOST_EVENTS];
     int n_mouse; ///< events that are still to be handed out
+
+    // pictures wait until the terminal has read the one before
+    bool asks, asked, answers;
+    double first_asked, asked_at; ///< [s]
+    uint64_t shown;               ///< hash of the last picture
 } screen;
 
 // ---- leaving the terminal as it was ----
@@ -29,11 +46,25 @@ static const int FATAL[] = {SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGBUS,
                             SIGABRT, SIGFPE, SIGILL,  SIGPIPE};
 enum { N_FATAL = sizeof FATAL / sizeof *FATAL };
 
+/// Reads to the end of an answer that is on its way, or the shell would take it for typed keys.
+static void swallow_answer(void) {
+    enum { PATIENCE_MS = 300 };
+    struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
+    char c = '\0';
+    bool more = true;
+    while (more && c != ANSWER[sizeof ANSWER - 2]) {
+        more = poll(&input, 1, PATIENCE_MS) > 0 && read(STDIN_FILENO, &c, 1) == 1;
+    }
+}
+
 /// Only calls that a signal may interrupt: writes the sequences that ncurses would have written.
 static void restore_and_die(int number) {
     static const char back[] = "\033[?1000l\033[?1002l\033[?1006l\033[0m\033[?25h\033[?1049l\r";
     const ssize_t ignored = write(STDOUT_FILENO, back, sizeof back - 1);
     (void)ignored;
+    if (screen.asked && screen.answers) {
+        swallow_answer();
+    }
     if (screen.have_modes) {
         tcsetattr(STDIN_FILENO, TCSANOW, &screen.modes);
     }
@@ -57,9 +88,82 @@ static void put_sequence(const char *sequence) {
     fflush(stdout);
 }
 
+// ---- no picture before the last one has arrived ----
+
+/// Asks after a picture; the answer comes once the terminal has read all of it, however slow the
+/// line and whatever lies between.
+static void ask_terminal(void) {
+    if (screen.asks && !screen.asked) {
+        put_sequence(QUESTION);
+        screen.asked = true;
+        screen.asked_at = hn_clock_wall();
+        screen.first_asked = screen.first_asked > 0 ? screen.first_asked : screen.asked_at;
+    }
+}
+
+static void take_answer(void) {
+    screen.asked = false;
+    screen.answers = true;
+}
+
+bool hn_screen_ready(void) {
+    static double drawn = 0; // [s] while it is not known whether the terminal answers
+    const double now = hn_clock_wall();
+    if (!screen.asked) {
+        return true;
+    }
+
+    // an answer is on its way, or was lost
+    if (screen.answers) {
+        screen.asked = now - screen.asked_at < LOST;
+        return !screen.asked;
+    }
+
+    // a terminal that never answers is not asked again
+    if (now - screen.first_asked < UNKNOWN && now - fmax(drawn, screen.first_asked) < SPARSE) {
+        return false;
+    }
+    drawn = now;
+    return true;
+}
+
+/// The last answer is read here rather than by the shell.
+static void await_answer(double seconds) {
+    const double end = hn_clock_wall() + seconds;
+    while (screen.asked && screen.answers && hn_clock_wall() < end) {
+        timeout(20);
+        if (getch() == KEY_ANSWER) {
+            take_answer();
+        }
+    }
+}
+
+/// Ctrl-Z is a key here: the line is quiet before the shell has the terminal.
+static void suspend(void) {
+    await_answer(FAREWELL);
+    screen.asked = screen.asked && !screen.answers;
+    kill(0, SIGTSTP);
+}
+
+static void prepare_asking(void) {
+    // only where sequences are those of ANSI
+    const char *move_cursor = tigetstr("cup");
+    screen.asks = move_cursor && move_cursor != (char *)-1 && strncmp(move_cursor, "\033[", 2) == 0;
+    define_key(ANSWER, KEY_ANSWER);
+
+    // the terminal sends Ctrl-Z as a character
+    struct termios modes;
+    if (tcgetattr(STDIN_FILENO, &modes) == 0) {
+        modes.c_cc[VSUSP] = _POSIX_VDISABLE;
+        tcsetattr(STDIN_FILENO, TCSANOW, &modes);
+        def_prog_mode();
+    }
+}
+
 void hn_screen_close(void) {
     if (screen.open) {
         screen.open = false;
+        await_answer(FAREWELL);
         if (screen.mouse) {
             put_sequence(MOVES_OFF);
         }
@@ -111,6 +215,7 @@ bool hn_screen_open(int theme, bool colours) {
     curs_set(0);
     mousemask(BUTTON1_PRESSED | BUTTON1_RELEASED | REPORT_MOUSE_POSITION, NULL);
     mouseinterval(0);
+    prepare_asking();
     screen.mouse = has_mouse();
     atexit(hn_screen_close);
     watch_signals();
@@ -136,6 +241,16 @@ static attr_t attributes_of(const hn_cell *cell) {
     return a | (screen.colours ? (attr_t)COLOR_PAIR(cell->colour + 1) : A_NORMAL);
 }
 
+/// Asks the terminal after a picture that differs from the one before.
+static void ask_after(const hn_cells *c) {
+    const size_t n = (size_t)c->rows * (size_t)c->columns * sizeof *c->at;
+    const uint64_t hash = hn_hash_bytes(HN_HASH_START, c->at, n);
+    if (hash != screen.shown) {
+        screen.shown = hash;
+        ask_terminal();
+    }
+}
+
 void hn_screen_show(const hn_cells *c, bool ascii) {
     hn_strbuf plain;
     hn_strbuf_init(&plain);
@@ -155,6 +270,7 @@ void hn_screen_show(const hn_cells *c, bool ascii) {
     }
     hn_strbuf_reset(&plain);
     refresh();
+    ask_after(c);
 }
 
 // ---- keys ----
@@ -211,12 +327,28 @@ static bool next_mouse(hn_mouse *out) {
     return true;
 }
 
+/// Answers of the terminal and Ctrl-Z are dealt with here; they do not shorten the wait.
+static int next_key(double seconds) {
+    const double end = hn_clock_wall() + seconds;
+    for (;;) {
+        const double left = end - hn_clock_wall();
+        timeout(left > 0 ? (int)ceil(1000 * left) : 0);
+        const int key = getch();
+        if (key == KEY_ANSWER) {
+            take_answer();
+        } else if (key == SUSPEND) {
+            suspend();
+        } else {
+            return key;
+        }
+    }
+}
+
 int hn_screen_key(double seconds, hn_mouse *mouse) {
     if (next_mouse(mouse)) {
         return HN_KEY_MOUSE;
     }
-    timeout((int)(1000 * seconds));
-    const int key = getch();
+    const int key = next_key(seconds);
     if (key == KEY_MOUSE) {
         take_mouse();
         return next_mouse(mouse) ? HN_KEY_MOUSE : HN_KEY_NONE;

@@ -28,6 +28,10 @@ void hn_screen_close(void);
 /// closed.
 bool hn_screen_gone(void);
 void hn_screen_size(int *columns, int *rows);
+/// Whether the terminal has read the picture before: until then the next one is left out, so that a
+/// slow line shows fewer pictures and none of them late. The terminal is asked after each picture;
+/// where it never answers, this is always true after a few seconds.
+bool hn_screen_ready(void);
 void hn_screen_show(const hn_cells *c, bool ascii);
 /// The next key within the time [s]: a character, HN_KEY_* of keys.h or of this file; HN_KEY_NONE:
 /// none came.

@@ -83,6 +83,21 @@ static void obey(hn_workbench *w, const hn_cells *c, int key, hn_mouse mouse) {
     }
 }
 
+/// One picture in the present size of the terminal; false: no memory for it.
+static bool show(hn_workbench *w, hn_cells *cells, const hn_tui_opts *opts) {
+    int columns, rows;
+    hn_screen_size(&columns, &rows);
+    if ((columns != cells->columns || rows != cells->rows) &&
+        !hn_cells_resize(cells, columns, rows)) {
+        return false;
+    }
+    w->columns = columns;
+    w->rows = rows;
+    hn_views_draw(cells, w);
+    hn_screen_show(cells, opts->ascii);
+    return true;
+}
+
 bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     hn_cells cells = {0};
     choose_characters();
@@ -91,17 +106,14 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     }
     w->form = form_of(opts);
     double before = hn_clock_wall();
-    for (int n = 0; !w->quit && !hn_screen_gone() && (opts->frames == 0 || n < opts->frames); n++) {
-        int columns, rows;
-        hn_screen_size(&columns, &rows);
-        if ((columns != cells.columns || rows != cells.rows) &&
-            !hn_cells_resize(&cells, columns, rows)) {
-            break;
+    int n = 0;
+    while (!w->quit && !hn_screen_gone() && (opts->frames == 0 || n < opts->frames)) {
+        if (hn_screen_ready()) {
+            n++;
+            if (!show(w, &cells, opts)) {
+                break;
+            }
         }
-        w->columns = columns;
-        w->rows = rows;
-        hn_views_draw(&cells, w);
-        hn_screen_show(&cells, opts->ascii);
 
         // all keys that have come, so that nothing lags behind a held key
         hn_mouse mouse = {0};
