@@ -8,6 +8,10 @@ import driver
 BODY = {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"]}
 
 
+def next_frame(guest):
+    return guest.until("frame")[-1][2]["frame"]
+
+
 class Token(unittest.TestCase):
     def serve(self, *options):
         server = driver.Server("--token", "secret-1", *options)
@@ -53,6 +57,28 @@ class Token(unittest.TestCase):
         events = driver.Events(server, made["id"])
         self.assertEqual(events.status, 200)
         events.close()
+
+    def test_two_guests_at_once_read_the_same_frames(self):
+        server = self.serve("--guests")
+        bearer = {"Authorization": "Bearer secret-1"}
+        made = server.ask("POST", "/api/v1/comparisons", BODY, bearer).json()
+        guests = [driver.Events(server, made["id"]) for _ in range(2)]
+        self.assertEqual([guest.status for guest in guests], [200, 200])
+        seen = [[next_frame(guest)] for guest in guests]
+
+        # the owner steps; a guest who tries to stops nobody
+        for _ in range(3):
+            self.assertEqual(server.ask("PATCH", made["links"]["self"], {"step": 1}).status, 401)
+            self.assertEqual(server.ask("PATCH", made["links"]["self"], {"step": 1}, bearer).status, 200)
+            for guest, frames in zip(guests, seen):
+                frames.append(next_frame(guest))
+        self.assertEqual(seen, [[0, 1, 2, 3]] * 2)
+
+        # one leaves, the other reads on
+        guests[0].close()
+        self.assertEqual(server.ask("PATCH", made["links"]["self"], {"step": 1}, bearer).status, 200)
+        self.assertEqual(next_frame(guests[1]), 4)
+        guests[1].close()
 
     def test_a_server_for_others_makes_a_token_of_its_own(self):
         server = driver.Server("--host", "0.0.0.0")

@@ -2,26 +2,21 @@
 #include "http/runs/run_store.h"
 
 #include "base/clock.h"
-#include "base/file.h"
 #include "http/ground/jobs.h"
-#include "http/ground/sha256.h"
 #include "http/request/gzip.h"
 #include "http/request/request.h"
-#include "http/runs/json_scan.h"
+#include "http/runs/run_folder.h"
 #include "session/compare/run_doc.h"
 
 #include <math.h>
 #include <pthread.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 enum { MAX_RUNS = 20000, LOOK_MS = 100, MOST_ZIPPED = 8 << 20 };
 static const size_t MAX_BYTES = (size_t)256 << 20; // of documents in memory
-static const size_t MAX_FILE = (size_t)1 << 30;    // of one file in the folder
 
 struct hn_runs {
     pthread_mutex_t lock;
@@ -42,15 +37,6 @@ static void compute(void *arg);
 
 // ---- one run ----
 
-static void free_run(hn_kept_run *run) {
-    for (int i = 0; i < run->n; i++) {
-        free(run->documents[i]);
-    }
-    hn_run_question_reset(&run->question);
-    free(run->request);
-    free(run);
-}
-
 /// With the lock held: gives up a reference; returns the run when it was the last.
 static hn_kept_run *drop(hn_kept_run *run) {
     return --run->refs == 0 ? run : NULL;
@@ -60,124 +46,7 @@ void hn_runs_release(hn_runs *all, hn_kept_run *run) {
     pthread_mutex_lock(&all->lock);
     hn_kept_run *dead = drop(run);
     pthread_mutex_unlock(&all->lock);
-    if (dead) {
-        free_run(dead);
-    }
-}
-
-static hn_kept_run *new_run(const char *id, hn_client client) {
-    hn_kept_run *run = calloc(1, sizeof *run);
-    if (run) {
-        snprintf(run->id, sizeof run->id, "%s", id);
-        run->refs = 1;
-        run->client = client;
-        run->touched = hn_clock_wall();
-    }
-    return run;
-}
-
-/// Takes a document, as text.
-static bool add_document(hn_kept_run *run, hn_strbuf *text) {
-    const size_t n = text->n;
-    char *taken = hn_strbuf_take(text);
-    if (!taken) {
-        return false;
-    }
-    run->documents[run->n++] = taken;
-    run->bytes += n;
-    return true;
-}
-
-// ---- the folder ----
-
-static bool is_id(const char *id) {
-    return strlen(id) == HN_RUN_ID - 1 &&
-           strspn(id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_") ==
-               HN_RUN_ID - 1;
-}
-
-static bool file_path(const hn_runs *all, const char *id, char out[1024]) {
-    return all->opts->runs_folder && is_id(id) &&
-           snprintf(out, 1024, "%s/%s.json", all->opts->runs_folder, id) < 1024;
-}
-
-/// {"request":...,"documents":[...]}, behind a line with its hash: a file is believed only when it
-/// is whole. It can be computed again, so nobody waits for the disk.
-static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
-    char path[1024], hash[HN_SHA256_BASE64];
-    hn_strbuf body, file;
-    if (!file_path(all, run->id, path)) {
-        return;
-    }
-    hn_strbuf_init(&body);
-    hn_strbuf_init(&file);
-    hn_strbuf_printf(&body, "{\"request\":%s,\"documents\":", run->request);
-    for (int i = 0; i < run->n; i++) {
-        hn_strbuf_add(&body, i ? "," : "[");
-        hn_strbuf_add(&body, run->documents[i]);
-    }
-    hn_strbuf_add(&body, "]}\n");
-    hn_sha256_base64(hn_strbuf_text(&body), body.n, hash);
-    hn_strbuf_printf(&file, "%s\n", hash);
-    hn_strbuf_add_n(&file, hn_strbuf_text(&body), body.n);
-
-    // a folder that is full costs the next server the time of computing, no more
-    hn_diag diag = {0};
-    if (body.failed || file.failed ||
-        hn_file_keep(path, hn_strbuf_text(&file), file.n, &diag) != HN_OK) {
-        fprintf(stderr, "holonom: a run could not be kept: %s\n", diag.message);
-    }
-    hn_strbuf_reset(&body);
-    hn_strbuf_reset(&file);
-}
-
-/// The documents of a file; 0 when it is not whole.
-static bool split_file(hn_kept_run *run, const char *text, size_t n) {
-    char hash[HN_SHA256_BASE64];
-    const size_t head = HN_SHA256_BASE64; // the hash and the end of its line
-    if (n < head + 2 || text[head - 1] != '\n' || text[head] != '{') {
-        return false;
-    }
-    hn_sha256_base64(text + head, n - head, hash);
-    if (memcmp(hash, text, head - 1) != 0) {
-        return false;
-    }
-
-    // the question, then the documents, one after the other
-    const char *request = hn_json_member(text + head, "request");
-    const char *at = hn_json_member(text + head, "documents");
-    run->request = request ? strndup(request, (size_t)(hn_json_skip(request) - request)) : NULL;
-    if (!run->request || !at) {
-        return false;
-    }
-    for (const char *item = hn_json_next(&at); item && run->n < HN_COMPARISON_MAX_METHODS;
-         item = hn_json_next(&at)) {
-        hn_strbuf document;
-        hn_strbuf_init(&document);
-        hn_strbuf_add_n(&document, item, (size_t)(at - item));
-        if (!add_document(run, &document)) {
-            return false;
-        }
-    }
-    return run->n > 0;
-}
-
-static hn_kept_run *read_from_folder(const hn_runs *all, const char *id) {
-    char path[1024];
-    hn_strbuf text;
-    hn_kept_run *run = NULL;
-    hn_strbuf_init(&text);
-    if (file_path(all, id, path) && hn_file_read_own(path, MAX_FILE, &text, NULL) == HN_OK) {
-        run = new_run(id, 0);
-    }
-    if (run && split_file(run, hn_strbuf_text(&text), text.n)) {
-        run->phase = HN_RUN_DONE;
-    } else if (run) {
-        free_run(run);
-        run = NULL;
-    }
-    hn_strbuf_reset(&text);
-    return run;
+    hn_kept_run_free(dead);
 }
 
 // ---- the table, with the lock held ----
@@ -209,10 +78,7 @@ static bool forget_oldest(hn_runs *all) {
     if (!oldest) {
         return false;
     }
-    hn_kept_run *dead = drop(take_out(all, oldest));
-    if (dead) {
-        free_run(dead);
-    }
+    hn_kept_run_free(drop(take_out(all, oldest)));
     return true;
 }
 
@@ -388,7 +254,7 @@ static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model
     hn_strbuf_init(&b);
     hn_status ended = HN_OK;
     hn_status status = hn_model_run_json(&b, model, &request, &ended, &run->diags);
-    if (status == HN_OK && !add_document(run, &b)) {
+    if (status == HN_OK && !hn_kept_run_add_document(run, &b)) {
         status = HN_ERR_MEMORY;
     }
     run->is_cut |= ended == HN_ERR_STOPPED;
@@ -436,7 +302,7 @@ static void compute(void *arg) {
     // a run that was stopped is not the answer to its question
     const int stopped = atomic_load(&run->stop);
     if (run->refused == HN_OK && !stopped && !run->is_cut) {
-        keep_in_folder(all, run);
+        hn_run_folder_keep(all->opts->runs_folder, run);
     }
     pthread_mutex_lock(&all->lock);
     run->phase = run->refused == HN_OK ? HN_RUN_DONE : HN_RUN_REFUSED;
@@ -504,10 +370,7 @@ void hn_runs_free(hn_runs *all) {
     if (all) {
         hn_runs_stop(all);
         while (all->first) {
-            hn_kept_run *dead = drop(take_out(all, &all->first));
-            if (dead) {
-                free_run(dead);
-            }
+            hn_kept_run_free(drop(take_out(all, &all->first)));
         }
         hn_jobs_free(all->jobs);
         pthread_cond_destroy(&all->wake);
@@ -535,7 +398,7 @@ hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
     }
 
     // another thread may have read the same file meanwhile
-    hn_kept_run *read = read_from_folder(all, id);
+    hn_kept_run *read = hn_run_folder_read(all->opts->runs_folder, id);
     pthread_mutex_lock(&all->lock);
     run = find_here(all, id);
     if (!run && read) {
@@ -544,16 +407,14 @@ hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
         read = NULL;
     }
     pthread_mutex_unlock(&all->lock);
-    if (read) {
-        free_run(read);
-    }
+    hn_kept_run_free(read);
     return run;
 }
 
 /// Puts a new run into the table and the queue. With the lock held.
 static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client client,
                            hn_kept_run **out) {
-    hn_kept_run *run = new_run(question->id, client);
+    hn_kept_run *run = hn_kept_run_create(question->id, client);
     if (!run) {
         return HN_ERR_MEMORY;
     }
@@ -562,7 +423,7 @@ static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client cl
     hn_run_question_json(&request, question);
     run->request = hn_strbuf_take(&request);
     if (!run->request) {
-        free_run(run);
+        hn_kept_run_free(run);
         return HN_ERR_MEMORY;
     }
     run->question = *question;
@@ -601,7 +462,6 @@ hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client clien
 }
 
 int hn_runs_delete(hn_runs *all, const char *id) {
-    char path[1024];
     pthread_mutex_lock(&all->lock);
     hn_kept_run **place = find_place(all, id), *dead = NULL;
     const int found = *place != NULL;
@@ -610,10 +470,8 @@ int hn_runs_delete(hn_runs *all, const char *id) {
         dead = drop(take_out(all, place));
     }
     pthread_mutex_unlock(&all->lock);
-    if (dead) {
-        free_run(dead);
-    }
-    const int unlinked = file_path(all, id, path) && unlink(path) == 0;
+    hn_kept_run_free(dead);
+    const bool unlinked = hn_run_folder_delete(all->opts->runs_folder, id);
     return found || unlinked;
 }
 

@@ -5,44 +5,13 @@
 // in memory as long as there is room, and in a folder where the server was given one.
 
 #include "http/ground/http_opts.h"
-#include "http/ground/shares.h"
-#include "http/runs/run_question.h"
+#include "http/runs/kept_run.h"
 
-#include <stdatomic.h>
 #include <stdbool.h>
 
 struct hn_request;
 
-typedef enum hn_run_phase {
-    HN_RUN_WAITS,
-    HN_RUN_COMPUTES,
-    HN_RUN_DONE,
-    HN_RUN_REFUSED
-} hn_run_phase;
-
 typedef struct hn_runs hn_runs;
-
-/// One run. What follows `phase` belongs to the thread that computes until the phase is DONE or
-/// REFUSED, and never changes afterwards.
-typedef struct hn_kept_run {
-    char id[HN_RUN_ID];
-    int refs; ///< under the lock of the store, as are the next three
-    hn_run_phase phase;
-    double touched;             ///< [s, wall clock]
-    struct hn_request *waiting; ///< requests that wait for the end
-    _Atomic double share;       ///< done of the whole
-    atomic_int stop;
-    hn_client client;
-    hn_run_question question;
-    char *request;                              ///< the question as the body of a request
-    int n;                                      ///< documents: one for each method
-    char *documents[HN_COMPARISON_MAX_METHODS]; ///< hn_model_run_json()
-    size_t bytes;
-    bool is_cut;       ///< the computing time was used up; asked again it is computed again
-    hn_status refused; ///< why there is none
-    hn_diags diags;
-    struct hn_kept_run *next;
-} hn_kept_run;
 
 /// A stream that reads a run; the first member of it.
 typedef struct hn_run_reader {

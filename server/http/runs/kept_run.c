@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/runs/kept_run.h"
+
+#include "base/clock.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+hn_kept_run *hn_kept_run_create(const char *id, hn_client client) {
+    hn_kept_run *run = calloc(1, sizeof *run);
+    if (run) {
+        snprintf(run->id, sizeof run->id, "%s", id);
+        run->refs = 1;
+        run->client = client;
+        run->touched = hn_clock_wall();
+    }
+    return run;
+}
+
+void hn_kept_run_free(hn_kept_run *run) {
+    if (!run) {
+        return;
+    }
+    for (int i = 0; i < run->n; i++) {
+        free(run->documents[i]);
+    }
+    hn_run_question_reset(&run->question);
+    free(run->request);
+    free(run);
+}
+
+bool hn_kept_run_add_document(hn_kept_run *run, hn_strbuf *text) {
+    const size_t n = text->n;
+    char *taken = hn_strbuf_take(text);
+    if (!taken) {
+        return false;
+    }
+    run->documents[run->n++] = taken;
+    run->bytes += n;
+    return true;
+}

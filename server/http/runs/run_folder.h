@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_RUN_FOLDER_H
+#define HN_HTTP_RUN_FOLDER_H
+// Finished runs in a folder, one file for each: {"request":...,"documents":[...]}, behind a line
+// with its hash. A file is believed only when it is whole. Where `folder` is NULL nothing is kept.
+
+#include "http/runs/kept_run.h"
+
+#include <stdbool.h>
+
+/// Keeps a finished run. One that cannot be kept is told on stderr: it can be computed again.
+void hn_run_folder_keep(const char *folder, const hn_kept_run *run);
+/// Reads the run of an id, with one reference; NULL when there is no whole file of it.
+hn_kept_run *hn_run_folder_read(const char *folder, const char *id);
+/// Removes the file of an id. Returns false when there is none.
+bool hn_run_folder_delete(const char *folder, const char *id);
+#endif
