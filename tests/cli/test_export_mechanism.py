@@ -150,6 +150,54 @@ class Mechanism(unittest.TestCase):
             self.assertGreaterEqual(n, 6)  # energy, x, y, u, w, the flyer's spin
             self.assertLess(error, NEAR)
 
+    def refused(self, scene, folder):
+        path = os.path.join(folder, "scene.json")
+        with open(path, "w") as f:
+            json.dump(scene, f)
+        result = call("export", path, "--format", "mjcf")
+        self.assertEqual((result.returncode, result.stdout), (INPUT, ""))
+        return result.stderr
+
+    def test_welds_and_joints_that_are_written_from_the_body_to_the_ground(self):
+        """The first joint has the ground as its child, a ball hangs from its own child, and a weld closes a loop."""
+        bodies = [{"name": n, "mass": 1, "com": [0.4, 0, 0.1], "inertia": {"xx": 0.1, "yy": 0.2, "zz": 0.15}} for n in "abcd"]
+        scene = {"holonom": 1, "name": "turned", "gravity": [0, -9.81, 0], "bodies": bodies,
+                 "joints": [{"name": "A", "type": "cylindrical", "parent": {"body": "a"}, "child": {"body": "ground"},
+                             "axis": [0, 0.6, 0.8], "coordinates": ["x", "s"]},
+                            {"name": "B", "type": "spherical", "parent": {"body": "b"}, "child": {"body": "a", "at": [1, 0, 0]},
+                             "coordinates": ["b1", "b2", "b3"]},
+                            {"name": "C", "type": "revolute", "parent": {"body": "b", "at": [1, 0, 0]}, "child": {"body": "c"},
+                             "coordinate": "y"},
+                            {"name": "D", "type": "revolute", "parent": {"body": "b", "at": [1, 0, 0]}, "child": {"body": "d"},
+                             "coordinate": "z"},
+                            {"name": "W", "type": "fixed", "parent": {"body": "c"}, "child": {"body": "d"}, "cut": True}],
+                 "start": {"positions": {"x": 0.3, "s": 0.2, "y": 0.4, "z": {"guess": 0.3}, "b1": 0.2, "b2": 0.1, "b3": 0.3},
+                           "rates": {"d_x": 1, "d_s": 0.2, "d_b1": 2, "d_b2": -1, "d_b3": 0.5, "d_y": 1}}}
+        with tempfile.TemporaryDirectory() as folder:
+            own, model, back = (os.path.join(folder, f) for f in ("own.json", "model.xml", "back.json"))
+            with open(own, "w") as f:
+                json.dump(scene, f)
+            result = call("export", own, "--format", "mjcf", "-o", model)
+            self.assertEqual((result.returncode, result.stderr), (DONE, ""))
+            self.assertEqual(call("import", model, "-o", back).returncode, DONE)
+            a, b = run(own), run(back)
+            for name in ("x", "s", "y", "z"):
+                for p, q in zip(column(a, "q", name), column(b, "q", name)):
+                    self.assertLess(abs(p - q), NEAR)
+            self.assertLess(abs(a["samples"]["energy"][-1] - b["samples"]["energy"][-1]), NEAR * 10)
+
+    def test_a_body_named_world_and_a_free_joint_between_bodies_are_refused(self):
+        body = {"mass": 1, "inertia": {"xx": 1, "yy": 1, "zz": 1}}
+        hinge = {"name": "A", "type": "revolute", "parent": {"body": "ground"}, "child": {"body": "world"}, "coordinate": "x"}
+        free = {"name": "F", "type": "free", "parent": {"body": "a"}, "child": {"body": "b"},
+                "coordinates": ["f1", "f2", "f3", "f4", "f5", "f6"]}
+        with tempfile.TemporaryDirectory() as folder:
+            one = {"holonom": 1, "name": "one", "bodies": [{"name": "world", **body}], "joints": [hinge]}
+            self.assertIn("calls the ground 'world'", self.refused(one, folder))
+            hinge = {**hinge, "child": {"body": "a"}}
+            two = {"holonom": 1, "name": "two", "bodies": [{"name": n, **body} for n in "ab"], "joints": [hinge, free]}
+            self.assertIn("free joints of the world only", self.refused(two, folder))
+
     def test_a_scene_of_formulas_is_refused(self):
         for name in WITHOUT_BODIES:
             result = call("export", name, "--format", "mjcf")
