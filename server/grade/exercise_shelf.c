@@ -12,7 +12,11 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
                                  hn_diags *diags) {
     const char *path = hn_library_problem_path(lib, id);
     if (path) {
-        HN_TRY(hn_exercise_load_file(path, out, diags));
+        const hn_status status = hn_exercise_load_file(path, out, diags);
+        if (status != HN_OK) {
+            return hn_diags_add(diags, status, NULL, NULL,
+                                "the file of the exercise '%.80s' cannot be used", id);
+        }
         (*out)->lib = lib;
         return HN_OK;
     }

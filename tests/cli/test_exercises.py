@@ -241,6 +241,11 @@ def broken_exercise(folder):
     write(problems, "x1.json", exercise)
     done = run("grade", "x1", path, home=home)
     expect("a kind that does not exist is named with its near miss", done.returncode == 3 and "number" in done.stderr, done.stderr)
+    with open(os.path.join(problems, "x1.json"), "w", encoding="utf-8") as f:
+        f.write("{ broken")
+    done = run("grade", "x1", path, home=home)
+    named = "line 1" in done.stderr and "the file of the exercise 'x1' cannot be used" in done.stderr
+    expect("an exercise that is not JSON is named", done.returncode == 3 and named, f"{done.returncode} {done.stderr}")
 
 
 def indented(text, start, end):
