@@ -305,7 +305,7 @@ help:
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
-	@echo 'make compilers    the numbers of gcc and clang on every shipped scene: none may differ'
+	@echo 'make compilers    the numbers of gcc and clang on every shipped scene, none may differ: tests/tables/compilers.txt'
 	@echo 'make bench        time the engine: CSV on standard output'
 	@echo 'make bench-tui    what drawing six methods in a terminal costs: CSV on standard output'
 	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
@@ -370,7 +370,8 @@ bench-tui: all
 compilers: build/.packages-check
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=clang build/clang/holonom
-	@python3 tests/tables/compilers.py $(PROGRAM) build/clang/holonom
+	@python3 tests/tables/compilers.py $(PROGRAM) build/clang/holonom >build/compilers.txt || { cat build/compilers.txt; exit 1; }
+	@cp build/compilers.txt tests/tables/compilers.txt && cat tests/tables/compilers.txt
 
 run-fuzz: $(FUZZERS)
 	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing $(HARNESS)

@@ -215,12 +215,33 @@ bool hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsi
 
 // ---- solving ----
 
+// Nodes are numbered as they are made, and sums are sorted by number: two nodes are never made in
+// the arguments of one call, whose order each compiler chooses. The last is made first.
+
+/// a b + c d
+static hn_ex product_sum(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {
+    const hn_ex second = hn_mul(g, c, d);
+    return hn_add(g, hn_mul(g, a, b), second);
+}
+
+/// a b - c d
+static hn_ex product_difference(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {
+    const hn_ex second = hn_mul(g, c, d);
+    return hn_sub(g, hn_mul(g, a, b), second);
+}
+
+/// a cos x + b sin x
+static hn_ex turned(hn_graph *g, hn_ex a, hn_ex b, hn_ex x) {
+    const hn_ex second = hn_mul(g, b, hn_sin(g, x));
+    return hn_add(g, hn_mul(g, a, hn_cos(g, x)), second);
+}
+
 static hn_ex times(hn_graph *g, const hn_pair *a, const hn_pair *b) {
-    return hn_add(g, hn_mul(g, a->e[0], b->e[0]), hn_mul(g, a->e[1], b->e[1]));
+    return product_sum(g, a->e[0], b->e[0], a->e[1], b->e[1]);
 }
 
 static hn_ex cross(hn_graph *g, const hn_pair *a, const hn_pair *b) {
-    return hn_sub(g, hn_mul(g, a->e[0], b->e[1]), hn_mul(g, a->e[1], b->e[0]));
+    return product_difference(g, a->e[0], b->e[1], a->e[1], b->e[0]);
 }
 
 static hn_ex atan2_of(hn_graph *g, hn_ex sine, hn_ex cosine) {
@@ -258,12 +279,13 @@ typedef struct circle {
 
 static circle meet(hn_graph *g, hn_dyad_step *step, hn_ex p, hn_ex q, hn_ex k, hn_ex x) {
     circle c;
-    c.s2 = hn_add(g, hn_mul(g, p, p), hn_mul(g, q, q));
+    c.s2 = product_sum(g, p, p, q, q);
     step->room = hn_sub(g, c.s2, hn_mul(g, k, k));
     const hn_ex w = hn_mul(g, step->sign, hn_sqrt(g, step->room));
-    c.cosine = hn_sub(g, hn_mul(g, k, p), hn_mul(g, w, q));
-    c.sine = hn_add(g, hn_mul(g, k, q), hn_mul(g, w, p));
-    step->branch = hn_sub(g, hn_mul(g, p, hn_sin(g, x)), hn_mul(g, q, hn_cos(g, x)));
+    c.cosine = product_difference(g, k, p, w, q);
+    c.sine = product_sum(g, k, q, w, p);
+    const hn_ex along = hn_mul(g, q, hn_cos(g, x));
+    step->branch = hn_sub(g, hn_mul(g, p, hn_sin(g, x)), along);
     step->x[0] = atan2_of(g, c.sine, c.cosine);
     step->is_angle[0] = 1;
     return c;
@@ -279,37 +301,38 @@ static void show_rrr(hn_graph *g, hn_dyad_step *s, hn_ex p, hn_ex q, hn_ex k, hn
     const hn_ex xi = name_part(s, step_symbol(g, "ξ", "\\xi", number), p);
     const hn_ex eta = name_part(s, step_symbol(g, "η", "\\eta", number), q);
     const hn_ex kappa = name_part(s, step_symbol(g, "κ", "\\kappa", number), k);
-    const hn_ex room =
-        hn_sub(g, hn_add(g, hn_mul(g, xi, xi), hn_mul(g, eta, eta)), hn_mul(g, kappa, kappa));
-    const hn_ex rho =
-        name_part(s, step_symbol(g, "ρ", "\\rho", number), hn_mul(g, s->sign, hn_sqrt(g, room)));
-    s->shown[0] = atan2_of(g, hn_add(g, hn_mul(g, kappa, eta), hn_mul(g, rho, xi)),
-                           hn_sub(g, hn_mul(g, kappa, xi), hn_mul(g, rho, eta)));
+    const hn_ex kappa2 = hn_mul(g, kappa, kappa);
+    const hn_ex room = hn_sub(g, product_sum(g, xi, xi, eta, eta), kappa2);
+    const hn_ex root = hn_mul(g, s->sign, hn_sqrt(g, room));
+    const hn_ex rho = name_part(s, step_symbol(g, "ρ", "\\rho", number), root);
+    const hn_ex cosine = product_difference(g, kappa, xi, rho, eta);
+    s->shown[0] = atan2_of(g, product_sum(g, kappa, eta, rho, xi), cosine);
+
     hn_pair left;
     for (int i = 0; i < 2; i++) {
-        left.e[i] = hn_neg(hn_add(
-            g, f->E.e[i],
-            hn_add(g, hn_mul(g, f->A.e[i], hn_cos(g, x)), hn_mul(g, f->B.e[i], hn_sin(g, x)))));
+        const hn_ex first = turned(g, f->A.e[i], f->B.e[i], x);
+        left.e[i] = hn_neg(hn_add(g, f->E.e[i], first));
     }
-    s->shown[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
+    const hn_ex along = times(g, &f->C, &left);
+    s->shown[1] = atan2_of(g, times(g, &f->D, &left), along);
 }
 
 /// |E + A cos x + B sin x|^2 = |C|^2 is a line for (cos x, sin x); what is left over is the other
 /// link turned round.
 static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x, int number) {
     const hn_dyad_form *f = &s->form;
-    const hn_ex k =
-        hn_scale(0.5, hn_sub(g, times(g, &f->C, &f->C),
-                             hn_add(g, times(g, &f->E, &f->E), times(g, &f->A, &f->A))));
+    const hn_ex a2 = times(g, &f->A, &f->A);
+    const hn_ex rest = hn_add(g, times(g, &f->E, &f->E), a2);
+    const hn_ex k = hn_scale(0.5, hn_sub(g, times(g, &f->C, &f->C), rest));
     const hn_ex p = times(g, &f->E, &f->A), q = times(g, &f->E, &f->B);
     const circle c = meet(g, s, p, q, k, x);
     hn_pair left;
     for (int i = 0; i < 2; i++) {
-        const hn_ex turned =
-            hn_add(g, hn_mul(g, f->A.e[i], c.cosine), hn_mul(g, f->B.e[i], c.sine));
-        left.e[i] = hn_neg(hn_add(g, hn_mul(g, f->E.e[i], c.s2), turned));
+        const hn_ex first = product_sum(g, f->A.e[i], c.cosine, f->B.e[i], c.sine);
+        left.e[i] = hn_neg(hn_add(g, hn_mul(g, f->E.e[i], c.s2), first));
     }
-    s->x[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
+    const hn_ex along = times(g, &f->C, &left);
+    s->x[1] = atan2_of(g, times(g, &f->D, &left), along);
     s->is_angle[1] = 1;
     show_rrr(g, s, p, q, k, x, number);
 }
@@ -317,15 +340,18 @@ static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x, int number) {
 /// Across the line the slide does not count, along it nothing else is unknown.
 static void solve_rrp(hn_graph *g, hn_dyad_step *s, hn_ex x) {
     const hn_dyad_form *f = &s->form;
-    const circle c = meet(g, s, cross(g, &f->W, &f->A), cross(g, &f->W, &f->B),
-                          hn_neg(cross(g, &f->W, &f->E)), x);
+    const hn_ex k = hn_neg(cross(g, &f->W, &f->E));
+    const hn_ex q = cross(g, &f->W, &f->B), p = cross(g, &f->W, &f->A);
+    const circle c = meet(g, s, p, q, k, x);
     hn_ex along = hn_mul(g, times(g, &f->W, &f->E), c.s2);
     along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->A), c.cosine));
     along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->B), c.sine));
     const hn_ex w2 = times(g, &f->W, &f->W);
     s->x[1] = hn_neg(hn_div(g, along, hn_mul(g, w2, c.s2)));
-    along = hn_add(g, times(g, &f->W, &f->E), hn_mul(g, times(g, &f->W, &f->A), hn_cos(g, x)));
-    along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->B), hn_sin(g, x)));
+    const hn_ex cosine = hn_cos(g, x), part = hn_mul(g, times(g, &f->W, &f->A), cosine);
+    along = hn_add(g, times(g, &f->W, &f->E), part);
+    const hn_ex sine = hn_sin(g, x);
+    along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->B), sine));
     s->shown[1] = hn_neg(hn_div(g, along, w2));
 }
 
@@ -336,15 +362,16 @@ static hn_ex turned_by(hn_graph *g, const hn_dyad_form *f, hn_ex y) {
         cosine.e[i] = hn_add(g, f->A.e[i], hn_mul(g, y, f->U.e[i]));
         sine.e[i] = hn_add(g, f->B.e[i], hn_mul(g, y, f->V.e[i]));
     }
-    return atan2_of(g, hn_neg(times(g, &sine, &f->E)), hn_neg(times(g, &cosine, &f->E)));
+    const hn_ex along = hn_neg(times(g, &cosine, &f->E));
+    return atan2_of(g, hn_neg(times(g, &sine, &f->E)), along);
 }
 
 /// |A + y U| = |E| for the slide, then the angle from the pieces that it turns.
 static void solve_rpr(hn_graph *g, hn_dyad_step *s, hn_ex y) {
     const hn_dyad_form *f = &s->form;
     const hn_ex u2 = times(g, &f->U, &f->U), au = times(g, &f->A, &f->U);
-    const hn_ex far = hn_sub(g, times(g, &f->A, &f->A), times(g, &f->E, &f->E));
-    s->room = hn_sub(g, hn_mul(g, au, au), hn_mul(g, u2, far));
+    const hn_ex e2 = times(g, &f->E, &f->E), far = hn_sub(g, times(g, &f->A, &f->A), e2);
+    s->room = product_difference(g, au, au, u2, far);
     s->branch = hn_add(g, hn_mul(g, u2, y), au);
     s->x[1] = hn_div(g, hn_sub(g, hn_mul(g, s->sign, hn_sqrt(g, s->room)), au), u2);
     s->x[0] = turned_by(g, f, s->x[1]);
