@@ -67,6 +67,7 @@ static void read_flags(hn_mj *m, const xmlNode *flag) {
     m->no_equality |= constraint | is_off(m, flag, "equality");
     m->no_limits |= constraint | is_off(m, flag, "limit");
     m->no_contact |= constraint | is_off(m, flag, "contact");
+    m->keep_parents |= is_off(m, flag, "filterparent");
     m->no_springs |= passive | is_off(m, flag, "spring");
     m->no_dampers |= passive | is_off(m, flag, "damper");
     m->no_actuation |= is_off(m, flag, "actuation");
@@ -263,15 +264,6 @@ static void settle_masses(hn_mj *m) {
     }
 }
 
-static void tell_touching(hn_mj *m) {
-    if (m->n_touching > 1 && !m->no_contact) {
-        hn_im_note(m->b, HN_IMPORT_REFUSED, m->first_geom, NULL,
-                   "this geom and %d more touch one another in MuJoCo; contacts are not in the "
-                   "scene, and bodies pass through each other",
-                   m->n_touching - 1);
-    }
-}
-
 static void read_sections(hn_mj *m, const char *key) {
     bool use_key = !key || strcmp(key, "qpos0") != 0;
     hn_mj_check(m, m->root);
@@ -324,7 +316,7 @@ bool hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *s
 
     // what needs the whole model
     settle_masses(&m);
-    tell_touching(&m);
+    hn_mj_tell_contacts(&m);
     b->name = source->name ? source->name : hn_im_attr(b, root, "model");
     b->guess = b->n_closing > 0;
     return b->status == HN_OK;

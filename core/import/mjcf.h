@@ -15,6 +15,13 @@ typedef struct hn_mj_site {
     hn_im_frame at; ///< in the body
 } hn_mj_site;
 
+/// A geom with bits that let it touch others.
+typedef struct hn_mj_geom_bits {
+    const xmlNode *node;
+    int body; ///< HN_GROUND
+    unsigned contype, conaffinity;
+} hn_mj_geom_bits;
+
 typedef struct hn_mj {
     hn_build *b;
     const xmlNode *root;
@@ -27,6 +34,7 @@ typedef struct hn_mj {
     double groups[2];               ///< geoms of these groups have mass
     // option flags
     int no_equality, no_springs, no_dampers, no_actuation, no_contact, no_limits;
+    int keep_parents; ///< a body and its parent can touch: flag filterparent="disable"
     // found on the way
     const xmlNode **classes; ///< every default class
     int n_classes, cap_classes;
@@ -36,8 +44,8 @@ typedef struct hn_mj {
     int n_sites, cap_sites;
     int *controls; ///< parameters in the order of ctrl, -1 where a drive was refused
     int n_controls, cap_controls;
-    const xmlNode *first_geom; ///< that touches others
-    int n_touching;
+    hn_mj_geom_bits *geoms; ///< those that can touch others at all
+    int n_geoms, cap_geoms;
 } hn_mj;
 
 /// An element and the default class that gives the attributes it lacks.
@@ -88,9 +96,13 @@ void hn_mj_keyframe(hn_mj *m, const xmlNode *section, const char *wanted);
 /// The joints of a body, in the order they act, between it and its parent.
 void hn_mj_join(hn_mj *m, const xmlNode *body_node, const xmlNode *childclass, int parent, int body,
                 const hn_im_frame *local);
-/// One geom's share of its body's mass.
+/// One geom of a body (or HN_GROUND): its share of the mass, and what it can touch.
 void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const hn_im_frame *at,
-                int on_ground, int needed, hn_im_mass *sum);
+                int body, int needed, hn_im_mass *sum);
+/// Keeps the bits that say what a geom can touch. 0 after a fault.
+bool hn_mj_add_geom(hn_mj *m, const hn_mj_element *e, int body);
+/// Notes, once all bodies are read, that geoms can touch in MuJoCo and cannot here.
+void hn_mj_tell_contacts(hn_mj *m);
 /// Mass of a body from its `inertial` element; 0 after a fault.
 bool hn_mj_inertial(hn_mj *m, const xmlNode *node, hn_im_mass *out);
 #endif

@@ -122,7 +122,7 @@ static void read_child(hn_mj *m, const xmlNode *c, place *p) {
     } else if (strcmp(name, "frame") == 0) {
         read_frame(m, c, p);
     } else if (strcmp(name, "geom") == 0) {
-        hn_mj_geom(m, c, p->childclass, &p->at, p->body == HN_GROUND, p->needs_geoms, &p->mass);
+        hn_mj_geom(m, c, p->childclass, &p->at, p->body, p->needs_geoms, &p->mass);
     } else if (strcmp(name, "site") == 0) {
         add_site(m, c, p);
     } else if (hn_im_lists(looks, name)) {

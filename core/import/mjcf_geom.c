@@ -98,16 +98,6 @@ static bool read_mass(hn_mj *m, const hn_mj_element *e, int kind, const double s
                        by_mass ? "mass" : "density", by_mass ? *mass : density);
 }
 
-/// MuJoCo lets geoms touch whose bits say so.
-static void count_touching(hn_mj *m, const hn_mj_element *e) {
-    double type, affinity;
-    if (hn_mj_number(m, e, "contype", 1, &type) &&
-        hn_mj_number(m, e, "conaffinity", 1, &affinity) && (type != 0 || affinity != 0)) {
-        m->first_geom = m->first_geom ? m->first_geom : e->node;
-        m->n_touching++;
-    }
-}
-
 /// 1 when the geom's group is among those that have mass.
 static bool has_mass(hn_mj *m, const hn_mj_element *e) {
     double group;
@@ -115,7 +105,8 @@ static bool has_mass(hn_mj *m, const hn_mj_element *e) {
 }
 
 void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const hn_im_frame *at,
-                int on_ground, int needed, hn_im_mass *sum) {
+                int body, int needed, hn_im_mass *sum) {
+    const bool on_ground = body == HN_GROUND;
     hn_mj_element e = hn_mj_look(m, node, childclass);
     double size[3] = {0, 0, 0}, mass;
     hn_im_frame own;
@@ -125,7 +116,9 @@ void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const 
     }
 
     // the kind of solid, if it is one
-    count_touching(m, &e);
+    if (!hn_mj_add_geom(m, &e, body)) {
+        return;
+    }
     const char *type = hn_mj_attr(m, &e, "type");
     type = type ? type : hn_mj_attr(m, &e, "mesh") ? "mesh" : "sphere";
     int kind = find_solid(type);

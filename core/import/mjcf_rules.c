@@ -41,10 +41,11 @@ static const hn_im_rule OPTION[] = {
     {"o_margin o_solref o_solimp o_friction", HN_IMPORT_IGNORED, CONTACT},
     END};
 static const hn_im_rule FLAG[] = {
-    {"gravity equality spring damper passive actuation contact limit constraint", USED, NULL},
+    {"gravity equality spring damper passive actuation contact limit constraint filterparent", USED,
+     NULL},
     {"frictionloss", HN_IMPORT_IGNORED, "dry friction is not in the scene"},
     {"clampctrl", HN_IMPORT_IGNORED, "controls are parameters with their range"},
-    {"warmstart filterparent refsafe sensor midphase nativeccd eulerdamp autoreset override energy "
+    {"warmstart refsafe sensor midphase nativeccd eulerdamp autoreset override energy "
      "fwdinv invdiscrete sensornoise multiccd island sleep diagexact",
      HN_IMPORT_IGNORED, SOLVER},
     END};

@@ -110,6 +110,7 @@ typedef struct hn_coordinate {
     double q0, v0;
     bool q0_given, q0_pinned, v0_given, v0_pinned;
     const char *q0_pointer, *v0_pointer;
+    const char *q0_param, *v0_param; ///< the parameter that is the start, or NULL
 } hn_coordinate;
 
 /// A point fixed to a body, or (body HN_GROUND) a world point whose entries may depend on

@@ -27,6 +27,14 @@ static bool read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pin
     return hn_rd_member(r, node, value ? "value" : "guess", 1, 0, q, HN_RD_CONST);
 }
 
+/// The parameter that an entry names and nothing else; NULL for a number or a longer formula.
+static const char *named_parameter(hn_reader *r, const cJSON *node) {
+    const cJSON *value = hn_rd_get(node, "value");
+    const cJSON *text = cJSON_IsObject(node) ? value : node;
+    const int k = cJSON_IsString(text) ? hn_scene_find_param(r->scene, text->valuestring) : -1;
+    return k >= 0 ? r->scene->params[k].name : NULL;
+}
+
 static hn_coordinate *start_coordinate(hn_reader *r, const char *key) {
     const char *name = hn_rd_fill(r, key);
     int k = name ? hn_rd_coordinate(r, name, 1) : -1;
@@ -48,6 +56,7 @@ static void read_position(hn_reader *r, const cJSON *node, const char *key) {
     c->q0_given = true;
     c->q0_pinned = pinned;
     c->q0_pointer = hn_rd_pointer(r);
+    c->q0_param = named_parameter(r, node);
 }
 
 static void read_rate(hn_reader *r, const cJSON *node, const char *key) {
@@ -65,6 +74,7 @@ static void read_rate(hn_reader *r, const cJSON *node, const char *key) {
     c->v0_given = true;
     c->v0_pinned = pinned;
     c->v0_pointer = hn_rd_pointer(r);
+    c->v0_param = named_parameter(r, node);
 }
 
 /// A state to start from instead, such as one that a person dragged the mechanism to: every value

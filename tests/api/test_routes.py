@@ -3,6 +3,7 @@
 
 import gzip
 import json
+import math
 import os
 import re
 import subprocess
@@ -260,6 +261,16 @@ class Stateless(driver.ServerCase):
 
     def test_assembly_closes_the_loop(self):
         self.assertLess(self.post("assemble", {"scene": "four-bar"}).json()["gap"], 1e-12)
+
+    def test_an_assembled_start_has_the_places_of_the_drawn_points(self):
+        made = self.post("assemble", {"scene": "four-bar", "parameters": {"l1": 0.6}}).json()
+        crank = math.dist(made["points"][0:3], made["points"][3:6])
+        self.assertAlmostEqual(crank, 0.6, delta=1e-12)  # the two ends of the crank
+
+    def test_a_coordinate_names_the_parameter_that_is_its_start(self):
+        start = {one["name"]: (one["start_parameter"], one["rate_parameter"])
+                 for one in self.get("/api/v1/scenes/four-bar")["coordinates"]}
+        self.assertEqual(start, {"th1": ("th1_0", "w1_0"), "a2": (None, None), "th3": (None, None)})
 
     def test_inspect_counts_operations(self):
         self.assertTrue(self.post("inspect", {"scene": "four-bar"}).json())

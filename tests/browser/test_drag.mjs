@@ -3,7 +3,7 @@
 // with a reason, and every change can be undone.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, drawn, read, until } from "./support.mjs";
+import { createBench, drawn, playTo, read, until } from "./support.mjs";
 
 const { open } = createBench();
 
@@ -92,11 +92,23 @@ test("where the loops allow no more, the last configuration is held and the reas
 test("the start is set by number too, and a link carries it", async (t) => {
   const page = await open(t);
   await page.getByRole("button", { name: "lengths, masses, start" }).click();
-  await page.fill("#start-th1", "100 deg");
-  await page.press("#start-th1", "Enter");
-  await until(page, (data) => Math.abs(data.settings["start.th1"] - (100 * Math.PI) / 180) < 1e-9);
-  const { gaps, q } = await read(page, ends);
+  assert.ok(await page.isVisible("#parameter-th1_0"), "the crank starts where th1_0 says");
+  assert.ok(await page.isHidden("#start-th1"));
+  await page.fill("#start-th3", "70 deg");
+  await page.press("#start-th3", "Enter");
+  await until(page, (data) => Math.abs(data.settings["start.th3"] - (70 * Math.PI) / 180) < 1e-9);
+  const { gaps } = await read(page, ends);
   assert.ok(gaps.every((gap) => gap < 1e-12));
+
+  // one start has one field: moved, it is the coordinates' own
+  assert.ok(await page.isHidden("#parameter-th1_0"));
+  assert.ok(await page.isHidden("#parameter-w1_0"));
+  const th1 = await read(page, (data) => data.scene.coordinates[0].value);
+  assert.ok(Math.abs(Number(await page.inputValue("#start-th1")) - th1) < 1e-9);
+  await page.fill("#start-w1", "90 deg/s");
+  await page.press("#start-w1", "Enter");
+  await until(page, (data) => Math.abs(data.scene.coordinates[0].rate_value - Math.PI / 2) < 1e-9);
+  const { q } = await read(page, ends);
   await page.fill("#start-th1", "2e9");
   await page.press("#start-th1", "Enter");
   assert.match(await page.textContent("#start-th1-hint"), /too large/);
@@ -119,6 +131,7 @@ test("a length has a handle on its bar; one that cannot be assembled is held bac
   await page.mouse.down();
   await page.mouse.move(x + 12, y, { steps: 3 });
   await until(page, (data) => data.drag?.settings.l2 > 1.25);
+  const preview = await read(page, (data) => [data.drag.settings, data.drag.points]);
   await page.mouse.move(x + 500, y, { steps: 3 });
   await page.waitForFunction(() =>
     /^Held here: .{10}/.test(document.querySelector(".drag-note").textContent),
@@ -133,4 +146,38 @@ test("a length has a handle on its bar; one that cannot be assembled is held bac
   }));
   assert.deepEqual(settings, { l2: held });
   assert.ok(gap < 1e-12);
+
+  // what was shown on the way is the start that a run with that length has
+  const [parameters, points] = preview;
+  const answer = await fetch(new URL("/api/v1/assemble", page.url()), {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ scene: "four-bar", parameters }),
+  });
+  assert.deepEqual((await answer.json()).points, points);
+});
+
+test("the place of a dragged length is where the next run starts, also late in a run", async (t) => {
+  const page = await open(t);
+  await playTo(page, 1.5);
+  await page.getByRole("button", { name: "↔ lengths" }).click();
+  await page.waitForSelector(".length-handle");
+  assert.equal(await read(page, (data) => data.view.shown), 0, "lengths are those of the start");
+  const coupler = await page.locator(".length-handle rect").nth(1).boundingBox();
+  const [x, y] = [coupler.x + coupler.width / 2, coupler.y + coupler.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 14, y, { steps: 3 });
+  await until(page, (data) => data.drag?.settings.l2 > 1.25);
+  await page.waitForTimeout(300); // until the last wish is answered
+  const shown = await read(page, (data) => data.drag.points);
+  await page.mouse.up();
+  await until(page, (data) => data.drag === null && data.settings.l2 > 1.25);
+  const start = await read(page, (data) => Array.from(data.history.pointsAt(0, 0)));
+  shown.forEach((value, i) => assert.ok(Math.abs(value - start[i]) < 1e-9, `${value} ${start[i]}`));
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running");
+  assert.ok(await read(page, (data) => !data.view.lengths), "no handle lies over the motion");
+  await page.keyboard.press("Space");
 });

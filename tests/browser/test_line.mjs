@@ -2,7 +2,7 @@
 // The line between page and server: cut and mended, hidden, late, and after the end of a run.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, fastest, read, until } from "./support.mjs";
+import { createBench, fastest, playTo, read, until } from "./support.mjs";
 
 const LONG = 60000; // [ms] that a run may take on a busy machine
 
@@ -242,4 +242,36 @@ test("pause pressed while the server is away holds when it is back", async (t) =
   line.mend();
   await stateOnServer(id, "paused");
   await until(page, (data) => data.stream.state === "live" && data.state === "paused");
+});
+
+test("a change that is refused after the comparison expired loses nothing of the recording", async (t) => {
+  const page = await open(t);
+  await playTo(page, 1);
+  const { id, last } = await read(page, (data) => ({ id: data.id, last: data.latest.t }));
+  await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
+  await page.getByRole("button", { name: "add a method" }).click();
+  await page.fill("#pick-spelling", "projection@rk4:h=-1");
+  await page.locator("dialog[open] button[type=submit]").click();
+  await page.waitForFunction(() => document.querySelector("#pick-error").textContent !== "");
+  assert.equal(await read(page, (data) => data.latest.t), last);
+  assert.equal(await read(page, (data) => data.methods.length), 5);
+
+  // one that is taken starts the runs anew
+  await page.fill("#pick-spelling", "projection@rk4:h=0.01");
+  await page.locator("dialog[open] button[type=submit]").click();
+  await until(page, (data) => data.methods.length === 6 && data.latest?.t === 0);
+  bench.faultsOf(page).length = 0; // the comparison that was deleted
+});
+
+test("a field that nobody answered shows what runs once the server is there again", async (t) => {
+  const line = await bench.line(t);
+  const page = await open(t, { url: line.url });
+  line.cut();
+  await type(page, "#set-h", "0.013");
+  await page.waitForFunction(() => document.querySelector("#set-h").getAttribute("aria-invalid"));
+  assert.match(await page.textContent("#set-h-hint"), /does not answer/);
+  line.mend();
+  await page.waitForFunction(() => !document.querySelector("#set-h").getAttribute("aria-invalid"));
+  assert.equal(await page.inputValue("#set-h"), "0.02");
+  assert.doesNotMatch(await page.textContent("#set-h-hint"), /does not answer/);
 });

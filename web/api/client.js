@@ -99,6 +99,8 @@ export const api = {
     request("POST", `${BASE}/equations`, { scene, parameters: settings, format: "json" }),
   /** @param {object} body */
   terms: (body) => request("POST", `${BASE}/terms`, body),
+  /** The start with closed loops, and the drawn points there. @param {object} body */
+  assemble: (body) => request("POST", `${BASE}/assemble`, body),
   /** The closed configuration that brings a point or coordinate nearest. @param {object} body */
   drag: (body) => request("POST", `${BASE}/drag`, body),
   /** Ids of the comparisons that the server has. */

@@ -34,23 +34,59 @@ export function createDragActions(store, exchange, notice) {
   /** Parameters without the start, which the state of the drag replaces. */
   const parametersOf = (settings) => settingsWithStart(settings, null);
 
-  /** @param {any} body */
-  async function ask({ settings, of, ...body }) {
-    const { drag } = data;
-    if (!drag) {
+  /**
+   * What a wish makes: of a start the configuration nearest to it, of a length the very start that
+   * the run will have with it.
+   * @param {Drag} drag @param {any} wish
+   * @returns {Promise<Drag>}
+   */
+  async function answerTo(drag, { settings, of, ...body }) {
+    if (of === "parameter") {
+      const { points } = await api.assemble({ scene: sourceOf(data), parameters: settings });
+      return { points, state: drag.state, settings, held: "", of, moved: true };
+    }
+    const parameters = parametersOf(settings);
+    const asked = { scene: sourceOf(data), parameters, state: drag.state, ...body };
+    const { points, state, reached, reason } = await api.drag(asked);
+    return { points, state, settings, held: reached ? "" : (reason ?? ""), of, moved: true };
+  }
+
+  /**
+   * A state with one rate changed, the others so that the loops stay closed: the present motion,
+   * and the motion of that rate alone as much as is missing.
+   * @param {Record<string, number>} state @param {string} name of a rate @param {number} value
+   */
+  async function withRate(state, name, value) {
+    const { coordinates } = data.scene;
+    const rates = coordinates.map(({ rate }) => rate);
+    const alone = Object.fromEntries(rates.map((rate) => [rate, Number(rate === name)]));
+    const [first] = coordinates;
+    const { state: motion } = await api.drag({
+      scene: sourceOf(data),
+      parameters: parametersOf(data.settings),
+      state: { ...state, ...alone },
+      coordinate: first.name,
+      target: [state[first.name]],
+    });
+    if (!(motion[name] > 0)) {
+      throw new Error(`${name} is 0 in every motion that keeps the loops closed here`);
+    }
+    const share = (value - state[name]) / motion[name];
+    return {
+      ...state,
+      ...Object.fromEntries(rates.map((rate) => [rate, state[rate] + share * motion[rate]])),
+    };
+  }
+
+  /** @param {any} wish */
+  async function ask(wish) {
+    if (!data.drag) {
       return;
     }
     try {
-      const answer = await api.drag({
-        scene: sourceOf(data),
-        parameters: parametersOf(settings),
-        state: drag.state,
-        ...body,
-      });
+      const answer = await answerTo(data.drag, wish);
       if (data.drag) {
-        const held = answer.reached ? "" : (answer.reason ?? "");
-        const { points, state } = answer;
-        put({ points, state, settings, held, of, moved: true });
+        put(answer);
       }
     } catch (error) {
       if (data.drag) {
@@ -92,25 +128,18 @@ export function createDragActions(store, exchange, notice) {
     /** @param {number} point index of a drawn point @param {number[]} target [m] */
     dragPoint: (point, target) => follow({ point, target, settings: data.settings, of: "start" }),
     /** @param {string} name of a parameter @param {number} value */
-    dragParameter(name, value) {
-      const [first] = data.scene.coordinates;
-      const target = [data.drag?.state[first.name] ?? 0];
-      const settings = { ...data.settings, [name]: value };
-      return follow({ coordinate: first.name, target, settings, of: "parameter" });
-    },
+    dragParameter: (name, value) =>
+      follow({ settings: { ...data.settings, [name]: value }, of: "parameter" }),
     /**
      * Places of the drawn points at the start with other settings; null where the loops cannot be
      * closed.
      * @param {Record<string, number>} settings
      */
-    pointsWith(settings) {
-      const [first] = data.scene.coordinates;
-      const body = { scene: data.scene.id, coordinate: first.name, target: [first.value] };
-      return api.drag({ ...body, parameters: settings }).then(
+    pointsWith: (settings) =>
+      api.assemble({ scene: sourceOf(data), parameters: settings }).then(
         ({ points }) => points,
         () => null,
-      );
-    },
+      ),
     /** Lets go: what is shown becomes the start. */
     async endDrag() {
       await asking;
@@ -139,10 +168,9 @@ export function createDragActions(store, exchange, notice) {
       const points = [];
       const first = data.history.stateAt(data.view.selected, 0);
       const state = namedState(data.scene.coordinates, first.q, first.v);
-      const rates = data.scene.coordinates.some(({ rate }) => rate === name);
-      if (rates) {
-        const parameters = settingsWithStart(data.settings, { ...state, [name]: value });
-        await exchange.restart({ parameters });
+      if (data.scene.coordinates.some(({ rate }) => rate === name)) {
+        const moved = await withRate(state, name, value);
+        await exchange.restart({ parameters: settingsWithStart(data.settings, moved) });
         return;
       }
       put({ points, state, settings: data.settings, held: "", of: "start", moved: false });

@@ -176,6 +176,18 @@ export function createExchange(store, notice) {
   }
 
   /**
+   * Makes a comparison that the server has forgotten again, changed from its start. Nothing is lost
+   * where the server refuses the change: the recording stays, and so does its comparison's id.
+   * @param {any} wanted
+   */
+  async function createChanged({ state, reset: _, ...changed }) {
+    adopt(await api.createComparison({ ...presentBody(), ...changed, paused: true }));
+    if (state) {
+      await changeNow({ state });
+    }
+  }
+
+  /**
    * A comparison that the server has forgotten is made again first.
    * @param {object} wanted
    */
@@ -187,12 +199,11 @@ export function createExchange(store, notice) {
         throw error;
       }
       if (startsAnew(wanted)) {
-        data.id = "";
-        await create(presentBody());
+        await createChanged(wanted);
       } else {
         await resume();
+        await changeNow(wanted);
       }
-      await changeNow(wanted);
     }
   }
 

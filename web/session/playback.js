@@ -28,6 +28,14 @@ export function createPlayback(store, exchange) {
     }
   }
 
+  /** Handles that change the start would lie over a mechanism that moves. */
+  function putHandlesAway() {
+    if (data.view.lengths) {
+      data.view.lengths = false;
+      store.emit("view");
+    }
+  }
+
   /** Plays the recording from an index. @param {number} from */
   function startReplay(from) {
     data.view.shown = from;
@@ -76,6 +84,7 @@ export function createPlayback(store, exchange) {
   const actions = {
     /** Plays from the frame shown: first the recording, then what is computed from then on. */
     play() {
+      putHandlesAway();
       const finished = data.state === "finished";
       const behind = data.view.shown >= 0 && data.view.shown < lastIndex();
       if (data.view.stepped && finished && !behind) {
@@ -135,6 +144,15 @@ export function createPlayback(store, exchange) {
     async reset() {
       await actions.pause();
       actions.show(0);
+    },
+    /** Handles that change lengths: lengths are those of the start, so that is shown. */
+    async toggleLengths() {
+      const lengths = !data.view.lengths;
+      if (lengths) {
+        await actions.reset();
+      }
+      data.view.lengths = lengths;
+      store.emit("view");
     },
     /** Plays the recording again and again. */
     toggleLoop() {

@@ -270,6 +270,7 @@ export function createSceneActions(store, exchange, notice) {
      *   scene suggests
      */
     async loadScene(id, link) {
+      data.view.lengths = false;
       data.view.hidden.clear();
       data.view.selected = 0;
       const suggested = () =>

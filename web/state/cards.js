@@ -68,7 +68,12 @@ const TRIES_OTHERWISE = [
 const STRONGEST = 20; // [1/s]
 const LARGEST_H_BETA = 0.4; // step times constant: from about 2 on Runge-Kutta 4 becomes unstable
 
-/** @typedef {{label: string, key?: string, and?: string, value?: number, method?: string}} Try */
+/**
+ * `said`: what a trial of it gave.
+ * @typedef {{
+ *   label: string, key?: string, and?: string, value?: number, method?: string, said?: string,
+ * }} Try
+ */
 
 /** @param {import("./store.js").Data} data @param {number} m @returns {Try[]} */
 function triesOf(data, m) {
@@ -107,6 +112,14 @@ export function tryOfRemedy(text) {
     ? { label: text.trim(), method: text.trim() }
     : { label: text.trim() };
 }
+
+/**
+ * The remedies of an incident, with what each gave where the engine has tried it.
+ * @param {Incident} incident
+ * @returns {Try[]}
+ */
+export const triesOfIncident = ({ remedies, tried }) =>
+  remedies.map((text, i) => ({ ...tryOfRemedy(text), said: tried?.[i] ?? "" }));
 
 /**
  * What a step costs: operations, exactly, and the computing time of the latest frames with the
@@ -168,8 +181,10 @@ const hasFailed = ({ history, methods }, { method }) =>
 export function cardOfMethod(data, m, shown) {
   const method = data.methods[m];
   const incidents = data.incidents.filter((one) => one.method === m);
-  const remedies = [...new Set(incidents.slice(-1).flatMap((one) => one.remedies))]
-    .map(tryOfRemedy)
+  const remedies = incidents
+    .slice(-1)
+    .flatMap(triesOfIncident)
+    .filter(({ label }, i, all) => all.findIndex((other) => other.label === label) === i)
     .filter((item) => !hasFailed(data, item));
   const stopped = data.history.ended[m] <= data.history.t[shown];
   return {

@@ -100,6 +100,12 @@ export function quantity(value, unit, digits = 2) {
   return `${value < 0 ? "−" : ""}${text} ${prefix}${unit}`.trimEnd();
 }
 
+/** A gap of rounding has one digit: more of them mean nothing. @param {number} gap [m] */
+export const gapWords = (gap) => quantity(gap, "m", gap < ROUNDING ? 1 : 2);
+
+/** "1 point", "3 points" @param {number} n @param {string} noun */
+export const counted = (n, noun) => `${plain(n)} ${noun}${n === 1 ? "" : "s"}`;
+
 /** A plain number as a person would type it back: 0.02, 5, 1e-6. @param {number} value */
 export function plain(value) {
   const text = String(Number(value.toPrecision(12)));

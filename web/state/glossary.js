@@ -2,7 +2,10 @@
 // @ts-check
 // Special words of the page, each with the sentence that defines it.
 
-/** @type {Record<string, {word: string, means: string}>} */
+/**
+ * `match`: how texts spell the word, where they explain it.
+ * @type {Record<string, {word: string, means: string, match?: RegExp}>}
+ */
 export const GLOSSARY = {
   gap: {
     word: "loop gap",
@@ -64,21 +67,90 @@ export const GLOSSARY = {
   },
   singular: {
     word: "singular configuration",
+    match: /\bsingular configurations?\b/i,
     means:
       "Singular configuration: links are collinear and J loses rank. Multipliers grow without bound there, and the motion may branch.",
   },
   multipliers: {
     word: "multipliers",
+    match: /\bmultipliers?\b|\|?λ\|?/i,
     means: "Multipliers λ: the forces with which the constraints hold the loops closed.",
   },
   pivot: {
     word: "distance from singular",
+    match: /\bpivot ratio\b/i,
     means:
       "Ratio of the smallest to the largest pivot of J: 1 is well conditioned, 0 is a singular configuration.",
   },
+  sigma: {
+    word: "smallest singular value σ",
+    match: /\bσ(_min)?|\bsigma_min\b|\bsmallest singular value\b/i,
+    means:
+      "Smallest singular value σ of J: the smallest stretch that J gives to any velocity. It is 0 in a singular configuration, where J loses rank.",
+  },
+  condition: {
+    word: "condition number",
+    match: /\bcondition number\b/i,
+    means:
+      "Condition number of J: its largest over its smallest singular value. With 10⁶, six of sixteen digits of the multipliers are lost; in a singular configuration it is infinite.",
+  },
+  evaluations: {
+    word: "evaluations",
+    match: /\bevaluations?\b/i,
+    means:
+      "Evaluations: how often the accelerations (or residuals) were computed. A step of RK4 takes four; an implicit step takes several for each iteration.",
+  },
+  branch: {
+    word: "branch",
+    match: /\bbranch(es)?\b|\bassembly modes?\b/i,
+    means:
+      "Branch (assembly mode): one of the ways in which the same links can be put together. A method can jump from one to another: the loop is closed, the mechanism is the wrong one.",
+  },
+  drift: {
+    word: "drift",
+    match: /\bdrifts?\b|\bdrifted\b/i,
+    means:
+      "Drift: an error that grows a little with every step because nothing in the equations pushes it back.",
+  },
+  truncation: {
+    word: "truncation error",
+    match: /\btruncation( errors?)?\b/i,
+    means:
+      "Truncation error: what a step of finite length leaves out. Half the step makes that of RK4 about 16 times smaller in a run.",
+  },
+  rank: {
+    word: "rank",
+    match: /\bloses rank\b|\brank\b/i,
+    means:
+      "Rank of J: number of independent constraints. Where it falls, some multipliers and velocities are no longer determined.",
+  },
   cut: {
     word: "cut joint",
+    match: /\bcut joints?\b|\bcuts?\b/i,
     means:
       "Cut joint: the joint at which a loop is opened to write its equations. Its two halves are drawn apart when the loop is open.",
   },
 };
+
+/**
+ * A text in pieces: plain ones, and special words where each first stands.
+ * @param {string} text
+ * @returns {{key: string, text: string}[]} key: of the glossary, or ""
+ */
+export function termsIn(text) {
+  const found = Object.entries(GLOSSARY)
+    .flatMap(([key, { match }]) => {
+      const hit = match?.exec(text);
+      return hit ? [{ key, from: hit.index, to: hit.index + hit[0].length }] : [];
+    })
+    .sort((a, b) => a.from - b.from || b.to - a.to);
+  const pieces = [];
+  let at = 0;
+  for (const { key, from, to } of found) {
+    if (from >= at) {
+      pieces.push({ key: "", text: text.slice(at, from) }, { key, text: text.slice(from, to) });
+      at = to;
+    }
+  }
+  return [...pieces, { key: "", text: text.slice(at) }].filter((piece) => piece.text !== "");
+}

@@ -2,6 +2,7 @@
 // @ts-check
 // Quantities that can be plotted over time, one row each.
 import { errorsOf } from "./errors.js";
+import { GLOSSARY } from "./glossary.js";
 
 /**
  * `loop`: exists only where a loop can open; `reference`: needs the reference solution; `log`: is
@@ -75,7 +76,7 @@ export const QUANTITIES = [
     loop: true,
     reference: false,
     grey: "",
-    about: "smallest over largest pivot of J: 0 is a singular configuration",
+    about: GLOSSARY.pivot.means,
     columnOf: received("pivot_ratio"),
   },
   {
@@ -87,7 +88,7 @@ export const QUANTITIES = [
     loop: true,
     reference: false,
     grey: "",
-    about: "0 where J loses rank: the loops no longer determine all velocities and multipliers",
+    about: GLOSSARY.sigma.means,
     columnOf: received("sigma_min"),
   },
   {
@@ -99,7 +100,7 @@ export const QUANTITIES = [
     loop: true,
     reference: false,
     grey: "",
-    about: "the largest force or moment, in N or N m, that holds a loop closed",
+    about: `${GLOSSARY.multipliers.means} Drawn is the largest of them, in N or N m.`,
     columnOf: received("lambda_max"),
   },
   {
@@ -135,7 +136,7 @@ export const QUANTITIES = [
     loop: false,
     reference: false,
     grey: "",
-    about: "evaluations of the dynamics so far",
+    about: GLOSSARY.evaluations.means,
     columnOf: received("evals"),
   },
 ];

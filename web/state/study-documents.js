@@ -3,25 +3,51 @@
 // Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
 import { quantity, withPowers } from "./format.js";
 
+/** @typedef {{length: number, coordinates: {kind: string}[]}} Measured of a scene */
+const shareOfLength = ({ length }) => `share of ${quantity(length, "m")}`;
+
+/** Coordinates are compared in rad, and lengths as shares of the scene's. @param {Measured} scene */
+function unitOfPosition(scene) {
+  const angles = scene.coordinates.filter(({ kind }) => kind === "angle").length;
+  if (angles === scene.coordinates.length) {
+    return "rad";
+  }
+  return angles === 0 ? shareOfLength(scene) : `rad, lengths as ${shareOfLength(scene)}`;
+}
+
+/** `unit`: what its numbers are in, on this scene. */
 export const ERRORS = [
-  { name: "q", word: "position", about: "largest error of a coordinate, angles in rad" },
+  {
+    name: "q",
+    word: "position",
+    unit: unitOfPosition,
+    about: "largest error of a coordinate, angles in rad",
+  },
   {
     name: "v",
     word: "velocity",
+    unit: () => "share of the fastest velocity",
     about: "largest error of a velocity, relative to the fastest of the motion",
   },
   {
     name: "reaction",
     word: "reactions",
+    unit: () => "share of the largest force",
     about: "largest error of a loop's force, relative to the largest of the motion",
   },
-  { name: "gap", word: "gap", about: "largest loop gap" },
+  { name: "gap", word: "gap", unit: shareOfLength, about: "largest loop gap" },
   {
     name: "velocity_gap",
     word: "velocity violation",
+    unit: () => "share of the fastest velocity",
     about: "largest velocity violation: how fast the loops come apart",
   },
-  { name: "energy", word: "energy", about: "largest error of the energy, relative to its range" },
+  {
+    name: "energy",
+    word: "energy",
+    unit: () => "share of its range",
+    about: "largest error of the energy, relative to its range",
+  },
 ];
 
 export const COSTS = [
@@ -48,6 +74,8 @@ export function byName(list, wanted) {
 /** Nothing below ten times what the reference itself may be off is more than a bound. */
 const ABOVE_REFERENCE = 10;
 const LEAST = 1e-17;
+/** States of points of which nothing is known. */
+export const NOT_RUN = ["pending", "skipped"];
 
 /**
  * @typedef {{m: number, k: number, spelling: string, size: number, sizeName: string, cost: number,
@@ -111,6 +139,19 @@ export function dotsOf(study, error, cost) {
       ];
     }),
   );
+}
+
+/**
+ * How many points were left out, and why; "" where all were run.
+ * @param {any} study
+ */
+export function leftOutOf(study) {
+  const points = study.methods.flatMap((method) => method.points);
+  const missing = points.filter(({ state }) => NOT_RUN.includes(state));
+  const reason = missing.find((point) => point.reason)?.reason ?? "the study was stopped";
+  return missing.length
+    ? `${missing.length} of ${points.length} points were not run: ${reason}.`
+    : "";
 }
 
 /** Below it an error is no more than a bound; 0: the quantity needs no reference. */

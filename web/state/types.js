@@ -28,13 +28,15 @@
 
 /**
  * `n` coordinates, `m` constraints of rank `rank`, `dof` degrees of freedom; `length`, `points`
- * and `envelope` in m; `duration` and `step` in s.
+ * and `envelope` in m; `duration` and `step` in s. `start_parameter` and `rate_parameter`: the
+ * parameters that are the start of a coordinate and of its rate.
  * @typedef {{
  *   id: string, title: string, about: string, look_for: string, caption: string,
  *   parameters: Parameter[], n: number, m: number, rank: number, dof: number, length: number,
  *   drawing: Drawing,
  *   coordinates: {name: string, rate: string, kind: string, joint: string, actuated: boolean,
- *     value: number}[],
+ *     value: number, rate_value: number, start_parameter: string | null,
+ *     rate_parameter: string | null}[],
  *   bodies: {name: string, com: number[]}[], joints: Joint[],
  *   rows: {name: string, loop: string, unit: string}[],
  *   points: number[], ground_points: number[], envelope: number[], extremes?: number[],
@@ -79,7 +81,7 @@
  * @typedef {{id: string, title: string, scenes: string[], problems: string[]}} Lesson
  * @typedef {{
  *   method: number, code: string, t: number, quantity: string, value: number, limit: number,
- *   message: string, remedies: string[],
+ *   message: string, remedies: string[], tried?: string[],
  * }} Incident
  */
 

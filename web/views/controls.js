@@ -97,6 +97,17 @@ export function createControls(el, store, actions) {
     return null;
   }
 
+  /** Why the step is not the scene's own. @param {string} key @param {number} held */
+  function hintOf(key, held) {
+    const own = data.scene?.step ?? 0;
+    if (key !== "h" || !(own > 0) || held === own) {
+      return "";
+    }
+    return held === 2 * own
+      ? `twice the scene's own ${plain(own)} s, so that methods differ soon`
+      : `the scene's own step is ${plain(own)} s`;
+  }
+
   /** Fast scenes need shorter steps and larger constants than the sliders have by themselves. */
   function rangeOf({ key, min, max, scale }, held) {
     if (scale === "log") {
@@ -134,6 +145,7 @@ export function createControls(el, store, actions) {
       field = makeField(control, held);
       fields.set(control.key, field);
     }
+    field.setHint(hintOf(control.key, held));
     field.update(held);
     return [field.el];
   }
@@ -151,7 +163,13 @@ export function createControls(el, store, actions) {
     }
   }
 
-  const stop = listen(store, { methods: show });
+  function settle() {
+    if (data.stream.state === "live") {
+      fields.forEach((field) => field.settle());
+    }
+  }
+
+  const stop = listen(store, { methods: show, stream: settle });
   return {
     update() {},
     dispose() {

@@ -30,8 +30,9 @@ export function createGuide(store, actions, open) {
   const card = h(
     "section",
     { class: "guide", "aria-label": "First minute", hidden: true },
-    h("div", { class: "card-head" }, title, count, act, back, next, close),
+    h("div", { class: "card-head" }, title, count, close),
     text,
+    h("div", { class: "guide-steps" }, act, back, next),
   );
 
   /** @type {Record<string, () => any>} */

@@ -3,11 +3,12 @@
 // The record of incidents, one line for each method and cause with a count, and what to know about
 // the scene.
 import { incidentOf } from "../state/catalogue.js";
-import { groupIncidents, tryOfRemedy } from "../state/cards.js";
+import { groupIncidents, triesOfIncident } from "../state/cards.js";
 import { seconds } from "../state/format.js";
 import { listen } from "../state/store.js";
 import { sentenceCase } from "../state/words.js";
 import { h } from "../widgets/dom.js";
+import { explained } from "../widgets/term.js";
 import { tryButtons } from "../widgets/tries.js";
 
 const REDRAW = 250; // [ms]
@@ -56,10 +57,12 @@ export function createHappening(el, store, actions) {
         h(
           "p",
           { class: "message" },
-          `${count > 1 ? `Last at ${seconds(newest.t, data.duration)}: ` : ""}${sentenceCase(newest.message)}`,
+          ...explained(
+            `${count > 1 ? `Last at ${seconds(newest.t, data.duration)}: ` : ""}${sentenceCase(newest.message)}`,
+          ),
         ),
-        known ? h("p", { class: "rule" }, known.rule) : "",
-        tryButtons(newest.remedies.map(tryOfRemedy), actions.attempt),
+        known ? h("p", { class: "rule" }, ...explained(known.rule)) : "",
+        tryButtons(triesOfIncident(newest), actions.attempt),
       ),
     );
   }

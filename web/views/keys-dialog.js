@@ -23,10 +23,11 @@ export function createKeysDialog(el, store, actions) {
       h("td", {}, key.means),
     ),
   );
+  const title = h("h2", { id: "keys-title", tabindex: "-1" }, "Keys");
   const dialog = h(
     "dialog",
     { class: "dialog", "aria-labelledby": "keys-title" },
-    h("h2", { id: "keys-title" }, "Keys"),
+    title,
     h("table", { class: "keys" }, h("tbody", {}, ...rows)),
     h("p", {}, letters, " ", h("label", { for: "letters" }, "keys of a single character are on")),
     h("form", { method: "dialog", class: "actions" }, h("button", { class: "primary" }, "Close")),
@@ -36,6 +37,8 @@ export function createKeysDialog(el, store, actions) {
     open() {
       letters.checked = store.data.view.letters;
       dialog.showModal();
+      title.focus({ preventScroll: true }); // the first thing that takes keys stands at the end
+      dialog.scrollTop = 0;
     },
     update() {},
     dispose: () => dialog.remove(),

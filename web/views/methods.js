@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The methods side by side: how each is drawn, the verdict on it, its gap, error, energy and cost.
-import { ROUNDING, bound, quantity, withPowers } from "../state/format.js";
+import { bound, gapWords, quantity, withPowers } from "../state/format.js";
 import { costWords } from "../state/cards.js";
 import { errorsOf } from "../state/errors.js";
 import { limits } from "../state/catalogue.js";
@@ -22,9 +22,6 @@ function lastKnown(column, now) {
   }
   return i;
 }
-
-/** A gap of rounding has one digit: more of them mean nothing. @param {number} gap [m] */
-const gapWords = (gap) => quantity(gap, "m", gap < ROUNDING ? 1 : 2);
 
 /** "α = 5, β = 5, rk4, h = 0.02 s", for people. @param {string} spelling */
 function optionWords(spelling) {

@@ -9,7 +9,8 @@ import { createSliderField } from "../widgets/slider-field.js";
 import { h, set } from "../widgets/dom.js";
 
 const MOST_STARTS = 12; // coordinates that have a field of their own
-const FARTHEST = 1e6; // [rad or m]
+const FARTHEST = 1e6; // [rad or m, or per s]
+const FASTEST = 40; // [rad/s or m/s] of a slider
 const WIDE = 1000; // a range over so many times its least value is better shown in decades
 
 /**
@@ -60,8 +61,14 @@ export function createParameters(el, place, store, actions) {
   let starts = new Map();
   let scene = "";
 
+  function shut() {
+    drawer.hidden = true;
+    set(button, { "aria-expanded": "false" });
+  }
+
   /** @param {boolean} open */
   function toggle(open) {
+    shut();
     drawer.hidden = !open;
     set(button, { "aria-expanded": String(open) });
     const first = /** @type {HTMLElement | null} */ (list.querySelector("input[type=text]"));
@@ -75,22 +82,62 @@ export function createParameters(el, place, store, actions) {
     }
   }
 
-  /** A coordinate of the start: set by number, as by dragging; the others follow. */
-  function makeStart({ name, kind }) {
-    const angle = kind === "angle";
-    const most = Number((angle ? Math.PI : 2 * data.scene.length).toPrecision(3));
-    const unit = angle ? "rad" : "m";
+  /**
+   * A coordinate of the start, or its rate: set by number, as by dragging; the others follow.
+   * @param {string} name @param {boolean} angle @param {boolean} rate
+   */
+  function makeStart(name, angle, rate) {
+    const most = rate ? FASTEST : Number((angle ? Math.PI : 2 * data.scene.length).toPrecision(3));
+    const unit = `${angle ? "rad" : "m"}${rate ? "/s" : ""}`;
+    const typed = angle ? "30 deg" : "45 cm";
     return createSliderField({
       id: `start-${name}`,
-      label: `${name}, where the motion starts`,
+      label: rate ? `${name}, rate at the start` : `${name}, where the motion starts`,
       unit,
-      hint: `the other coordinates follow; ${angle ? "30 deg" : "45 cm"} is understood`,
+      hint: rate ? "" : `the other coordinates follow; ${typed} is understood`,
       min: -most,
       max: most,
       read: (text) => parseQuantity(text, unit),
       check: (value) => (Math.abs(value) > FARTHEST ? { error: `${name} is too large` } : {}),
       commit: (value) => actions.setStart(name, value),
     });
+  }
+
+  /** Fields of the start: of every coordinate, and of the rates that a parameter sets otherwise. */
+  function makeStarts() {
+    return new Map(
+      data.scene.coordinates.slice(0, MOST_STARTS).flatMap((one) => {
+        const angle = one.kind === "angle";
+        /** @type {[string, ReturnType<typeof createSliderField>][]} */
+        const pair = [[one.name, makeStart(one.name, angle, false)]];
+        return one.rate_parameter ? [...pair, [one.rate, makeStart(one.rate, angle, true)]] : pair;
+      }),
+    );
+  }
+
+  /**
+   * One field for one start: the scene's parameter until the start is moved, from then on the
+   * coordinate itself.
+   */
+  function showStarts() {
+    const moved = actions.hasOwnStart();
+    for (const one of data.scene.coordinates) {
+      const both = [
+        { name: one.name, by: one.start_parameter, value: one.value },
+        { name: one.rate, by: one.rate_parameter, value: one.rate_value },
+      ];
+      for (const { name, by, value } of both) {
+        const field = starts.get(name);
+        const other = fields.get(by ?? "");
+        field?.update(value);
+        if (field) {
+          field.el.hidden = Boolean(other) && !moved;
+        }
+        if (other) {
+          other.el.hidden = Boolean(field) && moved;
+        }
+      }
+    }
   }
 
   /** The range of a parameter's slider; what has no bounds gets one round its value. */
@@ -138,16 +185,34 @@ export function createParameters(el, place, store, actions) {
       fields.clear();
       data.scene.parameters.forEach((one) => fields.set(one.name, makeField(one)));
       starts.forEach((field) => field.dispose());
-      starts = new Map(
-        data.scene.coordinates.slice(0, MOST_STARTS).map((one) => [one.name, makeStart(one)]),
-      );
+      starts = makeStarts();
       list.replaceChildren(...[...fields.values(), ...starts.values()].map((field) => field.el));
     }
     data.scene.parameters.forEach(({ name, value }) => fields.get(name)?.update(value));
-    data.scene.coordinates.forEach(({ name, value }) => starts.get(name)?.update(value));
+    showStarts();
   }
 
-  const stop = listen(store, { scene: show });
+  function settle() {
+    if (data.stream.state === "live") {
+      [...fields.values(), ...starts.values()].forEach((field) => field.settle());
+    }
+  }
+
+  const stop = listen(store, {
+    scene: () => {
+      if (scene !== data.scene?.id) {
+        shut(); // it would lie over another mechanism
+      }
+      show();
+    },
+    state: () => {
+      const moves = data.state === "running" || data.view.replaying;
+      if (moves && !drawer.contains(document.activeElement)) {
+        shut(); // whoever changes numbers in it while the mechanism moves keeps it
+      }
+    },
+    stream: settle,
+  });
   return {
     update() {},
     dispose() {

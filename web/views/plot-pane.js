@@ -5,6 +5,7 @@
 import { ROUNDING, quantity } from "../state/format.js";
 import { thin } from "../state/history.js";
 import { QUANTITIES, quantityNamed } from "../state/quantities.js";
+import { sentenceCase } from "../state/words.js";
 import { shownIndex } from "../state/store.js";
 import { h, icon, set } from "../widgets/dom.js";
 import { createPhase } from "../widgets/phase.js";
@@ -14,6 +15,8 @@ const BUCKETS = 240;
 const PHASE = "phase"; // the choice that is no quantity over time
 /** A value of rounding has one digit: more of them mean nothing. */
 const cellWords = (value, unit) => quantity(value, unit, Math.abs(value) < ROUNDING ? 1 : 2);
+const PHASE_ABOUT =
+  "the velocity of one coordinate against the coordinate itself: a motion that repeats is a closed curve";
 const KEPT_DASH = [1, 4];
 /** Of the table [px]. */
 const NAME_WIDTH = 92;
@@ -54,6 +57,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     onchange: () => paint(),
   });
   let isPhase = false;
+  const what = h("button", { type: "button", class: "term what" }, "?");
   const log = h("button", { type: "button", class: "quiet", onclick: toggleLog }, "log");
   const twin = h(
     "button",
@@ -72,12 +76,17 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
   const figure = h(
     "figure",
     { class: "plot" },
-    h("figcaption", {}, menu, which, h("span", { class: "choices" }, whole, log, twin)),
+    h("figcaption", {}, menu, what, which, h("span", { class: "choices" }, whole, log, twin)),
     canvas,
     table,
   );
   const plot = createPlot(canvas, options);
   const phase = createPhase(canvas);
+
+  /** @param {string} about @param {string} name of what is drawn */
+  function explain(about, name) {
+    set(what, { "data-tip": sentenceCase(about), "aria-label": `What is this: ${name}` });
+  }
 
   function toggleLog() {
     options.log = !options.log;
@@ -101,6 +110,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     which.hidden = !isPhase;
     log.hidden = twin.hidden = isPhase;
     if (isPhase) {
+      explain(PHASE_ABOUT, "phase plot");
       fillCoordinates();
       empty.hidden = true;
       paint();
@@ -212,6 +222,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     series.push(...(keptRun()?.methods ?? []).map(keptSeries));
     set(log, { "aria-pressed": String(options.log) });
     set(menu, { "data-tip": kind.about });
+    explain(kind.about, kind.short);
     plot.setSeries(series, inks(), anew, data.duration || 1);
     showEmpty();
   }

@@ -17,6 +17,7 @@ const AXES = [
 ];
 const NAMES = { world: ["x", "y", "z"], joint: ["1", "2", "3"] };
 const DIGITS = 3;
+const TORN = 1e-3; // of the scene's length: a gap that can be seen
 const LOST =
   " The forces that close the loops have no correct digit left: the loop constraints are almost dependent here.";
 
@@ -110,8 +111,32 @@ export function createReactions(el, store, actions) {
       cell(sizeOf(item.force), "N", zero.force),
       ...forces.map((k) => cell(force?.[k], "N", zero.force)),
       ...moments.map((k) => cell(moment?.[k], "N m", zero.moment)),
-      h("td", { class: "note" }, item.determined ? "" : "one of many: constraints are dependent"),
+      h("td", { class: "note" }, remarkOf(item)),
     );
+  }
+
+  /**
+   * A loop that has visibly opened at this joint: its halves are apart, and the force acts at two
+   * places.
+   * @param {import("../state/reactions.js").Reaction} item
+   */
+  function tornBy({ name }) {
+    const { reactions, history, scene } = data;
+    const loops = new Set(scene.rows.map(({ loop }) => loop));
+    if (!reactions || !loops.has(name)) {
+      return 0;
+    }
+    const gap = history.columns[reactions.method].gap[history.indexAt(reactions.t)];
+    return gap > TORN * scene.length ? gap : 0;
+  }
+
+  /** What to know of a force before it is used. @param {import("../state/reactions.js").Reaction} item */
+  function remarkOf(item) {
+    const gap = tornBy(item);
+    const torn = `this loop is open by ${quantity(gap, "m")}: the force belongs to a mechanism that has come apart, not to this joint`;
+    return [gap > 0 ? torn : "", item.determined ? "" : "one of many: constraints are dependent"]
+      .filter(Boolean)
+      .join("; ");
   }
 
   /**

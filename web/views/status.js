@@ -10,7 +10,7 @@ const STREAM = {
   live: "stream live",
   reconnecting: "connection to the server lost: reconnecting",
   hidden: "stream: paused while hidden",
-  ended: "stream: run complete",
+  ended: "stream: the run is complete",
 };
 const LOST =
   "The server does not answer. What was received stays here; " +
@@ -86,7 +86,7 @@ export function createStatus(el, body, store, actions) {
   function showStream() {
     const { state, id: last } = data.stream;
     say(stream, STREAM[state]);
-    say(id, last && data.state !== "running" ? `at event ${last}` : "");
+    say(id, last && data.state !== "running" ? `, event ${last}` : "");
     stream.dataset.state = state;
     if (state !== "reconnecting") {
       clearTimeout(lostTimer);

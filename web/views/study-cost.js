@@ -10,23 +10,15 @@ import {
   dotsOf,
   floorOf,
   frameOf,
+  leftOutOf,
   meaningOf,
   sentencesOf,
 } from "../state/study-documents.js";
 import { h, s, say } from "../widgets/dom.js";
+import { isOpen, markerOf } from "../widgets/markers.js";
+import { explained } from "../widgets/term.js";
 import { rove } from "../widgets/roving.js";
 
-const MARKERS = {
-  disc: "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0Z",
-  square: "M-.9-.9H.9V.9H-.9Z",
-  triangle: "M0-1.1L1.1.9H-1.1Z",
-  diamond: "M0-1.25L1.1 0L0 1.25L-1.1 0Z",
-  cross: "M-1-1L1 1M1-1L-1 1",
-  ring: "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0Z",
-  plus: "M-1.1 0H1.1M0-1.1V1.1",
-};
-const OPEN = ["cross", "plus", "ring"];
-const FAILED = "M-1-1L1 1M1-1L-1 1";
 const ROOM = { left: 54, top: 44, bottom: 44 };
 const LABEL = 15; // [px] between two names
 const HEIGHT = 380;
@@ -63,6 +55,7 @@ export function createStudyCost(store, onPick) {
   const frame = h("div", { class: "study-picture" }, picture);
   const sentences = h("ul", { class: "answers" });
   const meaning = h("p", { class: "told" });
+  const leftOut = h("p", { class: "told" });
   const classes = h("ul", { class: "answers" });
   const table = h("div", {
     class: "twin-table",
@@ -107,6 +100,7 @@ export function createStudyCost(store, onPick) {
     h("h3", {}, "Cheapest for an accuracy"),
     sentences,
     meaning,
+    leftOut,
     h("h3", {}, "What each converges to"),
     classes,
     h("details", { class: "fold" }, h("summary", {}, "All points as a table"), table),
@@ -256,7 +250,11 @@ export function createStudyCost(store, onPick) {
     const unit = cost.unit === "s" ? "processor time of the run, s" : `${cost.word} of the run`;
     parts.push(
       s("text", { x: ROOM.left + inner.w / 2, y: bottom + 36, class: "title middle" }, unit),
-      s("text", { x: ROOM.left - 46, y: 12, class: "title" }, `largest error of ${error.word}`),
+      s(
+        "text",
+        { x: ROOM.left - 46, y: 12, class: "title" },
+        `largest error of ${error.word}, ${error.unit(data.scene)}`,
+      ),
     );
     const ends = [];
     const groups = dots.map((list, m) => {
@@ -282,7 +280,7 @@ export function createStudyCost(store, onPick) {
         const px = Number.isFinite(dot.cost)
           ? Math.min(ROOM.left + inner.w, Math.max(ROOM.left, x(dot.cost)))
           : ROOM.left + inner.w;
-        const open = failed || dot.bound || OPEN.includes(look.marker);
+        const open = dot.bound || isOpen(dot, look.marker);
         group.append(
           s(
             "g",
@@ -297,7 +295,7 @@ export function createStudyCost(store, onPick) {
             },
             s("circle", { r: 12, class: "target" }),
             s("path", {
-              d: failed ? FAILED : MARKERS[look.marker],
+              d: markerOf(dot, look.marker),
               transform: "scale(4.4)",
               class: open ? "open" : "solid",
             }),
@@ -366,11 +364,12 @@ export function createStudyCost(store, onPick) {
     fillTable();
     const lines = sentencesOf(study(), view.error, view.cost);
     say(meaning, meaningOf(view.error, data.scene.length));
+    say(leftOut, leftOutOf(study()));
     sentences.replaceChildren(
       ...(lines.length
         ? lines
         : ["Methods are ranked for errors of position, velocity and reactions."]
-      ).map((line) => h("li", {}, line)),
+      ).map((line) => h("li", {}, ...explained(line))),
     );
     classes.replaceChildren(
       ...study().methods.map((method, m) =>

@@ -2,10 +2,11 @@
 // @ts-check
 // The cut joint under a magnifying glass: its two halves, and the gap between them in red with its
 // true size.
-import { ROUNDING, magnification, niceBelow, quantity } from "../state/format.js";
+import { ROUNDING, gapWords, magnification, niceBelow } from "../state/format.js";
 import { lookOf } from "../state/look.js";
 import { listen } from "../state/store.js";
 import { h, s, say, set } from "../widgets/dom.js";
+import { term } from "../widgets/term.js";
 
 const SIZE = 144; // [px] of the drawn square
 const METRE = 150; // [px] a metre at magnification 1
@@ -19,16 +20,19 @@ export function createTear(el, store) {
   const segment = s("path", { class: "tear" });
   const first = s("circle", { r: 10, class: "half first" });
   const second = s("circle", { r: 10, class: "half second" });
-  const joint = s("g", {}, first, second, segment);
+  const halves = s("g", {}, first, second, segment);
   const glass = s(
     "svg",
     { viewBox: `0 0 ${SIZE} ${SIZE}`, class: "glass", "aria-hidden": "true" },
     s("circle", { cx: SIZE / 2, cy: SIZE / 2, r: SIZE / 2 - 1, class: "rim" }),
-    joint,
+    halves,
   );
   const power = h("span", { class: "power" });
   const size = h("span", { class: "number" });
-  const whose = h("span", { class: "whose" });
+  const name = h("span", {});
+  const cut = h("span", {}, ", ", term("cut", "cut"), " ");
+  const joint = h("span", {});
+  const whose = h("span", { class: "whose" }, name, cut, joint);
   const figure = h(
     "figure",
     { class: "tear-inset" },
@@ -64,6 +68,22 @@ export function createTear(el, store) {
     }
   }
 
+  /**
+   * The loop gap, as the table has it; with several loops the gap is that of all of them together,
+   * and the glass shows the widest cut.
+   * @param {number} here [m] @param {number} gap [m]
+   */
+  function sizeWords(here, gap) {
+    const count = data.scene.drawing.tears.length;
+    if (count > 1) {
+      return `${gapWords(here)}, the widest of ${count} cuts`;
+    }
+    if (Number.isNaN(gap)) {
+      return `gap ${gapWords(here)}`; // the run has stopped: this is where
+    }
+    return gap < ROUNDING ? `closed, ${gapWords(gap)}` : `gap ${gapWords(gap)}`;
+  }
+
   function update() {
     const history = data.history;
     const m = data.view.selected;
@@ -76,23 +96,24 @@ export function createTear(el, store) {
     if (!tear || !Number.isFinite(tear.gap)) {
       say(power, "no cut");
       say(size, data.scene?.m ? "the constraints close no joint" : "no loop to close");
-      say(whose, "");
+      whose.hidden = true;
       return;
     }
     choosePower(tear.gap);
     const k = METRE * glassPower;
     const half = [(tear.dx * k) / 2, (-tear.dy * k) / 2];
     const centre = SIZE / 2;
-    set(joint, { class: `slot-${data.methods[m].slot}` });
+    set(halves, { class: `slot-${data.methods[m].slot}` });
     set(first, { cx: (centre - half[0]).toFixed(2), cy: (centre - half[1]).toFixed(2) });
     set(second, { cx: (centre + half[0]).toFixed(2), cy: (centre + half[1]).toFixed(2) });
     set(segment, {
       d: `M${(centre - half[0]).toFixed(2)} ${(centre - half[1]).toFixed(2)}L${(centre + half[0]).toFixed(2)} ${(centre + half[1]).toFixed(2)}`,
     });
-    const closed = tear.gap < ROUNDING;
     say(power, magnification(glassPower));
-    say(size, closed ? `closed, ${quantity(tear.gap, "m")}` : `gap ${quantity(tear.gap, "m")}`);
-    say(whose, `${data.methods[m].label}, cut ${tear.name || "joint"}`);
+    say(size, sizeWords(tear.gap, history.columns[m].gap[now]));
+    whose.hidden = false;
+    say(name, data.methods[m].label);
+    say(joint, tear.name || "joint");
   }
 
   const stop = listen(store, {

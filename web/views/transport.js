@@ -17,6 +17,16 @@ const STEPS = {
 };
 
 /**
+ * The last frame of the run [s]: frames are whole steps apart, so it may lie a little after the
+ * duration.
+ * @param {import("../state/store.js").Data} data
+ */
+function endOf({ duration, frameDt }) {
+  const frames = Math.ceil(duration / frameDt - 1e-9);
+  return frameDt > 0 ? frames * frameDt : duration;
+}
+
+/**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
  * @param {import("../session/session.js").Session} actions
@@ -153,7 +163,7 @@ export function createTransport(el, store, actions) {
       scrub.value = String(t);
     }
     const live = data.view.shown < 0 && data.latest ? data.latest.t : t;
-    say(time, `t ${seconds(live, data.duration)} / ${plain(data.duration)} s`);
+    say(time, `t ${seconds(live, data.duration)} / ${plain(Number(endOf(data).toFixed(4)))} s`);
   }
 
   const stop = listen(store, { state: showState, view: showState, scene: update });

@@ -8,6 +8,7 @@ import { seconds } from "../state/format.js";
 import { listen, shownIndex } from "../state/store.js";
 import { sentenceCase } from "../state/words.js";
 import { h } from "../widgets/dom.js";
+import { explained } from "../widgets/term.js";
 import { tryButtons } from "../widgets/tries.js";
 
 const EDGE = 8; // [px] between the card and the edges of what it lies in
@@ -45,7 +46,7 @@ export function createWhyCard(el, store, actions) {
     const lines = groups.slice(0, MOST_GROUPS).map(({ count, first, newest }) => {
       const name = incidentOf(newest.code)?.name ?? newest.code;
       const times = count > 1 ? `, ${count} times, first at` : " at";
-      return h("li", {}, `${name}${times} ${seconds(first, data.duration)}`);
+      return h("li", {}, ...explained(`${name}${times} ${seconds(first, data.duration)}`));
     });
     return lines.length ? [h("ul", { class: "reasons" }, ...lines)] : [];
   }
@@ -70,9 +71,9 @@ export function createWhyCard(el, store, actions) {
         "aria-label": `Why: ${card.title}`,
       },
       h("div", { class: "card-head" }, h("h3", {}, `${card.label}: why?`), closeButton),
-      h("p", { class: "happened" }, card.happened),
+      h("p", { class: "happened" }, ...explained(card.happened)),
       ...incidentLines(card.groups),
-      h("p", { class: "rule" }, `${card.rule}${drift}`),
+      h("p", { class: "rule" }, ...explained(`${card.rule}${drift}`)),
       tryButtons(tries, actions.attempt),
     );
   }

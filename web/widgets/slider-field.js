@@ -89,6 +89,8 @@ export function createSliderField(options) {
   );
   let value = NaN;
   let timer = 0;
+  /** the error shown is an answer of the server, or its silence: not a fault of what was typed */
+  let refused = false;
   /** while the server has not answered, what was asked is shown and only the latest wish kept */
   let pending = false;
   let next = NaN;
@@ -96,6 +98,7 @@ export function createSliderField(options) {
   /** @param {"" | "error" | "warning"} kind @param {string} text */
   function tell(kind, text) {
     el.dataset.kind = kind;
+    refused = false;
     set(field, { "aria-invalid": kind === "error" ? "true" : null });
     say(hint, text || options.hint);
   }
@@ -134,6 +137,7 @@ export function createSliderField(options) {
     } catch (error) {
       value = before;
       tell("error", sentenceOf(error));
+      refused = true;
       range.value = String(scale.to(value));
     }
     pending = false;
@@ -176,6 +180,22 @@ export function createSliderField(options) {
       if (!pending && held !== value) {
         value = held;
         const verdict = options.check(held);
+        tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
+        show();
+      }
+    },
+    /** The line below the field, where there is nothing worse to say. @param {string} text */
+    setHint(text) {
+      const shown = hint.textContent === options.hint;
+      options.hint = text;
+      if (shown) {
+        say(hint, text);
+      }
+    },
+    /** The server is there again: a refusal is out of date, and the field shows what runs. */
+    settle() {
+      if (!pending && refused) {
+        const verdict = options.check(value);
         tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
         show();
       }

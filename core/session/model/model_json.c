@@ -110,6 +110,8 @@ static void put_coordinates(hn_strbuf *b, const hn_model *model, const double *u
         hn_json_put_bool(b, "pinned", c->q0_pinned);
         hn_json_put_number(b, "value", uq[i]);
         hn_json_put_number(b, "rate_value", uv[i]);
+        hn_json_put_string(b, "start_parameter", c->q0_param);
+        hn_json_put_string(b, "rate_parameter", c->v0_param);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
@@ -230,6 +232,17 @@ static void put_ground_points(hn_strbuf *b, const hn_model *model, hn_arena *are
     hn_json_end_array(b);
 }
 
+/// Places of the drawn points at the start; an empty list for a scene without any.
+static void put_start_points(hn_strbuf *b, const hn_model *model, hn_arena *arena) {
+    const int n = hn_system_get_info(hn_model_system(model)).n_points;
+    double *points = hn_arena_doubles(arena, 3 * (size_t)n + 1);
+    if (!points || hn_model_points(model, hn_model_q(model), points) != HN_OK) {
+        b->failed = 1;
+        return;
+    }
+    hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
+}
+
 /// World points at the start; the box around the motion in the world, and in the view that fits it.
 static void put_points(hn_strbuf *b, const hn_model *model) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
@@ -328,6 +341,7 @@ void hn_model_assembly_json(hn_strbuf *b, const hn_model *model) {
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     put_assembly_fields(b, model);
     put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
+    put_start_points(b, model, arena);
     hn_json_end_object(b);
     hn_arena_free(arena);
 }

@@ -271,6 +271,50 @@ static void a_free_body_starts_where_the_file_places_it(void **state) {
     imported_close(&x);
 }
 
+/// What the file tells of geoms that can touch one another; NULL: nothing.
+static const hn_import_note *contact_note(hn_imported *x, const char *bodies, const char *rest) {
+    char text[1200];
+    snprintf(text, sizeof text, "<mujoco>%s<worldbody>%s</worldbody></mujoco>", rest, bodies);
+    imported_open(x, text, NULL);
+    return imported_note(x, "/geom");
+}
+
+static void only_geoms_that_mujoco_lets_touch_are_told(void **state) {
+    (void)state;
+#define HINGE "<joint axis='0 1 0'/>"
+#define BAR "<geom type='capsule' fromto='0 0 0 0.5 0 0' size='0.02'/>"
+#define CHILD "<body name='b' pos='0.5 0 0'>" HINGE BAR "</body>"
+    static const struct {
+        const char *bodies, *rest;
+        bool told;
+    } cases[] = {
+        // a body and its parent do not touch, its grandparent can be touched
+        {"<body name='a'>" HINGE BAR CHILD "</body>", "", false},
+        {"<body name='a'>" HINGE BAR CHILD "</body>",
+         "<option><flag filterparent='disable'/></option>", true},
+        {"<body name='a'>" HINGE BAR "<body name='m'>" HINGE BAR CHILD "</body></body>", "", true},
+        // a parent that stands still can be touched, fixed parts of one body cannot
+        {BAR "<body name='a'>" HINGE BAR "</body>", "", true},
+        {"<body name='a'>" HINGE BAR "<body name='m'>" BAR "</body></body>", "", false},
+        {"<body name='a'>" HINGE BAR BAR "</body>", "", false},
+        // two bodies of the ground, and what takes such a pair out
+        {"<body name='a'>" HINGE BAR "</body>" CHILD, "", true},
+        {"<body name='a'>" HINGE BAR "</body>" CHILD,
+         "<contact><exclude body1='b' body2='a'/></contact>", false},
+        {"<body name='a'>" HINGE BAR "</body>" CHILD, "<option><flag contact='disable'/></option>",
+         false},
+        {"<body name='a'>" HINGE BAR "</body>" CHILD,
+         "<default><geom contype='2' conaffinity='1'/></default>", false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        hn_imported x;
+        const hn_import_note *note = contact_note(&x, cases[i].bodies, cases[i].rest);
+        print_message("case %zu\n", i);
+        assert_int_equal(note != NULL, cases[i].told);
+        imported_close(&x);
+    }
+}
+
 static void everything_that_is_not_taken_is_named_with_its_line(void **state) {
     (void)state;
     hn_imported x;
@@ -336,6 +380,7 @@ int main(void) {
         cmocka_unit_test(a_linear_coupling_is_a_gear_and_any_other_a_formula),
         cmocka_unit_test(drives_become_loads_whose_control_is_a_parameter),
         cmocka_unit_test(a_free_body_starts_where_the_file_places_it),
+        cmocka_unit_test(only_geoms_that_mujoco_lets_touch_are_told),
         cmocka_unit_test(everything_that_is_not_taken_is_named_with_its_line),
         cmocka_unit_test(an_unknown_attribute_or_element_anywhere_is_named),
     };

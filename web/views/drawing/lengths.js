@@ -30,7 +30,7 @@ export function createLengths(layer, data, stage, actions) {
       class: "quiet",
       "aria-pressed": "false",
       "data-tip": "handles that change lengths by dragging; the fields below do the same",
-      onclick: () => actions.setView({ lengths: !data.view.lengths }),
+      onclick: () => actions.toggleLengths(),
     },
     "↔ lengths",
   );
@@ -49,6 +49,7 @@ export function createLengths(layer, data, stage, actions) {
 
   /** @param {Handle} handle @param {PointerEvent} down */
   function take(handle, down) {
+    actions.show(0); // lengths are those of the start
     const points = pointsNow();
     const parameter = parameterNamed(handle.name);
     if (!points || !parameter || down.button !== 0 || !actions.beginDrag()) {

@@ -8,6 +8,7 @@ import { offersAt } from "../../state/completion.js";
 import { caretIn, lineOf, parseText, placeOf, placesOf } from "../../state/json-text.js";
 import { writeScene } from "../../state/scene-parts.js";
 import { listen } from "../../state/store.js";
+import { counted } from "../../state/format.js";
 import { h, say, set } from "../../widgets/dom.js";
 import { saveFile } from "../../widgets/save.js";
 import { createOffers } from "./offers.js";
@@ -159,6 +160,10 @@ export function createEditor(el, store, actions, drawing) {
   /** Runs what stands there, or says why it does not. */
   async function run() {
     clearTimeout(timer);
+    if (isModel(field.value)) {
+      await importText(field.value, "pasted");
+      return;
+    }
     const number = ++asked;
     const { value, fault } = parseText(field.value);
     if (fault) {
@@ -270,19 +275,38 @@ export function createEditor(el, store, actions, drawing) {
     saveFile(new Blob([field.value], { type: "application/json" }), `${name}.json`);
   }
 
+  /** A model of another program, as a file or pasted. @param {string} text */
+  const isModel = (text) => text.trimStart().startsWith("<");
+
   /** @param {File} dropped a scene, or a model of another program */
   async function openFile(dropped) {
     show();
     const text = await dropped.text();
-    if (!MODELS.test(dropped.name)) {
+    if (MODELS.test(dropped.name) || isModel(text)) {
+      await importText(text, dropped.name);
+    } else {
       await put(text);
-      return;
     }
+  }
+
+  /**
+   * Puts a model of another program there as a scene, with what was left out.
+   * @param {string} text XML @param {string} source a file's name, or what it is called
+   */
+  async function importText(text, source) {
+    const number = ++asked;
+    say(state, "asking the server for this model as a scene");
     try {
-      const name = dropped.name.replace(/\.[^.]*$/, "").replace(/\W+/g, "-");
+      const name = source.replace(/\.[^.]*$/, "").replace(/\W+/g, "-");
       const { format, document: scene, notes } = await documents.importModel(text, name);
+      if (number !== asked) {
+        return; // something else was typed meanwhile
+      }
       await put(scene);
-      say(state, `${format}: ${notes.length} notes on what is not, or not literally, in the scene`);
+      say(
+        state,
+        `${format}: ${counted(notes.length, "note")} on what is not, or not literally, in the scene`,
+      );
       faults.append(
         ...notes.map(({ outcome, line, where, what }) =>
           h("li", {}, h("span", {}, `${outcome}, line ${line} of the file, ${where}: ${what}`)),
@@ -290,7 +314,7 @@ export function createEditor(el, store, actions, drawing) {
       );
     } catch (error) {
       const list = error instanceof Problem ? error.errors : [];
-      say(state, `${dropped.name} was not read: ${sentenceOf(error)}`);
+      say(state, `the model '${source}' was not read: ${sentenceOf(error)}`);
       faults.replaceChildren(
         ...list.slice(1).map(({ detail }) => h("li", {}, h("span", {}, detail))),
       );

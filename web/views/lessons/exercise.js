@@ -5,6 +5,7 @@
 import { sentenceOf } from "../../api/client.js";
 import { documents } from "../../api/documents.js";
 import { formOf, matrixOf, readAnswer, readChoice } from "../../state/answers.js";
+import { counted } from "../../state/format.js";
 import { h, say } from "../../widgets/dom.js";
 
 /**
@@ -110,7 +111,7 @@ export function createExercise({ id, about, progress, changed }) {
 
   function showMark() {
     const best = progress.solved(id);
-    say(mark, best ? `${best.score} of ${best.most} points` : "");
+    say(mark, best ? `${best.score} of ${counted(best.most, "point")}` : "");
   }
 
   async function open() {
@@ -138,7 +139,7 @@ export function createExercise({ id, about, progress, changed }) {
           field: (part.kind === "choice" ? choiceField : textField)(`${key}-${part.id}`, part),
           head: [
             h("p", { class: "ask" }, `(${part.id}) ${part.ask}`),
-            h("p", { class: "about" }, `${part.points} points`),
+            h("p", { class: "about" }, counted(part.points, "point")),
           ],
         }))
       : matrix
@@ -186,7 +187,7 @@ export function createExercise({ id, about, progress, changed }) {
         h(
           "p",
           {},
-          h("strong", {}, `${verdict.score} of ${verdict.max_score} points. `),
+          h("strong", {}, `${verdict.score} of ${counted(verdict.max_score, "point")}. `),
           verdict.summary,
         ),
         h(
