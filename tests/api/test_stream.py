@@ -106,7 +106,7 @@ class Streams(driver.ServerCase):
         plain = Events(self.server, c["id"])
         frames_without = plain.frames_up_to(3)
         plain.close()
-        for query, names in (("?fields=lambda", {"lambda"}), ("?fields=sigma_min", {"sigma_min"}), ("?fields=sigma_min,lambda", {"sigma_min", "lambda"})):
+        for query, names in (("?fields=lambda", {"lambda"}), ("?fields=sigma_min", {"sigma_min"}), ("?fields=sigma_min,lambda,condition", {"sigma_min", "lambda", "condition"})):
             reader = Events(self.server, c["id"], query=query)
             for without, frame in zip(frames_without, reader.frames_up_to(3)):
                 extras = {name: frame.pop(name) for name in names}
@@ -120,6 +120,7 @@ class Streams(driver.ServerCase):
         for a, b in zip(extras["lambda"][1], terms["lambda"]):
             self.assertAlmostEqual(a, b, 9)
         self.assertTrue(all(0.1 < s < 10 for s in extras["sigma_min"]), extras["sigma_min"])
+        self.assertTrue(all(1 <= c < 100 for c in extras["condition"]), extras["condition"])
         answer = self.server.ask("GET", f"/api/v1/comparisons/{c['id']}/events?fields=sigma")
         self.assert_problem(answer, 400, "bad-request")
         self.assertIn("sigma_min", answer.json()["hint"])

@@ -243,3 +243,31 @@ test("models of other programs are dropped on the page", async (t) => {
   await says(page, "was not read");
   assert.equal(await read(page, (data) => data.scene.id), "own");
 });
+
+test("a model of another program can be pasted, and what it leaves out is counted", async (t) => {
+  const page = await open(t);
+  await edit(page);
+  const bar = "<joint axis='0 1 0'/><geom type='capsule' fromto='0 0 0 0.5 0 0' size='0.02'/>";
+  const arm = `<body name='a'>${bar}<body name='b' pos='0.5 0 0'>${bar}</body></body>`;
+  const model = (more) => `<mujoco><worldbody>${more}</worldbody></mujoco>`;
+  await page.fill("#editor-text", model(arm));
+  await until(page, (data) => data.scene.bodies.length === 2);
+  const state = page.locator("#editor-state");
+  await page.waitForFunction(() =>
+    /^MJCF: 0 notes/.test(document.querySelector("#editor-state").textContent),
+  );
+  await page.fill("#editor-text", model(`${arm}<body name='c' pos='0 1 0'>${bar}</body>`));
+  await until(page, (data) => data.scene.bodies.length === 3);
+  await page.waitForFunction(() =>
+    /^MJCF: 1 note on/.test(document.querySelector("#editor-state").textContent),
+  );
+  assert.match(await page.textContent(".editor-faults"), /can touch one another in MuJoCo/);
+  assert.ok(JSON.parse(await page.inputValue("#editor-text")).bodies.length === 3);
+
+  await page.fill("#editor-text", "<mujoco><worldbody></mujoco>");
+  await page.waitForFunction(() =>
+    /was not read/.test(document.querySelector("#editor-state").textContent),
+  );
+  assert.equal(await read(page, (data) => data.scene.bodies.length), 3, "the last good one runs");
+  assert.doesNotMatch(String(await state.textContent()), /JSON/);
+});

@@ -252,3 +252,57 @@ test("six methods on FB0 leave the main thread room for 60 frames a second", asy
   assert.ok(busy > 0, "the trace tells of the main thread");
   assert.ok(busy / frames < 1000 / 60, `${busy / frames} ms of computing per frame`);
 });
+
+test("the guide's buttons stand in one line below its words, at every step", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  for (let step = 1; step <= 5; step++) {
+    const tops = await page
+      .locator(".guide-steps button:visible")
+      .evaluateAll((list) => list.map((one) => one.getBoundingClientRect().top));
+    assert.equal(new Set(tops).size, 1, `step ${step}: ${tops}`);
+    const { close, card } = await boxesOf(page, { close: ".guide .tool", card: ".guide" });
+    assert.ok(close.right <= card.right && close.top - card.top < 20);
+    await page.locator(".guide-steps button").last().click();
+  }
+});
+
+test("keys open at their first line; the step says why it is not the scene's own", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 500 } });
+  await page.keyboard.press("F1");
+  await page.waitForSelector("dialog[open] #keys-title");
+  const { title, dialog } = await boxesOf(page, { title: "#keys-title", dialog: "dialog[open]" });
+  assert.ok(title.top >= dialog.top, "the heading is in sight");
+  await page.keyboard.press("Escape");
+  assert.match(await page.textContent("#set-h-hint"), /^twice the scene's own 0\.01 s/);
+  await page.fill("#set-h", "0.01");
+  await page.press("#set-h", "Enter");
+  await page.waitForFunction(() => document.querySelector("#set-h-hint").textContent === "");
+});
+
+test("the glass and the table say one gap, and the clock ends where the run does", async (t) => {
+  const page = await open(t);
+  await playTo(page, 2);
+  const table = await page.textContent("tbody tr:nth-child(1) td.gap");
+  assert.equal(await page.textContent(".tear-inset .number"), `gap ${table}`);
+  await page.fill("#set-h", "0.013");
+  await page.press("#set-h", "Enter");
+  await until(page, (data) => data.frameDt > 0.02 && data.latest?.t === 0);
+  // 385 frames of 26 ms are the first that reach 10 s
+  assert.match(await page.textContent(".time"), /\/ 10\.01 s$/);
+});
+
+test("the words of the page explain themselves: plots, the cut, the card that says why", async (t) => {
+  const page = await open(t);
+  await page.selectOption("#plot-lower", "lambda_max");
+  await page
+    .locator("figure.plot")
+    .nth(1)
+    .getByRole("button", { name: /^What is this/ })
+    .click();
+  assert.match(await page.textContent("#tip"), /^Multipliers λ: /);
+  await page.locator(".whose .term").hover();
+  assert.match(await page.textContent("#tip"), /^Cut joint: /);
+  await page.getByRole("button", { name: "Why? index-1" }).click();
+  await page.locator(".card .rule .term").first().focus();
+  assert.match(await page.textContent(".card .rule .term >> nth=0"), /truncation/);
+});

@@ -515,3 +515,27 @@ test("the last session of this browser can be continued, and an untouched page l
   await until(again, `(data) => data.latest?.frame === ${before.frame} && data.offer === ""`);
   assert.deepEqual(await read(again, state), before);
 });
+
+test("a force at a joint whose loop has opened carries a remark", async (t) => {
+  const page = await open(t);
+  const remark = () =>
+    page.evaluate(() =>
+      [...document.querySelectorAll(".reaction-table tbody tr")].map((row) => [
+        row.querySelector("th").textContent,
+        row.lastElementChild.textContent,
+      ]),
+    );
+  await page.click("#reactions summary");
+  await page.waitForFunction(() => document.querySelectorAll(".reaction-table tr").length > 3);
+  assert.ok((await remark()).every(([, text]) => text === ""));
+  await page.focus("#play");
+  await playTo(page, 3);
+  await page.waitForFunction(() =>
+    /is open by \d+ mm/.test(document.querySelector(".reaction-table tbody").textContent),
+  );
+  const torn = (await remark()).filter(([, text]) => /is open by/.test(text));
+  assert.deepEqual(
+    torn.map(([name]) => name),
+    ["B"],
+  );
+});

@@ -59,7 +59,7 @@ test("after the recording the computation goes on; at the end Replay starts from
   await until(page, (data) => data.state === "finished", LONG);
   const frames = await read(page, (data) => data.history.count);
   assert.equal(await page.textContent("#play"), "Replay");
-  await page.getByRole("button", { name: "loop" }).click();
+  await page.getByRole("button", { name: "loop", exact: true }).click();
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.view.replaying && data.view.shown > frames / 2, LONG).catch(

@@ -349,8 +349,12 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
 
   // the ring is dragged to the middle of another cell, and beyond the axes it stays at their end
   const middle = async (selector) => {
-    const { x, y, width, height } = await page.locator(selector).boundingBox();
-    return [x + width / 2, y + height / 2];
+    let box = null; // the ring is drawn anew when the run has changed
+    while (!box) {
+      await page.locator(selector).waitFor();
+      box = await page.locator(selector).boundingBox();
+    }
+    return [box.x + box.width / 2, box.y + box.height / 2];
   };
   const dragTo = async (x, y) => {
     const [fromX, fromY] = await middle(".maps .here-handle");

@@ -127,7 +127,7 @@ export const api = {
     fetch(`${BASE}/studies/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
   /** @param {string} id @param {string} lastId */
   eventsAddress: (id, lastId) => {
-    const query = new URLSearchParams({ fields: "sigma_min,lambda" });
+    const query = new URLSearchParams({ fields: "sigma_min,lambda,condition" });
     if (lastId) {
       query.set("last_event_id", lastId);
     }

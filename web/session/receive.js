@@ -25,17 +25,18 @@ function readMethod(entry) {
 }
 
 /**
- * A frame whose methods have what the stream adds beside them: the smallest singular value and the
- * largest multiplier.
+ * A frame whose methods have what the stream adds beside them: the smallest singular value, the
+ * condition number and the largest multiplier.
  * @param {any} frame
  * @returns {import("../state/store.js").Frame}
  */
-function withExtras({ sigma_min: sigma, lambda, ...frame }) {
+function withExtras({ sigma_min: sigma, lambda, condition, ...frame }) {
   const largest = (list) =>
     list?.length ? Math.max(...list.map((x) => Math.abs(x ?? NaN))) : undefined;
   frame.methods.forEach((method, m) => {
     method.sigma_min = sigma?.[m];
     method.lambda_max = largest(lambda?.[m]);
+    method.condition = condition?.[m];
   });
   return frame;
 }

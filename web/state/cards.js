@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The card that says why a method behaves as it does, and incidents grouped by their cause.
-import { niceBelow, quantity, seconds, withPowers } from "./format.js";
+import { niceBelow, quantity, scientific, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 import { errorsOf } from "./errors.js";
 import { listed, trendOf, verdictAt } from "./verdict.js";
@@ -138,6 +138,24 @@ export function costWords(data, m, shown) {
     : `${count}.`;
 }
 
+/**
+ * The error of a run as the engine estimates it while it goes on; "" where it says nothing.
+ * @param {import("./store.js").Data} data @param {number} m
+ */
+export function estimateWords(data, m) {
+  const { q, v, reaction, t, reason } = data.latest?.methods[m]?.error_estimate ?? {};
+  if (!Number.isFinite(q ?? NaN)) {
+    return reason ? `The error is not estimated: ${reason}.` : "";
+  }
+  const sizes = [
+    `${scientific(Number(q))} in the coordinates (angles in rad)`,
+    `${scientific(Number(v))} of the fastest velocity`,
+    Number.isFinite(reaction ?? NaN) ? `${scientific(Number(reaction))} of the largest force` : "",
+  ];
+  const ended = reason ? ` It ended there: ${reason}.` : "";
+  return `Estimated error until ${seconds(Number(t), data.duration)}, against a pilot run: ${listed(sizes.filter(Boolean))}.${ended}`;
+}
+
 /** What happened to a method until the frame shown, with numbers. */
 function happenedWords(data, m, shown) {
   const { history, latest } = data;
@@ -191,7 +209,7 @@ export function cardOfMethod(data, m, shown) {
     title: method.title,
     label: method.label,
     verdict: verdictAt(data, m, shown),
-    happened: happenedWords(data, m, shown),
+    happened: [happenedWords(data, m, shown), estimateWords(data, m)].filter(Boolean).join(" "),
     groups: groupIncidents(incidents),
     rule: withPowers(method.rule),
     drift: withPowers(method.drift ?? ""),

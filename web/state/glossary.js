@@ -84,7 +84,7 @@ export const GLOSSARY = {
   },
   sigma: {
     word: "smallest singular value σ",
-    match: /\bσ(_min)?|\bsigma_min\b|\bsmallest singular value\b/i,
+    match: /σ(_min)?|\bsigma_min\b|\bsmallest singular value\b/i,
     means:
       "Smallest singular value σ of J: the smallest stretch that J gives to any velocity. It is 0 in a singular configuration, where J loses rank.",
   },

@@ -20,6 +20,7 @@ export const COLUMNS = /** @type {const} */ ([
   "pivot_ratio",
   "work",
   "sigma_min",
+  "condition",
   "lambda_max",
 ]);
 

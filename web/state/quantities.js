@@ -92,6 +92,18 @@ export const QUANTITIES = [
     columnOf: received("sigma_min"),
   },
   {
+    name: "condition",
+    title: "Condition number of J",
+    short: "condition number",
+    unit: "",
+    log: true,
+    loop: true,
+    reference: false,
+    grey: "",
+    about: GLOSSARY.condition.means,
+    columnOf: received("condition"),
+  },
+  {
     name: "lambda_max",
     title: "Largest multiplier |λ|",
     short: "largest multiplier",

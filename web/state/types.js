@@ -61,7 +61,7 @@
  *   points?: number[], q?: number[], v?: number[],
  *   gap?: number, velocity_gap?: number, energy_change?: number,
  *   steps: number, rejected: number, evals: number, ops: number, cpu: number,
- *   work?: number, sigma_min?: number, lambda_max?: number,
+ *   work?: number, sigma_min?: number, lambda_max?: number, condition?: number,
  *   energy?: number,
  *   error_estimate?: {
  *     q: number | null, v: number | null, reaction: number | null, own: number | null,

@@ -104,7 +104,7 @@ export function createControls(el, store, actions) {
       return "";
     }
     return held === 2 * own
-      ? `twice the scene's own ${plain(own)} s, so that methods differ soon`
+      ? `twice the scene's own ${plain(own)} s, so that methods differ`
       : `the scene's own step is ${plain(own)} s`;
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The methods side by side: how each is drawn, the verdict on it, its gap, error, energy and cost.
-import { bound, gapWords, quantity, withPowers } from "../state/format.js";
-import { costWords } from "../state/cards.js";
+import { bound, gapWords, quantity, scientific, withPowers } from "../state/format.js";
+import { costWords, estimateWords } from "../state/cards.js";
 import { errorsOf } from "../state/errors.js";
 import { limits } from "../state/catalogue.js";
 import { cardOf, parseSpelling, settingOf } from "../state/spelling.js";
@@ -255,13 +255,18 @@ export function createMethods(el, store, actions, openDialog) {
     paint();
   }
 
+  /** @param {number} work [J] */
+  const workWords = (work) =>
+    `Energy error, with the work of drives, dampers and loads taken off; that work is ${quantity(work, "J")} so far.`;
+
   /** Error of position, as a bound where the reference itself says no more. */
   function errorWords(m, now) {
     const { reference } = data;
     const { off } = errorsOf(data)[m];
     const value = off[lastKnown(off, now)];
     if (Number.isNaN(value) || !reference) {
-      return "–";
+      const estimate = data.latest?.methods[m]?.error_estimate?.q ?? NaN;
+      return Number.isFinite(estimate) ? `≈ ${scientific(estimate, 1)}` : "–";
     }
     return value <= reference.own ? `< ${bound(value, "m")}` : quantity(value, "m", 2);
   }
@@ -277,6 +282,8 @@ export function createMethods(el, store, actions, openDialog) {
     say(parts.off, errorWords(m, last));
     say(parts.energy, quantity(column.energy_change[last], "J"));
     say(parts.cost, steps > 0 ? `${Math.round(column.ops[last] / steps)}/step` : "–");
+    set(parts.off, { "data-tip": estimateWords(data, m) || null });
+    set(parts.energy, { "data-tip": workWords(column.work[last]) });
     set(parts.cost, { "data-tip": costWords(data, m, last) || null });
   }
 

@@ -500,7 +500,9 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
 
 const char *hn_frame_extra_name(hn_frame_extra extra) {
     static const char *const names[HN_FRAME_EXTRAS] = {
-        [HN_FRAME_SIGMA_MIN] = "sigma_min", [HN_FRAME_LAMBDA] = "lambda"};
+        [HN_FRAME_SIGMA_MIN] = "sigma_min",
+        [HN_FRAME_LAMBDA] = "lambda",
+        [HN_FRAME_CONDITION] = "condition"};
     return names[extra];
 }
 
@@ -510,6 +512,10 @@ void hn_comparison_extra_json(hn_strbuf *b, const hn_comparison *c, hn_frame_ext
     for (int i = 0; i < c->n; i++) {
         if (extra == HN_FRAME_SIGMA_MIN) {
             hn_json_number(b, hn_run_sigma_min(c->entries[i].run));
+            continue;
+        }
+        if (extra == HN_FRAME_CONDITION) {
+            hn_json_number(b, hn_run_condition(c->entries[i].run));
             continue;
         }
 

@@ -296,6 +296,11 @@ double hn_run_sigma_min(const hn_run *run) {
     return run->stepping.info.nc > 0 ? run->watch.singular.info.sigma_min : (double)NAN;
 }
 
+double hn_run_condition(const hn_run *run) {
+    const double ratio = run->watch.singular.info.ratio;
+    return run->stepping.info.nc == 0 ? (double)NAN : ratio > 0 ? 1 / ratio : HUGE_VAL;
+}
+
 int hn_run_passed_singular(const hn_run *run, double *t) {
     const hn_incident *list = run->watch.log.list;
     for (int i = 0; i < run->watch.log.n; i++) {

@@ -84,6 +84,9 @@ int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; bo
 /// The smallest singular value of the constraint rows at the last step that was checked
 /// (dynamics/analyse/singularity_monitor.h); NaN without rows.
 double hn_run_sigma_min(const hn_run *run);
+/// The condition number of the constraint rows there: largest over smallest singular value. NaN
+/// without rows, HUGE_VAL where the smallest is 0.
+double hn_run_condition(const hn_run *run);
 /// 1 where the run has passed a singular configuration, or near one: *t the first time [s].
 int hn_run_passed_singular(const hn_run *run, double *t);
 /// Sets the run back to the start; counters and incidents are forgotten.

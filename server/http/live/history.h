@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-enum { HN_EVENT_MAX_EXTRAS = 2 };
+enum { HN_EVENT_MAX_EXTRAS = 3 };
 
 #define HN_EVENT_LIST(X)             \
     X(HN_EVENT_FRAME, "frame")       \

@@ -231,7 +231,7 @@ static bool read_fields(hn_request *r, unsigned *fields) {
             i++;
         }
         if (i == HN_FRAME_EXTRAS) {
-            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "fields=sigma_min,lambda",
+            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "fields=sigma_min,lambda,condition",
                              "a frame has no field '%.*s' to add", (int)(n < 40 ? n : 40), at);
             return false;
         }

@@ -125,7 +125,10 @@ static const struct {
      ",\"description\":\"of each method, when fields asks for it: the smallest singular value of "
      "the constraint rows, scaled by the masses, at the last step that was checked\"},"
      "\"lambda\":{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
-     "},\"description\":\"of each method, when fields asks for it: multipliers\"}}}"},
+     "},\"description\":\"of each method, when fields asks for it: multipliers\"},"
+     "\"condition\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     ",\"description\":\"of each method, when fields asks for it: largest over smallest singular "
+     "value of these rows; null without rows, or where the smallest is 0\"}}}"},
     {"Incident",
      "{\"type\":\"object\",\"description\":\"data of the event incident; sent again with the same "
      "method, code and t when the run has shown what became of "

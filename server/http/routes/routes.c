@@ -303,7 +303,7 @@ static const hn_route_query EVENTS_QUERY[] = {
      "complete (every frame) or live (a slow reader skips frames, never incidents)"},
     {"last_event_id", "string", "the same as the Last-Event-ID header"},
     {"fields", "string",
-     "what each frame says beside, with an entry for each method: sigma_min, lambda or both, "
+     "what each frame says beside, with an entry for each method: sigma_min, lambda, condition, "
      "separated by commas"},
     {NULL, NULL, NULL}};
 

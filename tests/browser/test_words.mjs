@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The words of the page, without a browser: what explains itself, what studies say, counts.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { triesOfIncident } from "../../web/state/cards.js";
+import { counted, gapWords } from "../../web/state/format.js";
+import { GLOSSARY, termsIn } from "../../web/state/glossary.js";
+import { QUANTITIES } from "../../web/state/quantities.js";
+import { ERRORS, byName, leftOutOf } from "../../web/state/study-documents.js";
+import { isOpen, markerOf } from "../../web/widgets/markers.js";
+
+const keysIn = (text) =>
+  termsIn(text)
+    .map(({ key }) => key)
+    .filter(Boolean);
+
+test("special words of a text are found where they first stand, and the text stays whole", () => {
+  const cases = [
+    ["|λ| grows as the pivot ratio falls", ["multipliers", "pivot"]],
+    ["σ_min is 0 on this branch", ["sigma", "branch"]],
+    ["four evaluations, and evaluations again", ["evaluations"]],
+    ["the cut joint opens; the cut is drawn", ["cut"]],
+    ["J loses rank in a singular configuration", ["rank", "singular"]],
+    ["the executive branched off", []],
+  ];
+  for (const [text, keys] of cases) {
+    assert.deepEqual(keysIn(text), keys, text);
+    assert.equal(
+      termsIn(text)
+        .map((piece) => piece.text)
+        .join(""),
+      text,
+    );
+  }
+});
+
+test("every definition begins with its own word, and every plotted quantity is explained", () => {
+  for (const { word, means } of Object.values(GLOSSARY)) {
+    assert.ok(means.length > 40 && /[.]$/.test(means), word);
+  }
+  const columns = QUANTITIES.filter(({ about }) => about.length < 20);
+  assert.deepEqual(columns, []);
+});
+
+test("the axis of errors says its unit, by what the coordinates of the scene are", () => {
+  const position = byName(ERRORS, "q");
+  const scene = (...kinds) => ({ length: 1.2, coordinates: kinds.map((kind) => ({ kind })) });
+  assert.equal(position.unit(scene("angle", "angle")), "rad");
+  assert.equal(position.unit(scene("length")), "share of 1.2 m");
+  assert.equal(position.unit(scene("angle", "length")), "rad, lengths as share of 1.2 m");
+  assert.ok(ERRORS.every(({ unit }) => unit(scene("angle")) !== ""));
+});
+
+test("points that were not run are counted with the reason, and are drawn as rings, not as failures", () => {
+  const points = [
+    { state: "done", reason: "" },
+    { state: "skipped", reason: "the time limit of 20 s" },
+    { state: "pending", reason: "" },
+  ];
+  const study = { methods: [{ points }] };
+  assert.equal(leftOutOf(study), "2 of 3 points were not run: the time limit of 20 s.");
+  assert.equal(leftOutOf({ methods: [{ points: points.slice(0, 1) }] }), "");
+  const failed = markerOf({ error: Infinity, state: "failed" }, "disc");
+  const skipped = markerOf({ error: Infinity, state: "skipped" }, "square");
+  assert.notEqual(failed, skipped);
+  assert.ok(isOpen({ error: Infinity, state: "skipped" }, "disc"));
+  assert.ok(!isOpen({ error: 1, state: "done" }, "disc"));
+});
+
+test("one is one, and a gap of rounding has one digit", () => {
+  assert.equal(counted(1, "note"), "1 note");
+  assert.equal(counted(0, "note"), "0 notes");
+  assert.equal(counted(1.5, "point"), "1.5 points");
+  assert.equal(gapWords(1.1e-16), "1×10⁻¹⁶ m");
+  assert.equal(gapWords(0.0123), "12 mm");
+});
+
+test("a remedy stands beside what its trial gave", () => {
+  const remedies = ["h=0.01", "ggl@radau5:rtol=1e-06"];
+  const incident = { remedies, tried: ["", "tried to t = 2 s: gap 7e-16 m"] };
+  assert.deepEqual(
+    triesOfIncident(incident).map(({ said }) => said),
+    ["", "tried to t = 2 s: gap 7e-16 m"],
+  );
+});
