@@ -269,7 +269,7 @@ class Stateless(driver.ServerCase):
 
     def test_a_coordinate_names_the_parameter_that_is_its_start(self):
         start = {one["name"]: (one["start_parameter"], one["rate_parameter"])
-                 for one in self.get("/api/v1/scenes/four-bar")["coordinates"]}
+                 for one in self.server.ask("GET", "/api/v1/scenes/four-bar").json()["coordinates"]}
         self.assertEqual(start, {"th1": ("th1_0", "w1_0"), "a2": (None, None), "th3": (None, None)})
 
     def test_inspect_counts_operations(self):

@@ -13,7 +13,8 @@ const hn_formulation hn_formulation_ggl = {
     .rule = "Require the constraints and their time derivative at once; a second "
             "multiplier, zero in the exact motion, makes room for the extra equations. "
             "Nothing drifts.",
-    .drift = "none at the ends of steps: gap and velocity violation are at rounding level there; between them the motion is interpolated to the tolerance",
+    .drift = "none at the ends of steps: gap and velocity violation are at rounding level there; "
+             "between them the motion is interpolated to the tolerance",
     .when = "stiff springs and dampers, long runs, tight tolerances; the first choice "
             "among implicit methods",
     .when_not = "short runs without stiffness: an explicit method with projection costs less; "

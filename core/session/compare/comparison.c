@@ -499,10 +499,9 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
 }
 
 const char *hn_frame_extra_name(hn_frame_extra extra) {
-    static const char *const names[HN_FRAME_EXTRAS] = {
-        [HN_FRAME_SIGMA_MIN] = "sigma_min",
-        [HN_FRAME_LAMBDA] = "lambda",
-        [HN_FRAME_CONDITION] = "condition"};
+    static const char *const names[HN_FRAME_EXTRAS] = {[HN_FRAME_SIGMA_MIN] = "sigma_min",
+                                                       [HN_FRAME_LAMBDA] = "lambda",
+                                                       [HN_FRAME_CONDITION] = "condition"};
     return names[extra];
 }
 
