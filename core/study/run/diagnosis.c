@@ -215,8 +215,7 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
                  sum.steps, sum.t);
         return UNKNOWN;
     }
-    snprintf(said, sizeof(hn_remedy),
-             TRIED " t = %.3g s: gap %.2g m at the ends of steps, energy %.2g J", sum.t,
+    snprintf(said, sizeof(hn_remedy), TRIED " t = %.3g s: largest gap %.2g m, energy %.2g J", sum.t,
              sum.worst_gap, sum.worst_energy_change);
     return right ? REMOVES : FAILS;
 }
