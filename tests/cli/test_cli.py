@@ -388,6 +388,12 @@ class CommandLine(unittest.TestCase):
             for words in (("grade", "p3", path, "-o", "/dev/full/v"), ("snapshot", "four-bar", "--time", "0.1", "-o", "/no/such/folder/a.png"),
                           ("reference", "fb0", "--out", "/nowhere/x.json")):
                 self.assert_exit(call(*words), PROGRAM)
+            # rows that are printed as they are made, and a document
+            for words in ((), ("--json",)):
+                with open("/dev/full", "w") as full:
+                    done = subprocess.run([driver.PROGRAM, "run", "four-bar", "--time", "2", "--every", "0.001", *words], stdout=full,
+                                          stderr=subprocess.PIPE, timeout=60)
+                self.assertEqual((done.returncode, b"No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
 
     def test_a_submission_that_is_a_pipe_does_not_hang(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -97,7 +97,7 @@ export function createStudyCost(store, onPick) {
     bar,
     frame,
     told,
-    h("h3", {}, "Cheapest for an accuracy"),
+    h("h3", {}, "Cheapest of these methods for an accuracy"),
     sentences,
     meaning,
     leftOut,

@@ -368,8 +368,11 @@ static void put_ranking(hn_strbuf *b, const hn_wp *wp, const hn_band *coarse, co
     if (fine->next.level < 0) {
         hn_strbuf_add(b, wp->n_methods > 1 ? "; no other run of this study gets there" : "");
     } else if (coarse->n_close == 0) {
-        hn_strbuf_printf(b, "; next %s at %.3g times that", spelling_of(wp, fine->next),
-                         fine->ratio);
+        hn_strbuf_add(b, "; next");
+        if (fine->accuracy < coarse->accuracy) {
+            hn_strbuf_printf(b, ", for %.0e,", fine->accuracy);
+        }
+        hn_strbuf_printf(b, " %s at %.3g times that", spelling_of(wp, fine->next), fine->ratio);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "cli/shell/document.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -131,13 +132,16 @@ static void put_head(hn_strbuf *b, column *columns, int n, bool ndjson, const cJ
 // ---- printing ----
 
 static void print(hn_run_rows *rows, hn_strbuf *text) {
-    rows->failed |= text->failed || fwrite(hn_strbuf_text(text), 1, text->n, stdout) != text->n;
+    rows->failed |= text->failed;
+    if (!rows->error && fwrite(hn_strbuf_text(text), 1, text->n, stdout) != text->n) {
+        rows->error = errno;
+    }
     hn_strbuf_reset(text);
 
     // rows that come quickly are shown together
     const double now = hn_clock_wall();
     if (now - rows->flushed >= FLUSH_EVERY) {
-        rows->failed |= fflush(stdout) != 0;
+        rows->error = !rows->error && fflush(stdout) != 0 ? errno : rows->error;
         rows->flushed = now;
     }
 }

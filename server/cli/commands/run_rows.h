@@ -11,7 +11,8 @@
 typedef struct hn_run_rows {
     bool ndjson;
     bool begun;     ///< the head was printed
-    bool failed;    ///< memory, or the output
+    bool failed;    ///< memory ran out
+    int error;      ///< errno of the output; 0: it was written
     int n;          ///< columns
     double flushed; ///< when rows were last shown [s]
 } hn_run_rows;

@@ -279,8 +279,8 @@ static void the_cheapest_method_of_each_accuracy_is_named(void **state) {
     assert_int_equal(p.band[0].best.level, 0);
     assert_int_equal(p.band[5].best.level, 2);
     assert_sentences(&w, &p,
-                     "Errors of 1e-01 to 1e-06: index1@rk4, 1.0 s to 4.0 s; next projection@rk4 at "
-                     "2 times that.\n");
+                     "Errors of 1e-01 to 1e-06: index1@rk4, 1.0 s to 4.0 s; next, for 1e-06, "
+                     "projection@rk4 at 2 times that.\n");
 }
 
 static void times_that_cannot_be_told_apart_are_not_ranked(void **state) {
@@ -339,7 +339,7 @@ static void a_clock_that_changed_its_pace_ranks_nothing_and_counts_do(void **sta
         &w, &p,
         "Errors of 1e-01 to 1e-06: not ranked by time: the two halves of the timing of "
         "projection@rk4 differ by 20 %, 12 s and 14 s; by operations: index1@rk4, "
-        "1.0 kop to 4.0 kop; next projection@rk4 at 1.5 times that.\n");
+        "1.0 kop to 4.0 kop; next, for 1e-06, projection@rk4 at 1.5 times that.\n");
     // within 10 % a second measurement says the same
     for (int k = 0; k < 3; k++) {
         disturb(&w.methods[1].point[k], 3.0 * (1 << k), 3.27 * (1 << k));
