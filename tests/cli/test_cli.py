@@ -7,40 +7,17 @@ import json
 import os
 import pty
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
-import unittest
-import xml.etree.ElementTree
-import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+sys.path.insert(0, os.path.dirname(__file__))
 import driver  # noqa: E402
-
-DONE, INPUT, PROGRAM, ENDED = 0, 2, 3, 4
-RK4 = "index1@rk4:h=1e-3"
-SUBMISSION = {"J": [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"],
-                    ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]}
+from command import DONE, ENDED, INPUT, PROGRAM, RK4, SUBMISSION, Command, call, strict  # noqa: E402
 
 
-def call(*words, stdin="", environment=None):
-    env = dict(os.environ, **(environment or {}))
-    return subprocess.run([driver.PROGRAM, *words], input=stdin.encode(), capture_output=True, env=env, timeout=120 * driver.SLOW)
-
-
-def strict(text):
-    def refuse(word):
-        raise ValueError("JSON holds " + word)
-
-    return json.loads(text, parse_constant=refuse)
-
-
-class CommandLine(unittest.TestCase):
-    def assert_exit(self, done, status):
-        self.assertEqual(done.returncode, status, (done.stdout[-300:], done.stderr[-600:]))
-        return done.stdout.decode()
-
+class CommandLine(Command):
     def test_help_names_every_command_and_every_command_has_help(self):
         text = self.assert_exit(call("help"), DONE)
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
@@ -328,158 +305,6 @@ class CommandLine(unittest.TestCase):
         self.assertRegex(text, r"(?m)^index1@euler\S* +ENDED EARLY")
         self.assertRegex(text, r"(?m)^projection@rk4\S* +ok")
         self.assertIn(b"index1@euler", done.stderr)
-
-    def test_no_verdict_is_lost_and_no_submission_overwritten(self):
-        with tempfile.TemporaryDirectory() as folder:
-            paths = []
-            for student, sign in (("a", "-"), ("b", "")):
-                os.mkdir(os.path.join(folder, student))
-                paths.append(os.path.join(folder, student, "p3.json"))
-                with open(paths[-1], "w") as f:
-                    json.dump({"J": [[sign + "l1*sin(th1)", *SUBMISSION["J"][0][1:]], SUBMISSION["J"][1]]}, f)
-            out = os.path.join(folder, "v")
-            self.assert_exit(call("grade", "p3", *paths, "--out", out, "--format", "json"), DONE)
-            scores = [strict(open(os.path.join(out, student, "p3.json")).read())["score"] for student in "ab"]
-            self.assertEqual(scores, [8, 7.5])
-            # two endings of one name in one folder
-            shutil.copy(paths[0], os.path.join(folder, "a", "p3.txt"))
-            self.assert_exit(call("grade", "p3", paths[0], os.path.join(folder, "a", "p3.txt"), "-o", out), DONE)
-            self.assertTrue({"p3.json.txt", "p3.txt.txt"} <= set(os.listdir(out)))
-            # one file under two names, and a folder of verdicts that is the folder of the submissions
-            twice = call("grade", "p3", paths[0], os.path.join(folder, "b", "..", "a", "p3.json"), "-o", out)
-            self.assert_exit(twice, INPUT)
-            self.assertIn(b"one submission", twice.stderr)
-            before = open(paths[0]).read()
-            here = call("grade", "p3", paths[0], "-o", os.path.dirname(paths[0]), "--format", "json")
-            self.assert_exit(here, INPUT)
-            self.assertIn(b"would overwrite the submission", here.stderr)
-            self.assertEqual(open(paths[0]).read(), before)
-
-    def test_no_command_overwrites_its_input(self):
-        with tempfile.TemporaryDirectory() as folder:
-            scene, model = os.path.join(folder, "s.json"), os.path.join(folder, "m.xml")
-            shutil.copy("lessons/01-closed-loops/scenes/four-bar.json", scene)
-            shutil.copy("tests/import/four-bar.xml", model)
-            link = os.path.join(folder, "link.png")
-            os.symlink(scene, link)
-            for words, path in ((("import", model, "-o", model), model), (("snapshot", scene, "-o", scene), scene),
-                                (("snapshot", scene, "-o", link), scene), (("reference", scene, "--out", scene), scene)):
-                before = open(path, "rb").read()
-                done = call(*words)
-                self.assert_exit(done, INPUT)
-                self.assertIn(b"would be overwritten", done.stderr)
-                self.assertEqual(open(path, "rb").read(), before)
-
-    def test_the_ending_of_a_snapshot_is_its_format_or_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in ("x.pdf", "x", "x.jpg"):
-                path = os.path.join(folder, name)
-                done = call("snapshot", "four-bar", "--time", "0.1", "-o", path)
-                self.assert_exit(done, INPUT)
-                self.assertIn(b".png", done.stderr)
-                self.assertFalse(os.path.exists(path))
-
-    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
-    def test_an_output_that_cannot_be_written_is_no_fault_of_the_input(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "s.json")
-            with open(path, "w") as f:
-                json.dump(SUBMISSION, f)
-            for words in (("grade", "p3", path, "-o", "/dev/full/v"), ("snapshot", "four-bar", "--time", "0.1", "-o", "/no/such/folder/a.png"),
-                          ("reference", "fb0", "--out", "/nowhere/x.json")):
-                self.assert_exit(call(*words), PROGRAM)
-            # rows that are printed as they are made, and a document
-            for words in ((), ("--json",)):
-                with open("/dev/full", "w") as full:
-                    done = subprocess.run([driver.PROGRAM, "run", "four-bar", "--time", "2", "--every", "0.001", *words], stdout=full,
-                                          stderr=subprocess.PIPE, timeout=60)
-                self.assertEqual((done.returncode, b"No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
-
-    def test_a_submission_that_is_a_pipe_does_not_hang(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "pipe.json")
-            os.mkfifo(path)
-            self.assertIn("not a regular file", self.assert_exit(call("grade", "p3", path), INPUT))
-
-    def test_a_snapshot_is_a_png_file(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "a.png")
-            done = call("snapshot", "four-bar", "--method", RK4, "--time", "0.3", "-o", path, "--width", "400", "--height", "300", "--json")
-            self.assertTrue(strict(self.assert_exit(done, DONE)))
-            data = open(path, "rb").read()
-        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertEqual((int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")), (400, 300))
-
-    def picture(self, folder, name, *words, **env):
-        """The bytes of a snapshot of the four-bar, and the document that describes it."""
-        path = os.path.join(folder, name)
-        done = call("snapshot", "four-bar", "--method", RK4, "--width", "600", "--height", "400", "-o", path, "--describe", *words, environment=env)
-        document = strict(self.assert_exit(done, DONE))
-        with open(path, "rb") as f:
-            return f.read(), document, done.stderr
-
-    @staticmethod
-    def chunks(png):
-        names, at = [], 8
-        while at < len(png):
-            size = int.from_bytes(png[at : at + 4], "big")
-            body = png[at + 4 : at + 8 + size]
-            assert zlib.crc32(body) == int.from_bytes(png[at + 8 + size : at + 12 + size], "big")
-            names.append((body[:4].decode(), body[4:]))
-            at += 12 + size
-        return names
-
-    def test_several_moments_are_a_strip_or_an_animation(self):
-        with tempfile.TemporaryDirectory() as folder:
-            strip, document, _ = self.picture(folder, "a.png", "--at", "0,0.1,0.2,0.3")
-            self.assertEqual((int.from_bytes(strip[16:20], "big"), int.from_bytes(strip[20:24], "big")), (1800, 800))
-            self.assertEqual(len(document["before"]), 3)
-            alone, single, _ = self.picture(folder, "b.png", "--time", "0.3")
-            self.assertEqual(single["picture"]["primitives"], document["picture"]["primitives"])
-            film = self.chunks(self.picture(folder, "c.png", "--at", "0,0.1,0.2,0.3", "--animate", "40")[0])
-            names = [name for name, _ in film]
-            self.assertEqual((names[0], names[-1], names.count("acTL"), names.count("fcTL")), ("IHDR", "IEND", 1, 4))
-            order = [int.from_bytes(body[:4], "big") for name, body in film if name in ("fcTL", "fdAT")]
-            self.assertEqual(order, list(range(len(order))))
-            self.assertEqual(b"".join(body for name, body in film if name == "IDAT"),
-                             b"".join(body for name, body in self.chunks(self.picture(folder, "d.png", "--time", "0")[0]) if name == "IDAT"))  # fmt: skip
-
-    def test_marks_of_a_snapshot_are_in_the_picture_and_in_its_description(self):
-        with tempfile.TemporaryDirectory() as folder:
-            plain, bare, _ = self.picture(folder, "a.png", "--time", "0.3")
-            for words, key, count in ((["--ghosts", "--at", "0,0.1,0.3"], "poses", 3), (["--dimensions"], "poses", 1),
-                                      (["--forces"], "loads", 4), (["--trace", "B"], "traces", 1)):  # fmt: skip
-                more = [] if "--at" in words else ["--time", "0.3"]
-                marked, document, _ = self.picture(folder, "b.png", *words, *more)
-                self.assertEqual(len(document["picture"][key]), count, words)
-                self.assertNotEqual(plain, marked, words)
-            traced = self.picture(folder, "c.png", "--trace", "B", "--time", "0.3")[1]["picture"]["traces"]
-            self.assertGreater(traced[0], bare["picture"]["traces"][0])
-            kinds = {p["kind"] for p in bare["picture"]["primitives"]}
-            self.assertTrue({"bar", "pivot", "ground"} <= kinds, kinds)
-            self.assertIn("B at (", bare["words"])
-            done = call("snapshot", "four-bar", "--trace", "Q", "-o", os.path.join(folder, "n.png"))
-            self.assert_exit(done, INPUT)
-            self.assertIn(b"there are: A B", done.stderr)
-
-    def test_a_snapshot_may_be_vector_graphics(self):
-        with tempfile.TemporaryDirectory() as folder:
-            svg, document, _ = self.picture(folder, "a.svg", "--at", "0,0.1")
-            root = xml.etree.ElementTree.fromstring(svg)
-            space = "{http://www.w3.org/2000/svg}"
-            self.assertEqual((root.get("width"), root.get("height")), ("1200", "400"))
-            self.assertEqual(len(root.findall(space + "svg")), 2)
-            self.assertEqual(root.find(space + "desc").text, document["words"])
-            self.assertGreater(len(list(root.iter(space + "path"))), 50)
-
-    def test_without_osmesa_the_built_in_renderer_draws_and_is_named(self):
-        with tempfile.TemporaryDirectory() as folder:
-            png, document, said = self.picture(folder, "a.png", "--time", "0.3", HOLONOM_RENDERER="built-in")
-            self.assertEqual(document["renderer"], "built-in")
-            self.assertIn(b"built-in renderer", said)
-            other, document, said = self.picture(folder, "b.png", "--time", "0.3")
-            self.assertEqual((document["renderer"], said), ("OSMesa", b""))
-            self.assertEqual([name for name, _ in self.chunks(png)], [name for name, _ in self.chunks(other)])
 
     def test_grading_a_wrong_answer_is_done_and_an_unreadable_one_is_not(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that the command line reads and writes: none is lost or overwritten, and whose fault a failure is."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+sys.path.insert(0, os.path.dirname(__file__))
+import driver  # noqa: E402
+from command import DONE, INPUT, PROGRAM, SUBMISSION, Command, call, strict  # noqa: E402
+
+
+class Files(Command):
+    def test_no_verdict_is_lost_and_no_submission_overwritten(self):
+        with tempfile.TemporaryDirectory() as folder:
+            paths = []
+            for student, sign in (("a", "-"), ("b", "")):
+                os.mkdir(os.path.join(folder, student))
+                paths.append(os.path.join(folder, student, "p3.json"))
+                with open(paths[-1], "w") as f:
+                    json.dump({"J": [[sign + "l1*sin(th1)", *SUBMISSION["J"][0][1:]], SUBMISSION["J"][1]]}, f)
+            out = os.path.join(folder, "v")
+            self.assert_exit(call("grade", "p3", *paths, "--out", out, "--format", "json"), DONE)
+            scores = [strict(open(os.path.join(out, student, "p3.json")).read())["score"] for student in "ab"]
+            self.assertEqual(scores, [8, 7.5])
+            # two endings of one name in one folder
+            shutil.copy(paths[0], os.path.join(folder, "a", "p3.txt"))
+            self.assert_exit(call("grade", "p3", paths[0], os.path.join(folder, "a", "p3.txt"), "-o", out), DONE)
+            self.assertTrue({"p3.json.txt", "p3.txt.txt"} <= set(os.listdir(out)))
+            # one file under two names, and a folder of verdicts that is the folder of the submissions
+            twice = call("grade", "p3", paths[0], os.path.join(folder, "b", "..", "a", "p3.json"), "-o", out)
+            self.assert_exit(twice, INPUT)
+            self.assertIn(b"one submission", twice.stderr)
+            before = open(paths[0]).read()
+            here = call("grade", "p3", paths[0], "-o", os.path.dirname(paths[0]), "--format", "json")
+            self.assert_exit(here, INPUT)
+            self.assertIn(b"would overwrite the submission", here.stderr)
+            self.assertEqual(open(paths[0]).read(), before)
+
+    def test_no_command_overwrites_its_input(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene, model = os.path.join(folder, "s.json"), os.path.join(folder, "m.xml")
+            shutil.copy("lessons/01-closed-loops/scenes/four-bar.json", scene)
+            shutil.copy("tests/import/four-bar.xml", model)
+            link = os.path.join(folder, "link.png")
+            os.symlink(scene, link)
+            for words, path in ((("import", model, "-o", model), model), (("snapshot", scene, "-o", scene), scene),
+                                (("snapshot", scene, "-o", link), scene), (("reference", scene, "--out", scene), scene)):
+                before = open(path, "rb").read()
+                done = call(*words)
+                self.assert_exit(done, INPUT)
+                self.assertIn(b"would be overwritten", done.stderr)
+                self.assertEqual(open(path, "rb").read(), before)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
+    def test_an_output_that_cannot_be_written_is_no_fault_of_the_input(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "s.json")
+            with open(path, "w") as f:
+                json.dump(SUBMISSION, f)
+            for words in (("grade", "p3", path, "-o", "/dev/full/v"), ("snapshot", "four-bar", "--time", "0.1", "-o", "/no/such/folder/a.png"),
+                          ("reference", "fb0", "--out", "/nowhere/x.json")):
+                self.assert_exit(call(*words), PROGRAM)
+            # rows that are printed as they are made, and a document
+            for words in ((), ("--json",)):
+                with open("/dev/full", "w") as full:
+                    done = subprocess.run([driver.PROGRAM, "run", "four-bar", "--time", "2", "--every", "0.001", *words], stdout=full,
+                                          stderr=subprocess.PIPE, timeout=60)
+                self.assertEqual((done.returncode, b"No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
+
+    def test_a_submission_that_is_a_pipe_does_not_hang(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "pipe.json")
+            os.mkfifo(path)
+            self.assertIn("not a regular file", self.assert_exit(call("grade", "p3", path), INPUT))
+
+
+if __name__ == "__main__":
+    driver.main()

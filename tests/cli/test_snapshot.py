@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Snapshots from the command line: formats, several moments, marks, the built-in renderer."""
+
+import os
+import sys
+import tempfile
+import xml.etree.ElementTree
+import zlib
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+sys.path.insert(0, os.path.dirname(__file__))
+import driver  # noqa: E402
+from command import DONE, INPUT, RK4, Command, call, strict  # noqa: E402
+
+
+class Snapshot(Command):
+    @staticmethod
+    def chunks(png):
+        names, at = [], 8
+        while at < len(png):
+            size = int.from_bytes(png[at : at + 4], "big")
+            body = png[at + 4 : at + 8 + size]
+            assert zlib.crc32(body) == int.from_bytes(png[at + 8 + size : at + 12 + size], "big")
+            names.append((body[:4].decode(), body[4:]))
+            at += 12 + size
+        return names
+
+    def picture(self, folder, name, *words, **env):
+        """The bytes of a snapshot of the four-bar, and the document that describes it."""
+        path = os.path.join(folder, name)
+        done = call("snapshot", "four-bar", "--method", RK4, "--width", "600", "--height", "400", "-o", path, "--describe", *words, environment=env)
+        document = strict(self.assert_exit(done, DONE))
+        with open(path, "rb") as f:
+            return f.read(), document, done.stderr
+
+    def test_the_ending_of_a_snapshot_is_its_format_or_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("x.pdf", "x", "x.jpg"):
+                path = os.path.join(folder, name)
+                done = call("snapshot", "four-bar", "--time", "0.1", "-o", path)
+                self.assert_exit(done, INPUT)
+                self.assertIn(b".png", done.stderr)
+                self.assertFalse(os.path.exists(path))
+
+    def test_a_snapshot_is_a_png_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.png")
+            done = call("snapshot", "four-bar", "--method", RK4, "--time", "0.3", "-o", path, "--width", "400", "--height", "300", "--json")
+            self.assertTrue(strict(self.assert_exit(done, DONE)))
+            data = open(path, "rb").read()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")), (400, 300))
+
+    def test_several_moments_are_a_strip_or_an_animation(self):
+        with tempfile.TemporaryDirectory() as folder:
+            strip, document, _ = self.picture(folder, "a.png", "--at", "0,0.1,0.2,0.3")
+            self.assertEqual((int.from_bytes(strip[16:20], "big"), int.from_bytes(strip[20:24], "big")), (1800, 800))
+            self.assertEqual(len(document["before"]), 3)
+            alone, single, _ = self.picture(folder, "b.png", "--time", "0.3")
+            self.assertEqual(single["picture"]["primitives"], document["picture"]["primitives"])
+            film = self.chunks(self.picture(folder, "c.png", "--at", "0,0.1,0.2,0.3", "--animate", "40")[0])
+            names = [name for name, _ in film]
+            self.assertEqual((names[0], names[-1], names.count("acTL"), names.count("fcTL")), ("IHDR", "IEND", 1, 4))
+            order = [int.from_bytes(body[:4], "big") for name, body in film if name in ("fcTL", "fdAT")]
+            self.assertEqual(order, list(range(len(order))))
+            self.assertEqual(b"".join(body for name, body in film if name == "IDAT"),
+                             b"".join(body for name, body in self.chunks(self.picture(folder, "d.png", "--time", "0")[0]) if name == "IDAT"))  # fmt: skip
+
+    def test_marks_of_a_snapshot_are_in_the_picture_and_in_its_description(self):
+        with tempfile.TemporaryDirectory() as folder:
+            plain, bare, _ = self.picture(folder, "a.png", "--time", "0.3")
+            for words, key, count in ((["--ghosts", "--at", "0,0.1,0.3"], "poses", 3), (["--dimensions"], "poses", 1),
+                                      (["--forces"], "loads", 4), (["--trace", "B"], "traces", 1)):  # fmt: skip
+                more = [] if "--at" in words else ["--time", "0.3"]
+                marked, document, _ = self.picture(folder, "b.png", *words, *more)
+                self.assertEqual(len(document["picture"][key]), count, words)
+                self.assertNotEqual(plain, marked, words)
+            traced = self.picture(folder, "c.png", "--trace", "B", "--time", "0.3")[1]["picture"]["traces"]
+            self.assertGreater(traced[0], bare["picture"]["traces"][0])
+            kinds = {p["kind"] for p in bare["picture"]["primitives"]}
+            self.assertTrue({"bar", "pivot", "ground"} <= kinds, kinds)
+            self.assertIn("B at (", bare["words"])
+            done = call("snapshot", "four-bar", "--trace", "Q", "-o", os.path.join(folder, "n.png"))
+            self.assert_exit(done, INPUT)
+            self.assertIn(b"there are: A B", done.stderr)
+
+    def test_a_snapshot_may_be_vector_graphics(self):
+        with tempfile.TemporaryDirectory() as folder:
+            svg, document, _ = self.picture(folder, "a.svg", "--at", "0,0.1")
+            root = xml.etree.ElementTree.fromstring(svg)
+            space = "{http://www.w3.org/2000/svg}"
+            self.assertEqual((root.get("width"), root.get("height")), ("1200", "400"))
+            self.assertEqual(len(root.findall(space + "svg")), 2)
+            self.assertEqual(root.find(space + "desc").text, document["words"])
+            self.assertGreater(len(list(root.iter(space + "path"))), 50)
+
+    def test_without_osmesa_the_built_in_renderer_draws_and_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            png, document, said = self.picture(folder, "a.png", "--time", "0.3", HOLONOM_RENDERER="built-in")
+            self.assertEqual(document["renderer"], "built-in")
+            self.assertIn(b"built-in renderer", said)
+            other, document, said = self.picture(folder, "b.png", "--time", "0.3")
+            self.assertEqual((document["renderer"], said), ("OSMesa", b""))
+            self.assertEqual([name for name, _ in self.chunks(png)], [name for name, _ in self.chunks(other)])
+
+
+if __name__ == "__main__":
+    driver.main()
