@@ -4,6 +4,7 @@
 #include "linalg/dense.h"
 #include "linalg/equilibrate.h"
 #include "linalg/qr.h"
+#include "linalg/reflector.h"
 
 #include <float.h>
 #include <math.h>
@@ -11,7 +12,6 @@
 
 // a scaled mass pivot counts as zero at or below this times nv
 static const double MASS_TOL = 16 * DBL_EPSILON;
-// masses below this times the largest are scaled by what the constraints see of them
 
 struct hn_saddle_ws {
     int nv_max, nc_max;
@@ -21,10 +21,8 @@ struct hn_saddle_ws {
     double *d, *r;  // equilibration: D of the coordinates, R of the rows
     double stretch; // how much longer R makes the shortest row, against the longest
     hn_qr qr;       // of (R J D)', nv x nc
-    double *
-        // Q' D M D Q, nv x nv; the lower triangle of its last block is replaced by its Cholesky
-        // factor
-        T;
+    // Q' D M D Q, nv x nv; the lower triangle of its last block is replaced by its Cholesky factor
+    double *T;
     hn_qr kernel;                  // orthonormal basis of ker J', nc x (nc - rank)
     hn_qr scaled_kernel;           // the same for R J D
     double *fs, *gs, *lam1, *work; // scratch of one solve: nv, nc, nc, nv
@@ -128,96 +126,8 @@ static void scale_rows(hn_saddle_ws *ws) {
     }
 }
 
-/// p = tau T v, v zero above k: four rows at a time, whose sums do not wait for each other.
-static void times_reflector(const hn_saddle_ws *ws, int k, double tau, const double *v, double *p) {
-    enum { TOGETHER = 4 };
-    const int nv = ws->nv;
-    int i = 0;
-    for (; i + TOGETHER <= nv; i += TOGETHER) {
-        const double *row = ws->T + (size_t)i * nv;
-        double sum[TOGETHER] = {0};
-        for (int j = k; j < nv; j++) {
-            sum[0] += row[j] * v[j];
-            sum[1] += row[(size_t)nv + j] * v[j];
-            sum[2] += row[2 * (size_t)nv + j] * v[j];
-            sum[3] += row[3 * (size_t)nv + j] * v[j];
-        }
-        for (int m = 0; m < TOGETHER; m++) {
-            p[i + m] = tau * sum[m];
-        }
-    }
-    for (; i < nv; i++) {
-        p[i] = tau * hn_dot(nv - k, ws->T + (size_t)i * nv + k, v + k);
-    }
-}
-
-/// T <- H T H for one reflector H = I - tau v v' of the QR: the symmetric rank-two form of Golub &
-/// Van Loan, sec. 8.3.1.
-static void reflect_both_sides(hn_saddle_ws *ws, int k) {
-    const int nv = ws->nv;
-    const double tau = ws->qr.tau[k];
-    double *restrict v = ws->work, *restrict p = ws->fs;
-    memset(v, 0, (size_t)nv * sizeof *v);
-    memcpy(v + k, ws->qr.a + (size_t)k * nv + k, (size_t)(nv - k) * sizeof *v);
-    v[k] = 1;
-    times_reflector(ws, k, tau, v, p);
-    hn_axpy(nv, -0.5 * tau * hn_dot(nv, p, v), v, p);
-
-    // above k v is zero, so rows there change from column k on
-    for (int i = 0; i < nv; i++) {
-        double *restrict row = ws->T + (size_t)i * nv;
-        const double vi = v[i], pi = p[i];
-        for (int j = i < k ? k : 0; j < nv; j++) {
-            row[j] -= vi * p[j] + pi * v[j];
-        }
-    }
-}
-
-/// The same where v has few entries that are not zero: 1 at k, and those at the n `rows`. What it
-/// leaves alone is not touched.
-static void reflect_listed(hn_saddle_ws *ws, int k, int n, const int *rows) {
-    const int nv = ws->nv;
-    const double tau = ws->qr.tau[k], *below = ws->qr.a + (size_t)k * nv;
-    double *v = ws->work, *p = ws->fs;
-    memset(v, 0, (size_t)nv * sizeof *v);
-    v[k] = 1;
-    for (int m = 0; m < n; m++) {
-        v[rows[m]] = below[rows[m]];
-    }
-
-    // p = tau T v, less its part along v
-    for (int i = 0; i < nv; i++) {
-        const double *row = ws->T + (size_t)i * nv;
-        double sum = row[k];
-        for (int m = 0; m < n; m++) {
-            sum += row[rows[m]] * v[rows[m]];
-        }
-        p[i] = tau * sum;
-    }
-    double along = p[k];
-    for (int m = 0; m < n; m++) {
-        along += p[rows[m]] * v[rows[m]];
-    }
-    p[k] += -0.5 * tau * along;
-    for (int m = 0; m < n; m++) {
-        p[rows[m]] += -0.5 * tau * along * v[rows[m]];
-    }
-
-    // T <- T - v p' - p v': whole rows where v is not zero, columns of v elsewhere
-    for (int i = 0; i < nv; i++) {
-        double *row = ws->T + (size_t)i * nv;
-        for (int j = 0; v[i] != 0 && j < nv; j++) {
-            row[j] -= v[i] * p[j] + p[i] * v[j];
-        }
-        if (v[i] == 0 && p[i] != 0) {
-            row[k] -= p[i];
-            for (int m = 0; m < n; m++) {
-                row[rows[m]] -= p[i] * v[rows[m]];
-            }
-        }
-    }
-}
-
+/// T = Q' D M D Q, and the Cholesky factor of its last block: the mass that the rows of J do not
+/// see.
 static hn_status factor_kernel_mass(hn_saddle_ws *ws) {
     int nv = ws->nv, rank = ws->qr.rank;
     for (int i = 0; i < nv; i++) {
@@ -227,10 +137,11 @@ static hn_status factor_kernel_mass(hn_saddle_ws *ws) {
     }
     for (int k = 0; k < rank; k++) {
         const int *rows, n = hn_qr_reflector(&ws->qr, k, &rows);
+        const double tau = ws->qr.tau[k], *below = ws->qr.a + (size_t)k * nv;
         if (hn_qr_is_sparse(&ws->qr, k, n)) {
-            reflect_listed(ws, k, n, rows);
+            hn_reflect_listed(nv, k, tau, below, n, rows, ws->T, ws->work, ws->fs);
         } else {
-            reflect_both_sides(ws, k);
+            hn_reflect_both_sides(nv, k, tau, below, ws->T, ws->work, ws->fs);
         }
     }
     return hn_cholesky(nv - rank, ws->T + (size_t)rank * nv + rank, nv, MASS_TOL * nv);

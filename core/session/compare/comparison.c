@@ -130,12 +130,10 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
                                const hn_comparison_opts *opts, hn_comparison **out,
                                hn_diags *diags) {
     hn_comparison_opts chosen = opts ? *opts : hn_comparison_opts_default();
-    hn_status status = check_opts(&chosen, n_methods, diags);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(check_opts(&chosen, n_methods, diags));
 
     // one run per method
+    hn_status status = HN_OK;
     hn_comparison *c = calloc(1, sizeof *c);
     if (!c) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -364,10 +362,7 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
     int served = 0;
     for (int i = 0; i < c->n; i++) {
         if ((method == -1 && has_setting(c->entries[i].run, key)) || method == i) {
-            hn_status status = hn_run_set(c->entries[i].run, key, value, diag);
-            if (status != HN_OK) {
-                return status;
-            }
+            HN_TRY(hn_run_set(c->entries[i].run, key, value, diag));
             served++;
         }
     }

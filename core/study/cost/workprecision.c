@@ -137,10 +137,7 @@ hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v, c
                        const hn_method_spec *specs, int n, const hn_wp_opts *opts, hn_wp **out,
                        hn_diag *diag) {
     hn_wp_opts o = opts ? *opts : (hn_wp_opts){0};
-    hn_status status = check_opts(&o, n, sys, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(check_opts(&o, n, sys, diag));
     hn_arena *arena = hn_arena_create(0);
     hn_wp *wp = arena ? hn_arena_get(arena, sizeof *wp) : NULL;
     if (!wp) {
@@ -159,7 +156,8 @@ hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v, c
     wp->methods = hn_arena_get(arena, (size_t)n * sizeof *wp->methods);
     wp->runs = hn_arena_get(arena, (size_t)(n * o.n_levels) * sizeof *wp->runs);
     wp->shard = hn_arena_ints(arena, (size_t)(n * o.n_levels));
-    status = hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_errors_create(sys, arena, &wp->errors);
+    hn_status status =
+        hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_errors_create(sys, arena, &wp->errors);
     for (int i = 0; i < n && status == HN_OK; i++) {
         status = set_up_method(wp, &specs[i], i, diag);
     }
