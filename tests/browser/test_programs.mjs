@@ -26,6 +26,8 @@ test("a server that allows programs offers them in the dialog of methods, and on
   const server = await bench.server(t, ["--programs", folder]);
   const page = await bench.open(t, { url: server.url, hash: "#pendulum" });
   await page.getByRole("button", { name: "add a method" }).click();
+  // the list of methods may still be on its way
+  await page.locator("#pick-program option").nth(2).waitFor({ state: "attached" });
   const offered = await page.locator("#pick-program option").allTextContents();
   assert.deepEqual(offered, ["none", "mine.py, accelerations", "mine.py, its own steps"]);
   await page.selectOption("#pick-program", { label: "mine.py, accelerations" });
