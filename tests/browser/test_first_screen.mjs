@@ -282,8 +282,11 @@ test("keys open at their first line; the step says why it is not the scene's own
 test("the glass and the table say one gap, and the clock ends where the run does", async (t) => {
   const page = await open(t);
   await playTo(page, 2);
-  const table = await page.textContent("tbody tr:nth-child(1) td.gap");
-  assert.equal(await page.textContent(".tear-inset .number"), `gap ${table}`);
+  // each is painted in its own time after the last frame; then both stand
+  await page.waitForFunction(() => {
+    const said = (place) => document.querySelector(place).textContent;
+    return said(".tear-inset .number") === `gap ${said("tbody tr:nth-child(1) td.gap")}`;
+  });
   await page.fill("#set-h", "0.013");
   await page.press("#set-h", "Enter");
   await until(page, (data) => data.frameDt > 0.02 && data.latest?.t === 0);
