@@ -7,6 +7,7 @@
 
 #include "support/near.h"
 
+#include <cjson/cJSON.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -54,6 +55,20 @@ static inline void grade_with(const hn_exercise *p, int k, const char *formula, 
     }
     snprintf(text + at, sizeof text - at, "]]}");
     grade(p, text, v);
+}
+
+/// Parses the document and empties the buffer.
+static inline cJSON *parse(hn_strbuf *b) {
+    cJSON *root = cJSON_Parse(hn_strbuf_text(b));
+    assert_non_null(root);
+    hn_strbuf_reset(b);
+    return root;
+}
+
+static inline double number_of(const cJSON *node, const char *key) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
+    assert_true(cJSON_IsNumber(m));
+    return m->valuedouble;
 }
 
 #endif

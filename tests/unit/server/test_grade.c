@@ -434,19 +434,6 @@ static void every_prefix_of_a_submission_ends_in_a_verdict(void **state) {
     }
 }
 
-static cJSON *parse(hn_strbuf *b) {
-    cJSON *root = cJSON_Parse(hn_strbuf_text(b));
-    assert_non_null(root);
-    hn_strbuf_reset(b);
-    return root;
-}
-
-static double number_of(const cJSON *node, const char *key) {
-    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
-    assert_true(cJSON_IsNumber(m));
-    return m->valuedouble;
-}
-
 static void the_statement_says_that_the_ground_is_held_and_how_to_hand_in(void **state) {
     hn_strbuf b;
     hn_strbuf_init(&b);

@@ -9,19 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-static cJSON *parse(hn_strbuf *b) {
-    cJSON *root = cJSON_Parse(hn_strbuf_text(b));
-    assert_non_null(root);
-    hn_strbuf_reset(b);
-    return root;
-}
-
-static double number_of(const cJSON *node, const char *key) {
-    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
-    assert_true(cJSON_IsNumber(m));
-    return m->valuedouble;
-}
-
 static const char *text_of(const cJSON *node, const char *key) {
     const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
     assert_true(cJSON_IsString(m));
