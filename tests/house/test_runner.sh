@@ -84,6 +84,28 @@ expect 'as many programs as asked for run at once' '2 passed, 0 failed' \
 printf 'echo "not ok 1 - why"\necho "ok 2 - that # SKIP no network"\n' >"$work/why.sh"
 expect 'a failure is told with its output, and again at the end; what was skipped is told' '4' \
     "$(sh tests/run-tests.sh "$work/why.sh" | grep -c -e '^    not ok 1 - why' -e '^     ok 2' -e "^  $work/why.sh: not ok 1" -e '^FAIL ')"
+
+# a browser's program is tried again, alone; no other is
+cat >"$work/late.mjs" <<'X'
+import { existsSync, writeFileSync } from "node:fs";
+import { test } from "node:test";
+const before = `${process.argv[1]}.ran`;
+test("passes the second time", () => {
+  if (existsSync(before)) return;
+  writeFileSync(before, "");
+  throw new Error("too early");
+});
+X
+sh tests/run-tests.sh "$work/late.mjs" >"$work/late.said"
+expect 'a browser program that fails beside others is tried again, and the count is that of the second try' \
+    '0 1 passed, 0 failed' "$? $(tail -n 1 "$work/late.said")"
+expect 'the first failure stays to be read, and the second try is named' '3' \
+    "$(grep -c -e '^FAIL ' -e 'too early' -e "^passed only when tried again, alone: $work/late.mjs" "$work/late.said")"
+printf 'import { test } from "node:test";\ntest("never", () => { throw new Error("no"); });\n' >"$work/bad.mjs"
+expect 'what fails twice has failed' '0 passed, 1 failed' "$(sh tests/run-tests.sh "$work/bad.mjs" | tail -n 1)"
+for k in 1 2 3 4; do cp "$work/bad.mjs" "$work/bad$k.mjs"; done
+expect 'where more than three failed none is tried again' '0' \
+    "$(sh tests/run-tests.sh "$work"/bad[1-4].mjs | grep -c '^again')"
 sh tests/run-tests.sh >/dev/null
 expect 'no programs at all is a failure' 1 $?
 
