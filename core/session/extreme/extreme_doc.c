@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_doc.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include "session/store/csv.h"
 #include "session/extreme/extreme_internal.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/style/style.h"
 #include "session/extreme/extreme_html.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include "session/extreme/extreme_internal.h"
 

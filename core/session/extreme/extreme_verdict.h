@@ -3,8 +3,11 @@
 #define HN_SESSION_EXTREME_EXTREME_VERDICT_H
 // Verdicts: the outcome of a run as a word, and numbers compared with predictions.
 
-#include "session/extreme/extreme.h"
+#include "base/status.h"
+#include "session/extreme/extreme_case.h"
 
+/// The word of the table: "pass" and so on.
+const char *hn_extreme_verdict_name(hn_extreme_verdict verdict);
 /// Returns what a status is called in the files: "finished", "diverged", "refused", ...
 const char *hn_extreme_outcome(hn_status status);
 /// Returns all such words; "ended" stands for any way of not coming to the end.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/study/extreme_text.h"
 
+#include "session/extreme/extreme_verdict.h"
 #include "terminal/width.h"
 
 #include <stdio.h>
