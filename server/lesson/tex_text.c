@@ -26,7 +26,8 @@ static const struct {
     {"vdots", "…"}, {"lVert", "‖"}, {"rVert", "‖"}, {"Vert", "‖"}, {"|", "‖"},
     {"quad", "  "}, {"qquad", "    "}, {",", " "}, {";", " "}, {":", " "}, {"!", ""},
     {" ", " "}, {"{", "{"}, {"}", "}"}, {"%", "%"}, {"left", ""}, {"right", ""}, {"big", ""},
-    {"Big", ""}, {"bigl", ""}, {"bigr", ""}, {"circ", "°"}, {"prime", "'"}, {"propto", "∝"},
+    {"Big", ""}, {"bigl", ""}, {"bigr", ""}, {"Bigl", ""}, {"Bigr", ""}, {"circ", "°"},
+    {"prime", "'"}, {"propto", "∝"}, {"otimes", "⊗"},
     {"ll", "≪"}, {"gg", "≫"}, {"langle", "⟨"}, {"rangle", "⟩"}, {"equiv", "≡"},
     {"displaystyle", ""}, {"nabla", "∇"},
 };
@@ -38,6 +39,10 @@ static const struct {
     const char *name, *mark;
 } ACCENTS[] = {{"dot", "\u0307"}, {"ddot", "\u0308"}, {"hat", "\u0302"}, {"bar", "\u0304"},
                {"tilde", "\u0303"}, {"overline", "\u0304"}, {"vec", "\u20d7"}};
+/// Fractions that are one character.
+static const struct {
+    const char *over, *under, *text;
+} FRACTIONS[] = {{"1", "2", "½"}, {"1", "3", "⅓"}, {"2", "3", "⅔"}, {"1", "4", "¼"}};
 static const char RAISED[][4] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
 static const char LOWERED[][4] = {"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
 // clang-format on
@@ -85,19 +90,34 @@ static void put_part(hn_strbuf *b, const char *text) {
     hn_strbuf_printf(b, is_simple(text) ? "%s" : "(%s)", text);
 }
 
+/// The one character of a fraction; NULL when it has none.
+static const char *fraction_character(const char *over, const char *under) {
+    for (int i = 0; i < COUNT(FRACTIONS); i++) {
+        if (strcmp(FRACTIONS[i].over, over) == 0 && strcmp(FRACTIONS[i].under, under) == 0) {
+            return FRACTIONS[i].text;
+        }
+    }
+    return NULL;
+}
+
 static void read_fraction(reader *r) {
     hn_strbuf over, under;
     hn_strbuf_init(&over);
     hn_strbuf_init(&under);
     read_argument(r, &over);
     read_argument(r, &under);
-    if (strcmp(hn_strbuf_text(&over), "1") == 0 && strcmp(hn_strbuf_text(&under), "2") == 0) {
-        hn_strbuf_add(r->out, "½");
+
+    const char *one = fraction_character(hn_strbuf_text(&over), hn_strbuf_text(&under));
+    if (one) {
+        hn_strbuf_add(r->out, one);
     } else {
         put_part(r->out, hn_strbuf_text(&over));
         hn_strbuf_add(r->out, "/");
         put_part(r->out, hn_strbuf_text(&under));
+        // 1/12 m is not 1/(12 m)
+        hn_strbuf_add(r->out, isalpha((unsigned char)*r->at) ? " " : "");
     }
+
     hn_strbuf_reset(&over);
     hn_strbuf_reset(&under);
 }

@@ -8,6 +8,7 @@ no longer says. An entry without a command says in `because` why it needs none.
 
 import glob
 import json
+import math
 import os
 import re
 import shlex
@@ -117,6 +118,56 @@ def uncovered(text, facts):
             if not any(a <= m.start() and m.end() <= b for a, b in spans)]  # fmt: skip
 
 
+TEX_VALUES = (
+    (r"\\(?:text|mathrm)\{[^}]*\}(?:\^\d)?|\\(?:[ ,;:!]|[bB]ig[lr])", " "),  # units among them
+    (r"\\[td]?frac(\d)(\d)", r"(\1/\2)"),
+    (r"\\[td]?frac(\d)\{([^{}]*)\}", r"(\1/(\2))"),
+    (r"\\[td]?frac\{([^{}]*)\}\{([^{}]*)\}", r"((\1)/(\2))"),
+    (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"),
+    (r"\\(?:cdot|times)", "*"),
+    (r"\\(sin|cos)", r"\1"),
+    (r"\^\{?(-?\d+)\}?", r"**(\1)"),
+    (r"(\d|\)) *(?=sqrt|\()", r"\1*"),
+)
+
+
+def value_of(tex):
+    """A formula of numbers alone, computed; None for one that has letters."""
+    for pattern, python in TEX_VALUES:
+        tex = re.sub(pattern, python, tex)
+    tex = tex.strip().rstrip(".,;").strip()
+    if not re.fullmatch(r"[-+*/().\d\s]+", re.sub(r"sqrt|sin|cos", "", tex)):
+        return None
+    try:  # digits, signs and three functions, no names
+        return eval(tex, {"__builtins__": {}, "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos})
+    except SyntaxError:
+        return None
+
+
+def sums(text):
+    """How many equations of numbers there are, and those that are not true of the figures as they are printed, to the last digit
+    of the result."""
+    n, faults = 0, []
+    for formula in re.findall(r"\$\$(.*?)\$\$|\$([^$\n]+)\$", text, flags=re.S):
+        for equation in re.split(r"\\q?quad|,\s+(?![^()]*\))", "".join(formula)):
+            sides = [(side, value_of(side)) for side in equation.split("=")]
+            for (_, left), (said, right) in zip(sides, sides[1:]):
+                if left is not None and right is not None:
+                    n += 1
+                    last = re.search(r"\d+(?:\.(\d+))?", said)
+                    good = abs(left - right) <= 0.5001 * 10.0 ** -len(last[1] or "")
+                    faults += [] if good else [f"{' '.join(equation.split())}: {left}"]
+    return n, faults
+
+
+def commands_of_tex(texts):
+    """Commands of TeX that the terminal would print by their names."""
+    source = read("server/lesson/tex_text.c")
+    known = set(re.findall(r'"([A-Za-z]+)"', source)) | {"sin", "cos", "tan", "arcsin", "arccos", "arctan", "det", "exp", "log", "max", "min"}
+    return [f"{t}: \\{name}" for t in texts for name in sorted(set(re.findall(r"\\([A-Za-z]+)", " ".join(
+        "".join(m) for m in re.findall(r"\$\$(.*?)\$\$|\$([^$\n]+)\$", read(t), flags=re.S)))) - known)]  # fmt: skip
+
+
 def counts(text):
     """(scene, what, number said, number found) for the lists of scenes."""
     for scene, words in re.findall(r"^\* \*\*([\w-]+)\*\* - ([^.:]*)", text, flags=re.M):
@@ -215,6 +266,7 @@ def main():
         all_facts = json.load(f)
     results = []
     texts = sorted(f"lessons/{d}/text.md" for d in os.listdir("lessons") if os.path.exists(f"lessons/{d}/text.md"))
+    computed = 0
     for path, facts in all_facts.items():
         with open(path, encoding="utf-8") as f:
             text = f.read()
@@ -224,7 +276,12 @@ def main():
         wrong = [f"{scene}: {part}, found {found}" for scene, part, said, found in told if said != found]
         results.append((f"{path}: {len(told)} counts of its scenes are those of inspect", wrong))
         results.append((f"{path}: no number without a command", uncovered(text, facts)))
+        n, wrong = sums(text)
+        computed += n
+        results.append((f"{path}: {n} sums are right with the figures as printed", wrong))
     results.append(("every exercise of a text is there, and every exercise is in a text", exercises(texts)))
+    results.append(("sums are found in the texts", [] if computed >= 10 else [f"{computed} of at least 10"]))
+    results.append(("the terminal knows every command of a formula", commands_of_tex(texts)))
     results.append(("every slip of the printed lesson is in a text and in an exercise", slips(texts)))
     results.append(("what the table of slips names for each of them runs", shown_slips()))
     results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))

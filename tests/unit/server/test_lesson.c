@@ -24,6 +24,8 @@ static void formulas_become_text(void **state) {
     expect_tex("M\\ddot q + h = Q + J^{\\top}\\lambda", "Mq\u0308 + h = Q + Jᵀλ");
     expect_tex("\\tfrac12 m\\ell_1^2", "½ mℓ₁²");
     expect_tex("\\frac{a+b}{2c}", "(a+b)/2c");
+    expect_tex("\\tfrac13\\ell^2 + \\tfrac1{12}m\\ell^2", "⅓ℓ² + 1/12 mℓ²");
+    expect_tex("\\Bigl(\\frac{a}{b}\\Bigr)^2 p \\otimes q", "(a/b)² p ⊗ q");
     expect_tex("\\begin{bmatrix} M & -J^{\\top} \\\\ J & 0 \\end{bmatrix}", "[ M, -Jᵀ; J, 0 ]");
     expect_tex("\\ell_1\\sin\\theta_1", "ℓ₁ sin θ₁");
     expect_tex("-\\sin x", "-sin x");
