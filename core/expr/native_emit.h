@@ -9,7 +9,7 @@
 // since compilers take quadratic time; what crosses a cut goes through the workspace.
 
 #include "base/strbuf.h"
-#include "expr/tape_internal.h"
+#include "expr/tape_code.h"
 
 /// The name of the function that the C text defines: hn_native_code.
 #define HN_NATIVE_SYMBOL "hn_tape_native"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tape at work: evaluation and what can be read from it.
-#include "expr/tape_internal.h"
+#include "expr/tape_code.h"
 
 #include "base/strbuf.h"
 #include "expr/native.h"

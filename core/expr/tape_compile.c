@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // IR to tape: which operations share an instruction, in what order they run, which slot holds what.
 
-#include "expr/tape_internal.h"
+#include "expr/tape_code.h"
 
 #include "expr/native.h"
 #include "expr/tape_interpret.h"

@@ -4,17 +4,6 @@
 
 #include <math.h>
 
-hn_tape_code_info hn_tape_get_code_info(int code) {
-    static const hn_tape_code_info table[TAPE_SINCOS] = {
-#define TAPE_ROW(name, key, n, expression) {#expression, key, n},
-        HN_TAPE_OPS(TAPE_ROW)
-#undef TAPE_ROW
-    };
-    return code >= 0 && code < TAPE_SINCOS ? table[code] : (hn_tape_code_info){0};
-}
-
-// ---- evaluation ----
-
 // operands of the instruction at `i`
 #define a (w[i->v[1]])
 #define b (w[i->v[2]])
@@ -75,9 +64,3 @@ run_TAPE_END:
 #undef d
 #undef e
 #undef f
-
-int hn_tape_operands(const hn_tape_instruction *i) {
-    return i->code == TAPE_CALL2    ? 2
-           : i->code >= TAPE_SINCOS ? 1
-                                    : hn_tape_get_code_info(i->code).n_operands;
-}

@@ -4,7 +4,7 @@
 
 #include "expr/tape_long.h"
 
-#include "expr/tape_internal.h"
+#include "expr/tape_code.h"
 
 #include <string.h>
 #include <tgmath.h> // sqrt of the table of instructions is that of its operand's type

@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
-#include "expr/tape_internal.h"
+#include "expr/tape_code.h"
 #include "expr/construct.h"
 #include "expr/native.h"
 #include "expr/parse.h"

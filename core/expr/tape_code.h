@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_EXPR_TAPE_INTERNAL_H
-#define HN_EXPR_TAPE_INTERNAL_H
+#ifndef HN_EXPR_TAPE_CODE_H
+#define HN_EXPR_TAPE_CODE_H
 // Instructions of the tape. Each is 16 bytes: what to do, where the result goes (v[0]), and up to
 // six operands.
 //
@@ -81,5 +81,16 @@ struct hn_tape {
     hn_tape_info info;
     struct hn_native_state *native; ///< NULL: the interpreter alone, see native.h
 };
+
+typedef struct hn_tape_code_info {
+    const char *text; ///< what is stored, in terms of a .. f
+    int key, n_operands;
+} hn_tape_code_info;
+
+/// Operands that an instruction reads: v[1] and those behind it.
+int hn_tape_operands(const hn_tape_instruction *i);
+
+/// The row of an instruction; for TAPE_SINCOS and the calls `text` is NULL.
+hn_tape_code_info hn_tape_get_code_info(int code);
 
 #endif
