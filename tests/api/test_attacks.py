@@ -441,6 +441,13 @@ class GoingDown(Timed):
                     ("POST", "/api/v1/runs", {**ring, "methods": ["ggl@radau5:rtol=1e-6"], "time": 100})]
         self.end(lambda: self.beginning(*requests))
 
+    def test_while_studies_form_equations(self):
+        ring = {"scene": "ring", "parameters": {"n": 100}, "time": 1}
+        self.end(lambda: self.beginning(
+            ("POST", "/api/v1/studies", {**ring, "kind": "work-precision", "methods": ["ggl@radau5", "projection@rk4"]}),
+            ("POST", "/api/v1/studies", {**ring, "kind": "budget", "methods": ["index1@rk4:h=1e-2"]})))
+        self.end(lambda: self.beginning(("POST", "/api/v1/studies", {**ring, "kind": "stability", "methods": ["baumgarte@rk4:h=1e-2"]})))
+
     def test_while_steps_are_computed(self):
         def begin():
             server = driver.Server()

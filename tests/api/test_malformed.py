@@ -218,6 +218,53 @@ class Malformed(driver.ServerCase):
         self.assert_problem(driver.Answer(connection.getresponse()), 413, "too-large")
         connection.close()
 
+    def test_a_client_that_sends_much_reads_why_it_was_refused(self):
+        """http.client sends the whole body before it reads: a connection that is closed meanwhile would break its pipe."""
+        length, piece = 50 << 20, b" " * (1 << 20)
+        headers = {"Content-Type": "application/json"}
+
+        def plain(path):
+            return self.server.ask("POST", path, piece * 50, headers)
+
+        def chunked(path):
+            connection = self.server.connect()
+            connection.request("POST", path, body=(piece for _ in range(50)), headers=headers, encode_chunked=True)
+            answer = driver.Answer(connection.getresponse())
+            connection.close()
+            return answer
+
+        def waiting(path):
+            """As curl does: it sends the body when it is told to go on, and here it never is."""
+            head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: {length}\r\n\r\n"
+            return self.server.raw(head.encode())
+
+        for send in (plain, chunked):
+            document = self.assert_problem(send("/api/v1/runs"), 413, "too-large")
+            self.assertIn("1048576", document["detail"])
+        self.assertTrue(waiting("/api/v1/runs").startswith(b"HTTP/1.1 413 "))
+        self.assert_problem(plain("/api/v1/nothing"), 404, "not-found")
+
+    def test_an_address_that_is_too_long_is_told_so(self):
+        limits = self.server.ask("GET", "/api/v1/").json()["limits"]
+        most, parameters = limits["address_bytes"], limits["address_parameters"]
+
+        def ask(query):
+            return self.server.ask("GET", "/api/v1/scenes/four-bar?" + query)
+
+        for query in ("set=l1:0.6&" * 1000, "a&" * 4500, "set=" + "9" * 9000, "a=b&" * parameters, "&" * 30000, "x" * 60000):
+            with self.subTest(query=query[:20], n=len(query)):
+                self.assert_problem(ask(query), 414, "address-too-long")
+        # at the bounds it is read
+        parameter = "set=l1:0.6&"
+        self.assertEqual(ask(parameter * (parameters - 1) + "set=l1:0.6").status, 422)  # more than a scene has
+        self.assertEqual(ask("set=l1:0.6" + "0" * (most - len("/api/v1/scenes/four-bar?set=l1:0.6"))).status, 200)
+        self.assertEqual(ask("set=l1:0.6" + "0" * (most + 1 - len("/api/v1/scenes/four-bar?set=l1:0.6"))).status, 414)
+
+    def test_a_zero_byte_in_an_address_is_refused(self):
+        for path in ("/api/v1/%00scenes", "/api/v1/scenes/four-bar%00x", "/api/v1/scenes/four-bar?set=l1:0.6%00x", "/%00", "/index.html%00.png"):
+            document = self.assert_problem(self.server.ask("GET", path), 400, "bad-request")
+            self.assertIn("%00", document["detail"])
+
     def test_options_lists_the_verbs_and_allows_no_other_origin(self):
         answer = self.server.ask("OPTIONS", "/api/v1/comparisons")
         self.assertEqual((answer.status, answer.headers["allow"]), (204, "GET, HEAD, POST, OPTIONS"))

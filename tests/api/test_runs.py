@@ -259,6 +259,8 @@ class Kept(unittest.TestCase):
                 f.seek(1000)
                 f.write(b"9")
             server = driver.Server("--runs", folder)
+            # nothing has been asked for yet: the folder is listed
+            self.assertEqual(server.ask("GET", "/api/v1/runs").json()["runs"], sorted(a["id"] for a in answers))
             for i, (question, answer) in enumerate(zip(questions, answers)):
                 again = server.ask("POST", "/api/v1/runs", question)
                 self.assertEqual(again.status, 201 if i == 7 else 200)
@@ -266,6 +268,10 @@ class Kept(unittest.TestCase):
             self.assertEqual(server.ask("GET", "/api/v1/runs/" + answers[3]["id"]).status, 200)
             self.assertEqual(server.ask("DELETE", "/api/v1/runs/" + answers[3]["id"]).status, 204)
             self.assertFalse(os.path.exists(os.path.join(folder, answers[3]["id"] + ".json")))
+            with open(os.path.join(folder, "notes.json"), "w") as f:
+                f.write("{}")
+            kept = sorted(a["id"] for a in answers if a is not answers[3])
+            self.assertEqual(server.ask("GET", "/api/v1/runs").json()["runs"], kept)
             self.assertEqual(server.stop(), 0)
 
     def test_what_used_up_its_time_is_computed_again(self):

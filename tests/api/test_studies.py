@@ -35,7 +35,7 @@ AT_FAULT = [
     ({"samples": -1}, "/samples", "0"),
     ({"samples": 11}, "/samples", "10"),
     ({"time_limit": 0}, "/time_limit", ""),
-    ({"time_limit": 21}, "/time_limit", "20 s"),
+    ({"time_limit": 21}, "/time_limit", "0.001 to 20 are allowed"),
     ({"time": 0}, "/time", ""),
     ({"time": 5000}, "/time", "3600"),
     ({"level": 3}, "/level", "levels"),
@@ -210,7 +210,9 @@ class Studies(driver.ServerCase):
             (MAP, "methods", stability["methods"]["max"], lambda n: MAP["methods"] * n),
             (MAP, "columns", stability["columns"]["max"], lambda n: n),
             (MAP, "rows", stability["rows"]["max"], lambda n: n),
-            (QUICK, "time_limit", index["limits"]["run_cpu_s"], lambda n: n),
+            (QUICK, "time_limit", wp["time_limit"]["max"], lambda n: n),
+            (MAP, "time_limit", stability["time_limit"]["max"], lambda n: n),
+            (BUDGET, "time_limit", kinds["budget"]["time_limit"]["max"], lambda n: n),
             (QUICK, "time", index["limits"]["comparison_duration_s"], lambda n: n)):
             with self.subTest(name=name, kind=body["kind"]):
                 document = self.assert_problem(self.server.ask("POST", AT, but(body, **{name: change(bound + 1)})), 422)
@@ -276,6 +278,25 @@ class Studies(driver.ServerCase):
 class Bounded(unittest.TestCase):
     """Options of the server that bound a study."""
 
+    def test_the_time_limit_is_the_same_wherever_it_is_told(self):
+        server = driver.Server("--run-cpu", "7")
+        try:
+            index = server.ask("GET", "/api/v1/").json()
+            self.assertEqual(index["limits"]["run_cpu_s"], 7)
+            for kind in index["studies"]:
+                field = next(f for f in kind["fields"] if f["name"] == "time_limit")
+                self.assertEqual(field["max"], 7, kind["name"])
+                self.assertIn("; 7 when left out", field["about"], kind["name"])
+            document = server.ask("GET", "/api/v1/openapi.json").json()
+            body = document["paths"]["/api/v1/studies"]["post"]["requestBody"]["content"]["application/json"]["schema"]
+            while "$ref" in body:
+                body = document["components"]["schemas"][body["$ref"].rsplit("/", 1)[1]]
+            self.assertEqual(body["properties"]["time_limit"]["maximum"], 7)
+            self.assertIn("; 7 when left out", body["properties"]["time_limit"]["description"])
+            self.assertEqual(wait(server, start(server, QUICK))["time_limit_s"], 7)
+        finally:
+            self.assertEqual(server.stop(), 0)
+
     def test_computing_ends_where_the_server_says(self):
         server = driver.Server("--run-cpu", "0.3")
         try:
@@ -285,6 +306,23 @@ class Bounded(unittest.TestCase):
                 self.assertEqual(done["time_limit_s"], 0.3)
                 self.assertIn(done["state"], ("stopped", "failed"), done["reason"])
                 self.assertTrue(done["reason"])
+        finally:
+            self.assertEqual(server.stop(), 0)
+
+    def test_equations_count_against_the_time_limit_of_a_study(self):
+        """The ring of 60 links has its equations after some 2 s; the study ends before, and says why."""
+        server, ring = driver.Server(), {"scene": "ring", "parameters": {"n": 60}, "time": 1, "time_limit": 0.3}
+        try:
+            for body in ({"kind": "work-precision", "methods": ["ggl@radau5", "nullspace@rk4"]}, {"kind": "stability", "methods": ["baumgarte@rk4:h=1e-2"]},
+                         {"kind": "budget", "methods": ["index1@rk4:h=1e-2"]}):
+                study = start(server, {**ring, **body})
+                before = server.cpu()
+                done = wait(server, study, 120)
+                self.assertIn(done["state"], ("stopped", "failed"), body)
+                self.assertIn("the time limit of 0.3 s", done["reason"], body)
+                self.assertNotIn("memory", json.dumps(done))
+                # a tape that is being made is finished first
+                self.assertLess(server.cpu() - before, (0.3 + 1) * driver.SLOW, body)  # 2.7 s and more without the limit
         finally:
             self.assertEqual(server.stop(), 0)
 

@@ -32,7 +32,8 @@ class Token(unittest.TestCase):
     def test_the_link_becomes_a_cookie(self):
         server = self.serve()
         first = server.ask("GET", "/?token=secret-1")
-        self.assertEqual((first.status, first.headers["location"]), (303, "/"))
+        self.assertEqual((first.status, first.headers["location"]), (303, "./"))  # relative: below a prefix of a proxy it holds too
+        self.assertEqual(server.ask("GET", "/index.html?token=secret-1").headers["location"], "./index.html")
         cookie = first.headers["set-cookie"]
         self.assertIn("HttpOnly; SameSite=Strict", cookie)
         headers = {"Cookie": cookie.split(";")[0]}
@@ -42,6 +43,10 @@ class Token(unittest.TestCase):
     def test_a_script_sends_a_header_or_the_query(self):
         server = self.serve()
         self.assertEqual(server.ask("POST", "/api/v1/comparisons", BODY, {"Authorization": "Bearer secret-1"}).status, 201)
+        for scheme in ("bearer", "BEARER", "Bearer "):
+            self.assertEqual(server.ask("GET", "/api/v1/scenes", headers={"Authorization": scheme + " secret-1"}).status, 200, scheme)
+        for header in ("Basic secret-1", "secret-1", "bearersecret-1"):
+            self.assertEqual(server.ask("GET", "/api/v1/scenes", headers={"Authorization": header}).status, 401, header)
         self.assertEqual(server.ask("GET", "/api/v1/scenes?token=secret-1").status, 200)
         self.assertEqual(server.ask("GET", "/api/v1/openapi.json?token=secret-1").json()["security"], [{"token": []}])
 

@@ -259,7 +259,8 @@ static hn_status compile(builder *b) {
     d->n_in = b->sys->nq + 1 + d->n + count_params(b->sys);
     d->in = hn_arena_doubles(b->arena, (size_t)d->n_in);
     d->out = hn_arena_doubles(b->arena, OUTPUTS * (size_t)d->n + 1);
-    if (!d->in || !d->out || hn_graph_failed(b->sys->g)) {
+    HN_TRY(hn_graph_status(b->sys->g));
+    if (!d->in || !d->out) {
         return HN_ERR_MEMORY;
     }
     d->signs = d->in + b->sys->nq + 1;

@@ -94,9 +94,7 @@ static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
         }
         rows[i] = hn_sum(g, terms, n);
     }
-    if (hn_graph_failed(g)) {
-        return HN_ERR_MEMORY;
-    }
+    HN_TRY(hn_graph_status(g));
     HN_TRY(hn_tape_compile(g, ex.phi, p->nc, symbols, n_in, &p->phi_tape));
     return hn_tape_compile(g, rows, p->nc, symbols, n_in, &p->gap_tape);
 }

@@ -54,8 +54,8 @@ static hn_status finish(hn_system *sys) {
     size_t n = (size_t)sys->nv, m = (size_t)sys->nc;
     sys->M_dense = hn_system_get_zeros(sys, n * n);
     sys->J_dense = hn_system_get_zeros(sys, m * n);
-    if (hn_arena_failed(sys->arena) || sys->M.failed || sys->J.failed || sys->efforts.failed ||
-        hn_graph_failed(sys->g)) {
+    HN_TRY(hn_graph_status(sys->g));
+    if (hn_arena_failed(sys->arena) || sys->M.failed || sys->J.failed || sys->efforts.failed) {
         return HN_ERR_MEMORY;
     }
 

@@ -47,7 +47,7 @@ hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
         sys->params[i] =
             sys->opts.symbolic_params ? hn_symbol(sys->g, param->name, NULL) : hn_num(param->value);
     }
-    return hn_graph_failed(sys->g) ? HN_ERR_MEMORY : HN_OK;
+    return hn_graph_status(sys->g);
 }
 
 hn_ex *hn_system_get_zeros(hn_system *sys, size_t n) {

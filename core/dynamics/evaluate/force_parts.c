@@ -103,8 +103,8 @@ static hn_status compile(builder *b, hn_arena *arena, hn_force_parts *p) {
         return HN_ERR_MEMORY;
     }
     build(b);
-    return hn_graph_failed(b->g) ? HN_ERR_MEMORY
-                                 : hn_inputs_compile(b->sys, b->out, 2 * p->nv, arena, &p->in);
+    HN_TRY(hn_graph_status(b->g));
+    return hn_inputs_compile(b->sys, b->out, 2 * p->nv, arena, &p->in);
 }
 
 hn_status hn_force_parts_create(const hn_system *sys, hn_arena *arena, hn_force_parts **out) {

@@ -332,7 +332,8 @@ static hn_status eliminate(work *w, int i) {
     for (int k = 0; k < n; k++) {
         update_degree(w, out->row[first_row + k]);
     }
-    return hn_symmat_failed(w->K) || hn_graph_failed(w->g) ? HN_ERR_MEMORY : HN_OK;
+    HN_TRY(hn_graph_status(w->g));
+    return hn_symmat_failed(w->K) ? HN_ERR_MEMORY : HN_OK;
 }
 
 static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
@@ -436,5 +437,5 @@ hn_status hn_ldl_solve(hn_graph *g, const hn_ldl *ldl, const hn_ex *rhs, hn_ex *
             x[at[1]] = z[1];
         }
     }
-    return hn_graph_failed(g) ? HN_ERR_MEMORY : HN_OK;
+    return hn_graph_status(g);
 }

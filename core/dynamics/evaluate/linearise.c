@@ -99,7 +99,7 @@ static hn_status make_sums(builder *b) {
         b->residual[e->col] = hn_sub(g, b->residual[e->col], hn_mul(g, e->e, b->lambda[e->row]));
         b->speed_gap[e->row] = hn_add(g, b->speed_gap[e->row], hn_mul(g, e->e, sys->v[e->col]));
     }
-    return hn_graph_failed(g) ? HN_ERR_MEMORY : HN_OK;
+    return hn_graph_status(g);
 }
 
 static int index_of(hn_linear_term term) {
@@ -207,7 +207,8 @@ static hn_status make_terms(builder *b, unsigned terms) {
         differentiate_by_speed(b, terms, j);
     }
 
-    int failed = hn_graph_failed(b->g);
+    HN_TRY(hn_graph_status(b->g));
+    int failed = 0;
     for (int k = 0; k < HN_LINEAR_COUNT; k++) {
         failed |= b->terms[k].failed;
     }

@@ -67,8 +67,8 @@ static hn_status compile(const hn_system *sys, hn_arena *arena, hn_power *p) {
             p->needs_lambda |= !hn_is_zero(sys->phi_t[i]);
         }
         const int used = p->needs_lambda ? (int)outputs : 1;
-        status = hn_graph_failed(sys->g) ? HN_ERR_MEMORY
-                                         : hn_inputs_compile(sys, out, used, arena, &p->in);
+        status = hn_graph_status(sys->g);
+        HN_THEN(status, hn_inputs_compile(sys, out, used, arena, &p->in));
     }
     free(symbols);
     free(rates);

@@ -215,7 +215,7 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
     build_kinetic(s);
 
     // tapes of forces, matrices and the rest
-    hn_status status = hn_graph_failed(s->g) ? HN_ERR_MEMORY : HN_OK;
+    hn_status status = hn_graph_status(s->g);
     HN_THEN(status, compile_forces(s, arena, &l->forces));
     HN_THEN(status, compile_matrices(l, s, arena));
     HN_THEN(status, compile_rest(s, arena, &l->rest));

@@ -174,7 +174,7 @@ static void put_presets(hn_strbuf *b, const hn_job_kind *kind) {
     hn_json_end_array(b);
 }
 
-void hn_job_kinds_json(hn_strbuf *b) {
+void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit) {
     hn_json_array(b);
     for (int i = 0; i < N_KINDS; i++) {
         // kinds that run on the command line only are not listed
@@ -193,7 +193,7 @@ void hn_job_kinds_json(hn_strbuf *b) {
         hn_json_array(b);
         for (const hn_field *f = KINDS[i]->fields; f->name; f++) {
             if (f->served_max >= 0) {
-                put_field(b, f);
+                put_field(b, strcmp(f->name, time_limit->name) == 0 ? time_limit : f);
             }
         }
         hn_json_end_array(b);

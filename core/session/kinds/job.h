@@ -84,8 +84,9 @@ void hn_job_free(hn_job *job);              ///< NULL is legal
 /// The list for the index of the API:
 /// [{"name","about","chooses","fields":[{"name","type","min","max",
 /// "choices","about"}...],"presets":[{"name","about","chooses","stabilised"}...]}...], kinds that a
-/// server offers, bounds as they hold there.
-void hn_job_kinds_json(hn_strbuf *b);
+/// server offers, bounds as they hold there. `time_limit`: the server's own field of that name,
+/// in place of each kind's.
+void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit);
 
 // fields that several kinds have
 #define HN_JOB_METHODS_FIELD(most, served)                                                         \

@@ -148,7 +148,7 @@ static void open_browser(const char *address) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 static const struct timespec PATIENCE = {.tv_sec = 13};
 #else
-static const struct timespec PATIENCE = {.tv_sec = 2, .tv_nsec = 700000000};
+static const struct timespec PATIENCE = {.tv_sec = 2};
 #endif
 
 /// Ends the program if the server has not ended by then.

@@ -27,6 +27,8 @@
       "What was asked does not fit the state that the comparison is in; nothing was changed.")     \
     X(HN_PROBLEM_TOO_LARGE, 413, "too-large", "The body is too large",                             \
       "The index lists the largest body that is read.")                                            \
+    X(HN_PROBLEM_ADDRESS, 414, "address-too-long", "The address is too long",                      \
+      "The index lists the longest address that is read, and how many parameters it may have.")    \
     X(HN_PROBLEM_MEDIA_TYPE, 415, "media-type", "The body must be application/json",               \
       "Send the body as JSON and say so in the Content-Type header.")                              \
     X(HN_PROBLEM_HOST, 421, "unknown-host", "This server does not answer to that host name",       \

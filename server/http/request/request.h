@@ -17,6 +17,8 @@
 #include <stdbool.h>
 
 enum { HN_MAX_REPLY_HEADERS = 10 };
+/// Bytes of an address, and parameters of its query: as many as a scene may have, and some more.
+enum { HN_MAX_ADDRESS = 8000, HN_MAX_PARAMETERS = 256 };
 
 struct hn_context;
 
@@ -26,9 +28,10 @@ typedef struct hn_reply_header {
 } hn_reply_header;
 
 typedef enum hn_request_stage {
-    HN_STAGE_BODY,    ///< the body is coming in
-    HN_STAGE_WAITING, ///< suspended until a worker has the reply
-    HN_STAGE_ANSWERED ///< the reply is there
+    HN_STAGE_BODY,     ///< the body is coming in
+    HN_STAGE_WAITING,  ///< suspended until a worker has the reply
+    HN_STAGE_ANSWERED, ///< the reply is there
+    HN_STAGE_SENT      ///< the reply has been sent while the body, or the address, still came in
 } hn_request_stage;
 
 typedef struct hn_request {
@@ -43,7 +46,10 @@ typedef struct hn_request {
     char parts[HN_MAX_PARTS][HN_HEADER_TEXT]; ///< what stood for {id} ... in the path
     char *body;
     size_t n_body, body_cap, body_dropped;
-    cJSON *json;             ///< the parsed body, when the route takes fields
+    bool has_begun;     ///< the head is complete
+    bool has_zero;      ///< the address holds a zero byte
+    double drain_until; ///< stage SENT: the rest of the body is read until then [s, wall clock]
+    cJSON *json;        ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue
     double wait_until;       ///< in a queue of those who wait for a run [s, wall clock]
     int is_new;              ///< it has begun what it asks for

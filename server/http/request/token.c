@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/random.h>
 
 static const char COOKIE[] = "holonom_token";
@@ -36,6 +37,15 @@ static bool is_token(const char *shown, const char *token) {
     return difference == 0;
 }
 
+/// What follows the scheme in an Authorization header, whatever the case of its letters (RFC 9110,
+/// section 11.1); NULL for another scheme.
+static const char *read_bearer(const char *header) {
+    static const char scheme[] = "Bearer ";
+    const size_t n = sizeof scheme - 1;
+    return header && strncasecmp(header, scheme, n) == 0 ? header + n + strspn(header + n, " ")
+                                                         : NULL;
+}
+
 /// A guest reads: nothing is changed, and nothing computed that has not been asked for already.
 static bool may_guest(const hn_request *r, const char *method) {
     const int reads = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
@@ -43,10 +53,12 @@ static bool may_guest(const hn_request *r, const char *method) {
     return reads && (!compute || strcmp(compute, "true") != 0);
 }
 
-/// The page without the token in its address, which would stay in the browser's history.
+/// The page without the token in its address, which would stay in the browser's history. The new
+/// address is relative: a proxy may serve this one below a prefix.
 static void redirect(hn_request *r, const char *token) {
     hn_reply_empty(r, MHD_HTTP_SEE_OTHER);
-    hn_reply_header_add(r, "Location", "%s", r->path);
+    const char *last = strrchr(r->path, '/');
+    hn_reply_header_add(r, "Location", ".%s", last ? last : "/");
     hn_reply_header_add(r, "Set-Cookie", "%s=%s; Path=/; HttpOnly; SameSite=Strict", COOKIE, token);
 }
 
@@ -62,7 +74,7 @@ int hn_token_check(hn_request *r, const char *method) {
     }
     if (is_token(query, token) ||
         is_token(MHD_lookup_connection_value(r->connection, MHD_COOKIE_KIND, COOKIE), token) ||
-        (header && strncmp(header, "Bearer ", 7) == 0 && is_token(header + 7, token))) {
+        is_token(read_bearer(header), token)) {
         return 1;
     }
 

@@ -9,6 +9,7 @@
 #include "http/request/request.h"
 #include "http/request/scene_request.h"
 #include "http/studies/studies.h"
+#include "http/studies/study_fields.h"
 #include "integrators/method/method_spec.h"
 #include "lesson/lesson.h"
 #include "render/look.h"
@@ -34,6 +35,8 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
         const char *name;
         double value;
     } rows[] = {{"body_bytes", (double)o->max_body},
+                {"address_bytes", HN_MAX_ADDRESS},
+                {"address_parameters", HN_MAX_PARAMETERS},
                 {"connections", o->max_connections},
                 {"comparisons", o->max_comparisons},
                 {"streams", o->max_streams},
@@ -114,7 +117,7 @@ void hn_handle_index(hn_request *r) {
     // what a page would otherwise copy: limits, kinds of studies, incidents
     put_limits(&b, &r->context->opts);
     hn_json_key(&b, "studies");
-    hn_job_kinds_json(&b);
+    hn_job_kinds_json(&b, hn_study_fields_time_limit());
     put_routes(&b, &r->context->routes);
     hn_json_key(&b, "incidents");
     hn_incident_kinds_json(&b);

@@ -3,6 +3,8 @@
 
 #include "base/hash.h"
 #include "build.h"
+#include "base/clock.h"
+#include "http/request/early_answer.h"
 #include "http/request/guard.h"
 #include "http/request/gzip.h"
 #include "http/request/request.h"
@@ -15,8 +17,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Beyond this much of an unwanted body the connection is closed rather than drained.
+/// An unwanted body of this size is read before the answer. A longer one is answered at once, and
+/// read for DRAIN_SECONDS: a client that is cut off while it sends would not see the answer.
 enum { MAX_DRAINED = 8 << 20 };
+static const double DRAIN_SECONDS = 10;
 /// Longer texts are sent as they are: by a pool, and by an event loop.
 enum { MOST_ZIPPED = 32 << 20, MOST_ZIPPED_AT_ONCE = 256 << 10 };
 
@@ -24,11 +28,13 @@ enum { MOST_ZIPPED = 32 << 20, MOST_ZIPPED_AT_ONCE = 256 << 10 };
 
 /// Where an address lies off the API: a redirect to its front door, a file of the page, or nothing.
 static void reply_off_routes(hn_request *r, const char *method, const hn_route_match *match) {
-    static const char *const front_doors[] = {"/api", "/api/", "/api/v1"};
+    // relative: a proxy may serve them below a prefix
+    static const char *const front_doors[][2] = {
+        {"/api", "./api/v1/"}, {"/api/", "./v1/"}, {"/api/v1", "./v1/"}};
     for (size_t i = 0; i < sizeof front_doors / sizeof *front_doors; i++) {
-        if (strcmp(r->path, front_doors[i]) == 0) {
+        if (strcmp(r->path, front_doors[i][0]) == 0) {
             hn_reply_empty(r, MHD_HTTP_PERMANENT_REDIRECT);
-            hn_reply_header_add(r, "Location", "/api/v1/");
+            hn_reply_header_add(r, "Location", "%s", front_doors[i][1]);
             return;
         }
     }
@@ -69,6 +75,11 @@ static void check_head(hn_request *r, const char *method) {
     if (!hn_guard_host(r, &r->context->hosts)) {
         return;
     }
+    if (r->has_zero) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                         "the address holds a zero byte (%%00), which no address here has");
+        return;
+    }
 
     // an address that can be served, by a request that may ask for it
     hn_route_match match = hn_route_find(&r->context->routes, method, r->path, r->parts);
@@ -89,21 +100,28 @@ static void check_head(hn_request *r, const char *method) {
     }
 }
 
-/// 1 when the rest of the body is not worth reading, or the client waits to be told before it sends
-/// it.
-static bool must_answer_early(const hn_request *r) {
+/// Whether the rest of the body is not worth reading.
+static bool is_too_long_to_drain(const hn_request *r) {
     long long length = 0;
     const char *text = hn_request_header(r, "Content-Length");
-    return hn_request_header(r, "Expect") ||
-           (text && sscanf(text, "%lld", &length) == 1 && length > MAX_DRAINED);
+    return (text && sscanf(text, "%lld", &length) == 1 && length > MAX_DRAINED) ||
+           r->body_dropped > MAX_DRAINED;
+}
+
+static void answer_and_drain(hn_request *r) {
+    hn_answer_early(r);
+    r->drain_until = hn_clock_wall() + DRAIN_SECONDS;
 }
 
 // ---- the body ----
 
 /// Keeps a piece of the body; what is beyond the bound, or not wanted, is dropped.
 static void take_body(hn_request *r, const char *data, size_t n) {
-    if (r->stage == HN_STAGE_ANSWERED || !r->route->fields) {
+    if (r->stage != HN_STAGE_BODY || !r->route->fields) {
         r->body_dropped += n;
+        if (r->stage == HN_STAGE_BODY && r->body_dropped > MAX_DRAINED) {
+            hn_reply_problem(r, HN_PROBLEM_TOO_LARGE, NULL, "this address takes no body");
+        }
         return;
     }
     if (r->n_body + n > (size_t)r->context->opts.max_body) {
@@ -268,8 +286,23 @@ static hn_client find_client(struct MHD_Connection *connection) {
                : hn_hash_mix(hn_hash_bytes(HN_HASH_START, a, sizeof *a));
 }
 
-static hn_request *begin_request(hn_dispatch *d, struct MHD_Connection *connection, const char *url,
-                                 const char *method) {
+/// Refuses an address that is too long, or that has too many parameters.
+static void check_address(hn_request *r, const char *uri) {
+    size_t n = 0, parameters = 1;
+    for (; uri[n]; n++) {
+        parameters += uri[n] == '&';
+    }
+    if (n > HN_MAX_ADDRESS || parameters > HN_MAX_PARAMETERS) {
+        hn_reply_problem(r, HN_PROBLEM_ADDRESS, "send what is long in the body of a POST",
+                         "the address has %zu bytes and %zu parameters; at most %d and %d are read",
+                         n, parameters, HN_MAX_ADDRESS, HN_MAX_PARAMETERS);
+        hn_answer_early(r);
+        hn_request_drain(r);
+    }
+}
+
+void *hn_dispatch_address(void *cls, const char *uri, struct MHD_Connection *connection) {
+    hn_dispatch *d = cls;
     hn_request *r = calloc(1, sizeof *r);
     if (r) {
         const union MHD_ConnectionInfo *info =
@@ -279,12 +312,35 @@ static hn_request *begin_request(hn_dispatch *d, struct MHD_Connection *connecti
         r->connection = connection;
         r->client = find_client(connection);
         r->watch = info ? info->socket_context : NULL;
-        r->is_head = strcmp(method, "HEAD") == 0;
-        snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, url);
-        hn_connection_reads_body(d->connections, r->watch);
-        check_head(r, method);
+        r->has_zero = strstr(uri, "%00") != NULL;
+        snprintf(r->path, sizeof r->path, "%.*s", (int)strcspn(uri, "?"), uri);
+        check_address(r, uri);
     }
     return r;
+}
+
+/// The head is complete. Returns 0 when the connection is to be closed.
+static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const char *method) {
+    if (r->stage == HN_STAGE_SENT) {
+        return false;
+    }
+    r->has_begun = true;
+    r->is_head = strcmp(method, "HEAD") == 0;
+    snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, url);
+    hn_connection_reads_body(d->connections, r->watch);
+    check_head(r, method);
+    if (r->stage != HN_STAGE_ANSWERED) {
+        return true;
+    }
+
+    // a client that waits to be told before it sends its body is told; so is one that sends much
+    if (hn_request_header(r, "Expect")) {
+        return send_reply(r) == MHD_YES;
+    }
+    if (is_too_long_to_drain(r)) {
+        answer_and_drain(r);
+    }
+    return true;
 }
 
 enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection, const char *url,
@@ -292,19 +348,25 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
                                     size_t *n_data, void **req_cls) {
     hn_request *r = *req_cls;
     (void)version;
+    (void)connection;
     if (!r) {
-        *req_cls = r = begin_request(cls, connection, url, method);
-        if (!r) {
-            return MHD_NO;
-        }
-        return r->stage == HN_STAGE_ANSWERED && must_answer_early(r) ? send_reply(r) : MHD_YES;
+        return MHD_NO; // memory was out
+    }
+    if (!r->has_begun) {
+        return begin_request(cls, r, url, method) ? MHD_YES : MHD_NO;
     }
 
     // a piece of the body
     if (*n_data > 0) {
         take_body(r, data, *n_data);
         *n_data = 0;
-        return r->body_dropped > MAX_DRAINED ? MHD_NO : MHD_YES;
+        if (r->stage == HN_STAGE_ANSWERED && is_too_long_to_drain(r)) {
+            answer_and_drain(r);
+        }
+        return r->stage == HN_STAGE_SENT && hn_clock_wall() > r->drain_until ? MHD_NO : MHD_YES;
+    }
+    if (r->stage == HN_STAGE_SENT) {
+        return MHD_NO; // answered already: the connection closes
     }
 
     // its end, or the reply of another thread

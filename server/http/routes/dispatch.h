@@ -16,6 +16,9 @@ typedef struct hn_dispatch {
     hn_connections *connections;
 } hn_dispatch;
 
+/// An address has come, as it was sent: makes the request. One that is too long is answered here,
+/// since the library closes the connection without an answer where its parameters are many.
+void *hn_dispatch_address(void *cls, const char *uri, struct MHD_Connection *connection);
 /// A part of a request has come; one is finished; a connection opens or closes.
 enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection, const char *url,
                                     const char *method, const char *version, const char *data,

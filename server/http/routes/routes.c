@@ -374,7 +374,7 @@ static const hn_route ROUTES[] = {
     {"POST", "/api/v1/equations", HN_WORK_HEAVY, hn_handle_equations, EQUATIONS, JSON, "200",
      "Equations", "The equations of motion with parameters as symbols", NULL,
      "{\"scene\":\"four-bar\",\"format\":\"latex\"}"},
-    {"GET", "/api/v1/runs", HN_WORK_LIGHT, hn_handle_runs_list, NULL, JSON, "200", "RunList",
+    {"GET", "/api/v1/runs", HN_WORK_QUICK, hn_handle_runs_list, NULL, JSON, "200", "RunList",
      "Ids of the runs that are kept", NULL, NULL},
     {"POST", "/api/v1/runs", HN_WORK_QUICK_OWN, hn_handle_runs_create, RUN, JSON, "201 200 202",
      "Run",

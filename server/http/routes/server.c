@@ -19,6 +19,8 @@
 
 /// Connections of one event loop; with its own descriptors fewer than the 128 events of one look.
 enum { LOOP_CONNECTIONS = 100 };
+/// For a head, and what the library makes of it: 72 bytes and more for each parameter and header.
+enum { HEAD_BYTES = 64 << 10 };
 enum { DRAIN_LOOKS = 30, DRAIN_NS = 10000000 }; // 0.3 s in all
 
 struct hn_server {
@@ -52,10 +54,11 @@ static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
     s->daemon = MHD_start_daemon(
         MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
         hn_dispatch_request, &s->dispatch, MHD_OPTION_LISTEN_SOCKET, fd,
-        MHD_OPTION_NOTIFY_COMPLETED, hn_dispatch_completed, &s->dispatch,
-        MHD_OPTION_NOTIFY_CONNECTION, hn_dispatch_connection, &s->dispatch,
-        MHD_OPTION_THREAD_POOL_SIZE, (unsigned)(loops > 1 ? loops : 2), MHD_OPTION_CONNECTION_LIMIT,
-        (unsigned)connections, MHD_OPTION_CONNECTION_TIMEOUT,
+        MHD_OPTION_URI_LOG_CALLBACK, hn_dispatch_address, &s->dispatch, MHD_OPTION_NOTIFY_COMPLETED,
+        hn_dispatch_completed, &s->dispatch, MHD_OPTION_NOTIFY_CONNECTION, hn_dispatch_connection,
+        &s->dispatch, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)(loops > 1 ? loops : 2),
+        MHD_OPTION_CONNECTION_LIMIT, (unsigned)connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        (size_t)HEAD_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
         (unsigned)s->context.opts.connection_timeout, MHD_OPTION_END);
     if (!s->daemon) {
         close(fd);
@@ -131,6 +134,14 @@ void hn_server_stop(hn_server *s) {
     hn_context *c = &s->context;
     atomic_store(&c->stopping, 1);
     int fd = s->daemon ? MHD_quiesce_daemon(s->daemon) : -1;
+
+    // all are told before anybody is waited for, so that they end at the same time
+    if (c->runs) {
+        hn_runs_tell_end(c->runs);
+    }
+    if (c->studies) {
+        hn_studies_tell_end(c->studies);
+    }
 
     // nobody may be left suspended when the daemon goes: workers and pools answer what they hold
     hn_comparisons_stop(c->comparisons);

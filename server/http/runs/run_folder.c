@@ -5,12 +5,14 @@
 #include "http/ground/sha256.h"
 #include "http/runs/json_scan.h"
 
+#include <dirent.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+static const char ENDING[] = ".json";
 static const size_t MAX_FILE = (size_t)1 << 30; // of one file
 
 static bool is_id(const char *id) {
@@ -20,7 +22,7 @@ static bool is_id(const char *id) {
 }
 
 static bool file_path(const char *folder, const char *id, char out[1024]) {
-    return folder && is_id(id) && snprintf(out, 1024, "%s/%s.json", folder, id) < 1024;
+    return folder && is_id(id) && snprintf(out, 1024, "%s/%s%s", folder, id, ENDING) < 1024;
 }
 
 void hn_run_folder_keep(const char *folder, const hn_kept_run *run) {
@@ -98,6 +100,23 @@ hn_kept_run *hn_run_folder_read(const char *folder, const char *id) {
     }
     hn_strbuf_reset(&text);
     return run;
+}
+
+void hn_run_folder_each(const char *folder, void (*see)(void *user, const char *id), void *user) {
+    DIR *files = folder ? opendir(folder) : NULL;
+    for (struct dirent *e; files && (e = readdir(files)) != NULL;) {
+        char id[HN_RUN_ID];
+        if (strlen(e->d_name) == HN_RUN_ID - 1 + strlen(ENDING) &&
+            strcmp(e->d_name + HN_RUN_ID - 1, ENDING) == 0) {
+            snprintf(id, sizeof id, "%.*s", HN_RUN_ID - 1, e->d_name);
+            if (is_id(id)) {
+                see(user, id);
+            }
+        }
+    }
+    if (files) {
+        closedir(files);
+    }
 }
 
 bool hn_run_folder_delete(const char *folder, const char *id) {

@@ -12,6 +12,9 @@
 void hn_run_folder_keep(const char *folder, const hn_kept_run *run);
 /// Reads the run of an id, with one reference; NULL when there is no whole file of it.
 hn_kept_run *hn_run_folder_read(const char *folder, const char *id);
+/// Calls `see` with the id of every file of the folder that has the name of a run. Whether the file
+/// is whole is seen when it is read.
+void hn_run_folder_each(const char *folder, void (*see)(void *user, const char *id), void *user);
 /// Removes the file of an id. Returns false when there is none.
 bool hn_run_folder_delete(const char *folder, const char *id);
 #endif

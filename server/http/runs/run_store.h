@@ -27,6 +27,8 @@ typedef void (*hn_run_answer)(struct hn_request *r, const hn_kept_run *run);
 
 /// NULL when memory or threads are out. `opts` and `lib` must outlive it.
 hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib, hn_run_answer answer);
+/// Tells what computes to end, and waits for nothing.
+void hn_runs_tell_end(hn_runs *all);
 /// Stops what computes, answers who waits, and joins the threads. NULL is legal.
 void hn_runs_stop(hn_runs *all);
 void hn_runs_free(hn_runs *all);
@@ -54,6 +56,7 @@ void hn_runs_remove_reader(hn_runs *all, hn_run_reader *reader);
 bool hn_runs_suspend_reader(hn_runs *all, hn_run_reader *reader, double seconds);
 /// Seconds after which a refused question may be asked again.
 int hn_runs_wait(hn_runs *all);
-/// Ids of the runs in memory, as a JSON array.
+/// Ids of the runs in memory and in the folder, each once and sorted, as a JSON array. Reads the
+/// folder: not for a connection's thread.
 void hn_runs_list_json(hn_strbuf *b, hn_runs *all);
 #endif

@@ -163,7 +163,7 @@ static void put_study(hn_strbuf *b, const study *s) {
 
 hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib) {
     hn_studies *all = calloc(1, sizeof *all);
-    hn_study_fields_fill();
+    hn_study_fields_fill(opts->max_run_cpu);
     if (all) {
         pthread_mutex_init(&all->lock, NULL);
         pthread_cond_init(&all->changed, NULL);
@@ -219,6 +219,15 @@ static void free_all(study **dead, int n) {
     for (int i = 0; i < n; i++) {
         free_study(dead[i]);
     }
+}
+
+void hn_studies_tell_end(hn_studies *all) {
+    pthread_mutex_lock(&all->lock);
+    all->stopping = 1;
+    for (int i = 0; i < all->n; i++) {
+        atomic_store(&all->list[i]->work.stop, 1);
+    }
+    pthread_mutex_unlock(&all->lock);
 }
 
 void hn_studies_stop(hn_studies *all) {

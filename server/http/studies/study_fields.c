@@ -3,9 +3,15 @@
 
 #include "session/kinds/job.h"
 
+#include <stdio.h>
 #include <string.h>
 
+static const double LEAST_SECONDS = 1e-3;
+
 hn_field hn_study_fields[HN_STUDY_FIELDS];
+
+static const char TIME_LIMIT[] = "time_limit";
+static char about_time_limit[80];
 
 static const char *kind_names[HN_STUDY_FIELDS];
 
@@ -29,7 +35,30 @@ static void add_field(const hn_field *f, int *n) {
     hn_study_fields[(*n)++].served_max = 0;
 }
 
-void hn_study_fields_fill(void) {
+/// The table's row of this name, which is there.
+static hn_field *find_field(const char *name) {
+    hn_field *f = hn_study_fields;
+    while (strcmp(f->name, name) != 0) {
+        f++;
+    }
+    return f;
+}
+
+const hn_field *hn_study_fields_time_limit(void) {
+    return find_field(TIME_LIMIT);
+}
+
+/// The bounds of this server.
+static void bound_time_limit(double most_seconds) {
+    hn_field *f = find_field(TIME_LIMIT);
+    f->min = LEAST_SECONDS;
+    f->max = most_seconds;
+    snprintf(about_time_limit, sizeof about_time_limit,
+             "wall time of the computation [s]; %g when left out", most_seconds);
+    f->about = about_time_limit;
+}
+
+void hn_study_fields_fill(double most_seconds) {
     static const hn_field own[] = {
         {.name = "scene",
          .type = HN_FIELD_SCENE,
@@ -64,4 +93,5 @@ void hn_study_fields_fill(void) {
     }
     kind_names[n_kinds] = NULL;
     hn_study_fields[n] = (hn_field){.name = NULL};
+    bound_time_limit(most_seconds);
 }

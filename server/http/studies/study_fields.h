@@ -10,6 +10,9 @@ enum { HN_STUDY_FIELDS = 24 };
 /// Ends with a row without a name. Filled by hn_study_fields_fill() before the server answers
 /// anything.
 extern hn_field hn_study_fields[HN_STUDY_FIELDS];
-/// Fills the table from the registry of jobs (session/kinds/job.h).
-void hn_study_fields_fill(void);
+/// Fills the table from the registry of jobs (session/kinds/job.h). A study computes for at most
+/// `most_seconds`, and for as long where its body says nothing.
+void hn_study_fields_fill(double most_seconds);
+/// The field of the time limit, in the table.
+const hn_field *hn_study_fields_time_limit(void);
 #endif

@@ -10,11 +10,19 @@
 
 // ---- what is asked for ----
 
-/// Whether equations are no longer wanted. A study that is stopped shows what was done, and may
-/// need its scene for that: only the end of the server ends it.
+static int must_stop(void *user) {
+    hn_study_work *w = user;
+    w->cpu_used_up |= hn_clock_thread() > w->cpu_end;
+    return w->cpu_used_up || atomic_load(&w->stop);
+}
+
+/// Whether equations are no longer wanted: of the scene, and of its methods while the study
+/// computes. What is written afterwards needs none.
 static bool must_end(void *user) {
-    const hn_study_work *w = user;
-    return atomic_load(w->stopping) || hn_clock_thread() > w->load_end;
+    hn_study_work *w = user;
+    w->out_of_time |= w->computes && hn_clock_wall() > w->wall_end;
+    return atomic_load(w->stopping) || hn_clock_thread() > w->load_end ||
+           (w->computes && (must_stop(w) || w->out_of_time));
 }
 
 static hn_interrupt interrupt_of(hn_study_work *w) {
@@ -34,12 +42,6 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
     HN_THEN(status, hn_scene_request_load(&scene, w->lib, 0, interrupt_of(w), out, diags));
     hn_scene_request_reset(&scene);
     return status;
-}
-
-static int must_stop(void *user) {
-    hn_study_work *w = user;
-    w->cpu_used_up |= hn_clock_thread() > w->cpu_end;
-    return w->cpu_used_up || atomic_load(&w->stop);
 }
 
 static void keep_share(void *user, const char *part, double share) {
@@ -65,11 +67,6 @@ static hn_status read_fields(hn_study_work *w, const cJSON *body, const hn_http_
     // the bounds of this server
     double *limit = &w->request.limits.time_limit;
     *limit = isnan(*limit) ? opts->max_run_cpu : *limit;
-    if (!(*limit > 0 && *limit <= opts->max_run_cpu)) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/time_limit", NULL,
-                            "the time limit is %g s; this server computes %g s at most", *limit,
-                            opts->max_run_cpu);
-    }
     if (w->request.time > opts->max_duration) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL,
                             "the time is %g s; at most %g s are run", w->request.time,
@@ -145,7 +142,7 @@ static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_r
     } else if (atomic_load(&w->stop)) {
         out->state = HN_STUDY_STOPPED;
         snprintf(out->reason, sizeof out->reason, "stopped on request; what was done is shown");
-    } else if (end->out_of_time) {
+    } else if (end->out_of_time || w->out_of_time) {
         out->state = HN_STUDY_STOPPED;
         snprintf(out->reason, sizeof out->reason, "the time limit of %g s left something out",
                  w->request.limits.time_limit);
@@ -157,6 +154,12 @@ static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_r
 static void report_failure(const hn_study_work *w, hn_status status, const hn_diags *diags,
                            hn_study_result *out) {
     out->state = HN_STUDY_FAILED;
+    if (w->out_of_time && !w->cpu_used_up && !atomic_load(&w->stop)) {
+        snprintf(out->reason, sizeof out->reason,
+                 "the time limit of %g s was over before there was anything to show",
+                 w->request.limits.time_limit);
+        return;
+    }
     snprintf(out->reason, sizeof out->reason, "%s",
              w->cpu_used_up
                  ? "the computing time of one study is used up before there was anything to show"
@@ -171,10 +174,13 @@ void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *ou
     hn_job_end end = {0};
     hn_status status = HN_OK;
     w->cpu_end = hn_clock_thread() + cpu_seconds;
+    w->wall_end = hn_clock_wall() + w->request.limits.time_limit;
+    w->computes = true;
     if (!w->job) {
         status = hn_job_open(w->kind, &w->request, &w->job, &diags);
     }
     HN_THEN(status, hn_job_run(w->job, &end, &diags));
+    w->computes = false;
     if (status != HN_OK) {
         report_failure(w, status, &diags, out);
         return;

@@ -8,6 +8,7 @@
 #include "session/kinds/job.h"
 
 #include <stdatomic.h>
+#include <stdbool.h>
 
 typedef enum hn_study_state {
     HN_STUDY_RUNNING,
@@ -27,7 +28,10 @@ typedef struct hn_study_work {
     hn_job *job;                ///< NULL before hn_study_work_run(), for kinds that open slowly
     double cpu_end;             ///< [s] of the thread's own clock
     const atomic_int *stopping; ///< the server ends
-    double load_end; ///< until then the scene must have its equations [s, thread's own clock]
+    double load_end;  ///< until then the scene must have its equations [s, thread's own clock]
+    bool computes;    ///< between the begin and the end of hn_study_work_run()
+    double wall_end;  ///< of the computing, by the study's own time limit [s, wall clock]
+    bool out_of_time; ///< equations were ended at wall_end
     int cpu_used_up;
     _Atomic double share; ///< of the whole study that is done
     atomic_int stop;

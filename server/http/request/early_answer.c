@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/request/early_answer.h"
+
+#include "build.h"
+
+#include <sys/socket.h>
+
+enum { MAX_PIECES = 64 }; // of 4 kB: more than a head has
+
+void hn_answer_early(hn_request *r) {
+    HN_ASSERT(r->stage == HN_STAGE_ANSWERED && !r->response);
+    hn_strbuf answer;
+    hn_strbuf_init(&answer);
+    hn_strbuf_printf(&answer, "HTTP/1.1 %u \r\nContent-Type: %s\r\nContent-Length: %zu\r\n",
+                     r->status, r->media_type ? r->media_type : "text/plain", r->text.n);
+    hn_strbuf_printf(&answer,
+                     "Connection: close\r\nHolonom-Build: %s\r\nX-Content-Type-Options: nosniff"
+                     "\r\nCache-Control: no-store\r\n\r\n",
+                     hn_build_name());
+    hn_strbuf_add_n(&answer, hn_strbuf_text(&r->text), r->text.n);
+
+    // it fits into what the system keeps for a socket; a client that has gone needs none
+    const int fd = hn_request_socket(r);
+    if (fd >= 0 && !answer.failed) {
+        const ssize_t sent =
+            send(fd, hn_strbuf_text(&answer), answer.n, MSG_DONTWAIT | MSG_NOSIGNAL);
+        (void)sent;
+    }
+    hn_strbuf_reset(&answer);
+    r->stage = HN_STAGE_SENT;
+}
+
+void hn_request_drain(const hn_request *r) {
+    char piece[4096];
+    const int fd = hn_request_socket(r);
+    for (int i = 0; i < MAX_PIECES && recv(fd, piece, sizeof piece, MSG_DONTWAIT) > 0; i++) {}
+    shutdown(fd, SHUT_RDWR);
+}
