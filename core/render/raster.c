@@ -9,9 +9,12 @@
 
 enum { TILE = 128, SIDE = HN_CANVAS_SAMPLES * TILE, MAX_NUMBER = 255 };
 
-/// The samples of a tile: colours, and the number of the layer that took each last.
+/// The samples of a tile: colours, and the number of the layer that took each last. Samples of a
+/// pixel count from its first shape on; a pixel without one is paper.
 typedef struct tile {
-    int x0, y0; ///< [px], upper left corner
+    int x0, y0;     ///< [px], upper left corner
+    uint32_t paper; ///< 0xRRGGBB
+    bool touched[TILE * TILE];
     unsigned char rgb[SIDE * SIDE][3];
     unsigned char taken[SIDE * SIDE];
 } tile;
@@ -25,7 +28,17 @@ static int clamp(double x, int low, int high) {
     return x < low ? low : x > high ? high : (int)x;
 }
 
+static void set_sample(unsigned char *sample, uint32_t rgb) {
+    for (int k = 0; k < 3; k++) {
+        sample[k] = (unsigned char)(rgb >> (16 - 8 * k));
+    }
+}
+
 static void blend(unsigned char *under, uint32_t rgb, double alpha) {
+    if (alpha == 1) {
+        set_sample(under, rgb);
+        return;
+    }
     for (int k = 0; k < 3; k++) {
         const double over = rgb >> (16 - 8 * k) & 0xff;
         under[k] = (unsigned char)lround(under[k] + alpha * (over - under[k]));
@@ -42,6 +55,22 @@ static void cross_row(const double *p, const double *q, double y, double span[2]
     span[1] = fmax(span[1], x);
 }
 
+/// The samples of these columns of a row are paper where their pixels had no shape yet.
+static void touch(tile *t, int row, int from, int to) {
+    const int n = HN_CANVAS_SAMPLES, y = row / n;
+    for (int x = from / n; x * n < to; x++) {
+        if (t->touched[y * TILE + x]) {
+            continue;
+        }
+        t->touched[y * TILE + x] = true;
+        for (int j = 0; j < n * n; j++) {
+            const int k = (n * y + j / n) * SIDE + n * x + j % n;
+            set_sample(t->rgb[k], t->paper);
+            t->taken[k] = 0;
+        }
+    }
+}
+
 /// Samples of a triangle (in samples of the tile) that no shape of this layer has taken yet.
 static void fill_triangle(tile *t, double corner[3][2], const window *w, int number,
                           hn_paint paint) {
@@ -56,6 +85,7 @@ static void fill_triangle(tile *t, double corner[3][2], const window *w, int num
         }
         const int from = clamp(ceil(span[0] - 0.5), w->x0, w->x1);
         const int to = clamp(floor(span[1] - 0.5) + 1, w->x0, w->x1);
+        touch(t, row, from, to);
         for (int column = from; column < to; column++) {
             const int k = row * SIDE + column;
             if (t->taken[k] != number) {
@@ -85,13 +115,8 @@ static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, in
 
 /// Layers in their order; within a layer the last shape first, so that it lies on top.
 static void draw_tile(tile *t, const hn_canvas *c) {
-    const uint32_t paper = hn_surface_get(c->theme)->paper;
-    for (int k = 0; k < SIDE * SIDE; k++) {
-        t->rgb[k][0] = (unsigned char)(paper >> 16);
-        t->rgb[k][1] = (unsigned char)(paper >> 8);
-        t->rgb[k][2] = (unsigned char)paper;
-    }
-    memset(t->taken, 0, sizeof t->taken);
+    t->paper = hn_surface_get(c->theme)->paper;
+    memset(t->touched, 0, sizeof t->touched);
     int number = 0;
     for (int first = 0, end; first < c->n_shapes; first = end) {
         for (end = first + 1; end < c->n_shapes && c->shapes[end].layer == c->shapes[first].layer;
@@ -112,6 +137,10 @@ static void average(const tile *t, const hn_canvas *c, unsigned char *rgb) {
     for (int y = t->y0; y < t->y0 + TILE && y < c->height; y++) {
         for (int x = t->x0; x < t->x0 + TILE && x < c->width; x++) {
             unsigned char *pixel = rgb + 3 * ((size_t)y * (size_t)c->width + (size_t)x);
+            if (!t->touched[(y - t->y0) * TILE + x - t->x0]) {
+                set_sample(pixel, t->paper);
+                continue;
+            }
             for (int k = 0; k < 3; k++) {
                 int sum = area / 2;
                 for (int j = 0; j < area; j++) {

@@ -236,10 +236,21 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
     draw_scale_bar(c, &sheet);
     draw_triad(c, &sheet);
-    draw_header(c, &sheet, opts);
-    draw_legend(c, &sheet, drawing, poses, n_poses);
+    if (!opts->bare) {
+        draw_header(c, &sheet, opts);
+        draw_legend(c, &sheet, drawing, poses, n_poses);
+    }
     free(sheet.shapes);
     free(sheet.depth);
+    return HN_OK;
+}
+
+hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width, int height,
+                                 const hn_drawing *drawing, const hn_snapshot_pose *poses,
+                                 int n_poses, const hn_snapshot_opts *opts, hn_diag *diag) {
+    hn_sheet sheet;
+    HN_TRY(hn_sheet_make(&sheet, width, height, drawing, poses, n_poses, opts, diag));
+    *out = (hn_snapshot_place){sheet.scale, sheet.origin[0], sheet.origin[1]};
     return HN_OK;
 }
 

@@ -58,6 +58,7 @@ typedef struct hn_snapshot_opts {
     const hn_snapshot_load *loads;
     bool labels;     ///< points with a name show it
     bool dimensions; ///< bars of the selected pose show their lengths
+    bool bare;       ///< the drawing and its scale bar alone: no words, legend or inset
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);
@@ -68,6 +69,17 @@ hn_snapshot_opts hn_snapshot_opts_default(void);
 HN_MUST_CHECK hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing,
                                          const hn_snapshot_pose *poses, int n_poses,
                                          const hn_snapshot_opts *opts, hn_diag *diag);
+
+/// Where a place in the plane of the view is: pixel (x + scale right, y - scale up).
+typedef struct hn_snapshot_place {
+    double scale; ///< [px/m]
+    double x, y;  ///< [px] of the world's origin
+} hn_snapshot_place;
+/// The same arguments as hn_snapshot_draw(), and its failures.
+HN_MUST_CHECK hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width, int height,
+                                               const hn_drawing *drawing,
+                                               const hn_snapshot_pose *poses, int n_poses,
+                                               const hn_snapshot_opts *opts, hn_diag *diag);
 
 /// What the picture shows, for readers who cannot see it and for tests:
 /// {"view","metres_per_pixel","poses":[{"name",

@@ -102,6 +102,12 @@ static void place_boxes(hn_sheet *s, int n_poses, int has_inset) {
     }
 }
 
+/// The drawing alone, on the whole sheet.
+static void place_alone(hn_sheet *s) {
+    const double margin = 0.6 * s->font;
+    s->drawing = (hn_box){margin, 0, s->width - 2 * margin, s->height - margin};
+}
+
 /// The scale that fits the view, grown by the room around, into the drawing's box above the scale
 /// bar.
 static void place_view(hn_sheet *s) {
@@ -141,13 +147,17 @@ hn_status hn_sheet_make(hn_sheet *s, int width, int height, const hn_drawing *d,
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
                            "none of the %d poses has finite points to draw", n_poses);
     }
-    s->widest = find_widest(d, poses, n_poses);
+    s->widest = opts->bare ? (hn_tear){-1, -1, -1} : find_widest(d, poses, n_poses);
     if (opts->view[1] > opts->view[0]) {
         memcpy(s->view, opts->view, sizeof s->view);
     } else {
         fit_view(d, poses, n_poses, &s->look, s->view);
     }
-    place_boxes(s, n_poses, s->widest.pose >= 0);
+    if (opts->bare) {
+        place_alone(s);
+    } else {
+        place_boxes(s, n_poses, s->widest.pose >= 0);
+    }
     place_view(s);
     choose_magnification(s);
     return HN_OK;

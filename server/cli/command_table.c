@@ -17,8 +17,9 @@ static const hn_command COMMANDS[] = {
      "--expiry --keep-alive",
      0, 0, hn_command_serve},
     {"tui", "[SCENE|LINK]", "the workbench in this terminal: mechanism, plots, verdicts, studies",
-     MODEL_OPTIONS " --methods --once --t --keys --frames --size --ascii --blocks --theme", 0, 1,
-     hn_command_tui},
+     MODEL_OPTIONS
+     " --methods --once --t --keys --frames --size --ascii --blocks --pictures --theme",
+     0, 1, hn_command_tui},
     {"list", "scenes|methods|lessons|problems", "what there is", "--wide", 1, 1, hn_command_list},
     {"inspect", "SCENE", "sizes, tree, loops, rank, operations kept and left out",
      MODEL_OPTIONS " --wide", 1, 1, hn_command_inspect},

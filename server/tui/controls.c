@@ -102,6 +102,9 @@ static void act(hn_workbench *w, hn_tui_action action) {
     case HN_TUI_WHY:
         w->why = !w->why;
         break;
+    case HN_TUI_PICTURES:
+        hn_workbench_say(w, "%s", hn_pictures_next(&w->pictures));
+        break;
     case HN_TUI_LINK:
         copy_link(w);
         break;

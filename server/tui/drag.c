@@ -16,9 +16,9 @@ static const double SECONDS = 0.02; // of computing, for one move of the mouse
 
 /// The middle of a cell in the plane of the view [m].
 static void plane_of(const hn_workbench *w, hn_area area, int x, int y, double out[2]) {
-    const hn_placing p = hn_mechanism_place(&w->envelope, area);
-    out[0] = ((x - area.x + 0.5) * HN_DOTS_ACROSS - p.x) / p.scale;
-    out[1] = (p.y - (y - area.y + 0.5) * HN_DOTS_DOWN) / p.scale;
+    const hn_placing p = hn_mechanism_place(w, area);
+    out[0] = ((x - area.x + 0.5) * HN_DOTS_ACROSS - p.x) / p.across;
+    out[1] = (p.y - (y - area.y + 0.5) * HN_DOTS_DOWN) / p.down;
 }
 
 /// The points of the selected method now, or of the mechanism that is dragged.
@@ -31,10 +31,10 @@ static const double *points_now(const hn_workbench *w) {
 
 /// The point nearest to a place in the plane; -1: none within reach.
 static int point_near(const hn_workbench *w, hn_area area, const double at[2]) {
-    const hn_placing p = hn_mechanism_place(&w->envelope, area);
+    const hn_placing p = hn_mechanism_place(w, area);
     const int n = hn_system_get_info(hn_model_system(w->model)).n_points;
     const double *points = points_now(w);
-    double best = REACH * HN_DOTS_DOWN / p.scale;
+    double best = REACH * HN_DOTS_DOWN / p.down;
     int nearest = -1;
     for (int i = 0; i < n; i++) {
         double plane[2];
@@ -106,13 +106,13 @@ static void take_points(hn_tui_drag *d, const cJSON *points) {
 
 /// What holds the point back counts from a few cells on: nobody hits a circle within one.
 static void take_answer(hn_workbench *w, hn_area area, const char *text) {
-    const hn_placing p = hn_mechanism_place(&w->envelope, area);
+    const hn_placing p = hn_mechanism_place(w, area);
     cJSON *answer = cJSON_Parse(text);
     const char *reason = cJSON_GetStringValue(cJSON_GetObjectItem(answer, "reason"));
     take_state(&w->drag, cJSON_GetObjectItem(answer, "state"));
     take_points(&w->drag, cJSON_GetObjectItem(answer, "points"));
     const cJSON *distance = cJSON_GetObjectItem(answer, "distance");
-    const bool far = distance && distance->valuedouble > REACH * HN_DOTS_DOWN / p.scale;
+    const bool far = distance && distance->valuedouble > REACH * HN_DOTS_DOWN / p.down;
     snprintf(w->drag.held, sizeof w->drag.held, "%s", reason && far ? reason : "");
     w->drag.moved = true;
     cJSON_Delete(answer);

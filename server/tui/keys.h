@@ -24,35 +24,36 @@ enum {
     HN_KEY_SHIFT_RIGHT
 };
 
-#define HN_TUI_ACTIONS(X)                                        \
-    X(PLAY, ' ', "Space", "play or pause")                       \
-    X(NEXT, HN_KEY_RIGHT, "→", "one frame on")                   \
-    X(BACK, HN_KEY_LEFT, "←", "one frame back")                  \
-    X(NEXT_TEN, HN_KEY_SHIFT_RIGHT, "Shift →", "ten frames on")  \
-    X(BACK_TEN, HN_KEY_SHIFT_LEFT, "Shift ←", "ten frames back") \
-    X(START, HN_KEY_BACKSPACE, "Backspace", "back to the start") \
-    X(SLOWER, '-', "-", "slower")                                \
-    X(FASTER, '=', "=", "faster")                                \
-    X(UP, HN_KEY_UP, "↑", "select the method above")             \
-    X(DOWN, HN_KEY_DOWN, "↓", "select the method below")         \
-    X(CYCLE, '9', "9", "select the next method")                 \
-    X(HIDE, 'v', "v", "hide or show the selected method")        \
-    X(PLOT, 'g', "g", "next plot: gap, error, energy")           \
-    X(WHY, 'i', "i", "why: the incidents of the method")         \
-    X(STEP, 'd', "d", "type another step dt")                    \
-    X(PARAMETERS, 'p', "p", "change parameters")                 \
-    X(METHODS, 'm', "m", "add, change or remove methods")        \
-    X(SCENES, 's', "s", "choose another scene")                  \
-    X(FORMULAS, 'f', "f", "formulas: the equations of motion")   \
-    X(LESSONS, 't', "t", "texts of lessons and exercises")       \
-    X(STUDY, 'w', "w", "what accuracy costs (work-precision)")   \
-    X(MAP, 'b', "b", "map of stability over alpha and beta")     \
-    X(BUDGET, 'e', "e", "where the error comes from")            \
-    X(LINK, 'l', "l", "copy a link that opens this in the page") \
-    X(EXPORT, 'x', "x", "export: recording, programs")           \
-    X(UNDO, 'z', "z", "undo the last change")                    \
-    X(REDO, 'y', "y", "redo it")                                 \
-    X(HELP, '?', "?", "menu: this table, Enter does it")         \
+#define HN_TUI_ACTIONS(X)                                          \
+    X(PLAY, ' ', "Space", "play or pause")                         \
+    X(NEXT, HN_KEY_RIGHT, "→", "one frame on")                     \
+    X(BACK, HN_KEY_LEFT, "←", "one frame back")                    \
+    X(NEXT_TEN, HN_KEY_SHIFT_RIGHT, "Shift →", "ten frames on")    \
+    X(BACK_TEN, HN_KEY_SHIFT_LEFT, "Shift ←", "ten frames back")   \
+    X(START, HN_KEY_BACKSPACE, "Backspace", "back to the start")   \
+    X(SLOWER, '-', "-", "slower")                                  \
+    X(FASTER, '=', "=", "faster")                                  \
+    X(UP, HN_KEY_UP, "↑", "select the method above")               \
+    X(DOWN, HN_KEY_DOWN, "↓", "select the method below")           \
+    X(CYCLE, '9', "9", "select the next method")                   \
+    X(HIDE, 'v', "v", "hide or show the selected method")          \
+    X(PLOT, 'g', "g", "next plot: gap, error, energy")             \
+    X(WHY, 'i', "i", "why: the incidents of the method")           \
+    X(PICTURES, 'c', "c", "characters or pictures, if shown here") \
+    X(STEP, 'd', "d", "type another step dt")                      \
+    X(PARAMETERS, 'p', "p", "change parameters")                   \
+    X(METHODS, 'm', "m", "add, change or remove methods")          \
+    X(SCENES, 's', "s", "choose another scene")                    \
+    X(FORMULAS, 'f', "f", "formulas: the equations of motion")     \
+    X(LESSONS, 't', "t", "texts of lessons and exercises")         \
+    X(STUDY, 'w', "w", "what accuracy costs (work-precision)")     \
+    X(MAP, 'b', "b", "map of stability over alpha and beta")       \
+    X(BUDGET, 'e', "e", "where the error comes from")              \
+    X(LINK, 'l', "l", "copy a link that opens this in the page")   \
+    X(EXPORT, 'x', "x", "export: recording, programs")             \
+    X(UNDO, 'z', "z", "undo the last change")                      \
+    X(REDO, 'y', "y", "redo it")                                   \
+    X(HELP, '?', "?", "menu: this table, Enter does it")           \
     X(QUIT, 'q', "q", "quit")
 
 typedef enum hn_tui_action {

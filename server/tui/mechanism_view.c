@@ -18,20 +18,26 @@ typedef struct placing {
 } placing;
 
 // a dot of braille is about as wide as it is high
-hn_placing hn_mechanism_place(const hn_envelope *envelope, hn_area area) {
+static hn_placing fit(const hn_envelope *envelope, hn_area area) {
     const double *box = envelope->box;
     const double wide = fmax(box[2] - box[0], 1e-12), tall = fmax(box[3] - box[1], 1e-12);
     const double columns = area.columns * ACROSS, rows = area.rows * DOWN;
     const double scale = fmin((columns - 4) / wide, (rows - 4) / tall);
-    return (hn_placing){.scale = scale,
+    return (hn_placing){.across = scale,
+                        .down = scale,
                         .x = columns / 2 - scale * (box[0] + box[2]) / 2,
                         .y = rows / 2 + scale * (box[1] + box[3]) / 2};
 }
 
+hn_placing hn_mechanism_place(const hn_workbench *w, hn_area area) {
+    const bool picture = hn_pictures_form(&w->pictures) != HN_PIXELS_OFF && w->place.across > 0;
+    return picture ? w->place : fit(&w->envelope, area);
+}
+
 static placing place(const hn_model *model, const hn_envelope *envelope, hn_area area,
                      hn_dots *dots) {
-    const hn_placing at = hn_mechanism_place(envelope, area);
-    return (placing){model, envelope, dots, NULL, at.scale, at.x, at.y};
+    const hn_placing at = fit(envelope, area);
+    return (placing){model, envelope, dots, NULL, at.across, at.x, at.y};
 }
 
 static void dot_of(const placing *p, int point, double out[2]) {
@@ -167,7 +173,8 @@ static void draw_present(placing *p, const hn_workbench *w) {
 
 void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_dots dots = {0};
-    if (area.columns < 4 || area.rows < 3 || !hn_dots_resize(&dots, area.columns, area.rows)) {
+    if (hn_pictures_form(&w->pictures) != HN_PIXELS_OFF || area.columns < 4 || area.rows < 3 ||
+        !hn_dots_resize(&dots, area.columns, area.rows)) {
         return;
     }
     placing p = place(w->model, &w->envelope, area, &dots);
@@ -180,8 +187,8 @@ void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
 void hn_mechanism_preview(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_preview *v = &w->preview;
     hn_dots dots = {0};
-    if (!v->model || area.columns < 4 || area.rows < 3 ||
-        !hn_dots_resize(&dots, area.columns, area.rows)) {
+    if (!v->model || hn_pictures_form(&w->pictures) != HN_PIXELS_OFF || area.columns < 4 ||
+        area.rows < 3 || !hn_dots_resize(&dots, area.columns, area.rows)) {
         return;
     }
     placing p = place(v->model, &v->envelope, area, &dots);

@@ -6,15 +6,14 @@
 
 #include "tui/workbench.h"
 
-/// Draws the methods at the frame shown, or the mechanism that is dragged.
+/// Draws the methods at the frame shown, or the mechanism that is dragged; nothing where a picture
+/// is shown (mechanism_picture.h).
 void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w);
-/// The scene of w->preview as it stands at its start.
+/// The scene of w->preview as it stands at its start; likewise.
 void hn_mechanism_preview(hn_cells *c, hn_area area, const hn_workbench *w);
 
-/// From the plane of the view to dots of an area: the envelope of the motion fills it.
-typedef struct hn_placing {
-    double scale, x, y; ///< dots a metre; dot of the view's origin
-} hn_placing;
-hn_placing hn_mechanism_place(const hn_envelope *envelope, hn_area area);
+/// Where the mechanism is in an area: as the picture has it, or as the envelope of the motion fills
+/// the area.
+hn_placing hn_mechanism_place(const hn_workbench *w, hn_area area);
 enum { HN_DOTS_ACROSS = 2, HN_DOTS_DOWN = 4 }; ///< of a cell
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/screen.h"
 
+#include "base/base64.h"
 #include "base/clock.h"
 #include "base/hash.h"
 #include "cli/shell/plain.h"
@@ -13,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -20,7 +22,10 @@ enum { MOST_EVENTS = 16, SUSPEND = 26 /* Ctrl-Z */ };
 
 /// What a terminal answers to the question whether it is well, and the key that stands for it.
 static const char QUESTION[] = "\033[5n", ANSWER[] = "\033[0n";
-enum { KEY_ANSWER = KEY_MAX + 1 };
+/// Beginnings of answers about pictures, and keys that stand for them.
+static const char NAME[] = "\033[?", PIXELS[] = "\033[4;", GRAPHICS[] = "\033_G";
+enum { KEY_ANSWER = KEY_MAX + 1, KEY_NAME, KEY_PIXELS, KEY_GRAPHICS };
+enum { ESCAPE_MS = 25, ANSWER_MS = 300 }; // between the bytes of a key, and of an answer
 
 static const double UNKNOWN = 3.0;  // [s] a terminal that is silent so long does not answer at all
 static const double SPARSE = 0.5;   // [s] between two pictures until that is known
@@ -38,6 +43,14 @@ static struct {
     bool asks, asked, answers;
     double first_asked, asked_at; ///< [s]
     uint64_t shown;               ///< hash of the last picture
+    bool with_sequence;           ///< the last picture had one
+    double delay;                 ///< [s] of the last picture with a sequence
+
+    // questions about pictures
+    int questions; ///< of those that end in the name: still unanswered
+    double questioned_at;
+    char answer[128];
+    const char *farewell; ///< before the terminal is left
 } screen;
 
 // ---- leaving the terminal as it was ----
@@ -48,21 +61,22 @@ enum { N_FATAL = sizeof FATAL / sizeof *FATAL };
 
 /// Reads to the end of an answer that is on its way, or the shell would take it for typed keys.
 static void swallow_answer(void) {
-    enum { PATIENCE_MS = 300 };
     struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
     char c = '\0';
     bool more = true;
-    while (more && c != ANSWER[sizeof ANSWER - 2]) {
-        more = poll(&input, 1, PATIENCE_MS) > 0 && read(STDIN_FILENO, &c, 1) == 1;
+    while (more && (screen.questions > 0 || c != ANSWER[sizeof ANSWER - 2])) {
+        more = poll(&input, 1, ANSWER_MS) > 0 && read(STDIN_FILENO, &c, 1) == 1;
     }
 }
 
 /// Only calls that a signal may interrupt: writes the sequences that ncurses would have written.
 static void restore_and_die(int number) {
     static const char back[] = "\033[?1000l\033[?1002l\033[?1006l\033[0m\033[?25h\033[?1049l\r";
-    const ssize_t ignored = write(STDOUT_FILENO, back, sizeof back - 1);
+    const char *farewell = screen.farewell ? screen.farewell : "";
+    const ssize_t ignored = write(STDOUT_FILENO, farewell, strlen(farewell)) +
+                            write(STDOUT_FILENO, back, sizeof back - 1);
     (void)ignored;
-    if (screen.asked && screen.answers) {
+    if ((screen.asked && screen.answers) || screen.questions > 0) {
         swallow_answer();
     }
     if (screen.have_modes) {
@@ -104,6 +118,71 @@ static void ask_terminal(void) {
 static void take_answer(void) {
     screen.asked = false;
     screen.answers = true;
+    screen.delay = screen.with_sequence ? hn_clock_wall() - screen.asked_at : screen.delay;
+}
+
+double hn_screen_delay(void) {
+    return screen.delay;
+}
+
+// ---- questions about pictures ----
+
+/// The rest of an answer that began with a key of ours, up to its end: a letter, or ESC \.
+static void read_answer(const char *begin, bool string) {
+    size_t n = (size_t)snprintf(screen.answer, sizeof screen.answer, "%s", begin);
+    bool ended = false;
+    while (!ended) {
+        timeout(ANSWER_MS);
+        const int key = getch();
+        if (key == ERR || key > 0xff) {
+            break;
+        }
+        ended = string ? key == '\\' && screen.answer[n - 1] == '\033' : key >= 0x40 && key <= 0x7e;
+        if (n + 1 < sizeof screen.answer) {
+            screen.answer[n++] = (char)key;
+            screen.answer[n] = '\0';
+        }
+    }
+}
+
+/// Whether the key begins an answer about pictures, which is then read.
+static bool take_picture_answer(int key) {
+    if (key == KEY_NAME) {
+        read_answer(NAME, false);
+        screen.questions -= screen.questions > 0;
+    } else if (key == KEY_PIXELS) {
+        read_answer(PIXELS, false);
+    } else if (key == KEY_GRAPHICS) {
+        read_answer(GRAPHICS, true);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+void hn_screen_ask(const char *question) {
+    if (screen.asks) {
+        put_sequence(question);
+        screen.questions += question[strlen(question) - 1] == 'c';
+        screen.questioned_at = hn_clock_wall();
+    }
+}
+
+const char *hn_screen_answer(void) {
+    return screen.answer;
+}
+
+void hn_screen_farewell(const char *sequence) {
+    screen.farewell = sequence;
+}
+
+/// Bytes of an answer may come one by one over a slow line; an Escape of the user is waited for no
+/// longer than needed.
+static void choose_patience(void) {
+    if (screen.questions > 0 && hn_clock_wall() - screen.questioned_at > UNKNOWN) {
+        screen.questions = 0;
+    }
+    set_escdelay(screen.questions > 0 ? ANSWER_MS : ESCAPE_MS);
 }
 
 bool hn_screen_ready(void) {
@@ -130,10 +209,13 @@ bool hn_screen_ready(void) {
 /// The last answer is read here rather than by the shell.
 static void await_answer(double seconds) {
     const double end = hn_clock_wall() + seconds;
-    while (screen.asked && screen.answers && hn_clock_wall() < end) {
+    while (((screen.asked && screen.answers) || screen.questions > 0) && hn_clock_wall() < end) {
         timeout(20);
-        if (getch() == KEY_ANSWER) {
+        const int key = getch();
+        if (key == KEY_ANSWER) {
             take_answer();
+        } else {
+            take_picture_answer(key);
         }
     }
 }
@@ -150,6 +232,9 @@ static void prepare_asking(void) {
     const char *move_cursor = tigetstr("cup");
     screen.asks = move_cursor && move_cursor != (char *)-1 && strncmp(move_cursor, "\033[", 2) == 0;
     define_key(ANSWER, KEY_ANSWER);
+    define_key(NAME, KEY_NAME);
+    define_key(PIXELS, KEY_PIXELS);
+    define_key(GRAPHICS, KEY_GRAPHICS);
 
     // the terminal sends Ctrl-Z as a character
     struct termios modes;
@@ -164,6 +249,9 @@ void hn_screen_close(void) {
     if (screen.open) {
         screen.open = false;
         await_answer(FAREWELL);
+        if (screen.farewell) {
+            put_sequence(screen.farewell);
+        }
         if (screen.mouse) {
             put_sequence(MOVES_OFF);
         }
@@ -208,9 +296,11 @@ bool hn_screen_open(int theme, bool colours) {
     }
 
     // keys one by one and unseen; an escape is not waited for
-    set_escdelay(25);
+    set_escdelay(ESCAPE_MS);
     cbreak();
     noecho();
+    // characters that are moved would take pixels over them along
+    idcok(stdscr, FALSE);
     keypad(stdscr, TRUE);
     curs_set(0);
     mousemask(BUTTON1_PRESSED | BUTTON1_RELEASED | REPORT_MOUSE_POSITION, NULL);
@@ -232,6 +322,15 @@ void hn_screen_size(int *columns, int *rows) {
     getmaxyx(stdscr, *rows, *columns);
 }
 
+void hn_screen_pixels(int *width, int *height) {
+    struct winsize size = {0};
+    *width = *height = 0;
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) {
+        *width = size.ws_xpixel;
+        *height = size.ws_ypixel;
+    }
+}
+
 // ---- showing ----
 
 static attr_t attributes_of(const hn_cell *cell) {
@@ -245,13 +344,17 @@ static attr_t attributes_of(const hn_cell *cell) {
 static void ask_after(const hn_cells *c) {
     const size_t n = (size_t)c->rows * (size_t)c->columns * sizeof *c->at;
     const uint64_t hash = hn_hash_bytes(HN_HASH_START, c->at, n);
-    if (hash != screen.shown) {
+    if (hash != screen.shown || screen.with_sequence) {
         screen.shown = hash;
         ask_terminal();
     }
 }
 
-void hn_screen_show(const hn_cells *c, bool ascii) {
+void hn_screen_rewrite(int first, int rows) {
+    wredrawln(stdscr, first, rows);
+}
+
+void hn_screen_show(const hn_cells *c, bool ascii, const hn_strbuf *picture) {
     hn_strbuf plain;
     hn_strbuf_init(&plain);
     for (int y = 0; y < c->rows; y++) {
@@ -270,6 +373,11 @@ void hn_screen_show(const hn_cells *c, bool ascii) {
     }
     hn_strbuf_reset(&plain);
     refresh();
+    screen.with_sequence = picture && picture->n > 0;
+    if (screen.with_sequence) {
+        fwrite(picture->text, 1, picture->n, stdout);
+        fflush(stdout);
+    }
     ask_after(c);
 }
 
@@ -286,7 +394,7 @@ static int translate(int key) {
         {127, HN_KEY_BACKSPACE}, {8, HN_KEY_BACKSPACE},          {KEY_ENTER, HN_KEY_ENTER},
         {'\n', HN_KEY_ENTER},    {'\r', HN_KEY_ENTER},           {27, HN_KEY_ESCAPE},
         {'\t', HN_KEY_TAB},      {KEY_SLEFT, HN_KEY_SHIFT_LEFT}, {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
-        {KEY_F(1), '?'},         {KEY_RESIZE, HN_KEY_RESIZE}};
+        {KEY_F(1), '?'},         {KEY_RESIZE, HN_KEY_RESIZE},    {KEY_NAME, HN_KEY_ANSWER}};
 
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         if (table[i].from == key) {
@@ -327,9 +435,11 @@ static bool next_mouse(hn_mouse *out) {
     return true;
 }
 
-/// Answers of the terminal and Ctrl-Z are dealt with here; they do not shorten the wait.
+/// Answers after a picture are dealt with here, and do not shorten the wait; Ctrl-Z is too, and
+/// what comes back from it is as after a change of the size.
 static int next_key(double seconds) {
     const double end = hn_clock_wall() + seconds;
+    choose_patience();
     for (;;) {
         const double left = end - hn_clock_wall();
         timeout(left > 0 ? (int)ceil(1000 * left) : 0);
@@ -338,8 +448,9 @@ static int next_key(double seconds) {
             take_answer();
         } else if (key == SUSPEND) {
             suspend();
+            return KEY_RESIZE;
         } else {
-            return key;
+            return take_picture_answer(key) ? KEY_NAME : key;
         }
     }
 }
@@ -357,16 +468,10 @@ int hn_screen_key(double seconds, hn_mouse *mouse) {
 }
 
 void hn_screen_copy(const char *text) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const unsigned char *in = (const unsigned char *)text;
-    const size_t n = strlen(text);
-    printf("\033]52;c;");
-    for (size_t i = 0; i < n; i += 3) {
-        const unsigned bits = (unsigned)in[i] << 16 | (i + 1 < n ? in[i + 1] : 0u) << 8 |
-                              (i + 2 < n ? in[i + 2] : 0u);
-        printf("%c%c%c%c", digits[bits >> 18 & 63], digits[bits >> 12 & 63],
-               i + 1 < n ? digits[bits >> 6 & 63] : '=', i + 2 < n ? digits[bits & 63] : '=');
-    }
-    printf("\a");
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_base64(&b, text, strlen(text));
+    printf("\033]52;c;%s\a", hn_strbuf_text(&b));
     fflush(stdout);
+    hn_strbuf_reset(&b);
 }

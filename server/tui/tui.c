@@ -4,7 +4,9 @@
 #include "base/clock.h"
 #include "tui/controls.h"
 #include "tui/drag.h"
+#include "terminal/kitty_image.h"
 #include "tui/keys.h"
+#include "tui/mechanism_picture.h"
 #include "tui/screen.h"
 #include "tui/views.h"
 
@@ -15,6 +17,16 @@
 #include <string.h>
 
 static const double FRAME = 1.0 / 20; // [s] between two pictures; a slow line shows fewer
+
+static const double LATE = 1.5; // [s] until a picture of pixels has arrived
+
+/// What is on the screen.
+typedef struct view {
+    hn_cells cells;
+    hn_mechanism_picture picture;
+    hn_strbuf sequence; ///< of the picture, while it is sent
+    bool wiped;         ///< the picture is gone, whoever wiped it
+} view;
 
 static hn_dot_form form_of(const hn_tui_opts *opts) {
     return opts->ascii ? HN_DOTS_ASCII : opts->blocks ? HN_DOTS_BLOCKS : HN_DOTS_BRAILLE;
@@ -33,18 +45,13 @@ static bool inside(hn_area area, hn_mouse m) {
            m.y < area.y + area.rows;
 }
 
-/// The inside of the frame around the mechanism.
-static hn_area mechanism_area(const hn_places *places) {
-    return (hn_area){1, 2, places->plot.x - 2, places->plot.rows - 2};
-}
-
 /// The mouse drags a joint; a click selects a method in the table, or a time in the plot.
 static void point_at(hn_workbench *w, const hn_cells *c, hn_mouse mouse) {
     enum { LABELS = 9 };
     const hn_places places = hn_views_places(c->columns, c->rows, w);
-    const hn_area mechanism = mechanism_area(&places);
     const int row = mouse.y - places.table.y - 1;
-    if (w->panel != HN_PANEL_MAIN) {
+    hn_area mechanism;
+    if (w->panel != HN_PANEL_MAIN || !hn_views_mechanism(c->columns, c->rows, w, &mechanism)) {
         return;
     }
 
@@ -71,10 +78,20 @@ static void point_at(hn_workbench *w, const hn_cells *c, hn_mouse mouse) {
     }
 }
 
-static void obey(hn_workbench *w, const hn_cells *c, int key, hn_mouse mouse) {
+static void ask(const char *question) {
+    if (question) {
+        hn_screen_ask(question);
+    }
+}
+
+static void obey(hn_workbench *w, view *v, int key, hn_mouse mouse) {
     if (key == HN_KEY_MOUSE) {
-        point_at(w, c, mouse);
-    } else if (key != HN_KEY_NONE && key != HN_KEY_RESIZE) {
+        point_at(w, &v->cells, mouse);
+    } else if (key == HN_KEY_ANSWER) {
+        ask(hn_pictures_answer(&w->pictures, hn_screen_answer()));
+    } else if (key == HN_KEY_RESIZE) {
+        v->wiped = true;
+    } else if (key != HN_KEY_NONE) {
         hn_controls_key(w, key);
     }
     if (w->copy) {
@@ -83,34 +100,73 @@ static void obey(hn_workbench *w, const hn_cells *c, int key, hn_mouse mouse) {
     }
 }
 
+/// A picture that came late once is not sent again: everything else would come late with it.
+static void judge_line(hn_workbench *w) {
+    if (w->pictures.wanted == HN_PIXELS_AUTO && hn_screen_delay() > LATE) {
+        w->pictures.wanted = HN_PIXELS_OFF;
+        hn_workbench_say(w,
+                         "a picture took %.1f s to arrive: the mechanism is in characters; c tries "
+                         "pictures again",
+                         hn_screen_delay());
+    }
+}
+
+/// The sequences that the mechanism's picture needs: a new one, or that the old one goes.
+static void make_picture(hn_workbench *w, view *v) {
+    hn_area area;
+    const hn_pixels form = hn_pictures_form(&w->pictures), there = v->picture.form;
+    const bool wanted =
+        form != HN_PIXELS_OFF && hn_views_mechanism(v->cells.columns, v->cells.rows, w, &area);
+    const bool moved = wanted && memcmp(&area, &v->picture.area, sizeof area) != 0;
+    hn_strbuf_clear(&v->sequence);
+
+    // what is elsewhere, or of another kind, goes first
+    if (there != HN_PIXELS_OFF && (!wanted || moved || form != there || v->wiped)) {
+        hn_mechanism_picture_remove(&v->picture, &v->sequence);
+        hn_screen_rewrite(v->picture.area.y, v->picture.area.rows);
+    }
+    if (wanted) {
+        hn_mechanism_picture_show(&v->picture, &v->sequence, w, area);
+        hn_screen_farewell(form == HN_PIXELS_KITTY ? HN_KITTY_REMOVE_ALL : NULL);
+    }
+    v->wiped = false;
+}
+
 /// One picture in the present size of the terminal; false: no memory for it.
-static bool show(hn_workbench *w, hn_cells *cells, const hn_tui_opts *opts) {
-    int columns, rows;
+static bool show(hn_workbench *w, view *v, const hn_tui_opts *opts) {
+    int columns, rows, width, height;
     hn_screen_size(&columns, &rows);
-    if ((columns != cells->columns || rows != cells->rows) &&
-        !hn_cells_resize(cells, columns, rows)) {
+    hn_screen_pixels(&width, &height);
+    if ((columns != v->cells.columns || rows != v->cells.rows) &&
+        !hn_cells_resize(&v->cells, columns, rows)) {
         return false;
     }
     w->columns = columns;
     w->rows = rows;
-    hn_views_draw(cells, w);
-    hn_screen_show(cells, opts->ascii);
+    ask(hn_pictures_resize(&w->pictures, columns, rows, width, height));
+    judge_line(w);
+    make_picture(w, v);
+    hn_views_draw(&v->cells, w);
+    hn_screen_show(&v->cells, opts->ascii, &v->sequence);
     return true;
 }
 
 bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
-    hn_cells cells = {0};
+    view v = {.picture = {.form = HN_PIXELS_OFF}};
     choose_characters();
     if (!hn_screen_open(opts->theme, opts->colours)) {
         return false;
     }
+    hn_strbuf_init(&v.sequence);
     w->form = form_of(opts);
+    w->pictures = hn_pictures_start(opts->pictures, opts->theme);
+    ask(hn_pictures_question(&w->pictures));
     double before = hn_clock_wall();
     int n = 0;
     while (!w->quit && !hn_screen_gone() && (opts->frames == 0 || n < opts->frames)) {
         if (hn_screen_ready()) {
             n++;
-            if (!show(w, &cells, opts)) {
+            if (!show(w, &v, opts)) {
                 break;
             }
         }
@@ -119,14 +175,15 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
         hn_mouse mouse = {0};
         int key = hn_screen_key(FRAME, &mouse);
         while (key != HN_KEY_NONE && !w->quit) {
-            obey(w, &cells, key, mouse);
+            obey(w, &v, key, mouse);
             key = hn_screen_key(0, &mouse);
         }
         const double now = hn_clock_wall();
         hn_workbench_tick(w, now - before);
         before = now;
     }
-    hn_cells_free(&cells);
+    hn_cells_free(&v.cells);
+    hn_strbuf_reset(&v.sequence);
     hn_screen_close();
     return true;
 }

@@ -12,8 +12,9 @@ typedef struct hn_tui_opts {
     int columns, rows; ///< of hn_tui_frame(); 0: 80 x 24
     double t;          ///< [s] of hn_tui_frame()
     const char
-        *keys;  ///< of hn_tui_frame(): typed before it, as hn_tui_key_read() reads; NULL: none
-    int frames; ///< hn_tui_run(): ends after so many frames; 0: when the user does
+        *keys; ///< of hn_tui_frame(): typed before it, as hn_tui_key_read() reads; NULL: none
+    hn_pixels pictures; ///< of hn_tui_run()
+    int frames;         ///< hn_tui_run(): ends after so many frames; 0: when the user does
 } hn_tui_opts;
 
 /// Works on the terminal until the user quits. false: standard output is no terminal that can be

@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum { MOST_NAME = 16, NUMBER_COLUMNS = 11, VERDICT_COLUMNS = 50, MOST_INCIDENTS = 512 };
+enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
 
 /// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
 static const double SMALLEST_PREFIXED = 1e-9;
@@ -32,6 +33,30 @@ hn_places hn_views_places(int columns, int rows, const hn_workbench *w) {
     const hn_area table = table_area(columns, rows, w);
     const int left = columns * 9 / 20;
     return (hn_places){.table = table, .plot = {left, 1, columns - left, table.y - 1}};
+}
+
+static hn_area inside_of(hn_area frame) {
+    return (hn_area){frame.x + 1, frame.y + 1, frame.columns - 2, frame.rows - 2};
+}
+
+/// A panel takes the place of the views.
+static hn_area panel_area(int columns, int rows) {
+    return (hn_area){0, 1, columns, rows - 3};
+}
+
+bool hn_views_mechanism(int columns, int rows, const hn_workbench *w, hn_area *out) {
+    const hn_places places = hn_views_places(columns, rows, w);
+    const hn_area list = inside_of(panel_area(columns, rows));
+    const int items = list.columns * 11 / 20;
+    const bool scenes = w->panel == HN_PANEL_LIST && w->list == HN_LIST_SCENES;
+    if (w->panel == HN_PANEL_MAIN) {
+        *out = inside_of((hn_area){0, 1, places.plot.x, places.plot.rows});
+    } else if (scenes && list.columns >= PREVIEW_COLUMNS) {
+        *out = (hn_area){list.x + items + 1, list.y, list.columns - items - 2, list.rows};
+    } else {
+        return false;
+    }
+    return out->columns >= 4 && out->rows >= 3;
 }
 
 // ---- lines above and below ----
@@ -292,8 +317,9 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
 /// The items; below them what the chosen one is about, and of scenes a picture to the right.
 static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_area frame = hn_cells_frame(c, area, w->title);
-    const bool scenes = w->list == HN_LIST_SCENES && frame.columns >= 60;
-    const hn_area in = {frame.x, frame.y, scenes ? frame.columns * 11 / 20 : frame.columns,
+    hn_area picture;
+    const bool pictured = hn_views_mechanism(c->columns, c->rows, w, &picture);
+    const hn_area in = {frame.x, frame.y, pictured ? picture.x - 1 - frame.x : frame.columns,
                         frame.rows};
     enum { NAME_WIDTH = 20 };
     const int below = 3, rows = in.rows - below;
@@ -310,9 +336,7 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
         const hn_area foot = {in.x + 1, in.y + in.rows - below + 1, in.columns - 2, below - 1};
         hn_cells_fold(c, foot, 0, HN_CELL_INK, w->items[w->cursor].about);
     }
-    if (scenes) {
-        const hn_area picture = {in.x + in.columns + 1, in.y, frame.columns - in.columns - 2,
-                                 in.rows};
+    if (pictured) {
         hn_mechanism_preview(c, picture, w);
     }
 }
@@ -338,8 +362,7 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     hn_cells_clear(c);
     draw_header(c, w);
 
-    // a panel takes the place of the views
-    const hn_area whole = {0, 1, c->columns, c->rows - 3};
+    const hn_area whole = panel_area(c->columns, c->rows);
     if (w->panel == HN_PANEL_LIST) {
         draw_list(c, whole, w);
     } else if (w->panel == HN_PANEL_TEXT) {

@@ -23,4 +23,7 @@ typedef struct hn_places {
     hn_area table, plot;
 } hn_places;
 hn_places hn_views_places(int columns, int rows, const hn_workbench *w);
+/// The area of the mechanism in the last frame of this size: on the main view, and to the right of
+/// the list of scenes. false: there is none.
+bool hn_views_mechanism(int columns, int rows, const hn_workbench *w, hn_area *out);
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/workbench.h"
 
+#include "render/look.h"
 #include "tui/preview.h"
 #include "tui/versions.h"
 
@@ -74,7 +75,10 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
                             int n_methods, hn_diags *diags) {
 
     // what is not given comes from the scene
-    *w = (hn_workbench){.library = library, .speed = 1, .playing = true};
+    *w = (hn_workbench){.library = library,
+                        .speed = 1,
+                        .playing = true,
+                        .pictures = hn_pictures_start(HN_PIXELS_OFF, HN_THEME_DARK)};
     hn_strbuf_init(&w->text);
     hn_strbuf_init(&w->link);
     w->columns = 80;
@@ -137,6 +141,7 @@ void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags) {
 /// What outlives a change of the scene: how it is shown, the panel, what can be undone.
 static void carry_over(hn_workbench *to, hn_workbench *from) {
     to->form = from->form;
+    to->pictures = from->pictures;
     to->plot = from->plot;
     to->speed = from->speed;
     to->columns = from->columns;

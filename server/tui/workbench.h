@@ -8,6 +8,7 @@
 #include "session/model/envelope.h"
 #include "terminal/dots.h"
 #include "tui/child.h"
+#include "tui/pictures.h"
 #include "tui/recording.h"
 #include "tui/study_job.h"
 
@@ -61,6 +62,12 @@ typedef struct hn_tui_drag {
     char held[HN_DIAG_MESSAGE]; ///< why it does not follow; ""
 } hn_tui_drag;
 
+/// From the plane of the view to dots of an area (HN_DOTS_ACROSS by HN_DOTS_DOWN a cell).
+typedef struct hn_placing {
+    double across, down; ///< dots a metre
+    double x, y;         ///< dot of the view's origin
+} hn_placing;
+
 typedef struct hn_versions hn_versions;
 
 typedef struct hn_workbench {
@@ -84,6 +91,8 @@ typedef struct hn_workbench {
     bool why;
     hn_tui_plot plot;
     hn_dot_form form;
+    hn_pictures pictures; ///< in place of characters, for the mechanism
+    hn_placing place;     ///< of the mechanism in the picture; across 0: no picture yet
     char message[HN_TUI_MESSAGE];
     hn_strbuf link;    ///< for the clipboard
     bool copy;         ///< the screen takes the link and puts this back

@@ -32,12 +32,16 @@ class Terminal:
     def __init__(self, *words, columns=100, rows=30, **environment):
         self.master, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+        self.before_start(slave)
         self.modes = termios.tcgetattr(slave)
         env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **environment}
         self.process = subprocess.Popen([PROGRAM, "tui", *words], stdin=slave, stdout=slave, stderr=slave, env=env,
                                         start_new_session=True)
         self.slave = slave
         self.seen = b""
+
+    def before_start(self, slave):
+        """For terminals that know more."""
 
     def read(self, seconds=0.05):
         while select.select([self.master], [], [], seconds)[0]:
@@ -143,7 +147,7 @@ KEY_NAMES = {"HN_KEY_RIGHT": "<Right>", "HN_KEY_LEFT": "<Left>", "HN_KEY_SHIFT_R
 # what is seen after each key, typed at t = 0.5 s while the second of the methods is selected
 SEEN = {"PLAY": "running", "NEXT": r"t 0\.517 s", "BACK": r"t 0\.483 s", "NEXT_TEN": r"t 0\.667 s", "BACK_TEN": r"t 0\.333 s",
         "START": r"t 0\.000 s", "SLOWER": "×0.5", "FASTER": "×2", "UP": "why: index-1", "DOWN": "why: projection", "CYCLE": "why: projection",
-        "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "STEP": r"dt \[s, or 20 ms\]:",
+        "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "STEP": r"dt \[s, or 20 ms\]:",
         "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "01-closed-loops",
         "STUDY": "what accuracy costs: Esc goes back", "MAP": "stability over alpha and beta: arrows", "BUDGET": "their sum",
         "LINK": r"link copied:\s+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",

@@ -74,6 +74,15 @@ static hn_status read_size(const char *text, hn_tui_opts *opts, hn_diags *diags)
     return HN_OK;
 }
 
+static hn_status read_pictures(const char *text, hn_tui_opts *opts, hn_diags *diags) {
+    if (text && !hn_pixels_parse(text, &opts->pictures)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/pictures",
+                            "auto asks the terminal, off draws in characters",
+                            "--pictures is '%.40s'; auto, kitty, sixel and off are allowed", text);
+    }
+    return HN_OK;
+}
+
 /// Every key of --keys must be one.
 static hn_status check_keys(const char *text, hn_diags *diags) {
     const char *rest = text ? text : "";
@@ -134,6 +143,7 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
 
     // everything is read before anything is opened
     hn_status status = read_size(args->size, &opts, &diags);
+    HN_THEN(status, read_pictures(args->pictures, &opts, &diags));
     HN_THEN(status, check_keys(args->keys, &diags));
     status = status == HN_OK ? read_opening(args, &o, &diags) : status;
     HN_THEN(status, hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods,

@@ -93,6 +93,9 @@ static const option OPTIONS[] = {
     {"--once", NULL, OPTION_FLAG, AT(once), "one frame as text, at --t"},
     {"--frames", "N", OPTION_COUNT, AT(frames), "end after N pictures"},
     {"--ascii", NULL, OPTION_FLAG, AT(ascii), "ASCII characters only"},
+    {"--pictures", "auto|kitty|sixel|off", OPTION_TEXT, AT(pictures),
+     "how the mechanism is drawn: as a picture by kitty graphics or sixels, or in characters; auto "
+     "asks the terminal"},
     {"--blocks", NULL, OPTION_FLAG, AT(blocks), "quadrant blocks in place of braille"},
     {"--ghosts", NULL, OPTION_FLAG, AT(ghosts),
      "all times of --at in one picture, the earlier ones pale"},

@@ -30,7 +30,8 @@ typedef struct hn_args {
     hn_words set, methods, traces, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
-        *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric, *shard, *style;
+        *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric, *shard, *style,
+        *pictures;
     double time, jobs, answer_time, every, t, port, width, height, seed, frame_dt, frames;
     double animate, hint, history, max_comparisons, max_streams, max_connections, run_cpu,
         idle_pause, expiry, keep_alive;
