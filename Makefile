@@ -51,7 +51,7 @@ ROOMS_session      := style: verdict: store: model:store job:model compare:store
                       report:style,store,model,job,compare,references,precision,budgets,stability,extreme \
                       kinds:job,model,references,precision,budgets,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
-ROOMS_server       := program: terminal: lesson:terminal grade/parts: grade:grade/parts,lesson class:grade,grade/parts,program \
+ROOMS_server       := program: terminal: lesson:terminal grade/parts:terminal grade:grade/parts,lesson class:grade,grade/parts,program \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,grade/parts,lesson,http/ground,http/request,http/live,http/studies,http/runs \

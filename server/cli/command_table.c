@@ -76,8 +76,9 @@ static const hn_command COMMANDS[] = {
     {"lesson", "N|ID", "a lesson to read: text, formulas, what to try, exercises", "--wide", 1, 1,
      hn_command_lesson},
     {"problem", "ID",
-     "an exercise with the numbers of a variant; --check proves it over --seeds A..B",
-     "--seed --student --hint --seeds --check --wide", 1, 1, hn_command_problem},
+     "an exercise with the numbers of a variant; --check proves it over --seeds A..B; --out "
+     "FILE.svg writes the plot that is to be read",
+     "--seed --student --hint --seeds --check --wide --out -o", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...|FOLDER",
      "verdicts as --format text, json, gradescope, prairielearn, autolab, coderunner, lti-score, "
      "junit, csv or html; into --out DIR. A folder is a class: a folder, file or zip for each "

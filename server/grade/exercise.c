@@ -320,6 +320,12 @@ const char *hn_exercise_scene(const hn_exercise *problem) {
     return problem->scene;
 }
 
+bool hn_exercise_is_hidden(const hn_exercise *problem, const char *name) {
+    const cJSON *draw = cJSON_GetObjectItemCaseSensitive(problem->root, "draw");
+    const cJSON *node = cJSON_GetObjectItemCaseSensitive(draw, name);
+    return cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(node, "hidden"));
+}
+
 double hn_exercise_points(const hn_exercise *problem) {
     return problem->n_parts ? problem->points
                             : problem->points * problem->n_rows * problem->n_columns;

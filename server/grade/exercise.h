@@ -11,6 +11,7 @@
 #include "base/strbuf.h"
 #include "grade/parts/part.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -76,6 +77,9 @@ const char *hn_exercise_title(const hn_exercise *problem);
 /// Returns the id of the scene that draws a state of it, "" if there is none.
 const char *hn_exercise_scene(const hn_exercise *problem);
 double hn_exercise_points(const hn_exercise *problem);
+/// Whether a drawn number is marked "hidden": true, because it would give an answer away; it is
+/// then not among the numbers of a variant.
+bool hn_exercise_is_hidden(const hn_exercise *problem, const char *name);
 /// The statement for a person: what is given, what is asked, how to hand it in. Form 1 alone: see
 /// variant.h for form 2.
 void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem);

@@ -38,7 +38,8 @@ static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
     hn_strbuf_init(&names);
     const cJSON *m;
     cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(problem->root, "draw")) {
-        if (!cJSON_GetObjectItemCaseSensitive(m, "value")) {
+        if (!cJSON_GetObjectItemCaseSensitive(m, "value") &&
+            !hn_exercise_is_hidden(problem, m->string)) {
             hn_strbuf_printf(&names, "%s%s", names.n ? " " : "", m->string);
         }
     }
@@ -78,42 +79,63 @@ void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
     hn_json_end_object(b);
 }
 
-/// Lengths as settings of the scene, angles as its state.
-static hn_status load_state(const hn_library *lib, const hn_verdict *v, hn_model **model,
-                            hn_state_entry *entries, int *n_entries, hn_diags *diags) {
-    hn_setting settings[HN_GRADE_MAX_NAMES];
+/// The view of a matrix of formulas: lengths as settings of the scene, angles as its state.
+static hn_part_view view_of_matrix(const hn_verdict *v) {
+    hn_part_view view = {.scene = hn_exercise_scene(v->problem), .n_settings = v->n_params};
     for (int i = 0; i < v->n_params; i++) {
-        settings[i] = (hn_setting){.name = v->names[i], .value = v->values[i]};
+        view.settings[i] = (hn_setting){.name = v->names[i], .value = v->values[i]};
     }
     for (int i = v->n_params; i < v->n_names; i++) {
-        entries[(*n_entries)++] = (hn_state_entry){.name = v->names[i], .value = v->values[i]};
+        snprintf(view.names[view.n_entries], sizeof view.names[0], "%.31s", v->names[i]);
+        view.given[view.n_entries++] = v->values[i];
     }
-    hn_model_source source = {.name = hn_exercise_scene(v->problem),
-                              .settings = settings,
-                              .n_settings = v->n_params,
-                              .allow_open = 1};
-    return hn_model_load(lib, &source, model, diags);
+    return view;
+}
+
+static int take_entries(const hn_part_view *view, const double *values, hn_state_entry *entries) {
+    for (int i = 0; i < view->n_entries; i++) {
+        entries[i] = (hn_state_entry){.name = view->names[i], .value = values[i]};
+    }
+    return view->n_entries;
+}
+
+/// The sentence below the title: which answer is drawn, and its value where it has one.
+static void write_caption(const hn_verdict *v, char *caption, size_t size) {
+    const hn_entry_verdict *e = &v->entry[v->shown_entry];
+    if (v->problem->n_parts) {
+        snprintf(caption, size, "your answer to %s%s", e->name,
+                 v->view.overlay && v->show_expected ? ", and the configuration expected" : "");
+        return;
+    }
+    const int n = snprintf(caption, size, "your %s is %.6g here", e->name, e->given_value);
+    if (v->show_expected) {
+        snprintf(caption + n, size - (size_t)n, "; expected %.6g", e->expected_value);
+    }
 }
 
 hn_status hn_shelf_verdict_png(hn_strbuf *png, const hn_library *lib, const hn_verdict *v,
                                hn_diags *diags) {
-    if (v->shown_entry < 0 || !hn_exercise_scene(v->problem)[0]) {
+    const hn_part_view view = v->problem->n_parts ? v->view : view_of_matrix(v);
+    if (v->shown_entry < 0 || !view.scene || !view.scene[0]) {
         return HN_ERR_UNSUPPORTED;
     }
     hn_model *model = NULL;
-    hn_state_entry entries[HN_GRADE_MAX_NAMES];
-    int n = 0;
-    hn_status status = load_state(lib, v, &model, entries, &n, diags);
+    hn_state_entry given[HN_PART_ENTRIES], expected[HN_PART_ENTRIES];
+    char caption[160];
+    const hn_model_source source = {.name = view.scene,
+                                    .settings = view.settings,
+                                    .n_settings = view.n_settings,
+                                    .allow_open = 1};
+    hn_status status = hn_model_load(lib, &source, &model, diags);
     if (status == HN_OK) {
-        const hn_entry_verdict *e = &v->entry[v->shown_entry];
-        char caption[160];
-        const int n_text =
-            snprintf(caption, sizeof caption, "%s is %.6g here", e->name, e->given_value);
-        if (v->show_expected) {
-            snprintf(caption + n_text, sizeof caption - (size_t)n_text, ", expected %.6g",
-                     e->expected_value);
+        write_caption(v, caption, sizeof caption);
+        hn_picture_request request = {.entries = given,
+                                      .n_entries = take_entries(&view, view.given, given),
+                                      .caption = caption};
+        if (view.overlay && v->show_expected) {
+            request.expected = expected;
+            request.n_expected = take_entries(&view, view.expected, expected);
         }
-        hn_picture_request request = {.entries = entries, .n_entries = n, .caption = caption};
         status = hn_model_picture(png, NULL, model, &request, NULL, diags);
     }
     hn_model_free(model);

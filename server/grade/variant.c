@@ -109,6 +109,10 @@ void hn_variant_text(hn_strbuf *b, hn_variant *x) {
         hn_strbuf_printf(b, "\n  answer \"%s\": ", part->id);
         part->kind->ask(b, part);
         hn_strbuf_add(b, "\n");
+        if (part->kind->figure) {
+            hn_strbuf_add(b, "\n");
+            part->kind->figure(b, part, false);
+        }
     }
 
     // how to hand it in
@@ -122,6 +126,25 @@ void hn_variant_text(hn_strbuf *b, hn_variant *x) {
         hn_strbuf_printf(b, "%d hint%s: holonom problem %s --hint 1\n", p->n_hints,
                          p->n_hints == 1 ? "" : "s", p->id);
     }
+}
+
+/// The figure that a part asks about, as text for a terminal and as SVG for a page.
+static void put_figure(hn_strbuf *b, const hn_part *part) {
+    static const char *const keys[] = {"text", "svg"};
+    if (!part->kind->figure) {
+        return;
+    }
+    hn_json_key(b, "figure");
+    hn_json_object(b);
+    for (int i = 0; i < 2; i++) {
+        hn_strbuf figure;
+        hn_strbuf_init(&figure);
+        part->kind->figure(&figure, part, i == 1);
+        hn_json_put_string(b, keys[i], hn_strbuf_text(&figure));
+        b->failed |= figure.failed;
+        hn_strbuf_reset(&figure);
+    }
+    hn_json_end_object(b);
 }
 
 static void put_part(hn_strbuf *b, hn_variant *x, const hn_part *part) {
@@ -139,6 +162,7 @@ static void put_part(hn_strbuf *b, hn_variant *x, const hn_part *part) {
     hn_json_put_string(b, "answer_form", hn_strbuf_text(&text));
     b->failed |= text.failed;
     hn_strbuf_reset(&text);
+    put_figure(b, part);
     hn_json_end_object(b);
 }
 
@@ -177,7 +201,9 @@ void hn_variant_json(hn_strbuf *b, hn_variant *x) {
     hn_json_key(b, "numbers");
     hn_json_object(b);
     for (int i = 0; i < x->draw.n_names; i++) {
-        hn_json_put_number(b, x->draw.name[i], x->draw.value[0][i]);
+        if (!hn_exercise_is_hidden(p, x->draw.name[i])) {
+            hn_json_put_number(b, x->draw.name[i], x->draw.value[0][i]);
+        }
     }
     hn_json_end_object(b);
     hn_json_put_int(b, "hints", p->n_hints);
@@ -329,6 +355,21 @@ static void charge_hints(const hn_variant *x, const cJSON *submission, hn_verdic
     }
 }
 
+/// What a picture shows: the first wrong answer that describes a scene.
+static void show_answer(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
+    for (int k = 0; k < v->n_entries && v->shown_entry < 0; k++) {
+        const hn_entry_verdict *e = &v->entry[k];
+        const size_t n = strcspn(e->name, ".");
+        for (int i = 0; i < x->n_parts && !e->right; i++) {
+            const hn_part *p = &x->part[i];
+            if (p->kind->view && strlen(p->id) == n && strncmp(p->id, e->name, n) == 0) {
+                p->kind->view(p, cJSON_GetObjectItemCaseSensitive(submission, p->id), &v->view);
+                v->shown_entry = v->view.scene ? k : -1;
+            }
+        }
+    }
+}
+
 hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v, hn_diag *diag) {
     if (!cJSON_IsObject(submission)) {
         hn_submission_refuse(v, "as in {\"a\": 1.2, \"b\": \"...\"}",
@@ -346,6 +387,7 @@ hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v
                               diag));
         add_results(v, p, results, n);
     }
+    show_answer(x, submission, v);
     charge_hints(x, submission, v);
     summarise(v);
     refuse_unreadable(v);

@@ -68,7 +68,7 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         hn_strbuf_printf(b, "  %-5s %4g / %g  %s\n", e->name, e->points, e->max_points,
                          e->mistake[0] ? e->mistake : "right");
         hn_verdict_entry_text(b, v, e, "        ");
-        if (k == v->shown_entry) {
+        if (k == v->shown_entry && v->n_names > 0) {
             hn_strbuf_add(b, "        at        ");
             add_state(b, v);
             hn_strbuf_add(b, "\n");
@@ -109,6 +109,25 @@ static void put_entry(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict 
     hn_json_end_object(b);
 }
 
+/// The scene in the state of the picture: parameters, then coordinates.
+static void put_shown(hn_strbuf *b, const hn_verdict *v) {
+    const hn_part_view *view = &v->view;
+    hn_json_put_string(b, "shown_entry", v->entry[v->shown_entry].name);
+    hn_json_put_string(b, "shown_scene", view->scene ? view->scene : v->problem->scene);
+    hn_json_key(b, "shown_state");
+    hn_json_object(b);
+    for (int i = 0; i < v->n_names; i++) {
+        hn_json_put_number(b, v->names[i], v->values[i]);
+    }
+    for (int i = 0; i < view->n_settings; i++) {
+        hn_json_put_number(b, view->settings[i].name, view->settings[i].value);
+    }
+    for (int i = 0; i < view->n_entries; i++) {
+        hn_json_put_number(b, view->names[i], view->given[i]);
+    }
+    hn_json_end_object(b);
+}
+
 /// What reproduces the verdict, and the state of the picture.
 static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     char hash[17], seed[32];
@@ -134,14 +153,7 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
 
     // the scene in the state where the answer is shown
     if (v->shown_entry >= 0) {
-        hn_json_put_string(b, "shown_entry", v->entry[v->shown_entry].name);
-        hn_json_put_string(b, "shown_scene", v->problem->scene);
-        hn_json_key(b, "shown_state");
-        hn_json_object(b);
-        for (int i = 0; i < v->n_names; i++) {
-            hn_json_put_number(b, v->names[i], v->values[i]);
-        }
-        hn_json_end_object(b);
+        put_shown(b, v);
     }
 }
 

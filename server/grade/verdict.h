@@ -41,7 +41,8 @@ typedef struct hn_verdict {
     int n_names, n_params;                 ///< parameters first, then coordinates
     const char *names[HN_GRADE_MAX_NAMES]; ///< borrowed from the problem
     double values[HN_GRADE_MAX_NAMES];     ///< [m], [rad]
-    int n_states;                          ///< states at which entries were compared
+    hn_part_view view; ///< of an exercise with parts: the scene of the picture; scene NULL: none
+    int n_states;      ///< states at which entries were compared
     uint64_t seed;
     const hn_exercise *problem; ///< borrowed
     bool show_expected; ///< the reference's formulas and numbers are written too: not for students

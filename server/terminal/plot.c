@@ -19,6 +19,9 @@ static double height_of(const hn_plot *plot, double y) {
 
 static range find_range(const hn_plot *plot) {
     range r = {(double)INFINITY, -(double)INFINITY};
+    if (plot->low < plot->high) {
+        return (range){height_of(plot, plot->low), height_of(plot, plot->high)};
+    }
     for (int s = 0; s < plot->n; s++) {
         for (int k = 0; k < plot->series[s].n; k++) {
             const double h = height_of(plot, plot->series[s].y[k]);
@@ -57,6 +60,21 @@ static int row_of(double height, range r, int rows) {
     return (int)lround((r.high - height) / (r.high - r.low) * (rows - 1));
 }
 
+/// The axis of time: its ends, and labels between them.
+static void draw_time(hn_cells *c, hn_area area, const hn_plot *plot) {
+    char end[32];
+    const int columns = snprintf(end, sizeof end, "%.4g s", plot->t_end);
+    const int inner = area.columns - LABEL_COLUMNS;
+    hn_cells_put(c, area, LABEL_COLUMNS, area.rows - 1, HN_CELL_MUTED, 0, "0");
+    for (int k = 1; k < plot->intervals; k++) {
+        char label[32];
+        const int n = snprintf(label, sizeof label, "%.3g", plot->t_end * k / plot->intervals);
+        const int at = (int)lround((double)k / plot->intervals * (inner - 1));
+        hn_cells_put(c, area, LABEL_COLUMNS + at - n / 2, area.rows - 1, HN_CELL_MUTED, 0, label);
+    }
+    hn_cells_put(c, area, area.columns - columns, area.rows - 1, HN_CELL_MUTED, 0, end);
+}
+
 static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_plot *plot, range r) {
     // four or five labels: every decade, or every second, third ... one
     const int most = inner.rows / 2 > 2 ? inner.rows / 2 : 2;
@@ -69,11 +87,7 @@ static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_plot *p
         hn_cells_printf(c, area, 0, row, HN_CELL_MUTED, 0, "%*s", LABEL_COLUMNS - 1, label);
         hn_cells_put(c, area, LABEL_COLUMNS - 1, row, HN_CELL_MUTED, 0, "┤");
     }
-    // time, from 0 to the end
-    char end[32];
-    const int columns = snprintf(end, sizeof end, "%.4g s", plot->t_end);
-    hn_cells_put(c, area, LABEL_COLUMNS, area.rows - 1, HN_CELL_MUTED, 0, "0");
-    hn_cells_put(c, area, area.columns - columns, area.rows - 1, HN_CELL_MUTED, 0, end);
+    draw_time(c, area, plot);
     if (plot->unit && plot->unit[0]) {
         hn_cells_printf(c, area, 0, area.rows - 1, HN_CELL_MUTED, 0, "[%s]", plot->unit);
     }

@@ -21,6 +21,8 @@ typedef struct hn_plot {
     bool logarithmic; ///< values are shown by their size; 0 stands at the floor
     double floor;     ///< least value shown on a logarithmic axis, above 0
     const char *unit; ///< of y; a logarithmic axis shows powers of ten of it
+    double low, high; ///< ends of the axis of y; both 0: fitted to the values
+    int intervals;    ///< of the axis of time, with a label between each two; 0: ends alone
     int n;
     hn_series series[HN_PLOT_SERIES];
 } hn_plot;

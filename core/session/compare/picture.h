@@ -33,6 +33,10 @@ typedef struct hn_picture_request {
     int delay; ///< [ms] for which a moment stands in an animation; 1 to 65,535
     const hn_state_entry *entries;
     int n_entries;
+    /// another pose of the same scene, drawn beneath the one of `entries` as what is expected;
+    /// NULL: none
+    const hn_state_entry *expected;
+    int n_expected;
     const char *caption; ///< NULL: the scene's
     int width, height;   ///< [px]; 0: 1200 x 720
     hn_theme theme;

@@ -205,18 +205,33 @@ static void gather_poses(hn_picture_moment *p, hn_status *ended) {
     p->n_poses = n;
 }
 
-static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
+/// The points of one pose that was given.
+static hn_status place_pose(hn_picture_moment *p, const hn_state_entry *entries, int n,
+                            double *points, hn_diags *diags) {
     const hn_system_info info = hn_system_get_info(hn_model_system(p->model));
     double *q = hn_arena_doubles(p->arena, (size_t)info.nq + 1);
     double *v = hn_arena_doubles(p->arena, (size_t)info.nv + 1);
     if (!q || !v) {
         return HN_ERR_MEMORY;
     }
-    hn_status status =
-        hn_model_state(p->model, p->request->entries, p->request->n_entries, q, v, diags);
-    HN_THEN(status, hn_model_points(p->model, q, p->points));
+    hn_status status = hn_model_state(p->model, entries, n, q, v, diags);
+    HN_THEN(status, hn_model_points(p->model, q, points));
+    return status;
+}
+
+static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
+    const hn_picture_request *r = p->request;
+    double *other = p->points + 3 * (size_t)hn_system_get_info(hn_model_system(p->model)).n_points;
+    hn_status status = place_pose(p, r->entries, r->n_entries, p->points, diags);
     p->poses[0] = (hn_snapshot_pose){.points = p->points, .name = "this pose", .selected = 1};
     p->n_poses = 1;
+    if (status == HN_OK && r->expected) {
+        status = place_pose(p, r->expected, r->n_expected, other, diags);
+        p->poses[0].name = "given";
+        p->poses[1] =
+            (hn_snapshot_pose){.points = other, .name = "expected", .slot = HN_LOOK_REFERENCE};
+        p->n_poses = 2;
+    }
     return status;
 }
 

@@ -2,6 +2,8 @@
 // holonom problem: an exercise with its numbers, its hints, or the proof that it is sound.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/forms.h"
+#include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "grade/exercise_check.h"
 #include "grade/exercise_shelf.h"
@@ -92,6 +94,37 @@ static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant
     return hn_cli_print_text(&b);
 }
 
+/// Writes the figures of all parts that have one: into FILE.svg, or with the ids of the parts
+/// before the ending where there are several.
+static hn_exit write_figures(const hn_args *args, const hn_exercise *e, const hn_variant *x) {
+    int n = 0;
+    hn_diag diag;
+    hn_exit result = HN_EXIT_DONE;
+    for (int i = 0; i < x->n_parts; i++) {
+        n += x->part[i].kind->figure != NULL;
+    }
+    if (n == 0 || !hn_path_ends_in(args->out, ".svg")) {
+        hn_diag_set(&diag, HN_ERR_INPUT, "/out", n ? "end it in .svg" : "leave --out away",
+                    n ? "'%.200s' is no name for a plot" : "no part of '%.80s' asks about a plot",
+                    n ? args->out : hn_exercise_id(e));
+        return hn_report_diag(args, &diag);
+    }
+    for (int i = 0; i < x->n_parts && result == HN_EXIT_DONE; i++) {
+        const hn_part *part = &x->part[i];
+        hn_strbuf path, svg;
+        hn_strbuf_init(&path);
+        hn_strbuf_init(&svg);
+        if (part->kind->figure) {
+            hn_strbuf_add_n(&path, args->out, strlen(args->out) - 4);
+            hn_strbuf_printf(&path, n > 1 ? "-%s.svg" : ".svg", part->id);
+            part->kind->figure(&svg, part, true);
+            result = hn_cli_write_file(args, hn_strbuf_text(&path), &svg);
+        }
+        hn_strbuf_reset(&path);
+    }
+    return result;
+}
+
 static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
     hn_variant x;
     hn_diag diag = {0};
@@ -108,6 +141,8 @@ static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
     hn_strbuf_init(&b);
     if (status != HN_OK) {
         hn_report_diag(args, &diag);
+    } else if (args->out) {
+        result = write_figures(args, e, &x);
     } else if (args->hint > 0) {
         result = print_hints(args, e, &x);
     } else if (args->json) {

@@ -6,6 +6,7 @@
 //
 // Names are an object {"l1": {"range": [0.4, 0.9], "digits": 2, "unit": "m"}, "g": {"value": 9.81},
 // "n": {"choose": [2, 3, 5]}, "d": {"formula": "l1 + 0.2"}}. A formula may use the names before it.
+// "hidden": true keeps a number out of the documents for students.
 // Conditions are formulas that must be positive; numbers are drawn until all are.
 
 #include "base/diag.h"

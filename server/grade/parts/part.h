@@ -7,6 +7,7 @@
 // has been tried as a whole when it was loaded (exercise_check.h).
 
 #include "grade/parts/draw.h"
+#include "scene/scene.h"
 #include "session/model/library.h"
 
 #include <stdbool.h>
@@ -32,6 +33,17 @@ typedef struct hn_part {
     const hn_library *lib; ///< shipped scenes; NULL: kinds that run mechanisms cannot grade
 } hn_part;
 
+/// A scene in the state that an answer describes, for a picture.
+enum { HN_PART_ENTRIES = 24 };
+typedef struct hn_part_view {
+    const char *scene; ///< borrowed from the exercise; NULL: there is nothing to draw
+    int n_settings, n_entries;
+    hn_setting settings[HN_PART_ENTRIES];
+    char names[HN_PART_ENTRIES][32];                          ///< of coordinates
+    double given[HN_PART_ENTRIES], expected[HN_PART_ENTRIES]; ///< [m], [rad]
+    bool overlay; ///< `expected` is set: another pose than the one given
+} hn_part_view;
+
 typedef struct hn_part_kind {
     const char *name;
     const char *fields; ///< members of a node of this kind, separated by blanks
@@ -48,6 +60,11 @@ typedef struct hn_part_kind {
     cJSON *(*fault)(const hn_part *p, int i, const char **id, hn_diag *diag);
     /// Confirms the reference by a second means; NULL: the grading itself proves it.
     hn_status (*prove)(const hn_part *p, hn_diag *diag);
+    /// The figure that the question is about, as text or as SVG; NULL: the kind has none.
+    void (*figure)(hn_strbuf *b, const hn_part *p, bool svg);
+    /// What a picture of an answer that can be read shows; NULL: the kind has none. The names of
+    /// settings are borrowed from the exercise.
+    void (*view)(const hn_part *p, const cJSON *given, hn_part_view *out);
 } hn_part_kind;
 
 // ---- for the kinds ----

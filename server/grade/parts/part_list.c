@@ -7,10 +7,20 @@ static const struct {
     const char *name;
     const hn_part_kind *kind;
 } KINDS[] = {
-    {"number", &hn_part_values},   {"vector", &hn_part_values}, {"formula", &hn_part_values},
-    {"formulas", &hn_part_values}, {"choice", &hn_part_choice}, {"matrix", &hn_part_matrix},
-    {"blocks", &hn_part_blocks},   {"basis", &hn_part_basis},   {"example", &hn_part_example},
-    {"order", &hn_part_order},     {"method", &hn_part_method},
+    {"number", &hn_part_values},
+    {"vector", &hn_part_values},
+    {"formula", &hn_part_values},
+    {"formulas", &hn_part_values},
+    {"choice", &hn_part_choice},
+    {"matrix", &hn_part_matrix},
+    {"blocks", &hn_part_blocks},
+    {"basis", &hn_part_basis},
+    {"example", &hn_part_example},
+    {"order", &hn_part_order},
+    {"method", &hn_part_method},
+    {"reading", &hn_part_reading},
+    {"configuration", &hn_part_configuration},
+    {"scene", &hn_part_scene},
 };
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 

@@ -6,7 +6,8 @@
 #include "grade/parts/part.h"
 
 extern const hn_part_kind hn_part_values, hn_part_choice, hn_part_matrix, hn_part_blocks,
-    hn_part_basis, hn_part_example, hn_part_order, hn_part_method;
+    hn_part_basis, hn_part_example, hn_part_order, hn_part_method, hn_part_reading,
+    hn_part_configuration, hn_part_scene;
 
 /// The kind of a name ("number", "choice" ...); NULL with a near miss in diag.
 const hn_part_kind *hn_part_kind_find(const char *name, hn_diag *diag);

@@ -2,16 +2,16 @@
 // A method with its options that meets an error target within a cost. The method of the answer is
 // run on the scene, and its coordinates at the end are compared with those of the reference method.
 #include "grade/parts/part_list.h"
+#include "grade/parts/part_model.h"
 
 #include "integrators/method/method_spec.h"
-#include "session/model/model.h"
 #include "study/run/run.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_COORDINATES = 64, MAX_STEPS = 200000, MAX_SETTINGS = 8 };
+enum { MAX_COORDINATES = 64, MAX_STEPS = 200000 };
 
 /// What a run to the end gave.
 typedef struct outcome {
@@ -22,36 +22,6 @@ typedef struct outcome {
     double q[MAX_COORDINATES];
     double gap, energy_change, evaluations;
 } outcome;
-
-/// The scene of the part, with the drawn numbers that "set" names.
-static hn_status load_model(const hn_part *p, hn_model **model, hn_diag *diag) {
-    hn_setting settings[MAX_SETTINGS];
-    int n = 0;
-    hn_diags diags = {0};
-    const cJSON *name;
-
-    // the settings take their numbers from the draw
-    cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(p->node, "set")) {
-        double value;
-        HN_TRY(hn_draw_value(p->draw, name->valuestring, &value, diag));
-        if (n < MAX_SETTINGS) {
-            settings[n++] = (hn_setting){.name = name->valuestring, .value = value};
-        }
-    }
-
-    // the scene comes from the library that the part was given
-    const hn_model_source source = {
-        .name = hn_part_text(p->node, "scene"), .settings = settings, .n_settings = n};
-    if (!p->lib) {
-        return hn_diag_set(diag, HN_ERR_INPUT, "/parts/scene", NULL, "no library of scenes here");
-    }
-
-    // the first message of the loader becomes that of the part
-    const hn_status status = hn_model_load(p->lib, &source, model, &diags);
-    return status == HN_OK ? status
-                           : hn_diag_set(diag, status == HN_ERR_MEMORY ? status : HN_ERR_INPUT,
-                                         "/parts/scene", NULL, "%.300s", diags.item[0].message);
-}
 
 static void finish(hn_run *run, double time, outcome *out) {
     hn_sample sample;
@@ -135,7 +105,7 @@ static hn_status grade_word(const hn_part *p, const char *word, hn_part_result *
     hn_model *model = NULL;
     outcome found, reference;
     hn_diag why = {0};
-    HN_TRY(load_model(p, &model, diag));
+    HN_TRY(hn_part_load_model(p, &model, diag));
     hn_status status = run_method(p, model, hn_part_text(p->node, "reference"), &reference, diag);
     status = status == HN_OK && reference.status != HN_OK ? HN_ERR_INPUT : status;
     if (status == HN_OK) {
@@ -168,7 +138,7 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
 static hn_status prove(const hn_part *p, hn_diag *diag) {
     hn_model *model = NULL;
     outcome a, b;
-    HN_TRY(load_model(p, &model, diag));
+    HN_TRY(hn_part_load_model(p, &model, diag));
     hn_status status = run_method(p, model, hn_part_text(p->node, "reference"), &a, diag);
     status =
         status == HN_OK ? run_method(p, model, hn_part_text(p->node, "second"), &b, diag) : status;
@@ -185,18 +155,11 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
 }
 
 static void ask(hn_strbuf *b, const hn_part *p) {
-    const cJSON *set = cJSON_GetObjectItemCaseSensitive(p->node, "set"), *m;
     hn_strbuf_printf(b,
                      "a method in quotes, as \"projection@rk4:h=0.01\"; it is run on the scene "
                      "%s to t = %g s",
                      hn_part_text(p->node, "scene"), hn_part_number(p->node, "time", 1));
-    cJSON_ArrayForEach(m, set) {
-        double value = 0;
-        if (hn_draw_value(p->draw, m->valuestring, &value, NULL) == HN_OK) {
-            hn_strbuf_printf(b, "%s %s=%g", m == set->child ? " with --set" : " --set",
-                             m->valuestring, value);
-        }
-    }
+    hn_part_put_settings(b, p);
 }
 
 const hn_part_kind hn_part_method = {

@@ -5,141 +5,13 @@
 // formula invites.
 #include "grade/parts/part_list.h"
 
-#include "expr/construct.h"
-#include "expr/diff.h"
-#include "grade/parts/spelling.h"
+#include "grade/parts/value_entry.h"
 #include "grade/parts/value_mistakes.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MAX_CHARS = 2000 };
-
-// ---- what the student wrote ----
-
-/// Whether a unit may begin at text[i]: behind a number, a bracket or a blank, never inside a
-/// number (the unit "1/s" begins with a digit, and so does the end of "0.11/s").
-static bool may_begin_unit(const char *text, size_t i) {
-    const bool inside = strchr("0123456789.", text[i - 1]) && strchr("0123456789.", text[i]);
-    return !inside && (strchr("0123456789.) ", text[i - 1]) || strncmp(text + i, "°", 2) == 0);
-}
-
-/// A formula with a unit behind it, as "2*pi rad/s": the unit is the longest end that is one.
-static hn_status read_quantity(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *unit,
-                               hn_diag *diag) {
-    char head[MAX_CHARS];
-    *unit = s->unit;
-    hn_status status = hn_draw_parse(s->draw, text, e, diag);
-    for (size_t i = 1; status != HN_OK && text[i]; i++) {
-        if (may_begin_unit(text, i)) {
-            snprintf(head, sizeof head, "%.*s", (int)i, text);
-            if (hn_unit_parse(text + i, unit) && text[i + strspn(text + i, " ")] &&
-                hn_draw_parse(s->draw, head, e, NULL) == HN_OK) {
-                status = HN_OK;
-            }
-        }
-    }
-    return status;
-}
-
-/// 1 when a formula that should be a number has names in it.
-static int uses_names(const hn_value_sheet *s, hn_ex e) {
-    int uses = 0;
-    for (int i = 0; i < s->draw->n_names; i++) {
-        uses |= hn_depends_on(s->draw->graph, e, i);
-    }
-    return uses;
-}
-
-/// The reason why a formula cannot be read.
-static void refuse_formula(const char *text, const hn_diag *diag, hn_part_result *r) {
-    hn_part_unreadable(r, "'%.60s' cannot be read: %.180s%s%.80s", text, diag->message,
-                       diag->hint[0] ? "; " : "", diag->hint);
-}
-
-/// The reason why a number cannot be read, with the slip that is most frequent.
-static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_result *r) {
-    const char *unit = hn_part_text(s->p->node, "unit");
-    char *end;
-    strtod(text, &end);
-    const char *tail = end + strspn(end, " ");
-    if (end == text || !*tail) {
-        hn_part_unreadable(r, "'%.60s' is no number; a number is asked for%s%s", text,
-                           unit[0] ? ", if you like with its unit: 1.2 " : "", unit);
-    } else if (*tail == ',') {
-        hn_part_unreadable(r, "'%.60s' has a comma at column %d; write decimals with a point", text,
-                           (int)(tail - text) + 1);
-    } else {
-        hn_part_unreadable(r, "'%.60s': '%.30s' at column %d is no unit known here; asked for: %s",
-                           text, tail, (int)(tail - text) + 1, unit[0] ? unit : "a plain number");
-    }
-}
-
-/// Reads text as the student wrote it; 0 after it has said why it cannot be read.
-static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *unit,
-                     hn_part_result *r) {
-    hn_diag diag = {0};
-    hn_strbuf plain;
-    hn_strbuf_init(&plain);
-    hn_status status = HN_ERR_INPUT;
-
-    // a number with its unit, as it stands or in the parser's own spelling; or a formula
-    if (!s->symbolic && strlen(text) < MAX_CHARS) {
-        status = read_quantity(s, text, e, unit, &diag);
-    }
-    if (status != HN_OK) {
-        status = hn_spelling_normalise(&plain, text, &diag);
-        if (status == HN_OK && s->symbolic) {
-            status = hn_draw_parse(s->draw, hn_strbuf_text(&plain), e, &diag);
-        } else if (status == HN_OK) {
-            status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
-        }
-    }
-    if (status != HN_OK && s->symbolic) {
-        refuse_formula(text, &diag, r);
-    } else if (status != HN_OK) {
-        refuse_number(s, text, r);
-    }
-    hn_strbuf_reset(&plain);
-    return status == HN_OK;
-}
-
-/// The values of one entry; 0 after the result has said what is wrong with it.
-static int read_entry(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_STATES], hn_ex *e,
-                      hn_part_result *r) {
-    hn_unit unit = s->unit;
-    *e = hn_num(0);
-    hn_part_keep_given(r, node);
-    if (!node || cJSON_IsNull(node) || (cJSON_IsString(node) && !*node->valuestring)) {
-        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
-        return 0;
-    }
-    if (cJSON_IsNumber(node)) {
-        *e = hn_num(node->valuedouble);
-    } else if (!cJSON_IsString(node)) {
-        hn_part_unreadable(r, "expected %s", s->symbolic ? "a formula in quotes" : "a number");
-        return 0;
-    } else if (!read_text(s, node->valuestring, e, &unit, r)) {
-        return 0;
-    }
-    if (!s->symbolic && uses_names(s, *e)) {
-        hn_part_unreadable(r, "a number is asked for, not a formula");
-        return 0;
-    }
-    if (!hn_unit_fits(&unit, &s->unit)) {
-        hn_part_wrong(r, "unit", 0, "this unit measures something else; asked for: %s",
-                      hn_part_text(s->p->node, "unit"));
-        return 0;
-    }
-
-    // in the unit that is asked for
-    for (int i = 0; i < s->draw->n_states; i++) {
-        x[i] = hn_draw_eval(s->draw, *e, i) * unit.factor / s->unit.factor;
-    }
-    return 1;
-}
 
 // ---- the functions of the kind ----
 
@@ -159,7 +31,7 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
     name_entry(s, k, r);
     snprintf(r->expected, sizeof r->expected, s->symbolic ? "the formula" : "%.6g %s",
              s->reference.x[k][0], hn_part_text(s->p->node, "unit"));
-    if (!read_entry(s, node, x, &e, r)) {
+    if (!hn_value_entry_read(s, node, x, &e, r)) {
         return HN_OK;
     }
     if (hn_value_is_right(s, k, x)) {

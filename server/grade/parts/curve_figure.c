@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/parts/curve_figure.h"
+
+#include "terminal/plot.h"
+
+#include <math.h>
+
+enum {
+    ROWS = 17,
+    INTERVALS = 5,
+    WIDTH = 640,
+    HEIGHT = 300,
+    LEFT = 64,
+    RIGHT = 16,
+    TOP = 34,
+    BOTTOM = 44
+};
+
+void hn_curve_axis(const hn_motion_curve *c, double *low, double *high) {
+    // about four steps of 1, 2 or 5 times a power of ten, with room at both ends
+    const double span = fmax(c->high - c->low, fmax(1e-12, 1e-9 * fabs(c->high)));
+    const double rough = span / 4, power = pow(10, floor(log10(rough)));
+    const double step = power * (rough / power > 5   ? 10
+                                 : rough / power > 2 ? 5
+                                 : rough / power > 1 ? 2
+                                                     : 1);
+    *low = step * floor((c->low - 0.02 * span) / step);
+    *high = step * ceil((c->high + 0.02 * span) / step);
+    *low = c->low >= 0 ? fmax(*low, 0) : *low;
+
+    // four equal intervals with labels of few digits
+    const double quarter = ceil((*high - *low) / step / 4) * step;
+    *high = *low + 4 * quarter;
+}
+
+void hn_curve_text(hn_strbuf *b, const hn_motion_curve *c, const char *title, int columns) {
+    hn_cells cells = {0};
+    if (!hn_cells_resize(&cells, columns, ROWS)) {
+        b->failed = 1;
+        return;
+    }
+    hn_plot plot = {.dt = c->dt,
+                    .t_end = c->t_end,
+                    .cursor = (double)NAN,
+                    .unit = c->unit,
+                    .intervals = INTERVALS,
+                    .n = 1};
+    hn_curve_axis(c, &plot.low, &plot.high);
+    plot.series[0] = (hn_series){.y = c->y, .n = c->n, .glyph = "", .on = 1};
+    hn_cells_put(&cells, (hn_area){0, 0, columns, 1}, 0, 0, HN_CELL_INK, HN_CELL_PLAIN, title);
+    hn_plot_draw(&cells, (hn_area){0, 1, columns, ROWS - 1}, &plot, HN_DOTS_BRAILLE);
+    hn_cells_text(b, &cells, false);
+    hn_cells_free(&cells);
+}
+
+static double across(const hn_motion_curve *c, double t) {
+    return LEFT + t / c->t_end * (WIDTH - LEFT - RIGHT);
+}
+
+static double down(double y, double low, double high) {
+    return TOP + (high - y) / (high - low) * (HEIGHT - TOP - BOTTOM);
+}
+
+static void put_grid(hn_strbuf *b, const hn_motion_curve *c, double low, double high) {
+    for (int k = 0; k <= 4; k++) {
+        const double value = low + (high - low) * k / 4, y = down(value, low, high);
+        hn_strbuf_printf(b,
+                         "<path class=\"grid\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" "
+                         "text-anchor=\"end\">%.4g</text>\n",
+                         LEFT, y, WIDTH - RIGHT, LEFT - 6, y + 4, value);
+    }
+    for (int k = 0; k <= INTERVALS; k++) {
+        const double t = c->t_end * k / INTERVALS, x = across(c, t);
+        hn_strbuf_printf(b,
+                         "<path class=\"grid\" d=\"M%.1f %dV%d\"/><text x=\"%.1f\" y=\"%d\" "
+                         "text-anchor=\"middle\">%.4g</text>\n",
+                         x, TOP, HEIGHT - BOTTOM, x, HEIGHT - BOTTOM + 18, t);
+    }
+}
+
+void hn_curve_svg(hn_strbuf *b, const hn_motion_curve *c, const char *title) {
+    double low, high;
+    hn_curve_axis(c, &low, &high);
+    hn_strbuf_printf(b,
+                     "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" "
+                     "role=\"img\"><title>%s</title><style>text{font:13px sans-serif;"
+                     "fill:currentColor}path{fill:none;stroke:currentColor}.grid{opacity:.25}"
+                     ".curve{stroke-width:2}</style>\n",
+                     WIDTH, HEIGHT, title);
+    hn_strbuf_printf(b, "<text x=\"%d\" y=\"18\">%s</text>\n", LEFT, title);
+    put_grid(b, c, low, high);
+    hn_strbuf_printf(b, "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">t [s]</text>\n", WIDTH - RIGHT,
+                     HEIGHT - 6);
+
+    // the curve, a point a sample
+    hn_strbuf_add(b, "<path class=\"curve\" d=\"");
+    for (int k = 0; k < c->n; k++) {
+        hn_strbuf_printf(b, "%s%.1f %.1f", k ? "L" : "M", across(c, k * c->dt),
+                         down(c->y[k], low, high));
+    }
+    hn_strbuf_add(b, "\"/></svg>\n");
+}
