@@ -116,6 +116,16 @@ static void offer_listed(const completing *c, const char *words) {
     }
 }
 
+/// The values of an option whose argument lists them: "light|dark".
+static void offer_choices(const completing *c, const hn_command *command, const char *option) {
+    hn_option_row o;
+    for (int i = 0; hn_args_option(command, i, &o); i++) {
+        if (strcmp(o.name, option) == 0 && o.argument && strchr(o.argument, '|')) {
+            offer_listed(c, o.argument);
+        }
+    }
+}
+
 /// A word that is no option's value; `first`: the one behind the command.
 static void offer_word(const completing *c, const hn_library *lib, const hn_command *command,
                        bool first) {
@@ -180,7 +190,9 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
         offer_methods(c);
     } else if (strcmp(option, "--set") == 0) {
         offer_parameters(&c, lib, words[1]);
-    } else if (option[0] == '\0') {
+    } else if (option[0] != '\0') {
+        offer_choices(&c, command, option);
+    } else {
         offer_word(&c, lib, command, n == 2);
     }
 }

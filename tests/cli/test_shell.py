@@ -56,7 +56,7 @@ class Completion(unittest.TestCase):
     # options, kinds of studies, files
     CASES = (("sna", "snapshot"), ("run four-b", "four-bar"), ("run four-bar --set l1", "l1="), ("run four-bar --method projection@rk", "projection@rk4"),
              ("run four-bar --method baumgarte:al", "baumgarte:alpha="), ("run four-bar --met", "--method"), ("study four-bar stab", "stability"),
-             ("grade p3 ans", "answer.json"))
+             ("tui four-bar --pictures si", "sixel"), ("grade p3 ans", "answer.json"))
 
     def offered(self, shell, script):
         """{line: what is offered}, from a script that prints a line "> LINE" and below it what it was offered."""

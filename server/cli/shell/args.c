@@ -488,8 +488,13 @@ void hn_args_describe(hn_strbuf *b, const hn_command *command) {
     for (int i = 0; hn_args_option(command, i, &o); i++) {
         char head[64];
         snprintf(head, sizeof head, "%s %s", o.name, o.argument ? o.argument : "");
-        hn_strbuf_printf(b, "  %-*s ", HELP_HEAD, head);
-        // what is said of it stands in a column of its own
+        // what is said of it stands in a column of its own, below a head that reaches into it
+        const bool wide = strlen(head) > HELP_HEAD;
+        if (wide) {
+            hn_strbuf_printf(b, "  %s\n%*s", head, HELP_HEAD + 3, "");
+        } else {
+            hn_strbuf_printf(b, "  %-*s ", HELP_HEAD, head);
+        }
         const int room = HELP_WIDTH - HELP_HEAD - 3;
         for (const char *rest = o.about; *rest;) {
             const size_t n = hn_fold_line(rest, room);
