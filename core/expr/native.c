@@ -72,10 +72,6 @@ hn_native_opts hn_native_opts_default(const char *folder) {
         .folder = folder, .time_limit = 60, .look_after = 0.002, .build_after = 0.02};
 }
 
-const hn_native_call *hn_native_calls(void) {
-    return calls;
-}
-
 // ---- copies of tapes ----
 
 static void *copy_of(const void *bytes, size_t n) {
@@ -213,6 +209,7 @@ hn_native_state *hn_native_state_create(const hn_tape *tape) {
         s->look_at = s->look_at > 1 ? s->look_at : 1;
         s->build_at = s->build_at > s->look_at ? s->build_at : s->look_at + 1;
         atomic_init(&s->refs, 1);
+        s->calls = calls;
         s->loaded = find_loaded(tape);
         atomic_init(&s->code, s->loaded ? s->loaded->code : NULL);
     }

@@ -77,6 +77,7 @@ typedef struct hn_native_loaded hn_native_loaded;
 /// What a tape has of the service. Shared by the tape and the queue.
 typedef struct hn_native_state {
     _Atomic(hn_native_code) code; ///< NULL: the interpreter serves
+    const hn_native_call *calls;  ///< the functions of the operator table, as the code takes them
     atomic_int runs;              ///< interpreted so far; loses some where threads share the tape
     int look_at, build_at;        ///< numbers of runs at which the queue is asked
     atomic_int refs;
@@ -88,6 +89,4 @@ hn_native_state *hn_native_state_create(const struct hn_tape *tape);
 void hn_native_state_release(hn_native_state *s); ///< NULL is legal
 /// Queues the tape (a copy of what is needed); nothing happens where memory is out.
 void hn_native_ask(const struct hn_tape *tape, bool build);
-/// The functions of the operator table, as compiled code takes them.
-const hn_native_call *hn_native_calls(void);
 #endif

@@ -62,7 +62,7 @@ void hn_tape_run(const hn_tape *tape, double *work) {
     if (tape->native) {
         const hn_native_code code = atomic_load_explicit(&tape->native->code, memory_order_acquire);
         if (code) {
-            code(work, hn_native_calls());
+            code(work, tape->native->calls);
             return;
         }
         count_run(tape);

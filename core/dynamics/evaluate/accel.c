@@ -404,8 +404,7 @@ static bool solve_at_once(hn_accel *s, double *a, double *lambda, const hn_accel
     }
     hn_tape_run(s->in.tape, s->in.x);
     s->ops += s->tape_ops;
-    return !info && hn_accel_tape_is_sure(&s->tape, &s->in, SURE_PIVOT, SURE_ROW) &&
-           hn_accel_tape_take(&s->tape, &s->in, a, lambda);
+    return !info && hn_accel_tape_take_sure(&s->tape, &s->in, SURE_PIVOT, SURE_ROW, a, lambda);
 }
 
 /// Takes the answer of the tape that has been run. HN_ERR_SINGULAR: a pivot is lost, or so small

@@ -92,8 +92,7 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
     return status;
 }
 
-bool hn_accel_tape_is_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
-                           double row) {
+static bool is_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot, double row) {
     const double *x = in->x;
     const uint16_t *guard = in->slots + tape->n_answer, *rows = guard + 2 * tape->n_guards;
     const int n_rows = tape->n_out - tape->n_answer - 2 * tape->n_guards;
@@ -142,4 +141,9 @@ bool hn_accel_tape_take(const hn_accel_tape *tape, const hn_inputs *in, double *
         lambda[i] = x[slots[in->nv + i]];
     }
     return true;
+}
+
+bool hn_accel_tape_take_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
+                             double row, double *a, double *lambda) {
+    return is_sure(tape, in, pivot, row) && hn_accel_tape_take(tape, in, a, lambda);
 }

@@ -25,11 +25,11 @@ HN_MUST_CHECK hn_status hn_accel_tape_compile(const hn_system *sys, bool want_la
                                               bool baumgarte, hn_arena *arena, hn_inputs *inputs,
                                               hn_accel_tape *out);
 
-/// Whether every pivot is above `pivot` times its reference and every row's squared length above
-/// `row` times the largest, after a run of the tape: compares without a division, so `true` is sure
-/// and `false` is not.
-bool hn_accel_tape_is_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
-                           double row);
+/// Takes the answer as hn_accel_tape_take() does if every pivot is above `pivot` times its
+/// reference and every row's squared length above `row` times the largest: compares without a
+/// division, so `true` is sure and `false` is not.
+bool hn_accel_tape_take_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
+                             double row, double *a, double *lambda);
 
 /// The smallest pivot relative to its reference after a run of the tape [-]; 0: not a number.
 double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in);

@@ -67,19 +67,3 @@ void hn_inputs_free(hn_inputs *in) {
     hn_tape_free(in->tape);
     in->tape = NULL;
 }
-
-void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
-                   double beta) {
-    double *x = in->x;
-    for (int i = 0; i < in->nq; i++) { // for a handful of numbers a loop is quicker than a call
-        x[i] = q[i];
-    }
-    x += in->nq;
-    for (int i = 0; i < in->nv; i++) {
-        x[i] = v ? v[i] : 0;
-    }
-    x += in->nv;
-    x[0] = t;
-    x[1] = alpha;
-    x[2] = beta;
-}

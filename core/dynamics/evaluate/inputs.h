@@ -20,7 +20,20 @@ HN_MUST_CHECK hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, 
 HN_MUST_CHECK hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_out,
                                           hn_arena *arena, hn_inputs *in);
 void hn_inputs_free(hn_inputs *in); ///< the tape
-/// q (nq); v (nv) or NULL for zero.
-void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
-                   double beta);
+/// q (nq); v (nv) or NULL for zero. For a handful of numbers loops are quicker than a call.
+static inline void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v,
+                                 double alpha, double beta) {
+    double *x = in->x;
+    for (int i = 0; i < in->nq; i++) {
+        x[i] = q[i];
+    }
+    x += in->nq;
+    for (int i = 0; i < in->nv; i++) {
+        x[i] = v ? v[i] : 0;
+    }
+    x += in->nv;
+    x[0] = t;
+    x[1] = alpha;
+    x[2] = beta;
+}
 #endif

@@ -40,7 +40,9 @@ static void tell_failure(hn_accel_ode *ode, hn_status status, double t) {
 
 hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot) {
     hn_accel_ode *ode = self;
-    const double *q = hn_unit_positions(ode->base.sys, y, ode->base.unit), *v = y + ode->base.nq;
+    const bool plain = ode->base.nq == ode->base.nv; // no quaternion to bring back to length 1
+    const double *q = plain ? y : hn_unit_positions(ode->base.sys, y, ode->base.unit),
+                 *v = y + ode->base.nq;
     const hn_status status =
         hn_accel_eval(ode->accel, t, q, v, ode->alpha, ode->beta, ydot + ode->base.nq, NULL, NULL);
     ode->base.cost.evals++;

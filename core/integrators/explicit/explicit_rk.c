@@ -110,14 +110,22 @@ static void combine(const explicit_rk *rk, const weights *w, const double *base,
         return;
     }
 
-    const double *k[MAX_STAGES];
-    for (int m = 0; m < w->n; m++) {
-        k[m] = rk->k[w->at[m]];
+    // entries in pairs: their sums do not wait for each other
+    int j = 0;
+    for (; j + 1 < n; j += 2) {
+        double sum[2] = {0, 0};
+        for (int m = 0; m < w->n; m++) {
+            const double *k = rk->k[w->at[m]] + j, weight = w->w[m];
+            sum[0] += weight * k[0];
+            sum[1] += weight * k[1];
+        }
+        out[j] = (base ? base[j] : 0) + h * sum[0];
+        out[j + 1] = (base ? base[j + 1] : 0) + h * sum[1];
     }
-    for (int j = 0; j < n; j++) {
+    for (; j < n; j++) {
         double sum = 0;
         for (int m = 0; m < w->n; m++) {
-            sum += w->w[m] * k[m][j];
+            sum += w->w[m] * rk->k[w->at[m]][j];
         }
         out[j] = (base ? base[j] : 0) + h * sum;
     }
