@@ -48,8 +48,8 @@ class Stability(unittest.TestCase):
         limits = [m["columns"][0]["predicted"][0] for m in study["methods"]]
         self.assertAlmostEqual(limits[0] / limits[2], 2.8284 / 2, delta=0.01)
 
-    def test_the_default_question_finds_the_boundary_of_every_method(self):
-        done = self.call("study", "four-bar", "stability", "--time-limit", "0", "--json")
+    def test_the_map_of_steps_finds_the_boundary_of_every_method(self):
+        done = self.call("study", "four-bar", "stability", "--preset", "limits", "--time-limit", "0", "--json")
         study = strict(done.stdout)
         present = 0.01  # the scene's step
         self.assertLessEqual(study["y"]["values"][0], present)
@@ -59,14 +59,45 @@ class Stability(unittest.TestCase):
             self.assertGreater(column["last_stable"], 0, method["method"])
             self.assertLessEqual(column["first_unstable"] / column["last_stable"], 1.021, method["method"])
             self.assertEqual(method["agreement"]["compared"], 1, method["agreement"]["text"])
+        # asked for by name, it stays, and names the map that tells more
+        self.assertEqual((study["preset"], study["stiff"], study["telling"], study["steps"]), ("limits", False, "baumgarte", None))
+        self.assertIn("the preset baumgarte maps error and gap", study["methods"][0]["agreement"]["text"])
 
-    def test_a_mechanism_without_stiffness_is_told_so_with_the_map_that_tells(self):
+    def test_the_default_question_of_a_mechanism_without_stiffness_is_answered_by_the_map_that_tells(self):
         for scene in ("four-bar", "slider-crank"):
-            study = strict(self.call("study", scene, "stability", "--time-limit", "0", "--json").stdout)
-            self.assertEqual((study["stiff"], study["telling"]), (False, "baumgarte"))
-            for method in study["methods"]:
-                self.assertRegex(method["agreement"]["text"], r"not stiff: at the predicted limit, .* one step moves the mechanism by [\d.]+ rad")
-                self.assertNotIn("of 1 columns", method["agreement"]["text"])
+            words = ["study", scene, "stability", "--time-limit", "0", "--grid", "4x3"]
+            done = self.call(*words, "--json", "--out", self.path("m.html"))
+            study = strict(done.stdout)
+            self.assertEqual((study["preset"], study["stiff"], study["telling"]), ("baumgarte", False, None))
+            self.assertEqual((study["x"]["name"], study["y"]["name"]), ("alpha", "beta"))
+            self.assertEqual((len(study["x"]["values"]), len(study["y"]["values"])), (4, 3))
+            # the largest steps come with it as lines, which name no further map
+            self.assertEqual([m["method"] for m in study["steps"]], ["projection@rk4", "projection@dop853", "projection@symplectic-euler"])
+            self.assertGreater(study["steps"][0]["column"]["accurate"], 0)
+            with open(self.path("m.html"), encoding="utf-8") as f:
+                page = html.unescape(f.read())
+            text = self.call(*words).stdout.decode()
+            for method in study["steps"]:
+                said = method["agreement"]["text"]
+                self.assertRegex(said, r"not stiff: at the predicted limit, .* one step moves the mechanism by [\d.]+ rad")
+                self.assertNotIn("of 1 columns", said)
+                self.assertNotIn("preset", said)
+                self.assertIn(said, page)
+                self.assertIn(said, text)
+            # the map is the one that its own name gives
+            same = strict(self.call(*words, "--preset", "baumgarte", "--json").stdout)
+            self.assertEqual(same["methods"], study["methods"])
+
+    def test_methods_that_are_named_keep_the_map_that_they_fit(self):
+        words = ["study", "four-bar", "stability", "--time-limit", "0", "--grid", "3x3", "--time", "1", "--json", "--methods"]
+        study = strict(self.call(*words, "projection@rk4", "baumgarte@rk4:h=0.005").stdout)
+        self.assertEqual([m["method"] for m in study["methods"]], ["baumgarte@rk4:h=0.005"])
+        self.assertEqual([m["method"] for m in study["steps"]], ["projection@rk4", "baumgarte@rk4"])
+        # none has alpha and beta: the map of steps is the answer
+        study = strict(self.call(*words, "projection@rk4").stdout)
+        self.assertEqual((study["preset"], study["telling"], study["steps"]), ("limits", "baumgarte", None))
+
+    def test_that_map_has_the_error_and_the_gap_of_every_cell(self):
         # that map has the error and the gap of every cell
         map_of = self.call("study", "four-bar", "stability", "--preset", "baumgarte", "--grid", "3x3", "--time-limit", "0", "--json")
         cells = [c for m in strict(map_of.stdout)["methods"] for row in m["rows"] for c in row]
@@ -76,12 +107,12 @@ class Stability(unittest.TestCase):
                 self.assertGreater(min(cell["error"], cell["gap"]), 0)
         # a stiff one keeps its own
         stiff = strict(self.call(*STUDY, "--json").stdout)
-        self.assertEqual((stiff["stiff"], stiff["telling"]), (True, None))
+        self.assertEqual((stiff["preset"], stiff["stiff"], stiff["telling"], stiff["steps"]), ("limits", True, None, None))
 
-    def test_the_default_question_tells_the_largest_accurate_step_and_the_first_that_breaks(self):
+    def test_the_map_of_steps_tells_the_largest_accurate_step_and_the_first_that_breaks(self):
         # delta-robot has a parameter h of its own: the axis is the step all the same
         for scene in ("four-bar", "pendulum", "delta-robot", "watt-six-bar", "heavy-top"):
-            done = self.call("study", scene, "stability", "--time-limit", "0", "--json")
+            done = self.call("study", scene, "stability", "--preset", "limits", "--time-limit", "0", "--json")
             self.assertEqual(done.returncode, DONE, done.stderr)
             study = strict(done.stdout)
             self.assertEqual((study["y"]["name"], study["y"]["kind"]), ("h", "step"))
@@ -100,7 +131,7 @@ class Stability(unittest.TestCase):
 
     def test_energy_that_loads_put_in_is_no_instability(self):
         # the squeezer is driven: beyond the scene's 0.03 s its energy grows; half a millisecond a step is exact to 1 %
-        study = strict(self.call("study", "seven-body-squeezer", "stability", "--methods", "projection@rk4", "--time-limit", "0", "--json").stdout)
+        study = strict(self.call("study", "seven-body-squeezer", "stability", "--preset", "limits", "--methods", "projection@rk4", "--time-limit", "0", "--json").stdout)
         column = study["methods"][0]["columns"][0]
         self.assertGreater(column["accurate"], 5e-4)
         self.assertGreater(column["first_unstable"], column["accurate"])

@@ -21,7 +21,9 @@ static const hn_field FIELDS[] = {
      .type = HN_FIELD_CHOICE,
      .choices = PRESETS,
      .argument = "NAME",
-     .about = "axes of the map by name; limits when left out"},
+     .about =
+         "axes of the map by name; when left out: limits, and where that finds a mechanism with "
+         "loops that is not stiff, the error over alpha and beta with the steps as lines"},
     {.name = "over",
      .type = HN_FIELD_TEXT,
      .argument = "AXES",

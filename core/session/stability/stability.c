@@ -12,6 +12,8 @@
 #include <stdlib.h>
 
 enum { COARSEST_STRIDE = 8 };
+static const double FIRST_SHARE = 0.2; // of the whole progress: a map of steps that may choose one
+static const double LEAST_LEFT = 1;    // time limit of the map that it chooses, at least [s]
 
 static void blank(hn_map *map) {
     for (int m = 0; m < map->n_methods; m++) {
@@ -71,6 +73,7 @@ void hn_map_free(hn_map *map) {
         free(map->scenes);
         free(map->cells);
         free(map->columns);
+        hn_map_free(map->steps);
         free(map);
     }
 }
@@ -88,6 +91,12 @@ static bool try_cell(hn_map *map, int m, int column, int row) {
 }
 
 // rounds ----
+
+// Reports the share of this map's work; a map that another one chose begins where that one ended.
+static void report(const hn_map *map, double share) {
+    const double whole = map->open_question ? FIRST_SHARE : 1;
+    hn_job_progress(&map->request.limits, "", map->share + (whole - map->share) * share);
+}
 
 static int count_pending(const hn_map *map) {
     int n = 0;
@@ -110,7 +119,7 @@ static bool try_round(hn_map *map, int stride) {
                 if (hn_map_must_end(map) || !try_cell(map, m, column, row)) {
                     return false;
                 }
-                hn_job_progress(&map->request.limits, "", 0.85 * (1 - count_pending(map) / all));
+                report(map, 0.85 * (1 - count_pending(map) / all));
             }
         }
     }
@@ -125,12 +134,12 @@ static bool observe(hn_map *map) {
                 return false;
             }
         }
-        hn_job_progress(&map->request.limits, "", 0.85 + 0.15 * (i + 1) / map->x.n);
+        report(map, 0.85 + 0.15 * (i + 1) / map->x.n);
     }
     return true;
 }
 
-bool hn_map_run(hn_map *map) {
+static bool run_one(hn_map *map) {
     map->started = hn_clock_wall();
     map->stopped = map->out_of_time = 0;
     int going = 1;
@@ -149,6 +158,41 @@ bool hn_map_run(hn_map *map) {
     return finished;
 }
 
+// Opens the map of a preset that the map of steps has chosen, within what is left of its time.
+// Returns NULL where none of the methods of the request fits it, or it cannot be opened.
+static hn_map *open_telling(const hn_map *map, const char *preset) {
+    hn_job_request r = hn_map_request_for(map, preset);
+    hn_diags ignored = {0}; // the map of steps is the answer then, and names the preset
+    hn_map *telling = NULL;
+    if (map->names_methods && r.n_methods == 0) {
+        return NULL;
+    }
+    if (r.limits.time_limit > 0) {
+        r.limits.time_limit = fmax(r.limits.time_limit - map->elapsed, LEAST_LEFT);
+    }
+    return hn_map_open(&r, &telling, &ignored) == HN_OK ? telling : NULL;
+}
+
+bool hn_map_run(hn_map *map) {
+    const bool finished = run_one(map);
+    const char *preset = finished && map->open_question ? hn_map_telling(map) : NULL;
+    hn_map *telling = preset ? open_telling(map, preset) : NULL;
+    if (!telling) {
+        return finished;
+    }
+
+    // the caller's map becomes the telling one, which owns the map of steps
+    const hn_map steps = *map;
+    *map = *telling;
+    *telling = steps;
+    map->steps = telling;
+    map->steps->chose = true;
+    map->share = FIRST_SHARE;
+    const bool done = run_one(map);
+    map->elapsed += map->steps->elapsed;
+    return done;
+}
+
 // reading ----
 
 const hn_model *hn_map_model(const hn_map *map) {
@@ -161,6 +205,14 @@ const hn_map_axis *hn_map_x(const hn_map *map) {
 
 const hn_map_axis *hn_map_y(const hn_map *map) {
     return &map->y;
+}
+
+const char *hn_map_preset(const hn_map *map) {
+    return map->preset;
+}
+
+const hn_map *hn_map_steps(const hn_map *map) {
+    return map->steps;
 }
 
 int hn_map_n_methods(const hn_map *map) {

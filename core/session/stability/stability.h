@@ -27,6 +27,8 @@ enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSI
 
 typedef struct hn_map hn_map;
 
+#define HN_MAP_FIRST "limits" ///< the preset of a request that names none; hn_map_run() may go on
+
 /// Axes of a map by name: maker of the axes, name, about, chooses, stabilised
 /// (hn_job_preset).
 #define HN_MAP_PRESETS(X)                                                               \
@@ -89,6 +91,12 @@ typedef struct hn_map_agreement {
 HN_MUST_CHECK hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *diags);
 void hn_map_free(hn_map *map); ///< NULL is legal
 /// Runs the cells that have no outcome. Returns whether finished; false: stopped, or out of time.
+///
+/// A request that names neither a preset nor axes gets the map of steps, HN_MAP_FIRST. Where that
+/// finds a mechanism with loops that is not stiff, the map becomes the one of the preset that is
+/// telling for it, hn_map_telling(), and the map of steps stays in hn_map_steps(). Methods that the
+/// request names are taken where they have the options of that preset; where none has them, the map
+/// of steps is the answer.
 bool hn_map_run(hn_map *map);
 
 /// Borrowed: what the map was computed for, its axes, and how many methods it has.
@@ -96,9 +104,19 @@ const hn_model *hn_map_model(const hn_map *map);
 const hn_map_axis *hn_map_x(const hn_map *map);
 const hn_map_axis *hn_map_y(const hn_map *map);
 int hn_map_n_methods(const hn_map *map);
-/// Whether some column has a predicted limit at which one step moves the mechanism by less than
-/// HN_MAP_TURN: where none has, the error of a step decides and not its stability.
-bool hn_map_is_stiff(const hn_map *map);
+/// Borrowed: the preset of the axes; NULL: they were named one by one.
+const char *hn_map_preset(const hn_map *map);
+/// Borrowed: the map of steps that chose this one; NULL: the request chose it.
+const hn_map *hn_map_steps(const hn_map *map);
+/// HN_MAP_STIFF: some column has a predicted limit at which one step moves the mechanism by less
+/// than HN_MAP_TURN. HN_MAP_NOT_STIFF: none has, and the error of a step decides and not its
+/// stability. HN_MAP_STIFF_UNKNOWN: no column has a limit of the step.
+typedef enum hn_map_stiffness {
+    HN_MAP_STIFF_UNKNOWN,
+    HN_MAP_NOT_STIFF,
+    HN_MAP_STIFF
+} hn_map_stiffness;
+hn_map_stiffness hn_map_is_stiff(const hn_map *map);
 /// The preset whose map tells more about a mechanism with loops that is not stiff; NULL: this one.
 const char *hn_map_telling(const hn_map *map);
 /// Returns the spelling of method m without the options that the axes set.

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEFAULT_SIDE = 24 };
-static const double DEFAULT_LIMIT = 60; // wall time of a map [s]
-static const double LOG_FROM = 15;      // positive ranges of this ratio have a logarithmic axis
-static const double PRESET_SPAN = 1e3;  // a preset varies a parameter by this factor up and down
+enum { DEFAULT_SIDE = 24, CHOSEN_SIDE = 16 }; // points of an axis; of a map that another chose
+static const double DEFAULT_LIMIT = 60;       // wall time of a map [s]
+static const double LOG_FROM = 15;     // positive ranges of this ratio have a logarithmic axis
+static const double PRESET_SPAN = 1e3; // a preset varies a parameter by this factor up and down
 static const double FINEST = 0.3, COARSEST = 12; // h times the fastest rate, for steps of a preset
 static const double PRESET_STEPS = 2e4;          // steps of the finest trial of a preset
 static const char STEP[] = "step"; // name of the axis of steps, whatever the scene's parameters are
@@ -322,6 +322,7 @@ static hn_status take_methods(hn_map *map, hn_diags *diags) {
     const int stabilised = map->preset ? preset >= 0 && PRESETS[preset].preset.stabilised
                                        : strstr(map->over, "alpha=") || strstr(map->over, "beta=");
     const bool chosen_here = r->n_methods == 0;
+    map->names_methods = !chosen_here;
     if (chosen_here) {
         HN_TRY(hn_job_request_set_methods(r, stabilised ? STABILISED : STANDARD, stabilised ? 2 : 3,
                                           diags));
@@ -390,8 +391,9 @@ static hn_status take_values(hn_map *map, hn_diags *diags) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/over", "give one of them",
                             "a map has its axes from 'preset' or from 'over', not from both");
     }
-    if (!map->preset && !map->over) {
-        map->preset = "limits";
+    map->open_question = !map->preset && !map->over;
+    if (map->open_question) {
+        map->preset = HN_MAP_FIRST;
     }
     if (map->n_columns < 2 || map->n_rows < 2 || map->n_columns > HN_MAP_SIDE ||
         map->n_rows > HN_MAP_SIDE) {
@@ -400,6 +402,44 @@ static hn_status take_values(hn_map *map, hn_diags *diags) {
                             map->n_rows, HN_MAP_SIDE);
     }
     return HN_OK;
+}
+
+/// Whether a method has every option of a list, separated by blanks.
+static bool has_options(const hn_method_spec *spec, const char *names) {
+    hn_method_spec copy = *spec;
+    for (const char *p = names; *p; p += strspn(p, " ")) {
+        char name[32];
+        const size_t n = strcspn(p, " ");
+        snprintf(name, sizeof name, "%.*s", (int)n, p);
+        if (!hn_method_find_option(&copy, name, NULL)) {
+            return false;
+        }
+        p += n;
+    }
+    return true;
+}
+
+hn_job_request hn_map_request_for(const hn_map *map, const char *preset) {
+    const int k = find_preset(preset);
+    hn_job_request r = map->request;
+    hn_job_request_set_text(&r, "preset", preset);
+
+    // a map that nobody asked for by name answers soon
+    for (int i = 0; i < 2; i++) {
+        static const char *const sides[] = {"columns", "rows"};
+        if (isnan(hn_job_number(&map->request, sides[i], (double)NAN))) {
+            hn_job_request_set(&r, sides[i], CHOSEN_SIDE);
+        }
+    }
+
+    // the methods of the request that have the options of the preset; its own where none was named
+    r.n_methods = 0;
+    for (int m = 0; map->names_methods && m < map->n_methods; m++) {
+        if (has_options(&map->specs[m], PRESETS[k].preset.chooses)) {
+            r.methods[r.n_methods++] = map->request.methods[m];
+        }
+    }
+    return r;
 }
 
 hn_status hn_map_set_up(hn_map *map, hn_diags *diags) {

@@ -341,23 +341,27 @@ static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
     }
 }
 
-bool hn_map_is_stiff(const hn_map *map) {
-    bool judged = false;
+hn_map_stiffness hn_map_is_stiff(const hn_map *map) {
+    if (map->steps) {
+        return hn_map_is_stiff(map->steps);
+    }
+    hn_map_stiffness found = HN_MAP_STIFF_UNKNOWN;
     for (int m = 0; map->y.is_step && m < map->n_methods; m++) {
         for (int i = 0; i < map->x.n; i++) {
             const double turn = hn_map_column_at(map, m, i)->turn;
             if (turn < HN_MAP_TURN) {
-                return true;
+                return HN_MAP_STIFF;
             }
-            judged |= turn >= HN_MAP_TURN;
+            found = turn >= HN_MAP_TURN ? HN_MAP_NOT_STIFF : found;
         }
     }
-    return !judged; // nothing says that it is not
+    return found;
 }
 
 const char *hn_map_telling(const hn_map *map) {
     const hn_system_info info = hn_system_get_info(hn_model_system(map->model));
-    return info.nc > 0 && !hn_map_is_stiff(map) ? "baumgarte" : NULL;
+    const bool loops = info.nc > 0 && map->y.is_step;
+    return loops && hn_map_is_stiff(map) == HN_MAP_NOT_STIFF ? "baumgarte" : NULL;
 }
 
 /// Of one column without stiffness: the error of steps ends it, and no prediction of stability
@@ -374,10 +378,15 @@ static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_colum
     if (c->stable > 0) {
         hn_strbuf_printf(b, ", and the error ends the motion at h = %.3g s", c->unstable);
     }
-    if (hn_map_telling(map)) {
+    if (hn_map_telling(map) && !map->chose) {
         hn_strbuf_printf(b, "; the preset %s maps error and gap over alpha and beta",
                          hn_map_telling(map));
     }
+}
+
+void hn_map_steps_text(hn_strbuf *b, const hn_map *map, int m) {
+    hn_strbuf_printf(b, "%s: ", map->steps->names[m]);
+    hn_map_agreement_text(b, map->steps, m);
 }
 
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {

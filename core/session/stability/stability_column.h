@@ -12,6 +12,8 @@
 hn_map_agreement hn_map_agrees(const hn_map *map, int m);
 /// "prediction within 5 % on 31 of 32 columns; 1: growth too slow to be seen"
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m);
+/// The same of method m of the map of steps that chose this map, hn_map_steps(), after its name.
+void hn_map_steps_text(hn_strbuf *b, const hn_map *map, int m);
 /// Predicts the margins and the boundary of a column; its scenes must be loaded.
 void hn_map_predict_column(hn_map *map, int m, int column);
 /// Step axis: halves the interval between the last stable and the first other step.

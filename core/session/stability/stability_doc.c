@@ -79,6 +79,34 @@ static void put_agreement(hn_strbuf *b, const hn_map *map, int m) {
     hn_strbuf_reset(&text);
 }
 
+static void put_stiff(hn_strbuf *b, hn_map_stiffness stiff) {
+    hn_json_key(b, "stiff");
+    if (stiff == HN_MAP_STIFF_UNKNOWN) {
+        hn_json_null(b);
+    } else {
+        hn_json_bool(b, stiff == HN_MAP_STIFF);
+    }
+}
+
+// The map of steps that chose this map: for each method its boundaries, and what they mean.
+static void put_steps(hn_strbuf *b, const hn_map *steps) {
+    hn_json_key(b, "steps");
+    if (!steps) {
+        hn_json_null(b);
+        return;
+    }
+    hn_json_array(b);
+    for (int m = 0; m < hn_map_n_methods(steps); m++) {
+        hn_json_object(b);
+        hn_json_put_string(b, "method", hn_map_method(steps, m));
+        put_agreement(b, steps, m);
+        hn_json_key(b, "column");
+        put_column(b, hn_map_get_column(steps, m, 0));
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
 static void put_method(hn_strbuf *b, const hn_map *map, int m) {
     hn_json_object(b);
 
@@ -116,9 +144,11 @@ void hn_map_json(hn_strbuf *b, const hn_map *map) {
     hn_json_put_bool(b, "finished", !hn_map_stopped(map) && !hn_map_out_of_time(map));
     hn_json_put_bool(b, "stopped", hn_map_stopped(map));
     hn_json_put_number(b, "elapsed", hn_map_elapsed(map));
+    hn_json_put_string(b, "preset", hn_map_preset(map));
+    put_stiff(b, hn_map_is_stiff(map));
     // the preset whose map tells more, where this one rests on a stability that decides nothing
-    hn_json_put_bool(b, "stiff", hn_map_is_stiff(map));
     hn_json_put_string(b, "telling", hn_map_telling(map));
+    put_steps(b, hn_map_steps(map));
     put_axis(b, "x", hn_map_x(map));
     put_axis(b, "y", hn_map_y(map));
     hn_json_key(b, "methods");

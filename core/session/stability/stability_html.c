@@ -257,6 +257,22 @@ static void put_sections(hn_strbuf *b, const hn_map *map) {
     }
 }
 
+static void put_steps(hn_strbuf *b, const hn_map *map) {
+    hn_strbuf said;
+    hn_strbuf_init(&said);
+    hn_strbuf_add(b, "<h2>Steps</h2><ul>");
+    for (int m = 0; m < hn_map_n_methods(hn_map_steps(map)); m++) {
+        hn_strbuf_clear(&said);
+        hn_map_steps_text(&said, map, m);
+        hn_strbuf_add(b, "<li>");
+        hn_html_text(b, hn_strbuf_text(&said));
+        hn_strbuf_add(b, "</li>");
+    }
+    hn_strbuf_add(b, "</ul>\n");
+    b->failed |= said.failed;
+    hn_strbuf_reset(&said);
+}
+
 static void put_limits(hn_strbuf *b, const hn_map *map) {
     // the head of the table
     hn_strbuf_add(b, "<h2>Boundaries</h2>");
@@ -333,10 +349,16 @@ void hn_map_html(hn_strbuf *b, const hn_map *map) {
         "ended. Point at a cell to read its outcome.</p>",
         hn_map_time(map), HN_STABILITY_LEAST_STEPS);
 
+    // where a map of steps has chosen this one, what it found comes first
+    const hn_map *steps = hn_map_steps(map);
+    if (steps) {
+        put_steps(b, map);
+    }
+
     // the maps, and a table of limits where the step size is an axis
     put_sections(b, map);
-    if (hn_map_y(map)->is_step) {
-        put_limits(b, map);
+    if (steps || hn_map_y(map)->is_step) {
+        put_limits(b, steps ? steps : map);
     }
 
     // the terms and thresholds used above

@@ -7,6 +7,8 @@
 #include "session/store/journal.h"
 #include "session/stability/stability.h"
 
+#include <stdbool.h>
+
 /// One scene of the map with its motion; made when a cell first needs it.
 typedef struct hn_map_scene {
     hn_model *model; ///< owned; NULL: the map's own model, or none
@@ -20,6 +22,11 @@ struct hn_map {
     hn_job_request request; ///< time limit filled in
     const char *preset;     ///< NULL: `over`
     const char *over;
+    bool names_methods;    ///< the request does
+    bool open_question;    ///< the request names neither a preset nor axes
+    bool chose;            ///< this is the map of steps that chose another one
+    hn_map *steps;         ///< owned: the map of steps that chose this one; NULL: none
+    double share;          ///< of the whole job that was done before this map
     int n_columns, n_rows; ///< asked for
     hn_map_axis x, y;
     int n_methods;

@@ -96,6 +96,14 @@ void hn_map_text(hn_strbuf *b, const hn_map *map) {
         put_limits(b, map);
         return;
     }
+
+    // the steps come first where a map of steps has chosen this one
+    const hn_map *steps = hn_map_steps(map);
+    for (int m = 0; steps && m < hn_map_n_methods(steps); m++) {
+        hn_strbuf_add(b, "  ");
+        hn_map_steps_text(b, map, m);
+        hn_strbuf_add(b, "\n");
+    }
     put_maps(b, map);
 }
 
