@@ -226,7 +226,8 @@ RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsu
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux nginx:nginx-light
 # for make languages alone: some 700 MB
-LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base
+LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base libeigen3-dev libejml-java python3-petsc4py \
+                     python3-matplotlib
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile

@@ -54,6 +54,23 @@ static void put_latex_words(hn_strbuf *b, const char *words) {
     }
 }
 
+static const hn_language_solver PYTHON_SOLVERS[] = {
+    {"scipy", "an ordinary differential equation by scipy's DOP853"},
+    {"petsc", "the differential-algebraic equations themselves by PETSc's BDF (petsc4py)"},
+    {NULL, NULL}};
+static const hn_language_solver CPP_SOLVERS[] = {
+    {"own", "elimination written out: the standard library alone"},
+    {"eigen", "Eigen's complete orthogonal decomposition"},
+    {NULL, NULL}};
+static const hn_language_solver JAVA_SOLVERS[] = {
+    {"own", "elimination written out: Java's library alone"},
+    {"ejml", "EJML's pseudo-inverse by singular values"},
+    {NULL, NULL}};
+static const hn_language_solver OCTAVE_SOLVERS[] = {
+    {"ode45", "an ordinary differential equation by ode45"},
+    {"ode15s", "the differential-algebraic equations themselves by ode15s"},
+    {NULL, NULL}};
+
 static const hn_language LANGUAGES[] = {
     {.name = "python",
      .suffix = ".py",
@@ -63,9 +80,12 @@ static const hn_language LANGUAGES[] = {
      .vector = "#1[#2] = #3",
      .matrix = "#1[#2, #3] = #4",
      .entry = "#1[#2]",
+     .solvers = PYTHON_SOLVERS,
      .reserved = OWN "and as assert async await break class continue def del elif else except "
                      "finally for from global if import in is lambda nonlocal not or pass raise "
-                     "return try while with yield np solve_ivp abs min max print range",
+                     "return try while with yield np solve_ivp abs min max print range sys "
+                     "plot residual put_residual put_derivative independent_rows qr PETSc "
+                     "SimpleNamespace same_sign difference main sign step",
      .call = {[HN_OP_RECIP] = "1 / (#1)", [HN_OP_POW] = "(#1)**(#2)"}},
     {.name = "c",
      .suffix = ".c",
@@ -87,6 +107,7 @@ static const hn_language LANGUAGES[] = {
      .matrix = "#1[#2][#3] = #4;",
      .entry = "#1[#2]",
      .needs_point = true,
+     .solvers = CPP_SOLVERS,
      .reserved = OWN C_WORDS,
      .call = {C_CALLS}},
     {.name = "java",
@@ -98,6 +119,7 @@ static const hn_language LANGUAGES[] = {
      .matrix = "#1[#2][#3] = #4;",
      .entry = "#1[#2]",
      .needs_point = true,
+     .solvers = JAVA_SOLVERS,
      .reserved = OWN C_WORDS,
      .call = {[HN_OP_RECIP] = "1.0 / (#1)",     [HN_OP_POW] = "Math.pow(#1, #2)",
               [HN_OP_SQRT] = JAVA(sqrt),        [HN_OP_SIN] = JAVA(sin),
@@ -118,6 +140,7 @@ static const hn_language LANGUAGES[] = {
      .matrix = "#1(#2, #3) = #4;",
      .entry = "#1(#2)",
      .first = 1,
+     .solvers = OCTAVE_SOLVERS,
      .reserved = OWN "break case catch continue do else elseif end endfor endfunction endif "
                      "endwhile for function global if otherwise persistent return switch try "
                      "until while unwind_protect abs min max e i j pi Inf NaN",

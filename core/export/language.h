@@ -10,6 +10,13 @@
 
 #include <stdbool.h>
 
+/// One of several ways in which programs of a language solve: `--solver`. In the text with places
+/// its lines stand behind @IF NAME@.
+typedef struct hn_language_solver {
+    const char *name;  ///< "eigen"
+    const char *about; ///< one line: what it solves, and what it needs
+} hn_language_solver;
+
 typedef struct hn_language {
     const char *name;        ///< "python"; also the name of the text with places: python.txt
     const char *suffix;      ///< of a file: ".py"
@@ -29,6 +36,9 @@ typedef struct hn_language {
     void (*put_name)(hn_strbuf *b, const char *name);
     void (*put_array)(hn_strbuf *b, const char *name);
     void (*put_words)(hn_strbuf *b, const char *words);
+    /// the ways to solve, behind each other up to one without a name; the first when none is asked
+    /// for; NULL: there is one way only
+    const hn_language_solver *solvers;
     /// how functions are called: #1 and #2 for the arguments; NULL: as in a scene, name(#1, #2)
     const char *call[HN_OP_COUNT];
 } hn_language;

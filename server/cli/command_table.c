@@ -28,7 +28,7 @@ static const hn_command COMMANDS[] = {
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
      "julia, wolfram or modelica; latex: its equations to read; or as a model: --format mjcf",
-     MODEL_OPTIONS " --language --method --style --blanks --format --out -o", 1, 1,
+     MODEL_OPTIONS " --language --method --style --solver --blanks --format --out -o", 1, 1,
      hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java",
      "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,

@@ -40,6 +40,49 @@ static hn_status choose_language(hn_exporter *e, const char *name, hn_diags *dia
                         "'%.40s' is not a language of export", name);
 }
 
+/// The solver of this name among those of the language; its first when none is named.
+static hn_status choose_solver(hn_exporter *e, const char *name, hn_diags *diags) {
+    const hn_language_solver *all = e->language->solvers;
+    const char *names[8];
+    int n = 0;
+    e->solver = all;
+    for (; all && all[n].name && n < 8; n++) {
+        names[n] = all[n].name;
+        e->solver = name && strcmp(name, names[n]) == 0 ? &all[n] : e->solver;
+    }
+    if (!name || (e->solver && strcmp(name, e->solver->name) == 0)) {
+        return HN_OK;
+    }
+    if (n == 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/solver", "leave it out",
+                            "programs in %s have one solver only", e->language->name);
+    }
+
+    // the nearest, or all of them
+    char hint[HN_DIAG_HINT] = "";
+    for (int i = 0; i < n; i++) {
+        const size_t at = strlen(hint);
+        snprintf(hint + at, sizeof hint - at, "%s%s", i ? ", " : "", names[i]);
+    }
+    const char *near = hn_nearest_name(name, names, n);
+    return hn_diags_add(diags, HN_ERR_INPUT, "/solver", near ? near : hint,
+                        "'%.40s' is not a solver of programs in %s", name, e->language->name);
+}
+
+/// Fails: HN_ERR_INPUT for blanks together with what grade does not run.
+static hn_status check_blanks(const hn_exporter *e, hn_diags *diags) {
+    if (e->blanks && e->skeleton) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/style", "leave one of them out",
+                            "a program with --blanks keeps what grade asks of it: it is no "
+                            "skeleton");
+    }
+    if (e->blanks && e->solver != e->language->solvers) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/solver", "leave one of them out",
+                            "grade runs programs with --blanks without further libraries");
+    }
+    return HN_OK;
+}
+
 /// Reads how the loops are held from a method's spelling.
 static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_diags *diags) {
     static const double USUAL = 10; // [1/s]
@@ -82,7 +125,8 @@ static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib, 
     hn_strbuf_init(&text);
     hn_status status = read_text(lib, e->language, &text, diags);
     if (status == HN_OK && e->skeleton && !strstr(hn_strbuf_text(&text), "@IF SKELETON@")) {
-        status = hn_diags_add(diags, HN_ERR_INPUT, "/style", "--language python",
+        status = hn_diags_add(diags, HN_ERR_INPUT, "/style",
+                              "every language but modelica and latex has one",
                               "there is no skeleton in %s", e->language->name);
     }
     HN_THEN(status, hn_export_fill(b, e, hn_strbuf_text(&text)));
@@ -102,6 +146,8 @@ hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library 
         return HN_ERR_MEMORY;
     }
     hn_status status = choose_language(&e, request->language, diags);
+    HN_THEN(status, choose_solver(&e, request->solver, diags));
+    HN_THEN(status, check_blanks(&e, diags));
     HN_THEN(status, choose_stabilisation(&e, request->method, diags));
     HN_THEN(status, export_to(b, &e, lib, diags));
     if (status == HN_OK) {
@@ -112,6 +158,18 @@ hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library 
     hn_system_free(e.sys);
     hn_arena_free(e.arena);
     return status;
+}
+
+static void put_solvers(hn_strbuf *b, const hn_language_solver *solver) {
+    hn_json_key(b, "solvers");
+    hn_json_array(b);
+    for (; solver && solver->name; solver++) {
+        hn_json_object(b);
+        hn_json_put_string(b, "name", solver->name);
+        hn_json_put_string(b, "about", solver->about);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
 }
 
 void hn_export_languages_json(hn_strbuf *b) {
@@ -125,6 +183,7 @@ void hn_export_languages_json(hn_strbuf *b) {
         hn_json_put_string(b, "name", all[i].name);
         hn_json_put_string(b, "suffix", all[i].suffix);
         hn_json_put_string(b, "about", all[i].about);
+        put_solvers(b, all[i].solvers);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);

@@ -20,8 +20,9 @@
 //   @ALPHA@ @BETA@           of Baumgarte's stabilisation [1/s]
 //   @T1@ @Q1@ @V1@ @A1@      a later state of the motion, and its accelerations
 //
-//   @IF BLANKS@ @IF SKELETON@ @ELSE@ @END@ in lines of their own: lines for programs with blanks,
-//                            for skeletons, or for the others; one may stand in another
+//   @IF BLANKS@ @IF SKELETON@ @IF EIGEN@ @ELSE@ @END@ in lines of their own: lines for programs
+//                            with blanks, for skeletons, for the solver of that name (language.h),
+//                            or for the others; one may stand in another
 //
 // A place alone in its line is filled with lines of the same indentation.
 
@@ -38,6 +39,7 @@ typedef struct hn_export_request {
     /// index1@... or baumgarte:alpha=...,beta=...@...: how the program holds its loops; its
     /// integrator is that of the language. NULL: Baumgarte's, alpha = beta = 10/s
     const char *method;
+    const char *solver;    ///< one of the language's (export/language.h); NULL: its first
     bool blanks;           ///< leave the parts of exam.h out, and mark them
     bool skeleton;         ///< leave the self-check out; not together with blanks
     hn_walk_limits limits; ///< of the run to the later state; zero: none
@@ -45,13 +47,13 @@ typedef struct hn_export_request {
 } hn_export_request;
 
 /// Writes the program for `model` to `b`.
-/// Fails: HN_ERR_INPUT (unknown language, with the nearest; another method; a skeleton in a
-/// language that has none), HN_ERR_IO (the text of the language is not there), HN_ERR_LIMIT (the
-/// code is too long), HN_ERR_STOPPED (the limits), or as a run does when the later state cannot be
-/// reached.
+/// Fails: HN_ERR_INPUT (unknown language or solver, with the nearest; another method; a skeleton in
+/// a language that has none; blanks together with another solver than the first), HN_ERR_IO (the
+/// text of the language is not there), HN_ERR_LIMIT (the code is too long), HN_ERR_STOPPED (the
+/// limits), or as a run does when the later state cannot be reached.
 HN_MUST_CHECK hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library *lib,
                                         hn_export_request *request, hn_diags *diags);
-/// {"languages":[{"name","suffix","about"}]}
+/// {"languages":[{"name","suffix","about","solvers":[{"name","about"}]}]}
 void hn_export_languages_json(hn_strbuf *b);
 
 #endif

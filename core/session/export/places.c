@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum { LONGEST_PLACE = 24 };
 
@@ -371,6 +372,29 @@ static hn_status fill_line(hn_strbuf *b, const hn_exporter *e, const char *line,
     return HN_OK;
 }
 
+/// Whether the lines behind @IF CONDITION@ are to be written.
+static bool holds(const hn_exporter *e, const char *condition) {
+    if (strcmp(condition, "BLANKS") == 0) {
+        return e->blanks;
+    }
+    if (strcmp(condition, "SKELETON") == 0) {
+        return e->skeleton;
+    }
+    return e->solver && strcasecmp(condition, e->solver->name) == 0;
+}
+
+/// Reads "@IF CONDITION@" from a line of n characters, spaces before it aside; false: another line.
+static bool read_condition(const char *line, size_t n, char out[LONGEST_PLACE]) {
+    static const char begin[] = "@IF ";
+    const size_t indent = strspn(line, " "), from = indent + sizeof begin - 1;
+    if (n < from + 2 || strncmp(line + indent, begin, sizeof begin - 1) != 0 ||
+        line[n - 1] != '@') {
+        return false;
+    }
+    snprintf(out, LONGEST_PLACE, "%.*s", (int)(n - 1 - from), line + from);
+    return true;
+}
+
 /// Whether a line of n characters is this one, spaces before it aside.
 static bool is_line(const char *line, size_t n, const char *word) {
     const size_t indent = strspn(line, " ");
@@ -383,10 +407,9 @@ hn_status hn_export_fill(hn_strbuf *b, const hn_exporter *e, const char *text) {
     unsigned dropped = 0;
     while (*text) {
         const size_t n = strcspn(text, "\n");
-        if (is_line(text, n, "@IF BLANKS@")) {
-            dropped = dropped << 1 | !e->blanks;
-        } else if (is_line(text, n, "@IF SKELETON@")) {
-            dropped = dropped << 1 | !e->skeleton;
+        char condition[LONGEST_PLACE];
+        if (read_condition(text, n, condition)) {
+            dropped = dropped << 1 | !holds(e, condition);
         } else if (is_line(text, n, "@ELSE@")) {
             dropped ^= 1;
         } else if (is_line(text, n, "@END@")) {

@@ -24,9 +24,10 @@ typedef struct hn_exporter {
     hn_system_info info;
     hn_system_exprs x;
     const hn_language *language;
-    double alpha, beta; ///< Baumgarte's [1/s]
-    bool blanks;        ///< the student's parts are left out
-    bool skeleton;      ///< without what checks the program and shows the motion
+    const hn_language_solver *solver; ///< NULL: the language has one way only
+    double alpha, beta;               ///< Baumgarte's [1/s]
+    bool blanks;                      ///< the student's parts are left out
+    bool skeleton;                    ///< without what checks the program and shows the motion
     hn_walk_limits limits;
     double started; ///< hn_clock_thread()
     hn_export_state start, later;

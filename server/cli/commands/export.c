@@ -17,32 +17,27 @@ static hn_status check_format(const hn_args *args, hn_diags *diags) {
                         : args->method   ? "--method"
                         : args->blanks   ? "--blanks"
                         : args->style    ? "--style"
+                        : args->solver   ? "--solver"
                                          : NULL;
     return other ? hn_diags_add(diags, HN_ERR_INPUT, "/format", "leave one of them out",
                                 "--format writes the mechanism and %s a program: not both", other)
                  : HN_OK;
 }
 
-/// Fails: HN_ERR_INPUT for another word, or with --blanks: grade needs what a skeleton lacks.
+/// Fails: HN_ERR_INPUT for another word.
 static hn_status check_style(const hn_args *args, hn_diags *diags) {
-    if (!args->style) {
+    if (!args->style || strcmp(args->style, "full") == 0 || strcmp(args->style, "skeleton") == 0) {
         return HN_OK;
     }
-    if (strcmp(args->style, "full") != 0 && strcmp(args->style, "skeleton") != 0) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/style", "full or skeleton",
-                            "'%.40s' is not a style of export", args->style);
-    }
-    return args->blanks && strcmp(args->style, "skeleton") == 0
-               ? hn_diags_add(diags, HN_ERR_INPUT, "/style", "leave one of them out",
-                              "a program with --blanks keeps what grade asks of it: it is no "
-                              "skeleton")
-               : HN_OK;
+    return hn_diags_add(diags, HN_ERR_INPUT, "/style", "full or skeleton",
+                        "'%.40s' is not a style of export", args->style);
 }
 
 static hn_status write_program(const hn_library *lib, const hn_args *args, const hn_model *model,
                                hn_strbuf *b, hn_diags *diags) {
     hn_export_request request = {.language = args->language ? args->language : "python",
                                  .method = args->method,
+                                 .solver = args->solver,
                                  .blanks = args->blanks,
                                  .skeleton = args->style && strcmp(args->style, "skeleton") == 0};
     return hn_model_export(b, model, lib, &request, diags);
