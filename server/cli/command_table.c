@@ -75,7 +75,7 @@ static const hn_command COMMANDS[] = {
      "--out -o --loops --key", 1, 1, hn_command_import},
     {"lesson", "N|ID", "a lesson to read: text, formulas, what to try, exercises", "--wide", 1, 1,
      hn_command_lesson},
-    {"problem", "ID",
+    {"problem", "ID|FILE",
      "an exercise with the numbers of a variant; --check proves it over --seeds A..B; --out "
      "FILE.svg writes the plot that is to be read",
      "--seed --student --hint --seeds --check --wide --out -o", 1, 1, hn_command_problem},

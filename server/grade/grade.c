@@ -333,6 +333,9 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
     // the file's own variant where the caller leaves it open
     const uint64_t said = chosen ? 0 : hn_variant_seed_said(v->problem, root);
     v->seed = said ? said : v->seed;
+    if (!chosen && !hn_variant_check_names(v->problem, root, v)) {
+        return HN_OK;
+    }
 
     hn_variant *x = malloc(sizeof *x);
     hn_diag diag = {0};
@@ -353,6 +356,8 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
 
 /// `chosen`: the seed is the caller's.
 static hn_status grade_tree(hn_verdict *v, const cJSON *root, bool chosen) {
+    const char *student = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(root, "student"));
+    snprintf(v->student, sizeof v->student, "%s", student ? student : "");
     if (v->problem->n_parts) {
         return grade_parts(v, root, chosen);
     }

@@ -18,7 +18,9 @@
 
 typedef struct hn_rubric hn_rubric;
 
-/// Reads a rubric. Faults say their line, and a nearest name. Returns owned.
+/// Reads a rubric. Faults say their line, and a nearest name. Returns owned; also one whose fields
+/// are at fault, so that all faults can be reported at once (*out is NULL where it names no
+/// exercise).
 /// Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags);
 void hn_rubric_free(hn_rubric *rubric);             ///< NULL is legal

@@ -2,6 +2,7 @@
 #include "grade/rubric_apply.h"
 
 #include "grade/mistakes.h"
+#include "grade/parts/part_list.h"
 #include "grade/parts/value_sheet.h"
 
 #include <math.h>
@@ -21,25 +22,70 @@ static int list_parts(const hn_exercise *e, const char *names[HN_GRADE_MAX_PARTS
 
 /// Mistakes that every exercise can have; those that its parts list come on top.
 static const char *const GENERAL[] = {
-    "sign",       "half",         "double",       "degrees",   "radians",     "milli",   "kilo",
-    "gravity",    "sine",         "missing-name", "sign-term", "other-entry", "other",   "choice",
-    "transposed", "missing-term", "not-finite",   "shape",     "unit",        "not-null"};
+    "sign",          "half",         "double",      "degrees",      "radians",      "milli",
+    "kilo",          "gravity",      "sine",        "missing-name", "sign-term",    "other-entry",
+    "other",         "choice",       "transposed",  "missing-term", "not-finite",   "shape",
+    "unit",          "not-null",     "rank",        "power-of-ten", "other-place",  "other-axis",
+    "inexact",       "other-branch", "half-turn",   "absolute",     "relative",     "swapped",
+    "not-assembled", "stuck",        "some-points", "change-point", "out-of-range", "no-scene",
+    "inaccurate",    "costly",       "ended-early"};
 enum { N_GENERAL = sizeof GENERAL / sizeof *GENERAL };
 
-static int list_mistakes(const hn_exercise *e, const char *names[MAX_NAMES]) {
-    int n = 0;
-    for (; n < N_GENERAL; n++) {
-        names[n] = GENERAL[n];
-    }
-    for (int i = 0; i < e->n_parts; i++) {
+/// Calls for every mistake that a part names by itself: its faults, its tests, its wrong options.
+static void each_mistake(const hn_part *p, void (*use)(void *user, const char *id), void *user) {
+    static const char *const lists[][2] = {
+        {"faults", "id"}, {"checks", "id"}, {"options", "fault"}, {"reasons", "fault"}};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         const cJSON *m;
-        cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "faults")) {
-            if (n < MAX_NAMES) {
-                names[n++] = hn_part_text(m, "id");
+        cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, lists[i][0])) {
+            const char *id = hn_part_text(m, lists[i][1]);
+            if (id[0]) {
+                use(user, id);
             }
         }
     }
-    return n;
+}
+
+typedef struct name_list {
+    const char **names;
+    int n;
+} name_list;
+
+static void add_name(void *user, const char *id) {
+    name_list *list = user;
+    bool known = false;
+    for (int i = 0; i < list->n; i++) {
+        known |= strcmp(list->names[i], id) == 0;
+    }
+    if (!known && list->n < MAX_NAMES) {
+        list->names[list->n++] = id;
+    }
+}
+
+static int list_mistakes(const hn_exercise *e, const char *names[MAX_NAMES]) {
+    name_list list = {.names = names};
+    for (int i = 0; i < N_GENERAL; i++) {
+        names[list.n++] = GENERAL[i];
+    }
+    for (int i = 0; i < e->n_parts; i++) {
+        each_mistake(&e->parts[i], add_name, &list);
+    }
+    return list.n;
+}
+
+void hn_rubric_put_mistakes(hn_strbuf *b, const hn_exercise *e) {
+    for (int i = 0; i < e->n_parts; i++) {
+        const char *names[MAX_NAMES];
+        name_list list = {.names = names};
+        each_mistake(&e->parts[i], add_name, &list);
+        for (int k = 0; k < list.n; k++) {
+            if (k == 0) {
+                hn_strbuf_printf(b, "  mistakes of part %s:", e->parts[i].id);
+            }
+            hn_strbuf_printf(b, " %s", names[k]);
+        }
+        hn_strbuf_add(b, list.n ? "\n" : "");
+    }
 }
 
 static bool is_listed(const char *const *names, int n, const char *name) {
@@ -77,10 +123,11 @@ static hn_status check_kinds(const hn_rubric *r, const hn_exercise *e, hn_diags 
     hn_status status = HN_OK;
     for (int i = 0; i < e->n_parts; i++) {
         const hn_part *p = &e->parts[i];
-        if (member(r, "tolerance", p->id) && !strstr(p->kind->fields, "tolerance")) {
-            status = hn_rubric_fault(r, diags, "tolerance", p->id, NULL,
-                                     "part %s is of the kind '%s', which has no tolerance", p->id,
-                                     hn_part_text(p->node, "kind"));
+        if (member(r, "tolerance", p->id) && p->kind != &hn_part_values) {
+            status =
+                hn_rubric_fault(r, diags, "tolerance", p->id, NULL,
+                                "part %s is of the kind '%s', whose tolerance no rubric changes",
+                                p->id, hn_part_text(p->node, "kind"));
         }
     }
     return status;
@@ -113,7 +160,7 @@ static void apply_part(const hn_rubric *r, hn_part *p) {
     }
 }
 
-hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *e, hn_diags *diags) {
+hn_status hn_rubric_check(const hn_rubric *r, const hn_exercise *e, hn_diags *diags) {
     const char *parts[HN_GRADE_MAX_PARTS], *mistakes[MAX_NAMES];
     const int n_parts = list_parts(e, parts), n_mistakes = list_mistakes(e, mistakes);
     if (strcmp(hn_rubric_exercise(r), e->id) != 0) {
@@ -128,6 +175,11 @@ hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *e, hn_diags *diags) {
     for (size_t i = 0; i < sizeof checked / sizeof *checked; i++) {
         HN_TRY(checked[i]);
     }
+    return HN_OK;
+}
+
+hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *e, hn_diags *diags) {
+    HN_TRY(hn_rubric_check(r, e, diags));
 
     // the parts, or the one matrix
     double sum = 0;
@@ -170,7 +222,7 @@ void hn_rubric_text(hn_strbuf *b, const hn_exercise *e) {
         const hn_part *p = &e->parts[i];
         hn_strbuf_printf(b, "  %-8s %5g point%s  %-9s", p->id, p->points,
                          p->points == 1 ? " " : "s", hn_part_text(p->node, "kind"));
-        if (strstr(p->kind->fields, "tolerance")) {
+        if (p->kind == &hn_part_values) {
             double relative, absolute;
             hn_value_tolerance(p, &relative, &absolute);
             put_meaning(b, relative, absolute, hn_value_is_symbolic(p));
@@ -210,7 +262,7 @@ void hn_rubric_write(hn_strbuf *b, const hn_exercise *e) {
     bool first = true;
     for (int i = 0; i < e->n_parts; i++) {
         double relative, absolute;
-        if (strstr(e->parts[i].kind->fields, "tolerance")) {
+        if (e->parts[i].kind == &hn_part_values) {
             hn_value_tolerance(&e->parts[i], &relative, &absolute);
             put_tolerance(b, names[i], relative, absolute, first);
             first = false;

@@ -6,9 +6,14 @@
 #include "grade/exercise.h"
 #include "grade/rubric.h"
 
+/// Reports every fault of a rubric that its exercise shows: a part, a mistake or a tolerance that
+/// the exercise cannot have; points that do not sum up to "total". Fails: HN_ERR_INPUT.
+HN_MUST_CHECK hn_status hn_rubric_check(const hn_rubric *r, const hn_exercise *exercise,
+                                        hn_diags *diags);
+/// Writes the mistakes that each part names by itself, as the ids of "shares".
+void hn_rubric_put_mistakes(hn_strbuf *b, const hn_exercise *exercise);
 /// Puts the rubric's points and tolerances into the exercise, which owns the rubric from then on.
-/// Fails: HN_ERR_INPUT (a part, a mistake or a tolerance that the exercise cannot have; points that
-/// do not sum up to "total"); the rubric then stays the caller's.
+/// Fails as hn_rubric_check(); the rubric then stays the caller's.
 HN_MUST_CHECK hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *exercise, hn_diags *diags);
 /// What points and tolerances mean, part by part, after hn_rubric_apply().
 void hn_rubric_text(hn_strbuf *b, const hn_exercise *exercise);

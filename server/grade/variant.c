@@ -59,6 +59,23 @@ uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submissi
     return named ? hn_variant_seed(exercise, student->valuestring) : 0;
 }
 
+bool hn_variant_check_names(const hn_exercise *exercise, const cJSON *submission, hn_verdict *v) {
+    const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
+    const char *student =
+        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(submission, "student"));
+    const uint64_t said = hn_variant_seed_said(exercise, submission);
+    if (!seed || said == 0 || !student || !student[0] ||
+        said == hn_variant_seed(exercise, student)) {
+        return true;
+    }
+    hn_submission_refuse(
+        v, "keep the one whose numbers were used, or grade with --seed or --student",
+        "the submission says seed %llu and student '%.60s', whose variant has the "
+        "seed %llu",
+        (unsigned long long)said, student, (unsigned long long)hn_variant_seed(exercise, student));
+    return false;
+}
+
 // ---- text ----
 
 static void put_statement(hn_strbuf *b, hn_variant *x) {
@@ -249,6 +266,11 @@ static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *
     const cJSON *student = cJSON_GetObjectItemCaseSensitive(submission, "student");
     const uint64_t said = hn_variant_seed_said(x->exercise, submission);
     if (said == x->seed || (said == 0 && !cJSON_IsNumber(seed) && !cJSON_IsString(seed))) {
+        const bool both = said && seed && cJSON_IsString(student) && student->valuestring[0];
+        if (both && hn_variant_seed(x->exercise, student->valuestring) != x->seed) {
+            hn_submission_remark(v, "graded as the variant of seed %llu, not as that of '%.60s'",
+                                 (unsigned long long)x->seed, student->valuestring);
+        }
         return 1;
     }
 

@@ -24,6 +24,9 @@ void hn_variant_reset(hn_variant *x);
 uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student);
 /// The seed that a submission says it answers, by its "seed" or its "student"; 0: it says none.
 uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submission);
+/// Refuses a submission with a seed and a student's name of which each says another variant: false,
+/// with the reason in the verdict.
+bool hn_variant_check_names(const hn_exercise *exercise, const cJSON *submission, hn_verdict *v);
 /// Statement, parts with their numbers, and the shape of a submission.
 void hn_variant_text(hn_strbuf *b, hn_variant *x);
 /// Writes a hint of the exercise, from 1 to its n_hints, with the numbers of this variant.

@@ -82,7 +82,7 @@ static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_plot *p
     const double step = plot->logarithmic ? ceil(span / most) : span / (most > 4 ? 4 : most);
     for (double h = r.high; h >= r.low - 1e-9 * span; h -= step) {
         char label[HN_PLOT_LABEL * 2];
-        label_of(plot, h, label, sizeof label);
+        label_of(plot, fabs(h) < 1e-9 * span ? 0 : h, label, sizeof label);
         const int row = row_of(h, r, inner.rows);
         hn_cells_printf(c, area, 0, row, HN_CELL_MUTED, 0, "%*s", LABEL_COLUMNS - 1, label);
         hn_cells_put(c, area, LABEL_COLUMNS - 1, row, HN_CELL_MUTED, 0, "┤");

@@ -126,6 +126,8 @@ class Class(unittest.TestCase):
         with open(table, encoding="utf-8", newline="") as f:
             rows = list(csv.DictReader(f))
         self.assertEqual([(r["student"], r["status"], float(r["score"])) for r in rows], [(line["student"], line["status"], line["score"]) for line in one])
+        self.assertEqual([r["mistakes"] for r in rows], ["; ".join(line.get("mistakes", [])) for line in one])
+        self.assertTrue(any(r["mistakes"].startswith("sign in J") for r in rows))
 
     def test_killed_ten_times_none_is_lost_and_none_is_graded_twice(self):
         chance = random.Random(5)

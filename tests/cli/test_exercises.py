@@ -204,6 +204,49 @@ def rubrics(folder):
         expect(f"a wrong {what} is named with its line", bool(good), done.stderr)
 
 
+def whole_check(folder):
+    """A rubric's faults are told all at once, each with its line; a part's own mistakes are listed."""
+    bad = write(folder, "worst.json", json.dumps({"rubric": 1, "exercise": "fourbar", "hint": [], "points": {"bb": 1, "a": "x"},
+                                                  "tolerance": {"a": {"relative": 1e-12}}, "shares": {"sgn": 1}, "total": 3}, indent=1))  # fmt: skip
+    told = run("rubric", "check", bad).stderr
+    said = ["no field 'hint'", "no part 'bb'", "needs a number", "below the error", "no mistake 'sgn'", "sum up to"]
+    expect("all faults of a rubric are told at once", all(s in told for s in said), told)
+    expect("each with its line", len(re.findall(r"line \d+: ", told)) >= 6, told)
+    told = run("problem", "closure", "--seeds", "1..2", "--check").stdout
+    expect("the mistakes that an exercise names are listed", "mistakes of part a: along-y coupler-sign" in told, told)
+
+
+def own_exercise(folder):
+    """An exercise in a file of one's own: shown, proved and graded by its path."""
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "2*l", "second": "l+l", "unit": "m"}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"l": {"range": [1, 2], "digits": 2}}, "parts": [part]}  # fmt: skip
+    path = write(folder, "mine.json", exercise)
+    done = run("problem", path, "--check")
+    expect("a file is checked", done.returncode == 0 and "0 variants are bad" in done.stdout, done.stdout + done.stderr)
+    done = run("grade", path, write(folder, "answer.json", {"a": 0}))
+    expect("and graded", done.returncode == 0 and "score 0 of 1" in done.stdout, done.stdout + done.stderr)
+    part["second"] = "l+1.01*l"
+    expect("a file that proves wrong is the exercise's fault", run("problem", write(folder, "mine.json", exercise), "--check").returncode == 3)
+    expect("a file that is not there is the command line's", run("problem", path + "x.json").returncode == 2)
+
+
+def whose_variant(folder):
+    """The name in a file reaches every verdict; a file that says two variants is refused."""
+    path = write(folder, "ada.json", {"student": "ada", "a": 1})
+    told = {form: run("grade", "fourbar", path, "--format", form).stdout for form in ("json", "csv", "lti-score", "html", "text")}
+    expect("the name in a file reaches every form", all("ada" in text for text in told.values()), str(told))
+    both = write(folder, "both.json", {"student": "ada", "seed": 7, "a": 1})
+    done = run("grade", "fourbar", both)
+    expect("a seed and another student's name contradict", done.returncode == 2 and "seed 7 and student 'ada'" in done.stdout, done.stdout)
+    done = run("grade", "fourbar", both, "--seed", "7")
+    expect("a seed that was asked for wins, and it is said", done.returncode == 0 and "not as that of 'ada'" in done.stdout, done.stdout)
+    shown = run("grade", "closure", write(folder, "f.json", {"a": "l1"}), "--show-expected").stdout
+    expect("the formula expected is printed", "expected  -l1*sin(th1)*u1-l2*sin(th2)*u2" in shown, shown)
+    rates = write(folder, "rates.json", '{"b": "-l3*\\\\sin(\\\\theta_3)*\\\\dot\\\\theta_3"}')
+    expect("a rate of LaTeX is read", "1 / 1  right" in run("grade", "closure", rates).stdout, run("grade", "closure", rates).stdout)
+
+
 def for_teachers(folder):
     """Right numbers are in no verdict of a student, and numbers say how exact they must be."""
     path = write(folder, "half.json", {"a": 1, "d": [1, 2]})
@@ -293,6 +336,9 @@ def main():
         forms(folder)
         platforms(folder)
         rubrics(folder)
+        whole_check(folder)
+        own_exercise(folder)
+        whose_variant(folder)
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)

@@ -4,6 +4,7 @@
 // be written.
 #include "base/clock.h"
 #include "cli/commands/rubric_file.h"
+#include "cli/commands/exercise_word.h"
 #include "cli/commands/grade_folder.h"
 #include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"
@@ -27,7 +28,7 @@
 static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_status status,
                                const hn_diags *diags) {
     const hn_exit result = hn_report_diags(args, status, diags);
-    return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
+    return hn_cli_is_exercise(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
 }
 
 /// A bar for every entry, and one for the score.
@@ -132,7 +133,9 @@ static hn_exit grade_one(const task *t) {
     // a submission that cannot be graded is the fault of the input
     hn_exit result = HN_EXIT_PROGRAM;
     if (status == HN_OK) {
-        snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");
+        if (t->args->student) {
+            snprintf(v->student, sizeof v->student, "%s", t->args->student);
+        }
         v->show_expected = t->args->show_expected;
         result = write_result(t, v, hn_clock_wall() - start);
         result =
@@ -172,7 +175,7 @@ static hn_status find_subject(const hn_library *lib, const hn_args *args, owned_
     const char *id = args->words.word[0];
     hn_status status;
     if (hn_library_problem_path(lib, id) || !hn_library_scene_path(lib, id)) {
-        status = hn_shelf_exercise_load(lib, id, &own->exercise, diags);
+        status = hn_cli_load_exercise(lib, id, &own->exercise, diags);
         *out = (hn_grade_subject){.exercise = own->exercise};
         return status;
     }

@@ -57,8 +57,21 @@ static void put_field(hn_strbuf *b, const char *text) {
     hn_strbuf_add(b, "\"");
 }
 
+/// "sign in a; degrees in b.2": one field.
+static void put_mistakes(hn_strbuf *b, const cJSON *line) {
+    const cJSON *m;
+    hn_strbuf all;
+    hn_strbuf_init(&all);
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(line, "mistakes")) {
+        hn_strbuf_printf(&all, "%s%s", all.n ? "; " : "", cJSON_IsString(m) ? m->valuestring : "");
+    }
+    put_field(b, hn_strbuf_text(&all));
+    b->failed |= all.failed;
+    hn_strbuf_reset(&all);
+}
+
 static void put_csv(hn_strbuf *b, const hn_class_result *r) {
-    hn_strbuf_add(b, "student,status,score,max_score,says,file,remark\n");
+    hn_strbuf_add(b, "student,status,score,max_score,says,mistakes,file,remark\n");
     for (int i = 0; i < r->n; i++) {
         cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
         if (!o) {
@@ -68,6 +81,8 @@ static void put_csv(hn_strbuf *b, const hn_class_result *r) {
         hn_strbuf_printf(b, ",%s,%.10g,%.10g,", hn_document_text(o, "status"),
                          hn_document_number(o, "score"), hn_document_number(o, "max_score"));
         put_field(b, hn_document_text(o, is_graded(o) ? "summary" : "reason"));
+        hn_strbuf_add(b, ",");
+        put_mistakes(b, o);
         hn_strbuf_add(b, ",");
         put_field(b, hn_document_text(o, "file"));
         hn_strbuf_add(b, ",");

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom problem: an exercise with its numbers, its hints, or the proof that it is sound.
+#include "cli/commands/exercise_word.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/forms.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "grade/exercise_check.h"
-#include "grade/exercise_shelf.h"
+#include "grade/rubric_apply.h"
 #include "grade/variant.h"
 
 #include <math.h>
@@ -52,6 +53,7 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
     if (r->first[0]) {
         hn_strbuf_printf(b, "  %s\n", r->first);
     }
+    hn_rubric_put_mistakes(b, e);
 }
 
 /// A fault of the exercise is the program's fault here, not that of the command line.
@@ -170,10 +172,10 @@ static hn_exit print_matrix_exercise(const hn_args *args, const hn_exercise *e) 
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
     hn_exercise *e = NULL;
     hn_diags diags = {0};
-    const hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &e, &diags);
+    const hn_status status = hn_cli_load_exercise(lib, args->words.word[0], &e, &diags);
     if (status != HN_OK) {
         const hn_exit result = hn_report_diags(args, status, &diags);
-        return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
+        return hn_cli_is_exercise(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
     }
     const hn_exit result = args->check  ? check(args, e)
                            : e->n_parts ? print_variant(args, e)

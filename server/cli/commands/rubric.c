@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom rubric: checks a teacher's rubric against its exercise, or writes one to start from. Exit
 // status 2: the rubric is at fault.
+#include "cli/commands/exercise_word.h"
 #include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
-#include "grade/exercise_shelf.h"
 #include "grade/rubric_apply.h"
 
 #include <string.h>
+
+/// Every fault of a rubric: of its fields, then those that its exercise shows.
+static hn_status load(const hn_library *lib, const char *path, hn_rubric **rubric, hn_exercise **e,
+                      hn_diags *diags) {
+    hn_status status = hn_rubric_load_file(path, rubric, diags);
+    if (*rubric) {
+        const hn_status own = hn_cli_load_exercise(lib, hn_rubric_exercise(*rubric), e, diags);
+        const hn_status fits = own == HN_OK ? hn_rubric_check(*rubric, *e, diags) : own;
+        status = status == HN_OK ? fits : status;
+    }
+    HN_THEN(status, hn_rubric_apply(*rubric, *e, diags));
+    return status;
+}
 
 static hn_exit check(const hn_library *lib, const hn_args *args, const char *path) {
     hn_rubric *rubric = NULL;
     hn_exercise *e = NULL;
     hn_diags diags = {0};
     hn_strbuf b;
-    hn_status status = hn_rubric_load_file(path, &rubric, &diags);
-    HN_THEN(status, hn_shelf_exercise_load(lib, hn_rubric_exercise(rubric), &e, &diags));
-    HN_THEN(status, hn_rubric_apply(rubric, e, &diags));
+    const hn_status status = load(lib, path, &rubric, &e, &diags);
     if (status != HN_OK) {
         hn_exercise_free(e);
         hn_rubric_free(rubric);
@@ -26,6 +37,7 @@ static hn_exit check(const hn_library *lib, const hn_args *args, const char *pat
     }
     hn_strbuf_init(&b);
     hn_rubric_text(&b, e);
+    hn_rubric_put_mistakes(&b, e);
     hn_exercise_free(e);
     return hn_cli_print_text(&b);
 }
@@ -34,7 +46,7 @@ static hn_exit write(const hn_library *lib, const hn_args *args, const char *id)
     hn_exercise *e = NULL;
     hn_diags diags = {0};
     hn_strbuf b;
-    const hn_status status = hn_shelf_exercise_load(lib, id, &e, &diags);
+    const hn_status status = hn_cli_load_exercise(lib, id, &e, &diags);
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
@@ -65,8 +77,8 @@ hn_status hn_cli_apply_rubric(const hn_args *args, hn_exercise *exercise, hn_dia
     if (!args->rubric) {
         return HN_OK;
     }
-    HN_TRY(hn_rubric_load_file(args->rubric, &rubric, diags));
-    const hn_status status = hn_rubric_apply(rubric, exercise, diags);
+    hn_status status = hn_rubric_load_file(args->rubric, &rubric, diags);
+    HN_THEN(status, hn_rubric_apply(rubric, exercise, diags));
     if (status != HN_OK) {
         hn_rubric_free(rubric);
     }

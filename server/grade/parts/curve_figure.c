@@ -17,20 +17,20 @@ enum {
 };
 
 void hn_curve_axis(const hn_motion_curve *c, double *low, double *high) {
-    // about four steps of 1, 2 or 5 times a power of ten, with room at both ends
+    static const double STEPS[] = {1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10};
     const double span = fmax(c->high - c->low, fmax(1e-12, 1e-9 * fabs(c->high)));
-    const double rough = span / 4, power = pow(10, floor(log10(rough)));
-    const double step = power * (rough / power > 5   ? 10
-                                 : rough / power > 2 ? 5
-                                 : rough / power > 1 ? 2
-                                                     : 1);
-    *low = step * floor((c->low - 0.02 * span) / step);
-    *high = step * ceil((c->high + 0.02 * span) / step);
-    *low = c->low >= 0 ? fmax(*low, 0) : *low;
+    const double bottom = c->low >= 0 ? fmax(c->low - 0.02 * span, 0) : c->low - 0.02 * span;
+    const double top = c->high + 0.02 * span, power = pow(10, floor(log10((top - bottom) / 4)));
 
-    // four equal intervals with labels of few digits
-    const double quarter = ceil((*high - *low) / step / 4) * step;
-    *high = *low + 4 * quarter;
+    // the least round step whose four intervals hold the values; twice the last holds any
+    for (int i = 0; i < 20; i++) {
+        const double step = power * (i < 10 ? STEPS[i] : 10 * STEPS[i - 10]);
+        *low = step * floor(bottom / step);
+        *high = *low + 4 * step;
+        if (*high >= top) {
+            return;
+        }
+    }
 }
 
 void hn_curve_text(hn_strbuf *b, const hn_motion_curve *c, const char *title, int columns) {
@@ -63,7 +63,8 @@ static double down(double y, double low, double high) {
 
 static void put_grid(hn_strbuf *b, const hn_motion_curve *c, double low, double high) {
     for (int k = 0; k <= 4; k++) {
-        const double value = low + (high - low) * k / 4, y = down(value, low, high);
+        const double level = low + (high - low) * k / 4, y = down(level, low, high);
+        const double value = fabs(level) < 1e-9 * (high - low) ? 0 : level;
         hn_strbuf_printf(b,
                          "<path class=\"grid\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" "
                          "text-anchor=\"end\">%.4g</text>\n",

@@ -151,7 +151,7 @@ static void judge(hn_draw *d, const table *J, const table *N, int r, hn_part_res
     for (int s = 0; s < d->n_states; s++) {
         const int rank = rank_of(d, N, s);
         if (rank < r) {
-            hn_part_wrong(out, "rank", 0.25,
+            hn_part_wrong(out, "rank", rank > 0 ? 0.25 : 0,
                           "J N = 0, but the columns are dependent: rank %d, %d are needed", rank,
                           r);
             return;

@@ -494,10 +494,16 @@ static void ask(hn_strbuf *b, const hn_part *p) {
         hn_strbuf_printf(b, "%s\"%s\": ...", k ? ", " : "",
                          hn_part_coordinate(s->model, s->asked[k])->name);
     }
-    hn_strbuf_printf(b,
-                     "} in rad and m, or with a unit: \"70 deg\"; right to %g rad, or %g of the "
-                     "characteristic length; the scene is %s",
-                     s->within, s->within, hn_part_text(p->node, "scene"));
+    bool lengths = false;
+    for (int k = 0; k < s->n_asked; k++) {
+        lengths |= !is_angle(s, s->asked[k]);
+    }
+    hn_strbuf_printf(b, "} in rad%s, or with a unit: \"70 deg\"; right to %g rad",
+                     lengths ? " and m" : "", s->within);
+    if (lengths) {
+        hn_strbuf_printf(b, " and %.3g m", s->within * hn_system_length(hn_model_system(s->model)));
+    }
+    hn_strbuf_printf(b, "; the scene is %s", hn_part_text(p->node, "scene"));
     hn_part_put_settings(b, p);
     close_sheet(s);
 }

@@ -10,7 +10,7 @@
 #include "grade/parts/part.h"
 #include "session/model/model.h"
 
-enum { HN_PART_SETTINGS = 16 };
+enum { HN_PART_SETTINGS = 24 };
 
 /// The settings of "set"; their names are borrowed from the exercise. `n` receives how many.
 /// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.

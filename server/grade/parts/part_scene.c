@@ -48,6 +48,7 @@ static bool read_parameter(const hn_part *p, const char *name, const cJSON *give
     hn_value_sheet reader = {.p = p, .draw = p->draw};
     double x[HN_DRAW_STATES];
     hn_ex e;
+    hn_part_result own = {.mistake = ""};
     const cJSON *entry = cJSON_GetObjectItemCaseSensitive(given, name);
     const cJSON *limits = cJSON_GetObjectItemCaseSensitive(field(p, "limits"), name);
     hn_unit_parse(cJSON_IsString(entry) ? "m" : "", &reader.unit);
@@ -55,7 +56,8 @@ static bool read_parameter(const hn_part *p, const char *name, const cJSON *give
         hn_part_unreadable(r, "the parameter %.20s is missing", name);
         return false;
     }
-    if (!hn_value_entry_read(&reader, entry, x, &e, r)) {
+    if (!hn_value_entry_read(&reader, entry, x, &e, &own)) {
+        hn_part_unreadable(r, "%.20s: %.300s", name, own.explanation);
         return false;
     }
     *out = x[0];
@@ -116,6 +118,7 @@ static hn_status read_answer(const hn_part *p, const cJSON *given, hn_setting *s
     const cJSON *m;
     *good = true;
     HN_TRY(hn_part_settings(p, settings, n, diag));
+    hn_part_keep_given(r, given);
     cJSON_ArrayForEach(m, field(p, "free")) {
         const char *name = cJSON_GetStringValue(m);
         if (!name || *n == HN_PART_SETTINGS) {
@@ -162,7 +165,16 @@ static hn_status grade_object(const hn_part *p, const cJSON *given, hn_part_resu
     hn_status status = good ? load(p, settings, n, given, &model, r) : HN_OK;
     if (status == HN_OK && model) {
         n = is_scene(given) ? scene_parameters(model, settings) : n;
-        status = grade_model(p, model, settings, n, r, diag);
+        hn_diag why = {0};
+        status = grade_model(p, model, settings, n, r, &why);
+
+        // a name that a scene of the student's own does not have
+        if (status == HN_ERR_INPUT && is_scene(given)) {
+            hn_part_unreadable(r, "your scene lacks what is tested: %.250s", why.message);
+            status = HN_OK;
+        } else if (status != HN_OK) {
+            hn_diag_set(diag, status, why.pointer, why.hint, "%s", why.message);
+        }
     }
     hn_model_free(model);
     return status;

@@ -24,13 +24,27 @@ static void name_entry(const hn_value_sheet *s, int k, hn_part_result *r) {
     }
 }
 
+/// The number with its unit, or the formula as the exercise writes it.
+static void write_expected(const hn_value_sheet *s, int k, hn_part_result *r) {
+    const cJSON *list[HN_VALUE_ENTRIES];
+    int columns;
+    const int n =
+        hn_value_flatten(cJSON_GetObjectItemCaseSensitive(s->p->node, "answer"), list, &columns);
+    const char *formula = k < n ? cJSON_GetStringValue(list[k]) : NULL;
+    if (s->symbolic && formula) {
+        snprintf(r->expected, sizeof r->expected, "%s", formula);
+    } else {
+        snprintf(r->expected, sizeof r->expected, "%.6g %s", s->reference.x[k][0],
+                 hn_part_text(s->p->node, "unit"));
+    }
+}
+
 static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_part_result *r) {
     double x[HN_DRAW_STATES];
     hn_ex e;
     *r = (hn_part_result){.mistake = ""};
     name_entry(s, k, r);
-    snprintf(r->expected, sizeof r->expected, s->symbolic ? "the formula" : "%.6g %s",
-             s->reference.x[k][0], hn_part_text(s->p->node, "unit"));
+    write_expected(s, k, r);
     if (!hn_value_entry_read(s, node, x, &e, r)) {
         return HN_OK;
     }

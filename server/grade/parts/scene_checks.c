@@ -109,8 +109,10 @@ static hn_status fault_of(const hn_scene_check *c, hn_diag *diag, const char *wh
 
 /// Makes the result wrong by the check's own id, sentence and share; `detail` follows in brackets.
 static void fail_check(const cJSON *node, hn_part_result *r, const char *detail) {
+    const char *says = hn_part_text(node, "says");
     hn_part_wrong(r, hn_part_text(node, "id"), hn_part_number(node, "share", 0), "%s%s%s%s",
-                  hn_part_text(node, "says"), detail[0] ? " (" : "", detail, detail[0] ? ")" : "");
+                  says[0] ? says : "the mechanism does not have this property",
+                  detail[0] ? " (" : "", detail, detail[0] ? ")" : "");
 }
 
 // ---- tests ----

@@ -27,6 +27,7 @@ static const struct {
     {"α", "alpha"}, {"β", "beta"}, {"γ", "gamma"}, {"δ", "delta"}, {"θ", "theta"}, // letters
     {"ϑ", "theta"}, {"λ", "lambda"}, {"μ", "mu"}, {"π", "pi"},     {"ρ", "rho"},   //
     {"φ", "phi"},   {"ϕ", "phi"},  {"ψ", "psi"}, {"ω", "omega"}, {"ℓ", "l"},     //
+    {"\xcc\x87", "dot"},                                                         // a dot above
     {"\xc2\xa0", " "}, {"\xe2\x80\x89", " "}, {"\xe2\x80\xaf", " "}, {"\xe2\x80\x8b", ""}, // spaces
     {"（", "("},    {"）", ")"},                                                 // wide brackets
 };
@@ -495,15 +496,40 @@ int hn_spelling_join(const char *name, char *out, size_t size) {
     return n > 0 && n < strlen(name) && strlen(name) < size;
 }
 
+/// theta1dot, th1_dot as thetadot1, thdot1: the dot before the index; other names as they are.
+static void move_dot(const char *name, char out[MAX_NAME]) {
+    size_t n = strlen(name), digits = 0;
+    snprintf(out, MAX_NAME, "%s", name);
+    if (n < 5 || n >= MAX_NAME || strcmp(name + n - 3, "dot") != 0) {
+        return;
+    }
+    n -= 3;
+    n -= name[n - 1] == '_';
+    while (digits < n && isdigit((unsigned char)name[n - 1 - digits])) {
+        digits++;
+    }
+    if (digits > 0 && digits < n) {
+        snprintf(out, MAX_NAME, "%.*sdot%.*s", (int)(n - digits), name, (int)digits,
+                 name + n - digits);
+    }
+}
+
 int hn_spelling_alias(const char *name, int i, char *out, size_t size) {
+    // an angular velocity is w1 or u1 here, and an angle th1
     static const char *const aliases[][2] = {
-        {"thetadot", "w"}, {"thetadot", "om"}, {"theta", "th"}, {"q", "th"},     {"omega", "w"},
-        {"omega", "om"},   {"alpha", "al"},    {"beta", "be"},  {"gamma", "ga"}, {"lambda", "la"},
+        {"thetadot", "w"}, {"thetadot", "om"}, {"thetadot", "u"}, {"thdot", "w"},  {"thdot", "u"},
+        {"dtheta", "w"},   {"dtheta", "u"},    {"dth", "w"},      {"dth", "u"},    {"qdot", "w"},
+        {"qdot", "u"},     {"dq", "w"},        {"dq", "u"},       {"theta", "th"}, {"q", "th"},
+        {"omega", "w"},    {"omega", "om"},    {"omega", "u"},    {"alpha", "al"}, {"beta", "be"},
+        {"gamma", "ga"},   {"lambda", "la"},
     };
+    char plain[MAX_NAME];
+    move_dot(name, plain);
     for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++) {
         const size_t n = strlen(aliases[k][0]);
-        if (strncmp(name, aliases[k][0], n) == 0 && !isalpha((unsigned char)name[n]) && i-- == 0) {
-            return snprintf(out, size, "%s%s", aliases[k][1], name + n) < (int)size;
+        if (strncmp(plain, aliases[k][0], n) == 0 && !isalpha((unsigned char)plain[n]) &&
+            i-- == 0) {
+            return snprintf(out, size, "%s%s", aliases[k][1], plain + n) < (int)size;
         }
     }
     return 0;

@@ -438,7 +438,7 @@ static void the_statement_says_that_the_ground_is_held_and_how_to_hand_in(void *
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_exercise_text(&b, *state);
-    assert_non_null(strstr(hn_strbuf_text(&b), "two freedoms"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "two degrees of freedom"));
     assert_non_null(
         strstr(hn_strbuf_text(&b), "{\"J\": [[\"...\", \"...\", \"...\", \"...\"], [\"...\""));
     hn_strbuf_clear(&b);

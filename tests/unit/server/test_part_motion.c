@@ -58,6 +58,13 @@ static const char MADE[] =
          "{\"id\":\"flat\",\"test\":\"stays\",\"of\":\"abs(sin(th3-th1-a2))-0.2\","
          "\"says\":\"too flat\"}],\"answer\":{\"l1\":0.45}}]}";
 
+// a scene that can be used, without the links that are compared
+#define PENDULUM                                                                                  \
+    "{\"holonom\":1,\"name\":\"rod\",\"bodies\":[{\"name\":\"rod\",\"mass\":1,\"com\":[0.5,0,0]," \
+    "\"inertia\":{\"zz\":0.1}}],\"joints\":[{\"name\":\"O\",\"type\":\"revolute\","               \
+    "\"parent\":{\"body\":\"ground\",\"at\":[0,0]},\"child\":{\"body\":\"rod\",\"at\":[0,0]},"    \
+    "\"coordinate\":\"th\"}]}"
+
 static hn_exercise *load(const char *text) {
     hn_exercise *e = NULL;
     hn_diags diags = {0};
@@ -231,6 +238,8 @@ static void grashof_and_the_motion_judge_a_four_bar(void **state) {
         {"{\"l4\":1,\"l1\":2.5,\"l2\":1,\"l3\":1}", "out-of-range", "0.1 to 2"},
         {"{\"l4\":1,\"l1\":1}", "unreadable", "l2 is missing"},
         {"{\"holonom\":1}", "no-scene", "cannot be used"},
+        {PENDULUM, "unreadable", "'l4'"},
+        {"{\"l4\":1,\"l1\":\"long\",\"l2\":1,\"l3\":1}", "unreadable", "l1: 'long'"},
     };
     hn_verdict *v = calloc(1, sizeof *v);
     (void)state;

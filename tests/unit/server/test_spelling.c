@@ -131,7 +131,17 @@ static void a_name_stands_for_shorter_ones(void **state) {
     assert_string_equal(out, "w1");
     assert_true(hn_spelling_alias("omega1", 1, out, sizeof out));
     assert_string_equal(out, "om1");
-    assert_false(hn_spelling_alias("omega1", 2, out, sizeof out));
+    assert_true(hn_spelling_alias("omega1", 2, out, sizeof out));
+    assert_string_equal(out, "u1");
+    assert_false(hn_spelling_alias("omega1", 3, out, sizeof out));
+    // the dot of a rate stands before the index or behind it
+    static const char *const rates[] = {"thetadot1", "theta1dot", "theta1_dot", "th1dot",
+                                        "dtheta1",   "qdot1",     "dq1"};
+    for (int i = 0; i < 7; i++) {
+        assert_true(hn_spelling_alias(rates[i], 0, out, sizeof out));
+        assert_string_equal(out, "w1");
+    }
+    assert_false(hn_spelling_alias("xdot", 0, out, sizeof out));
     assert_true(hn_spelling_alias("thetadot1", 0, out, sizeof out));
     assert_string_equal(out, "w1");
     assert_false(hn_spelling_alias("thetas", 0, out, sizeof out));
