@@ -140,6 +140,6 @@ void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alph
     set_option(w->methods[at], "beta", beta);
     if (record_again(w, &before)) {
         w->selected = at;
-        hn_workbench_say(w, "alpha = %.3g, beta = %.3g%s", alpha, beta, said);
+        hn_workbench_say(w, "alpha = %.4g, beta = %.4g%s", alpha, beta, said);
     }
 }

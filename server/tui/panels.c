@@ -8,9 +8,11 @@
 #include "session/export/export.h"
 #include "session/model/equations.h"
 #include "session/model/lists.h"
-#include "session/model/model_json.h"
+#include "terminal/short_spelling.h"
+#include "tui/list.h"
 #include "tui/methods.h"
 #include "tui/prompt.h"
+#include "tui/scene_list.h"
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"
 
@@ -28,51 +30,20 @@ static const char EXERCISE[] = "exercise, with numbers of its own";
 
 // ---- lists ----
 
-static void begin_list(hn_workbench *w, hn_list_kind kind, const char *title) {
-    w->panel = HN_PANEL_LIST;
-    w->list = kind;
-    w->n_items = w->cursor = w->scroll = 0;
-    snprintf(w->title, sizeof w->title, "%s", title);
-}
-
-static void add_item(hn_workbench *w, const char *name, const char *about) {
-    if (w->n_items < HN_TUI_ITEMS) {
-        hn_item *item = &w->items[w->n_items++];
-        *item = (hn_item){.value = (double)NAN};
-        snprintf(item->name, sizeof item->name, "%s", name);
-        snprintf(item->about, sizeof item->about, "%s", about ? about : "");
-    }
-}
-
 static const char *text_of(const cJSON *object, const char *name) {
     const cJSON *item = cJSON_GetObjectItem(object, name);
     return cJSON_IsString(item) ? item->valuestring : "";
 }
 
-static void list_scenes(hn_workbench *w) {
-    hn_strbuf b;
-    const cJSON *scene;
-    hn_strbuf_init(&b);
-    hn_scenes_json(&b, w->library);
-    cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
-    begin_list(w, HN_LIST_SCENES, "scenes: Enter opens, Esc goes back");
-    cJSON_ArrayForEach(scene, cJSON_GetObjectItem(document, "scenes")) {
-        add_item(w, text_of(scene, "id"), text_of(scene, "title"));
-        if (strcmp(text_of(scene, "id"), w->scene) == 0) {
-            w->cursor = w->n_items - 1;
-        }
-    }
-    cJSON_Delete(document);
-    hn_strbuf_reset(&b);
-}
-
 static void list_methods(hn_workbench *w) {
-    begin_list(w, HN_LIST_METHODS, "methods: Enter changes, x removes, Esc goes back");
+    hn_list_begin(w, HN_LIST_METHODS, "methods: Enter changes, x removes, Esc goes back");
     for (int i = 0; i < w->n_methods; i++) {
-        add_item(w, w->methods[i], hn_recording_track(w->recording, i)->rule);
+        char shown[HN_SPEC_MAX];
+        hn_short_spelling(w->methods[i], shown, sizeof shown);
+        hn_list_add(w, shown, hn_recording_track(w->recording, i)->rule);
     }
     if (w->n_methods < HN_COMPARISON_MAX_METHODS) {
-        add_item(w, "add a method", "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]");
+        hn_list_add(w, "add a method", "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]");
     }
 }
 
@@ -85,9 +56,8 @@ static void add_value(hn_workbench *w, const char *name, double value, const cha
     } else {
         snprintf(line, sizeof line, "%.9g %s   %.150s", value, unit, about);
     }
-    add_item(w, name, line);
-    if (w->n_items > 0) {
-        hn_item *item = &w->items[w->n_items - 1];
+    hn_item *item = hn_list_add(w, name, line);
+    if (item) {
         item->value = value;
         item->low = low;
         item->high = high;
@@ -119,7 +89,7 @@ static void list_starts(hn_workbench *w) {
 
 static void list_parameters(hn_workbench *w) {
     const hn_scene *scene = hn_model_scene(w->model);
-    begin_list(w, HN_LIST_PARAMETERS, "parameters: Enter types, ←→ change, Esc goes back");
+    hn_list_begin(w, HN_LIST_PARAMETERS, "parameters: Enter types, ←→ change, Esc goes back");
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
         add_value(w, p->name, p->value, p->unit ? p->unit : "", p->min, p->max,
@@ -134,12 +104,12 @@ static void list_lessons(hn_workbench *w) {
     hn_strbuf_init(&b);
     hn_lessons_json(&b, w->library);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
-    begin_list(w, HN_LIST_LESSONS, "lessons and exercises: Enter reads, Esc goes back");
+    hn_list_begin(w, HN_LIST_LESSONS, "lessons and exercises: Enter reads, Esc goes back");
     cJSON_ArrayForEach(lesson, cJSON_GetObjectItem(document, "lessons")) {
-        add_item(w, text_of(lesson, "id"), text_of(lesson, "title"));
+        hn_list_add(w, text_of(lesson, "id"), text_of(lesson, "title"));
     }
     for (int i = 0; i < hn_library_n_problems(w->library); i++) {
-        add_item(w, hn_library_problem_id(w->library, i), EXERCISE);
+        hn_list_add(w, hn_library_problem_id(w->library, i), EXERCISE);
     }
     cJSON_Delete(document);
     hn_strbuf_reset(&b);
@@ -151,10 +121,10 @@ static void list_exports(hn_workbench *w) {
     hn_strbuf_init(&b);
     hn_export_languages_json(&b);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
-    begin_list(w, HN_LIST_EXPORTS, "export: Enter names a file, Esc goes back");
-    add_item(w, HN_TUI_RECORDING, "gap, energy change and error of every method, a row a frame");
+    hn_list_begin(w, HN_LIST_EXPORTS, "export: Enter names a file, Esc goes back");
+    hn_list_add(w, HN_TUI_RECORDING, "gap, energy change and error of every method, a row a frame");
     cJSON_ArrayForEach(language, cJSON_GetObjectItem(document, "languages")) {
-        add_item(w, text_of(language, "name"), text_of(language, "about"));
+        hn_list_add(w, text_of(language, "name"), text_of(language, "about"));
     }
     cJSON_Delete(document);
     hn_strbuf_reset(&b);
@@ -164,14 +134,14 @@ static void list_exports(hn_workbench *w) {
 static void list_actions(hn_workbench *w) {
     const hn_tui_key *keys;
     const int n = hn_tui_keys(&keys);
-    begin_list(w, HN_LIST_ACTIONS, "keys: Enter does it, Esc goes back");
+    hn_list_begin(w, HN_LIST_ACTIONS, "keys: Enter does it, Esc goes back");
     for (int i = 0; i < n; i++) {
-        add_item(w, keys[i].shown, keys[i].means);
+        hn_list_add(w, keys[i].shown, keys[i].means);
     }
-    add_item(w, "1 to 8", "select a method");
-    add_item(w, "mouse",
-             "a joint can be dragged to another start; a click takes a time in the plot, or a "
-             "method in the table");
+    hn_list_add(w, "1 to 8", "select a method");
+    hn_list_add(w, "mouse",
+                "a joint can be dragged to another start; a click takes a time in the plot, or a "
+                "method in the table");
 }
 
 // ---- texts ----
@@ -316,6 +286,8 @@ static void list_key(hn_workbench *w, int key) {
 void hn_panel_key(hn_workbench *w, int key) {
     if (w->panel == HN_PANEL_STUDY) {
         hn_study_panel_key(w, key);
+    } else if (w->panel == HN_PANEL_LIST && hn_scene_list_key(w, key)) {
+        // the search has taken it
     } else if (key == HN_KEY_ESCAPE || (key == 'q' && w->panel == HN_PANEL_TEXT)) {
         hn_child_stop(&w->child);
         w->panel = HN_PANEL_MAIN;
@@ -332,7 +304,7 @@ void hn_panel_open(hn_workbench *w, hn_tui_action action) {
         hn_tui_action action;
         void (*open)(hn_workbench *w);
     } panels[] = {{HN_TUI_PARAMETERS, list_parameters}, {HN_TUI_METHODS, list_methods},
-                  {HN_TUI_SCENES, list_scenes},         {HN_TUI_FORMULAS, show_equations},
+                  {HN_TUI_SCENES, hn_scene_list_open},  {HN_TUI_FORMULAS, show_equations},
                   {HN_TUI_LESSONS, list_lessons},       {HN_TUI_BUDGET, show_budget},
                   {HN_TUI_EXPORT, list_exports},        {HN_TUI_HELP, list_actions}};
     for (size_t i = 0; i < sizeof panels / sizeof *panels; i++) {

@@ -23,7 +23,7 @@ void hn_preview_load(hn_workbench *w, const char *scene) {
     // the drawn points at the assembled start
     const hn_model_source source = {.name = scene};
     hn_diags diags = {0};
-    if (hn_model_load(w->library, &source, &p->model, &diags) != HN_OK) {
+    if (!scene[0] || hn_model_load(w->library, &source, &p->model, &diags) != HN_OK) {
         p->model = NULL;
         return;
     }

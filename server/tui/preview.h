@@ -5,7 +5,7 @@
 
 #include "tui/workbench.h"
 
-/// Loads the scene into w->preview where another one is there; a scene that cannot be loaded shows
-/// nothing.
+/// Loads the scene into w->preview where another one is there; a scene that cannot be loaded, and
+/// "", shows nothing.
 void hn_preview_load(hn_workbench *w, const char *scene);
 #endif

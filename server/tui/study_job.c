@@ -3,6 +3,7 @@
 
 #include "cli/shell/cache_folder.h"
 #include "session/stability/stability_column.h"
+#include "terminal/short_spelling.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -61,7 +62,9 @@ static void progress(void *user, const char *part, double share) {
 static void add_classes(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     for (int m = 0; m < wp->n_methods; m++) {
-        hn_strbuf_printf(b, "%s: %s\n", wp->methods[m].spelling, hn_study_classes(study)[m].text);
+        char shown[HN_SPEC_MAX];
+        hn_short_spelling(wp->methods[m].spelling, shown, sizeof shown);
+        hn_strbuf_printf(b, "%s: %s\n", shown, hn_study_classes(study)[m].text);
     }
     hn_pareto p;
     hn_wp_pareto(wp, hn_study_classes(study), hn_wp_ranked_error(wp), HN_COST_OPS, &p);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/study_panel.h"
 
+#include "terminal/short_spelling.h"
 #include "tui/keys.h"
 #include "tui/methods.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -76,6 +78,13 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
 
 // ---- keys ----
 
+/// The value of a cell as it is taken: a step of a logarithmic axis has digits that mean nothing.
+static double four_digits(double value) {
+    char text[32];
+    snprintf(text, sizeof text, "%.4g", value);
+    return strtod(text, NULL);
+}
+
 /// Enter on a map: alpha and beta of the cell go to the method, which starts again.
 static void take_cell(hn_workbench *w) {
     static hn_map_plot map;
@@ -85,7 +94,8 @@ static void take_cell(hn_workbench *w) {
         return;
     }
     const char *spelling = mapped_method(w, &alpha, &beta);
-    hn_methods_set_baumgarte(w, spelling, map.x.value[w->at.column], map.y.value[w->at.row]);
+    hn_methods_set_baumgarte(w, spelling, four_digits(map.x.value[w->at.column]),
+                             four_digits(map.y.value[w->at.row]));
 }
 
 static void move_cursor(hn_workbench *w, int dx, int dy) {
@@ -147,7 +157,9 @@ static int draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
         if (p->failed[m] > 0) {
             x += hn_cells_printf(c, area, x, m, HN_CELL_ALARM, 0, "%d ended early ", p->failed[m]);
         }
-        hn_cells_put(c, area, x, m, HN_CELL_INK, 0, p->name[m]);
+        char shown[HN_SPEC_MAX];
+        hn_short_spelling(p->name[m], shown, sizeof shown);
+        hn_cells_put(c, area, x, m, HN_CELL_INK, 0, shown);
     }
     return p->scatter.n;
 }
@@ -185,7 +197,9 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     }
     const hn_map_place here = hn_map_plot_place(&map, w->present[0], w->present[1]);
     const int rows = hn_map_plot_rows(&map);
-    hn_cells_printf(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, "%s", map.name);
+    char shown[HN_SPEC_MAX];
+    hn_short_spelling(map.name, shown, sizeof shown);
+    hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);
     hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
 
     // the cell under the cursor, or what the map says as a whole

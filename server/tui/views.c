@@ -82,6 +82,32 @@ static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
     return w->prompt == HN_PROMPT_NONE && hn_text_columns(w->message) > c->columns - 2;
 }
 
+/// The keys of what is shown.
+static const char *keys_line(const hn_workbench *w, int columns) {
+    static const char *const lists[] = {
+        [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
+        [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
+        [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  a letter finds  Esc back",
+        [HN_LIST_LESSONS] = "↑↓ choose  Enter read  a letter finds  Esc back",
+        [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
+        [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back"};
+    switch (w->panel) {
+    case HN_PANEL_LIST:
+        return lists[w->list];
+    case HN_PANEL_TEXT:
+        return "↑↓ line  PageUp PageDown Space page  Home End  Esc back";
+    case HN_PANEL_STUDY:
+        return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
+                   ? "arrows choose a cell  Enter take its alpha and beta  Esc back"
+                   : "↑↓ scroll the words  Esc back";
+    default:
+        return columns < 92 ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene "
+                              " ? menu  q"
+                            : "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  w cost  "
+                              "m methods  s scene  p values  ? menu  q";
+    }
+}
+
 /// The last line: what is typed, or the keys.
 static void draw_footer(hn_cells *c, const hn_workbench *w) {
     static const char *const asks[] = {[HN_PROMPT_STEP] = "dt [s, or 20 ms]: ",
@@ -94,12 +120,7 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
         const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input);
         hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
     } else if (!needs_two_lines(c, w)) {
-        hn_cells_put(
-            c, area, 0, 0, HN_CELL_MUTED, 0,
-            area.columns < 92
-                ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q"
-                : "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  w cost  m methods  "
-                  "s scene  p values  ? menu  q");
+        hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0, keys_line(w, area.columns));
     }
 }
 
@@ -322,7 +343,7 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_area in = {frame.x, frame.y, pictured ? picture.x - 1 - frame.x : frame.columns,
                         frame.rows};
     enum { NAME_WIDTH = 20 };
-    const int below = 3, rows = in.rows - below;
+    const int below = pictured ? 3 + in.rows / 6 : 3, rows = in.rows - below;
     const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
     for (int i = first; i < w->n_items && i - first < rows; i++) {
         const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;
@@ -334,7 +355,8 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     }
     if (w->n_items > 0) {
         const hn_area foot = {in.x + 1, in.y + in.rows - below + 1, in.columns - 2, below - 1};
-        hn_cells_fold(c, foot, 0, HN_CELL_INK, w->items[w->cursor].about);
+        const hn_item *item = &w->items[w->cursor];
+        hn_cells_fold(c, foot, 0, HN_CELL_INK, item->more[0] ? item->more : item->about);
     }
     if (pictured) {
         hn_mechanism_preview(c, picture, w);

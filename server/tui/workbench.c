@@ -116,6 +116,8 @@ void hn_workbench_close(hn_workbench *w) {
     free(w->preview.points);
     free(w->drag.points);
     free(w->items);
+    cJSON_Delete(w->scenes);
+    w->scenes = NULL;
     w->study = NULL;
     w->versions = NULL;
     w->preview = (hn_preview){0};
@@ -202,7 +204,7 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
     if (w->child.pid != 0 && !hn_child_read(&w->child, &w->text)) {
         hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
     }
-    if (w->panel == HN_PANEL_LIST && w->list == HN_LIST_SCENES && w->n_items > 0) {
-        hn_preview_load(w, w->items[w->cursor].name);
+    if (w->panel == HN_PANEL_LIST && w->list == HN_LIST_SCENES) {
+        hn_preview_load(w, w->n_items > 0 ? w->items[w->cursor].name : "");
     }
 }

@@ -12,6 +12,8 @@
 #include "tui/recording.h"
 #include "tui/study_job.h"
 
+#include <cjson/cJSON.h>
+
 typedef enum hn_panel {
     HN_PANEL_MAIN,
     HN_PANEL_LIST, ///< scenes, methods, parameters, actions to choose from
@@ -40,7 +42,8 @@ enum { HN_TUI_LINE = 256, HN_TUI_ITEMS = 400, HN_TUI_MESSAGE = 400, HN_TUI_SETTI
 
 typedef struct hn_item {
     char name[HN_TUI_LINE], about[HN_TUI_LINE];
-    double value, low, high; ///< of a parameter
+    char more[2 * HN_TUI_LINE]; ///< below the list in place of `about`; "": about itself
+    double value, low, high;    ///< of a parameter
 } hn_item;
 
 /// A scene as it stands at its start, for the list of scenes.
@@ -105,6 +108,9 @@ typedef struct hn_workbench {
     hn_item *items; ///< HN_TUI_ITEMS, owned
     int n_items, cursor, scroll;
     char title[HN_TUI_LINE];
+    cJSON *scenes; ///< the library's list of scenes, owned; NULL before it is opened first
+    char search[64];
+    int n_search; ///< letters that are looked for in the list of scenes
     hn_strbuf text;
     hn_child child; ///< the command whose text this is, while it runs
     hn_preview preview;

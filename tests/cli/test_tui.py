@@ -397,6 +397,42 @@ class Keys(unittest.TestCase):
         lines = [line[45:78] for line in out.split("\n")[2:20]]
         self.assertRegex("".join(lines), "[\u2801-\u28ff]{3}")
 
+    def test_what_is_typed_is_searched_in_the_list_of_scenes(self):
+        def found(keys, size="120x40"):
+            _, out, _ = once("four-bar", "--once", "--size", size, "--keys", "s" + keys)
+            return out
+        # a word of the name, of the description, of the kind; two words: both must be there
+        self.assertRegex(found("STEW"), r"scenes with 'stew': \d+ of \d+")
+        self.assertIn("stewart", found("STEW"))
+        self.assertIn("cardan-shaft", found("fork universal"))
+        self.assertNotIn("cardan-shaft", found("fork wheelbarrow"))
+        self.assertIn("no scene has all of these words", found("fork wheelbarrow"))
+        self.assertRegex(found("cardanx<Backspace>"), r"scenes with 'cardan': 1 of \d+")
+        self.assertRegex("".join(line[70:115] for line in found("cardan").split("\n")[2:36]), "[\u2801-\u28ff]{3}")
+        # Escape first forgets the words, then the list; Enter opens what was found
+        self.assertRegex(found("cardan<Esc>"), r"scenes: type to search")
+        self.assertIn("loop gap", found("cardan<Esc><Esc>"))
+        self.assertRegex(found("cardan<Enter>"), r"holonom  cardan-shaft")
+        self.assertRegex(found("cardan", "80x24"), r"1 degree of freedom \(4 − 3\)")
+
+    def test_values_taken_from_a_map_have_four_digits_and_long_ones_are_shown_so(self):
+        with tempfile.TemporaryDirectory() as cache:
+            _, out, _ = once("four-bar", "--once", "--t", "3.5", "--keys", "b<Right><Right><Right><Up><Enter>m", *METHODS, HOLONOM_CACHE=cache)
+        values = re.search(r"baumgarte:alpha=([\d.]+),beta=([\d.]+)@", out).groups()
+        self.assertLessEqual(max(len(v.replace(".", "")) for v in values), 4, values)
+        long = ("--methods", "baumgarte:alpha=5.568857379998894,beta=7@rk4:h=0.01")
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "100x24", "--keys", "m", *long)
+        self.assertIn("baumgarte:alpha=5.569,beta=7@rk4:h=0.01", out)
+        # what is typed stays: the line that changes it, and the link
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "100x24", "--keys", "m<Enter>", *long)
+        self.assertIn("method: baumgarte:alpha=5.568857379998894,beta=7@rk4:h=0.01", out)
+
+    def test_the_last_line_names_the_keys_of_what_is_open(self):
+        for keys, wanted in (("", "Space run"), ("s", "letters search"), ("m", "x remove"), ("p", "←→ change"), ("f", "PageDown"), ("t", "Enter read"),
+                             ("x", "name a file"), ("?", "Enter do it")):
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", keys)
+            self.assertIn(wanted, out.rstrip("\n").split("\n")[-1], keys)
+
     def test_keys_that_are_none_and_too_many_methods_are_refused(self):
         status, _, err = once("--once", "--keys", "g<Foo>")
         self.assertEqual(status, 2)

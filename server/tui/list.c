@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/list.h"
+
+#include <math.h>
+#include <stdio.h>
+
+void hn_list_begin(hn_workbench *w, hn_list_kind kind, const char *title) {
+    w->panel = HN_PANEL_LIST;
+    w->list = kind;
+    w->n_items = w->cursor = w->scroll = 0;
+    snprintf(w->title, sizeof w->title, "%s", title);
+}
+
+hn_item *hn_list_add(hn_workbench *w, const char *name, const char *about) {
+    if (w->n_items == HN_TUI_ITEMS) {
+        return NULL;
+    }
+    hn_item *item = &w->items[w->n_items++];
+    *item = (hn_item){.value = (double)NAN};
+    snprintf(item->name, sizeof item->name, "%s", name);
+    snprintf(item->about, sizeof item->about, "%s", about ? about : "");
+    return item;
+}
