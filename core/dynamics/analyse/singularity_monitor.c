@@ -2,6 +2,7 @@
 #include "dynamics/analyse/singularity_monitor.h"
 
 #include "dynamics/analyse/lookout.h"
+#include "dynamics/analyse/round_trip.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "linalg/dense.h"
@@ -21,6 +22,10 @@ static const double DENSE_BUDGET = 2e5;
 static const double FALLEN = 0.97;
 // that finds what a run reports as nearly dependent: pivots of 1e-4, which are squares
 static const double REACHED = 8e-3;
+// a motion goes on along a closed curve without looking ahead where sigma_min stays above this
+// share of its largest all the way round, and is the same again, but for the second share, where
+// the way closes
+static const double CLEAR = 0.1, SAME = 0.01;
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
 static const double WEAK = 0.02; // and none above this of the largest pivot is
@@ -47,6 +52,7 @@ struct hn_singularity {
     hn_lookout *lookout;
     double next_pilot;   // [s] no pilot run before
     double lowest_ahead; // sigma_min where the last one that found something came nearest
+    hn_round_trip *round;
     hn_singularity_info last;
 };
 
@@ -84,6 +90,7 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
     }
     HN_THEN(status, hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor));
     HN_THEN(status, hn_lookout_create(sys, arena, &r->lookout));
+    HN_THEN(status, hn_round_trip_create(sys, arena, &r->round));
 
     if (status != HN_OK) {
         hn_singularity_free(r);
@@ -111,6 +118,7 @@ void hn_singularity_reset(hn_singularity *r) {
     r->wait = 0;
     r->next_pilot = -HUGE_VAL;
     hn_lookout_reset(r->lookout);
+    hn_round_trip_reset(r->round);
     r->last = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
     r->largest = r->strongest = 0;
     r->start_rank = r->nc;
@@ -271,6 +279,21 @@ static double probe(void *user, double t, const double *q) {
     return hn_singularity_probe(user, t, q);
 }
 
+/// Follows the motion round its curve of configurations, where it has one degree of freedom.
+static void follow_round(hn_singularity *r, double t, const double *q, const double *v,
+                         double sigma) {
+    double start = 0;
+    if (r->nv - r->start_rank != 1) {
+        return;
+    }
+    const double *back = hn_round_trip_look(r->round, t, q, v, sigma, &start);
+
+    // rows that do not repeat with the angles have another sigma_min there
+    if (back && !(fabs(hn_singularity_probe(r, t, back) - start) <= SAME * r->largest)) {
+        hn_round_trip_reject(r->round);
+    }
+}
+
 /// Decides whether a pilot run is due: sigma_min has fallen, or there has been a singular
 /// configuration already; and the last run is over or was long ago against how fast the motion is.
 static void look_ahead(hn_singularity *r, double t, const double *q, const double *v,
@@ -278,7 +301,8 @@ static void look_ahead(hn_singularity *r, double t, const double *q, const doubl
     const double horizon = hn_pilot_half_turn(hn_lookout_pilot(r->lookout), v);
     const bool falls = info->sigma_min < r->last.sigma_min && info->sigma_min < FALLEN * r->largest;
     const bool again = isfinite(r->last.predicted);
-    if (!(falls || again) || r->wait > 0 || t < r->next_pilot || !isfinite(horizon)) {
+    const bool known = !again && hn_round_trip_lowest(r->round) > CLEAR * r->largest;
+    if (!(falls || again) || known || r->wait > 0 || t < r->next_pilot || !isfinite(horizon)) {
         return;
     }
     const hn_lookout_aim aim = {probe, r, REACHED * r->largest};
@@ -321,6 +345,7 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
         r->last = *info;
         r->first = 0;
     }
+    follow_round(r, t, q, v, info->sigma_min);
     look_ahead(r, t, q, v, info);
     r->last = *info;
     r->last.ahead = HUGE_VAL; // said once

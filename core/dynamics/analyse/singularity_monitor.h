@@ -16,6 +16,9 @@
 // a configuration is announced only if that run reaches it. No extrapolation is used:
 // along a crank-rocker sigma_min falls almost straight to 0.27 and turns there.
 //
+// A motion along a closed curve of configurations needs no pilot run once it has been all the way
+// round (round_trip.h).
+//
 // Branches. With w' J = 0 the velocities v that J allows must also obey w' gamma(q, v) = 0, a
 // quadratic form. With two degrees of freedom at the configuration, two real roots are two crossing
 // branches, none means that the mechanism is locked, a double one is a cusp.
