@@ -59,15 +59,24 @@ const points = (n) => `${n} point${n === 1 ? "" : "s"}`;
 /** The question of a part, and the form of its answer with what can be chosen. */
 function question(part) {
   const form = plain(part.answer_form ?? "").replace(/\n/g, "<br>");
-  return `<li><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})<div class="form">${form}</div></li>`;
+  return `<li><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})<div class="form">${form}</div>${part.figure?.svg ?? ""}</li>`;
+}
+
+/** Paragraphs of a statement; lines that are indented keep their places. */
+function paragraphs(text) {
+  const indented = (p) => p.split("\n").every((line) => line.startsWith("    "));
+  return text
+    .split(/\n\s*\n/)
+    .map((p) => (indented(p) ? `<pre>${plain(p.replace(/^ {4}/gm, ""))}</pre>` : `<p>${plain(p)}</p>`))
+    .join("");
 }
 
 /** The exercise as everybody gets it without a name; a student's own has other numbers. */
 function exercise(node) {
   const e = ask("problem", node.id);
-  const statement = [e.statement ?? []].flat().map(plain).join(" ");
+  const statement = paragraphs([e.statement ?? []].flat().join("\n"));
   const parts = (e.parts ?? []).map(question).join("");
-  return `<div class="box exercise"><p><b>Exercise ${node.id}: ${plain(e.title)}</b> (${points(e.points)}) ${all(node.children)}</p><p>${statement}</p><ul>${parts}</ul><pre>holonom problem ${node.id} --student NAME</pre></div>`;
+  return `<div class="box exercise"><p><b>Exercise ${node.id}: ${plain(e.title)}</b> (${points(e.points)}) ${all(node.children)}</p>${statement}<ul>${parts}</ul><pre>holonom problem ${node.id} --student NAME</pre></div>`;
 }
 
 const cell = (tag) => (c) => `<${tag} style="text-align:${c.align || "left"}">${all(c.children ?? [])}</${tag}>`;
@@ -130,7 +139,7 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .slip { border-left: 3px solid #b5472f; padding: .1em .8em; margin: 1em 0; break-inside: avoid; }
 .box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
 .exercise { break-inside: auto; } .exercise > p { display: block; break-after: avoid; orphans: 9; widows: 9; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
-.form { font-size: 9pt; color: #444; padding-left: 1.2em; }
+.form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
 .exercise li { margin: .25em 0; break-inside: avoid; } .answers p { display: inline; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
