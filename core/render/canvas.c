@@ -39,6 +39,8 @@ hn_status hn_canvas_create(int width, int height, hn_theme theme, hn_canvas **ou
 void hn_canvas_free(hn_canvas *c) {
     if (c != NULL) {
         free(c->xy);
+        free(c->pen_xy);
+        free(c->pens);
         free(c->shapes);
         free(c->layers);
         free(c);
@@ -106,7 +108,8 @@ void hn_record_begin(hn_canvas *c, hn_paint paint) {
         return;
     }
     hn_canvas_shape *s = &c->shapes[c->n_shapes++];
-    *s = (hn_canvas_shape){.paint = paint, .first = c->n_xy / 2, .layer = c->n_layers - 1};
+    *s = (hn_canvas_shape){
+        .paint = paint, .first = c->n_xy / 2, .pen = c->n_pens, .layer = c->n_layers - 1};
     memcpy(s->clip, c->clip, sizeof s->clip);
 }
 
@@ -127,6 +130,23 @@ void hn_record_end(hn_canvas *c) {
     }
     hn_canvas_shape *s = &c->shapes[c->n_shapes - 1];
     s->count = c->n_xy / 2 - s->first;
+    s->n_pens = c->n_pens - s->pen;
+}
+
+void hn_record_pen(hn_canvas *c, const double *xy, int n, int closed, double width, int vertex) {
+    if (!make_room(c, (void **)&c->pen_xy, &c->cap_pen_xy, c->n_pen_xy, 2 * n, sizeof *c->pen_xy) ||
+        !make_room(c, (void **)&c->pens, &c->cap_pens, c->n_pens, 1, sizeof *c->pens)) {
+        return;
+    }
+    c->pens[c->n_pens++] = (hn_canvas_pen){.first = c->n_pen_xy / 2,
+                                           .n = n,
+                                           .closed = closed,
+                                           .vertex = vertex,
+                                           .count = c->n_xy / 2 - vertex,
+                                           .width = (float)width};
+    for (int i = 0; i < 2 * n; i++) {
+        c->pen_xy[c->n_pen_xy++] = (float)xy[i];
+    }
 }
 
 void hn_canvas_begin_layer(hn_canvas *c, double opacity) {

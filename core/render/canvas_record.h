@@ -5,10 +5,19 @@
 
 #include "render/canvas.h"
 
-/// One shape: `count` vertices from `first`, three for a triangle.
+/// A stroked line, kept beside its triangles for vector graphics: n points from `first` of
+/// canvas->pen_xy. It made `count` vertices from `vertex` on.
+typedef struct hn_canvas_pen {
+    int first, n, closed, vertex, count;
+    float width; ///< [px]
+} hn_canvas_pen;
+
+/// One shape: `count` vertices from `first`, three for a triangle; the n_pens pens from `pen` on
+/// made some of them.
 typedef struct hn_canvas_shape {
     hn_paint paint;
     int first, count;
+    int pen, n_pens;
     int clip[4]; ///< x0, y0, x1, y1 [px]
     int layer;
 } hn_canvas_shape;
@@ -21,6 +30,10 @@ struct hn_canvas {
 
     float *xy; ///< 2 per vertex [px]
     int n_xy, cap_xy;
+    float *pen_xy; ///< 2 per point [px]
+    int n_pen_xy, cap_pen_xy;
+    hn_canvas_pen *pens;
+    int n_pens, cap_pens;
     hn_canvas_shape *shapes;
     int n_shapes, cap_shapes;
     double *layers; ///< opacity of each; a shape outside of any has one of its own
@@ -33,6 +46,8 @@ void hn_record_begin(hn_canvas *c, hn_paint paint);
 void hn_record_end(hn_canvas *c);
 void hn_record_triangle(hn_canvas *c, const double a[2], const double b[2], const double d[2]);
 void hn_record_disc(hn_canvas *c, double x, double y, double radius);
+/// Keeps the line whose triangles were recorded from vertex `vertex` on. Points must be finite.
+void hn_record_pen(hn_canvas *c, const double *xy, int n, int closed, double width, int vertex);
 /// Adds the triangles of a stroked line to the open shape.
 void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width);
 

@@ -34,17 +34,38 @@ static void record_segment(hn_canvas *c, const double *p, const double *q, doubl
     hn_record_triangle(c, corner[0], corner[2], corner[3]);
 }
 
-void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width) {
+/// The triangles of a run of points, all finite.
+static void record_run(hn_canvas *c, const double *xy, int n, int closed, double width) {
+    const int vertex = c->n_xy / 2;
     for (int i = 0; i < n; i++) {
-        const double *p = xy + 2 * i;
-        if (!is_point(p)) {
-            continue;
-        }
-        hn_record_disc(c, p[0], p[1], width / 2);
+        hn_record_disc(c, xy[2 * i], xy[2 * i + 1], width / 2);
         const int next = i + 1 < n ? i + 1 : closed ? 0 : -1;
-        if (next >= 0 && is_point(xy + 2 * next)) {
-            record_segment(c, p, xy + 2 * next, width);
+        if (next >= 0) {
+            record_segment(c, xy + 2 * i, xy + 2 * next, width);
         }
+    }
+    hn_record_pen(c, xy, n, closed, width, vertex);
+}
+
+void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width) {
+    int begin = 0;
+    for (int i = 0; i <= n; i++) {
+        if (i == n || !is_point(xy + 2 * i)) {
+            if (i > begin) {
+                record_run(c, xy + 2 * begin, i - begin, closed && begin == 0 && i == n, width);
+            }
+            begin = i + 1;
+        }
+    }
+    // the last run of a closed line goes on in its first
+    const bool whole = n > 1 && closed && is_point(xy) && is_point(xy + 2 * (n - 1));
+    bool broken = false;
+    for (int i = 1; i + 1 < n; i++) {
+        broken |= !is_point(xy + 2 * i);
+    }
+    if (whole && broken) {
+        const double ends[4] = {xy[2 * n - 2], xy[2 * n - 1], xy[0], xy[1]};
+        record_run(c, ends, 2, 0, width);
     }
 }
 

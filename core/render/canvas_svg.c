@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { PEN_GRID = 5 };             // hundredths of a pixel: ends of lines
+static const double UNSEEN = 0.03; // [px] by which a line may pass a point that is left out
+
 static void put_escaped(hn_strbuf *b, const char *text) {
     for (; *text; text++) {
         const unsigned char c = (unsigned char)*text;
@@ -35,9 +38,10 @@ static void put_number(hn_strbuf *b, long hundredths, bool first) {
     hn_strbuf_add_n(b, text, (size_t)n);
 }
 
-/// A corner, relative to the one before; `at` follows.
-static void put_corner(hn_strbuf *b, const char *command, const float *xy, long at[2]) {
-    const long to[2] = {lround(100 * (double)xy[0]), lround(100 * (double)xy[1])};
+/// A corner, relative to the one before, rounded to `grid` hundredths of a pixel; `at` follows.
+static void put_corner(hn_strbuf *b, const char *command, const float *xy, int grid, long at[2]) {
+    const long to[2] = {lround(100.0 / grid * (double)xy[0]) * grid,
+                        lround(100.0 / grid * (double)xy[1]) * grid};
     hn_strbuf_add(b, command);
     put_number(b, to[0] - at[0], true);
     put_number(b, to[1] - at[1], false);
@@ -76,30 +80,140 @@ static const float *rim(const float *xy, int n, int k) {
 static void put_fan(hn_strbuf *b, const float *xy, int n, long at[2]) {
     const bool turn = twice_area(xy, xy + 2, xy + 4) >= 0;
     const bool closed = n > 2 && same_corner(rim(xy, n, 0), rim(xy, n, n));
-    put_corner(b, "m", closed ? rim(xy, n, 0) : xy, at);
+    put_corner(b, "m", closed ? rim(xy, n, 0) : xy, 1, at);
     const long begin[2] = {at[0], at[1]};
     for (int i = closed; i <= n - closed; i++) {
-        put_corner(b, "l", rim(xy, n, turn ? i : n - i), at);
+        put_corner(b, "l", rim(xy, n, turn ? i : n - i), 1, at);
     }
     hn_strbuf_add(b, "z");
     at[0] = begin[0];
     at[1] = begin[1];
 }
 
-static void put_path(hn_strbuf *b, const hn_canvas *c, const hn_canvas_shape *s) {
-    hn_strbuf_printf(b, "<path fill=\"#%06x\"", s->paint.rgb);
-    if (s->paint.alpha < 1) {
-        hn_strbuf_printf(b, " fill-opacity=\"%.3g\"", s->paint.alpha);
+/// Begins a path of one colour, filled, or drawn with a pen of this width.
+static void begin_path(hn_strbuf *b, const hn_canvas_shape *s, double pen, bool alone) {
+    if (pen > 0) {
+        hn_strbuf_printf(b, "<path class=\"p\" stroke=\"#%06x\" stroke-width=\"%.3g\"",
+                         s->paint.rgb, pen);
+    } else {
+        hn_strbuf_printf(b, "<path fill=\"#%06x\"", s->paint.rgb);
+    }
+    if (s->paint.alpha < 1 && alone) {
+        hn_strbuf_printf(b, " opacity=\"%.3g\"", s->paint.alpha);
     }
     hn_strbuf_add(b, " d=\"");
-    const int triangles = s->count / 3;
+}
+
+/// The pen that made a vertex; NULL: no pen did.
+static const hn_canvas_pen *pen_of(const hn_canvas *c, const hn_canvas_shape *s, int vertex) {
+    for (int i = 0; i < s->n_pens; i++) {
+        const hn_canvas_pen *pen = &c->pens[s->pen + i];
+        if (vertex >= pen->vertex && vertex < pen->vertex + pen->count) {
+            return pen;
+        }
+    }
+    return NULL;
+}
+
+/// Triangles that no pen made.
+static int count_areas(const hn_canvas *c, const hn_canvas_shape *s) {
+    int n = s->count;
+    for (int i = 0; i < s->n_pens; i++) {
+        n -= c->pens[s->pen + i].count;
+    }
+    return n / 3;
+}
+
+static void put_areas(hn_strbuf *b, const hn_canvas *c, const hn_canvas_shape *s, bool alone) {
     long at[2] = {0, 0};
-    for (int t = 0, n; t < triangles; t += n) {
-        const float *xy = c->xy + 2 * (s->first + 3 * t);
-        n = fan_length(xy, triangles - t);
-        put_fan(b, xy, n, at);
+    begin_path(b, s, 0, alone);
+    for (int v = s->first; v < s->first + s->count;) {
+        const hn_canvas_pen *pen = pen_of(c, s, v);
+        if (pen) {
+            v = pen->vertex + pen->count;
+            continue;
+        }
+
+        // triangles up to the next pen
+        int end = v;
+        while (end < s->first + s->count && !pen_of(c, s, end)) {
+            end += 3;
+        }
+        while (v < end) {
+            const int n = fan_length(c->xy + 2 * v, (end - v) / 3);
+            put_fan(b, c->xy + 2 * v, n, at);
+            v += 3 * n;
+        }
     }
     hn_strbuf_add(b, "\"/>\n");
+}
+
+/// Whether the point q lies on the line from p to the point after q, as far as it can be seen.
+static bool is_between(const float *p, const float *q) {
+    const double length = hypot((double)q[2] - (double)p[0], (double)q[3] - (double)p[1]);
+    return fabs(twice_area(p, q, q + 2)) <= UNSEEN * length;
+}
+
+static void put_pen(hn_strbuf *b, const hn_canvas *c, const hn_canvas_pen *pen, long at[2]) {
+    const float *xy = c->pen_xy + 2 * pen->first;
+    put_corner(b, "m", xy, PEN_GRID, at);
+    const long begin[2] = {at[0], at[1]};
+    for (int i = 1, last = 0; i < pen->n; i++) {
+        // a point that the line would pass anyway; never two after each other
+        if (i == last + 1 && i + 1 < pen->n && is_between(xy + 2 * last, xy + 2 * i)) {
+            continue;
+        }
+        put_corner(b, "l", xy + 2 * i, PEN_GRID, at);
+        last = i;
+    }
+    hn_strbuf_add(b, pen->closed ? "z" : pen->n == 1 ? "h0" : "");
+    if (pen->closed) {
+        at[0] = begin[0];
+        at[1] = begin[1];
+    }
+}
+
+/// One path for the pens of each width.
+static void put_pens(hn_strbuf *b, const hn_canvas *c, const hn_canvas_shape *s, bool alone) {
+    for (int i = 0; i < s->n_pens; i++) {
+        const float width = c->pens[s->pen + i].width;
+        bool first = true;
+        for (int k = 0; k < i; k++) {
+            first &= c->pens[s->pen + k].width != width;
+        }
+        if (first) {
+            long at[2] = {0, 0};
+            begin_path(b, s, (double)width, alone);
+            for (int k = i; k < s->n_pens; k++) {
+                if (c->pens[s->pen + k].width == width) {
+                    put_pen(b, c, &c->pens[s->pen + k], at);
+                }
+            }
+            hn_strbuf_add(b, "\"/>\n");
+        }
+    }
+}
+
+/// Whether a shape needs one path alone.
+static bool is_one_path(const hn_canvas *c, const hn_canvas_shape *s) {
+    bool same = s->n_pens == 0 || count_areas(c, s) == 0;
+    for (int i = 1; i < s->n_pens; i++) {
+        same &= c->pens[s->pen + i].width == c->pens[s->pen].width;
+    }
+    return same;
+}
+
+/// A shape of several paths has one opacity for all: it does not cover itself twice.
+static void put_paths(hn_strbuf *b, const hn_canvas *c, const hn_canvas_shape *s) {
+    const bool one = is_one_path(c, s), group = !one && s->paint.alpha < 1;
+    if (group) {
+        hn_strbuf_printf(b, "<g opacity=\"%.3g\">\n", s->paint.alpha);
+    }
+    if (count_areas(c, s) > 0) {
+        put_areas(b, c, s, one);
+    }
+    put_pens(b, c, s, one);
+    hn_strbuf_add(b, group ? "</g>\n" : "");
 }
 
 /// A shape, within its rectangle where that is not the whole sheet.
@@ -116,7 +230,7 @@ static void put_shape(hn_strbuf *b, const hn_canvas *c, int canvas, int shape) {
                          "height=\"%d\"/></clipPath><g clip-path=\"url(#k%d-%d)\">\n",
                          canvas, shape, k[0], k[1], k[2] - k[0], k[3] - k[1], canvas, shape);
     }
-    put_path(b, c, s);
+    put_paths(b, c, s);
     hn_strbuf_add(b, whole ? "" : "</g>\n");
 }
 
@@ -152,7 +266,8 @@ hn_status hn_canvas_svg(hn_strbuf *out, hn_canvas *const *canvases, int n, int c
     put_escaped(out, title ? title : "");
     hn_strbuf_add(out, "</title>\n<desc>");
     put_escaped(out, about ? about : "");
-    hn_strbuf_add(out, "</desc>\n");
+    hn_strbuf_add(out, "</desc>\n<style>.p{fill:none;stroke-linecap:round;"
+                       "stroke-linejoin:round}</style>\n");
     for (int i = 0; i < n; i++) {
         failed |= canvases[i]->failed != 0;
         put_canvas(out, canvases[i], i, i % columns * width, i / columns * height);

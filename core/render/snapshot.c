@@ -4,6 +4,7 @@
 #include "render/snapshot.h"
 
 #include "base/units.h"
+#include "render/snapshot_labels.h"
 #include "render/snapshot_marks.h"
 #include "render/snapshot_shapes.h"
 #include "render/snapshot_sheet.h"
@@ -229,10 +230,7 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     if (opts->dimensions) {
         hn_snapshot_dimensions(c, &sheet, drawing, selected);
     }
-    hn_snapshot_loads(c, &sheet, selected, opts);
-    if (opts->labels) {
-        hn_snapshot_labels(c, &sheet, drawing, selected, opts);
-    }
+    hn_snapshot_labels(c, &sheet, drawing, selected, opts);
     hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
     draw_scale_bar(c, &sheet);
     draw_triad(c, &sheet);

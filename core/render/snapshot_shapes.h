@@ -12,9 +12,5 @@ void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose);
 void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                            const hn_snapshot_pose *pose, bool is_selected);
-void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts);
-void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
-                       const hn_snapshot_opts *opts);
 
 #endif

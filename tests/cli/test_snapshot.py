@@ -94,6 +94,20 @@ class Snapshot(Command):
             self.assertEqual(root.find(space + "desc").text, document["words"])
             self.assertGreater(len(list(root.iter(space + "path"))), 50)
 
+    def test_vector_graphics_draw_lines_with_pens_and_stay_small(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, *options in (("forces", "--time", "1", "--forces"), ("ghosts", "--at", "0,0.2,0.4", "--ghosts"), ("dimensions", "--time", "1", "--dimensions")):
+                svg, _, _ = self.picture(folder, name + ".svg", *options)
+                self.assertLess(len(svg), 150_000, name)
+                pens = [p for p in xml.etree.ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}path") if p.get("class") == "p"]
+                self.assertGreater(len(pens), 30)
+                self.assertTrue(all(float(p.get("stroke-width")) > 0 and p.get("stroke") for p in pens))
+
+    def test_times_must_rise(self):
+        done = call("snapshot", "four-bar", "--at", "0.5,0.2", "-o", os.path.join(tempfile.gettempdir(), "never.png"))
+        self.assert_exit(done, INPUT)
+        self.assertIn(b"0.2 s stands after 0.5 s", done.stderr)
+
     def test_without_osmesa_the_built_in_renderer_draws_and_is_named(self):
         with tempfile.TemporaryDirectory() as folder:
             png, document, said = self.picture(folder, "a.png", "--time", "0.3", HOLONOM_RENDERER="built-in")

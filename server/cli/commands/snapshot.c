@@ -38,6 +38,19 @@ static hn_status choose_form(const hn_args *args, hn_picture_request *request, h
     return HN_OK;
 }
 
+/// Moments of one motion follow each other.
+static hn_status check_times(const hn_args *args, hn_diags *diags) {
+    for (int i = 1; i < args->at.n; i++) {
+        if (!(args->at.value[i] > args->at.value[i - 1])) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/at",
+                                "put them in rising order: --at 0,0.2,0.5",
+                                "%g s stands after %g s; the times of one motion must rise",
+                                args->at.value[i], args->at.value[i - 1]);
+        }
+    }
+    return HN_OK;
+}
+
 static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
     if (!isnan(args->width)) {
         request->width = (int)fmin(fmax(1, args->width), 1e6);
@@ -59,6 +72,7 @@ static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_
     request->forces = args->forces;
     request->traces = args->traces.word;
     request->n_traces = args->traces.n;
+    HN_TRY(check_times(args, diags));
 
     return choose_form(args, request, diags);
 }

@@ -356,6 +356,48 @@ static void a_trace_and_a_load_are_drawn(void **state) {
     free(loaded);
 }
 
+// forces that point inwards at the edge of the view, and two at one point: no value is cut, and
+// none lies on another
+static void values_of_forces_stay_on_the_sheet_and_apart(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 0);
+    const hn_snapshot_pose pose = {.points = points};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    opts.labels = 0;
+    opts.bare = true;
+    hn_drawing d = four_bar;
+    d.n_tears = 0;
+    const hn_snapshot_load loads[] = {{.point = 0, .force = {1234, 0, 0}, .unit = "N"},
+                                      {.point = 3, .force = {-1234, 3, 0}, .unit = "N"},
+                                      {.point = 2, .force = {0, -1234, 0}, .unit = "N"},
+                                      {.point = 2, .force = {1, -1234, 0}, .unit = "N"}};
+    unsigned char *plain = draw(&d, &pose, 1, &opts);
+    opts.loads = loads;
+    opts.n_loads = 4;
+    unsigned char *loaded = draw(&d, &pose, 1, &opts);
+    int edge = 0;
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++) {
+            const bool at_edge = x < 2 || y < 2 || x >= WIDTH - 2 || y >= HEIGHT - 2;
+            edge += at_edge && memcmp(plain + 3 * (y * WIDTH + x), loaded + 3 * (y * WIDTH + x), 3);
+        }
+    }
+    assert_int_equal(edge, 0);
+
+    // two equal values drawn apart have about twice the ink of one
+    opts.loads = loads + 2;
+    opts.n_loads = 1;
+    unsigned char *one = draw(&d, &pose, 1, &opts);
+    opts.n_loads = 2;
+    unsigned char *two = draw(&d, &pose, 1, &opts);
+    assert_true(differing_pixels(one, two) > 150);
+    free(plain);
+    free(loaded);
+    free(one);
+    free(two);
+}
+
 static void the_reference_lies_beneath_and_is_thin(void **state) {
     (void)state;
     double points[15];
@@ -429,6 +471,7 @@ int main(void) {
         cmocka_unit_test(
             names_of_points_at_one_place_are_joined_and_no_name_is_written_over_another),
         cmocka_unit_test(a_trace_and_a_load_are_drawn),
+        cmocka_unit_test(values_of_forces_stay_on_the_sheet_and_apart),
         cmocka_unit_test(the_reference_lies_beneath_and_is_thin),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
     };

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/snapshot_labels.h"
+
+#include "base/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LABEL_TEXT = 96, MAX_PLACED = 128, MAX_ARROWS = 64 };
+static const double LONGEST_LOAD = 0.20; // of the view
+static const double SAME_PLACE = 2;      // [px]
+static const double VALUE_SIZE = 0.9;    // letters of a force's value, of the body text
+static const double HALO = 0.8;          // how far the paper behind a text covers what is there
+
+/// Labels that have been placed: each a line of text, its middle and half its width.
+typedef struct label_places {
+    int n;
+    double at[MAX_PLACED][2], half[MAX_PLACED];
+} label_places;
+
+/// An arrow: its tail and its tip [px].
+typedef struct arrow {
+    double tail[2], tip[2];
+    double half; ///< of the width of its text [px]
+    char value[HN_SI_TEXT];
+} arrow;
+
+typedef struct arrows {
+    int n;
+    arrow at[MAX_ARROWS];
+} arrows;
+
+static void remember(label_places *placed, const double xy[2], double half) {
+    if (placed->n < MAX_PLACED) {
+        memcpy(placed->at[placed->n], xy, 2 * sizeof *xy);
+        placed->half[placed->n++] = half;
+    }
+}
+
+// ---- room ----
+
+static double distance_to_segment(const double p[2], const double a[2], const double b[2]) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
+    const double share = square > 0 ? ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square : 0;
+    const double t = fmin(1, fmax(0, share));
+    return hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+}
+
+/// The segment that a shape covers on the sheet [px].
+static void segment_of(const hn_sheet *s, const hn_shape *shape, const double *points, double a[2],
+                       double b[2]) {
+    hn_sheet_pixel(s, points + 3 * shape->p, a);
+    memcpy(b, a, 2 * sizeof *b);
+    if (shape->kind == HN_SHAPE_GROUND) {
+        b[1] += 1.6 * s->bar; // its triangle and hatching
+    } else if (shape->kind == HN_SHAPE_BAR || shape->kind == HN_SHAPE_SPRING ||
+               shape->kind == HN_SHAPE_DAMPER) {
+        hn_sheet_pixel(s, points + 3 * shape->q, b);
+    } else if (shape->kind == HN_SHAPE_SLIDER) {
+        hn_sheet_pixel(s, points + 3 * shape->q, b);
+        const double length = hypot(b[0] - a[0], b[1] - a[1]), half = 1.3 * s->bar; // its box
+        const double u[2] = {length > 0 ? (b[0] - a[0]) / length : 1,
+                             length > 0 ? (b[1] - a[1]) / length : 0};
+        a[0] -= half * u[0];
+        a[1] -= half * u[1];
+        b[0] = a[0] + 2 * half * u[0];
+        b[1] = a[1] + 2 * half * u[1];
+    }
+}
+
+/// Room around a place for a name: the distance to the nearest line of the mechanism [px].
+static double room_at(const hn_sheet *s, const hn_drawing *d, const double *points,
+                      const double xy[2]) {
+    double room = (double)INFINITY, a[2], b[2];
+    for (int i = 0; i < d->n_shapes; i++) {
+        segment_of(s, &d->shapes[i], points, a, b);
+        room = fmin(room, distance_to_segment(xy, a, b));
+    }
+    return room;
+}
+
+/// From a text of this half width around `xy` to the nearest of those placed before; none is in the
+/// way from a line's height on.
+static double room_beside(const hn_sheet *s, const label_places *placed, const double xy[2],
+                          double half) {
+    double room = HUGE_VAL;
+    for (int i = 0; i < placed->n; i++) {
+        const double across = fabs(placed->at[i][0] - xy[0]) - placed->half[i] - half;
+        const double down = fabs(placed->at[i][1] - xy[1]) - s->font;
+        const double clear = fmax(across, down);
+        room = clear < 0 ? fmin(room, clear) : room;
+    }
+    return room;
+}
+
+/// From a line of text of this half width to a segment; below 0 the segment crosses the text.
+static double room_of_text(const double xy[2], double half, double height, const double a[2],
+                           const double b[2]) {
+    enum { SAMPLES = 7 };
+    double room = HUGE_VAL;
+    for (int k = 0; k < SAMPLES; k++) {
+        const double inner = fmax(half - 0.5 * height, 0);
+        const double at[2] = {xy[0] + inner * (2.0 * k / (SAMPLES - 1) - 1), xy[1]};
+        room = fmin(room, distance_to_segment(at, a, b) - 0.5 * height);
+    }
+    return room;
+}
+
+/// How far a text lies inside the part of the sheet that is the drawing's; below 0: beyond it.
+static double room_on_sheet(const hn_sheet *s, const double xy[2], double half) {
+    const hn_box *box = &s->drawing;
+    const double tall = 0.6 * s->font;
+    const double across = fmin(xy[0] - half - 2, box->x + box->width - xy[0] - half);
+    return fmin(across, fmin(xy[1] - tall - box->y, s->height - 2 - xy[1] - tall));
+}
+
+// ---- arrows ----
+
+static double seen_size(const hn_sheet *s, const hn_snapshot_load *load, double seen[2]) {
+    hn_view_project(&s->look, load->force, seen);
+    return hypot(seen[0], seen[1]);
+}
+
+/// Each arrow ends at its point, as long as its share of the largest, and no shorter than its head.
+/// One that would begin off the sheet begins at its point in place of ending there. False: it has
+/// no length in this view.
+static bool lay_arrow(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
+                      int i, arrow *out) {
+    const hn_snapshot_load *load = &opts->loads[i];
+    double largest = 0, seen[2];
+    for (int k = 0; k < opts->n_loads; k++) {
+        largest = fmax(largest, seen_size(s, &opts->loads[k], seen));
+    }
+    const double size = seen_size(s, load, seen);
+    if (!(size > 1e-3 * largest) || !isfinite(size)) {
+        return false;
+    }
+
+    // from the tail to the tip
+    const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
+    const double length = fmax(1.5 * s->font, LONGEST_LOAD * view * size / largest);
+    const double by[2] = {length * seen[0] / size, -length * seen[1] / size};
+    double at[2];
+    hn_sheet_pixel(s, load->point < 0 ? load->place : pose->points + 3 * load->point, at);
+    const double before[2] = {at[0] - by[0], at[1] - by[1]},
+                 behind[2] = {at[0] + by[0], at[1] + by[1]};
+    const bool turned = room_on_sheet(s, before, 0) < 0 && room_on_sheet(s, behind, 0) > 0;
+    memcpy(out->tail, turned ? at : before, sizeof before);
+    memcpy(out->tip, turned ? behind : at, sizeof behind);
+    const double whole = hypot(hypot(load->force[0], load->force[1]), load->force[2]);
+    hn_si_format(whole, load->unit, 3, out->value);
+    out->half = 0.5 * hn_canvas_text_width(VALUE_SIZE * s->font, out->value);
+    return true;
+}
+
+/// The room of a place for the value of arrow `own`.
+static double room_for_value(const hn_sheet *s, const hn_drawing *d, const double *points,
+                             const arrows *all, int own, const label_places *placed,
+                             const double xy[2]) {
+    const double half = all->at[own].half, tall = 1.1 * s->font;
+    double room = room_on_sheet(s, xy, half) < 0 ? -1000 : HUGE_VAL, a[2], b[2];
+    for (int i = 0; i < d->n_shapes; i++) {
+        segment_of(s, &d->shapes[i], points, a, b);
+        room = fmin(room, room_of_text(xy, half, tall, a, b) - 0.5 * s->bar);
+    }
+    for (int i = 0; i < all->n; i++) {
+        room = fmin(room, room_of_text(xy, half, tall, all->at[i].tail, all->at[i].tip));
+    }
+    return fmin(room, room_beside(s, placed, xy, half));
+}
+
+/// Of places behind the tail, and on both sides of the arrow, the nearest with room enough; the one
+/// with the most room where none has.
+static void place_value(const hn_sheet *s, const hn_drawing *d, const double *points,
+                        const arrows *all, int own, const label_places *placed, double out[2]) {
+    enum { ALONG = 5, SIDES = 3, RINGS = 4 };
+    const arrow *w = &all->at[own];
+    const double length = hypot(w->tip[0] - w->tail[0], w->tip[1] - w->tail[1]);
+    const double u[2] = {(w->tip[0] - w->tail[0]) / length, (w->tip[1] - w->tail[1]) / length};
+    double most = -HUGE_VAL;
+    for (int ring = 0; ring < RINGS; ring++) {
+        for (int k = 0; k < ALONG * SIDES; k++) {
+            // from behind the tail towards the tip; on the line, left, right
+            const int side = (k % SIDES + 1) / 2 * (k % SIDES == 1 ? 1 : -1);
+            const double t = k / SIDES == 0 ? 0 : length * (k / SIDES - 1) / (ALONG - 1);
+            const double off = (0.8 + 1.1 * ring) * s->font, n[2] = {-u[1] * side, u[0] * side};
+            const double wide = w->half + (0.3 + 1.1 * ring) * s->font;
+            const double back = k / SIDES == 0 ? 1 : 0;
+            const double xy[2] = {w->tail[0] + t * u[0] + wide * (n[0] - back * u[0]),
+                                  w->tail[1] + t * u[1] + off * (n[1] - back * u[1])};
+            const double room = room_for_value(s, d, points, all, own, placed, xy);
+            const double worth = fmin(room, 2) - 0.02 * (ring * ALONG * SIDES + k);
+            if ((side || back > 0) && worth > most) {
+                most = worth;
+                memcpy(out, xy, sizeof xy);
+            }
+        }
+    }
+}
+
+/// Paper behind a line of text.
+static void draw_halo(hn_canvas *c, const hn_sheet *s, const double xy[2], double half) {
+    const double tall = 0.55 * s->font, wide = half + 2;
+    const double box[] = {xy[0] - wide, xy[1] - tall, xy[0] + wide, xy[1] - tall,
+                          xy[0] + wide, xy[1] + tall, xy[0] - wide, xy[1] + tall};
+    hn_canvas_polygon(c, box, 4, (hn_paint){hn_surface_get(hn_canvas_theme(c))->paper, HALO});
+}
+
+static void draw_value(hn_canvas *c, const hn_sheet *s, const double xy[2], const arrow *w) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    draw_halo(c, s, xy, w->half);
+    hn_canvas_text(c, xy[0], xy[1] + 0.3 * s->font, VALUE_SIZE * s->font, HN_ALIGN_CENTRE,
+                   hn_paint_solid(surface->ink), w->value);
+}
+
+/// Keeps values off the triad of axes and the scale bar, which the sheet draws later.
+static void remember_corners(const hn_sheet *s, label_places *placed) {
+    const hn_box *box = &s->drawing;
+    const double length = 2.2 * s->font, bar = 0.5 * s->scale * s->scale_bar;
+    const double right = box->x + box->width - 1.6 * length, bottom = box->y + box->height;
+    const double scale[2] = {box->x + bar, bottom - 0.8 * s->font};
+    remember(placed, scale, bar);
+    for (int k = -1; k <= 1 && s->in_space; k++) {
+        const double xy[2] = {right, bottom - (1.1 + k) * length};
+        remember(placed, xy, 1.4 * length);
+    }
+}
+
+static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                       const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
+                       label_places *placed) {
+    const hn_stroke stroke = hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->ink, s->line);
+    arrows all = {0};
+    for (int i = 0; i < opts->n_loads && all.n < MAX_ARROWS; i++) {
+        all.n += lay_arrow(s, pose, opts, i, &all.at[all.n]);
+    }
+    for (int i = 0; i < all.n; i++) {
+        const arrow *w = &all.at[i];
+        hn_canvas_arrow(c, w->tail[0], w->tail[1], w->tip[0], w->tip[1], 0.8 * s->font, &stroke);
+    }
+    if (all.n > 0) {
+        remember_corners(s, placed);
+    }
+    for (int i = 0; i < all.n; i++) {
+        double xy[2];
+        place_value(s, d, pose->points, &all, i, placed, xy);
+        draw_value(c, s, xy, &all.at[i]);
+        remember(placed, xy, all.at[i].half);
+    }
+}
+
+// ---- names ----
+
+/// Of sixteen places around a point, the one with the most room; a place on another label only
+/// where all are.
+static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
+                        const label_places *placed, double half, double out[2]) {
+    enum { PLACES = 16 };
+    const double off = 0.75 * s->bar + 0.85 * s->font;
+    const double wider = fmax(0, half - 0.5 * s->font); // a long text begins where a short one does
+    double xy[2], most = -HUGE_VAL;
+    hn_sheet_pixel(s, points + 3 * point, xy);
+    for (int k = 0; k < PLACES; k++) {
+        const double angle = 2 * 3.14159265358979324 * k / PLACES;
+        const double place[2] = {xy[0] + (off + wider) * cos(angle), xy[1] - off * sin(angle)};
+        const double room = fmin(room_at(s, d, points, place), room_beside(s, placed, place, half));
+        if (room > most + 0.5) {
+            most = room;
+            memcpy(out, place, sizeof place);
+        }
+    }
+}
+
+/// The names of all points that are seen where point `first` is, "B1 A2"; 0: an earlier one has
+/// told them.
+static bool names_at(const hn_sheet *s, const hn_drawing *d, const double *points, int first,
+                     char text[LABEL_TEXT]) {
+    double here[2], there[2];
+    size_t used = 0;
+    hn_sheet_pixel(s, points + 3 * first, here);
+    for (int i = 0; i < d->n_points; i++) {
+        hn_sheet_pixel(s, points + 3 * i, there);
+        if (d->labels[i] == NULL || hypot(there[0] - here[0], there[1] - here[1]) > SAME_PLACE) {
+            continue;
+        }
+        if (i < first) {
+            return false;
+        }
+        const int n = snprintf(text + used, LABEL_TEXT - used, used ? " %s" : "%s", d->labels[i]);
+        used = n > 0 && used + (size_t)n < LABEL_TEXT ? used + (size_t)n : LABEL_TEXT - 1;
+    }
+    return true;
+}
+
+static void draw_names(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                       const hn_snapshot_pose *pose, bool halo, label_places *placed) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    for (int i = 0; i < d->n_points; i++) {
+        char text[LABEL_TEXT];
+        double xy[2];
+        if (d->labels[i] == NULL || !names_at(s, d, pose->points, i, text)) {
+            continue;
+        }
+        const double half = 0.5 * hn_canvas_text_width(s->font, text);
+        place_label(s, d, pose->points, i, placed, half, xy);
+        if (halo) {
+            draw_halo(c, s, xy, half);
+        }
+        hn_canvas_text(c, xy[0], xy[1] + 0.35 * s->font, s->font, HN_ALIGN_CENTRE,
+                       hn_paint_solid(surface->ink), text);
+        remember(placed, xy, half);
+    }
+}
+
+void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts) {
+    label_places placed = {0};
+    draw_loads(c, s, d, pose, opts, &placed); // names keep off the values of forces
+    if (opts->labels) {
+        draw_names(c, s, d, pose, opts->dimensions, &placed); // over the lines of the dimensions
+    }
+}
