@@ -5,6 +5,7 @@
 #include "tui/link.h"
 #include "tui/panels.h"
 #include "tui/prompt.h"
+#include "tui/remedies.h"
 #include "tui/undo.h"
 
 #include <math.h>
@@ -134,6 +135,8 @@ void hn_controls_key(hn_workbench *w, int key) {
         w->selected = key - '1';
     } else if (key == HN_KEY_ESCAPE) {
         w->why = false;
+    } else if (key == HN_KEY_ENTER && w->why) {
+        hn_remedies_open(w);
     } else {
         act(w, hn_tui_action_of(key));
     }

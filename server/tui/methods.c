@@ -89,6 +89,20 @@ void hn_methods_put(hn_workbench *w, int at, const char *spelling) {
     record_again(w, &before);
 }
 
+void hn_methods_add(hn_workbench *w, const char *spelling) {
+    int at = 0;
+    while (at < w->n_methods && strcmp(w->methods[at], spelling) != 0) {
+        at++;
+    }
+    if (at == w->n_methods) {
+        hn_methods_put(w, at, spelling);
+    }
+    if (at < w->n_methods) {
+        w->selected = at;
+        w->hidden[at] = false;
+    }
+}
+
 void hn_methods_remove(hn_workbench *w, int at) {
     kept before;
     keep(&before, w);
@@ -115,6 +129,19 @@ static void worst_so_far(const hn_workbench *w, int m, char *out, size_t size) {
     hn_si_format(most[1], "J", 2, energy);
     snprintf(out, size, "; before, until %.2f s: worst gap %s, energy change %s",
              hn_workbench_frame(w) * hn_recording_frame_dt(w->recording), gap, energy);
+}
+
+void hn_methods_set_one(hn_workbench *w, const char *key, double value) {
+    kept before;
+    char said[160];
+    keep(&before, w);
+    worst_so_far(w, w->selected, said, sizeof said);
+    if (!set_option(w->methods[w->selected], key, value)) {
+        hn_workbench_say(w, "%s has no option %s",
+                         hn_recording_track(w->recording, w->selected)->name, key);
+    } else if (record_again(w, &before)) {
+        hn_workbench_say(w, "%s = %.4g%s", key, value, said);
+    }
 }
 
 void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alpha, double beta) {

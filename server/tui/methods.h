@@ -11,6 +11,10 @@ void hn_methods_set_step(hn_workbench *w, char *text);
 /// Replaces method `at`, or adds one behind the last.
 void hn_methods_put(hn_workbench *w, int at, const char *spelling);
 /// The last one stays.
+/// Adds a method, or finds it where it is already compared, and selects it.
+void hn_methods_add(hn_workbench *w, const char *spelling);
+/// Sets an option of the selected method: "h". What it was before is said.
+void hn_methods_set_one(hn_workbench *w, const char *key, double value);
 void hn_methods_remove(hn_workbench *w, int at);
 /// Alpha and beta of the method with this spelling; it is added where it is not compared yet. Says
 /// what the worst gap and energy change were before.

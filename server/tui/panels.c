@@ -12,6 +12,7 @@
 #include "tui/list.h"
 #include "tui/methods.h"
 #include "tui/prompt.h"
+#include "tui/remedies.h"
 #include "tui/scene_list.h"
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"
@@ -211,6 +212,9 @@ static void choose(hn_workbench *w) {
     // a text to be read
     case HN_LIST_LESSONS:
         (strcmp(item->about, EXERCISE) == 0 ? show_exercise : show_lesson)(w, item->name);
+        break;
+    case HN_LIST_REMEDIES:
+        hn_remedies_take(w);
         break;
     case HN_LIST_ACTIONS:
         w->panel = HN_PANEL_MAIN;

@@ -90,7 +90,8 @@ static const char *keys_line(const hn_workbench *w, int columns) {
         [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  a letter finds  Esc back",
         [HN_LIST_LESSONS] = "↑↓ choose  Enter read  a letter finds  Esc back",
         [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
-        [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back"};
+        [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back",
+        [HN_LIST_REMEDIES] = "↑↓ choose  Enter try it  Esc back"};
     switch (w->panel) {
     case HN_PANEL_LIST:
         return lists[w->list];
@@ -101,6 +102,9 @@ static const char *keys_line(const hn_workbench *w, int columns) {
                    ? "arrows choose a cell  Enter take its alpha and beta  Esc back"
                    : "↑↓ scroll the words  Esc back";
     default:
+        if (w->why) {
+            return "Enter try a remedy  ↑↓ another method  i close  Space run  ? menu  q";
+        }
         return columns < 92 ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene "
                               " ? menu  q"
                             : "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  w cost  "
@@ -305,7 +309,7 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_track *track = hn_recording_track(w->recording, w->selected);
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     char title[96];
-    snprintf(title, sizeof title, "why: %s (i closes)", track->name);
+    snprintf(title, sizeof title, "why: %s (Enter tries, i closes)", track->name);
     const hn_area in = hn_cells_frame(c, area, title);
     int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
     if (end.failed) {

@@ -27,7 +27,8 @@ typedef enum hn_list_kind {
     HN_LIST_PARAMETERS,
     HN_LIST_LESSONS,
     HN_LIST_EXPORTS,
-    HN_LIST_ACTIONS
+    HN_LIST_ACTIONS,
+    HN_LIST_REMEDIES
 } hn_list_kind;
 typedef enum hn_prompt_kind {
     HN_PROMPT_NONE,

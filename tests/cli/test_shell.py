@@ -192,6 +192,10 @@ class Width(unittest.TestCase):
             wide = [line for line in lines if len(line) > 80 and " " in line.strip()]
             self.assertEqual(wide, [], words)
 
+    def test_products_of_long_names_are_broken(self):
+        for scene in ("bennett", "delta-robot", "stephenson-six-bar"):
+            self.assertEqual([line for line in self.lines(["equations", scene], 80) if len(line) > 80], [], scene)
+
     def test_no_message_is_wider_than_eighty_columns(self):
         for words in (["run", "four-bar", "--set", "l1=300"], ["study", "four-bar", "stability", "--over", "h=1..2,zz=1..2"], ["compare", "nosuch.json"],
                       ["run", "four-bar", "--method", "index1@rk4:h=0.5", "--time", "2", "--plot"]):

@@ -397,6 +397,23 @@ class Keys(unittest.TestCase):
         lines = [line[45:78] for line in out.split("\n")[2:20]]
         self.assertRegex("".join(lines), "[\u2801-\u28ff]{3}")
 
+    def test_a_remedy_is_tried_from_the_card_of_the_reasons(self):
+        # index-1 at 20 ms has opened: a method that closes the loop is first, then a smaller step
+        def after(keys):
+            return once("four-bar", "--once", "--t", "4", "--size", "120x40", *METHODS[:2], "--keys", "i<Enter>" + keys)[1]
+        listed = after("")
+        self.assertIn("what index-1 can try", listed)
+        self.assertRegex(listed, r"(?m)^│ projection@rk4:h=0\.02 .*\n│ h=0\.01 ")
+        added = after("<Enter><Esc>")
+        self.assertRegex(added, r"2. projection .*closed")
+        smaller = after("<Down><Enter>")
+        self.assertRegex(smaller, r"h = 0\.01; before, until 4\.00 s: worst gap [\d.]+ mm")
+        # a remedy that is there already is selected, not added twice
+        twice = after("<Enter><Up>i<Esc>1i<Enter><Enter>")
+        self.assertEqual(len(re.findall(r"(?m)^│\d\S +projection", twice)), 1)
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "i<Enter>", "--methods", "projection@rk4:h=0.001")
+        self.assertIn("nothing has happened that asks for a remedy", out)
+
     def test_what_is_typed_is_searched_in_the_list_of_scenes(self):
         def found(keys, size="120x40"):
             _, out, _ = once("four-bar", "--once", "--size", size, "--keys", "s" + keys)

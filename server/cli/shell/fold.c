@@ -30,17 +30,18 @@ int hn_fold_width(const char *text, size_t n) {
 }
 
 size_t hn_fold_line(const char *text, int columns) {
-    size_t n = 0, blank = 0;
+    size_t n = 0, blank = 0, factor = 0;
     int width = 0;
     while (text[n] && text[n] != '\n') {
-        // a word that is longer than the line is not broken
-        if (width >= columns && (blank > 0 || text[n] == ' ')) {
-            return text[n] == ' ' ? n : blank;
+        // a word that is longer than the line is not broken, but a product is behind a factor
+        if (width >= columns && (blank > 0 || factor > 0 || text[n] == ' ')) {
+            return text[n] == ' ' ? n : blank > 0 ? blank : factor;
         }
         const size_t escape = escape_length(text + n);
         blank = text[n] == ' ' && width > 0 ? n : blank;
         width += escape == 0;
         n += escape ? escape : character_length(text + n);
+        factor = text[n - 1] == '*' && text[n] != ' ' ? n : factor;
     }
     return n;
 }

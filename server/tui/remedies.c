@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/remedies.h"
+
+#include "tui/list.h"
+#include "tui/methods.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_INCIDENTS = 512 };
+
+static bool is_listed(const hn_workbench *w, const char *remedy) {
+    for (int i = 0; i < w->n_items; i++) {
+        if (strcmp(w->items[i].name, remedy) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Each remedy once, with what it gave in a trial, or what it is a remedy of.
+static void list_remedies(hn_workbench *w, const hn_incident *incident) {
+    for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
+        const char *tried = incident->tried[k];
+        if (!is_listed(w, incident->remedy[k])) {
+            hn_list_add(w, incident->remedy[k], tried[0] ? tried : incident->message);
+        }
+    }
+}
+
+void hn_remedies_open(hn_workbench *w) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const char *name = hn_recording_track(w->recording, w->selected)->name;
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    char title[HN_TUI_LINE];
+    snprintf(title, sizeof title, "what %.60s can try: Enter tries it, Esc goes back", name);
+    hn_list_begin(w, HN_LIST_REMEDIES, title);
+    for (int i = 0; i < n; i++) {
+        if (whose[i] == w->selected) {
+            list_remedies(w, &list[i]);
+        }
+    }
+    if (w->n_items == 0) {
+        w->panel = HN_PANEL_MAIN;
+        hn_workbench_say(w, "%s: nothing has happened that asks for a remedy", name);
+    }
+}
+
+void hn_remedies_take(hn_workbench *w) {
+    char remedy[HN_TUI_LINE], key[32];
+    double value;
+    int end = 0;
+    snprintf(remedy, sizeof remedy, "%s", w->items[w->cursor].name);
+    w->panel = HN_PANEL_MAIN;
+    if (sscanf(remedy, "%31[a-z_A-Z] = %lf%n", key, &value, &end) == 2 && remedy[end] == '\0') {
+        hn_methods_set_one(w, key, value);
+    } else if (strchr(remedy, '@') && !strchr(remedy, ' ')) {
+        hn_methods_add(w, remedy);
+    } else {
+        hn_workbench_say(w, "%s", remedy);
+    }
+}
