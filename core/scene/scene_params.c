@@ -208,12 +208,24 @@ static bool is_set(const hn_reader *r, const hn_param *p) {
     return false;
 }
 
+/// Whether the sign of a value is none of those in the range: a mass that is 0, a length below 0.
+static bool has_other_sign(const hn_param *p) {
+    const bool below = (p->min > 0 && p->value <= 0) || (p->min == 0 && p->value < 0);
+    const bool above = (p->max < 0 && p->value >= 0) || (p->max == 0 && p->value > 0);
+    return below || above;
+}
+
+static const char *needed_sign(const hn_param *p) {
+    return p->min > 0    ? "above 0"
+           : p->max < 0  ? "below 0"
+           : p->min == 0 ? "0 or more"
+                         : "0 or less";
+}
+
 /// Whether a value outside the range is of the same kind as those inside: of their sign, and no
 /// count. Ranges are those of sliders, not limits of mechanics.
 static bool is_possible(const hn_param *p) {
-    const bool below = (p->min > 0 && p->value <= 0) || (p->min == 0 && p->value < 0);
-    const bool above = (p->max < 0 && p->value >= 0) || (p->max == 0 && p->value > 0);
-    return !p->integer && !p->structural && !below && !above;
+    return !p->integer && !p->structural && !has_other_sign(p);
 }
 
 static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
@@ -230,6 +242,9 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
         hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
     } else if ((p->value < p->min || p->value > p->max) && is_set(r, p) && is_possible(p)) {
         p->beyond = true;
+    } else if (has_other_sign(p)) {
+        hn_rd_fault(r, NULL, "%s = %g%s%s must be %s", p->name, p->value, p->unit[0] ? " " : "",
+                    p->unit, needed_sign(p));
     } else if (p->value < p->min || p->value > p->max) {
         hn_rd_fault(r, NULL, "%s = %g is outside its range %g ... %g %s", p->name, p->value, p->min,
                     p->max, p->unit);

@@ -37,7 +37,7 @@ typedef enum hn_incident_code {
 } hn_incident_code;
 
 /// A spelling of a method, or "h=0.005" for the same method with another step; "" is none.
-typedef char hn_remedy[96];
+typedef char hn_remedy[128];
 enum { HN_REMEDIES = 3 };
 
 /// One report.

@@ -69,7 +69,10 @@ static void check_near(hn_watch *w) {
     const double pivot = w->accel_status == HN_OK && w->accel_info.fallback
                              ? ratio * ratio
                              : row * row * w->accel_info.pivot_ratio;
-    const bool near = w->accel_status != HN_OK || (pivot < HN_RUN_WARN_PIVOT && has_fallen(w));
+    // accelerations that fail for another reason, as numbers that overflow, say nothing about rows
+    const bool failed =
+        w->accel_status == HN_ERR_SINGULAR || w->accel_status == HN_ERR_INCONSISTENT;
+    const bool near = pivot < HN_RUN_WARN_PIVOT && (failed || has_fallen(w));
     if (!near || w->accel_info.rank < s->info.nc) {
         hn_incident_over(&w->log, HN_INCIDENT_NEAR_SINGULAR);
         return;

@@ -2,6 +2,7 @@
 #include "study/incidents/report.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,6 +15,16 @@ static void offer_remedies(const hn_watch *w, const hn_incident_kind *kind, hn_i
             memcpy(i->remedy[offered++], text, sizeof text);
         }
     }
+}
+
+/// Keeps the state from which remedies of a report can be tried later, when the run has gone on.
+static void keep_before(hn_watch *w, const hn_incident *i) {
+    const hn_stepping *run = w->run;
+    const ptrdiff_t k = i - w->log.list;
+    w->before[k].t = run->shortly.t;
+    memcpy(w->before[k].q, run->shortly.q, (size_t)run->info.nq * sizeof(double));
+    memcpy(w->before[k].v, run->shortly.v, (size_t)run->info.nv * sizeof(double));
+    w->before_at[k] = run->steps + run->rejected;
 }
 
 hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
@@ -34,5 +45,6 @@ hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const
     vsnprintf(i->message, sizeof i->message, format, args);
     va_end(args);
     offer_remedies(w, kind, i);
+    keep_before(w, i);
     return i;
 }

@@ -31,6 +31,12 @@ static hn_status create_memory(hn_watch *w) {
     w->checked_q = hn_arena_doubles(arena, nq);
 
     const size_t limits = (size_t)hn_system_scene(w->run->sys)->n_coordinates + 1;
+    w->before = hn_arena_get(arena, HN_RUN_MAX_INCIDENTS * sizeof *w->before);
+    w->before_at = hn_arena_get(arena, HN_RUN_MAX_INCIDENTS * sizeof *w->before_at);
+    for (int k = 0; w->before && k < HN_RUN_MAX_INCIDENTS; k++) {
+        w->before[k] =
+            (hn_state_at){.q = hn_arena_doubles(arena, nq), .v = hn_arena_doubles(arena, nv)};
+    }
     w->beyond = hn_arena_get(arena, limits);
     w->limited = hn_arena_doubles(arena, limits);
     return hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_heading_create(w);

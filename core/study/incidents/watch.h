@@ -101,9 +101,12 @@ struct hn_watch {
     double t_end;        ///< end that the run is for [s]; 0: not known
     double length;       ///< characteristic length [m]
     hn_incident_log log;
-    int every;     ///< a check every so many steps
-    int diagnosed; ///< reports whose cause and remedies have been looked into
-    bool at_start; ///< the start is being checked, no step has been made
+    int every; ///< a check every so many steps
+    /// Of each report that may be tried: a state shortly before it, and the steps made by then.
+    hn_state_at *before;  ///< HN_RUN_MAX_INCIDENTS
+    long long *before_at; ///< HN_RUN_MAX_INCIDENTS
+    int diagnosed;        ///< reports whose cause and remedies have been looked into
+    bool at_start;        ///< the start is being checked, no step has been made
 
     // of the state measured last
     hn_measure measure;

@@ -14,12 +14,15 @@
 enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, PILOT_LOOKS = 100, FINER = 4, MOST_SPEEDS = 60 };
 
 /// How the results of remedies begin.
-#define TRIED "tried to"
+#define TRIED "tried "
 #define IN_VAIN "; tried in vain:"
 
 /// A pilot run goes past the event by this share of the time to it: a remedy that only postpones
 /// the event is found out.
 static const double BEYOND = 0.5;
+/// The least share that tells.
+static const double LEAST_PAST = 0.05;
+enum { BEYOND_STEPS = 10 }; // of the run, that it goes past the event in any case
 
 // ---- the cause ----
 
@@ -123,6 +126,28 @@ static void name_cause(hn_run *run) {
     hn_run_set_reason(run, last->message);
 }
 
+/// Says of a run that could not go on in its configuration that its motion had been wrong before:
+/// the true motion may never come there.
+static void tell_wrong_before(hn_run *run) {
+    hn_watch *w = hn_run_watching(run);
+    const bool stuck = w->failure == HN_ERR_CHART || w->failure == HN_ERR_UNSUPPORTED ||
+                       w->failure == HN_ERR_NO_CONVERGENCE || w->failure == HN_ERR_SINGULAR ||
+                       w->failure == HN_ERR_INCONSISTENT;
+    if (!stuck || w->log.n == 0) {
+        return;
+    }
+    hn_incident *last = &w->log.list[w->log.n - 1];
+    for (int k = 0; k < w->log.n - 1; k++) {
+        const hn_incident *i = &w->log.list[k];
+        if (hn_incident_kinds()[i->code]->is_wrong && i->t < last->t - w->run->h) {
+            hn_incident_append(&w->log, last, "; the motion was wrong before: at t = %.3g s %.120s",
+                               i->t, i->message);
+            hn_run_set_reason(run, last->message);
+            return;
+        }
+    }
+}
+
 // ---- remedies ----
 
 /// The method that a remedy means: a spelling, or the present one with another step or tolerance.
@@ -159,11 +184,24 @@ static bool is_right(const hn_run *pilot, hn_status status) {
 
 typedef enum outcome { REMOVES, FAILS, UNKNOWN } outcome;
 
-/// Where a pilot run begins. A state shortly before the event may hold its error already, so the
-/// start of the run is taken where it is not many steps away.
-static const hn_state_at *pilot_start(const hn_stepping *s, double event) {
-    const bool near = s->steps + s->rejected <= PILOT_STEPS / FINER;
-    return !near && s->earlier.t < event ? &s->earlier : &s->start;
+/// Where the pilot runs of report k begin. A state shortly before the event may hold its error
+/// already, so the start of the run is taken where it is not many steps away.
+static const hn_state_at *pilot_start(const hn_watch *w, int k) {
+    const bool near = w->before_at[k] <= PILOT_STEPS / FINER;
+    return near || !(w->before[k].t < w->log.list[k].t) ? &w->run->start : &w->before[k];
+}
+
+/// How long a pilot run is: past the event, as far as its steps reach where they are fixed. Large
+/// mechanisms get fewer steps.
+static double pilot_end(const hn_stepping *s, const hn_method_spec *spec, double from, double event,
+                        long long *most) {
+    const int size = s->info.nv > PILOT_SIZE ? s->info.nv : PILOT_SIZE;
+    const double own = fmax(s->h, hn_method_option(&s->spec, "h", 0));
+    const double wanted = event + BEYOND * (event - from) + BEYOND_STEPS * own;
+    const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
+    *most = PILOT_STEPS * PILOT_SIZE / size;
+    const double reached = from + h * (double)(*most - 1);
+    return reached > event + h && reached < wanted ? reached : wanted;
 }
 
 /// Runs a pilot to `end`. Where it chooses its steps, samples are taken on the way, as the output
@@ -179,23 +217,22 @@ static hn_status run_pilot(hn_run *pilot, double from, double end) {
     return hn_run_advance(pilot, end);
 }
 
-/// Runs a remedy from the state before the event to a time past it and writes the result to `said`.
-static outcome try_remedy(const hn_stepping *s, double event, const char *text, hn_remedy said) {
+/// Runs a remedy of report k from the state before its event to a time past it and writes the
+/// result to `said`.
+static outcome try_remedy(const hn_watch *w, int k, const char *text, hn_remedy said) {
+    const hn_stepping *s = w->run;
+    const double event = w->log.list[k].t;
+    const hn_state_at *from = pilot_start(w, k);
     hn_run_opts opts = hn_run_opts_default();
     hn_method_spec spec;
     hn_run *pilot = NULL;
     hn_diag diag = {0};
 
-    // to some time after the event; large mechanisms get fewer steps
-    const hn_state_at *from = pilot_start(s, event);
-    const int size = s->info.nv > PILOT_SIZE ? s->info.nv : PILOT_SIZE;
-    const double end = event + BEYOND * (event - from->t) + 10 * s->h;
-    opts.t0 = from->t;
-    opts.max_steps = PILOT_STEPS * PILOT_SIZE / size;
-
     if (!read_remedy(s, text, &spec)) {
         return UNKNOWN;
     }
+    const double end = pilot_end(s, &spec, from->t, event, &opts.max_steps);
+    opts.t0 = from->t;
     if (hn_run_create(s->sys, &spec, from->q, from->v, &opts, &pilot, &diag) != HN_OK) {
         return FAILS;
     }
@@ -203,20 +240,29 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
     // the pilot run and its result
     const hn_status status = run_pilot(pilot, from->t, end);
     const hn_run_summary sum = hn_run_get_summary(pilot);
-    const bool right = is_right(pilot, status);
+    hn_sample last;
+    const double last_gap = hn_run_sample(pilot, sum.t, &last) == HN_OK ? last.gap : sum.worst_gap;
+    const bool past = sum.t > event + LEAST_PAST * (event - from->t);
+    const bool right = past && is_right(pilot, status == HN_ERR_STOPPED ? HN_OK : status);
     hn_run_free(pilot);
 
     if (status == HN_ERR_STOPPED && sum.steps == 0) {
         snprintf(said, sizeof(hn_remedy), "not tried: too many steps to t = %.3g s", end);
         return UNKNOWN;
     }
-    if (status == HN_ERR_STOPPED) {
+    if (status == HN_ERR_STOPPED && !past) {
         snprintf(said, sizeof(hn_remedy), "not tried to the end: %lld steps to t = %.3g s",
                  sum.steps, sum.t);
         return UNKNOWN;
     }
-    snprintf(said, sizeof(hn_remedy), TRIED " t = %.3g s: largest gap %.2g m, energy %.2g J", sum.t,
-             sum.worst_gap, sum.worst_energy_change);
+    // a loop that is open where the trial begins is no fault of the remedy
+    char begun[40] = "";
+    if (from != &s->start) {
+        snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
+    }
+    snprintf(said, sizeof(hn_remedy), TRIED "%sto t = %.*g s: %s gap %.2g m, energy %.2g J", begun,
+             begun[0] ? 4 : 3, sum.t, begun[0] ? "last" : "largest",
+             begun[0] ? last_gap : sum.worst_gap, sum.worst_energy_change);
     return right ? REMOVES : FAILS;
 }
 
@@ -231,7 +277,7 @@ static void try_remedies(hn_run *run, hn_incident *i) {
     for (; n < HN_REMEDIES && i->remedy[n][0]; n++) {
         memcpy(texts[n], i->remedy[n], sizeof texts[n]);
         said[n][0] = '\0';
-        outcomes[n] = try_remedy(w->run, i->t, texts[n], said[n]);
+        outcomes[n] = try_remedy(w, (int)(i - w->log.list), texts[n], said[n]);
     }
 
     // keep those that work, then those that could not be tried; drop those that fail
@@ -285,7 +331,7 @@ static const char *find_best(const hn_watch *w) {
 static void share_remedies(const hn_watch *w, hn_incident *i) {
     const char *best = find_best(w);
     hn_remedy said = "";
-    if (!i->remedy[0][0] && best && try_remedy(w->run, i->t, best, said) == REMOVES) {
+    if (!i->remedy[0][0] && best && try_remedy(w, (int)(i - w->log.list), best, said) == REMOVES) {
         memcpy(i->remedy[0], best, sizeof i->remedy[0]);
         memcpy(i->tried[0], said, sizeof i->tried[0]);
         i->remedy[1][0] = i->tried[1][0] = '\0';
@@ -315,6 +361,7 @@ void hn_run_diagnose(hn_run *run) {
     hn_watch *w = hn_run_watching(run);
     if (w->diagnosed < w->log.n) {
         name_cause(run);
+        tell_wrong_before(run);
     }
     for (; w->diagnosed < w->log.n; w->diagnosed++) {
         hn_incident *i = &w->log.list[w->diagnosed];

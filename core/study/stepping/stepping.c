@@ -42,12 +42,13 @@ static void copy_state(const hn_stepping *s, const hn_state_at *from, hn_state_a
     memcpy(to->v, from->v, (size_t)s->info.nv * sizeof *to->v);
 }
 
-/// Keeps the start of the present step, for whoever looks back from an event.
-static void keep_state(hn_stepping *s) {
-    const hn_state_at spare = s->earlier;
-    s->earlier = s->recent;
-    s->recent = spare;
-    copy_state(s, &s->before, &s->recent);
+/// Keeps the start of the present step, for whoever looks back from an event: `older` is given up
+/// for `newer`.
+static void keep_state(hn_stepping *s, hn_state_at *older, hn_state_at *newer) {
+    const hn_state_at spare = *older;
+    *older = *newer;
+    *newer = spare;
+    copy_state(s, &s->before, newer);
 }
 
 static hn_status accept(hn_stepping *s, double h, double t_new, int changed) {
@@ -64,7 +65,10 @@ static hn_status accept(hn_stepping *s, double h, double t_new, int changed) {
     s->now.t = t_new;
 
     if ((s->steps & (s->steps + 1)) == 0) {
-        keep_state(s);
+        keep_state(s, &s->earlier, &s->recent);
+    }
+    if (s->steps % HN_STEPPING_KEPT == 0) {
+        keep_state(s, &s->shortly, &s->latest);
     }
     s->has_step = true;
     s->corrected = changed;
@@ -337,6 +341,8 @@ void hn_stepping_clear(hn_stepping *s) {
     memcpy(s->now.v, s->start.v, (size_t)s->info.nv * sizeof(double));
     copy_state(s, &s->start, &s->earlier);
     copy_state(s, &s->start, &s->recent);
+    copy_state(s, &s->start, &s->shortly);
+    copy_state(s, &s->start, &s->latest);
     find_corner(s);
 }
 
@@ -347,7 +353,8 @@ hn_status hn_stepping_start_engine(hn_stepping *s, hn_engine *e) {
 static hn_status create_memory(hn_stepping *s) {
     const hn_accel_opts with_lambda = {.want_lambda = 1};
     const size_t nq = (size_t)s->info.nq, nv = (size_t)s->info.nv;
-    hn_state_at *states[] = {&s->start, &s->now, &s->before, &s->earlier, &s->recent};
+    hn_state_at *states[] = {&s->start,  &s->now,     &s->before, &s->earlier,
+                             &s->recent, &s->shortly, &s->latest};
     for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
         states[i]->q = hn_arena_doubles(s->arena, nq);
         states[i]->v = hn_arena_doubles(s->arena, nv);

@@ -15,6 +15,7 @@
 
 /// A grid point this near to the end asked for counts as the end: share of a step.
 #define HN_STEPPING_LANDING 1e-9
+#define HN_STEPPING_KEPT 100 ///< steps between states that are kept for trials of remedies
 /// A coordinate or velocity beyond this has left every mechanism.
 #define HN_STEPPING_BOUND 1e9
 
@@ -32,6 +33,9 @@ typedef struct hn_stepping {
     /// The states after the two latest powers of two of steps: `earlier` lies at most half of the
     /// run back and no less than a quarter, before whatever went wrong lately.
     hn_state_at earlier, recent;
+    /// The states after the two latest multiples of HN_STEPPING_KEPT steps: `shortly` lies once to
+    /// twice as many steps back.
+    hn_state_at shortly, latest;
 
     bool has_step;    ///< `before` is the start of the last step
     double t_asked;   ///< the step that reaches this time is the one that may be sampled inside

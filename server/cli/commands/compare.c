@@ -179,8 +179,9 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
             }
         }
         if (n > MAX_INCIDENTS) {
-            hn_strbuf_printf(b, "! %s: %d incidents more (--json lists them all)\n",
-                             hn_document_text(m, "method"), n - MAX_INCIDENTS);
+            const int more = n - MAX_INCIDENTS;
+            hn_strbuf_printf(b, "! %s: %d incident%s more (--json lists them all)\n",
+                             hn_document_text(m, "method"), more, more > 1 ? "s" : "");
         }
         i++;
     }

@@ -71,8 +71,22 @@ static void tell_remedies(const cJSON *incident) {
     }
 }
 
+enum { MOST = 5 }; // incidents that are told one by one
+
+/// What removes the end of a run, where its incident is not among those told: "" otherwise.
+static void end_remedy(const cJSON *run, char *out, size_t size) {
+    const cJSON *incidents = hn_document_get(run, "incidents");
+    const int n = cJSON_GetArraySize(incidents);
+    const cJSON *last = n > MOST ? cJSON_GetArrayItem(incidents, n - 1) : NULL;
+    const cJSON *remedy = last ? hn_document_get(last, "remedies")->child : NULL;
+    const cJSON *tried = last ? hn_document_get(last, "tried")->child : NULL;
+    out[0] = '\0';
+    if (remedy && tried && tried->valuestring[0]) {
+        snprintf(out, size, "holonom:     try %s (%s)\n", remedy->valuestring, tried->valuestring);
+    }
+}
+
 static void tell_incidents(const cJSON *run) {
-    enum { MOST = 5 };
     const cJSON *incidents = hn_document_get(run, "incidents"), *incident;
     int n = 0;
     cJSON_ArrayForEach(incident, incidents) {
@@ -83,7 +97,8 @@ static void tell_incidents(const cJSON *run) {
         }
     }
     if (n > MOST) {
-        hn_cli_note("holonom: %d incidents more (--json lists them all)\n", n - MOST);
+        hn_cli_note("holonom: %d incident%s more (--json lists them all)\n", n - MOST,
+                    n - MOST > 1 ? "s" : "");
     }
 }
 
@@ -224,7 +239,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
 
     // people get a table or a plot, and what was noticed
     cJSON *run = NULL;
-    char reason[560] = "";
+    char reason[560] = "", remedy[240] = "";
     if (strcmp(format, "json") != 0) {
         run = hn_document_parse(&b);
         snprintf(reason, sizeof reason, "at t = %.6g s: %.480s",
@@ -232,6 +247,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         if (streams && !rows.begun) {
             hn_run_rows_begin(&rows, run); // no sample was made
         }
+        end_remedy(run, remedy, sizeof remedy);
         tell_marks(run);
         tell_incidents(run);
         tell_estimate(run);
@@ -254,7 +270,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         result = HN_EXIT_PROGRAM;
     }
     if (ended != HN_OK && reason[0]) {
-        hn_cli_note("holonom: the run ended early %s\n", reason);
+        hn_cli_note("holonom: the run ended early %s\n%s", reason, remedy);
     }
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }

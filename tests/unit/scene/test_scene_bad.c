@@ -116,7 +116,7 @@ static void settings_are_checked_like_the_file(void **state) {
         hn_setting set;
         const char *word;
     } bad[] = {{{"l9", 1}, "did you mean"},
-               {{"l1", -7}, "outside its range"},
+               {{"l1", -7}, "must be above 0"},
                {{"N", 2.5}, "whole"},
                {{"N", 9}, "outside its range"}};
     static const char text[] =

@@ -187,6 +187,83 @@ static void the_reports_of_a_run_agree_on_what_helps(void **state) {
     hn_model_close(&m);
 }
 
+// a loop that opens after 160,000 steps: trials begin shortly before, and their gap is that of the
+// remedy, not the one that the run had left open
+static void remedies_of_a_late_event_are_tried_from_the_state_before_it(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "index1@rk4:h=2e-3");
+    const hn_incident *list = NULL;
+    double t = 0;
+    while (hn_run_incidents(run, &list) == 0 && t < 300) {
+        assert_int_equal(hn_run_advance(run, t += 1), HN_OK);
+    }
+    assert_int_equal(hn_run_incidents(run, &list), 1);
+    const double event = list[0].t;
+    assert_true(event > 10 && event / 2e-3 > 5000); // far more steps than a trial may take
+
+    // the run goes on: what was before the event is not lost
+    assert_int_equal(hn_run_advance(run, event + 20), HN_OK);
+    hn_run_diagnose(run);
+    hn_run_incidents(run, &list);
+    assert_string_equal(list[0].remedy[0], "projection@rk4:h=0.002");
+    double from, to, gap;
+    assert_int_equal(sscanf(list[0].tried[0], "tried from t = %lf s to t = %lf s: last gap %lf m",
+                            &from, &to, &gap),
+                     3);
+    assert_true(from < event && event - from < 1);
+    assert_true(to > event && to < event + 1);
+    assert_true(gap < 1e-12); // closed to rounding
+    for (int k = 0; k < HN_REMEDIES && list[0].remedy[k][0]; k++) {
+        assert_null(strstr(list[0].tried[k], "not tried"));
+    }
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+// weights of 1e300 N make the first step overflow: no trial gets past it, and none is offered
+static void what_fails_at_the_start_is_no_remedy(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", "g=1e300");
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+    assert_int_equal(hn_run_advance(run, 1), HN_ERR_DIVERGED);
+    hn_run_diagnose(run);
+    const hn_incident *list = NULL;
+    const int n = hn_run_incidents(run, &list);
+    assert_true(n > 0);
+    for (int i = 0; i < n; i++) {
+        assert_string_equal(list[i].remedy[0], "");
+        assert_null(strstr(list[i].message, "nearly dependent")); // J is as regular as before
+    }
+    assert_non_null(strstr(last_of(run)->message, "tried in vain"));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+// collinear links are passed by 0.2 mm: at h = 0.01 the energy jumps there, and the wrong motion
+// ends where no pose is left; four times as many steps pass
+static void an_end_after_a_wrong_motion_says_since_when_it_was_wrong(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", "l2=0.859496 l3=0.625323");
+    hn_run *run = hn_motion_start(&m, "nullspace@rk4:h=0.01");
+    assert_true(hn_run_advance(run, 10) != HN_OK);
+    hn_run_diagnose(run);
+    const hn_incident *end = last_of(run);
+    assert_non_null(strstr(end->message, "no pose closes the loops"));
+    assert_non_null(strstr(end->message, "the motion was wrong before: at t = 0.5 s the energy"));
+    assert_string_equal(end->message, hn_run_get_summary(run).reason);
+    assert_string_equal(end->remedy[0], "h=0.0025");
+    assert_non_null(strstr(end->tried[0], "tried from t = "));
+    hn_run_free(run);
+    run = hn_motion_start(&m, "nullspace@rk4:h=0.0025");
+    assert_int_equal(hn_run_advance(run, 10), HN_OK);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_above_the_stability_limit_is_named_as_the_cause),
@@ -194,6 +271,9 @@ int main(void) {
         cmocka_unit_test(the_reports_of_a_run_agree_on_what_helps),
         cmocka_unit_test(the_outcome_of_a_remedy_is_what_running_it_shows),
         cmocka_unit_test(remedies_that_do_not_remove_it_are_not_offered),
+        cmocka_unit_test(remedies_of_a_late_event_are_tried_from_the_state_before_it),
+        cmocka_unit_test(what_fails_at_the_start_is_no_remedy),
+        cmocka_unit_test(an_end_after_a_wrong_motion_says_since_when_it_was_wrong),
         cmocka_unit_test(where_finer_steps_fail_an_implicit_method_is_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
