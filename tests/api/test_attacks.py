@@ -384,6 +384,46 @@ class FairShares(Timed):
             s.close()
         self.assertEqual(server.stop(), 0)
 
+    def test_one_program_of_this_machine_fills_no_queue_alone(self):
+        server = driver.Server()
+        limits = server.ask("GET", "/api/v1/").json()["limits"]
+        share = int(limits["long_requests_waiting"] * limits["share_of_one_client"])
+
+        def as_program(name):
+            return lambda method, path, body: server.ask(method, path, body, {"User-Agent": name})
+
+        run = {**RING, "method": "projection@rk4:h=1e-4"}
+        statuses = [as_program("script/1")("POST", "/api/v1/runs?wait=0", {**run, "time": 1000 + i}).status
+                    for i in range(limits["long_requests_waiting"] + limits["long_requests_at_once"] + 5)]
+        taken = statuses.count(202)
+        self.assertTrue(share <= taken <= share + limits["long_requests_at_once"], statuses)
+        self.assertEqual(statuses.count(429), len(statuses) - taken)
+        # another program has its share, and its turn comes before the rest of the first
+        other = as_program("Mozilla/5.0")("POST", "/api/v1/runs?wait=0", {"scene": "four-bar", "method": RK4, "time": 1})
+        self.assertEqual(other.status, 202)
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_proxy_names_its_clients(self):
+        server = driver.Server("--max-comparisons", "4")
+
+        def ask(forwarded):
+            return server.ask(*self.AT_ONCE, {"X-Forwarded-For": forwarded}).status
+
+        self.assertEqual([ask("10.0.0.1") for _ in range(3)], [201, 201, 429])
+        self.assertEqual([ask("10.0.0.1, 10.0.0.2") for _ in range(3)], [201, 201, 429])  # the last is the proxy's own word
+        self.assertEqual(server.stop(), 0)
+        # who is not on this machine names nobody
+        server = driver.Server("--max-comparisons", "4")
+        other = From(server, "127.0.0.2")
+        statuses = []
+        for name in ("10.0.0.1", "10.0.0.2", "10.0.0.3"):
+            c = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30 * driver.SLOW, source_address=(other.address, 0))
+            c.request("POST", self.AT_ONCE[1], json.dumps(self.MAKE[2]), {"Content-Type": "application/json", "X-Forwarded-For": name})
+            statuses.append(driver.Answer(c.getresponse()).status)
+            c.close()
+        self.assertEqual(statuses, [201, 201, 429])
+        self.assertEqual(server.stop(), 0)
+
     def test_what_costs_nothing_has_a_queue_of_its_own(self):
         server = driver.Server("--run-cpu", "3")
         paths = ("/api/v1/scenes/four-bar", "/api/v1/scenes", "/")

@@ -9,6 +9,7 @@
 #include "http/routes/routes.h"
 
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,6 +132,18 @@ static void apply(hn_session *session, const char *text, size_t n) {
     check_reply(r);
 }
 
+/// Whether one of the changes passes the checks of its body. The others reach nothing of the
+/// comparison, which costs most of the time of an input.
+static bool has_sound_change(const char *text, const char *end) {
+    bool found = false;
+    for (const char *at = text; at < end && !found; at += strlen(at) + 1) {
+        hn_request *r = make_request("PATCH", "/api/v1/comparisons/x", at, strlen(at));
+        found = hn_request_read_body(r);
+        check_reply(r);
+    }
+    return found;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size < 2) {
         return 0;
@@ -146,8 +159,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
 
     // changes, one after the other
+    if (!has_sound_change(text, text + size - 1)) {
+        free(text);
+        return 0;
+    }
     const char *methods[] = {"baumgarte@rk4:h=1e-2", "index1@rk4:h=1e-2"};
-    char name[] = "four-bar";
+    char name[] = "pendulum"; // an input costs the compiling of its scene
     hn_scene_request scene = {.name = name};
     hn_session *session = make_session(NULL, &scene, methods, 2);
     const char *at = text, *end = text + size - 1;

@@ -4,8 +4,9 @@
 // Options and limits of the HTTP server. The index of the API lists the limits.
 //
 // Places (connections, streams, comparisons, long requests) are limited in all, and for each client
-// to its share of them. A client is an address. 127.0.0.1 and ::1 are this machine itself, or the
-// proxy that speaks for everybody: for them only the limits in all hold.
+// to its share of them. A client is an address, or the one that a proxy on this machine names
+// (http/request/client.h says who asks). For this machine itself only the limits in all hold; its
+// programs share the queues out among them.
 
 #include <stdbool.h>
 

@@ -130,7 +130,7 @@ static void serve_waiting(hn_comparisons *all) {
         if (ends) {
             refuse(all, r, n_before);
             hn_request_finish(r);
-        } else if (!hn_jobs_push(r->context->quick, r, r->client)) {
+        } else if (!hn_jobs_push(r->context->quick, r, r->queues_as)) {
             hn_shares_give(all->places, r->client);
             refuse(all, r, n_before);
             hn_request_finish(r);

@@ -38,7 +38,8 @@ typedef struct hn_request {
     struct hn_context *context;
     struct MHD_Connection *connection;
     hn_request_stage stage;
-    hn_client client;                  ///< who asks
+    hn_client client;                  ///< who asks, for places
+    hn_client queues_as;               ///< who asks, for queues; see client.h
     struct hn_connection_watch *watch; ///< deadlines of the connection; may be NULL
     const hn_route *route;
     bool is_head;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/dispatch.h"
 
-#include "base/hash.h"
 #include "build.h"
 #include "base/clock.h"
+#include "http/request/client.h"
 #include "http/request/early_answer.h"
 #include "http/request/guard.h"
 #include "http/request/gzip.h"
@@ -11,7 +11,6 @@
 #include "http/request/token.h"
 #include "http/routes/static_files.h"
 
-#include <arpa/inet.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -174,7 +173,7 @@ static void push(hn_request *r, hn_jobs *jobs) {
                          r->context->opts.max_unread);
         hn_reply_header_add(r, "Retry-After", "5");
         hn_request_finish(r);
-    } else if (!hn_jobs_push(jobs, r, r->client)) {
+    } else if (!hn_jobs_push(jobs, r, r->queues_as)) {
         hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
                          "%d requests of this kind are waiting already, or yours have their share",
                          r->context->opts.queue);
@@ -267,25 +266,6 @@ static enum MHD_Result send_reply(hn_request *r) {
 
 // ---- callbacks of the HTTP library ----
 
-/// A hash of the address; 0 for this machine.
-static hn_client find_client(struct MHD_Connection *connection) {
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-    const struct sockaddr *address = info ? info->client_addr : NULL;
-    if (!address) {
-        return 0;
-    }
-    if (address->sa_family == AF_INET6) {
-        const struct in6_addr *a = &((const struct sockaddr_in6 *)address)->sin6_addr;
-        return IN6_IS_ADDR_LOOPBACK(a) ? 0
-                                       : hn_hash_mix(hn_hash_bytes(HN_HASH_START, a, sizeof *a));
-    }
-    const struct in_addr *a = &((const struct sockaddr_in *)address)->sin_addr;
-    return ntohl(a->s_addr) == INADDR_LOOPBACK
-               ? 0
-               : hn_hash_mix(hn_hash_bytes(HN_HASH_START, a, sizeof *a));
-}
-
 /// Refuses an address that is too long, or that has too many parameters.
 static void check_address(hn_request *r, const char *uri) {
     size_t n = 0, parameters = 1;
@@ -310,7 +290,6 @@ void *hn_dispatch_address(void *cls, const char *uri, struct MHD_Connection *con
         r->context = d->context;
         atomic_fetch_add(&d->context->open_requests, 1);
         r->connection = connection;
-        r->client = find_client(connection);
         r->watch = info ? info->socket_context : NULL;
         r->has_zero = strstr(uri, "%00") != NULL;
         snprintf(r->path, sizeof r->path, "%.*s", (int)strcspn(uri, "?"), uri);
@@ -325,6 +304,7 @@ static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const 
         return false;
     }
     r->has_begun = true;
+    hn_request_identify(r);
     r->is_head = strcmp(method, "HEAD") == 0;
     snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, url);
     hn_connection_reads_body(d->connections, r->watch);

@@ -160,7 +160,7 @@ void hn_handle_runs_create(hn_request *r) {
         return;
     }
     hn_status status = hn_run_question_read(&question, r->json, r->context->lib, &diags);
-    HN_THEN(status, hn_runs_begin(all, &question, r->client, &run, &r->is_new));
+    HN_THEN(status, hn_runs_begin(all, &question, r->queues_as, &run, &r->is_new));
     hn_run_question_reset(&question);
 
     // answered when the run has ended, or after the wait
