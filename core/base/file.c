@@ -26,6 +26,17 @@ static const char *kind_of(mode_t mode) {
                             : "it is not a regular file";
 }
 
+/// Why a path could not be opened, in words for a message. ELOOP is also what a link gets where none
+/// may be followed.
+static const char *why_not_open(const char *path, int error, bool own) {
+    struct stat info;
+    const bool is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+    return error == ENOENT && is_link ? "it is a link to a file that is not there"
+           : error == ELOOP && own    ? "it is a link"
+           : error == ELOOP           ? "it is a link that leads back to itself"
+                                      : strerror(error);
+}
+
 /// Adds the bytes of an open file to `text`, at most `most` + 1 of them. Returns 0 or an errno.
 static int add_bytes(int fd, size_t most, hn_strbuf *text) {
     char piece[PIECE];
@@ -70,7 +81,7 @@ static hn_status read_disk(const char *path, size_t most, bool own, hn_strbuf *t
     const int fd =
         open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY | (own ? O_NOFOLLOW : 0));
     if (fd < 0) {
-        return unreadable(path, strerror(errno), diag);
+        return unreadable(path, why_not_open(path, errno, own), diag);
     }
     if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
         close(fd);

@@ -15,5 +15,7 @@ typedef struct hn_program_limits {
 
 /// The limits of the table in server/program/README.md.
 hn_program_limits hn_program_limits_default(void);
+/// Sets how long an answer may take [s]. The first may take six times as long, and at least 20 s.
+void hn_program_limits_set_answer(hn_program_limits *limits, double seconds);
 
 #endif

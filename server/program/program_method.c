@@ -26,9 +26,12 @@ typedef struct program {
 } program;
 
 static hn_program_opts options;
+
 static hn_program_limits get_limits(void) {
     hn_program_limits limits = hn_program_limits_default();
-    limits.answer = options.answer > 0 ? options.answer : limits.answer;
+    if (options.answer > 0) {
+        hn_program_limits_set_answer(&limits, options.answer);
+    }
     return limits;
 }
 

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 typedef struct hn_program_opts {
-    bool trusted;       ///< without a sandbox
-    double answer;      ///< [s] for an answer; NaN: as hn_program_limits_default() says
+    bool trusted;  ///< without a sandbox
+    double answer; ///< [s] for an answer but the first; NaN: as hn_program_limits_default() says
     const char *folder; ///< programs are names in this folder alone; NULL: any path
 } hn_program_opts;
 

@@ -88,6 +88,8 @@ AT_FAULT = [
     ("runs", but(RUN, parameters={"nonsense": 1}), None, "nonsense"),
     ("runs", but(RUN, parameters={"a/b~c": 1}), None, ""),
     ("terms", {"scene": "four-bar", "state": {"nonsense": 1}}, "/state/nonsense", ""),
+    ("terms", {"scene": "four-bar", "state": {"th1": 1e16}}, "/state/th1", "beside it"),
+    ("drag", {"scene": "four-bar", "state": {"th1": -1e20}, "point": 1, "target": [0, 1]}, "/state/th1", "beside it"),
     ("terms", {"scene": "four-bar", "t": "now"}, "/t", "number"),
     ("equations", {"scene": "four-bar", "format": "latx"}, "/format", "latex"),
     ("comparisons", but(COMPARISON, methods=[]), "/methods", ""),

@@ -57,6 +57,18 @@ class Files(Command):
                 self.assertIn(b"would be overwritten", done.stderr)
                 self.assertEqual(open(path, "rb").read(), before)
 
+    def test_a_link_that_leads_nowhere_is_called_a_link(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, to in (("round.json", "back.json"), ("back.json", "round.json"), ("lost.json", "nothing.json")):
+                os.symlink(to, os.path.join(folder, name))
+            for name, why in (("round.json", b"it is a link that leads back to itself"), ("lost.json", b"it is a link to a file that is not there")):
+                for word in (name, "./" + name):
+                    done = subprocess.run([os.path.abspath(driver.PROGRAM), "inspect", word], cwd=folder, capture_output=True)
+                    self.assert_exit(done, INPUT)
+                    self.assertIn(why, done.stderr)
+            missing = subprocess.run([os.path.abspath(driver.PROGRAM), "inspect", "nothing.json"], cwd=folder, capture_output=True)
+            self.assertIn(b"there is no file 'nothing.json'", missing.stderr)
+
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
     def test_an_output_that_cannot_be_written_is_no_fault_of_the_input(self):
         with tempfile.TemporaryDirectory() as folder:

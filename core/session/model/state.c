@@ -9,6 +9,9 @@
 #include <string.h>
 
 enum { MAX_SUGGESTIONS = 400 };
+/// A value below LARGE leaves eight digits to what it is added to; a coordinate has lost its digits
+/// where it is off by this part of itself.
+static const double LARGE = 1e8, LOST = 1e-6;
 
 static const hn_coordinate *user_coordinate(const hn_model *model, int i) {
     return &hn_model_scene(model)
@@ -53,14 +56,44 @@ static hn_status put_entry(const hn_model *model, const hn_state_entry *e, int n
     return HN_OK;
 }
 
+/// The entry of the largest value; NULL where none is large.
+static const hn_state_entry *find_large(const hn_state_entry *entries, int n) {
+    const hn_state_entry *large = NULL;
+    for (int k = 0; k < n; k++) {
+        if (fabs(entries[k].value) > (large ? fabs(large->value) : LARGE)) {
+            large = &entries[k];
+        }
+    }
+    return large;
+}
+
+/// Refuses a value so large that another coordinate or rate loses its digits: the system adds
+/// coordinates of a chain. u: the 2 n values that are wanted; back: those that the system holds.
+static hn_status check_digits(const hn_model *model, const hn_state_entry *large, int n,
+                              const double *u, const double *back, hn_diags *diags) {
+    char pointer[HN_DIAG_POINTER];
+    snprintf(pointer, sizeof pointer, "/state/%.80s", large->name);
+    for (int i = 0; i < 2 * n; i++) {
+        const hn_coordinate *c = user_coordinate(model, i % n);
+        const char *name = i < n ? c->name : c->rate;
+        if (fabs(back[i] - u[i]) > LOST * (1 + fabs(u[i])) && strcmp(name, large->name) != 0) {
+            return hn_diags_add(diags, HN_ERR_INPUT, pointer, "take a smaller value",
+                                "'%.80s' is %g: beside it '%.80s' would be %g in place of %g",
+                                large->name, large->value, name, back[i], u[i]);
+        }
+    }
+    return HN_OK;
+}
+
 hn_status hn_model_state(const hn_model *model, const hn_state_entry *entries, int n_entries,
                          double *q, double *v, hn_diags *diags) {
     const hn_system *sys = hn_model_system(model);
     const int n = hn_system_get_info(sys).n_user;
-    double *u = calloc(2 * (size_t)n + 1, sizeof *u);
+    double *u = calloc(4 * (size_t)n + 1, sizeof *u);
     if (!u) {
         return HN_ERR_MEMORY;
     }
+    double *back = u + 2 * (size_t)n;
     hn_system_to_user(sys, hn_model_q(model), u);
     hn_system_rates_to_user(sys, hn_model_v(model), u + n);
     hn_status status = HN_OK;
@@ -70,6 +103,12 @@ hn_status hn_model_state(const hn_model *model, const hn_state_entry *entries, i
     }
     hn_system_from_user(sys, u, q);
     hn_system_rates_from_user(sys, u + n, v);
+    const hn_state_entry *large = status == HN_OK ? find_large(entries, n_entries) : NULL;
+    if (large) {
+        hn_system_to_user(sys, q, back);
+        hn_system_rates_to_user(sys, v, back + n);
+        status = check_digits(model, large, n, u, back, diags);
+    }
     free(u);
     return status;
 }

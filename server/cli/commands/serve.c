@@ -15,17 +15,30 @@
 #include <time.h>
 #include <unistd.h>
 
-/// Puts the value given on the command line, or leaves the default.
-static void choose_int(int *field, double given) {
-    if (!isnan(given)) {
-        *field = (int)fmin(given, 1e9);
-    }
-}
+/// An option that is a number: the default stands in the field, `given` is NaN where it is not
+/// said.
+typedef struct bounded {
+    const char *option;
+    double given, min, max;
+    int *whole; ///< the field, or `seconds` is
+    double *seconds;
+} bounded;
 
-static void choose_seconds(double *field, double given) {
-    if (!isnan(given)) {
-        *field = given;
+static hn_status choose(const bounded *o, hn_diag *diag) {
+    if (isnan(o->given)) {
+        return HN_OK;
     }
+    if (!(o->given >= o->min && o->given <= o->max)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "%s is %.15g; %s from %g to %g is allowed", o->option, o->given,
+                           o->whole ? "a whole number" : "a number", o->min, o->max);
+    }
+    if (o->whole) {
+        *o->whole = (int)o->given;
+    } else {
+        *o->seconds = o->given;
+    }
+    return HN_OK;
 }
 
 static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *diag) {
@@ -34,37 +47,27 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
         opts->host = args->host;
     }
     opts->runs_folder = args->runs;
-    choose_int(&opts->port, args->port);
-    choose_int(&opts->max_events, args->history);
-    choose_int(&opts->max_comparisons, args->max_comparisons);
-    choose_int(&opts->max_streams, args->max_streams);
-    choose_int(&opts->max_connections, args->max_connections);
-    choose_seconds(&opts->max_run_cpu, args->run_cpu);
-    choose_seconds(&opts->idle_pause, args->idle_pause);
-    choose_seconds(&opts->expiry, args->expiry);
-    choose_seconds(&opts->keep_alive, args->keep_alive);
     opts->allow_hosts = args->allow_hosts.word;
     opts->n_allow_hosts = args->allow_hosts.n;
+    if (opts->n_allow_hosts > HN_MAX_HOSTS) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "--allow-host is said %d times; at most %d are allowed",
+                           opts->n_allow_hosts, HN_MAX_HOSTS);
+    }
 
-    // every bound is checked, given or not
-    const struct {
-        const char *option;
-        double value, min, max;
-    } bounds[] = {{"--port", opts->port, 0, 65535},
-                  {"--history", opts->max_events, 1, 1e6},
-                  {"--max-comparisons", opts->max_comparisons, 1, 1000},
-                  {"--max-streams", opts->max_streams, 1, 4000},
-                  {"--max-connections", opts->max_connections, 1, 8000},
-                  {"--run-cpu", opts->max_run_cpu, 0.01, 3600},
-                  {"--idle-pause", opts->idle_pause, 0.1, 1e6},
-                  {"--expiry", opts->expiry, 0.1, 1e6},
-                  {"--keep-alive", opts->keep_alive, 0.1, 20},
-                  {"number of --allow-host", opts->n_allow_hosts, 0, HN_MAX_HOSTS}};
-    for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
-        if (!(bounds[i].value >= bounds[i].min && bounds[i].value <= bounds[i].max)) {
-            return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s is %g; %g to %g are allowed",
-                               bounds[i].option, bounds[i].value, bounds[i].min, bounds[i].max);
-        }
+    // numbers within their bounds
+    const bounded numbers[] = {
+        {"--port", args->port, 0, 65535, &opts->port, NULL},
+        {"--history", args->history, 1, 1e6, &opts->max_events, NULL},
+        {"--max-comparisons", args->max_comparisons, 1, 1000, &opts->max_comparisons, NULL},
+        {"--max-streams", args->max_streams, 1, 4000, &opts->max_streams, NULL},
+        {"--max-connections", args->max_connections, 1, 8000, &opts->max_connections, NULL},
+        {"--run-cpu", args->run_cpu, 0.01, 3600, NULL, &opts->max_run_cpu},
+        {"--idle-pause", args->idle_pause, 0.1, 1e6, NULL, &opts->idle_pause},
+        {"--expiry", args->expiry, 0.1, 1e6, NULL, &opts->expiry},
+        {"--keep-alive", args->keep_alive, 0.1, 20, NULL, &opts->keep_alive}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        HN_TRY(choose(&numbers[i], diag));
     }
     return HN_OK;
 }

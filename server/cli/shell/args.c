@@ -41,7 +41,8 @@ static const option OPTIONS[] = {
     {"--trust-programs", NULL, OPTION_FLAG, AT(trust_programs),
      "the same without a sandbox: for programs that you wrote yourself"},
     {"--answer-time", "S", OPTION_NUMBER, AT(answer_time),
-     "how long a program may take for one answer [s]; 5 when left out"},
+     "how long a program may take for one answer [s]; 5 when left out; six times as long, at least "
+     "20 s, for the first"},
     {"--programs", "DIR", OPTION_TEXT, AT(programs),
      "methods may be programs of this folder, program:NAME, run in a sandbox"},
     {"--no-native", NULL, OPTION_FLAG, AT(no_native),

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_assignment see,
                               void *user, hn_diags *diags) {
@@ -96,13 +96,13 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
         hn_model_source source = {
             .settings = s->item, .n_settings = s->n, .allow_open = allow_open};
 
-        // standard input, a file, or a shipped scene
+        // standard input, a file (or a link, wherever it leads), or a shipped scene
         if (strcmp(word, "-") == 0) {
             status = hn_file_read_stdin(HN_SCENE_MAX_BYTES, &text, diags);
             source.text = hn_strbuf_text(&text);
             source.n_text = text.n;
         } else if (!hn_library_scene_path(lib, word) &&
-                   (strchr(word, '/') || access(word, F_OK) == 0)) {
+                   (strchr(word, '/') || lstat(word, &(struct stat){0}) == 0)) {
             source.path = word;
         } else if (names_json(word)) {
             status = report_no_file(lib, word, diags);
