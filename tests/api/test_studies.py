@@ -91,6 +91,16 @@ class Failures(driver.ServerCase):
         self.assertTrue(failure["code"])
         self.assertEqual(failure["message"], reason)
 
+    def check_figures(self, failure, cell):
+        """The figure that the reason names, beyond its limit."""
+        quantity, value, limit = failure["quantity"], failure["value"], failure["limit"]
+        if quantity in ("gap", "energy"):
+            self.assertEqual(value, cell[quantity])
+            self.assertGreater(value, limit)
+            self.assertIn("stand", failure["message"])
+        elif cell["class"] in ("grew", "stopped"):
+            self.assertEqual((quantity, value), ("t", cell["t"]))
+
     def test_points_of_a_work_precision_study(self):
         # the coarsest steps of an explicit method of first order end with the loops open
         study = wait(self.server, start(self.server, {"scene": "four-bar", "kind": "work-precision", "time": 5, "samples": 0, "levels": 4,
@@ -114,13 +124,21 @@ class Failures(driver.ServerCase):
             if c["failure"]:
                 self.check(c["failure"], c["reason"])
                 self.assertEqual(c["failure"]["code"], c["class"])
+                self.check_figures(c["failure"], c)
         study = wait(self.server, start(self.server, {"scene": "four-bar", "kind": "budget", "time": 1,
-                                                      "methods": ["index1@euler:h=0.5", "projection@rk4:h=0.01"]}))
+                                                      "methods": ["index1@euler:h=0.5", "index3@trapezoidal:h=0.5", "projection@rk4:h=0.01"]}))
         rows = study["document"]["methods"]
         self.assertEqual([r["failure"] is None for r in rows], [r["state"] == "done" for r in rows])
+        self.assertGreater(sum(r["failure"] is not None for r in rows), 0)
         for r in rows:
             if r["failure"]:
                 self.check(r["failure"], r["reason"])
+                # the incident that ended the run, as in a run
+                self.assertIn(r["failure"]["code"], ("diverged", "newton-failed"))
+                self.assertIn(r["failure"]["quantity"], ("gap", "t"))
+                self.assertIsNotNone(r["failure"]["value"])
+                if r["failure"]["quantity"] == "gap":
+                    self.assertGreater(r["failure"]["value"], r["failure"]["limit"])
 
 
 class Studies(driver.ServerCase):

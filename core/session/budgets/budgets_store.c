@@ -2,6 +2,7 @@
 #include "session/budgets/budgets_store.h"
 
 #include "session/budgets/budgets_internal.h"
+#include "session/store/ending_json.h"
 #include "session/store/stored_json.h"
 
 #include "base/hash.h"
@@ -38,6 +39,7 @@ static bool take_account(const cJSON *o, int n_user, hn_budget *a) {
         !hn_stored_int(o, "coordinate", n_user + 1, &a->coordinate) ||
         !hn_stored_int(o, "has_equations", 2, &a->has_equations) ||
         !hn_stored_int(o, "conservative", 2, &a->conservative) ||
+        !hn_ending_take_json(o, &a->ending) ||
         !hn_stored_numbers(o, "numbers", numbers, N_NUMBERS) ||
         !hn_stored_numbers(o, "parts", a->part, HN_CAUSE_COUNT) ||
         !hn_stored_numbers(o, "energy_parts", a->energy_parts, HN_ENERGY_COUNT)) {
@@ -87,6 +89,7 @@ static void put_budget(hn_strbuf *b, const hn_budget *a) {
     hn_json_put_int(b, "coordinate", a->coordinate + 1);
     hn_json_put_int(b, "has_equations", a->has_equations);
     hn_json_put_int(b, "conservative", a->conservative);
+    hn_ending_put_json(b, &a->ending, a->reason, a->t);
     hn_json_put_numbers(b, "numbers", numbers, N_NUMBERS);
     hn_json_put_numbers(b, "parts", a->part, HN_CAUSE_COUNT);
     hn_json_put_numbers(b, "energy_parts", a->energy_parts, HN_ENERGY_COUNT);

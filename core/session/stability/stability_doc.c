@@ -2,11 +2,13 @@
 #include "session/stability/stability_doc.h"
 
 #include "session/store/ending_json.h"
+#include "study/incidents/watch.h"
 #include "session/store/csv.h"
 #include "session/stability/stability.h"
 #include "session/stability/stability_column.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static void put_axis(hn_strbuf *b, const char *key, const hn_map_axis *a) {
     hn_json_key(b, key);
@@ -23,6 +25,29 @@ static void put_axis(hn_strbuf *b, const char *key, const hn_map_axis *a) {
     hn_json_end_object(b);
 }
 
+/// Why a trial is not stable, with the figure that its reason names: the loop gap in
+/// characteristic lengths, the energy above the motion's in its range, or the time reached.
+static hn_ending ending_of(const hn_stability_trial *t) {
+    hn_ending e = hn_ending_named(t->reason[0] ? hn_stability_class_name(t->kind) : "");
+    const double open = t->status == HN_OK ? HN_STABILITY_OPEN : HN_RUN_LOST_GAP;
+    if (t->kind != HN_STABILITY_GREW && t->kind != HN_STABILITY_STOPPED) {
+        return e;
+    }
+    if (t->kind == HN_STABILITY_GREW && t->gap > open) {
+        snprintf(e.quantity, sizeof e.quantity, "gap");
+        e.value = t->gap;
+        e.limit = open;
+    } else if (t->status == HN_OK && t->energy > HN_STABILITY_GROWN) {
+        snprintf(e.quantity, sizeof e.quantity, "energy");
+        e.value = t->energy;
+        e.limit = t->energy > HN_STABILITY_RUNAWAY ? HN_STABILITY_RUNAWAY : HN_STABILITY_GROWN;
+    } else {
+        snprintf(e.quantity, sizeof e.quantity, "t");
+        e.value = t->t_reached;
+    }
+    return e;
+}
+
 static void put_cell(hn_strbuf *b, const hn_map_cell *cell) {
     const hn_stability_trial *t = &cell->trial;
     hn_json_object(b);
@@ -30,7 +55,7 @@ static void put_cell(hn_strbuf *b, const hn_map_cell *cell) {
     if (t->reason[0]) {
         hn_json_put_string(b, "reason", t->reason);
     }
-    const hn_ending ending = hn_ending_named(t->reason[0] ? hn_stability_class_name(t->kind) : "");
+    const hn_ending ending = ending_of(t);
     hn_ending_put_json(b, &ending, t->reason, t->t_reached);
     hn_json_put_number(b, "t", t->t_reached);
     hn_json_put_number(b, "error", t->error);

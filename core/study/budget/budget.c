@@ -318,6 +318,7 @@ static hn_status keep_books(hn_budget_work *b, double T, hn_diag *diag) {
     const int failed = s.state == HN_RUN_FAILED;
     out->state = failed ? HN_RUN_FAILED : HN_RUN_FINISHED;
     snprintf(out->reason, sizeof out->reason, "%.255s", s.reason);
+    out->ending = hn_ending_of(b->run, failed ? s.status : HN_OK, s.reason, s.t);
     out->t = b->steps->now.t;
     out->steps = (long long)b->kept;
     hn_budget_work_present(b, b->y);
