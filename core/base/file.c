@@ -26,8 +26,8 @@ static const char *kind_of(mode_t mode) {
                             : "it is not a regular file";
 }
 
-/// Why a path could not be opened, in words for a message. ELOOP is also what a link gets where none
-/// may be followed.
+/// Why a path could not be opened, in words for a message. A link where none may be followed gets
+/// ELOOP too.
 static const char *why_not_open(const char *path, int error, bool own) {
     struct stat info;
     const bool is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
