@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The loop file: what closes the loops of a URDF, which is a tree. JSON of ours:
-//   {"holonom_loops": 1, "joints": [..], "constraints": [..], "gravity": [x, y, z]}
+//   {"holonom_loops": 1, "joints": [..], "constraints": [..], "gravity": [x, y, z],
+//    "start": {"positions": {"th1": 1, ..}, "rates": {..}}}
 // Joints and constraints are written as in a scene (scene.schema.json); bodies are links by name,
-// places and directions in the frames of the links. Each joint is marked as cut.
+// places and directions in the frames of the links. Each joint is marked as cut. The start names
+// joints of the model, each with a number, or a list for a joint of several coordinates.
 #include "import/loops.h"
 
 #include "base/json_text.h"
@@ -77,9 +79,62 @@ static bool read_gravity(hn_build *b, const cJSON *root) {
     return good || fault(b, "/gravity", "as in [0, 0, -9.81]", "expected three numbers");
 }
 
+/// Values of one joint: a number, or a list of as many as the joint has coordinates.
+static bool read_value(hn_build *b, const cJSON *value, double *x, int n) {
+    const int is_list = cJSON_IsArray(value);
+    if (is_list ? cJSON_GetArraySize(value) != n : n != 1) {
+        return fault(b, "/start", NULL, "a joint needs as many numbers as it has coordinates");
+    }
+    for (int k = 0; k < n; k++) {
+        const cJSON *c = is_list ? cJSON_GetArrayItem(value, k) : value;
+        if (!cJSON_IsNumber(c)) {
+            return fault(b, "/start", NULL, "expected numbers");
+        }
+        x[k] = c->valuedouble;
+    }
+    return true;
+}
+
+/// Positions or rates of joints by their names in the model.
+static bool read_values(hn_build *b, const cJSON *start, const char *key) {
+    const cJSON *values = cJSON_GetObjectItemCaseSensitive(start, key);
+    const int rates = strcmp(key, "rates") == 0;
+    if (values && !cJSON_IsObject(values)) {
+        return fault(b, "/start", NULL, "expected values by the names of joints");
+    }
+    for (const cJSON *c = values ? values->child : NULL; c; c = c->next) {
+        const int joint = hn_im_find_joint(b, c->string);
+        if (joint < 0) {
+            return fault(b, hn_im_text(b, "/start/%s/%.60s", key, c->string), NULL,
+                         "the model has no joint of this name");
+        }
+        hn_im_joint *j = &b->joints[joint];
+        if (!read_value(b, c, rates ? j->v0 : j->q0, j->n)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool read_start(hn_build *b, const cJSON *root) {
+    const cJSON *start = cJSON_GetObjectItemCaseSensitive(root, "start");
+    if (!start) {
+        return true;
+    }
+    if (!cJSON_IsObject(start)) {
+        return fault(b, "/start", "as in {\"positions\": {\"th1\": 1}}", "expected an object");
+    }
+    for (const cJSON *c = start->child; c; c = c->next) {
+        if (strcmp(c->string, "positions") != 0 && strcmp(c->string, "rates") != 0) {
+            return fault(b, "/start", "positions or rates", "unknown field");
+        }
+    }
+    return read_values(b, start, "positions") && read_values(b, start, "rates");
+}
+
 static bool read_document(hn_build *b, const cJSON *root) {
-    static const char *const fields[] = {"holonom_loops", "about", "joints", "constraints",
-                                         "gravity"};
+    static const char *const fields[] = {"holonom_loops", "about",   "joints",
+                                         "constraints",   "gravity", "start"};
     enum { N_FIELDS = sizeof fields / sizeof *fields };
     if (!cJSON_IsObject(root)) {
         return fault(b, "", "as in {\"holonom_loops\": 1, \"joints\": [..]}", "expected an object");
@@ -104,7 +159,7 @@ static bool read_document(hn_build *b, const cJSON *root) {
         return fault(b, "/holonom_loops", "\"holonom_loops\": 1", "the version of this form is 1");
     }
     return read_list(b, root, "joints") && read_list(b, root, "constraints") &&
-           read_gravity(b, root);
+           read_gravity(b, root) && read_start(b, root);
 }
 
 bool hn_im_read_loops(hn_build *b, const char *text, size_t n) {

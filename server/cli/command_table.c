@@ -27,8 +27,9 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --format --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
-     "julia, wolfram or modelica; latex: its equations to read; or as a model: --format mjcf",
-     MODEL_OPTIONS " --language --method --style --solver --blanks --format --out -o", 1, 1,
+     "julia, wolfram or modelica; latex: its equations to read; or as a model: --format mjcf or "
+     "urdf",
+     MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o", 1, 1,
      hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java",
      "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,

@@ -352,6 +352,24 @@ class Stateless(driver.ServerCase):
             one = self.server.ask("GET", "/api/v1/scenes/pendulum/export?language=" + language["name"])
             self.assertEqual(one.status, 200)
             self.assertTrue(one.headers["content-disposition"].endswith(language["suffix"] + '"'))
+        # the method says how the program holds its loops, where a program can; another solver; the functions alone
+        held = self.post("export", {"scene": "four-bar", "language": "cpp", "method": "baumgarte:alpha=3,beta=7@rk4", "solver": "eigen"}).body
+        self.assertIn(b"ALPHA = 3.0, BETA = 7.0;", held)
+        self.assertIn(b"Eigen/Dense", held)
+        bare = self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=c&style=skeleton").body
+        self.assertNotIn(b"CHECK_A", bare)
+        # the mechanism itself, with what it does not hold
+        for ending, format in ((".xml", "mjcf"), (".urdf", "urdf")):
+            answers = [self.server.ask("GET", "/api/v1/scenes/delta-robot/export?format=" + format),
+                       self.post("export", {"scene": "delta-robot", "format": format})]
+            self.assertEqual(answers[0].body, answers[1].body)
+            self.assertEqual(answers[0].headers["content-disposition"], f'attachment; filename="delta-robot{ending}"')
+            self.assertRegex(answers[0].body.decode(), r"<!--\n(.*\n)*left out: load 'drive 1'(.*\n)*-->\n$")
+            self.assertEqual(self.post("import", {"text": answers[0].body.decode(), "name": "back"}).status, 200)
+        for word, place in (("format=sdf", "/format"), ("format=mjcf&language=c", "/format"), ("style=bare", "/style"), ("solver=eigen", "/solver"),
+                            ("language=c&solver=eigen", "/solver"), ("format=mjcf&method=index1@rk4", "/format")):
+            wrong = self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?" + word), 422)
+            self.assertEqual(wrong["errors"][0]["pointer"], place, word)
         wrong = self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=pyton"), 422)
         self.assertEqual((wrong["errors"][0]["pointer"], wrong["hint"]), ("/language", "python"))
         self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?method=x@rk4"), 422)

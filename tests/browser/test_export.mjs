@@ -68,3 +68,34 @@ test("a scene in space is saved with its solids, as a film, and as a program", a
   await page.check("#export-blanks");
   assert.match((await fileOf(page, "Program")).bytes.toString(), /YOUR PART 4 of 4/);
 });
+
+test("a program with another solver and style, and the model for another program", async (t) => {
+  const page = await open(t, { hash: "#four-bar" });
+  await page.getByRole("button", { name: "export" }).click();
+  await page.waitForSelector("#export-language option", { state: "attached" });
+  await page.selectOption("#export-language", "cpp");
+  await page.waitForSelector("#export-solver option[value=eigen]", { state: "attached" });
+  assert.deepEqual(await violations(page), []);
+  await page.selectOption("#export-solver", "eigen");
+  await page.selectOption("#export-style", "skeleton");
+  await screenshot(page, "export-dialog");
+  const code = (await fileOf(page, "Program")).bytes.toString();
+  assert.match(code, /Eigen/);
+  assert.doesNotMatch(code, /CHECK_A/);
+
+  // languages with one solver offer none, and LaTeX is no program that could be bare
+  await page.selectOption("#export-language", "latex");
+  await page.waitForSelector("#export-solver", { state: "hidden" });
+  await page.waitForSelector("#export-style", { state: "hidden" });
+  assert.match((await fileOf(page, "Program")).bytes.toString(), /documentclass/);
+
+  for (const [format, name, first] of [
+    ["mjcf", "four-bar.xml", /^<mujoco/],
+    ["urdf", "four-bar.urdf", /^<\?xml[^]*left out: joint 'B'/],
+  ]) {
+    await page.selectOption("#export-format", format);
+    const model = await fileOf(page, "Model");
+    assert.equal(model.name, name);
+    assert.match(model.bytes.toString(), first);
+  }
+});

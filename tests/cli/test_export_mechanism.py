@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""holonom export --format mjcf: the mechanism itself. What import reads back moves as the scene does.
+"""holonom export --format mjcf and urdf: the mechanism itself. What import reads back moves as the scene does.
 
 Every shipped scene is exported. LEFT_OUT lists what MJCF does not hold, scene by scene; the others are read back and run
 beside the original, and coordinates of the same name, spins of balls and the energy agree along the way.
@@ -43,6 +43,9 @@ LEFT_OUT = {
     "pantograph": ["load 'hand'"],
     "quick-return": ["load 'motor'"],
 }
+# what URDF does not hold beside those; the motors of two scenes are switched off as shipped, so that nothing moves otherwise
+BALLS = {"heavy-top", "rssr"}
+LOADS = {"slider-crank": ["load 'motor'"], "cardan-shaft": ["load 'motor'"], "stiff-four-bar": ["stiffness of load 'spring'"]}
 WITHOUT_BODIES = {"fb0-lagrangian", "four-angles-as-printed", "car-axis"}
 
 
@@ -205,11 +208,106 @@ class Mechanism(unittest.TestCase):
             self.assertIn("written as formulas", result.stderr)
 
     def test_an_unknown_format_and_options_of_programs_are_refused(self):
-        for words, said in ((("--format", "urdf"), "--format mjcf"), (("--format", "mjcf", "--language", "c"), "--language"),
+        for words, said in ((("--format", "sdf"), "--format mjcf or --format urdf"), (("--format", "mjcf", "--language", "c"), "--language"),
                             (("--format", "mjcf", "--blanks"), "--blanks")):
             result = call("export", "four-bar", *words)
             self.assertEqual((result.returncode, result.stdout), (INPUT, ""))
             self.assertIn(said, result.stderr)
+
+
+class Urdf(unittest.TestCase):
+    """The tree of a mechanism; with a loop file beside it, all that both hold moves to rounding as the scene does."""
+
+    def written(self, scene, folder, *words):
+        path = os.path.join(folder, "model.urdf")
+        result = call("export", scene, "--format", "urdf", "-o", path, *words)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        return path, re.findall(r"^left out: (.*?):", result.stderr, re.MULTILINE)
+
+    def round_trip(self, scene, folder, *allowed):
+        """How many quantities were compared, and the largest difference; everything is held but what is allowed to miss."""
+        loops, back = (os.path.join(folder, name) for name in ("loops.json", "back.json"))
+        path, left = self.written(scene, folder, "--loops", loops)
+        self.assertEqual(left, list(allowed))
+        result = call("import", path, "--loops", loops, "-o", back)
+        self.assertEqual(result.returncode, DONE, result.stderr)
+        self.assertIn("0 refused", result.stderr)
+        return worst(run(scene), run(back))
+
+    def test_trees_and_loops_move_as_the_scene_does(self):
+        held = [name for name in names() if name not in WITHOUT_BODIES | set(LEFT_OUT) | BALLS | set(LOADS)]
+        self.assertGreater(len(held), 15)
+        for name in held:
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                n, error = self.round_trip(name, folder)
+                self.assertGreater(n, 1)
+                self.assertLess(error, NEAR)
+
+    def test_a_universal_joint_closes_a_loop_where_mjcf_has_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertLess(self.round_trip("cardan-shaft", folder, *LOADS["cardan-shaft"])[1], NEAR)
+            self.assertLess(self.round_trip("slider-crank", folder, *LOADS["slider-crank"])[1], NEAR)
+            self.assertGreater(self.round_trip("stiff-four-bar", folder, *LOADS["stiff-four-bar"])[1], 100 * NEAR)
+
+    def test_chains_gears_dampers_limits_and_a_floating_body(self):
+        """Joints of two and three coordinates, from either side; a mimic; a damper; turned frames; products of inertia."""
+        bodies = [{"name": n, "mass": 1.5, "com": [0.3, 0.1, 0.2], "inertia": {"xx": 0.2, "yy": 0.25, "zz": 0.3, "xy": 0.02}}
+                  for n in ("a", "b", "c & d", "e", "flyer")]
+        scene = {"holonom": 1, "name": "chains", "gravity": [0.5, -9.81, 1], "bodies": bodies,
+                 "joints": [{"name": "A", "type": "cylindrical", "parent": {"body": "a", "at": [0.1, 0.2, 0]}, "child": {"body": "ground"},
+                             "axis": [0, 0.6, 0.8], "coordinates": ["x", "s"]},
+                            {"name": "B", "type": "revolute", "parent": {"body": "ground", "at": [2, 0, 0]},
+                             "child": {"body": "b", "at": [0.2, 0, 0], "axis": [0, 1, 0], "ref": [1, 0, 0]}, "axis": [0.6, 0.8, 0],
+                             "coordinate": "y", "limits": [-30, 30]},
+                            {"name": "C", "type": "universal", "parent": {"body": "a", "at": [1, 0, 0]}, "child": {"body": "c & d"},
+                             "axis": [0, 1, 0], "axis2": [1, 0, 0], "coordinates": ["u", "w"]},
+                            {"name": "P", "type": "planar", "parent": {"body": "b", "at": [0, 0, 1]}, "child": {"body": "e", "at": [0, 0.2, 0]},
+                             "axis": [0, 0, 1], "coordinates": ["px", "py", "pt"]},
+                            {"name": "F", "type": "free", "parent": {"body": "ground", "at": [0, 1, 0]},
+                             "child": {"body": "flyer", "at": [0.2, 0, 0], "axis": [0, 1, 0], "ref": [0, 0, 1]}, "axis": [0, 0, 1],
+                             "coordinates": ["fx", "fy", "fz", "f1", "f2", "f3"]}],
+                 "loads": [{"name": "damper", "joint_spring": {"coordinate": "w", "damping": 0.3}}],
+                 "constraints": [{"name": "wheels", "gear": {"coordinates": ["x", "y"], "ratio": 2, "phase": 0.5}}],
+                 "start": {"positions": {"x": 0.3, "s": 0.2, "y": {"guess": 0.1}, "u": 0.2, "w": -0.3, "px": 0.1, "pt": 0.5, "f1": 0.4, "f2": 0.1, "f3": 0,
+                                         "fy": 0.5},
+                           "rates": {"d_x": 1, "d_s": 0.2, "d_u": -1, "d_w": 2, "d_pt": 1, "d_f1": 2, "d_f3": 1, "d_fx": 0.5}}}
+        with tempfile.TemporaryDirectory() as folder:
+            own = os.path.join(folder, "own.json")
+            with open(own, "w") as f:
+                json.dump(scene, f)
+            n, error = self.round_trip(own, folder)
+            self.assertGreaterEqual(n, 9)  # energy, x, s, y, u, w, px, py, pt and the flyer's spin
+            self.assertLess(error, NEAR)
+
+    def test_what_a_urdf_alone_does_not_hold_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, left = self.written("four-bar", folder)
+            self.assertEqual(left, ["joint 'B'", "start", "gravity"])
+            root = ET.parse(path).getroot()
+            self.assertEqual([link.get("name") for link in root.iter("link")][0], "world")
+            self.assertEqual(len(list(root.iter("link"))), 1 + len(list(root.iter("joint"))))
+            _, left = self.written("delta-robot", folder)
+            self.assertTrue(set(LEFT_OUT["delta-robot"]) <= set(left))
+
+    def test_balls_wrong_loop_files_and_misplaced_options_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            taken = os.path.join(folder, "same")
+            for words, said in ((("heavy-top", "--format", "urdf"), "no ball joint"), (("four-bar", "--loops", taken), "belongs to a URDF"),
+                                (("four-bar", "--format", "mjcf", "--loops", taken), "holds loops itself"),
+                                (("four-bar", "--format", "urdf", "--loops", taken, "-o", taken), "choose another name")):
+                result = call("export", *words)
+                self.assertEqual((result.returncode, result.stdout), (INPUT, ""), words)
+                self.assertIn(said, result.stderr)
+                self.assertFalse(os.path.exists(taken))
+            path, loops = os.path.join(folder, "model.urdf"), os.path.join(folder, "loops.json")
+            self.assertEqual(call("export", "pendulum", "--format", "urdf", "--loops", loops, "-o", path).returncode, DONE)
+            for start, said in (([], "expected an object"), ({"speeds": {}}, "positions or rates"), ({"rates": {"no": 1}}, "no joint of this name"),
+                                ({"rates": {"th": [1, 2]}}, "as many numbers"), ({"positions": {"th": "x"}}, "expected numbers")):
+                with open(loops, "w") as f:
+                    json.dump({"holonom_loops": 1, "start": start}, f)
+                result = call("import", path, "--loops", loops)
+                self.assertEqual(result.returncode, INPUT)
+                self.assertIn(said, result.stderr)
 
 
 if __name__ == "__main__":

@@ -79,5 +79,64 @@ class Cluster(unittest.TestCase):
         self.assert_like_one_process(sorted(glob.glob(self.path("results/part-*-of-4.json"))), 4)
 
 
+ANSWER = os.path.join(HERE, "..", "..", "lessons", "01-closed-loops", "answers", "p3.json")
+
+
+class Class(Cluster):
+    """A class in parts: the merged scores are those of one process, to the byte."""
+
+    STUDENTS = 14
+
+    def setUp(self):
+        super().setUp()
+        with open(ANSWER, encoding="utf-8") as f:
+            right = f.read()
+        os.mkdir(self.path("handed in"))
+        for k in range(self.STUDENTS):
+            text = (right, "{}", "no JSON", right.replace('"-l1*sin(th1)"', '"l1*sin(th1)"'))[k % 4]
+            with open(self.path(f"handed in/student {k}.json"), "w", encoding="utf-8") as f:
+                f.write(text)
+
+    def assert_like_one_process(self, parts, n):
+        self.assertEqual(len(parts), n)
+        self.holonom("grade", "p3", self.path("handed in"), "--jobs", "1", "--out", self.path("one.ndjson"))
+        self.holonom("grade", "p3", "--merge", *parts, "--out", self.path("merged.ndjson"))
+        self.assertEqual(bytes_of(self.path("merged.ndjson")), bytes_of(self.path("one.ndjson")))
+        self.assertEqual(bytes_of(self.path("one.ndjson")).count(b"\n"), self.STUDENTS)
+
+    def test_gnu_parallel_with_two_jobs_merges_to_the_file_of_one_process(self):
+        words = [os.path.join(HERE, "class.sh"), "2", "5", self.path("results"), "p3", self.path("handed in")]
+        done = subprocess.run(words, env=self.environment, capture_output=True, stdin=subprocess.DEVNULL, timeout=120 * driver.SLOW)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_like_one_process(sorted(glob.glob(self.path("results/part-*-of-5.ndjson"))), 5)
+
+    def test_gnu_parallel_tells_when_a_part_fails(self):
+        words = [os.path.join(HERE, "class.sh"), "2", "2", self.path("results"), "p33", self.path("handed in")]
+        done = subprocess.run(words, env=self.environment, capture_output=True, stdin=subprocess.DEVNULL, timeout=120 * driver.SLOW)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(b"p33", done.stderr)
+
+    def test_the_tasks_of_an_array_one_by_one_merge_to_the_file_of_one_process(self):
+        """Without Slurm's daemons: each task as Slurm starts it, by its number; the third is started twice."""
+        for task in (4, 2, 3, 1, 3):
+            environment = {**self.environment, "SLURM_ARRAY_TASK_ID": str(task)}
+            words = ["sh", os.path.join(HERE, "class.sbatch"), "4", "results", "p3", self.path("handed in")]
+            done = subprocess.run(words, env=environment, capture_output=True, cwd=self.folder, timeout=120 * driver.SLOW)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_like_one_process(sorted(glob.glob(self.path("results/part-*-of-4.ndjson"))), 4)
+
+    @unittest.skipUnless(os.geteuid() == 0, "SLURM WAS NOT TRIED: its daemons start as root only, and this is user "
+                         f"{os.geteuid()}")
+    def test_a_slurm_array_of_four_tasks_merges_to_the_file_of_one_process(self):
+        self.assertEqual(slurm.missing(), [], "not installed")
+        os.chmod(self.folder, 0o755)
+        with slurm.Slurm(cpus=2) as cluster:
+            cluster.environment.update(self.environment, SLURM_CONF=cluster.environment["SLURM_CONF"], PATH=cluster.environment["PATH"])
+            cluster.call("sbatch", "--parsable", "--array=1-4", "--chdir=" + self.folder, os.path.join(HERE, "class.sbatch"), "4", "results", "p3",
+                         self.path("handed in"))
+            cluster.wait_for_jobs()
+        self.assert_like_one_process(sorted(glob.glob(self.path("results/part-*-of-4.ndjson"))), 4)
+
+
 if __name__ == "__main__":
     driver.main()

@@ -32,9 +32,12 @@ export const documents = {
    *   where: string, what: string}[]}>}
    */
   importModel: (model, name) => request("POST", `${BASE}/import`, { text: model, name }),
-  /** @returns {Promise<{languages: {name: string, suffix: string, about: string}[]}>} */
+  /**
+   * @returns {Promise<{languages: {name: string, suffix: string, about: string,
+   *   solvers: {name: string, about: string}[]}[]}>}
+   */
   languages: () => request("GET", `${BASE}/languages`),
-  /** A program that runs a scene by itself. @param {object} body */
+  /** A program that runs a scene by itself, or its model in a format. @param {object} body */
   program: (body) =>
     text(`${BASE}/export`, {
       method: "POST",

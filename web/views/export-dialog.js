@@ -14,6 +14,9 @@ import { baseOf } from "../widgets/pieces.js";
 import { standAlone, toPng } from "../widgets/picture.js";
 import { saveFile } from "../widgets/save.js";
 
+/** Languages whose programs have no functions without a self-check. */
+const WITHOUT_SKELETON = new Set(["modelica", "latex"]);
+
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
@@ -138,16 +141,69 @@ export function createExportDialog(el, store, actions, mechanism) {
   );
   const languages = h("select", { id: "export-language", "aria-label": "Language" });
   const blanks = h("input", { type: "checkbox", id: "export-blanks" });
+  const solvers = h("select", { id: "export-solver", "aria-label": "Solver" });
+  const styles = h(
+    "select",
+    { id: "export-style", "aria-label": "Style" },
+    h("option", { value: "full" }, "with its self-check"),
+    h("option", { value: "skeleton" }, "without its self-check"),
+  );
   const program = h(
     "li",
     { class: "program" },
     h("button", { type: "button", class: "plain", onclick: writeProgram }, "Program"),
-    h("span", {}, "that runs this scene by itself and checks itself: ", languages),
+    h("span", {}, "that runs this scene by itself: ", languages, solvers, styles),
     h("label", {}, blanks, " with blanks for students"),
   );
+  const formats = h(
+    "select",
+    { id: "export-format", "aria-label": "Format of the model" },
+    h("option", { value: "mjcf" }, "MuJoCo's MJCF"),
+    h("option", { value: "urdf" }, "URDF: the tree, without loops"),
+  );
+  const model = h(
+    "li",
+    { class: "program" },
+    h("button", { type: "button", class: "plain", onclick: writeModel }, "Model"),
+    h(
+      "span",
+      {},
+      "the mechanism for another program; its last lines name what it lacks: ",
+      formats,
+    ),
+  );
 
-  /** @type {{name: string, suffix: string, about: string}[]} */
+  /** @type {{name: string, suffix: string, about: string, solvers: {name: string, about: string}[]}[]} */
   let known = [];
+
+  // the solvers of the chosen language; a program with blanks has the first, and keeps its self-check
+  function offerChoices() {
+    const chosen = known.find(({ name }) => name === languages.value);
+    const before = solvers.value;
+    const several = chosen?.solvers ?? [];
+    solvers.replaceChildren(
+      ...several.map(({ name, about }) => h("option", { value: name }, `${name}: ${about}`)),
+    );
+    if (several.some(({ name }) => name === before)) {
+      solvers.value = before;
+    }
+    solvers.hidden = several.length === 0 || blanks.checked;
+    styles.hidden = blanks.checked || WITHOUT_SKELETON.has(languages.value);
+  }
+  languages.addEventListener("change", offerChoices);
+  blanks.addEventListener("change", offerChoices);
+
+  function writeModel() {
+    const format = formats.value;
+    return write(format === "urdf" ? "urdf" : "xml", async () => {
+      const text = await documents.program({
+        scene: sourceOf(data),
+        parameters: data.settings,
+        format,
+      });
+      return new Blob([text], { type: "application/xml" });
+    });
+  }
 
   function writeProgram() {
     const chosen = known.find(({ name }) => name === languages.value);
@@ -156,6 +212,8 @@ export function createExportDialog(el, store, actions, mechanism) {
       parameters: data.settings,
       language: languages.value,
       blanks: blanks.checked,
+      ...(solvers.hidden ? {} : { solver: solvers.value }),
+      ...(styles.hidden ? {} : { style: styles.value }),
       method: data.methods[data.view.selected]?.spelling,
     };
     return write((chosen?.suffix ?? ".txt").slice(1), async () => {
@@ -170,6 +228,7 @@ export function createExportDialog(el, store, actions, mechanism) {
       languages.replaceChildren(
         ...known.map(({ name, about }) => h("option", { value: name }, about)),
       );
+      offerChoices();
     } catch (error) {
       say(done, sentenceOf(error));
     }
@@ -185,7 +244,7 @@ export function createExportDialog(el, store, actions, mechanism) {
       },
     },
     h("h2", { id: "export-title" }, "Save"),
-    h("ul", { class: "formats" }, ...rows, program),
+    h("ul", { class: "formats" }, ...rows, program, model),
     done,
     h("form", { method: "dialog", class: "actions" }, h("button", { class: "primary" }, "Close")),
   );

@@ -3,34 +3,67 @@
 
 #include "linalg/small3.h"
 #include "session/export/mjcf_writer.h"
+#include "session/export/urdf_writer.h"
 
 #include <math.h>
 #include <string.h>
 
 static const double ALIGNED = 1e-9; // sine of the angle between axes that count as parallel [-]
 
-static hn_status check_format(const char *format, hn_diags *diags) {
-    static const char *const formats[] = {"mjcf"};
-    if (strcmp(format, formats[0]) == 0) {
-        return HN_OK;
+// ---- formats ----
+
+static hn_status write_mjcf(hn_strbuf *out, hn_strbuf *loops, hn_strbuf *left_out,
+                            const hn_model *model, hn_arena *arena, hn_diags *diags);
+
+typedef struct model_format {
+    const char *name, *suffix, *called; ///< `called`: in messages
+    hn_status (*write)(hn_strbuf *out, hn_strbuf *loops, hn_strbuf *left_out, const hn_model *model,
+                       hn_arena *arena, hn_diags *diags);
+    bool has_loop_file;
+} model_format;
+
+static const model_format FORMATS[] = {{"mjcf", ".xml", "MJCF", write_mjcf, false},
+                                       {"urdf", ".urdf", "URDF", hn_urdf_write, true}};
+enum { N_FORMATS = sizeof FORMATS / sizeof *FORMATS };
+
+static const model_format *find_format(const char *name) {
+    for (int i = 0; i < N_FORMATS; i++) {
+        if (strcmp(FORMATS[i].name, name) == 0) {
+            return &FORMATS[i];
+        }
     }
-    return hn_diags_add(diags, HN_ERR_INPUT, "/format", "--format mjcf",
-                        "'%.40s' is not a format of export", format);
+    return NULL;
 }
 
-static hn_status check_scene(const hn_scene *scene, hn_diags *diags) {
+const char *hn_mechanism_suffix(const char *format) {
+    return find_format(format)->suffix;
+}
+
+static hn_status check_format(const char *name, bool wants_loops, hn_diags *diags) {
+    const model_format *found = find_format(name);
+    if (!found) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/format", "--format mjcf or --format urdf",
+                            "'%.40s' is not a format of export", name);
+    }
+    return wants_loops && !found->has_loop_file
+               ? hn_diags_add(diags, HN_ERR_INPUT, "/loops", "leave it out",
+                              "%s holds loops itself: it has no loop file", found->called)
+               : HN_OK;
+}
+
+static hn_status check_scene(const hn_scene *scene, const model_format *f, hn_diags *diags) {
     const int world = hn_scene_find_body(scene, "world");
     if (world >= 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, scene->bodies[world].pointer,
-                            "call the body otherwise", "MJCF calls the ground 'world'");
+                            "call the body otherwise", "%s calls the ground 'world'", f->called);
     }
     if (!scene->is_lagrangian) {
         return HN_OK;
     }
     return hn_diags_add(diags, HN_ERR_INPUT, "/lagrangian", "--language writes it as a program",
-                        "'%.60s' is written as formulas: MJCF holds bodies and joints, and there "
+                        "'%.60s' is written as formulas: %s holds bodies and joints, and there "
                         "are none",
-                        scene->name);
+                        scene->name, f->called);
 }
 
 // ---- planar or not ----
@@ -188,16 +221,24 @@ static hn_status prepare(hn_mjcf *m, hn_arena *arena, hn_diags *diags) {
     return HN_OK;
 }
 
-hn_status hn_model_export_mechanism(hn_strbuf *b, hn_strbuf *left_out, const hn_model *model,
-                                    const char *format, hn_diags *diags) {
-    hn_mjcf m = {.model = model, .scene = hn_model_scene(model), .out = b, .left_out = left_out};
-    HN_TRY(check_format(format, diags));
-    HN_TRY(check_scene(m.scene, diags));
+static hn_status write_mjcf(hn_strbuf *out, hn_strbuf *loops, hn_strbuf *left_out,
+                            const hn_model *model, hn_arena *arena, hn_diags *diags) {
+    (void)loops;
+    hn_mjcf m = {.model = model, .scene = hn_model_scene(model), .out = out, .left_out = left_out};
+    HN_TRY(prepare(&m, arena, diags));
+    hn_mjcf_write(&m);
+    return HN_OK;
+}
+
+hn_status hn_model_export_mechanism(hn_strbuf *b, hn_strbuf *loops, hn_strbuf *left_out,
+                                    const hn_model *model, const char *format, hn_diags *diags) {
+    HN_TRY(check_format(format, loops != NULL, diags));
+    HN_TRY(check_scene(hn_model_scene(model), find_format(format), diags));
     hn_arena *arena = hn_arena_create(0);
-    hn_status status = arena ? prepare(&m, arena, diags) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        hn_mjcf_write(&m);
-        status = b->failed || left_out->failed ? HN_ERR_MEMORY : HN_OK;
+    hn_status status =
+        arena ? find_format(format)->write(b, loops, left_out, model, arena, diags) : HN_ERR_MEMORY;
+    if (status == HN_OK && (b->failed || left_out->failed)) {
+        status = HN_ERR_MEMORY;
     }
     hn_arena_free(arena);
     return status;

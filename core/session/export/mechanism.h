@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_MECHANISM_H
 #define HN_SESSION_MECHANISM_H
-// The mechanism itself, written for MuJoCo: MJCF, drawn at the assembled start.
+// The mechanism itself, as MJCF or as URDF (urdf_writer.h). MJCF is drawn at the assembled start.
 //
 // Bodies keep their frames and names; each coordinate is a joint of its own name and keeps its
 // value (`ref`), so 0 means what it means in the scene. Joints that close loops become equalities:
@@ -13,11 +13,15 @@
 #include "session/model/model.h"
 
 /// Writes the mechanism to `b`, and to `left_out` a line for each thing of the scene that is not
-/// in it, beginning with what it is.
-/// Fails: HN_ERR_INPUT (unknown format; a scene without bodies, or with one called "world"),
-/// HN_ERR_UNSUPPORTED (a free joint between two bodies), HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_model_export_mechanism(hn_strbuf *b, hn_strbuf *left_out,
-                                                  const hn_model *model, const char *format,
-                                                  hn_diags *diags);
+/// in it, beginning with what it is. `loops`: the loop file beside a URDF; NULL: it is not wanted.
+/// Fails: HN_ERR_INPUT (unknown format; a scene without bodies, or with one called "world"; a loop
+/// file beside MJCF), HN_ERR_UNSUPPORTED (a free joint between two bodies; a ball in URDF),
+/// HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_model_export_mechanism(hn_strbuf *b, hn_strbuf *loops,
+                                                  hn_strbuf *left_out, const hn_model *model,
+                                                  const char *format, hn_diags *diags);
+
+/// The ending of a file's name in a known format.
+const char *hn_mechanism_suffix(const char *format);
 
 #endif

@@ -6,16 +6,10 @@
 
 #include <string.h>
 
-/// One freedom of a joint: its kind, and the axis of the joint's frame that it goes along.
-typedef struct step {
-    hn_pose_kind kind;
-    int axis; ///< 0 x, 1 y, 2 z
-} step;
-
 /// What the coordinates of a joint do one after the other (scene.h).
 static const struct {
     int n;
-    step step[HN_POSE_PARTS];
+    hn_joint_step step[HN_POSE_PARTS];
 } STEPS[HN_JOINT_TYPE_COUNT] = {
     [HN_JOINT_REVOLUTE] = {1, {{HN_POSE_HINGE, 2}}},
     [HN_JOINT_PRISMATIC] = {1, {{HN_POSE_SLIDE, 2}}},
@@ -27,6 +21,11 @@ static const struct {
     [HN_JOINT_FREE] =
         {4, {{HN_POSE_SLIDE, 0}, {HN_POSE_SLIDE, 1}, {HN_POSE_SLIDE, 2}, {HN_POSE_BALL, 0}}},
 };
+
+const hn_joint_step *hn_joint_steps(hn_joint_type type, int *n) {
+    *n = STEPS[type].n;
+    return STEPS[type].step;
+}
 
 static hn_im_frame side_frame(const hn_quantity at[3], const double axis[3], const double ref[3]) {
     double y[3];
@@ -51,7 +50,7 @@ hn_im_frame hn_start_poses_world(const hn_start_poses *poses, int body) {
 }
 
 /// What one step moves, at the coordinate's value (three of them for a ball).
-static hn_im_frame motion(const step *s, const double *q) {
+static hn_im_frame motion(const hn_joint_step *s, const double *q) {
     hn_im_frame out = hn_im_frame_unit();
     double axis[3] = {0, 0, 0};
     if (s->kind == HN_POSE_SLIDE) {
@@ -85,7 +84,7 @@ static void list_parts(const hn_joint *j, const hn_start_poses *poses, hn_im_fra
                        hn_pose *pose) {
     pose->n = STEPS[j->type].n;
     for (int k = 0; k < pose->n; k++) {
-        const step *s = &STEPS[j->type].step[k];
+        const hn_joint_step *s = &STEPS[j->type].step[k];
         hn_pose_part *p = &pose->part[k];
         const int c = j->coordinate + k;
         *p = (hn_pose_part){.kind = s->kind, .coordinate = c};

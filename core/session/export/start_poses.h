@@ -13,6 +13,12 @@ enum { HN_POSE_PARTS = 4 };
 
 typedef enum hn_pose_kind { HN_POSE_HINGE, HN_POSE_SLIDE, HN_POSE_BALL, HN_POSE_FREE } hn_pose_kind;
 
+/// One freedom of a joint: its kind, and the axis of the joint's frame that it goes along.
+typedef struct hn_joint_step {
+    hn_pose_kind kind;
+    int axis; ///< 0 x, 1 y, 2 z
+} hn_joint_step;
+
 /// One freedom of a joint (all of them, for a ball or a free joint) between a body and its parent
 /// in the tree.
 typedef struct hn_pose_part {
@@ -42,6 +48,8 @@ HN_MUST_CHECK hn_status hn_start_poses_find(const hn_model *model, hn_arena *are
                                             hn_start_poses *out);
 /// The pose of a body, or of the ground.
 hn_im_frame hn_start_poses_world(const hn_start_poses *poses, int body);
+/// What the coordinates of a joint do, one after the other from its parent; `n` gets their number.
+const hn_joint_step *hn_joint_steps(hn_joint_type type, int *n);
 /// Where a joint sits in its parent (side 0) or its child (side 1): z is its axis, x its reference.
 hn_im_frame hn_joint_side(const hn_joint *joint, int side);
 

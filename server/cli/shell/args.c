@@ -76,7 +76,7 @@ static const option OPTIONS[] = {
     {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
     {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
     {"--loops", "FILE", OPTION_TEXT, AT(loops),
-     "joints that close the loops of a URDF: JSON (see the README)"},
+     "what a URDF does not hold, as JSON: joints that close loops, gravity, the start"},
     {"--key", "NAME", OPTION_TEXT, AT(key),
      "MJCF: the keyframe to start from; the first when left out, qpos0 for none"},
     {"--frame", "DT", OPTION_NUMBER, AT(frame_dt),

@@ -8,6 +8,7 @@
 #include "http/runs/runs.h"
 #include "integrators/method/method_spec.h"
 #include "session/export/export.h"
+#include "session/export/mechanism.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -57,36 +58,101 @@ static void name_file(hn_request *r, const hn_model *model, const char *suffix) 
                         n ? name : "mechanism", suffix);
 }
 
-/// Sends the program, or why there is none; frees the model.
-static void reply_program(hn_request *r, hn_model *model, const char *language, bool blanks,
-                          const char *method) {
-    hn_export_request request = {.language = language ? language : "python",
-                                 .blanks = blanks,
-                                 .limits = {r->context->opts.max_run_cpu, is_stopping, r->context}};
+/// What a request asks for, as words of its body or its query; NULL: left out.
+typedef struct wanted {
+    const char *language, *method, *style, *solver, *format;
+    bool blanks;
+} wanted;
+
+/// Whether a program can hold its loops as the method does; a reader is told its name in any case.
+static bool is_held_by_programs(const char *spelling) {
+    static const char *const names[] = {"index1@", "baumgarte@", "baumgarte:"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (strncmp(spelling, names[i], strlen(names[i])) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Fails: HN_ERR_INPUT for a word that is no style.
+static hn_status check_style(const char *style, hn_diags *diags) {
+    return !style || strcmp(style, "full") == 0 || strcmp(style, "skeleton") == 0
+               ? HN_OK
+               : hn_diags_add(diags, HN_ERR_INPUT, "/style", "full or skeleton",
+                              "'%.40s' is not a style of export", style);
+}
+
+static hn_status write_program(hn_request *r, const hn_model *model, const wanted *w, hn_strbuf *b,
+                               const char **suffix, hn_diags *diags) {
     char spelling[HN_SPEC_MAX];
-    hn_diags diags = {0};
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_status status = read_method(method, spelling, &diags);
-    if (status == HN_OK) {
-        status = hn_model_export(&b, model, r->context->lib, &request, &diags);
-    }
-    if (status != HN_OK) {
-        hn_strbuf_reset(&b);
-        hn_model_free(model);
-        hn_reply_diags(r, status, &diags);
-        return;
-    }
+    HN_TRY(check_style(w->style, diags));
+    HN_TRY(read_method(w->method, spelling, diags));
+    hn_export_request request = {.language = w->language ? w->language : "python",
+                                 .method = is_held_by_programs(spelling) ? spelling : NULL,
+                                 .solver = w->solver,
+                                 .blanks = w->blanks,
+                                 .skeleton = w->style && strcmp(w->style, "skeleton") == 0,
+                                 .limits = {r->context->opts.max_run_cpu, is_stopping, r->context}};
+    HN_TRY(hn_model_export(b, model, r->context->lib, &request, diags));
+    *suffix = request.suffix;
 
     // the method of the workbench is for the reader: the program has a solver of its own
     if (spelling[0]) {
         const bool is_document =
             strcmp(request.suffix, ".tex") == 0; // what is behind its end is not read
-        hn_strbuf_printf(&b, "\n%s in the workbench: %s%s\n", is_document ? "%" : request.comment,
+        hn_strbuf_printf(b, "\n%s in the workbench: %s%s\n", is_document ? "%" : request.comment,
                          spelling, is_document ? "" : request.comment_end);
     }
-    hn_reply_bytes(r, MHD_HTTP_OK, "text/plain; charset=utf-8", &b);
-    name_file(r, model, request.suffix);
+    return HN_OK;
+}
+
+/// The lines about what a model does not hold, as a comment behind it.
+static void add_left_out(hn_strbuf *b, const hn_strbuf *left_out) {
+    if (left_out->n == 0) {
+        return;
+    }
+    hn_strbuf_add(b, "<!--\n");
+    for (const char *c = hn_strbuf_text(left_out); *c; c++) {
+        // two dashes would end the comment
+        hn_strbuf_add_n(b, c[0] == '-' && c[1] == '-' ? "_" : c, 1);
+    }
+    hn_strbuf_add(b, "-->\n");
+}
+
+static hn_status write_mechanism(const hn_model *model, const wanted *w, hn_strbuf *b,
+                                 const char **suffix, hn_diags *diags) {
+    if (w->language || w->method || w->style || w->solver || w->blanks) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/format",
+                            "leave out language, method, style, solver and blanks",
+                            "format asks for the mechanism, the others for a program");
+    }
+    hn_strbuf left_out;
+    hn_strbuf_init(&left_out);
+    const hn_status status = hn_model_export_mechanism(b, NULL, &left_out, model, w->format, diags);
+    if (status == HN_OK) {
+        add_left_out(b, &left_out);
+        *suffix = hn_mechanism_suffix(w->format);
+    }
+    hn_strbuf_reset(&left_out);
+    return status;
+}
+
+/// Sends the program or the model, or why there is none; frees the model.
+static void reply_export(hn_request *r, hn_model *model, const wanted *w) {
+    const char *suffix = "";
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    const hn_status status = w->format ? write_mechanism(model, w, &b, &suffix, &diags)
+                                       : write_program(r, model, w, &b, &suffix, &diags);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&b);
+        hn_reply_diags(r, status, &diags);
+    } else {
+        hn_reply_bytes(r, MHD_HTTP_OK, "text/plain; charset=utf-8", &b);
+        name_file(r, model, suffix);
+    }
     hn_model_free(model);
 }
 
@@ -94,8 +160,13 @@ void hn_handle_scene_export(hn_request *r) {
     hn_model *model = hn_catalogue_load_scene(r, 0);
     if (model) {
         const char *blanks = hn_request_query(r, "blanks");
-        reply_program(r, model, hn_request_query(r, "language"),
-                      blanks && strcmp(blanks, "true") == 0, hn_request_query(r, "method"));
+        const wanted w = {.language = hn_request_query(r, "language"),
+                          .method = hn_request_query(r, "method"),
+                          .style = hn_request_query(r, "style"),
+                          .solver = hn_request_query(r, "solver"),
+                          .format = hn_request_query(r, "format"),
+                          .blanks = blanks && strcmp(blanks, "true") == 0};
+        reply_export(r, model, &w);
     }
 }
 
@@ -110,9 +181,14 @@ void hn_handle_export(hn_request *r) {
     }
     hn_scene_request_reset(&order);
     if (status == HN_OK) {
-        reply_program(r, model, hn_fields_text(r->json, "language"),
-                      cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "blanks")),
-                      hn_fields_text(r->json, "method"));
+        const wanted w = {.language = hn_fields_text(r->json, "language"),
+                          .method = hn_fields_text(r->json, "method"),
+                          .style = hn_fields_text(r->json, "style"),
+                          .solver = hn_fields_text(r->json, "solver"),
+                          .format = hn_fields_text(r->json, "format"),
+                          .blanks =
+                              cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "blanks"))};
+        reply_export(r, model, &w);
     } else {
         hn_reply_diags(r, status, &diags);
     }
@@ -154,7 +230,8 @@ void hn_handle_run_export(hn_request *r) {
         hn_model *model = load_run(r, run->request, spelling);
         hn_runs_release(r->context->runs, run);
         if (model) {
-            reply_program(r, model, hn_request_query(r, "language"), false, spelling);
+            const wanted w = {.language = hn_request_query(r, "language"), .method = spelling};
+            reply_export(r, model, &w);
         }
     }
 }

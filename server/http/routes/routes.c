@@ -95,7 +95,16 @@ static const hn_field EXPORT[] = {
      .about = "leave out mass, force, jacobian and bias, for students to fill in"},
     {.name = "method",
      .type = HN_FIELD_TEXT,
-     .about = "named in the last line; the program has a solver of its own"},
+     .about =
+         "index1@... or baumgarte:...@...: how the program holds its loops; any other is named "
+         "in the last line"},
+    {.name = "style", .type = HN_FIELD_TEXT, .about = "skeleton: without self-check; or full"},
+    {.name = "solver", .type = HN_FIELD_TEXT, .about = "one of the language's; see /languages"},
+    {.name = "format",
+     .type = HN_FIELD_TEXT,
+     .about =
+         "mjcf or urdf: the mechanism itself in place of a program; a comment at its end names "
+         "what it does not hold"},
     END_OF_FIELDS};
 
 static const hn_field RUN[] = {SCENE_FIELDS,
@@ -268,7 +277,14 @@ static const hn_route_query EXPORT_QUERY[] = {
     {"set", "string", "parameter:value, may be repeated"},
     {"language", "string", "python when left out; see /languages"},
     {"blanks", "boolean", "true: without mass, force, jacobian and bias, for students to fill in"},
-    {"method", "string", "named in the last line; the program has a solver of its own"},
+    {"method", "string",
+     "index1@... or baumgarte:...@...: how the program holds its loops; any other is named in the "
+     "last line"},
+    {"style", "string", "skeleton: without self-check; or full"},
+    {"solver", "string", "one of the language's; see /languages"},
+    {"format", "string",
+     "mjcf or urdf: the mechanism itself in place of a program; a comment at its end names what it "
+     "does not hold"},
     {NULL, NULL, NULL}};
 static const hn_route_query PROBLEM_QUERY[] = {
     {"hint", "integer", "one of its hints, from 1, in place of the problem"}, {NULL, NULL, NULL}};
