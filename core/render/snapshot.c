@@ -224,13 +224,14 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     }
 
     // from the ground up: what lies on top comes last
+    hn_label_places placed = {0};
     hn_snapshot_ground(c, &sheet, drawing, selected);
     draw_poses(c, &sheet, drawing, poses, n_poses);
     hn_snapshot_markers(c, &sheet, drawing, poses, n_poses);
     if (opts->dimensions) {
-        hn_snapshot_dimensions(c, &sheet, drawing, selected);
+        hn_snapshot_dimensions(c, &sheet, drawing, selected, &placed);
     }
-    hn_snapshot_labels(c, &sheet, drawing, selected, opts);
+    hn_snapshot_labels(c, &sheet, drawing, selected, opts, &placed);
     hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
     draw_scale_bar(c, &sheet);
     draw_triad(c, &sheet);

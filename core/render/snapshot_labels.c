@@ -7,17 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LABEL_TEXT = 96, MAX_PLACED = 128, MAX_ARROWS = 64 };
+enum { LABEL_TEXT = 96, MAX_ARROWS = 64 };
 static const double LONGEST_LOAD = 0.20; // of the view
 static const double SAME_PLACE = 2;      // [px]
 static const double VALUE_SIZE = 0.9;    // letters of a force's value, of the body text
 static const double HALO = 0.8;          // how far the paper behind a text covers what is there
-
-/// Labels that have been placed: each a line of text, its middle and half its width.
-typedef struct label_places {
-    int n;
-    double at[MAX_PLACED][2], half[MAX_PLACED];
-} label_places;
 
 /// An arrow: its tail and its tip [px].
 typedef struct arrow {
@@ -31,8 +25,8 @@ typedef struct arrows {
     arrow at[MAX_ARROWS];
 } arrows;
 
-static void remember(label_places *placed, const double xy[2], double half) {
-    if (placed->n < MAX_PLACED) {
+void hn_label_remember(hn_label_places *placed, const double xy[2], double half) {
+    if (placed->n < HN_LABELS_PLACED) {
         memcpy(placed->at[placed->n], xy, 2 * sizeof *xy);
         placed->half[placed->n++] = half;
     }
@@ -82,7 +76,7 @@ static double room_at(const hn_sheet *s, const hn_drawing *d, const double *poin
 
 /// From a text of this half width around `xy` to the nearest of those placed before; none is in the
 /// way from a line's height on.
-static double room_beside(const hn_sheet *s, const label_places *placed, const double xy[2],
+static double room_beside(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
                           double half) {
     double room = HUGE_VAL;
     for (int i = 0; i < placed->n; i++) {
@@ -156,7 +150,7 @@ static bool lay_arrow(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_
 
 /// The room of a place for the value of arrow `own`.
 static double room_for_value(const hn_sheet *s, const hn_drawing *d, const double *points,
-                             const arrows *all, int own, const label_places *placed,
+                             const arrows *all, int own, const hn_label_places *placed,
                              const double xy[2]) {
     const double half = all->at[own].half, tall = 1.1 * s->font;
     double room = room_on_sheet(s, xy, half) < 0 ? -1000 : HUGE_VAL, a[2], b[2];
@@ -173,7 +167,7 @@ static double room_for_value(const hn_sheet *s, const hn_drawing *d, const doubl
 /// Of places behind the tail, and on both sides of the arrow, the nearest with room enough; the one
 /// with the most room where none has.
 static void place_value(const hn_sheet *s, const hn_drawing *d, const double *points,
-                        const arrows *all, int own, const label_places *placed, double out[2]) {
+                        const arrows *all, int own, const hn_label_places *placed, double out[2]) {
     enum { ALONG = 5, SIDES = 3, RINGS = 4 };
     const arrow *w = &all->at[own];
     const double length = hypot(w->tip[0] - w->tail[0], w->tip[1] - w->tail[1]);
@@ -215,21 +209,21 @@ static void draw_value(hn_canvas *c, const hn_sheet *s, const double xy[2], cons
 }
 
 /// Keeps values off the triad of axes and the scale bar, which the sheet draws later.
-static void remember_corners(const hn_sheet *s, label_places *placed) {
+static void remember_corners(const hn_sheet *s, hn_label_places *placed) {
     const hn_box *box = &s->drawing;
     const double length = 2.2 * s->font, bar = 0.5 * s->scale * s->scale_bar;
     const double right = box->x + box->width - 1.6 * length, bottom = box->y + box->height;
     const double scale[2] = {box->x + bar, bottom - 0.8 * s->font};
-    remember(placed, scale, bar);
-    for (int k = -1; k <= 1 && s->in_space; k++) {
-        const double xy[2] = {right, bottom - (1.1 + k) * length};
-        remember(placed, xy, 1.4 * length);
+    hn_label_remember(placed, scale, bar);
+    for (int k = -2; k <= 2 && s->in_space; k++) {
+        const double xy[2] = {right, bottom - (1.1 + 0.5 * k) * length};
+        hn_label_remember(placed, xy, 1.9 * length);
     }
 }
 
 static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
-                       label_places *placed) {
+                       hn_label_places *placed) {
     const hn_stroke stroke = hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->ink, s->line);
     arrows all = {0};
     for (int i = 0; i < opts->n_loads && all.n < MAX_ARROWS; i++) {
@@ -246,7 +240,7 @@ static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
         double xy[2];
         place_value(s, d, pose->points, &all, i, placed, xy);
         draw_value(c, s, xy, &all.at[i]);
-        remember(placed, xy, all.at[i].half);
+        hn_label_remember(placed, xy, all.at[i].half);
     }
 }
 
@@ -255,7 +249,7 @@ static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 /// Of sixteen places around a point, the one with the most room; a place on another label only
 /// where all are.
 static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
-                        const label_places *placed, double half, double out[2]) {
+                        const hn_label_places *placed, double half, double out[2]) {
     enum { PLACES = 16 };
     const double off = 0.75 * s->bar + 0.85 * s->font;
     const double wider = fmax(0, half - 0.5 * s->font); // a long text begins where a short one does
@@ -294,7 +288,7 @@ static bool names_at(const hn_sheet *s, const hn_drawing *d, const double *point
 }
 
 static void draw_names(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                       const hn_snapshot_pose *pose, bool halo, label_places *placed) {
+                       const hn_snapshot_pose *pose, bool halo, hn_label_places *placed) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
     for (int i = 0; i < d->n_points; i++) {
         char text[LABEL_TEXT];
@@ -309,15 +303,15 @@ static void draw_names(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
         }
         hn_canvas_text(c, xy[0], xy[1] + 0.35 * s->font, s->font, HN_ALIGN_CENTRE,
                        hn_paint_solid(surface->ink), text);
-        remember(placed, xy, half);
+        hn_label_remember(placed, xy, half);
     }
 }
 
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts) {
-    label_places placed = {0};
-    draw_loads(c, s, d, pose, opts, &placed); // names keep off the values of forces
+                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
+                        hn_label_places *placed) {
+    draw_loads(c, s, d, pose, opts, placed); // names keep off the values of forces
     if (opts->labels) {
-        draw_names(c, s, d, pose, opts->dimensions, &placed); // over the lines of the dimensions
+        draw_names(c, s, d, pose, opts->dimensions, placed); // over the lines of the dimensions
     }
 }

@@ -7,7 +7,18 @@
 
 #include "render/snapshot_sheet.h"
 
-/// Draws both for the selected pose, as opts says.
+enum { HN_LABELS_PLACED = 128 };
+
+/// Texts that have been placed: each a line, its middle and half its width [px].
+typedef struct hn_label_places {
+    int n;
+    double at[HN_LABELS_PLACED][2], half[HN_LABELS_PLACED];
+} hn_label_places;
+
+/// Keeps later texts off this one.
+void hn_label_remember(hn_label_places *placed, const double xy[2], double half);
+/// Draws both for the selected pose, as opts says, off the texts placed before.
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts);
+                        const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
+                        hn_label_places *placed);
 #endif

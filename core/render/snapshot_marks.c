@@ -97,7 +97,7 @@ static void draw_value(hn_canvas *c, const hn_sheet *s, double x, double y, cons
 }
 
 static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], const double b[2],
-                           const double middle[2], const char *text) {
+                           const double middle[2], const char *text, hn_label_places *placed) {
     const double length = hypot(b[0] - a[0], b[1] - a[1]);
     const double u[2] = {(b[0] - a[0]) / length, (b[1] - a[1]) / length};
     double side[2] = {-u[1], u[0]};
@@ -123,11 +123,13 @@ static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], c
         hn_canvas_arrow(c, x, y, ends[i][0] + off * side[0], ends[i][1] + off * side[1],
                         0.6 * s->font, &thin);
     }
+    const double at[2] = {x, y};
     draw_value(c, s, x, y, text);
+    hn_label_remember(placed, at, 0.5 * hn_canvas_text_width(0.85 * s->font, text));
 }
 
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                            const hn_snapshot_pose *pose) {
+                            const hn_snapshot_pose *pose, hn_label_places *placed) {
     double middle[2];
     middle_of(s, d, pose->points, middle);
     for (int i = 0; i < d->n_shapes; i++) {
@@ -142,7 +144,7 @@ void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d
         hn_sheet_pixel(s, q, b);
         hn_si_format(hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]), "m", 3, text);
         if (hypot(b[0] - a[0], b[1] - a[1]) >= SHORTEST_DIMENSION * s->font) {
-            draw_dimension(c, s, a, b, middle, text);
+            draw_dimension(c, s, a, b, middle, text, placed);
         }
     }
 }

@@ -4,15 +4,17 @@
 // What explains the mechanism on a sheet: the marker of each method, dimension lines, and the list
 // of everything that is drawn. Inside render/ only.
 
+#include "render/snapshot_labels.h"
 #include "render/snapshot_sheet.h"
 
 /// Draws the marker of each method on a bar of its pose, at places of their own, where there is
 /// more than one method.
 void hn_snapshot_markers(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                          const hn_snapshot_pose *poses, int n_poses);
-/// Draws the length of each bar beside it, with arrows between two extension lines.
+/// Draws the length of each bar beside it, with arrows between two extension lines. The values join
+/// the texts that later ones keep off.
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                            const hn_snapshot_pose *pose);
+                            const hn_snapshot_pose *pose, hn_label_places *placed);
 /// Writes "primitives": a list of {"kind","pose","points":[[x, y, z], ...],"pixels":[[x, y], ...],
 /// "labels"}, shape by shape of every pose that is drawn, [m] and [px]; "traces" and "loads".
 void hn_snapshot_primitives(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d,

@@ -200,6 +200,14 @@ static void draw_guide(const pen *p, const hn_shape *shape) {
                       &rail);
 }
 
+/// The pins of a spring or damper: neither end hangs in the air.
+static void draw_ends(const pen *p, const hn_shape *shape) {
+    hn_shape end = *shape;
+    draw_pivot(p, &end);
+    end.p = shape->q;
+    draw_pivot(p, &end);
+}
+
 // ---- one table ----
 
 // HN_SHAPE_ARROW and HN_SHAPE_TRACE are not here: what they show comes with the pose and the
@@ -217,6 +225,7 @@ static const shape_row rows[] = {
     {HN_SHAPE_DAMPER, 1, 0, draw_damper},   {HN_SHAPE_SLIDER, 2, 0, draw_slider},
     {HN_SHAPE_BAR, 3, 0, draw_bar},         {HN_SHAPE_PIVOT, 4, 0, draw_pivot},
     {HN_SHAPE_GROUND, 4, 0, draw_pivot}, // its pin, above the bars
+    {HN_SHAPE_SPRING, 4, 0, draw_ends},     {HN_SHAPE_DAMPER, 4, 0, draw_ends},
 };
 enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 5 };
 

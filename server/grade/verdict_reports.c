@@ -3,6 +3,7 @@
 
 #include "base/base64.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 void hn_verdict_escape(hn_strbuf *b, const char *text) {
@@ -62,13 +63,42 @@ void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v) {
     hn_strbuf_add(b, "  </testsuite>\n</testsuites>\n");
 }
 
-static void put_row(hn_strbuf *b, const hn_entry_verdict *e) {
+/// What is to be read off the page at once: colours of both themes, and tables that fold on a
+/// narrow screen.
+static const char STYLE[] =
+    ":root{color-scheme:light dark;--ink:#1a1d21;--muted:#5c626a;--paper:#fcfcfa;--line:#d5d8d4;"
+    "--right:#1f7a45;--wrong:#b5372a}\n"
+    "@media(prefers-color-scheme:dark){:root{--ink:#e8eaed;--muted:#9aa2ab;--paper:#14171b;"
+    "--line:#343a42;--right:#5fc98b;--wrong:#ff8a75}figure{background:#fcfcfa}}\n"
+    "body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);"
+    "max-width:52em;margin:2em auto;padding:0 1em}\n"
+    "h1{font-size:1.4em;margin:0}.score{font-size:1.2em;margin:.2em 0 "
+    "1em}.muted{color:var(--muted)}"
+    "\ntable{border-collapse:collapse;width:100%}th{text-align:left;font-weight:600}\n"
+    "td,th{padding:.5em .8em;border-bottom:1px solid var(--line);vertical-align:top}\n"
+    "td:first-child{font-weight:600;white-space:nowrap;border-left:4px solid var(--right)}\n"
+    ".wrong td:first-child{border-left-color:var(--wrong)}td:nth-child(2){white-space:nowrap}\n"
+    "code{font:.9em/1.4 ui-monospace,monospace;overflow-wrap:anywhere}\n"
+    "figure{margin:1.5em 0;padding:.5em;border:1px solid var(--line)}figcaption{color:#5c626a}\n"
+    "img{max-width:100%;display:block}\n"
+    "@media(max-width:34em){thead{display:none}tr{display:block;padding:.5em 0}"
+    "td,td:first-child{display:block;border-bottom:0;padding:.1em .8em}}\n";
+
+static void put_code(hn_strbuf *b, const char *label, const char *text) {
+    if (text[0]) {
+        hn_strbuf_printf(b, "<br><span class=\"muted\">%s</span> <code>", label);
+        hn_verdict_escape(b, text);
+        hn_strbuf_add(b, "</code>");
+    }
+}
+
+static void put_row(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
     hn_strbuf_printf(b, "<tr class=\"%s\"><td>", e->right ? "right" : "wrong");
     hn_verdict_escape(b, e->name);
     hn_strbuf_printf(b, "</td><td>%g of %g</td><td>", e->points, e->max_points);
-    hn_verdict_escape(b, e->right ? "right" : e->explanation);
-    hn_strbuf_add(b, "</td><td>");
-    hn_verdict_escape(b, e->given);
+    hn_verdict_escape(b, e->right && !e->explanation[0] ? "right" : e->explanation);
+    put_code(b, "your answer", e->given);
+    put_code(b, "expected", v->show_expected && !e->right ? e->expected : "");
     hn_strbuf_add(b, "</td></tr>\n");
 }
 
@@ -78,43 +108,55 @@ static void put_figure(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) 
         return;
     }
     const hn_entry_verdict *e = &v->entry[v->shown_entry];
-    hn_strbuf_printf(b, "<figure><img alt=\"The mechanism in a state where %s is wrong\" src=\"",
-                     e->name);
-    hn_strbuf_add(b, "data:image/png;base64,");
+    const char *what = v->view.overlay ? "Where the links stand by your answer to"
+                       : v->view.scene ? "The mechanism of your answer to"
+                                       : "The mechanism in a state that shows the mistake in";
+    hn_strbuf_printf(b, "<figure><img alt=\"%s %s\" src=\"data:image/png;base64,", what, e->name);
     hn_base64(b, hn_strbuf_text(png), png->n);
-    hn_strbuf_printf(b, "\"><figcaption>A state where %s is wrong.</figcaption></figure>\n",
-                     e->name);
+    hn_strbuf_printf(b, "\"><figcaption>%s %s.</figcaption></figure>\n", what, e->name);
+}
+
+/// The sum, or why there is none.
+static void put_outcome(hn_strbuf *b, const hn_verdict *v, bool graded) {
+    hn_strbuf_add(b, "<p class=\"score\">");
+    if (graded) {
+        hn_strbuf_printf(b, "<strong>%g of %g points</strong>: ", v->score, v->max_score);
+    } else {
+        hn_strbuf_add(b, "<strong>Cannot be graded</strong>: ");
+    }
+    hn_verdict_escape(b, graded ? v->summary : v->reason);
+    hn_strbuf_add(b, ".</p>\n");
+    const char *more = graded ? v->note : v->hint;
+    if (more[0]) {
+        hn_strbuf_add(b, "<p class=\"muted\">");
+        hn_verdict_escape(b, more);
+        hn_strbuf_add(b, ".</p>\n");
+    }
 }
 
 void hn_verdict_html(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) {
-    const int graded = v->kind == HN_VERDICT_GRADED;
-    hn_strbuf_add(b, "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>");
+    const bool graded = v->kind == HN_VERDICT_GRADED;
+    hn_strbuf_add(b, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+                     "<meta name=\"viewport\" content=\"width=device-width\"><title>");
     hn_verdict_escape(b, v->problem->title);
-    hn_strbuf_add(b,
-                  "</title>\n<style>body{font:15px/1.5 sans-serif;max-width:50em;margin:2em auto}"
-                  "figure{margin:1em 0}img{max-width:100%}"
-                  "td{padding:.3em .8em;border-bottom:1px solid #ccc;vertical-align:top}"
-                  ".wrong td:first-child{border-left:3px solid #b5472f}"
-                  ".right td:first-child{border-left:3px solid #2f7d4f}</style>\n<h1>");
+    hn_strbuf_printf(b, "</title>\n<style>%s</style></head>\n<body><h1>", STYLE);
     hn_verdict_escape(b, v->problem->title);
-    hn_strbuf_add(b, "</h1>\n<p>");
-    if (graded) {
-        hn_strbuf_printf(b, "%g of %g points: ", v->score, v->max_score);
-    }
-    hn_verdict_escape(b, graded ? v->summary : v->reason);
-    hn_strbuf_add(b, graded ? ".</p>\n<table>\n" : ".</p>\n<p>");
-
-    // the entries, or what to do
-    for (int k = 0; k < v->n_entries && graded; k++) {
-        put_row(b, &v->entry[k]);
-    }
-    hn_verdict_escape(b, graded ? "" : v->hint);
-    hn_strbuf_add(b, graded ? "</table>\n" : "</p>\n");
-    put_figure(b, v, png);
-    hn_strbuf_printf(b, "<p>Variant of seed %llu", (unsigned long long)v->seed);
-    hn_strbuf_add(b, v->student[0] ? ", " : "");
+    hn_strbuf_add(b, "</h1>\n<p class=\"muted\">exercise ");
+    hn_verdict_escape(b, v->problem->id);
+    hn_strbuf_add(b, v->student[0] ? ", handed in by " : "");
     hn_verdict_escape(b, v->student);
-    hn_strbuf_add(b, ".</p></html>\n");
+    hn_strbuf_printf(b, "; variant of seed %llu</p>\n", (unsigned long long)v->seed);
+    put_outcome(b, v, graded);
+    if (graded) {
+        hn_strbuf_add(b, "<table><thead><tr><th>part</th><th>points</th><th>verdict</th></tr>"
+                         "</thead><tbody>\n");
+        for (int k = 0; k < v->n_entries; k++) {
+            put_row(b, v, &v->entry[k]);
+        }
+        hn_strbuf_add(b, "</tbody></table>\n");
+    }
+    put_figure(b, v, png);
+    hn_strbuf_add(b, "</body></html>\n");
 }
 
 /// A field in quotes, quotes doubled. One that a spreadsheet would take for a formula gets a blank
