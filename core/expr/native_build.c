@@ -24,7 +24,7 @@
 static const char *const COMPILERS[] = {"gcc", "clang", "tcc"};
 // the same bits as the interpreter: no fused multiply-add; sqrt without errno is one instruction
 static const char *const FLAGS[] = {
-    "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC", "-w"};
+    "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-plt", "-shared", "-fPIC", "-w"};
 enum { N_FLAGS = sizeof FLAGS / sizeof *FLAGS, FORMAT = 1 };
 enum { MOST_BYTES = 64 << 20 };
 

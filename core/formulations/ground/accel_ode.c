@@ -69,3 +69,8 @@ void hn_accel_ode_add_cost(const void *self, hn_cost *cost) {
     cost->refinements += hn_accel_refinements(ode->accel);
     cost->ops += hn_accel_ops(ode->accel);
 }
+
+long long hn_accel_ode_fallbacks(const void *self) {
+    const hn_accel_ode *ode = self;
+    return hn_accel_fallbacks(ode->accel);
+}

@@ -37,5 +37,6 @@ void hn_accel_ode_destroy(void *self);
 void hn_accel_ode_get(void *self, hn_ode *out);
 hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot);
 void hn_accel_ode_add_cost(const void *self, hn_cost *cost);
+long long hn_accel_ode_fallbacks(const void *self);
 
 #endif

@@ -110,6 +110,9 @@ typedef struct hn_formulation {
     /// Changes an option while running (sliders). NULL: not possible.
     hn_status (*set)(void *self, int option, double value);
     void (*add_cost)(const void *self, hn_cost *cost); ///< adds its counters
+    /// Returns the counter of fallbacks alone, for whoever asks after every step; only of a
+    /// formulation without charts. NULL: add_cost tells.
+    long long (*fallbacks)(const void *self);
     const char *(*why)(const void *self); ///< reason of the last failure in words, or NULL
 } hn_formulation;
 

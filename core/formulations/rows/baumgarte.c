@@ -163,5 +163,6 @@ const hn_formulation hn_formulation_baumgarte = {
     .after_step = after_step,
     .set = set,
     .add_cost = hn_accel_ode_add_cost,
+    .fallbacks = hn_accel_ode_fallbacks,
     .why = hn_state_ode_why,
 };

@@ -42,5 +42,6 @@ const hn_formulation hn_formulation_index1 = {
     .get_state = hn_state_ode_get_state,
     .after_step = hn_state_ode_after_step,
     .add_cost = hn_accel_ode_add_cost,
+    .fallbacks = hn_accel_ode_fallbacks,
     .why = hn_state_ode_why,
 };

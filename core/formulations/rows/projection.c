@@ -148,5 +148,6 @@ const hn_formulation hn_formulation_projection = {
     .get_state = hn_state_ode_get_state,
     .after_step = after_step,
     .add_cost = add_cost,
+    .fallbacks = hn_accel_ode_fallbacks,
     .why = hn_state_ode_why,
 };

@@ -50,16 +50,18 @@ void hn_energy_start(hn_watch *w) {
 void hn_energy_record_state(hn_watch *w) {
     hn_energy_record *e = &w->energy;
     const double energy = w->measure.kinetic + w->measure.potential - w->work.done;
-    e->v_min = fmin(e->v_min, w->measure.potential);
-    e->v_max = fmax(e->v_max, w->measure.potential);
-    e->t_max = fmax(e->t_max, w->measure.kinetic);
+    const double potential = w->measure.potential, kinetic = w->measure.kinetic;
+    e->v_min = potential < e->v_min ? potential : e->v_min; // not a call of fmin(): every step
+    e->v_max = potential > e->v_max ? potential : e->v_max;
+    e->t_max = kinetic > e->t_max ? kinetic : e->t_max;
     e->change = energy - e->last;
     e->last = energy;
 }
 
 /// Says whether a change of energy is worth a report.
 static bool is_large(const hn_watch *w, double change, double limit) {
-    return w->energy.conservative && limit != 0 && fabs(change) > fmax(limit, w->energy.noise);
+    const double noise = w->energy.noise;
+    return w->energy.conservative && limit != 0 && fabs(change) > (limit > noise ? limit : noise);
 }
 
 // a method can lose all energy little by little, without a jump

@@ -111,6 +111,11 @@ static void measure_solution(hn_watch *w) {
     measure_rows(w);
 }
 
+/// As fmax(), in place and without its call: it is made several times a step.
+static void raise_to(double *most, double x) {
+    *most = x > *most ? x : *most;
+}
+
 static void measure_present(hn_watch *w) {
     const hn_stepping *s = w->run;
     w->measure = hn_watch_measure(w, s->now.t, s->now.q, s->now.v);
@@ -121,9 +126,9 @@ static void measure_present(hn_watch *w) {
         hn_energy_record_state(w);
     }
     const double change = fabs(w->energy.last - w->energy.start);
-    w->worst_gap = fmax(w->worst_gap, w->measure.gap);
-    w->worst_velocity_gap = fmax(w->worst_velocity_gap, w->measure.velocity_gap);
-    w->worst_energy_change = fmax(w->worst_energy_change, change);
+    raise_to(&w->worst_gap, w->measure.gap);
+    raise_to(&w->worst_velocity_gap, w->measure.velocity_gap);
+    raise_to(&w->worst_energy_change, change);
 }
 
 // ---- when the full check is due ----
@@ -214,7 +219,7 @@ static void check_present(hn_watch *w) {
         w->checks++;
         w->calm = s->info.nc > 0 && !w->at_start && is_calm(w);
     }
-    w->swiftest = fmax(w->swiftest, hn_norm_max(s->info.nv, s->now.v));
+    raise_to(&w->swiftest, hn_norm_max(s->info.nv, s->now.v));
 }
 
 static void forget(hn_watch *w) {

@@ -47,6 +47,13 @@ static void mark_cost(hn_run *run) {
     run->clock.mark = hn_engine_cost(&run->stepping.engine);
 }
 
+/// Whether the next check could see a difference in what the engine has done: a fallback, or
+/// another chart.
+static bool is_cost_due(const hn_run *run) {
+    const long long now = hn_engine_fallbacks(&run->stepping.engine);
+    return now < 0 || now != run->clock.mark.fallbacks;
+}
+
 /// Everything between start_clock and stop_clock is the method's own work. Checks between steps
 /// leave the engine alone.
 static void start_clock(hn_run *run) {
@@ -54,8 +61,12 @@ static void start_clock(hn_run *run) {
 }
 
 static void stop_clock(hn_run *run) {
+    hn_step_clock_stop(&run->clock.time);
+}
+
+/// Adds what the engine has done since the last time.
+static void take_cost(hn_run *run) {
     cost_clock *c = &run->clock;
-    hn_step_clock_stop(&c->time);
     const hn_cost now = hn_engine_cost(&run->stepping.engine);
     const hn_cost spent = hn_cost_between(&c->mark, &now);
     hn_cost_add(&c->cost, &spent);
@@ -121,6 +132,9 @@ static hn_status step_and_check(hn_run *run, bool *ticking) {
         stop_clock(run);
         *ticking = false;
     }
+    if (is_cost_due(run)) {
+        take_cost(run);
+    }
     return hn_watch_check(&run->watch, run->reason);
 }
 
@@ -153,6 +167,7 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
     if (ticking) {
         stop_clock(run);
     }
+    take_cost(run);
     return status == HN_OK ? HN_OK : fail(run, status);
 }
 

@@ -363,6 +363,11 @@ hn_cost hn_engine_cost(const hn_engine *e) {
     return cost;
 }
 
+long long hn_engine_fallbacks(const hn_engine *e) {
+    const hn_formulation *f = e->spec->formulation;
+    return e->kind == &ODE && f->fallbacks ? f->fallbacks(e->formulation) : -1;
+}
+
 const char *hn_engine_why(const hn_engine *e) {
     return e->kind->why(e);
 }

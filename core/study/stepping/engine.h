@@ -74,6 +74,9 @@ bool hn_engine_has_raw_lambda(const hn_engine *e);
 const double *hn_engine_raw_lambda(const hn_engine *e);
 hn_cost hn_engine_cost(const hn_engine *e);
 /// Why the last call failed, in words; NULL: nothing beyond the status.
+/// The counter of fallbacks alone, cheap to ask after every step; -1 where only hn_engine_cost()
+/// tells, or charts may change as well.
+long long hn_engine_fallbacks(const hn_engine *e);
 const char *hn_engine_why(const hn_engine *e);
 /// Says whether the integrator, not the formulation, gives the reason of the last failure.
 bool hn_engine_stepper_says_why(const hn_engine *e);

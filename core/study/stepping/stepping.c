@@ -127,29 +127,24 @@ static hn_status step_fixed(hn_stepping *s) {
 
 // ---- steps from tolerances ----
 
-typedef struct tolerances {
-    double rtol, atol, largest; // [-], [-], [s]
-    int order;                  // that the control reckons with
-} tolerances;
-
 /// With no degree of freedom left the drive alone bounds the step.
 static bool is_driven(const hn_stepping *s) {
     return s->engine.ode.n_pos + s->engine.ode.n_vel == 0;
 }
 
-static tolerances tolerances_of(const hn_stepping *s) {
+static hn_step_tolerances find_tolerances(const hn_stepping *s) {
     const hn_stepper *stepper = s->spec.stepper;
     const double rtol = hn_method_option(&s->spec, "rtol", 1e-6);
     const double atol = hn_method_option(&s->spec, "atol", 0);
     const double hmax = hn_method_option(&s->spec, "hmax", 0);
     const int order = stepper->control_order > 0 ? stepper->control_order : stepper->order;
-    return (tolerances){.rtol = rtol,
-                        .atol = atol > 0 ? atol : rtol,
-                        .largest = hmax > 0 ? hmax : HUGE_VAL,
-                        .order = is_driven(s) ? 1 : order};
+    return (hn_step_tolerances){.rtol = rtol,
+                                .atol = atol > 0 ? atol : rtol,
+                                .largest = hmax > 0 ? hmax : HUGE_VAL,
+                                .order = order};
 }
 
-static hn_status choose_first_step(hn_stepping *s, const tolerances *tol) {
+static hn_status choose_first_step(hn_stepping *s, const hn_step_tolerances *tol) {
     hn_engine *e = &s->engine;
     const double h0 = hn_method_option(&s->spec, "h0", 0);
     if (h0 > 0) {
@@ -167,7 +162,7 @@ static hn_status choose_first_step(hn_stepping *s, const tolerances *tol) {
 
 /// Returns the error norm of a trial, infinite when it failed; a trial with a norm <= 1 has been
 /// corrected.
-static double try_adaptive(hn_stepping *s, double h, const tolerances *tol, int *changed,
+static double try_adaptive(hn_stepping *s, double h, const hn_step_tolerances *tol, int *changed,
                            hn_status *status) {
     hn_engine *e = &s->engine;
     *status = try_step(s, h, s->now.t + h, changed);
@@ -226,8 +221,11 @@ static hn_status accept_adaptive(hn_stepping *s, double h, bool at_corner, int c
 }
 
 static hn_status step_adaptive(hn_stepping *s) {
-    const tolerances tol = tolerances_of(s);
+    hn_step_tolerances tol = s->tol;
     hn_status status = HN_OK;
+    if (is_driven(s)) {
+        tol.order = 1;
+    }
     if (s->h_next <= 0) {
         HN_TRY(choose_first_step(s, &tol));
     }
@@ -374,6 +372,7 @@ hn_status hn_stepping_create(const hn_system *sys, const hn_method_spec *spec, d
                        .t0 = t0,
                        .max_steps = max_steps};
     s->adaptive = hn_method_is_adaptive(spec) || hn_engine_paces_itself(spec);
+    s->tol = find_tolerances(s);
     const hn_status status = create_memory(s);
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));

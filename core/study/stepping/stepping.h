@@ -19,6 +19,12 @@
 /// A coordinate or velocity beyond this has left every mechanism.
 #define HN_STEPPING_BOUND 1e9
 
+/// What a method that chooses its steps goes by.
+typedef struct hn_step_tolerances {
+    double rtol, atol, largest; ///< [-], [-], [s]
+    int order;                  ///< that the control reckons with
+} hn_step_tolerances;
+
 typedef struct hn_stepping {
     const hn_system *sys;
     hn_method_spec spec;
@@ -49,6 +55,7 @@ typedef struct hn_stepping {
     int trouble;      ///< trials that failed lately, see step_adaptive
     bool iterating;   ///< the last of them was an iteration that did not converge
     hn_step_control control;
+    hn_step_tolerances tol;
     long long steps, rejected;
     hn_headway headway;
     char reason[256]; ///< why the last step failed where that needs words of its own, else ""
