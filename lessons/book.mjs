@@ -56,10 +56,13 @@ function predict(node) {
 
 const points = (n) => `${n} point${n === 1 ? "" : "s"}`;
 
+/** The plot that is to be read, without its own style, which would be that of the whole book. */
+const plot = (part) => (part.figure?.svg ?? "").replace(/<style>.*?<\/style>/s, "");
+
 /** The question of a part, and the form of its answer with what can be chosen. */
 function question(part) {
   const form = plain(part.answer_form ?? "").replace(/\n/g, "<br>");
-  return `<li><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})<div class="form">${form}</div>${part.figure?.svg ?? ""}</li>`;
+  return `<li><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})<div class="form">${form}</div>${plot(part)}</li>`;
 }
 
 /** Paragraphs of a statement; lines that are indented keep their places. */
@@ -140,6 +143,7 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
 .exercise { break-inside: auto; } .exercise > p { display: block; break-after: avoid; orphans: 9; widows: 9; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
 .form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
+.exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
 .exercise li { margin: .25em 0; break-inside: avoid; } .answers p { display: inline; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }

@@ -178,6 +178,30 @@ for (const [theme, width] of [
   });
 }
 
+test("a plot that is to be read stands above its field, and styles nothing else", async (t) => {
+  const page = await open(t, { viewport: { width: 360, height: 780 }, colorScheme: "dark" });
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.selectOption("#lesson", "06-drift");
+  await page.getByText("Exercise gap-plot").click();
+  await page.waitForSelector(".exercise-plot .curve");
+  const seen = await page.evaluate(() => {
+    const [plot] = document.querySelectorAll(".exercise-plot");
+    const text = document.querySelector(".lesson-text p");
+    return {
+      plots: document.querySelectorAll(".exercise-plot svg").length,
+      styles: document.querySelectorAll("svg style").length,
+      line: getComputedStyle(plot.querySelector(".curve")).stroke,
+      words: getComputedStyle(text).color,
+      width: document.documentElement.scrollWidth,
+    };
+  });
+  assert.deepEqual(seen, { plots: 2, styles: 0, line: seen.words, words: seen.words, width: 360 });
+  const first = page.locator(".exercise", { has: page.locator(".exercise-plot") });
+  await first.locator("textarea").first().fill("21 m");
+  await first.getByRole("button", { name: "Check" }).click();
+  await until(page, () => /times what the plot shows/.test(document.body.textContent));
+});
+
 test("every lesson of the server is shown, with no formula in error", async (t) => {
   const page = await open(t);
   await page.getByRole("button", { name: "lessons" }).click();

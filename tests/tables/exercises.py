@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every exercise over 200 seeds: a row each. usage: exercises.py PROGRAM [SEEDS]
+"""Every exercise over 200 seeds: a row each. usage: exercises.py PROGRAM [SEEDS [ID ...]]
 
 A row says how many variants were drawn, how many differ, how many right answers got full marks, how many listed mistakes were
 named, and how many variants are bad. Right formulas and numbers are handed in in five spellings besides, for every seed. Below the
@@ -20,6 +20,7 @@ import time
 
 PROGRAM = sys.argv[1]
 SEEDS = int(sys.argv[2]) if len(sys.argv) > 2 else 200
+ONLY = sys.argv[3:]
 GREEK = {"th": "θ", "gamma": "γ", "lambda": "λ", "tau": "τ", "Phi": "Φ"}
 FUNCTIONS = r"\b(sin|cos|sqrt|atan2)\("
 
@@ -165,6 +166,8 @@ def main():
         for path in sorted(glob.glob("lessons/*/problems/*.json"), key=lambda p: (p.split("/")[1], p)):
             with open(path, encoding="utf-8") as f:
                 exercise = json.load(f)
+            if ONLY and exercise["id"] not in ONLY:
+                continue
             if "exercise" not in exercise:
                 bad += matrix_exercise(exercise, folder, SEEDS)
                 continue

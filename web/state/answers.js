@@ -4,7 +4,8 @@
 
 /**
  * @typedef {{letter: string, text: string}} Option
- * @typedef {{id: string, kind: string, points: number, ask: string, answer_form: string}} Part
+ * @typedef {{id: string, kind: string, points: number, ask: string, answer_form: string,
+ *   figure?: {svg: string, text: string}}} Part a figure is a plot that is to be read
  */
 
 /**

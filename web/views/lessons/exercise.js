@@ -68,6 +68,19 @@ function textField(id, part) {
 }
 
 /**
+ * The plot that is to be read. It loses its own style, which would be that of the whole page.
+ * @param {import("../../state/answers.js").Part} part
+ */
+function plotOf({ figure }) {
+  if (!figure) {
+    return "";
+  }
+  const drawing = figure.svg.replace(/<style>.*?<\/style>/s, "");
+  const plot = new DOMParser().parseFromString(drawing, "image/svg+xml").documentElement;
+  return h("div", { class: "exercise-plot" }, document.importNode(plot, true));
+}
+
+/**
  * A grid of formulas.
  * @param {string} id
  * @param {{name: string, rows: number, columns: number}} matrix
@@ -132,7 +145,7 @@ export function createExercise({ id, about, progress, changed }) {
     say(title, `Exercise ${id}: ${problem.title}`);
     const key = `exercise-${id}`;
     const matrix = problem.parts ? null : matrixOf(problem.submission ?? "");
-    /** @type {{name: string, field: Field, head: Node[]}[]} */
+    /** @type {{name: string, field: Field, head: (Node | string)[]}[]} */
     const fields = problem.parts
       ? problem.parts.map((part) => ({
           name: part.id,
@@ -140,6 +153,7 @@ export function createExercise({ id, about, progress, changed }) {
           head: [
             h("p", { class: "ask" }, `(${part.id}) ${part.ask}`),
             h("p", { class: "about" }, counted(part.points, "point")),
+            plotOf(part),
           ],
         }))
       : matrix
