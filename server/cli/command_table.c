@@ -36,7 +36,7 @@ static const hn_command COMMANDS[] = {
      hn_command_program},
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
-    {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
+    {"run", "SCENE", "one method; samples as --format csv, ndjson or json, with a verdict",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
                    "--raw-lambda --reactions --format --plot",
      1, 1, hn_command_run},

@@ -439,6 +439,19 @@ class CommandLine(Command):
         estimate = json.loads(near.stdout)["error_estimate"]
         self.assertEqual((estimate["t"], estimate["reason"]), (1, ""))
         self.assertLess(max(estimate["q"], estimate["v"], estimate["reaction"]), 1e-6)
+        # the verdict is another question than whether the run reached its end
+        verdicts = []
+        for method, time, scene in ("projection@rk4:h=1e-3", "1", ["four-bar"]), ("index1@rk4:h=1e-2", "10", ["four-bar"]), \
+                ("projection@rk4:h=0.02", "2", ["four-bar"]), ("projection@rk4:h=1e-3", "0.01", ["n-four-bar", "--set", "N=200"]):
+            done = json.loads(call("run", *scene, "--method", method, "--time", time, "--at", time, "--json").stdout)
+            self.assertEqual(done["status"], "ok")
+            verdicts.append(done["verdict"]["is"])
+            estimate = done["error_estimate"]
+            if estimate["q"] is not None:
+                self.assertIn(f"off by up to {estimate['q']:.1e} (rad", done["verdict"]["text"])
+        self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
+        compared = call("compare", "four-bar", "--methods", "index1@rk4:h=1e-2", "projection@rk4:h=1e-3", "--time", "10", "--json")
+        self.assertEqual([m["verdict"]["is"] for m in json.loads(compared.stdout)["methods"]], ["wrong", "right"])
         # a tolerance bounds the error of a step: what is more than ten times as much is said as a multiple
         loose = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6", "--time", "5", "--at", "5", "--json")
         told = json.loads(loose.stdout)["error_estimate"]

@@ -91,11 +91,15 @@ const besides = (size, second) => {
   return first ? `${first}${joint} ${second}` : second;
 };
 
-/** Digits that are right, by the worse of motion and energy; no more than the reference has. */
+/**
+ * Digits that are right, by the worse of motion and energy; no more than the reference has. `more`:
+ * the reference bounds them, and the motion may have more.
+ */
 function rightDigits({ offShare, energyShare }, reference) {
   const share = Math.max(offShare, energyShare, 10 ** -MOST_DIGITS);
   const most = Math.floor(Math.min(MOST_DIGITS, reference.digits));
-  return Math.min(most, Math.floor(-Math.log10(share)));
+  const own = Math.floor(-Math.log10(share));
+  return { digits: Math.min(most, own), more: most < own };
 }
 
 /**
@@ -147,8 +151,8 @@ export function verdictAt(data, m, shown) {
     const words = [closed, asked].filter(Boolean).join(", ");
     return { words, tone: drifts ? "warn" : "calm", badness: drifts ? 10 : 1 };
   }
-  const digits = rightDigits(size, reference);
-  const words = `right to ${digits} digits${drifts}`;
+  const { digits, more } = rightDigits(size, reference);
+  const words = `right to ${digits} digits${more ? " or more" : ""}${drifts}`;
   return { words, tone: drifts ? "warn" : "calm", badness: drifts ? 10 : -digits };
 }
 

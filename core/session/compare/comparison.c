@@ -586,6 +586,8 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         put_step_cost(b, c, i);
         hn_estimate_put_json(b, c->accuracy, hn_run_spec(c->entries[i].run), &c->entries[i].track,
                              fmin(s.t, (double)c->frame * c->frame_dt));
+        hn_estimate_put_verdict(b, c->accuracy, &c->entries[i].track,
+                                fmin(s.t, (double)c->frame * c->frame_dt));
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
         hn_json_put_int(b, "chart_changes", s.cost.chart_changes);

@@ -2,6 +2,7 @@
 #include "session/compare/estimate.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /// Error of the coordinates over the tolerance that was asked for.
 static double over_tolerance(const hn_estimate *e, const hn_method_spec *spec) {
@@ -22,5 +23,42 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
     hn_json_put_number(b, "t", e.known ? e.t : none);
     hn_json_put_number(b, "over_rtol", over_tolerance(&e, spec));
     hn_json_put_string(b, "reason", e.reason);
+    hn_json_end_object(b);
+}
+
+// An estimate that ends this share before the run says nothing of its end.
+static const double WHOLE = 0.99;
+
+static const char *verdict_of(const hn_estimate *e, double t_run) {
+    if (!e->known) {
+        return "unknown";
+    }
+    return e->q >= HN_ACCURACY_WRONG                    ? "wrong"
+           : fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? "inaccurate"
+           : e->t < WHOLE * t_run                       ? "unknown"
+                                                        : "right";
+}
+
+void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
+                             const hn_accuracy_track *track, double t_run) {
+    const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
+    char text[480];
+    int used = 0;
+    if (e.known) {
+        used = snprintf(
+            text, sizeof text,
+            "up to t = %.4g s the coordinates are estimated to be off by up to %.1e (rad, or the "
+            "mechanism's length), reactions by %.1e of their largest",
+            e.t, e.q, e.reaction);
+    }
+    if (!e.known || e.t < WHOLE * t_run) {
+        snprintf(text + used, sizeof text - (size_t)used, "%s: %s",
+                 e.known ? "; the error beyond that is not known" : "the error is not known",
+                 e.reason[0] ? e.reason : "nothing was compared");
+    }
+    hn_json_key(b, "verdict");
+    hn_json_object(b);
+    hn_json_put_string(b, "is", verdict_of(&e, t_run));
+    hn_json_put_string(b, "text", text);
     hn_json_end_object(b);
 }

@@ -17,4 +17,11 @@
 /// it is "".
 void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_method_spec *spec,
                           const hn_accuracy_track *track, double t_run);
+
+/// Puts the member "verdict": {"is","text"}, what the estimate says of the motion: "wrong" from
+/// HN_ACCURACY_WRONG on, "inaccurate" above HN_ACCURACY_WARN, "right" below, "unknown" where there
+/// is no estimate, or none up to t_run and nothing wrong before. It is not the status of the run,
+/// which says only whether it reached its end.
+void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
+                             const hn_accuracy_track *track, double t_run);
 #endif

@@ -508,6 +508,7 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
     hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
     hn_estimate_put_json(b, tab->accuracy, hn_run_spec(run), &tab->track, fmin(s.t, request->time));
+    hn_estimate_put_verdict(b, tab->accuracy, &tab->track, fmin(s.t, request->time));
     put_run_incidents(b, run);
     put_run_cost(b, &s);
     hn_json_end_object(b);

@@ -127,10 +127,13 @@ static void judge_wrong(hn_motion_verdict *v, const sizes *s, double value, cons
 }
 
 /// The digits that are right, by the worse of motion and energy; no more than the reference has.
-static double right_digits(const sizes *s) {
+/// *more: the reference bounds them, and the motion may have more.
+static double right_digits(const sizes *s, bool *more) {
     const double energy = s->energy_scale > 0 ? s->energy / s->energy_scale : 0;
     const double share = fmax(fmax(s->off / s->length, energy), pow(10, -MOST_DIGITS));
-    return fmin(floor(fmin(MOST_DIGITS, s->digits)), floor(-log10(share)));
+    const double sure = floor(fmin(MOST_DIGITS, s->digits)), own = floor(-log10(share));
+    *more = sure < own;
+    return fmin(sure, own);
 }
 
 static void judge_right(hn_motion_verdict *v, const sizes *s) {
@@ -148,7 +151,9 @@ static void judge_right(hn_motion_verdict *v, const sizes *s) {
         put(v, tone, drifts ? drift : first, ", ", s->asked ? "not compared yet" : "error unknown");
         return;
     }
-    snprintf(first, sizeof first, "right to %.0f digits", right_digits(s));
+    bool more;
+    const double digits = right_digits(s, &more);
+    snprintf(first, sizeof first, "right to %.0f digits%s", digits, more ? " or more" : "");
     put(v, tone, first, ", ", drift);
 }
 

@@ -95,6 +95,10 @@ static const struct {
      "\"progress\":{\"type\":\"number\"},\"links\":{\"type\":\"object\"},\"runs\":" OBJECTS ","
      "\"scene\":{\"type\":[\"string\",\"null\"]},"
      "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT
+     ",\"verdict\":{\"type\":\"object\",\"description\":\"what the error estimate says of the "
+     "motion; "
+     "status says only whether the run reached its end\",\"properties\":{\"is\":{\"enum\":["
+     "\"right\",\"inaccurate\",\"wrong\",\"unknown\"]},\"text\":" TEXT "}}"
      ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ",\"lambda_marks\":" TEXTS ","
      "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
      ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},"
