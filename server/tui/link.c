@@ -29,7 +29,8 @@ void hn_workbench_link(const hn_workbench *w, hn_strbuf *b) {
         hn_strbuf_add(b, "&method=");
         add_escaped(b, w->methods[i]);
     }
-    hn_strbuf_printf(b, "&frame=%d&selected=%d", hn_workbench_frame(w), w->selected);
+    hn_strbuf_printf(b, "&frame=%d&selected=%d",
+                     hn_recording_page_frame(w->recording, hn_workbench_frame(w)), w->selected);
 }
 
 /// Turns %40 and its like back; in place.

@@ -128,7 +128,7 @@ static void worst_so_far(const hn_workbench *w, int m, char *out, size_t size) {
     hn_si_format(most[0], "m", 2, gap);
     hn_si_format(most[1], "J", 2, energy);
     snprintf(out, size, "; before, until %.2f s: worst gap %s, energy change %s",
-             hn_workbench_frame(w) * hn_recording_frame_dt(w->recording), gap, energy);
+             hn_recording_time(w->recording, hn_workbench_frame(w)), gap, energy);
 }
 
 void hn_methods_set_one(hn_workbench *w, const char *key, double value) {

@@ -95,7 +95,7 @@ static void write_recording(hn_workbench *w) {
     // one row a frame; what is not known stays empty
     const int n = hn_recording_frames(w->recording);
     for (int k = 0; k < n; k++) {
-        fprintf(file, "%.17g", k * hn_recording_frame_dt(w->recording));
+        fprintf(file, "%.17g", hn_recording_time(w->recording, k));
         for (int m = 0; m < w->n_methods; m++) {
             const hn_track *t = hn_recording_track(w->recording, m);
             const double values[] = {t->gap[k], t->energy[k], t->error[k]};

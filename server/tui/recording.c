@@ -30,7 +30,8 @@ struct hn_recording {
     const hn_model *model;
     hn_comparison *comparison;
     int n_tracks, n_points, last;
-    double frame_dt;
+    double frame_dt, duration; ///< [s]
+    int stride;                ///< frames of the page for each frame here
     hn_track tracks[HN_COMPARISON_MAX_METHODS];
     track_store stores[HN_COMPARISON_MAX_METHODS];
     double *reference; ///< 3 n_points a frame, NaN where there is none
@@ -257,12 +258,20 @@ static hn_status open_comparison(hn_recording *r, const char *const *methods, in
     hn_comparison_opts opts = hn_comparison_opts_default();
     const double end = duration > 0 ? duration : hn_model_scene(r->model)->duration;
     opts.duration = end;
-    // whole frames to the end: sixty a second, or fewer where there would be too many to keep
-    const double frames = fmin(ceil(fmax(end * 60, 240)), MOST_FRAMES);
-    opts.frame_dt = end / frames;
-    r->last = (int)frames;
-    r->frame_dt = opts.frame_dt;
     HN_TRY(hn_comparison_create(r->model, methods, n_methods, &opts, &r->comparison, diags));
+
+    // frames as the page has them, or every so many of them where there are too many to keep
+    const double chosen = hn_comparison_frame_dt(r->comparison);
+    r->stride = (int)ceil(end / chosen / MOST_FRAMES);
+    r->frame_dt = r->stride * chosen;
+    r->duration = end;
+    r->last = (int)ceil(end / r->frame_dt - 1e-9);
+    if (r->stride > 1) {
+        hn_comparison_free(r->comparison);
+        r->comparison = NULL;
+        opts.frame_dt = r->frame_dt;
+        HN_TRY(hn_comparison_create(r->model, methods, n_methods, &opts, &r->comparison, diags));
+    }
     r->n_tracks = hn_comparison_n_methods(r->comparison);
     r->n_points = hn_system_get_info(hn_model_system(r->model)).n_points;
     return HN_OK;
@@ -355,8 +364,16 @@ double hn_recording_frame_dt(const hn_recording *r) {
     return r->frame_dt;
 }
 
+double hn_recording_time(const hn_recording *r, int frame) {
+    return fmin(frame * r->frame_dt, r->duration);
+}
+
+int hn_recording_page_frame(const hn_recording *r, int frame) {
+    return frame * r->stride;
+}
+
 double hn_recording_duration(const hn_recording *r) {
-    return r->last * r->frame_dt;
+    return r->duration;
 }
 
 int hn_recording_n_tracks(const hn_recording *r) {
@@ -408,7 +425,7 @@ hn_motion_verdict hn_recording_verdict(const hn_recording *r, int track, int fra
                                        .off = t->error,
                                        .energy = t->energy,
                                        .shown = frame,
-                                       .t = frame * r->frame_dt,
+                                       .t = hn_recording_time(r, frame),
                                        .ended = end.failed ? end.t : (double)NAN,
                                        .cause = end.cause,
                                        .length = hn_system_length(sys),

@@ -52,6 +52,11 @@ int hn_recording_frames(const hn_recording *r);      ///< recorded so far, at le
 int hn_recording_last(const hn_recording *r);        ///< index of the frame at the duration
 double hn_recording_frame_dt(const hn_recording *r); ///< [s]
 double hn_recording_duration(const hn_recording *r); ///< [s]
+/// The time of a frame; the last one may begin within the duration and reach beyond: it counts as
+/// the end [s].
+double hn_recording_time(const hn_recording *r, int frame);
+/// The number that the page gives to the same moment.
+int hn_recording_page_frame(const hn_recording *r, int frame);
 int hn_recording_n_tracks(const hn_recording *r);
 const hn_track *hn_recording_track(const hn_recording *r, int i);
 hn_track_end hn_recording_end(const hn_recording *r, int i);

@@ -197,8 +197,9 @@ static void wait_for_frames(hn_workbench *w) {
 }
 
 static void go_to(hn_workbench *w, double t) {
+    const int last = hn_recording_last(w->recording);
     const double frame = round(t / hn_recording_frame_dt(w->recording));
-    w->clock = fmax(0, fmin(frame, hn_recording_last(w->recording)));
+    w->clock = t >= hn_recording_duration(w->recording) ? last : fmax(0, fmin(frame, last));
     w->playing = false;
     wait_for_frames(w);
 }

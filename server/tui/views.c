@@ -63,7 +63,7 @@ bool hn_views_mechanism(int columns, int rows, const hn_workbench *w, hn_area *o
 
 static void draw_header(hn_cells *c, const hn_workbench *w) {
     const hn_area area = header_area(c);
-    const double t = hn_workbench_frame(w) * hn_recording_frame_dt(w->recording);
+    const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     const hn_scene *scene = hn_model_scene(w->model);
     int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, "holonom  ");
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "%.30s  ", scene->id);
@@ -142,7 +142,7 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS];
     const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
-    const double t = hn_workbench_frame(w) * hn_recording_frame_dt(w->recording);
+    const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     if (w->message[0]) {
         // a long one takes the place of the keys
         hn_cells_fold(c, (hn_area){area.x, area.y, area.columns, 1 + needs_two_lines(c, w)}, 0,
@@ -246,7 +246,8 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
 
     // the verdict, in words; hidden methods say so
     char line[HN_MOTION_VERDICT_TEXT + 32];
-    snprintf(line, sizeof line, "%s %s%s", v.arrow, w->hidden[m] ? "(hidden) " : "", v.text);
+    snprintf(line, sizeof line, "%s %s%s%s", v.arrow, w->hidden[m] ? "(hidden) " : "",
+             track->model_error ? "model error: " : "", v.text);
     put_fitted(c, area, at.verdict, m, calm ? HN_CELL_INK : HN_CELL_ALARM,
                calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);
 }
@@ -279,7 +280,7 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
     const double dt = hn_recording_frame_dt(w->recording);
     hn_plot plot = {.dt = dt,
                     .t_end = hn_recording_duration(w->recording),
-                    .cursor = hn_workbench_frame(w) * dt,
+                    .cursor = hn_recording_time(w->recording, hn_workbench_frame(w)),
                     .logarithmic = true,
                     .floor = 1e-17,
                     .unit = w->plot == HN_TUI_ENERGY ? "J" : "m"};

@@ -54,6 +54,11 @@ hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags) {
     }
     hn_recording *fresh = NULL;
     HN_TRY(hn_recording_create(w->model, methods, w->n_methods, 0, &fresh, diags));
+    // the same moment in frames of another length
+    if (w->recording) {
+        w->clock *= hn_recording_frame_dt(w->recording) / hn_recording_frame_dt(fresh);
+        w->clock = w->playing ? w->clock : round(w->clock);
+    }
     hn_recording_free(w->recording);
     w->recording = fresh;
     w->clock = fmin(w->clock, hn_recording_last(fresh));

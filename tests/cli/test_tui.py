@@ -145,7 +145,7 @@ class Frame(unittest.TestCase):
 KEY_NAMES = {"HN_KEY_RIGHT": "<Right>", "HN_KEY_LEFT": "<Left>", "HN_KEY_SHIFT_RIGHT": "<ShiftRight>", "HN_KEY_SHIFT_LEFT": "<ShiftLeft>",
              "HN_KEY_BACKSPACE": "<Backspace>", "HN_KEY_UP": "<Up>", "HN_KEY_DOWN": "<Down>"}
 # what is seen after each key, typed at t = 0.5 s while the second of the methods is selected
-SEEN = {"PLAY": "running", "NEXT": r"t 0\.517 s", "BACK": r"t 0\.483 s", "NEXT_TEN": r"t 0\.667 s", "BACK_TEN": r"t 0\.333 s",
+SEEN = {"PLAY": "running", "NEXT": r"t 0\.520 s", "BACK": r"t 0\.480 s", "NEXT_TEN": r"t 0\.700 s", "BACK_TEN": r"t 0\.300 s",
         "START": r"t 0\.000 s", "SLOWER": "×0.5", "FASTER": "×2", "UP": "why: index-1", "DOWN": "why: projection", "CYCLE": "why: projection",
         "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "STEP": r"dt \[s, or 20 ms\]:",
         "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "01-closed-loops",
@@ -413,6 +413,20 @@ class Keys(unittest.TestCase):
         self.assertEqual(len(re.findall(r"(?m)^│\d\S +projection", twice)), 1)
         _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "i<Enter>", "--methods", "projection@rk4:h=0.001")
         self.assertIn("nothing has happened that asks for a remedy", out)
+
+    def test_frames_are_those_of_the_page_and_a_new_step_keeps_the_moment(self):
+        # frames are multiples of the largest step of at least 1/60 s: 3 s are frame 150 of 20 ms, as in the page
+        _, out, _ = once("four-bar", "--once", "--t", "3", "--size", "200x30", "--keys", "l", *METHODS)
+        self.assertIn("&frame=150&", out)
+        _, out, _ = once("four-bar", "--once", "--t", "3", "--keys", "d0.05<Enter>", *METHODS)
+        self.assertIn("t 3.000 s of 10 s", out)
+        # where the frames do not end with the motion, the last one counts as its end
+        _, out, _ = once("pendulum", "--once", "--methods", "index1@rk4:h=0.017")
+        self.assertIn("t 10.000 s of 10 s", out)
+
+    def test_a_model_error_is_said_in_the_table(self):
+        _, out, _ = once("four-bar", "--once", "--t", "1", "--size", "120x30", "--methods", "nullspace-as-printed@rk4:h=0.001")
+        self.assertRegex(out, r"model error: closed, but \d+ mm from the true motion")
 
     def test_what_is_typed_is_searched_in_the_list_of_scenes(self):
         def found(keys, size="120x40"):
