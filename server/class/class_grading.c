@@ -439,7 +439,18 @@ hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,
     const size_t n = (size_t)roster->n;
     *out = (hn_class_result){.n = roster->n, .line = calloc(n + 1, sizeof *out->line)};
     g.key = calloc(n + 1, sizeof *g.key);
-    hn_status status = out->line && g.key ? HN_OK : HN_ERR_MEMORY;
+    hn_variant_owner *owners = calloc(n + 1, sizeof *owners);
+    hn_status status = out->line && g.key && owners ? HN_OK : HN_ERR_MEMORY;
+
+    // whose numbers a wrong answer may be
+    hn_exercise with_owners = *exercise;
+    for (int i = 0; status == HN_OK && i < roster->n && !opts->seed && !opts->programs; i++) {
+        owners[i] = (hn_variant_owner){.seed = seed_of(&g, &roster->entry[i]),
+                                       .name = roster->entry[i].student};
+        with_owners.n_owners = exercise->n_parts > 0 ? i + 1 : 0;
+    }
+    with_owners.owners = owners;
+    g.exercise = &with_owners;
     for (int i = 0; status == HN_OK && i < roster->n; i++) {
         g.key[i] = calc_key(&g, &roster->entry[i]);
         out->others += !is_mine(&g, i);
@@ -464,6 +475,7 @@ hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,
         fclose(g.journal);
     }
     free(g.key);
+    free(owners);
     return status;
 }
 

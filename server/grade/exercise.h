@@ -38,6 +38,12 @@ typedef struct hn_grade_pair {
     double value;
 } hn_grade_pair;
 
+/// Who has which variant of an exercise.
+typedef struct hn_variant_owner {
+    uint64_t seed;
+    const char *name; ///< borrowed; NULL: nobody in particular
+} hn_variant_owner;
+
 typedef struct hn_exercise {
     hn_arena *arena;
     const char *id, *title, *scene, *statement, *lesson, *section, *answer;
@@ -62,8 +68,10 @@ typedef struct hn_exercise {
     hn_part parts[HN_GRADE_MAX_PARTS]; ///< without a draw
     int n_hints;
     const char *hints[HN_GRADE_MAX_HINTS];
-    const hn_library *lib;    ///< scenes that parts run; NULL: none
-    struct hn_rubric *rubric; ///< owned; NULL: the exercise's own points and shares
+    int n_owners;                   ///< of a class: whose numbers a wrong answer may be
+    const hn_variant_owner *owners; ///< borrowed
+    const hn_library *lib;          ///< scenes that parts run; NULL: none
+    struct hn_rubric *rubric;       ///< owned; NULL: the exercise's own points and shares
 } hn_exercise;
 
 /// Reads an exercise (lessons/NN-topic/problems/ID.json). Returns owned.

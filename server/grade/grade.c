@@ -7,6 +7,7 @@
 #include "expr/print.h"
 #include "grade/exam.h"
 #include "grade/mistakes.h"
+#include "grade/other_variant.h"
 #include "grade/parts/spelling.h"
 #include "grade/rubric.h"
 #include "grade/submission.h"
@@ -342,6 +343,9 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
     hn_status status = x ? hn_variant_init(x, v->problem, v->seed, &diag) : HN_ERR_MEMORY;
     if (status == HN_OK) {
         status = hn_variant_grade(x, root, v, &diag);
+    }
+    if (status == HN_OK && v->kind == HN_VERDICT_GRADED) {
+        hn_other_variant_say(x, root, v);
     }
     if (x) {
         hn_variant_reset(x);

@@ -247,6 +247,31 @@ def whose_variant(folder):
     expect("a rate of LaTeX is read", "1 / 1  right" in run("grade", "closure", rates).stdout, run("grade", "closure", rates).stdout)
 
 
+def other_numbers(folder):
+    """Numbers of another variant are named with their owner; a number that agrees by chance is not."""
+    part = {"ask": "?", "kind": "number", "points": 1, "unit": "m", "tolerance": {"relative": 0.001}}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {n: {"range": [1, 9], "digits": 4} for n in "lk"},
+                "parts": [dict(part, id=i, answer=a, second=s) for i, a, s in (("a", "3*l", "l+2*l"), ("b", "l^2", "l*l"), ("c", "7*k", "k+6*k"))]}  # fmt: skip
+    path = write(folder, "three.json", exercise)
+
+    def numbers(*who):
+        n = json.loads(run("problem", path, "--json", *who).stdout)["numbers"]
+        return {"a": 3 * n["l"], "b": n["l"] ** 2, "c": 7 * n["k"]}
+
+    plain, bobs = numbers(), numbers("--student", "bob")
+    said = run("grade", path, write(folder, "plain.json", dict(plain, student="ada"))).stdout
+    expect("numbers of the exercise without a name are named", "numbers of seed 1 (the exercise without a name or seed)" in said, said)
+    said = run("grade", path, write(folder, "one.json", {"student": "ada", "a": plain["a"], "b": 1, "c": 1})).stdout
+    expect("one number alone is not enough", "these are the numbers" not in said, said)
+    os.mkdir(os.path.join(folder, "class"))
+    for who, answers in (("ada", bobs), ("bob", bobs), ("eve", dict(numbers("--student", "eve"), c=0))):
+        write(os.path.join(folder, "class"), who + ".json", answers)
+    said = run("grade", path, os.path.join(folder, "class")).stdout
+    expect("in a class the owner of the numbers is named", "ada: 0 of 3" in said and "the variant of 'bob'" in said, said)
+    expect("and nobody else is accused", said.count("the variant of") == 1, said)
+
+
 def for_teachers(folder):
     """Right numbers are in no verdict of a student, and numbers say how exact they must be."""
     path = write(folder, "half.json", {"a": 1, "d": [1, 2]})
@@ -339,6 +364,7 @@ def main():
         whole_check(folder)
         own_exercise(folder)
         whose_variant(folder)
+        other_numbers(folder)
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)
