@@ -34,6 +34,8 @@ const store = createStore();
 const session = createSession(store);
 const theme = createTheme(store);
 createTips(document.body);
+/** @type {HTMLElement} */ (document.querySelector(".waiting")).textContent =
+  "The page waits for the answer of the server.";
 store.data.view.stepped = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 /** @param {string} id */
@@ -117,14 +119,14 @@ const views = [
     openGuide: guide.open,
   }),
   mechanism,
-  createTear(/** @type {HTMLElement} */ (document.querySelector(".stage")), store),
+  createTear(/** @type {HTMLElement} */ (document.querySelector(".stage")), store, mechanism.stage),
   createLook(at("mechanism"), store, session),
   createTransport(at("transport"), store, session),
   createMethods(at("method-list"), store, session, openMethod),
   createWhyCard(at("methods"), store, session),
   createControls(at("controls"), store, session),
   createParameters(
-    /** @type {HTMLElement} */ (document.querySelector(".stage")),
+    { wide: at("methods"), narrow: /** @type {HTMLElement} */ (document.querySelector(".stage")) },
     /** @type {HTMLElement} */ (document.querySelector(".mechanism .choices")),
     store,
     session,

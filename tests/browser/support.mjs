@@ -241,6 +241,26 @@ export async function until(page, condition, timeout = 20000) {
   }
 }
 
+/**
+ * Waits until a check holds: what the page shows follows an action in its own time. The last
+ * failure is thrown when time is up.
+ * @param {() => Promise<unknown>} check throws while it does not hold
+ */
+export async function soon(check, timeout = 20000) {
+  const end = Date.now() + timeout;
+  for (;;) {
+    try {
+      await check();
+      return;
+    } catch (error) {
+      if (Date.now() > end) {
+        throw error;
+      }
+    }
+    await new Promise((resolve) => setTimeout(resolve, 25));
+  }
+}
+
 /** Until what was told is drawn as well. */
 export function drawn(page) {
   return page.evaluate(

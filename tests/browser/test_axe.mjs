@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { violations } from "./axe.mjs";
-import { createBench, playTo, until } from "./support.mjs";
+import { createBench, playTo, soon, until } from "./support.mjs";
 
 const { open } = createBench();
 const LONG = 60000; // [ms] that a study may take on a busy machine
@@ -50,7 +50,7 @@ for (const [name, show] of Object.entries(VIEWS)) {
       });
       await playTo(page, 1.5);
       await show(page);
-      assert.deepEqual(await violations(page), []);
+      await soon(async () => assert.deepEqual(await violations(page), []));
     });
   }
 }

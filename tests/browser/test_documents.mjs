@@ -11,7 +11,7 @@ import { fitsSearch } from "../../web/state/gallery.js";
 import { parseQuantity } from "../../web/state/format.js";
 import { addBar, addMotor, addPin, addSlider, writeScene } from "../../web/state/scene-parts.js";
 import { violations } from "./axe.mjs";
-import { ROOT, createBench, read, screenshot, until } from "./support.mjs";
+import { createBench, read, ROOT, screenshot, soon, until } from "./support.mjs";
 
 const { open } = createBench();
 const SCHEMA = JSON.parse(readFileSync(join(ROOT, "core/scene/scene.schema.json"), "utf8"));
@@ -94,15 +94,15 @@ test("the gallery draws every scene, filters, and opens the chosen one", async (
   });
   assert.doesNotMatch(await page.innerHTML(".gallery .cards"), /NaN|undefined/);
   await screenshot(page, "gallery-1366", { seen: true });
-  assert.deepEqual(await violations(page), []);
+  await soon(async () => assert.deepEqual(await violations(page), []));
   await page.getByRole("button", { name: "space", exact: true }).last().click();
   const shown = page.locator(".gallery .cards li:visible");
-  assert.ok((await shown.count()) > 4 && (await shown.count()) < all);
+  await soon(async () => assert.ok((await shown.count()) > 4 && (await shown.count()) < all));
   await page.fill("#gallery-search", "bennett");
-  assert.equal(await shown.count(), 1);
+  await soon(async () => assert.equal(await shown.count(), 1));
   await shown.first().getByRole("button").click();
   await until(page, (data) => data.scene.id === "bennett");
-  assert.equal(await page.locator(".gallery").isVisible(), false);
+  await soon(async () => assert.equal(await page.locator(".gallery").isVisible(), false));
 });
 
 /** Opens the editor with the document of the scene in it. */
@@ -141,8 +141,8 @@ for (const [theme, width] of [
     await replace(page, '"value": 0.5,', '"value": 0.45,');
     await says(page, "runs:");
     const crank = (data) => data.scene.parameters.find(({ name }) => name === "l1").value;
-    assert.equal(await read(page, crank), 0.45);
-    assert.match(await page.textContent("#scene option:checked"), /yours/);
+    await soon(async () => assert.equal(await read(page, crank), 0.45));
+    await soon(async () => assert.match(await page.textContent("#scene option:checked"), /yours/));
 
     await replace(page, '"type": "revolute"', '"type": "revolving"');
     await says(page, "not a scene yet");
@@ -151,16 +151,18 @@ for (const [theme, width] of [
     const line = Number(/line (\d+)/.exec(fault)[1]);
     const typed = await page.evaluate(() => document.querySelector("#editor-text").value);
     assert.match(typed.split("\n")[line - 1], /revolving/);
-    assert.equal(await read(page, crank), 0.45);
+    await soon(async () => assert.equal(await read(page, crank), 0.45));
     await screenshot(page, `editor-${theme}-${width}`, { seen: true });
-    assert.deepEqual(await violations(page), []);
+    await soon(async () => assert.deepEqual(await violations(page), []));
 
     await replace(page, '"revolving"', '"revolute"');
     await replace(page, '"gravity"', 'gravity"');
     await page.waitForFunction(() =>
       document.querySelector(".editor-faults").textContent.includes("not JSON"),
     );
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width),
+    );
   });
 }
 
@@ -176,7 +178,7 @@ test("keys complete what is typed", async (t) => {
   await page.keyboard.type("fix");
   await page.waitForSelector(".offers [role=option]");
   await page.keyboard.press("Enter");
-  assert.match(await page.inputValue("#editor-text"), /"type": "fixed"/);
+  await soon(async () => assert.match(await page.inputValue("#editor-text"), /"type": "fixed"/));
 });
 
 test("bars, pins and motors are put with the mouse, and the document follows", async (t) => {
@@ -196,8 +198,8 @@ test("bars, pins and motors are put with the mouse, and the document follows", a
   await page.mouse.up();
   await until(page, (data) => data.scene.bodies.length === 2);
   const text = () => page.inputValue("#editor-text").then(JSON.parse);
-  assert.equal((await text()).joints[1].parent.body, "bar1");
-  assert.equal(await read(page, (data) => data.scene.dof), 2);
+  await soon(async () => assert.equal((await text()).joints[1].parent.body, "bar1"));
+  await soon(async () => assert.equal(await read(page, (data) => data.scene.dof), 2));
 
   await page.getByRole("button", { name: "motor", exact: true }).click();
   const pin = await page.evaluate(() => {
@@ -236,12 +238,12 @@ test("models of other programs are dropped on the page", async (t) => {
      <geom type="capsule" fromto="0 0 0 1 0 0" size="0.02" mass="1"/></body></worldbody></mujoco>`,
   );
   await until(page, (data) => data.scene.id === "arm");
-  assert.match(await page.textContent("#editor-state"), /MJCF/);
+  await soon(async () => assert.match(await page.textContent("#editor-state"), /MJCF/));
   await drop("own.json", FOUR_BAR.replace('"name": "four-bar"', '"name": "own"'));
   await until(page, (data) => data.scene.id === "own");
   await drop("broken.urdf", "<robot><link name='a'></robot>");
   await says(page, "was not read");
-  assert.equal(await read(page, (data) => data.scene.id), "own");
+  await soon(async () => assert.equal(await read(page, (data) => data.scene.id), "own"));
 });
 
 test("a model of another program can be pasted, and what it leaves out is counted", async (t) => {
@@ -261,13 +263,19 @@ test("a model of another program can be pasted, and what it leaves out is counte
   await page.waitForFunction(() =>
     /^MJCF: 1 note on/.test(document.querySelector("#editor-state").textContent),
   );
-  assert.match(await page.textContent(".editor-faults"), /can touch one another in MuJoCo/);
-  assert.ok(JSON.parse(await page.inputValue("#editor-text")).bodies.length === 3);
+  await soon(async () =>
+    assert.match(await page.textContent(".editor-faults"), /can touch one another in MuJoCo/),
+  );
+  await soon(async () =>
+    assert.ok(JSON.parse(await page.inputValue("#editor-text")).bodies.length === 3),
+  );
 
   await page.fill("#editor-text", "<mujoco><worldbody></mujoco>");
   await page.waitForFunction(() =>
     /was not read/.test(document.querySelector("#editor-state").textContent),
   );
-  assert.equal(await read(page, (data) => data.scene.bodies.length), 3, "the last good one runs");
+  await soon(async () =>
+    assert.equal(await read(page, (data) => data.scene.bodies.length), 3, "the last good one runs"),
+  );
   assert.doesNotMatch(String(await state.textContent()), /JSON/);
 });

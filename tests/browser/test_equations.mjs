@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { partsOf } from "../../web/state/belongs.js";
 import { PLAIN, TEX, foldAngles } from "../../web/state/fold.js";
 import { evaluate } from "../../web/state/formula.js";
-import { createBench, playTo, read, screenshot } from "./support.mjs";
+import { createBench, playTo, read, screenshot, soon } from "./support.mjs";
 
 const { open } = createBench();
 
@@ -57,14 +57,16 @@ test("terms light up links and curves, links light up terms; numbers follow the 
   const page = await open(t, { viewport: { width: 1366, height: 1200 } });
   await page.click(".equation-panel summary");
   await page.waitForSelector(".term-block .katex");
-  assert.match(await page.textContent(".notation-table"), /rad\/s²/);
+  await soon(async () => assert.match(await page.textContent(".notation-table"), /rad\/s²/));
   await page.waitForFunction(() =>
     /Rank of J: 2 of 2/.test(document.querySelector(".notation").textContent),
   );
   const first = await page.textContent(".notation-table tbody tr:nth-child(6) td.number");
   // -15.47 rad/s² at the start: the accelerations that POST /terms gives
   assert.match(first, /^−15\.47 rad\/s²/);
-  assert.match(await page.innerHTML(".terms"), /M_\{21\} = M_\{12\} = [^<]*\\cos\(/);
+  await soon(async () =>
+    assert.match(await page.innerHTML(".terms"), /M_\{21\} = M_\{12\} = [^<]*\\cos\(/),
+  );
 
   const line = page.locator('.term-block .line[data-bodies="0"]').first();
   await line.hover();
@@ -90,5 +92,5 @@ test("terms light up links and curves, links light up terms; numbers follow the 
       before,
     first,
   );
-  assert.ok(await read(page, (data) => data.latest.t > 0.3));
+  await soon(async () => assert.ok(await read(page, (data) => data.latest.t > 0.3)));
 });

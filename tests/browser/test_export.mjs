@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { violations } from "./axe.mjs";
-import { createBench, playTo, screenshot } from "./support.mjs";
+import { createBench, playTo, screenshot, soon } from "./support.mjs";
 
 const { open } = createBench();
 
@@ -41,7 +41,7 @@ test("the recording becomes one file that plays without a server", async (t) => 
   const first = await drawn();
   await alone.getByRole("button", { name: "Play" }).click();
   await alone.waitForFunction(() => Number(document.querySelector("input[type=range]").value) > 3);
-  assert.notEqual(await drawn(), first);
+  await soon(async () => assert.notEqual(await drawn(), first));
   assert.equal(await alone.locator("li").count(), 5);
   assert.match(await alone.textContent("li"), /index-1: /);
   await screenshot(alone, "replay", { seen: true });
@@ -53,7 +53,7 @@ test("a scene in space is saved with its solids, as a film, and as a program", a
   await page.waitForSelector(".stage.solid");
   await playTo(page, 0.2);
   await page.getByRole("button", { name: "export" }).click();
-  assert.deepEqual(await violations(page), []);
+  await soon(async () => assert.deepEqual(await violations(page), []));
   const svg = (await fileOf(page, "SVG")).bytes.toString();
   assert.match(svg, /<image href="data:image\/png/);
   const film = await fileOf(page, "WebM");

@@ -2,7 +2,7 @@
 // What a student needs for "why does it fall apart?" is on the first screen and stays in its place.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, playTo, read, screenshot, until } from "./support.mjs";
+import { createBench, playTo, read, screenshot, soon, until } from "./support.mjs";
 
 const TRACED = ["toplevel", "devtools.timeline", "disabled-by-default-devtools.timeline"];
 const MOST_BYTES = 500e3; // on the line
@@ -87,15 +87,20 @@ test("the card that says why opens in sight, under its row, takes the focus and 
   const before = await boxesOf(page, FIRST);
   for (const label of ["index-1", "projection", "reduced"]) {
     await page.getByRole("button", { name: `Why? ${label}` }).click();
+    await page.locator(".card").waitFor();
     const { card } = await boxesOf(page, { card: ".card" });
     assert.ok(card.top >= 0 && card.bottom <= 768, `${label}: ${card.top} to ${card.bottom}`);
-    assert.ok(await page.evaluate(() => document.activeElement.classList.contains("card")));
-    assert.deepEqual(await boxesOf(page, FIRST), before);
+    await soon(async () =>
+      assert.ok(await page.evaluate(() => document.activeElement.classList.contains("card"))),
+    );
+    await soon(async () => assert.deepEqual(await boxesOf(page, FIRST), before));
     await page.keyboard.press("Escape");
-    assert.equal(await page.locator(".card").count(), 0);
-    assert.equal(
-      await page.evaluate(() => document.activeElement.getAttribute("aria-label")),
-      `Why? ${label}`,
+    await soon(async () => assert.equal(await page.locator(".card").count(), 0));
+    await soon(async () =>
+      assert.equal(
+        await page.evaluate(() => document.activeElement.getAttribute("aria-label")),
+        `Why? ${label}`,
+      ),
     );
   }
 });
@@ -104,11 +109,11 @@ test("the drawer of parameters moves nothing and closes with Escape", async (t) 
   const page = await open(t, { viewport: { width: 1366, height: 768 } });
   const before = await boxesOf(page, FIRST);
   await page.getByRole("button", { name: "lengths, masses, start" }).click();
-  assert.ok(await page.locator("#parameter-l1").isVisible());
-  assert.deepEqual(await boxesOf(page, FIRST), before);
+  await soon(async () => assert.ok(await page.locator("#parameter-l1").isVisible()));
+  await soon(async () => assert.deepEqual(await boxesOf(page, FIRST), before));
   await page.focus("#parameters .quiet");
   await page.keyboard.press("Escape");
-  assert.ok(await page.locator("#parameters").isHidden());
+  await soon(async () => assert.ok(await page.locator("#parameters").isHidden()));
 });
 
 test("table, sentence and live region say the same of a run that is closed and wrong", async (t) => {
@@ -119,9 +124,7 @@ test("table, sentence and live region say the same of a run that is closed and w
     const words = document.querySelector("tbody tr:nth-child(4) .words").textContent;
     return (
       /^closed, but \d+ mm from the true motion$/.test(words) &&
-      [".seen", ".live"].every((place) =>
-        document.querySelector(place).textContent.includes(words),
-      )
+      [".seen", ".live"].every((place) => document.querySelector(place).textContent.includes(words))
     );
   });
   assert.doesNotMatch(await page.textContent("main"), /closed to rounding/);
@@ -142,13 +145,17 @@ test("text is 15 px or more, and there are four sizes of it", async (t) => {
     ),
   ]);
   assert.deepEqual(sizes.sort(), ["13px", "14px", "15px", "18px"]);
-  assert.equal(await page.evaluate(() => getComputedStyle(document.body).fontSize), "15px");
+  await soon(async () =>
+    assert.equal(await page.evaluate(() => getComputedStyle(document.body).fontSize), "15px"),
+  );
 });
 
 test("it opens on a step that tells; two buttons let it fall apart and hold it together", async (t) => {
   const page = await open(t);
-  assert.ok(
-    await read(page, (data) => data.methods.every(({ spelling }) => /h=0\.02/.test(spelling))),
+  await soon(async () =>
+    assert.ok(
+      await read(page, (data) => data.methods.every(({ spelling }) => /h=0\.02/.test(spelling))),
+    ),
   );
   await page.getByRole("button", { name: "let it fall apart" }).first().click();
   await until(page, (data) => data.latest?.t > 2.5);
@@ -157,11 +164,13 @@ test("it opens on a step that tells; two buttons let it fall apart and hold it t
   );
   await page.getByRole("button", { name: "hold it together" }).click();
   await until(page, (data) => data.methods[0].formulation === "baumgarte" && data.latest?.t > 2.5);
-  const words = await page.locator("tbody .words").allTextContents();
-  assert.ok(
-    words.every((text) => !text.startsWith("open")),
-    words.join("; "),
-  );
+  await soon(async () => {
+    const words = await page.locator("tbody .words").allTextContents();
+    assert.ok(
+      words.every((text) => !text.startsWith("open")),
+      words.join("; "),
+    );
+  });
 });
 
 test("the first minute goes on by its own buttons, can be closed, and stays closed", async (t) => {
@@ -170,32 +179,34 @@ test("the first minute goes on by its own buttons, can be closed, and stays clos
   await guide.getByRole("button", { name: "Play" }).click();
   await until(page, (data) => data.state === "running");
   await guide.getByRole("button", { name: "next" }).click();
-  assert.match(await guide.textContent(), /falls apart/);
+  await soon(async () => assert.match(await guide.textContent(), /falls apart/));
   await guide.getByRole("button", { name: "next" }).click();
   await guide.getByRole("button", { name: "Why?" }).click();
-  assert.ok(await page.locator(".card").isVisible());
+  await soon(async () => assert.ok(await page.locator(".card").isVisible()));
   await page.keyboard.press("Escape");
   await guide.getByRole("button", { name: "Close the guide" }).click();
   await page.reload();
   await page.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
-  assert.ok(await guide.isHidden());
+  await soon(async () => assert.ok(await guide.isHidden()));
   await page.getByRole("button", { name: "guide", exact: true }).click();
-  assert.ok(await guide.isVisible());
+  await soon(async () => assert.ok(await guide.isVisible()));
 });
 
 test("a special word explains itself on hover and on focus, and Escape closes that", async (t) => {
   const page = await open(t);
   const term = page.locator("th.gap .term");
   await term.hover();
-  assert.match(await page.textContent("#tip"), /^Loop gap \(constraint violation\)/);
+  await soon(async () =>
+    assert.match(await page.textContent("#tip"), /^Loop gap \(constraint violation\)/),
+  );
   await page.mouse.move(400, 400);
-  assert.ok(await page.locator("#tip").isHidden());
+  await soon(async () => assert.ok(await page.locator("#tip").isHidden()));
   await page.keyboard.press("Tab");
   await term.focus();
-  assert.ok(await page.locator("#tip").isVisible());
-  assert.equal(await term.getAttribute("aria-describedby"), "tip");
+  await soon(async () => assert.ok(await page.locator("#tip").isVisible()));
+  await soon(async () => assert.equal(await term.getAttribute("aria-describedby"), "tip"));
   await page.keyboard.press("Escape");
-  assert.ok(await page.locator("#tip").isHidden());
+  await soon(async () => assert.ok(await page.locator("#tip").isHidden()));
 });
 
 test("before the first interaction the page takes 500 kB at most, and no view that is opened later", async (t) => {
@@ -225,7 +236,7 @@ test("six methods on FB0 leave the main thread room for 60 frames a second", asy
   const methods = ["index1", "baumgarte", "projection", "nullspace", "reduced", "partitioning"];
   const asked = methods.map((name) => `&method=${name}@rk4:h=0.01`).join("");
   const page = await open(t, { hash: `#scene=fb0${asked}` });
-  assert.equal(await read(page, (data) => data.methods.length), 6);
+  await soon(async () => assert.equal(await read(page, (data) => data.methods.length), 6));
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.5);
   const browser = page.context().browser();
@@ -273,7 +284,9 @@ test("keys open at their first line; the step says why it is not the scene's own
   const { title, dialog } = await boxesOf(page, { title: "#keys-title", dialog: "dialog[open]" });
   assert.ok(title.top >= dialog.top, "the heading is in sight");
   await page.keyboard.press("Escape");
-  assert.match(await page.textContent("#set-h-hint"), /^twice the scene's own 0\.01 s/);
+  await soon(async () =>
+    assert.match(await page.textContent("#set-h-hint"), /^twice the scene's own 0\.01 s/),
+  );
   await page.fill("#set-h", "0.01");
   await page.press("#set-h", "Enter");
   await page.waitForFunction(() => document.querySelector("#set-h-hint").textContent === "");
@@ -291,7 +304,7 @@ test("the glass and the table say one gap, and the clock ends where the run does
   await page.press("#set-h", "Enter");
   await until(page, (data) => data.frameDt > 0.02 && data.latest?.t === 0);
   // 385 frames of 26 ms are the first that reach 10 s
-  assert.match(await page.textContent(".time"), /\/ 10\.01 s$/);
+  await soon(async () => assert.match(await page.textContent(".time"), /\/ 10\.01 s$/));
 });
 
 test("the words of the page explain themselves: plots, the cut, the card that says why", async (t) => {
@@ -302,10 +315,12 @@ test("the words of the page explain themselves: plots, the cut, the card that sa
     .nth(1)
     .getByRole("button", { name: /^What is this/ })
     .click();
-  assert.match(await page.textContent("#tip"), /^Multipliers λ: /);
+  await soon(async () => assert.match(await page.textContent("#tip"), /^Multipliers λ: /));
   await page.locator(".whose .term").hover();
-  assert.match(await page.textContent("#tip"), /^Cut joint: /);
+  await soon(async () => assert.match(await page.textContent("#tip"), /^Cut joint: /));
   await page.getByRole("button", { name: "Why? index-1" }).click();
   await page.locator(".card .rule .term").first().focus();
-  assert.match(await page.textContent(".card .rule .term >> nth=0"), /truncation/);
+  await soon(async () =>
+    assert.match(await page.textContent(".card .rule .term >> nth=0"), /truncation/),
+  );
 });

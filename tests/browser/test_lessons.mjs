@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
 import { violations } from "./axe.mjs";
-import { createBench, read, screenshot, until } from "./support.mjs";
+import { createBench, read, screenshot, soon, until } from "./support.mjs";
 
 const { open } = createBench();
 const text = (words) => ({ kind: "text", text: words });
@@ -109,33 +109,39 @@ test("what is asked is read from the exercise, what is typed is a value or a for
 
 test("an exhibit runs beside its text, a prediction is kept", async (t) => {
   const page = await openLesson(t, { viewport: { width: 1366, height: 768 } });
-  assert.equal(await page.locator(".katex-error").count(), 0);
-  assert.deepEqual(
-    await page.locator(".lesson-text p a").evaluateAll((list) => list.map(({ href }) => href)),
-    ["https://example.org/"],
+  await soon(async () => assert.equal(await page.locator(".katex-error").count(), 0));
+  await soon(async () =>
+    assert.deepEqual(
+      await page.locator(".lesson-text p a").evaluateAll((list) => list.map(({ href }) => href)),
+      ["https://example.org/"],
+    ),
   );
   await page.getByRole("button", { name: "Run it" }).click();
   await until(page, (data) => data.scene.id === "slider-crank" && data.latest?.t > 0);
-  assert.deepEqual(await read(page, (data) => data.methods.map(({ spelling }) => spelling)), [
-    "index1@rk4:h=0.01",
-    "projection@rk4:h=0.01",
-  ]);
-  assert.equal(await read(page, (data) => data.settings.r), 0.25);
+  await soon(async () =>
+    assert.deepEqual(await read(page, (data) => data.methods.map(({ spelling }) => spelling)), [
+      "index1@rk4:h=0.01",
+      "projection@rk4:h=0.01",
+    ]),
+  );
+  await soon(async () => assert.equal(await read(page, (data) => data.settings.r), 0.25));
   await page.waitForSelector(".exhibit .thumbnail");
 
   const after = page.locator(".prediction-after");
-  assert.equal(await after.isVisible(), false);
+  await soon(async () => assert.equal(await after.isVisible(), false));
   await page.getByRole("button", { name: "like t", exact: true }).click();
-  assert.equal(await after.isVisible(), true);
-  assert.match(await page.textContent(".predict"), /No: the marked answer is right/);
+  await soon(async () => assert.equal(await after.isVisible(), true));
+  await soon(async () =>
+    assert.match(await page.textContent(".predict"), /No: the marked answer is right/),
+  );
   await page.reload();
   await page.waitForFunction(() => document.querySelector("main")?.ariaBusy === "false");
   await page.getByRole("button", { name: "lessons" }).click();
   await page.waitForSelector(".prediction-after");
-  assert.equal(await after.isVisible(), true);
+  await soon(async () => assert.equal(await after.isVisible(), true));
   await page.emulateMedia({ media: "print" });
-  assert.equal(await page.locator("main").isVisible(), false);
-  assert.equal(await page.locator(".lesson-text").isVisible(), true);
+  await soon(async () => assert.equal(await page.locator("main").isVisible(), false));
+  await soon(async () => assert.equal(await page.locator(".lesson-text").isVisible(), true));
 });
 
 for (const [theme, width] of [
@@ -153,7 +159,9 @@ for (const [theme, width] of [
     }
     await page.getByRole("button", { name: "Check" }).first().click();
     await page.waitForSelector(".verdict-list strong");
-    assert.match(await page.textContent(".verdict-list"), /7 of 8 points.*J24/s);
+    await soon(async () =>
+      assert.match(await page.textContent(".verdict-list"), /7 of 8 points.*J24/s),
+    );
 
     await page.getByText("Exercise p1").click();
     await page.waitForSelector(".exercise fieldset");
@@ -167,11 +175,15 @@ for (const [theme, width] of [
       document.querySelectorAll(".verdict-list")[1].textContent.includes("of 9 points"),
     );
     // p3 belongs to this lesson, p1 to the next
-    assert.match(await page.textContent("#lesson option:checked"), /1 of \d exercises/);
+    await soon(async () =>
+      assert.match(await page.textContent("#lesson option:checked"), /1 of \d exercises/),
+    );
     await page.evaluate(() => document.activeElement.blur());
     await page.mouse.move(5, 5);
-    assert.deepEqual(await violations(page), []);
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await soon(async () => assert.deepEqual(await violations(page), []));
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width),
+    );
     await page.locator(".exhibit").scrollIntoViewIfNeeded();
     await page.waitForSelector(".exhibit .thumbnail");
     await screenshot(page, `lesson-${theme}-${width}`, { seen: true });
@@ -219,11 +231,15 @@ test("every lesson of the server is shown, with no formula in error", async (t) 
         return words(blocks.slice(0, 1));
       }, id),
     );
-    assert.equal(await page.locator(".lesson-text .katex-error").count(), 0, id);
+    await soon(async () =>
+      assert.equal(await page.locator(".lesson-text .katex-error").count(), 0, id),
+    );
     assert.doesNotMatch(await page.textContent(".lesson-text"), /undefined|\[object/, id);
   }
-  assert.equal(
-    await page.getByRole("button", { name: "next", exact: true }).last().isDisabled(),
-    true,
+  await soon(async () =>
+    assert.equal(
+      await page.getByRole("button", { name: "next", exact: true }).last().isDisabled(),
+      true,
+    ),
   );
 });

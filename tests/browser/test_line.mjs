@@ -2,7 +2,7 @@
 // The line between page and server: cut and mended, hidden, late, and after the end of a run.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, fastest, playTo, read, until } from "./support.mjs";
+import { createBench, fastest, playTo, read, soon, until } from "./support.mjs";
 
 const LONG = 60000; // [ms] that a run may take on a busy machine
 
@@ -68,10 +68,10 @@ test("a hidden page closes its stream and catches up when it is shown", async (t
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.3);
   await show(page, false);
-  assert.match(await page.textContent(".stream"), /paused while hidden/);
+  await soon(async () => assert.match(await page.textContent(".stream"), /paused while hidden/));
   const seen = await read(page, (data) => data.latest.frame);
   await page.waitForTimeout(800);
-  assert.equal(await read(page, (data) => data.latest.frame), seen);
+  await soon(async () => assert.equal(await read(page, (data) => data.latest.frame), seen));
   await show(page, true);
   await until(page, `(data) => data.latest.frame > ${seen} + 40`);
   const whole = await read(page, (data) => data.history.count === data.latest.frame + 1);
@@ -86,7 +86,7 @@ test("a finished run stops the clock; another step runs it again, Backspace sets
   await until(page, (data) => data.speed === 10);
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "finished", LONG);
-  assert.match(await page.textContent("#play"), /Replay/);
+  await soon(async () => assert.match(await page.textContent("#play"), /Replay/));
   const generation = await read(page, (data) => data.generation);
   await type(page, "#set-h", "0.002");
   await until(page, `(data) => data.generation > ${generation} && data.latest?.t > 0.2`); // runs on by itself
@@ -96,7 +96,9 @@ test("a finished run stops the clock; another step runs it again, Backspace sets
   const frames = await read(page, (data) => data.history.count);
   await page.keyboard.press("Space");
   await until(page, (data) => data.view.replaying && data.view.shown > 3);
-  assert.ok((await read(page, (data) => data.history.count)) >= frames, "nothing is lost");
+  await soon(async () =>
+    assert.ok((await read(page, (data) => data.history.count)) >= frames, "nothing is lost"),
+  );
 });
 
 test("a change made at a run's end, before the page heard of the end, runs on; what comes late of the old run is past", async (t) => {
@@ -108,7 +110,13 @@ test("a change made at a run's end, before the page heard of the end, runs on; w
   await until(page, (data) => data.state === "running");
   const { id, generation } = await read(page, ({ id, generation }) => ({ id, generation }));
   await stateOnServer(id, "finished");
-  assert.equal(await read(page, (data) => data.state), "running", "the end has not been heard of");
+  await soon(async () =>
+    assert.equal(
+      await read(page, (data) => data.state),
+      "running",
+      "the end has not been heard of",
+    ),
+  );
   await type(page, "#set-h", "0.002");
   await until(page, `(data) => data.generation > ${generation}`);
   line.letGo();
@@ -177,7 +185,7 @@ test("a page that was hidden after the end of a run has nothing to reconnect to"
     asked.filter((url) => /events/.test(url)),
     [],
   );
-  assert.equal(await read(page, (data) => data.stream.state), "ended");
+  await soon(async () => assert.equal(await read(page, (data) => data.stream.state), "ended"));
 });
 
 test("a comparison that the server has forgotten is made again, and said so", async (t) => {
@@ -188,8 +196,10 @@ test("a comparison that the server has forgotten is made again, and said so", as
   await until(page, (data) => data.stream.state === "ended");
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "running" && data.latest?.t > 0.3);
-  assert.notEqual(await read(page, (data) => data.id), id);
-  assert.match(await page.textContent(".notice"), /computed again and goes on/);
+  await soon(async () => assert.notEqual(await read(page, (data) => data.id), id));
+  await soon(async () =>
+    assert.match(await page.textContent(".notice"), /computed again and goes on/),
+  );
   assert.deepEqual(bench.faultsOf(page).splice(0), [
     `not found: ${bench.url}api/v1/comparisons/${id}`,
   ]);
@@ -205,7 +215,9 @@ test("a server that ends and starts again: said plainly, every frame stays, the 
   line.cut();
   await first.stop();
   await page.waitForSelector(".lost:not([hidden])");
-  assert.match(await page.textContent(".lost"), /does not answer.*What was received stays/);
+  await soon(async () =>
+    assert.match(await page.textContent(".lost"), /does not answer.*What was received stays/),
+  );
   const seen = await read(page, (data) => ({
     id: data.id,
     frame: data.latest.frame,
@@ -214,8 +226,10 @@ test("a server that ends and starts again: said plainly, every frame stays, the 
   const again = await bench.server(t);
   line.mend(again.port);
   await until(page, `(data) => data.id !== "${seen.id}" && data.latest.frame > ${seen.frame} + 20`);
-  assert.ok(await page.isHidden(".lost"));
-  assert.match(await page.textContent(".notice"), /computed again and goes on/);
+  await soon(async () => assert.ok(await page.isHidden(".lost")));
+  await soon(async () =>
+    assert.match(await page.textContent(".notice"), /computed again and goes on/),
+  );
   const { run, times, dt } = await read(page, (data) => ({
     run: data.run,
     times: Array.from(data.history.t.subarray(0, data.history.count)),
@@ -237,7 +251,9 @@ test("pause pressed while the server is away holds when it is back", async (t) =
   await until(page, (data) => data.stream.state === "reconnecting");
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "paused");
-  assert.match(await page.textContent(".notice"), /will be done when it is back/);
+  await soon(async () =>
+    assert.match(await page.textContent(".notice"), /will be done when it is back/),
+  );
   const id = await read(page, (data) => data.id);
   line.mend();
   await stateOnServer(id, "paused");
@@ -253,8 +269,8 @@ test("a change that is refused after the comparison expired loses nothing of the
   await page.fill("#pick-spelling", "projection@rk4:h=-1");
   await page.locator("dialog[open] button[type=submit]").click();
   await page.waitForFunction(() => document.querySelector("#pick-error").textContent !== "");
-  assert.equal(await read(page, (data) => data.latest.t), last);
-  assert.equal(await read(page, (data) => data.methods.length), 5);
+  await soon(async () => assert.equal(await read(page, (data) => data.latest.t), last));
+  await soon(async () => assert.equal(await read(page, (data) => data.methods.length), 5));
 
   // one that is taken starts the runs anew
   await page.fill("#pick-spelling", "projection@rk4:h=0.01");
@@ -269,9 +285,9 @@ test("a field that nobody answered shows what runs once the server is there agai
   line.cut();
   await type(page, "#set-h", "0.013");
   await page.waitForFunction(() => document.querySelector("#set-h").getAttribute("aria-invalid"));
-  assert.match(await page.textContent("#set-h-hint"), /does not answer/);
+  await soon(async () => assert.match(await page.textContent("#set-h-hint"), /does not answer/));
   line.mend();
   await page.waitForFunction(() => !document.querySelector("#set-h").getAttribute("aria-invalid"));
-  assert.equal(await page.inputValue("#set-h"), "0.02");
+  await soon(async () => assert.equal(await page.inputValue("#set-h"), "0.02"));
   assert.doesNotMatch(await page.textContent("#set-h-hint"), /does not answer/);
 });

@@ -4,7 +4,17 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { evaluate, valuesAt } from "../../web/state/formula.js";
-import { createBench, drawn, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
+import {
+  createBench,
+  drawn,
+  fastest,
+  playTo,
+  read,
+  screenshot,
+  soon,
+  stood,
+  until,
+} from "./support.mjs";
 
 const SMALLEST_TARGET = 24; // [px] WCAG 2.5.8
 const TEXT_CONTRAST = 4.5; // WCAG 1.4.3
@@ -31,9 +41,11 @@ for (const theme of THEMES) {
   test(`1280 wide, ${theme}: nothing overflows and nothing moves after the first paint`, async (t) => {
     const page = await open(t, { colorScheme: theme, fresh: true, init: noteShifts });
     await playTo(page, 2.5);
-    assert.deepEqual(await page.evaluate(() => globalThis.shifts), []);
+    await soon(async () => assert.deepEqual(await page.evaluate(() => globalThis.shifts), []));
     await screenshot(page, `page-1280-${theme}`); // resizes the page, so it comes after
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280),
+    );
   });
 }
 
@@ -41,7 +53,9 @@ for (const width of [360, 320]) {
   test(`${width} wide: one column in reading order, no horizontal scroll`, async (t) => {
     const page = await open(t, { viewport: { width, height: 780 } });
     await playTo(page, 1.5);
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width),
+    );
     // the status line is at its own place at the end of the page
     await page.evaluate(() => scrollTo(0, document.body.scrollHeight));
     const tops = await page.evaluate(() =>
@@ -179,15 +193,15 @@ test("every control has a name and room, every reference a target, every id one 
 test("a slider tells its value with the unit; Home is the least, End the most", async (t) => {
   const page = await open(t);
   const slider = page.locator("#set-h-slider");
-  assert.equal(await slider.getAttribute("aria-valuetext"), "0.02 s");
+  await soon(async () => assert.equal(await slider.getAttribute("aria-valuetext"), "0.02 s"));
   await slider.focus();
   await page.keyboard.press("Home");
-  assert.equal(await slider.getAttribute("aria-valuetext"), "0.0001 s");
-  assert.equal(await slider.inputValue(), await slider.getAttribute("min"));
+  await soon(async () => assert.equal(await slider.getAttribute("aria-valuetext"), "0.0001 s"));
+  await soon(async () => assert.equal(await slider.inputValue(), await slider.getAttribute("min")));
   await page.keyboard.press("End");
-  assert.equal(await slider.getAttribute("aria-valuetext"), "0.1 s");
-  assert.equal(await slider.inputValue(), await slider.getAttribute("max"));
-  assert.equal(await read(page, (data) => data.state), "paused");
+  await soon(async () => assert.equal(await slider.getAttribute("aria-valuetext"), "0.1 s"));
+  await soon(async () => assert.equal(await slider.inputValue(), await slider.getAttribute("max")));
+  await soon(async () => assert.equal(await read(page, (data) => data.state), "paused"));
 });
 
 test("everything is reached by Tab, and the first stop leads to Play", async (t) => {
@@ -209,14 +223,18 @@ test("everything is reached by Tab, and the first stop leads to Play", async (t)
   assert.ok(stops.includes("play") && stops.includes("scrub"), stops.join(" | "));
   await page.locator(".skip a").first().focus();
   await page.keyboard.press("Enter");
-  assert.equal(await page.evaluate(() => document.activeElement.id), "play");
+  await soon(async () =>
+    assert.equal(await page.evaluate(() => document.activeElement.id), "play"),
+  );
 });
 
 test("digits select, signs change the speed, and single characters can be switched off", async (t) => {
   const page = await open(t);
   await page.keyboard.press("3");
   await until(page, (data) => data.view.selected === 2);
-  assert.equal(await page.getAttribute("tbody tr:nth-child(3) .select", "aria-pressed"), "true");
+  await soon(async () =>
+    assert.equal(await page.getAttribute("tbody tr:nth-child(3) .select", "aria-pressed"), "true"),
+  );
   await page.keyboard.press("=");
   await until(page, (data) => data.speed === 2);
   await page.keyboard.press("-");
@@ -230,8 +248,8 @@ test("digits select, signs change the speed, and single characters can be switch
   await page.keyboard.press("=");
   await page.keyboard.press("ArrowRight");
   await until(page, (data) => data.latest.frame === 1);
-  assert.equal(await read(page, (data) => data.view.selected), 2);
-  assert.equal(await read(page, (data) => data.speed), 1);
+  await soon(async () => assert.equal(await read(page, (data) => data.view.selected), 2));
+  await soon(async () => assert.equal(await read(page, (data) => data.speed), 1));
 });
 
 test("keys typed into a field stay in the field", async (t) => {
@@ -240,25 +258,31 @@ test("keys typed into a field stay in the field", async (t) => {
   await page.keyboard.press("3");
   await page.keyboard.press("Space");
   await page.keyboard.press("Backspace");
-  assert.deepEqual(await read(page, (data) => [data.view.selected, data.state]), [0, "paused"]);
+  await soon(async () =>
+    assert.deepEqual(await read(page, (data) => [data.view.selected, data.state]), [0, "paused"]),
+  );
 });
 
 test("each curve has a table with the same numbers", async (t) => {
   const page = await open(t);
   await playTo(page, 1);
   const plots = page.locator("figure.plot");
-  assert.equal(await plots.count(), 2);
+  await soon(async () => assert.equal(await plots.count(), 2));
   for (let k = 0; k < 2; k++) {
     const plot = plots.nth(k);
     await plot.getByRole("button", { name: "table" }).click();
-    assert.ok((await plot.locator("thead th").count()) >= 4, "some times");
-    assert.equal(await plot.locator("tbody tr").count(), 5, "a row per method");
+    await soon(async () => assert.ok((await plot.locator("thead th").count()) >= 4, "some times"));
+    await soon(async () =>
+      assert.equal(await plot.locator("tbody tr").count(), 5, "a row per method"),
+    );
     const cut = await plot.locator(".twin").evaluate((el) => el.scrollWidth - el.clientWidth);
     assert.ok(cut <= 0, `${cut} px are cut off`);
   }
-  const last = await plots.nth(1).locator("tbody tr").first().locator("td").last().textContent();
-  assert.match(last, /^[\d.]+ [pnµm]m$/);
-  assert.equal(last, await page.textContent("tbody tr:nth-child(1) td.gap .number"));
+  await soon(async () => {
+    const last = await plots.nth(1).locator("tbody tr").first().locator("td").last().textContent();
+    assert.match(last, /^[\d.]+ [pnµm]m$/);
+    assert.equal(last, await page.textContent("tbody tr:nth-child(1) td.gap .number"));
+  });
 });
 
 test("a click on a curve shows that time, and the table, the drawing and the clock follow", async (t) => {
@@ -269,9 +293,13 @@ test("a click on a curve shows that time, and the table, the drawing and the clo
   await page.mouse.click(box.x + 0.05 * box.width, box.y + 20);
   await until(page, (data) => data.view.shown >= 0);
   await drawn(page);
-  assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), before);
+  await soon(async () =>
+    assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), before),
+  );
   const shown = await read(page, (data) => data.history.t[data.view.shown]);
-  assert.equal(await page.textContent(".time"), `t ${shown.toFixed(2)} s / 10 s`);
+  await soon(async () =>
+    assert.equal(await page.textContent(".time"), `t ${shown.toFixed(2)} s / 10 s`),
+  );
 });
 
 test("the axes of time are those of the scene shown, after another one as well", async (t) => {
@@ -293,7 +321,7 @@ test("the axes of time are those of the scene shown, after another one as well",
 test("a server that is lost is told in sight of the mechanism", async (t) => {
   const line = await bench.line(t);
   const page = await open(t, { url: line.url, viewport: { width: 1280, height: 720 } });
-  assert.equal(await page.evaluate(() => scrollY), 0);
+  await soon(async () => assert.equal(await page.evaluate(() => scrollY), 0));
   line.cut();
   const told = page.locator(".lost");
   await told.getByText("goes on by itself when the server is back").waitFor();
@@ -304,9 +332,11 @@ test("a server that is lost is told in sight of the mechanism", async (t) => {
 test("the drawing is described in one sentence on demand", async (t) => {
   const page = await open(t);
   await page.getByRole("button", { name: "describe" }).click();
-  assert.match(
-    await page.textContent(".spoken"),
-    /^Four-bar.* at 0\.00 s, drawn by index-1,.*loop gap .*\.$/,
+  await soon(async () =>
+    assert.match(
+      await page.textContent(".spoken"),
+      /^Four-bar.* at 0\.00 s, drawn by index-1,.*loop gap .*\.$/,
+    ),
   );
 });
 
@@ -314,8 +344,8 @@ test("the equations of the scene are set as mathematics", async (t) => {
   const page = await open(t);
   await page.click(".equation-panel summary");
   await page.waitForSelector(".term-block .katex");
-  assert.ok((await page.locator(".term-block").count()) >= 4);
-  assert.equal(await page.locator(".katex-error").count(), 0);
+  await soon(async () => assert.ok((await page.locator(".term-block").count()) >= 4));
+  await soon(async () => assert.equal(await page.locator(".katex-error").count(), 0));
   await screenshot(page, "page-1280-light-equations");
 });
 
@@ -355,17 +385,19 @@ test("the numbers beside the entries are those of the state shown: with them J v
   assert.ok(Math.abs(twice / 2 - terms.kinetic) < 1e-12 * terms.kinetic, `${twice / 2} J`);
 
   const shown = () => page.locator(".equation-body > .terms .line .value").allTextContents();
-  const first = await shown();
-  assert.ok(
-    first.every((text) => /^= -?[\d.e-]+$/.test(text)),
-    first.join("; "),
-  );
+  let first = [];
+  await soon(async () => {
+    first = await shown();
+    assert.ok(
+      first.length > 0 && first.every((text) => /^= -?[\d.e-]+$/.test(text)),
+      String(first),
+    );
+  });
   const M21 = of("M").find(({ row, column }) => row === 2 && column === 1).value;
   assert.ok(first.includes(`= ${Number(M21.toPrecision(4))}`));
   await page.focus("#play");
   await playTo(page, 0.4);
-  await page.waitForTimeout(400);
-  assert.notDeepEqual(await shown(), first, "they follow the time shown");
+  await soon(async () => assert.notDeepEqual(await shown(), first, "they follow the time shown"));
 });
 
 for (const [theme, width] of [
@@ -376,10 +408,12 @@ for (const [theme, width] of [
     const page = await open(t, { colorScheme: theme, viewport: { width, height: 780 } });
     await page.click(".equation-panel summary");
     await page.waitForSelector(".reduced-panel summary");
-    assert.equal(await page.locator(".reduced-tables").isVisible(), false);
+    await soon(async () => assert.equal(await page.locator(".reduced-tables").isVisible(), false));
     await page.click(".reduced-panel summary");
     await page.waitForSelector(".reduced-tables table");
-    assert.match(await page.textContent(".reduced-panel"), /Independent: th1 \(the motors\)/);
+    await soon(async () =>
+      assert.match(await page.textContent(".reduced-panel"), /Independent: th1 \(the motors\)/),
+    );
     const acceleration = () =>
       page.textContent(".reduced-tables table:first-child tbody tr:nth-child(2) td");
     const [M, C, g, tau, a] = await page.evaluate(() => {
@@ -392,9 +426,13 @@ for (const [theme, width] of [
     // four digits of each are shown
     assert.ok(Math.abs(M * a + C + g - tau) < 2e-3 * (Math.abs(g) + Math.abs(C)));
     // the closed form is set: four parts, and the two coordinates of the dyad
-    assert.equal(await page.locator(".reduced-panel .term-block .katex").count(), 6);
-    assert.equal(await page.locator(".katex-error").count(), 0);
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await soon(async () =>
+      assert.equal(await page.locator(".reduced-panel .term-block .katex").count(), 6),
+    );
+    await soon(async () => assert.equal(await page.locator(".katex-error").count(), 0));
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width),
+    );
     const before = await acceleration();
     await page.locator(".reduced-panel").scrollIntoViewIfNeeded();
     await screenshot(page, `page-${width}-${theme}-reduced`);
@@ -429,8 +467,13 @@ test("a formula too long to be read is not set, and said where it is printed", a
       document.querySelector(".equation-body").textContent,
     ),
   );
-  assert.equal(await page.locator(".katex-error").count(), 0);
-  assert.match(await page.textContent(".equation-body"), /rotation vector of the unit quaternion/);
+  await soon(async () => assert.equal(await page.locator(".katex-error").count(), 0));
+  await soon(async () =>
+    assert.match(
+      await page.textContent(".equation-body"),
+      /rotation vector of the unit quaternion/,
+    ),
+  );
 });
 
 for (const width of [360, 768]) {
@@ -438,7 +481,9 @@ for (const width of [360, 768]) {
     const page = await open(t, { viewport: { width, height: 780 }, hash: "#delta-robot" });
     await page.click("#reactions summary");
     await page.waitForSelector("#reactions tbody tr");
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width),
+    );
     await page.getByRole("button", { name: "add a method" }).click();
     await page.selectOption("#pick-formulation", "ggl");
     await page.click(".misfits summary");
@@ -478,10 +523,10 @@ test("every shipped scene opens, moves and draws no NaN", async (t) => {
 
 test("who wants less motion gets steps until he asks for more", async (t) => {
   const page = await open(t, { reducedMotion: "reduce" });
-  assert.match(await page.textContent("#play"), /Step/);
+  await soon(async () => assert.match(await page.textContent("#play"), /Step/));
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.09);
-  assert.equal(await read(page, (data) => data.state), "paused");
+  await soon(async () => assert.equal(await read(page, (data) => data.state), "paused"));
   await page.getByRole("button", { name: "animate" }).click();
   await until(page, (data) => data.state === "running");
 });
@@ -489,9 +534,11 @@ test("who wants less motion gets steps until he asks for more", async (t) => {
 test("the theme can be chosen and is remembered", async (t) => {
   const page = await open(t, { colorScheme: "light" });
   await page.getByRole("button", { name: "dark theme" }).click();
-  assert.equal(
-    await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
-    "rgb(20, 23, 27)",
+  await soon(async () =>
+    assert.equal(
+      await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
+      "rgb(20, 23, 27)",
+    ),
   );
   await page.reload();
   await page.waitForFunction(() => document.documentElement.dataset.theme === "dark");
@@ -499,9 +546,11 @@ test("the theme can be chosen and is remembered", async (t) => {
 
 test("without script there is a picture, an explanation and the way to the JSON", async (t) => {
   const page = await open(t, { javaScriptEnabled: false, wait: false });
-  assert.ok(await page.locator(".still img").isVisible());
-  assert.ok((await page.locator(".still img").boundingBox()).height > 100);
-  assert.equal(await page.locator(".still a").first().getAttribute("href"), "/api/v1/");
-  assert.equal(await page.locator("main").isVisible(), false);
+  await soon(async () => assert.ok(await page.locator(".still img").isVisible()));
+  await soon(async () => assert.ok((await page.locator(".still img").boundingBox()).height > 100));
+  await soon(async () =>
+    assert.equal(await page.locator(".still a").first().getAttribute("href"), "/api/v1/"),
+  );
+  await soon(async () => assert.equal(await page.locator("main").isVisible(), false));
   await screenshot(page, "page-no-script");
 });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { createBench, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
+import { createBench, fastest, playTo, read, screenshot, soon, stood, until } from "./support.mjs";
 
 const ROUNDING = 1e-12; // [m] a loop that a method keeps closed
 const LONG = 60000; // [ms] that a run may take on a busy machine
@@ -21,15 +21,23 @@ const time = (page) => read(page, (data) => data.latest.t);
 
 test("opens paused on five methods of the four-bar, with Play focused", async (t) => {
   const page = await open(t);
-  assert.equal(await page.evaluate(() => document.activeElement.id), "play");
-  assert.deepEqual(await read(page, (data) => data.methods.map((m) => m.formulation)), METHODS);
-  assert.equal(await read(page, (data) => data.state), "paused");
-  assert.equal(await read(page, (data) => data.latest.t), 0);
-  assert.match(await page.textContent(".mechanism .caption"), /crank-rocker, 1 /);
-  assert.equal(await page.locator(".ghost").count(), METHODS.length);
-  assert.match(
-    await page.textContent("#status"),
-    /paused · 5 methods.*1 degree of freedom \(3 − 2\).*stream live/s,
+  await soon(async () =>
+    assert.equal(await page.evaluate(() => document.activeElement.id), "play"),
+  );
+  await soon(async () =>
+    assert.deepEqual(await read(page, (data) => data.methods.map((m) => m.formulation)), METHODS),
+  );
+  await soon(async () => assert.equal(await read(page, (data) => data.state), "paused"));
+  await soon(async () => assert.equal(await read(page, (data) => data.latest.t), 0));
+  await soon(async () =>
+    assert.match(await page.textContent(".mechanism .caption"), /crank-rocker, 1 /),
+  );
+  await soon(async () => assert.equal(await page.locator(".ghost").count(), METHODS.length));
+  await soon(async () =>
+    assert.match(
+      await page.textContent("#status"),
+      /paused · 5 methods.*1 degree of freedom \(3 − 2\).*stream live/s,
+    ),
   );
 });
 
@@ -38,12 +46,14 @@ test("Space plays and pauses; the unstabilised gap grows and the others stay clo
   const still = await page.getAttribute(".ghost.selected .outline", "d");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 2);
-  assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), still);
+  await soon(async () =>
+    assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), still),
+  );
   await page.keyboard.press("Space");
   await stood(page);
   const stands = await time(page);
   await page.waitForTimeout(300);
-  assert.equal(await time(page), stands);
+  await soon(async () => assert.equal(await time(page), stands));
   const worst = await read(page, (data) =>
     data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)),
   );
@@ -55,8 +65,12 @@ test("Space plays and pauses; the unstabilised gap grows and the others stay clo
   await page.waitForFunction(() =>
     /index-1: open by .* and growing/.test(document.querySelector(".live").textContent),
   );
-  assert.match(await page.textContent("tr:nth-child(1) .words"), /open by .* and growing/);
-  assert.match(await page.textContent("tr:nth-child(3) .words"), /^closed, but .* true motion$/);
+  await soon(async () =>
+    assert.match(await page.textContent("tr:nth-child(1) .words"), /open by .* and growing/),
+  );
+  await soon(async () =>
+    assert.match(await page.textContent("tr:nth-child(3) .words"), /^closed, but .* true motion$/),
+  );
 });
 
 test("the arrows step by one frame, back as well, and Backspace returns to the start", async (t) => {
@@ -66,13 +80,13 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
     await page.keyboard.press("ArrowRight");
     await until(page, `(data) => data.latest.frame === ${k}`);
   }
-  assert.ok(Math.abs((await time(page)) - 3 * dt) < 1e-12);
+  await soon(async () => assert.ok(Math.abs((await time(page)) - 3 * dt) < 1e-12));
   await page.keyboard.press("ArrowLeft");
   await page.waitForFunction(
     (t) => document.querySelector(".time").textContent === `t ${t.toFixed(2)} s / 10 s`,
     2 * dt,
   );
-  assert.equal(await read(page, (data) => data.latest.frame), 3);
+  await soon(async () => assert.equal(await read(page, (data) => data.latest.frame), 3));
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
   await until(page, (data) => data.latest.frame === 4);
@@ -80,7 +94,9 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
   await page.waitForFunction(
     () => document.querySelector(".time").textContent === "t 0.00 s / 10 s",
   );
-  assert.equal(await read(page, (data) => data.history.count), 5, "the recording is kept");
+  await soon(async () =>
+    assert.equal(await read(page, (data) => data.history.count), 5, "the recording is kept"),
+  );
 });
 
 test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 s, projection stays closed", async (t) => {
@@ -90,7 +106,7 @@ test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 
     page,
     (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)) && data.latest?.frame === 0,
   );
-  assert.equal(await page.inputValue("#set-h"), "0.02");
+  await soon(async () => assert.equal(await page.inputValue("#set-h"), "0.02"));
   await page.focus("#play");
   await page.keyboard.press("=");
   await until(page, (data) => data.speed === 2);
@@ -107,7 +123,9 @@ test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 
     data.history.worst(2, "gap", 0, data.history.count - 1),
   );
   assert.ok(projection < ROUNDING, `${projection} m`);
-  assert.match(await page.textContent(".tear-inset"), /×[\d.]+.*gap \d+ .?m/s);
+  await soon(async () =>
+    assert.match(await page.textContent(".tear-inset"), /×[\d.]+.*gap \d+ .?m/s),
+  );
   await page.keyboard.press("Space");
   await stood(page);
   await screenshot(page, "page-1280-light-open-loop");
@@ -126,10 +144,12 @@ test("the same step is reached by the slider and by 2e-2 s", async (t) => {
   );
   await page.keyboard.press("ArrowUp");
   await until(page, (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)));
-  assert.equal(await page.getAttribute("#set-h-slider", "aria-valuetext"), "0.02 s");
+  await soon(async () =>
+    assert.equal(await page.getAttribute("#set-h-slider", "aria-valuetext"), "0.02 s"),
+  );
   await type(page, "#set-h", "1e-2 s");
   await until(page, (data) => data.methods.every((m) => /h=0\.01$/.test(m.spelling)));
-  assert.equal(await page.inputValue("#set-h"), "0.01");
+  await soon(async () => assert.equal(await page.inputValue("#set-h"), "0.01"));
 });
 
 test("a step of 0 is refused at the field and the old run goes on", async (t) => {
@@ -138,12 +158,14 @@ test("a step of 0 is refused at the field and the old run goes on", async (t) =>
   await until(page, (data) => data.latest?.t > 0.2);
   const before = await read(page, (data) => ({ generation: data.generation, t: data.latest.t }));
   await type(page, "#set-h", "0");
-  assert.equal(await page.textContent("#set-h-hint"), "dt must be > 0");
-  assert.equal(await page.getAttribute("#set-h", "aria-invalid"), "true");
+  await soon(async () => assert.equal(await page.textContent("#set-h-hint"), "dt must be > 0"));
+  await soon(async () => assert.equal(await page.getAttribute("#set-h", "aria-invalid"), "true"));
   await until(page, `(data) => data.latest?.t > ${before.t} + 0.3`);
-  assert.equal(await read(page, (data) => data.generation), before.generation);
+  await soon(async () =>
+    assert.equal(await read(page, (data) => data.generation), before.generation),
+  );
   await page.press("#set-h", "Escape");
-  assert.equal(await page.inputValue("#set-h"), "0.02");
+  await soon(async () => assert.equal(await page.inputValue("#set-h"), "0.02"));
 });
 
 test("a spelling that the server refuses is told in the dialog and changes nothing", async (t) => {
@@ -154,7 +176,7 @@ test("a spelling that the server refuses is told in the dialog and changes nothi
   await page.waitForFunction(() =>
     /projection/.test(document.querySelector("#pick-error").textContent),
   );
-  assert.equal(await read(page, (data) => data.methods.length), 5);
+  await soon(async () => assert.equal(await read(page, (data) => data.methods.length), 5));
   await page.fill("#pick-spelling", "index1@euler:h=1e-3");
   await page.getByRole("button", { name: "Add", exact: true }).click();
   await until(page, (data) => data.methods.length === 6 && data.view.selected === 5);
@@ -171,13 +193,15 @@ test("a length that cannot close the loop is refused at its field with the reaso
   await page.waitForFunction(
     () => document.querySelector("#parameter-l2").getAttribute("aria-invalid") === "true",
   );
-  assert.ok((await page.textContent("#parameter-l2-hint")).length > 10);
-  assert.equal(await read(page, (data) => data.generation), before);
+  await soon(async () => assert.ok((await page.textContent("#parameter-l2-hint")).length > 10));
+  await soon(async () => assert.equal(await read(page, (data) => data.generation), before));
   await type(page, "#parameter-l2", "1.3");
   await until(page, (data) => data.settings.l2 === 1.3 && data.latest?.frame === 0);
-  assert.equal(
-    await read(page, (data) => data.scene.parameters.find((p) => p.name === "l2").value),
-    1.3,
+  await soon(async () =>
+    assert.equal(
+      await read(page, (data) => data.scene.parameters.find((p) => p.name === "l2").value),
+      1.3,
+    ),
   );
 });
 
@@ -185,7 +209,9 @@ test("a negative Baumgarte constant is allowed with a warning", async (t) => {
   const page = await open(t);
   await type(page, "#set-beta", "-3");
   await until(page, (data) => /beta=-3/.test(data.methods[1].spelling));
-  assert.equal(await page.textContent("#set-beta-hint"), "pushes the loop apart");
+  await soon(async () =>
+    assert.equal(await page.textContent("#set-beta-hint"), "pushes the loop apart"),
+  );
 });
 
 test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/20 closes the gap and says so", async (t) => {
@@ -196,12 +222,13 @@ test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 5);
   await page.getByRole("button", { name: "Why? index-1" }).click();
-  const card = await page.textContent(".card");
-  assert.match(
-    card,
-    /After [\d.]+ s the loop gap is .*m \(growing\), the error of position is .*m/,
+  await soon(async () =>
+    assert.match(
+      await page.textContent(".card"),
+      /After [\d.]+ s the loop gap is .*m \(growing\), the error of position is .*m/,
+    ),
   );
-  assert.ok((await page.textContent(".card .rule")).length > 40);
+  await soon(async () => assert.ok((await page.textContent(".card .rule")).length > 40));
   const old = await read(page, (data) => data.history.worst(1, "gap", 0, data.history.indexAt(5)));
   await page.getByRole("button", { name: "Baumgarte with α = β = 20" }).click();
   await until(
@@ -223,7 +250,9 @@ test("the printed null-space form keeps the loop closed while its energy climbs,
   await page.fill("#pick-spelling", "nullspace-as-printed@rk4:h=1e-3");
   await page.getByRole("button", { name: "Add", exact: true }).click();
   await until(page, (data) => data.methods.length === 6);
-  assert.equal(await page.textContent(".badge"), "model error: halving h does not help");
+  await soon(async () =>
+    assert.equal(await page.textContent(".badge"), "model error: halving h does not help"),
+  );
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 1.02);
@@ -272,9 +301,11 @@ test("the scenes stand under their lessons, in the order of the lessons", async 
       .filter(({ scenes }) => scenes.length > 0)
       .map(({ title, scenes }) => ({ label: title, scenes })),
   );
-  assert.equal(
-    groups.flatMap(({ scenes }) => scenes).length,
-    await read(page, (data) => data.scenes.length),
+  await soon(async () =>
+    assert.equal(
+      groups.flatMap(({ scenes }) => scenes).length,
+      await read(page, (data) => data.scenes.length),
+    ),
   );
 });
 
@@ -288,7 +319,9 @@ test("the dialog offers what fits the formulation, and says why the rest does no
       [...document.querySelectorAll("#pick-integrator option")].map((option) => option.value),
     );
     assert.deepEqual(offered.sort(), [...integrators].sort());
-    assert.ok(integrators.includes(await page.inputValue("#pick-integrator")));
+    await soon(async () =>
+      assert.ok(integrators.includes(await page.inputValue("#pick-integrator"))),
+    );
     const told = await page.evaluate(() =>
       [...document.querySelectorAll(".misfits p")].flatMap((p) => p.textContent.split(/; |: take/)),
     );
@@ -301,10 +334,14 @@ test("the dialog offers what fits the formulation, and says why the rest does no
     }
   }
   await page.fill("#pick-spelling", "index3@rk4:h=1e-3");
-  assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/);
+  await soon(async () =>
+    assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/),
+  );
   await page.getByRole("button", { name: "Add", exact: true }).click();
-  assert.equal(await read(page, (data) => data.methods.length), 5);
-  assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/);
+  await soon(async () => assert.equal(await read(page, (data) => data.methods.length), 5));
+  await soon(async () =>
+    assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/),
+  );
 });
 
 test("a method that cannot serve the scene stands in the table with its reason, and the others go on", async (t) => {
@@ -319,12 +356,14 @@ test("a method that cannot serve the scene stands in the table with its reason, 
   });
   await page.selectOption("#scene", "delta-robot");
   await until(page, (data) => data.scene.id === "delta-robot" && data.refused.length === 1);
-  assert.match(await page.textContent(".refused"), /cannot run on this scene: .*(speed|velocit)/);
+  await soon(async () =>
+    assert.match(await page.textContent(".refused"), /cannot run on this scene: .*(speed|velocit)/),
+  );
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.2);
   await page.getByRole("button", { name: /^Forget/ }).click();
-  assert.equal(await page.locator(".refused").count(), 0);
+  await soon(async () => assert.equal(await page.locator(".refused").count(), 0));
 });
 
 test("the forces in the joints are those of the state shown, as numbers and as arrows", async (t) => {
@@ -354,26 +393,30 @@ test("the forces in the joints are those of the state shown, as numbers and as a
     list.map(({ name, force }) => ({ name, force })),
     reactions.map(({ name, force }) => ({ name, force })),
   );
-  const rows = await page.evaluate(() =>
-    [...document.querySelectorAll(".reaction-table tbody tr")].map((row) => row.textContent),
-  );
-  assert.deepEqual(
-    rows.map((text) => text.replace(/[\d−].*/s, "")),
-    ["O", "A", "O", "B"],
-  );
-  assert.match(rows[0], /O1[\d.]+ m?N.*N m/);
-  assert.equal(await page.locator(".arrows path").count(), 4);
-  assert.match(await page.textContent(".arrows text"), /^[\d.]+ m?N$/);
+  const rowsOf = () =>
+    page.evaluate(() =>
+      [...document.querySelectorAll(".reaction-table tbody tr")].map((row) => row.textContent),
+    );
+  await soon(async () => {
+    const rows = await rowsOf();
+    assert.deepEqual(
+      rows.map((text) => text.replace(/[\d−].*/s, "")),
+      ["O", "A", "O", "B"],
+    );
+    assert.match(rows[0], /O1[\d.]+ m?N.*N m/);
+  });
+  await soon(async () => assert.equal(await page.locator(".arrows path").count(), 4));
+  await soon(async () => assert.match(await page.textContent(".arrows text"), /^[\d.]+ m?N$/));
   await page.selectOption("#scene", "fb0-lagrangian");
   await page.waitForFunction(() =>
     /Formulas have no joints/.test(document.querySelector("#reactions").textContent),
   );
-  const efforts = await page.evaluate(() =>
-    [...document.querySelectorAll(".reaction-table tbody tr")].map((row) => row.textContent),
-  );
-  assert.equal(efforts.length, 6);
-  assert.match(efforts[0], /th1[−\d.]+ [mk]?N m$/);
-  assert.equal(await page.locator(".arrows path").count(), 0);
+  await soon(async () => {
+    const efforts = await rowsOf();
+    assert.equal(efforts.length, 6);
+    assert.match(efforts[0], /th1[−\d.]+ [mk]?N m$/);
+  });
+  await soon(async () => assert.equal(await page.locator(".arrows path").count(), 0));
   await page.selectOption("#scene", "four-bar"); // and asks again for one that has joints
   await page.waitForFunction(
     () => document.querySelectorAll(".reaction-table tbody tr").length === 4,
@@ -408,8 +451,8 @@ test("a link opens the same comparison at the same frame with the same numbers",
   assert.match(fragment, /^#scene=four-bar&set\.l2=1\.3&method=/);
   const other = await open(t, { hash: fragment });
   await until(other, `(data) => data.latest?.frame === ${before.frame} && data.view.traces`);
-  assert.deepEqual(await read(other, what), before);
-  assert.equal(await other.locator("#reactions details[open]").count(), 1);
+  await soon(async () => assert.deepEqual(await read(other, what), before));
+  await soon(async () => assert.equal(await other.locator("#reactions details[open]").count(), 1));
   await other.evaluate(() => {
     location.hash = "scene=four-baar&frame=3";
   });
@@ -479,8 +522,12 @@ test("notes travel with the link; one too long to be sent becomes a file that op
   await page.keyboard.press("l");
   await until(page, (data) => /link copied|address line/.test(data.notice));
   const other = await open(t, { hash: new URL(page.url()).hash });
-  assert.equal(await other.inputValue("#note"), "Predict first: which one stays closed?");
-  assert.match(await other.textContent(".notice"), /notes of this link: Predict first/);
+  await soon(async () =>
+    assert.equal(await other.inputValue("#note"), "Predict first: which one stays closed?"),
+  );
+  await soon(async () =>
+    assert.match(await other.textContent(".notice"), /notes of this link: Predict first/),
+  );
   await page.fill("#note", "why? ".repeat(1000));
   await page.focus("#play");
   const [download] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("l")]);
@@ -488,7 +535,7 @@ test("notes travel with the link; one too long to be sent becomes a file that op
   const text = readFileSync(await download.path(), "utf8");
   const [, fragment] = /href="[^"#]*(#[^"]*)"/.exec(text) ?? [];
   const third = await open(t, { hash: fragment.replaceAll("&amp;", "&") });
-  assert.equal((await third.inputValue("#note")).length, 5000);
+  await soon(async () => assert.equal((await third.inputValue("#note")).length, 5000));
 });
 
 test("the last session of this browser can be continued, and an untouched page leaves none", async (t) => {
@@ -496,7 +543,7 @@ test("the last session of this browser can be continued, and an untouched page l
   const untouched = await open(t, context);
   await untouched.reload();
   await untouched.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
-  assert.ok(await untouched.isHidden(".offer"));
+  await soon(async () => assert.ok(await untouched.isHidden(".offer")));
   const page = await open(t, context);
   await type(page, "#set-h", "0.013");
   await page.focus("#play");
@@ -513,7 +560,7 @@ test("the last session of this browser can be continued, and an untouched page l
   const again = await open(t, { ...context, keep: true });
   await again.getByRole("button", { name: "continue it" }).click();
   await until(again, `(data) => data.latest?.frame === ${before.frame} && data.offer === ""`);
-  assert.deepEqual(await read(again, state), before);
+  await soon(async () => assert.deepEqual(await read(again, state), before));
 });
 
 test("a force at a joint whose loop has opened carries a remark", async (t) => {
@@ -527,7 +574,7 @@ test("a force at a joint whose loop has opened carries a remark", async (t) => {
     );
   await page.click("#reactions summary");
   await page.waitForFunction(() => document.querySelectorAll(".reaction-table tr").length > 3);
-  assert.ok((await remark()).every(([, text]) => text === ""));
+  await soon(async () => assert.ok((await remark()).every(([, text]) => text === "")));
   await page.focus("#play");
   await playTo(page, 3);
   await page.waitForFunction(() =>

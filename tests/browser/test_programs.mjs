@@ -5,7 +5,7 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { createBench, until } from "./support.mjs";
+import { createBench, soon, until } from "./support.mjs";
 
 const bench = createBench();
 
@@ -31,7 +31,9 @@ test("a server that allows programs offers them in the dialog of methods, and on
   const offered = await page.locator("#pick-program option").allTextContents();
   assert.deepEqual(offered, ["none", "mine.py, accelerations", "mine.py, its own steps"]);
   await page.selectOption("#pick-program", { label: "mine.py, accelerations" });
-  assert.equal(await page.inputValue("#pick-spelling"), "program:mine.py@rk4:h=0.01");
+  await soon(async () =>
+    assert.equal(await page.inputValue("#pick-spelling"), "program:mine.py@rk4:h=0.01"),
+  );
   await page.getByRole("button", { name: "Add", exact: true }).click();
   await until(page, (data) => data.methods.some((m) => m.spelling.startsWith("program:mine.py")));
 });
@@ -40,5 +42,5 @@ test("a server that allows none shows no list of programs", async (t) => {
   const page = await bench.open(t, { hash: "#pendulum" });
   await page.getByRole("button", { name: "add a method" }).click();
   await page.waitForSelector("#pick-spelling"); // visible: the dialog is open
-  assert.equal(await page.isVisible("#pick-program"), false);
+  await soon(async () => assert.equal(await page.isVisible("#pick-program"), false));
 });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { createBench, fastest, playTo, read, stood, until } from "./support.mjs";
+import { createBench, fastest, playTo, read, soon, stood, until } from "./support.mjs";
 
 const { open } = createBench();
 const LONG = 60000; // [ms] that a run may take on a busy machine
@@ -37,10 +37,10 @@ test("Play goes on from where the scrubber stands, and computes nothing again", 
   await until(page, (data) => data.view.replaying && data.view.shown >= 0);
   const shown = await read(page, (data) => data.history.t[data.view.shown]);
   assert.ok(shown >= from && shown < 1.6, `it goes on from ${from} s, at ${shown} s`);
-  assert.equal(await page.textContent("#play"), "Pause");
+  await soon(async () => assert.equal(await page.textContent("#play"), "Pause"));
   await page.keyboard.press("Space");
   await until(page, (data) => !data.view.replaying);
-  assert.equal(await read(page, (data) => data.history.count), frames);
+  await soon(async () => assert.equal(await read(page, (data) => data.history.count), frames));
   assert.deepEqual(changes, [], "the server was asked for nothing");
 });
 
@@ -58,23 +58,21 @@ test("after the recording the computation goes on; at the end Replay starts from
   await until(page, `(data) => data.latest.t > ${head} && data.view.shown < 0`);
   await until(page, (data) => data.state === "finished", LONG);
   const frames = await read(page, (data) => data.history.count);
-  assert.equal(await page.textContent("#play"), "Replay");
+  await soon(async () => assert.equal(await page.textContent("#play"), "Replay"));
   await page.getByRole("button", { name: "loop", exact: true }).click();
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.view.replaying && data.view.shown > frames / 2, LONG).catch(
     () => undefined,
   );
-  const places = [];
-  for (let k = 0; k < 40; k++) {
-    places.push(await read(page, (data) => data.view.shown));
-    await page.waitForTimeout(100);
-  }
-  assert.ok(
-    places.some((at, k) => k > 0 && at < places[k - 1]),
-    `it starts again: ${places}`,
-  );
-  assert.equal(await read(page, (data) => data.history.count), frames);
+  let before = -1;
+  await soon(async () => {
+    const at = await read(page, (data) => data.view.shown);
+    const again = at < before;
+    before = at;
+    assert.ok(again, `it starts again; now at ${at}`);
+  }, LONG);
+  await soon(async () => assert.equal(await read(page, (data) => data.history.count), frames));
 });
 
 test("pointing at a plot shows the values of all curves in both plots", async (t) => {
@@ -83,17 +81,19 @@ test("pointing at a plot shows the values of all curves in both plots", async (t
   await until(page, (data) => data.reference?.state === "ready");
   const box = await page.locator(".u-over").first().boundingBox();
   await page.mouse.move(box.x + 0.1 * box.width, box.y + box.height / 2);
-  const texts = await page.locator(".readout").allTextContents();
-  assert.equal(texts.length, 2);
   const labels = await read(page, (data) => data.methods.map(({ label }) => label));
-  for (const text of texts) {
-    assert.match(text, /^1\.0\d s/);
-    labels.forEach((label) => assert.ok(text.includes(label), `${label} in ${text}`));
-  }
+  await soon(async () => {
+    const texts = await page.locator(".readout").allTextContents();
+    assert.equal(texts.length, 2);
+    for (const text of texts) {
+      assert.match(text, /^1\.0\d s/);
+      labels.forEach((label) => assert.ok(text.includes(label), `${label} in ${text}`));
+    }
+  });
   const gap = await read(page, (data) => data.history.columns[0].gap[data.history.indexAt(1)]);
   assert.ok(gap > 0);
   await page.mouse.move(5, 5);
-  assert.equal(await page.locator(".readout:visible").count(), 0);
+  await soon(async () => assert.equal(await page.locator(".readout:visible").count(), 0));
 });
 
 test("dragging zooms both plots, a double click shows the whole run again; decades can be left", async (t) => {
@@ -105,18 +105,22 @@ test("dragging zooms both plots, a double click shows the whole run again; decad
   await page.mouse.down();
   await page.mouse.move(x + 0.15 * box.width, y, { steps: 4 });
   await page.mouse.up();
-  assert.equal(await page.getByRole("button", { name: "whole run" }).count(), 2);
+  await soon(async () =>
+    assert.equal(await page.getByRole("button", { name: "whole run" }).count(), 2),
+  );
   await page.mouse.click(x + 0.5 * box.width, y);
   await until(page, (data) => data.view.shown > 0);
   const shown = await read(page, (data) => data.history.t[data.view.shown]);
   assert.ok(Math.abs(shown - 1) < 0.1, `the middle of 0.5 to 1.5 s is ${shown} s`);
   await page.mouse.dblclick(x + 0.5 * box.width, y);
-  assert.equal(await page.locator("button:visible", { hasText: "whole run" }).count(), 0);
+  await soon(async () =>
+    assert.equal(await page.locator("button:visible", { hasText: "whole run" }).count(), 0),
+  );
   const log = page.locator("figure.plot").last().getByRole("button", { name: "log" });
   await log.click();
-  assert.equal(await log.getAttribute("aria-pressed"), "false");
+  await soon(async () => assert.equal(await log.getAttribute("aria-pressed"), "false"));
   await page.selectOption("#plot-lower", "energy_change");
-  assert.equal(await log.getAttribute("aria-pressed"), "true");
+  await soon(async () => assert.equal(await log.getAttribute("aria-pressed"), "true"));
 });
 
 test("two recordings are compared: a kept one stays in the plots beside the next run", async (t) => {
@@ -132,8 +136,9 @@ test("two recordings are compared: a kept one stays in the plots beside the next
   await playTo(page, 1);
   const box = await page.locator(".u-over").last().boundingBox();
   await page.mouse.move(box.x + 0.05 * box.width, box.y + box.height / 2);
-  const text = await page.locator(".readout").last().textContent();
-  assert.match(text, /index-1, kept/);
+  await soon(async () =>
+    assert.match(await page.locator(".readout").last().textContent(), /index-1, kept/),
+  );
   const now = await read(page, (data) => data.history.columns[0].gap[20]);
   assert.ok(before > 10 * now, `${before} m with the long step, ${now} m with the short one`);
   await page.keyboard.press("k");
@@ -145,19 +150,26 @@ test("a pane shows a phase plot: velocity against coordinate, for every method",
   await playTo(page, 1);
   await page.selectOption("#plot-lower", "phase");
   const figure = page.locator("figure.plot").last();
-  assert.equal(await figure.locator(".phase path.orbit").count(), 5);
-  const d = await figure.locator(".phase path.orbit").first().getAttribute("d");
-  assert.ok(d.length > 100 && !/NaN/.test(d));
-  assert.match(await figure.locator(".phase").textContent(), /th1.*w1/s);
+  await soon(async () => assert.equal(await figure.locator(".phase path.orbit").count(), 5));
+  await soon(async () => {
+    const d = await figure.locator(".phase path.orbit").first().getAttribute("d");
+    assert.ok(d?.length > 100 && !/NaN/.test(d));
+  });
+  await soon(async () => assert.match(await figure.locator(".phase").textContent(), /th1.*w1/s));
 
   // what the stream adds to a frame: the smallest singular value and the largest multiplier
   for (const name of ["sigma_min", "lambda_max"]) {
     await page.selectOption("#plot-lower", name);
-    const values = await read(page, `(data) => [...data.history.columns[2].${name}.slice(1, 20)]`);
-    assert.ok(
-      values.every((value) => value > 0 && value < 1e4),
-      `${name}: ${values}`,
-    );
+    await soon(async () => {
+      const values = await read(
+        page,
+        `(data) => [...data.history.columns[2].${name}.slice(1, 20)]`,
+      );
+      assert.ok(
+        values.every((value) => value > 0 && value < 1e4),
+        `${name}: ${values}`,
+      );
+    });
   }
 });
 

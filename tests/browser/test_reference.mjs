@@ -2,7 +2,7 @@
 // The reference solution on the page: a grey ghost, grey curves, and how far each method is off it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, playTo, until } from "./support.mjs";
+import { createBench, playTo, soon, until } from "./support.mjs";
 import { createGrowing, offReference, referenceAt } from "../../web/state/reference.js";
 
 const bench = createBench();
@@ -69,10 +69,12 @@ test("the reference is a grey ghost that moves, names its digits and can be put 
   await until(page, isReady);
   const ghost = page.locator(".truth path");
   const button = page.getByRole("button", { name: "reference", exact: true });
-  assert.ok((await ghost.count()) > 0);
-  assert.match(
-    await button.getAttribute("title"),
-    /in long double .* agree to 1\d\.\d digits to 10 s/,
+  await soon(async () => assert.ok((await ghost.count()) > 0));
+  await soon(async () =>
+    assert.match(
+      await button.getAttribute("title"),
+      /in long double .* agree to 1\d\.\d digits to 10 s/,
+    ),
   );
   const grey = await page.evaluate(() => {
     const { look, theme } = globalThis.holonom.data;
@@ -88,11 +90,11 @@ test("the reference is a grey ghost that moves, names its digits and can be put 
   const at = () => ghost.first().getAttribute("d");
   const before = await at();
   await playTo(page, 3);
-  assert.notEqual(await at(), before, "it moves");
+  await soon(async () => assert.notEqual(await at(), before, "it moves"));
   await button.click();
-  assert.equal(await ghost.count(), 0);
+  await soon(async () => assert.equal(await ghost.count(), 0));
   await button.click();
-  assert.ok((await ghost.count()) > 0);
+  await soon(async () => assert.ok((await ghost.count()) > 0));
 });
 
 test("the error in the table of methods and in its curve is the distance from the reference", async (t) => {
@@ -100,25 +102,26 @@ test("the error in the table of methods and in its curve is the distance from th
   await until(page, isReady);
   await playTo(page, 2);
   const figure = page.locator("figure.plot").first();
-  assert.equal(await figure.locator("select").first().inputValue(), "off");
-  assert.ok(await figure.locator(".no-curve").isHidden());
+  await soon(async () => assert.equal(await figure.locator("select").first().inputValue(), "off"));
+  await soon(async () => assert.ok(await figure.locator(".no-curve").isHidden()));
   await figure.getByRole("button", { name: "table" }).click();
-  const names = await figure.locator("tbody th").allTextContents();
-  const cells = await figure.locator("tbody td:last-child").allTextContents();
   const named = await page.evaluate(() =>
     globalThis.holonom.data.methods.map(({ label }) => label),
   );
-  assert.deepEqual(names, named);
-  assert.ok(
-    cells.every((text) => /^[\d.×⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ ?[a-zµ]*m$/.test(text)),
-    cells.join("; "),
-  );
-  const errors = await page.locator(".method-table tbody td.off .number").allTextContents();
-  assert.equal(errors.length, named.length);
-  assert.ok(
-    errors.every((text) => /^(< )?\S+ \S*m$/.test(text)),
-    errors.join("; "),
-  );
+  await soon(async () => {
+    const cells = await figure.locator("tbody td:last-child").allTextContents();
+    assert.deepEqual(await figure.locator("tbody th").allTextContents(), named);
+    assert.ok(
+      cells.every((text) => /^[\d.×⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ ?[a-zµ]*m$/.test(text)),
+      cells.join("; "),
+    );
+    const errors = await page.locator(".method-table tbody td.off .number").allTextContents();
+    assert.equal(errors.length, named.length);
+    assert.ok(
+      errors.every((text) => /^(< )?\S+ \S*m$/.test(text)),
+      errors.join("; "),
+    );
+  });
   // the loop stays shut to rounding, and yet the motion is off: not the same number
   const own = await page.evaluate(() => globalThis.holonom.data.reference.own);
   assert.ok(own > 0 && own < 1e-9, `the reference's own error is ${own} m`);
@@ -138,10 +141,12 @@ test("other parameters have no stored reference: it is said, and computed when a
   await field.press("Enter");
   await until(page, (data) => data.reference?.state === "none");
   const note = figure.locator(".no-curve");
-  assert.match(await note.textContent(), /none is stored for these parameters/);
-  assert.equal(await page.locator(".truth path").count(), 0);
+  await soon(async () =>
+    assert.match(await note.textContent(), /none is stored for these parameters/),
+  );
+  await soon(async () => assert.equal(await page.locator(".truth path").count(), 0));
   await note.getByRole("button", { name: "compute it" }).click();
   await until(page, isReady);
-  assert.ok(await note.isHidden());
-  assert.ok((await page.locator(".truth path").count()) > 0);
+  await soon(async () => assert.ok(await note.isHidden()));
+  await soon(async () => assert.ok((await page.locator(".truth path").count()) > 0));
 });

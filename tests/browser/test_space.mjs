@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createKinematics, jointPlace } from "../../web/state/kinematics.js";
 import { violations } from "./axe.mjs";
-import { createBench, drawn, playTo, read, screenshot, until } from "./support.mjs";
+import { createBench, drawn, playTo, read, screenshot, soon, until } from "./support.mjs";
 
 const bench = createBench();
 const { open } = bench;
@@ -73,15 +73,19 @@ test("a scene in space is drawn with solids, with names where the joints are", a
   await isSolid(page);
   await until(page, (data) => data.reference?.state === "ready");
   await playTo(page, 0.3);
-  const coloured = await countColour(page, "--slot-0");
-  assert.ok(coloured > 400, `${coloured} pixels have the colour of the method`);
-  assert.equal(await page.locator(".picture .ghosts").isVisible(), false);
-  const places = await namePlaces(page);
-  assert.deepEqual(Object.keys(places).sort(), ["J1", "J2", "J3", "J4"]);
-  const box = await page.locator(".stage").boundingBox();
-  for (const [x, y] of Object.values(places)) {
-    assert.ok(x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height);
-  }
+  await soon(async () => {
+    const coloured = await countColour(page, "--slot-0");
+    assert.ok(coloured > 400, `${coloured} pixels have the colour of the method`);
+  });
+  await soon(async () => assert.equal(await page.locator(".picture .ghosts").isVisible(), false));
+  await soon(async () => {
+    const places = await namePlaces(page);
+    assert.deepEqual(Object.keys(places).sort(), ["J1", "J2", "J3", "J4"]);
+    const box = await page.locator(".stage").boundingBox();
+    for (const [x, y] of Object.values(places)) {
+      assert.ok(x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height);
+    }
+  });
   await screenshot(page, "space-bennett-light", { seen: true });
 });
 
@@ -98,9 +102,9 @@ test("wheel, keys, buttons and the right mouse button move through space", async
   const stage = page.locator(".stage");
   await stage.focus();
   await page.keyboard.press("+");
-  assert.ok((await apart()) > 1.1 * wide, "plus zooms in");
+  await soon(async () => assert.ok((await apart()) > 1.1 * wide, "plus zooms in"));
   await page.keyboard.press("0");
-  assert.deepEqual(await namePlaces(page), start);
+  await soon(async () => assert.deepEqual(await namePlaces(page), start));
 
   const { x, y } = await stage.boundingBox();
   await page.mouse.move(x + 200, y + 200);
@@ -114,26 +118,33 @@ test("wheel, keys, buttons and the right mouse button move through space", async
   }, wide);
   await page.getByRole("button", { name: "fit" }).click();
 
+  await drawn(page);
   const before = await cutPlace(page);
   await page.mouse.move(x + 200, y + 200);
   await page.mouse.down({ button: "right" });
   await page.mouse.move(x + 260, y + 170, { steps: 3 });
   await page.mouse.up({ button: "right" });
-  const byMouse = (await cutPlace(page)).map((place, k) => place - before[k]);
-  // nearer things move farther than the middle of the picture
-  assert.ok(byMouse[0] > 45 && byMouse[0] < 75, String(byMouse));
-  assert.ok(byMouse[1] > -38 && byMouse[1] < -22, String(byMouse));
+  await soon(async () => {
+    const byMouse = (await cutPlace(page)).map((place, k) => place - before[k]);
+    // nearer things move farther than the middle of the picture
+    assert.ok(byMouse[0] > 45 && byMouse[0] < 75, String(byMouse));
+    assert.ok(byMouse[1] > -38 && byMouse[1] < -22, String(byMouse));
+  });
 
   const t0 = await read(page, (data) => data.latest.frame);
   await stage.focus();
   await page.keyboard.press("ArrowRight");
-  assert.ok(await read(page, (data) => data.view.look !== null), "arrows turn the view");
-  assert.equal(await read(page, (data) => data.latest.frame), t0, "and do not step");
+  await soon(async () =>
+    assert.ok(await read(page, (data) => data.view.look !== null), "arrows turn the view"),
+  );
+  await soon(async () =>
+    assert.equal(await read(page, (data) => data.latest.frame), t0, "and do not step"),
+  );
 
   const perspective = page.getByRole("button", { name: "perspective" });
-  assert.equal(await perspective.getAttribute("aria-pressed"), "true");
+  await soon(async () => assert.equal(await perspective.getAttribute("aria-pressed"), "true"));
   await page.keyboard.press("p");
-  assert.equal(await perspective.getAttribute("aria-pressed"), "false");
+  await soon(async () => assert.equal(await perspective.getAttribute("aria-pressed"), "false"));
   await page.getByRole("button", { name: "follow" }).click();
   await page.getByRole("button", { name: "frames" }).click();
   await page.getByRole("button", { name: "paths" }).click();
@@ -157,8 +168,10 @@ for (const [theme, width] of [
     await page.evaluate(() => document.activeElement.blur());
     await page.mouse.move(width / 2, 300); // away from the button, so that its tip goes
     await page.waitForSelector("#tip", { state: "hidden" });
-    assert.deepEqual(await violations(page), []);
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await soon(async () => assert.deepEqual(await violations(page), []));
+    await soon(async () =>
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width),
+    );
     await screenshot(page, `space-stewart-${theme}-${width}`, { seen: true });
   });
 }
@@ -171,7 +184,7 @@ test("from space to the plane and back: each is drawn by its own means", async (
   await page.waitForFunction(() =>
     document.querySelector(".picture .ghosts path")?.getAttribute("d"),
   );
-  assert.equal(await page.locator(".space-tools").isVisible(), false);
+  await soon(async () => assert.equal(await page.locator(".space-tools").isVisible(), false));
   await page.selectOption("#scene", "bennett");
   await isSolid(page);
 });

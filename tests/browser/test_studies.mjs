@@ -2,7 +2,7 @@
 // Studies on the page: what accuracy costs, where steps are stable, where the error comes from.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, read, screenshot, until } from "./support.mjs";
+import { createBench, read, screenshot, soon, until } from "./support.mjs";
 import {
   barsOf,
   boundaryOf,
@@ -260,20 +260,27 @@ test("W draws error against cost; a point's step is taken over by click and by k
   await dialog.getByRole("progressbar").waitFor();
   await until(page, hasEnded("work-precision"), LONG);
   const spots = dialog.locator(".scatter [data-spot]");
-  const drawn = await spots.count();
   const points = await read(
     page,
     (data) =>
       data.studies["work-precision"].document.methods.flatMap((method) => method.points).length,
   );
-  assert.equal(drawn, points, "every point is there, failed ones too");
-  assert.match(
-    await spots.first().getAttribute("aria-label"),
-    /h = .*: (error .* operations|error .*op|failed)/,
+  await soon(async () =>
+    assert.equal(await spots.count(), points, "every point is there, failed ones too"),
+  );
+  await soon(async () =>
+    assert.match(
+      await spots.first().getAttribute("aria-label"),
+      /h = .*: (error .* operations|error .*op|failed)/,
+    ),
   );
   await dialog.getByRole("button", { name: "evaluations" }).click();
-  assert.match(await spots.first().getAttribute("aria-label"), /evaluations|failed/);
-  assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes");
+  await soon(async () =>
+    assert.match(await spots.first().getAttribute("aria-label"), /evaluations|failed/),
+  );
+  await soon(async () =>
+    assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes"),
+  );
   const wanted = await read(
     page,
     (data) => data.studies["work-precision"].document.methods[0].points[2].method,
@@ -321,18 +328,22 @@ test("a study that is stopped shows what was done, and says so", async (t) => {
     .locator(".study-run")
     .getByText(/stopped on request/)
     .waitFor();
-  assert.ok((await page.locator(".scatter .spot").count()) > 0);
+  await soon(async () => assert.ok((await page.locator(".scatter .spot").count()) > 0));
 });
 
 test("B maps alpha and beta with letters and the predicted boundary; a cell sets both", async (t) => {
   const page = await open(t, { hash: STABILISED });
   await page.keyboard.press("b");
   await until(page, hasEnded("stability"), LONG);
-  assert.ok((await page.locator(".maps .contour").count()) > 0, "at first as heat");
+  await soon(async () =>
+    assert.ok((await page.locator(".maps .contour").count()) > 0, "at first as heat"),
+  );
   await page.getByRole("button", { name: "outcome" }).click();
-  const letters = await page.locator(".maps .cell .letter").allTextContents();
-  assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
-  assert.ok((await page.locator(".maps .boundary").count()) > 0);
+  await soon(async () => {
+    const letters = await page.locator(".maps .cell .letter").allTextContents();
+    assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
+  });
+  await soon(async () => assert.ok((await page.locator(".maps .boundary").count()) > 0));
   await page.locator('.maps [data-spot="3 2"]').click();
   const axes = await read(page, (data) => {
     const { x, y } = data.studies.stability.document;
@@ -344,8 +355,15 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   );
   await page.locator(".maps .here").waitFor();
   await page.keyboard.press("ArrowUp");
-  assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
-  assert.match(await page.textContent(".legend"), /predicted boundary: h β = 2\.7\d on α = β/);
+  await soon(async () =>
+    assert.equal(
+      await page.evaluate(() => document.activeElement?.getAttribute("data-spot")),
+      "3 3",
+    ),
+  );
+  await soon(async () =>
+    assert.match(await page.textContent(".legend"), /predicted boundary: h β = 2\.7\d on α = β/),
+  );
 
   // the ring is dragged to the middle of another cell, and beyond the axes it stays at their end
   const middle = async (selector) => {
@@ -375,8 +393,12 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   await until(page, `(data) => ${set}[1] < ${wanted[0]} && ${set}[1] > 0`);
   await page.getByLabel("over").selectOption("limits");
   await until(page, (data) => data.studies.stability.document?.x === null, LONG);
-  assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side");
-  assert.equal(await page.locator('.maps [data-spot$=" 0"]').count(), 2, "a column each");
+  await soon(async () =>
+    assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side"),
+  );
+  await soon(async () =>
+    assert.equal(await page.locator('.maps [data-spot$=" 0"]').count(), 2, "a column each"),
+  );
 });
 
 test("E shows the parts of each method's error, that add up to it", async (t) => {
@@ -388,9 +410,11 @@ test("E shows the parts of each method's error, that add up to it", async (t) =>
   );
   const sum = Object.values(parts).reduce((total, part) => total + (part ?? 0), 0);
   assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
-  assert.ok((await page.locator(".budget .part").count()) > 0);
+  await soon(async () => assert.ok((await page.locator(".budget .part").count()) > 0));
   await page.getByRole("button", { name: "energy" }).last().click();
-  assert.match(await page.locator(".budgets").textContent(), /energy at the end has changed by/);
+  await soon(async () =>
+    assert.match(await page.locator(".budgets").textContent(), /energy at the end has changed by/),
+  );
 });
 
 test("an error that is not the sum of its parts has no bar, and the time until which it was one", async (t) => {
@@ -401,10 +425,12 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   const { methods } = await read(page, (data) => data.studies.budget.document);
   const held = methods.filter(({ error }) => error?.holds).length;
   assert.ok(held < methods.length, "ten seconds at this step are too long for one of them");
-  assert.equal(await page.locator(".budgets svg.budget").count(), held);
-  assert.match(
-    await page.locator(".budgets").textContent(),
-    /first order has ended, its parts add up to .*; they agree until/,
+  await soon(async () => assert.equal(await page.locator(".budgets svg.budget").count(), held));
+  await soon(async () =>
+    assert.match(
+      await page.locator(".budgets").textContent(),
+      /first order has ended, its parts add up to .*; they agree until/,
+    ),
   );
 });
 
@@ -431,7 +457,7 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
     .waitFor();
   await page.evaluate(() => (location.hash = "#scene=pendulum&method=reduced@rk4:h=0.01"));
   await until(page, (data) => data.methods.length === 1 && data.view.study === "");
-  assert.equal(await page.getByRole("dialog").count(), 0);
+  await soon(async () => assert.equal(await page.getByRole("dialog").count(), 0));
   await page.keyboard.press("w");
   await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
 });

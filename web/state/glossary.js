@@ -48,12 +48,12 @@ export const GLOSSARY = {
   alpha: {
     word: "α",
     means:
-      "Baumgarte's α damps the velocity of the gap (2α in front of φ̇). Critical damping is α = β.",
+      "Baumgarte's α damps the velocity of the gap (2α in front of φ̇), as a damper would. α = 0: the gap swings; α = β: it closes fastest without swinging (critical damping).",
   },
   beta: {
     word: "β",
     means:
-      "Baumgarte's β pulls the gap back like a spring (β² in front of φ). dt·β must stay below the integrator's stability limit: 2.8 for RK4.",
+      "Baumgarte's β pulls the gap back like a spring (β² in front of φ). Larger: it closes faster, but dt·β must stay below the integrator's stability limit: 2.8 for RK4.",
   },
   verdict: {
     word: "verdict",
@@ -67,14 +67,15 @@ export const GLOSSARY = {
   },
   singular: {
     word: "singular configuration",
-    match: /\bsingular configurations?\b/i,
+    match: /\bsingular (configurations?|pose)\b|\bdead points?\b/i,
     means:
-      "Singular configuration: links are collinear and J loses rank. Multipliers grow without bound there, and the motion may branch.",
+      "Singular configuration (dead point, change point): links are collinear and J loses rank. Multipliers grow without bound there, and the motion may branch.",
   },
   multipliers: {
     word: "multipliers",
     match: /\bmultipliers?\b|\|?λ\|?/i,
-    means: "Multipliers λ: the forces with which the constraints hold the loops closed.",
+    means:
+      "Multipliers λ: one number for each loop constraint, the force (or moment) with which it holds the loop closed. Jᵀλ are these forces along the coordinates.",
   },
   pivot: {
     word: "distance from singular",
@@ -123,6 +124,11 @@ export const GLOSSARY = {
     match: /\bloses rank\b|\brank\b/i,
     means:
       "Rank of J: number of independent constraints. Where it falls, some multipliers and velocities are no longer determined.",
+  },
+  magnified: {
+    word: "magnified",
+    means:
+      "Magnification: at ×20 the circle shows the gap of the cut joint 20 times as large as the drawing beside it.",
   },
   cut: {
     word: "cut joint",

@@ -19,6 +19,18 @@ function isOpen({ history, scene }) {
   );
 }
 
+/** The scene that the steps are about. */
+export const GUIDED = "four-bar";
+
+/** In place of a step while another scene is open. @type {Step} */
+export const ELSEWHERE = {
+  title: "The first minute is about the four-bar",
+  text: "Another scene is open now. The steps, with their numbers and names, belong to the four-bar.",
+  button: "open the four-bar",
+  does: "open",
+  done: () => false,
+};
+
 /** @type {Step[]} */
 export const STEPS = [
   {

@@ -28,6 +28,24 @@ const NEAR = 1e-6; // of the scene's length: a drawn point at a joint
  * }} Reactions
  */
 
+/**
+ * What a mark of the server says of multipliers, as a sentence; one that is not here says nothing
+ * against them.
+ * @type {Record<string, string>}
+ */
+const MARKS = {
+  "one of many":
+    "The multipliers are one of many solutions: some constraints are dependent, and only their sum is determined.",
+  "no digit left":
+    "The multipliers have no correct digit left: the loop constraints are almost dependent here.",
+  "no solution": "The equations have no solution here, so there are no multipliers.",
+  "of open loops":
+    "A loop stands open: these multipliers are forces of a mechanism that has come apart.",
+};
+
+/** @param {string} [mark] of the server */
+export const markWords = (mark = "") => MARKS[mark] ?? "";
+
 /** @param {number[]} vector */
 export const sizeOf = (vector) => Math.hypot(...vector);
 

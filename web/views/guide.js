@@ -2,7 +2,8 @@
 // @ts-check
 // The first minute as a card above the drawing: five steps, each done by the page's own buttons or
 // by the one on the card. It is shown until it is closed, and the browser remembers that.
-import { STEPS } from "../state/guide.js";
+import { sentenceOf } from "../api/client.js";
+import { ELSEWHERE, GUIDED, STEPS } from "../state/guide.js";
 import { listen } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
 
@@ -48,10 +49,13 @@ export function createGuide(store, actions, open) {
       }),
     holdTogether: () => actions.holdTogether(),
     study: () => open.openStudy("work-precision"),
+    open: () => actions.loadScene(GUIDED).catch((error) => actions.notice(sentenceOf(error))),
   };
+  const isElsewhere = () => data.scene?.id !== GUIDED || data.document !== null;
+  const present = () => (isElsewhere() ? ELSEWHERE : STEPS[step]);
 
   function carryOut() {
-    DOES[STEPS[step].does]();
+    DOES[present().does]();
   }
 
   /** @param {number} wanted */
@@ -65,19 +69,20 @@ export function createGuide(store, actions, open) {
   }
 
   function show() {
-    const { title: heading, text: words, button } = STEPS[step];
+    const { title: heading, text: words, button } = present();
     say(title, heading);
     say(text, words);
     say(act, button);
-    say(count, `${step + 1}/${STEPS.length}`);
+    say(count, isElsewhere() ? "" : `${step + 1}/${STEPS.length}`);
     say(next, step === STEPS.length - 1 ? "done" : "next");
-    back.hidden = step === 0;
+    next.hidden = isElsewhere();
+    back.hidden = step === 0 || isElsewhere();
     check();
   }
 
   /** A step that was carried out says so; going on is left to the reader. */
   function check() {
-    next.classList.toggle("primary", !card.hidden && STEPS[step].done(data));
+    next.classList.toggle("primary", !card.hidden && present().done(data));
   }
 
   function hide() {
@@ -86,12 +91,12 @@ export function createGuide(store, actions, open) {
     document.getElementById("play")?.focus({ preventScroll: true });
   }
 
-  listen(store, { frame: check, view: check, methods: check });
+  listen(store, { frame: check, view: check, methods: check, scene: show });
   return {
     /** Puts the card where it belongs; it opens by itself only the first time. */
     begin(/** @type {HTMLElement} */ el) {
       el.prepend(card);
-      if (localStorage.getItem(KEY) !== "closed" && data.scene?.id === "four-bar") {
+      if (localStorage.getItem(KEY) !== "closed" && !isElsewhere()) {
         card.hidden = false;
         show();
       }

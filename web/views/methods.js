@@ -9,10 +9,10 @@ import { cardOf, parseSpelling, settingOf } from "../state/spelling.js";
 import { listen, shownIndex } from "../state/store.js";
 import { verdictAt } from "../state/verdict.js";
 import { h, icon, s, say, set } from "../widgets/dom.js";
+import { paintNoMore, paintSoon } from "../widgets/pace.js";
 import { term } from "../widgets/term.js";
 
 const GREEK = { alpha: "α", beta: "β" };
-const REDRAW = 120; // [ms] numbers that change faster cannot be read
 
 /** Index of the last value that is a number, at `now` or before. @param {Float64Array} column */
 function lastKnown(column, now) {
@@ -90,8 +90,6 @@ export function createMethods(el, store, actions, openDialog) {
   /** @type {{row: HTMLElement, parts: Record<string, HTMLElement>}[]} */
   let rows = [];
   let refusals = data.refused;
-  let timer = 0;
-  let painted = 0;
 
   function makeHead() {
     const head = (name, ...content) =>
@@ -106,10 +104,10 @@ export function createMethods(el, store, actions, openDialog) {
         head("check", unseen("Drawn")),
         head("who", unseen("Method")),
         head("more", unseen("Why, and change")),
-        head("verdict", term("verdict")),
-        head("gap", term("gap", "gap")),
-        head("off", term("error")),
-        head("energy", term("energy", "energy")),
+        head("verdict", term("verdict", "worst so far")),
+        head("gap", term("gap", "gap now")),
+        head("off", term("error", "error now")),
+        head("energy", term("energy", "energy now")),
         head("cost", term("ops", "operations")),
       ),
     );
@@ -290,30 +288,17 @@ export function createMethods(el, store, actions, openDialog) {
   function paint() {
     const history = data.history;
     const now = shownIndex(data);
-    painted = performance.now();
     if (history && now >= 0 && rows.length === history.nMethods) {
       rows.forEach((row, m) => paintRow(row, m, now));
     }
   }
 
-  function update() {
-    const wait = REDRAW - (performance.now() - painted);
-    if (wait <= 0) {
-      paint();
-    } else if (!timer) {
-      timer = window.setTimeout(() => {
-        timer = 0;
-        paint();
-      }, wait);
-    }
-  }
-
   const stop = listen(store, { methods: rebuild, view: showView, reference: paint });
   return {
-    update,
+    update: () => paintSoon(paint),
     dispose() {
       stop();
-      clearTimeout(timer);
+      paintNoMore(paint);
       el.replaceChildren();
     },
   };

@@ -4,7 +4,7 @@
 // shown: accelerations, multipliers, rank and condition.
 import { sentenceOf } from "../api/client.js";
 import { scientific } from "../state/format.js";
-import { namedState } from "../state/reactions.js";
+import { markWords, namedState } from "../state/reactions.js";
 import { shownIndex } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
 
@@ -17,7 +17,7 @@ const ROWS = [
   ["J_c", "J", "constraint Jacobian"],
   ["\\dot J_c\\,\\dot q", "\\gamma", "acceleration of the loops at zero acceleration"],
   ["\\ddot q", "a", "accelerations"],
-  ["\\lambda", "\\lambda", "multipliers, on the right-hand side as +J'λ"],
+  ["\\lambda", "\\lambda", "multipliers: forces that hold the loops closed; they act as +J'λ"],
 ];
 const UNITS = { angle: "rad/s²", length: "m/s²", other: "" };
 
@@ -98,8 +98,7 @@ export function createNotation(store, actions) {
     const cond = Number.isFinite(condition)
       ? `Condition of the system: ${number(condition)}. `
       : "";
-    const unique = mark && mark !== "determined" ? `The multipliers are ${mark}.` : "";
-    say(quality, `${of}${cond}${unique}`);
+    say(quality, `${of}${cond}${markWords(mark)}`);
   }
 
   /** Asks for the terms of the frame shown, one question at a time. */

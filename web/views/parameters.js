@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The scene's parameters (lengths, masses, gravity, start) in a drawer over the lower part of the
-// drawing. Opening it moves nothing.
+// The scene's parameters (lengths, masses, gravity, start) in a drawer: over the column of methods,
+// so that the mechanism stays in sight, or over the lower part of the drawing where there is one
+// column. Opening it moves nothing.
 import { sentenceOf } from "../api/client.js";
 import { parseQuantity, plain, prettyUnit } from "../state/format.js";
 import { listen } from "../state/store.js";
@@ -14,12 +15,12 @@ const FASTEST = 40; // [rad/s or m/s] of a slider
 const WIDE = 1000; // a range over so many times its least value is better shown in decades
 
 /**
- * @param {HTMLElement} el what the drawer lies over
+ * @param {{wide: HTMLElement, narrow: HTMLElement}} homes what the drawer lies over, by the width
  * @param {HTMLElement} place gets the button that opens it
  * @param {import("../state/store.js").Store} store
  * @param {import("../session/session.js").Session} actions
  */
-export function createParameters(el, place, store, actions) {
+export function createParameters(homes, place, store, actions) {
   const data = store.data;
   const list = h("div", { class: "parameters" });
   const reset = h(
@@ -53,7 +54,10 @@ export function createParameters(el, place, store, actions) {
     },
     "lengths, masses, start",
   );
-  el.append(drawer);
+  const columns = matchMedia("(min-width: 1024px)");
+  const house = () => (columns.matches ? homes.wide : homes.narrow).append(drawer);
+  columns.addEventListener("change", house);
+  house();
   place.prepend(button);
   /** @type {Map<string, ReturnType<typeof createSliderField>>} */
   const fields = new Map();
@@ -217,6 +221,7 @@ export function createParameters(el, place, store, actions) {
     update() {},
     dispose() {
       stop();
+      columns.removeEventListener("change", house);
       [...fields.values(), ...starts.values()].forEach((field) => field.dispose());
       drawer.remove();
       button.remove();

@@ -3,7 +3,7 @@
 // What every joint carries in the selected method at the time shown: a table that is asked for
 // while it is open, and the choice to draw the forces as arrows.
 import { quantity, seconds } from "../state/format.js";
-import { sizeOf, zeroOf } from "../state/reactions.js";
+import { markWords, sizeOf, zeroOf } from "../state/reactions.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
 
@@ -18,8 +18,6 @@ const AXES = [
 const NAMES = { world: ["x", "y", "z"], joint: ["1", "2", "3"] };
 const DIGITS = 3;
 const TORN = 1e-3; // of the scene's length: a gap that can be seen
-const LOST =
-  " The forces that close the loops have no correct digit left: the loop constraints are almost dependent here.";
 
 /**
  * @param {HTMLElement} el
@@ -130,6 +128,14 @@ export function createReactions(el, store, actions) {
     return gap > TORN * scene.length ? gap : 0;
   }
 
+  /** The joint of a torn loop has its remark; the others carry what that loop does to them. */
+  function tornWords({ mark, list }) {
+    const torn = mark === "of open loops" ? [] : list.filter((item) => tornBy(item) > 0);
+    return torn.length
+      ? `The loop is open at ${torn.map(({ name }) => name).join(", ")}: the forces of the other joints of this loop are of a torn mechanism too.`
+      : "";
+  }
+
   /** What to know of a force before it is used. @param {import("../state/reactions.js").Reaction} item */
   function remarkOf(item) {
     const gap = tornBy(item);
@@ -187,7 +193,7 @@ export function createReactions(el, store, actions) {
       showEfforts([]);
       return;
     }
-    const when = `${method.label} at ${seconds(answer.t, data.duration)}.${answer.mark === "no digit left" ? LOST : ""}`;
+    const when = `${method.label} at ${seconds(answer.t, data.duration)}. ${markWords(answer.mark)}${tornWords(answer)}`;
     showEfforts(answer.efforts);
     if (answer.list.length === 0) {
       say(

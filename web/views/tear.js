@@ -9,13 +9,16 @@ import { h, s, say, set } from "../widgets/dom.js";
 import { term } from "../widgets/term.js";
 
 const SIZE = 144; // [px] of the drawn square
-const METRE = 150; // [px] a metre at magnification 1
 const FULL = 62; // [px] the longest gap drawn
 const LEAST = 14; // [px] below it the glass is changed for a stronger one
 const STRONGEST = 1e9;
 
-/** @param {HTMLElement} el @param {import("../state/store.js").Store} store */
-export function createTear(el, store) {
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("./drawing/stage.js").Stage} stage whose scale is magnification 1
+ */
+export function createTear(el, store, stage) {
   const data = store.data;
   const segment = s("path", { class: "tear" });
   const first = s("circle", { r: 10, class: "half first" });
@@ -27,7 +30,8 @@ export function createTear(el, store) {
     s("circle", { cx: SIZE / 2, cy: SIZE / 2, r: SIZE / 2 - 1, class: "rim" }),
     halves,
   );
-  const power = h("span", { class: "power" });
+  const power = term("magnified", "");
+  power.classList.add("power");
   const size = h("span", { class: "number" });
   const name = h("span", {});
   const cut = h("span", {}, ", ", term("cut", "cut"), " ");
@@ -62,9 +66,10 @@ export function createTear(el, store) {
    * @param {number} gap
    */
   function choosePower(gap) {
-    const drawn = gap * METRE * glassPower;
+    const { scale } = stage.camera;
+    const drawn = gap * scale * glassPower;
     if (drawn > FULL || drawn < LEAST) {
-      glassPower = gap > 0 ? Math.min(STRONGEST, niceBelow(FULL / (gap * METRE))) : STRONGEST;
+      glassPower = gap > 0 ? Math.min(STRONGEST, niceBelow(FULL / (gap * scale))) : STRONGEST;
     }
   }
 
@@ -100,7 +105,7 @@ export function createTear(el, store) {
       return;
     }
     choosePower(tear.gap);
-    const k = METRE * glassPower;
+    const k = stage.camera.scale * glassPower;
     const half = [(tear.dx * k) / 2, (-tear.dy * k) / 2];
     const centre = SIZE / 2;
     set(halves, { class: `slot-${data.methods[m].slot}` });

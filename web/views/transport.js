@@ -147,6 +147,9 @@ export function createTransport(el, store, actions) {
     document.body.dataset.state = data.state;
   }
 
+  /** The end of the run, to the digits that the time has; 10 s where they are zeros. */
+  const endWords = () => `${plain(parseFloat(seconds(endOf(data), data.duration)))} s`;
+
   function update() {
     const history = data.history;
     if (!history || history.count === 0) {
@@ -163,7 +166,7 @@ export function createTransport(el, store, actions) {
       scrub.value = String(t);
     }
     const live = data.view.shown < 0 && data.latest ? data.latest.t : t;
-    say(time, `t ${seconds(live, data.duration)} / ${plain(Number(endOf(data).toFixed(4)))} s`);
+    say(time, `t ${seconds(live, data.duration)} / ${endWords()}`);
   }
 
   const stop = listen(store, { state: showState, view: showState, scene: update });

@@ -7,8 +7,8 @@ import { sentences } from "../state/verdict.js";
 import { seconds } from "../state/format.js";
 import { beforeAndAfter, predictionAt, stopReason } from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
+import { paintNoMore, paintSoon } from "../widgets/pace.js";
 
-const REDRAW = 120; // [ms]
 const PAUSE = 2000; // [ms] between two things said
 const PAUSE_ENDS = 1400; // [ms] sooner when someone pauses or plays
 
@@ -21,9 +21,7 @@ export function createVerdictBar(el, store) {
   const changes = h("p", { class: "change", hidden: true });
   el.replaceChildren(changes, seen, live, banner);
   let saidAt = -PAUSE;
-  let painted = 0;
   let timer = 0;
-  let redraw = 0;
 
   /** Sentences about the frame shown, with their tones. */
   function present() {
@@ -54,7 +52,6 @@ export function createVerdictBar(el, store) {
   }
 
   function paint() {
-    painted = performance.now();
     const list = present();
     const key = list.map(({ text, tone }) => tone + text).join("\n");
     if (seen.dataset.text !== key) {
@@ -76,15 +73,7 @@ export function createVerdictBar(el, store) {
   }
 
   function update() {
-    const wait = REDRAW - (performance.now() - painted);
-    if (wait <= 0) {
-      paint();
-    } else if (!redraw) {
-      redraw = window.setTimeout(() => {
-        redraw = 0;
-        paint();
-      }, wait);
-    }
+    paintSoon(paint);
     if (!timer) {
       timer = window.setTimeout(speak, Math.max(0, PAUSE - (performance.now() - saidAt)));
     }
@@ -109,7 +98,7 @@ export function createVerdictBar(el, store) {
     dispose() {
       stop();
       clearTimeout(timer);
-      clearTimeout(redraw);
+      paintNoMore(paint);
       el.replaceChildren();
     },
   };

@@ -7,6 +7,9 @@ const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
 const BITS = 4e6; // per second
 const LONGEST = 20; // [s] of film: a longer recording is shown faster
 const SHORTEST = 1; // [s] of film: a shorter one is shown slower
+const LEAST_BYTES = 1000; // of a film with pictures: less is the head of the file
+const PATIENCE = 10; // [s] to wait for pictures of an encoder that is behind
+const PIECE = 250; // [ms] of film that the encoder hands over at once
 
 export const canFilm = () =>
   typeof MediaRecorder !== "undefined" && KINDS.some((kind) => MediaRecorder.isTypeSupported(kind));
@@ -63,11 +66,15 @@ export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
   const ended = new Promise((resolve) => {
     recorder.onstop = () => resolve(null);
   });
-  recorder.start();
+  recorder.start(PIECE);
+  const bytes = () => parts.reduce((sum, { size }) => sum + size, 0);
   const length = Math.max(SHORTEST, Math.min(duration, LONGEST));
   const began = performance.now();
-  for (let share = 0; share < 1 && !stopped(); ) {
-    share = Math.min(1, (performance.now() - began) / 1000 / length);
+  const goesOn = (share, seconds) =>
+    share < 1 || (bytes() < LEAST_BYTES && seconds < length + PATIENCE);
+  for (let share = 0, seconds = 0; goesOn(share, seconds) && !stopped(); ) {
+    seconds = (performance.now() - began) / 1000;
+    share = Math.min(1, seconds / length);
     show(share * duration);
     await paint(svg, solids(), context);
     told(share);
@@ -76,7 +83,7 @@ export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
   recorder.stop();
   await ended;
   const film = new Blob(parts, { type: "video/webm" });
-  if (film.size === 0) {
+  if (film.size < LEAST_BYTES) {
     throw new Error("the browser recorded nothing");
   }
   return film;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Names beside the last point of each curve, pushed apart where they would touch.
+// Names beside the last point of each curve, pushed apart where they would touch: to the right of
+// it while there is room, from then on to the left.
 
 const SWATCH = 10; // [px] of a curve before its name
 const HEIGHT = 14; // [px] between two names
-/** [px] beside the axes; the same in every plot, so that plots below each other agree. */
-export const LABEL_ROOM = 104;
+const AWAY = 6; // [px] of a name from the end of its curve
 
 /** The font of axes and names. */
 export const plotFont = (ratio = 1) =>
@@ -22,6 +22,17 @@ function drawSample(ctx, x, y, one) {
   ctx.lineTo(x + SWATCH * ratio, y);
   ctx.stroke();
   ctx.setLineDash([]);
+}
+
+/** A name that curves do not cross: in ink, with the paper round each letter. */
+function drawText(ctx, text, x, y, ink) {
+  ctx.setLineDash([]);
+  ctx.lineJoin = "round";
+  ctx.lineWidth = 4 * devicePixelRatio;
+  ctx.strokeStyle = ink.paper;
+  ctx.strokeText(text, x, y);
+  ctx.fillStyle = ink.text;
+  ctx.fillText(text, x, y);
 }
 
 /** Where a run ended. */
@@ -90,19 +101,15 @@ export function createEndLabels() {
       ctx.font = plotFont(ratio);
       ctx.textBaseline = "middle";
       ctx.textAlign = "left";
-      for (const { one, x: end, y, at } of place(u, series, how)) {
+      const list = place(u, series, how);
+      const widest = Math.max(0, ...list.map(({ one }) => ctx.measureText(one.label).width));
+      for (const { one, x: end, y, at } of list) {
         const text = Number.isNaN(one.ended) ? one.label : `${one.label} ×`;
-        const width = ctx.measureText(text).width;
-        const room = u.width * ratio - width - (SWATCH + 8) * ratio;
-        const left = Math.min(end + 6 * ratio, right + 6 * ratio, room);
-        const name = left + (SWATCH + 3) * ratio;
-        ctx.fillStyle = how.ink.paper;
-        ctx.globalAlpha = 0.82;
-        ctx.fillRect(left - 2, y - 6.5 * ratio, name - left + width + 4 * ratio, 13 * ratio);
-        ctx.globalAlpha = 1;
+        const width = widest + (SWATCH + 3) * ratio;
+        const fits = end + AWAY * ratio + width <= right;
+        const left = fits ? end + AWAY * ratio : Math.max(u.bbox.left, end - AWAY * ratio - width);
         drawSample(ctx, left, y, one);
-        ctx.fillStyle = how.ink.text;
-        ctx.fillText(text, name, y);
+        drawText(ctx, text, left + (SWATCH + 3) * ratio, y, how.ink);
         if (!Number.isNaN(one.ended)) {
           drawCross(ctx, end, at, one.colour);
         }

@@ -5,10 +5,10 @@
 import uPlot from "uplot";
 import { niceAbove, powerOfTen, quantity } from "../state/format.js";
 import { h } from "./dom.js";
-import { LABEL_ROOM, createEndLabels, plotFont } from "./plot-labels.js";
+import { createEndLabels, plotFont } from "./plot-labels.js";
 import { FLOOR, decadeTicks, decades, linearTicks } from "./plot-scale.js";
 
-const NARROW = 380; // [px] below it names stand over the curves
+const NARROW = 380; // [px] below it values have less room
 const LEAST_DRAG = 6; // [px] a shorter one is a click
 
 /**
@@ -88,7 +88,7 @@ export function createPlot(el, options) {
     return /** @type {uPlot.Options} */ ({
       width: Math.max(120, el.clientWidth),
       height: Math.max(80, el.clientHeight),
-      padding: [8, el.clientWidth < NARROW ? 12 : LABEL_ROOM, 0, 0],
+      padding: [8, 12, 0, 0],
       legend: { show: false },
       cursor: {
         x: false,

@@ -43,9 +43,10 @@ function linearScale(min, max, step) {
 }
 
 /**
- * `read` gives NaN for a text that is no number; `tip` defines the label.
+ * `read` gives NaN for a text that is no number; `meaning` stands under the label, `tip` defines it.
  * @param {{
- *   id: string, label: string, unit: string, hint: string, tip?: string, scale?: "log" | "linear",
+ *   id: string, label: string, unit: string, hint: string, meaning?: string,
+ *   tip?: string, scale?: "log" | "linear",
  *   min: number, max: number, step?: number, read: (text: string) => number,
  *   check: (value: number) => {error?: string, warning?: string},
  *   commit: (value: number) => Promise<void>,
@@ -77,7 +78,12 @@ export function createSliderField(options) {
   const el = h(
     "div",
     { class: "setting" },
-    h("label", { for: options.id, "data-tip": options.tip }, options.label),
+    h(
+      "label",
+      { for: options.id, "data-tip": options.tip },
+      options.label,
+      ...(options.meaning ? [" ", h("span", { class: "meaning" }, options.meaning)] : []),
+    ),
     range,
     h(
       "span",
