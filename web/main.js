@@ -4,6 +4,7 @@
 // frame.
 import { sentenceOf } from "./api/client.js";
 import { createSession } from "./session/session.js";
+import { createTrail } from "./session/trail.js";
 import { createStore } from "./state/store.js";
 import { findKey } from "./state/keys.js";
 import { createControls } from "./views/controls.js";
@@ -76,7 +77,7 @@ const openExport = onDemand(async () => {
 /** A view with a style sheet of its own. @param {string} sheet @param {() => Promise<any>} make */
 const styled = (sheet, make) =>
   onDemand(async () => {
-    const [view] = await Promise.all([make(), loadStyle(`/style/${sheet}.css`)]);
+    const [view] = await Promise.all([make(), loadStyle(`style/${sheet}.css`)]);
     return view;
   });
 const openGallery = styled("gallery", async () => {
@@ -87,16 +88,12 @@ const openStudy = onDemand(async () => {
   const { createStudies } = await import("./views/studies.js");
   return createStudies(document.body, store, session);
 });
-store.on("view", () => {
-  const { study } = store.data.view; // a link names one; once made, the dialog follows by itself
-  if (study && !document.querySelector("dialog.study")) {
-    openStudy(study);
-  }
-});
 
+/** @param {string} study */
+const showStudy = (study) => session.setView({ study });
 /** Keys that open something; all others are actions of the session. */
-const OPENERS = { help: openKeys, study: openStudy };
-const guide = createGuide(store, session, { openStudy });
+const OPENERS = { help: openKeys, study: showStudy };
+const guide = createGuide(store, session, { openStudy: showStudy });
 const mechanism = createDrawing(at("mechanism"), store, session);
 const openEditor = styled("editor", async () => {
   const { createEditor } = await import("./views/editor/editor.js");
@@ -107,15 +104,32 @@ const openLessons = styled("lessons", async () => {
   return createLessons(document.body, store, session);
 });
 acceptFiles(document.body, openEditor);
+
+/** What is open over the page; once made, each follows the view by itself. */
+let over = { study: "", panel: "", gallery: false };
+store.on("view", () => {
+  const { study, panel, gallery } = store.data.view;
+  const before = over;
+  over = { study, panel, gallery };
+  if (study && study !== before.study) {
+    openStudy(study);
+  }
+  if (panel && panel !== before.panel) {
+    (panel === "lessons" ? openLessons : openEditor)();
+  }
+  if (gallery && !before.gallery) {
+    openGallery();
+  }
+});
 const views = [
   createHeader(at("top"), store, session, {
     toggleTheme: theme.toggle,
     openKeys,
-    openStudy,
+    openStudy: showStudy,
     openExport,
-    openGallery,
-    openEditor,
-    openLessons,
+    openGallery: () => session.setView({ gallery: true }),
+    openEditor: () => session.setView({ panel: "editor" }),
+    openLessons: () => session.setView({ panel: "lessons" }),
     openGuide: guide.open,
   }),
   mechanism,
@@ -197,9 +211,6 @@ addEventListener("keydown", (event) => {
     (OPENERS[key.action] ?? session[key.action])(key.argument);
   }
 });
-addEventListener("hashchange", () => {
-  session.openLink(location.hash.slice(1)).catch((error) => session.notice(sentenceOf(error)));
-});
 addEventListener("pagehide", (event) => {
   if (!event.persisted) {
     session.dispose();
@@ -208,6 +219,7 @@ addEventListener("pagehide", (event) => {
 
 try {
   await session.start(location.hash.slice(1));
+  createTrail(store, session);
   at("main").setAttribute("aria-busy", "false");
   guide.begin(/** @type {HTMLElement} */ (document.querySelector(".mechanism")));
   at("play").focus({ preventScroll: true });

@@ -2,7 +2,20 @@
 // Links, without a browser: the same after reading and writing; damaged entries are named.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { readIndex } from "../../web/state/catalogue.js";
 import { decodeLink, encodeLink, fits } from "../../web/state/link.js";
+import { nearest } from "../../web/state/near.js";
+import { firstPlots, showLinked, shownOf } from "../../web/state/shown.js";
+
+const preset = { name: "baumgarte", about: "", chooses: ["alpha", "beta"], stabilised: true };
+const STUDIES = ["work-precision", "stability", "budget"].map((name) => ({
+  name,
+  about: "",
+  chooses: [],
+  fields: [],
+  presets: name === "stability" ? [preset] : [],
+}));
+readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
 
 test("a link says the same after it was read and written again", () => {
   let seed = 7;
@@ -23,6 +36,17 @@ test("a link says the same after it was read and written again", () => {
       hidden: pick([0, 1, 2, 3]),
       show: pick(["labels", "traces", "reference", "arrows", "reactions"]),
       study: ["", "work-precision", "stability", "budget"][k % 4],
+      map: ["", "baumgarte"][k % 2],
+      look: pick([0.5]).flatMap(() => [0.5, -1.25]),
+      camera: pick([1]).flatMap(() => [2.5, 0.1, -3, 1e-4]),
+      upper: pick(["off", "energy_change,turned", "phase,of:th1", "work,table"])
+        .slice(0, 1)
+        .flatMap((text) => text.split(",")),
+      zoom: pick([1]).flatMap(() => [0.25, 1.75]),
+      why: [-1, 0, 3][k % 3],
+      speed: [0, 1, 0.05, 10][k % 4],
+      panel: ["", "lessons", "editor"][k % 3],
+      lesson: ["", "02-holding-loops"][k % 2],
       note: pick(["why?", "a=b&c", "ü\n2 %", "#"]).join(" "),
       build: "0.1.0 gcc 12.2.0",
     });
@@ -31,6 +55,51 @@ test("a link says the same after it was read and written again", () => {
     assert.equal(encodeLink(link), text);
   }
   assert.ok(!fits("x".repeat(5000)));
+});
+
+test("what is shown goes into a link and comes back: plots, zoom, camera, panels", () => {
+  const view = {
+    ...{ labels: false, traces: true, reference: true, arrows: true, reactions: false },
+    ...{ equations: true, parameters: true, lengths: false, loop: true, why: 1 },
+    look: null,
+    space: null,
+    plots: {
+      ...firstPlots(),
+      lower: { of: "phase", turned: false, table: true, coordinate: "a2" },
+    },
+    zoom: [0.5, 1.5],
+    study: "stability",
+    map: "baumgarte",
+    panel: "lessons",
+    lesson: "02",
+  };
+  const data = { view, scene: { view: {} }, speed: 2, methods: [{}, {}], lessons: [{ id: "02" }] };
+  const { link, faults } = decodeLink(encodeLink({ scene: "a", ...shownOf(data) }));
+  assert.deepEqual(faults, []);
+  assert.equal(link.speed, 2);
+  const other = { ...data, view: {} };
+  assert.deepEqual(showLinked(other, link), []);
+  assert.deepEqual(other.view, view);
+
+  const space = { camera: [2, 0.1, 0, -1], perspective: false, follow: true, frames: false };
+  const look = { right: [0, 0, -1], up: [0, 1, 0] };
+  const solid = { ...data, scene: { view: { spatial: true, vertical: "y" } } };
+  solid.view = { ...view, space, look };
+  const again = { ...solid, view: {} };
+  showLinked(again, decodeLink(encodeLink({ scene: "a", ...shownOf(solid) })).link);
+  assert.deepEqual(again.view.space, space);
+  again.view.look.right.forEach((x, k) => assert.ok(Math.abs(x - look.right[k]) < 1e-4));
+  assert.deepEqual(showLinked({ ...data, view: {}, lessons: [] }, link), [
+    "no lesson is called '02'",
+  ]);
+});
+
+test("a misspelt name finds those that it may stand for", () => {
+  const names = ["four-bar", "stewart-6-6", "stewart-6-3", "five-bar", "n-four-bar", "rssr"];
+  assert.deepEqual(nearest("stewart", names), ["stewart-6-6", "stewart-6-3"]);
+  assert.equal(nearest("four-baar", names)[0], "four-bar");
+  assert.deepEqual(nearest("zzzzzz", names), []);
+  assert.deepEqual(nearest("", names), []);
 });
 
 test("10,000 tampered links: nothing throws, a damaged entry takes no other entry with it", () => {
@@ -43,6 +112,13 @@ test("10,000 tampered links: nothing throws, a damaged entry takes no other entr
     hidden: [2],
     show: ["labels", "arrows"],
     study: "stability",
+    look: [0.5, 0.25],
+    camera: [2, 0.1, 0, 0],
+    upper: ["energy_change", "turned"],
+    zoom: [1, 2],
+    why: 1,
+    speed: 2,
+    map: "baumgarte",
     note: "predict first & say why: 50 %",
     build: "0.1.0 gcc 12.2.0",
   });
@@ -83,6 +159,8 @@ test("10,000 tampered links: nothing throws, a damaged entry takes no other entr
     assert.ok(got.link.methods.every((method) => method.includes("@")));
     assert.ok(Object.values(got.link.settings).every(Number.isFinite));
     assert.ok([got.link.frame, got.link.selected].every((n) => Number.isInteger(n) && n >= 0));
+    assert.ok([0, 2].includes(got.link.look.length) && [0, 4].includes(got.link.camera.length));
+    assert.ok(got.link.upper.length === 0 || typeof got.link.upper[0] === "string");
     assert.ok(got.faults.every((fault) => typeof fault === "string" && fault.length > 0));
   }
 });

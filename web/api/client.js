@@ -2,7 +2,11 @@
 // @ts-check
 // The one place that speaks to the server: requests, and problem documents turned into errors.
 
-export const BASE = "/api/v1";
+/** The API lies beside this folder, also where the page is served below a prefix. */
+export const BASE = new URL("v1", import.meta.url).pathname;
+
+/** An address that the server names, below the same prefix. @param {string} path /api/v1/... */
+export const addressOf = (path) => path.replace(/^\/api\/v1(?=\/)/, BASE);
 
 /** What the server refused, with the fields at fault. */
 export class Problem extends Error {

@@ -3,16 +3,17 @@
 // Actions that open a scene: at the start, from the menu, from a link. Makes the link to what is
 // shown.
 import { Problem, api, sentenceOf } from "../api/client.js";
-import { limits, readIndex } from "../state/catalogue.js";
+import { limits, readIndex, studyKinds } from "../state/catalogue.js";
 import { plain } from "../state/format.js";
 import { LONGEST_NOTE, decodeLink, encodeLink, fits } from "../state/link.js";
 import { sourceOf } from "../state/store.js";
+import { showLinked, shownOf } from "../state/shown.js";
+import { noStudy } from "../state/studies.js";
+import { nearest } from "../state/near.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
 import { isStart } from "../state/start.js";
 import { createKeeper } from "./keeper.js";
 import { SHORT, firstSpeed } from "./speeds.js";
-
-const PANELS = /** @type {const} */ (["labels", "traces", "reference", "arrows", "reactions"]);
 
 const FRAMES_AT_ONCE = 600; // of a link, in one request
 const FIRST_SCENE = "four-bar";
@@ -100,7 +101,7 @@ export function createSceneActions(store, exchange, notice) {
   }
 
   /** @param {import("../state/link.js").Linked} link */
-  async function showLinked({ frame, selected, hidden, study }) {
+  async function runLinked({ frame, selected, hidden }) {
     for (let left = frame; left > 0; left -= FRAMES_AT_ONCE) {
       await exchange.change({ step: Math.min(left, FRAMES_AT_ONCE) });
       if (data.state === "finished") {
@@ -110,7 +111,6 @@ export function createSceneActions(store, exchange, notice) {
     const n = data.methods.length;
     data.view.hidden = new Set(hidden.filter((m) => m < n));
     data.view.selected = Math.min(selected, n - 1);
-    data.view.study = study;
   }
 
   /**
@@ -125,7 +125,11 @@ export function createSceneActions(store, exchange, notice) {
       await actions.loadScene(id);
       return;
     }
-    const left = { settings: { ...link.settings }, methods: [...link.methods] };
+    const left = {
+      settings: { ...link.settings },
+      methods: [...link.methods],
+      speed: link.speed,
+    };
     if (Object.keys(left.settings).length > 0) {
       faults.push(...dropUnknown(left, (await api.scene(id)).parameters));
     }
@@ -156,8 +160,7 @@ export function createSceneActions(store, exchange, notice) {
       frame: view.shown < 0 ? live : history.frameAt(Math.min(view.shown, last)),
       selected: view.selected,
       hidden: [...view.hidden],
-      show: PANELS.filter((name) => view[name]),
-      study: view.study,
+      ...shownOf(data),
       note: data.note,
       build: data.build,
     });
@@ -196,6 +199,7 @@ export function createSceneActions(store, exchange, notice) {
       data.catalogue = catalogue;
       data.scenes = list.scenes.filter((scene) => !scene.errors);
       data.lessons = lessons.lessons;
+      data.studies = Object.fromEntries(studyKinds().map(({ name }) => [name, noStudy()]));
       store.emit("ready");
       await actions.openLink(fragment);
       keeper.begin(fragment === "");
@@ -209,7 +213,9 @@ export function createSceneActions(store, exchange, notice) {
       const ids = data.scenes.map(({ id }) => id);
       const id = [link.scene, FIRST_SCENE, ids[0]].find((one) => ids.includes(one)) ?? FIRST_SCENE;
       if (link.scene && id !== link.scene) {
-        faults.unshift(`no scene is called '${link.scene}'`);
+        const near = nearest(link.scene, ids);
+        const hint = near.length ? `; did you mean ${near.join(" or ")}?` : "";
+        faults.unshift(`no scene is called '${link.scene}'${hint} The page shows ${id}`);
       }
       if (link.build && link.build !== data.build) {
         faults.push(
@@ -220,11 +226,10 @@ export function createSceneActions(store, exchange, notice) {
         data.note = link.note;
         store.emit("note");
       }
-      const shown = PANELS.map((name) => [name, link.show.includes(name)]);
-      Object.assign(data.view, Object.fromEntries(shown));
       await loadLinked(id, id === link.scene ? link : null, faults);
       if (id === link.scene) {
-        await showLinked(link);
+        await runLinked(link);
+        faults.push(...showLinked(data, link));
       }
       if (faults.length) {
         notice(`the link: ${faults.join("; ")}`);
@@ -258,7 +263,7 @@ export function createSceneActions(store, exchange, notice) {
         saveAsFile(fragment);
         return;
       }
-      window.history.replaceState(null, "", `#${fragment}`);
+      window.history.replaceState(window.history.state, "", `#${fragment}`);
       await navigator.clipboard.writeText(location.href).then(
         () => notice("link copied"),
         () => notice("the browser did not let the link be copied: it stands in the address line"),
@@ -266,8 +271,8 @@ export function createSceneActions(store, exchange, notice) {
     },
     /**
      * @param {string} id
-     * @param {{settings: Record<string, number>, methods: string[]}} [link] in place of what the
-     *   scene suggests
+     * @param {{settings: Record<string, number>, methods: string[], speed?: number}} [link]
+     *   in place of what the scene suggests
      */
     async loadScene(id, link) {
       data.view.lengths = false;
@@ -279,7 +284,7 @@ export function createSceneActions(store, exchange, notice) {
         ? link.methods.slice(0, limits().methods)
         : await suggested();
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
-      const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
+      const speed = link?.speed || firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
       await exchange.create({ scene: id, methods, speed, parameters: link?.settings ?? {} });
     },
     /**

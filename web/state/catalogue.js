@@ -13,9 +13,6 @@
  * @typedef {{code: string, name: string, rule: string}} IncidentKind
  */
 
-/** Kinds of studies that this page can draw, in the order of their tabs. */
-export const KINDS = /** @type {const} */ (["work-precision", "stability", "budget"]);
-
 let known = {
   methods: 0,
   /** @type {Map<string, IncidentKind>} by code */ incidents: new Map(),
@@ -39,6 +36,9 @@ export const limits = () => known;
  * @param {string} code of the engine
  */
 export const incidentOf = (code) => known.incidents.get(code);
+
+/** Kinds of studies that the server makes, in its order: name and what each shows. */
+export const studyKinds = () => [...known.studies.values()];
 
 /** @param {string} kind */
 const studyOf = (kind) => known.studies.get(kind);

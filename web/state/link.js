@@ -3,54 +3,30 @@
 // What a link to the page holds, in its fragment (which never reaches a server's log): scene,
 // parameters, methods, the frame of the clock, and what is shown. A bare fragment is the id of a
 // scene.
-import { KINDS } from "./catalogue.js";
+import { presets, studyKinds } from "./catalogue.js";
+import { QUANTITIES } from "./quantities.js";
+import { PANELS, SHOWN } from "./shown.js";
 
-const SHOWN = ["labels", "traces", "reference", "arrows", "reactions"];
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
 const PARAMETER = /^[A-Za-z][\w.-]*$/;
+const NAME = /^[\w.-]{1,80}$/;
 const LONGEST = 4000; // [characters] that every mail program and browser takes
 export const LONGEST_NOTE = 20000; // [characters]
+const FARTHEST = 1e12;
 
 /**
+ * `look`: azimuth and elevation [rad], or empty; `camera`: half the height that is
+ * seen and the middle of it [m], or empty; `upper` and `lower`: a quantity and words on how it is drawn, or empty; `zoom` [s] of the
+ * plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0 where none is said;
+ * `study`, `map`, `panel`, `lesson`: what is open, or ""; `note`: what its author wrote.
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
- *   selected: number, hidden: number[],
- *   show: string[], study: string, note: string, build: string}} Linked study: the one that is
- *   open, or ""; note: what its author wrote
+ *   selected: number, hidden: number[], show: string[], look: number[], camera: number[],
+ *   upper: string[], lower: string[], zoom: number[], why: number, speed: number, study: string,
+ *   map: string, panel: string, lesson: string, note: string, build: string}} Linked
  */
 
 /** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
 const escape = (text) => encodeURIComponent(text).replace(/%(3A|2C|40|3D|2F)/g, decodeURIComponent);
-
-/** @param {Linked} what @returns {string} */
-export function encodeLink({
-  scene,
-  settings,
-  methods,
-  frame,
-  selected,
-  hidden,
-  show,
-  study,
-  note,
-  build,
-}) {
-  const pairs = [
-    ["scene", scene],
-    ...Object.entries(settings).map(([name, value]) => [`set.${name}`, String(value)]),
-    ...methods.map((method) => ["method", method]),
-    ["frame", String(frame)],
-    ["selected", String(selected)],
-    ...hidden.map((m) => ["hidden", String(m)]),
-    ["show", show.join(",")],
-    ...(study ? [["study", study]] : []),
-    ...(note ? [["note", note]] : []),
-    ["build", build],
-  ];
-  return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
-}
-
-/** May a link of this length be sent around? @param {string} text */
-export const fits = (text) => text.length <= LONGEST;
 
 const EMPTY = () => ({
   scene: "",
@@ -60,10 +36,90 @@ const EMPTY = () => ({
   selected: 0,
   hidden: /** @type {number[]} */ ([]),
   show: ["labels", "reference"],
+  look: /** @type {number[]} */ ([]),
+  camera: /** @type {number[]} */ ([]),
+  upper: /** @type {string[]} */ ([]),
+  lower: /** @type {string[]} */ ([]),
+  zoom: /** @type {number[]} */ ([]),
+  why: -1,
+  speed: 0,
   study: "",
+  map: "",
+  panel: "",
+  lesson: "",
   note: "",
   build: "",
 });
+
+/** What is left out where it is as the page has it by itself, and how it is written. */
+const OPTIONAL = /** @type {const} */ ([
+  "look",
+  "camera",
+  "upper",
+  "lower",
+  "zoom",
+  "why",
+  "speed",
+  "study",
+  "map",
+  "panel",
+  "lesson",
+  "note",
+]);
+
+/** @param {Partial<Linked> & {scene: string}} what @returns {string} */
+export function encodeLink(what) {
+  const empty = EMPTY();
+  const link = { ...empty, ...what };
+  const pairs = [
+    ["scene", link.scene],
+    ...Object.entries(link.settings).map(([name, value]) => [`set.${name}`, String(value)]),
+    ...link.methods.map((method) => ["method", method]),
+    ["frame", String(link.frame)],
+    ["selected", String(link.selected)],
+    ...link.hidden.map((m) => ["hidden", String(m)]),
+    ["show", link.show.join(",")],
+    ...OPTIONAL.map((name) => [name, String(link[name])]).filter(
+      ([name, text]) => text !== String(empty[name]),
+    ),
+    ["build", link.build],
+  ];
+  return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
+}
+
+/** May a link of this length be sent around? @param {string} text */
+export const fits = (text) => text.length <= LONGEST;
+
+/** One of some words. @param {string} name of the field @param {() => string[]} words */
+const oneOf = (name, words) => (out, value) => {
+  const known = words().includes(value);
+  out[name] = known ? value : "";
+  return known ? "" : `is '${value.slice(0, 40)}'; there are ${words().join(", ")}`;
+};
+
+/**
+ * So many numbers, separated by commas, within bounds.
+ * @param {string} name @param {number} count @param {number} least @param {number} most
+ */
+const numbers = (name, count, least, most) => (out, value) => {
+  const texts = value.split(",");
+  const list = texts.map((text) => (NUMBER.test(text) ? Number(text) : NaN));
+  const sound = list.length === count && list.every((x) => x >= least && x <= most);
+  out[name] = sound ? list : [];
+  return sound
+    ? ""
+    : `is '${value.slice(0, 40)}'; ${count} numbers from ${least} to ${most} are needed`;
+};
+
+/** A quantity and how it is drawn. @param {"upper" | "lower"} name */
+const plot = (name) => (out, value) => {
+  const words = value.split(",");
+  const sound =
+    (words[0] === "phase" || QUANTITIES.some((one) => one.name === words[0])) &&
+    words.slice(1).every((word) => ["turned", "table"].includes(word) || /^of:[\w.-]+$/.test(word));
+  out[name] = sound ? words : [];
+  return sound ? "" : `is '${value.slice(0, 40)}', which is no quantity of the plots`;
+};
 
 /**
  * @type {Record<string, (out: Linked, value: string) => string>} each puts a value and says what is
@@ -81,15 +137,35 @@ const FIELDS = {
   frame: (out, value) => putNumber(value, (number) => (out.frame = Math.round(number)), 0, 1e6),
   selected: (out, value) => putNumber(value, (number) => (out.selected = Math.round(number)), 0, 7),
   hidden: (out, value) => putNumber(value, (number) => out.hidden.push(Math.round(number)), 0, 7),
+  why: (out, value) => putNumber(value, (number) => (out.why = Math.round(number)), 0, 7),
+  speed: (out, value) => putNumber(value, (number) => (out.speed = number), 1e-3, 1e3),
   show: (out, value) => {
     const words = value.split(",").filter(Boolean);
-    out.show = words.filter((word) => SHOWN.includes(word));
-    const other = words.find((word) => !SHOWN.includes(word));
+    out.show = words.filter((word) => SHOWN.some((one) => one === word));
+    const other = words.find((word) => !SHOWN.some((one) => one === word));
     return other ? `names '${other}'; there are ${SHOWN.join(", ")}` : "";
   },
-  study: (out, value) => {
-    out.study = KINDS.some((kind) => kind === value) ? value : "";
-    return out.study ? "" : `is '${value.slice(0, 40)}'; there are ${KINDS.join(", ")}`;
+  look: numbers("look", 2, -10, 10),
+  camera: (out, value) => {
+    const fault = numbers("camera", 4, -FARTHEST, FARTHEST)(out, value);
+    const sound = out.camera.length === 0 || out.camera[0] > 0;
+    out.camera = sound ? out.camera : [];
+    return sound ? fault : `is '${value.slice(0, 40)}'; the height that is seen must be > 0`;
+  },
+  upper: plot("upper"),
+  lower: plot("lower"),
+  zoom: (out, value) => {
+    const fault = numbers("zoom", 2, 0, FARTHEST)(out, value);
+    const sound = out.zoom.length === 0 || out.zoom[0] < out.zoom[1];
+    out.zoom = sound ? out.zoom : [];
+    return sound ? fault : `is '${value}'; the first time must be before the second`;
+  },
+  study: oneOf("study", () => studyKinds().map(({ name }) => name)),
+  map: oneOf("map", () => presets().map(({ name }) => name)),
+  panel: oneOf("panel", () => PANELS),
+  lesson: (out, value) => {
+    out.lesson = NAME.test(value) ? value : "";
+    return out.lesson ? "" : "is no name of a lesson";
   },
   note: (out, value) => {
     out.note = value.slice(0, LONGEST_NOTE);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Data and named events. Views read `store.data` and listen; only the actions of session/ write.
-import { KINDS } from "./catalogue.js";
-import { noStudy } from "./studies.js";
+
+import { firstPlots } from "./shown.js";
 
 /**
  * @typedef {import("./types.js").Parameter} Parameter
@@ -62,6 +62,19 @@ function initialView() {
     /** the recording plays */ replaying: false,
     /** the recording plays again and again */ loop: false,
     /** the method whose card is open, or -1 */ why: -1,
+    /** the drawer of parameters is open */ parameters: false,
+    /** the equations are open */ equations: false,
+    /** what lies beside the page: "lessons", "editor" or "" */ panel: "",
+    /** the lesson that is open or was last, or "" */ lesson: "",
+    /** the gallery is open */ gallery: false,
+    /** what each plot shows @type {Record<string, import("./shown.js").Plot>} */
+    plots: firstPlots(),
+    /** the part of the time that the plots show [s], or all of it
+     * @type {[number, number] | null} */
+    zoom: null,
+    /** how space is seen, besides the direction; null: all of the motion
+     * @type {import("./shown.js").SpaceView | null} */
+    space: null,
   };
 }
 
@@ -101,8 +114,9 @@ function initialData() {
     reactions: null,
     /** null until it is asked for @type {import("./reference.js").Reference | null} */
     reference: null,
-    /** by kind @type {Record<string, import("./studies.js").Study>} */
-    studies: Object.fromEntries(KINDS.map((kind) => [kind, noStudy()])),
+    /** by kind, as the server's index names them
+     * @type {Record<string, import("./studies.js").Study>} */
+    studies: {},
     stream: { state: "connecting", id: "" },
     /** while the mechanism is dragged @type {import("../session/drag.js").Drag | null} */
     drag: null,

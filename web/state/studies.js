@@ -3,7 +3,7 @@
 // Studies of what is on the page: what accuracy costs, where steps are stable, where the error
 // comes from. A study is asked for, looked at while it lasts, and read when it is done; its
 // document is that of the command line.
-import { Problem, api, sentenceOf } from "../api/client.js";
+import { Problem, addressOf, api, sentenceOf } from "../api/client.js";
 import { mostMethods, presets, variedBy } from "./catalogue.js";
 import { formatSpelling, parseSpelling, settingOf } from "./spelling.js";
 
@@ -136,7 +136,7 @@ export function createStudyFeed(store) {
       left: answer.time_left_s,
       reason: answer.hint ? `${answer.reason} (${answer.hint})` : answer.reason,
       document: answer.document,
-      report: answer.links.report ?? "",
+      report: addressOf(answer.links.report ?? ""),
     });
   }
 

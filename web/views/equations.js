@@ -200,11 +200,25 @@ export function createEquations(el, store, actions) {
     );
   }
 
-  details.addEventListener("toggle", show);
+  details.addEventListener("toggle", () => {
+    if (details.open !== data.view.equations) {
+      actions.setView({ equations: details.open });
+    }
+    show();
+  });
+  let wasOpen = data.view.equations;
+  /** Opened by a link, or by hand: then the store follows. */
+  function obey() {
+    if (wasOpen !== data.view.equations) {
+      wasOpen = data.view.equations;
+      details.open = wasOpen;
+    }
+  }
   const stop = listen(store, {
     scene: show,
     light: showLight,
     view: () => {
+      obey();
       show();
       showNumbersSoon();
     },

@@ -16,6 +16,7 @@ import { saveFile } from "../widgets/save.js";
 
 /** Languages whose programs have no functions without a self-check. */
 const WITHOUT_SKELETON = new Set(["modelica", "latex"]);
+const PIXELS = 2; // of a picture for each pixel of the page
 
 /**
  * @param {HTMLElement} el
@@ -29,13 +30,9 @@ export function createExportDialog(el, store, actions, mechanism) {
   const text = (make, type) => () => new Blob([make(data)], { type });
   const svg = () => /** @type {SVGSVGElement} */ (mechanism.frame.querySelector(".picture"));
 
-  /** The solids of a scene in space, drawn just now; null: there are none. */
-  function solids() {
-    const solid = mechanism.frame.classList.contains("solid");
-    mechanism.update();
-    return solid ? mechanism.frame.querySelector("canvas") : null;
-  }
-  const picture = () => standAlone(svg(), { below: solids()?.toDataURL("image/png") ?? "" });
+  const solids = () => mechanism.solids(1);
+  const picture = () =>
+    standAlone(svg(), { below: mechanism.solids(PIXELS)?.toDataURL("image/png") ?? "" });
 
   /** A film of the whole recording; afterwards the page shows what it showed. */
   async function film() {
@@ -103,7 +100,7 @@ export function createExportDialog(el, store, actions, mechanism) {
       ending: "png",
       word: "PNG",
       about: "the drawing as it is shown now, at twice its size",
-      make: () => toPng(picture()),
+      make: () => toPng(picture(), PIXELS),
     },
     {
       ending: "webm",

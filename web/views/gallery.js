@@ -66,6 +66,12 @@ export function createGallery(el, store, actions) {
     list,
   );
   el.append(dialog);
+  dialog.addEventListener("close", () => actions.setView({ gallery: false }));
+  store.on("view", () => {
+    if (dialog.open && !data.view.gallery) {
+      dialog.close();
+    }
+  });
 
   /** @param {string} name */
   function toggle(name) {
@@ -100,7 +106,6 @@ export function createGallery(el, store, actions) {
   async function choose(id) {
     try {
       await actions.loadScene(id);
-      history.replaceState(null, "", `#${id}`);
       dialog.close();
     } catch (error) {
       say(count, sentenceOf(error));
@@ -162,8 +167,10 @@ export function createGallery(el, store, actions) {
           "aria-current": id === data.scene?.id ? "true" : null,
         }),
       );
-      dialog.showModal();
-      words.focus();
+      if (!dialog.open) {
+        dialog.showModal();
+        words.focus();
+      }
       show();
       fetchScenes();
     },

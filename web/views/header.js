@@ -57,7 +57,6 @@ export function createHeader(el, store, actions, open) {
     const wanted = menu.value;
     try {
       await actions.loadScene(wanted);
-      history.replaceState(null, "", `#${wanted}`);
     } catch (error) {
       menu.value = data.scene?.id ?? menu.value;
       actions.notice(sentenceOf(error));

@@ -121,7 +121,7 @@ export function createLook(el, store, actions) {
     scene: () => {
       if (id !== data.scene?.id) {
         id = data.scene?.id;
-        actions.setView({ look: null });
+        actions.setView({ look: null, space: null });
       }
       show();
     },

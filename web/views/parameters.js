@@ -65,16 +65,16 @@ export function createParameters(homes, place, store, actions) {
   let starts = new Map();
   let scene = "";
 
-  function shut() {
-    drawer.hidden = true;
-    set(button, { "aria-expanded": "false" });
+  const shut = () => actions.setView({ parameters: false });
+
+  function obey() {
+    drawer.hidden = !data.view.parameters;
+    set(button, { "aria-expanded": String(data.view.parameters) });
   }
 
-  /** @param {boolean} open */
+  /** @param {boolean} open by hand: the focus goes along */
   function toggle(open) {
-    shut();
-    drawer.hidden = !open;
-    set(button, { "aria-expanded": String(open) });
+    actions.setView({ parameters: open });
     const first = /** @type {HTMLElement | null} */ (list.querySelector("input[type=text]"));
     (open ? first : button)?.focus({ preventScroll: true });
   }
@@ -204,18 +204,19 @@ export function createParameters(homes, place, store, actions) {
 
   const stop = listen(store, {
     scene: () => {
-      if (scene !== data.scene?.id) {
+      if (scene !== data.scene?.id && data.view.parameters) {
         shut(); // it would lie over another mechanism
       }
       show();
     },
     state: () => {
       const moves = data.state === "running" || data.view.replaying;
-      if (moves && !drawer.contains(document.activeElement)) {
+      if (moves && data.view.parameters && !drawer.contains(document.activeElement)) {
         shut(); // whoever changes numbers in it while the mechanism moves keeps it
       }
     },
     stream: settle,
+    view: obey,
   });
   return {
     update() {},

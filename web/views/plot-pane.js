@@ -28,12 +28,14 @@ const MOST_TIMES = 10;
  * @param {import("../state/store.js").Data} data
  * @param {import("../session/session.js").Session} actions
  * @param {{
- *   id: string, first: string, onHover: (t: number | null) => void,
+ *   id: string, onHover: (t: number | null) => void,
  *   onZoom: (zoom: import("../widgets/plot.js").Zoom) => void,
- * }} how first: name of the quantity that is shown at first
+ * }} how id: its name in the view's plots
  */
-export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
-  let kind = quantityNamed(first);
+export function createPlotPane(data, actions, { id, onHover, onZoom }) {
+  const wanted = () => data.view.plots[id];
+  let obeyed = JSON.stringify(wanted());
+  let kind = quantityNamed(wanted().of);
   const options = {
     log: kind.log,
     unit: kind.unit,
@@ -48,20 +50,29 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     ...QUANTITIES.map(({ name, title }) => h("option", { value: name }, title)),
     h("option", { value: PHASE }, "Phase plot: velocity against coordinate"),
   );
-  menu.value = first;
-  menu.addEventListener("change", () => choose(menu.value));
+  menu.value = wanted().of;
+  menu.addEventListener("change", () => ask({ of: menu.value, turned: false, coordinate: "" }));
   const which = h("select", {
     class: "axis-title",
     "aria-label": "Coordinate of the phase plot",
     hidden: true,
-    onchange: () => paint(),
+    onchange: () => ask({ coordinate: which.value }),
   });
   let isPhase = false;
   const what = h("button", { type: "button", class: "term what" }, "?");
-  const log = h("button", { type: "button", class: "quiet", onclick: toggleLog }, "log");
+  const log = h(
+    "button",
+    { type: "button", class: "quiet", onclick: () => ask({ turned: !wanted().turned }) },
+    "log",
+  );
   const twin = h(
     "button",
-    { type: "button", class: "quiet", "aria-pressed": "false", onclick: toggleTwin },
+    {
+      type: "button",
+      class: "quiet",
+      "aria-pressed": "false",
+      onclick: () => ask({ table: !wanted().table }),
+    },
     icon("table"),
     "table",
   );
@@ -88,23 +99,31 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     set(what, { "data-tip": sentenceCase(about), "aria-label": `What is this: ${name}` });
   }
 
-  function toggleLog() {
-    options.log = !options.log;
-    setSeries(true);
-    paint();
+  /** @param {Partial<import("../state/shown.js").Plot>} change of what this plot shows */
+  function ask(change) {
+    actions.setView({ plots: { ...data.view.plots, [id]: { ...wanted(), ...change } } });
   }
 
-  function toggleTwin() {
-    const on = twin.getAttribute("aria-pressed") !== "true";
+  /** Shows what the view asks for, where it is something else than before. */
+  function obey() {
+    const now = JSON.stringify(wanted());
+    plot.setZoom(data.view.zoom);
+    whole.hidden = data.view.zoom === null;
+    if (now === obeyed) {
+      return;
+    }
+    obeyed = now;
+    const { of, turned, table: on } = wanted();
     set(twin, { "aria-pressed": String(on) });
     table.hidden = !on;
     canvas.hidden = on;
-    paint();
+    choose(of, turned);
   }
 
-  /** @param {string} name of a quantity */
-  function choose(name) {
+  /** @param {string} name of a quantity @param {boolean} turned */
+  function choose(name, turned) {
     isPhase = name === PHASE;
+    menu.value = name;
     phase.show(isPhase);
     canvas.classList.toggle("of-phase", isPhase);
     which.hidden = !isPhase;
@@ -117,8 +136,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
       return;
     }
     kind = quantityNamed(name);
-    menu.value = name;
-    options.log = kind.log;
+    options.log = kind.log !== turned;
     options.unit = kind.unit;
     setSeries(true);
     paint();
@@ -129,6 +147,9 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     const names = data.scene?.coordinates.map(({ name }) => name) ?? [];
     if (names.join() !== [...which.options].map(({ value }) => value).join()) {
       which.replaceChildren(...names.map((name) => h("option", { value: name }, name)));
+    }
+    if (names.includes(wanted().coordinate)) {
+      which.value = wanted().coordinate;
     }
   }
 
@@ -316,13 +337,8 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     figure,
     setSeries,
     paint,
-    choose,
+    obey,
     setHover: (t) => plot.setHover(t),
-    /** @param {import("../widgets/plot.js").Zoom} zoom */
-    setZoom(zoom) {
-      plot.setZoom(zoom);
-      whole.hidden = zoom === null;
-    },
     dispose: () => plot.dispose(),
   };
 }

@@ -6,7 +6,7 @@ import { listen } from "../state/store.js";
 import { createPlotPane } from "./plot-pane.js";
 
 const REDRAW = 66; // [ms]
-const FIRST = { upper: "off", lower: "gap" };
+const PANES = ["upper", "lower"];
 
 /**
  * @param {HTMLElement} el
@@ -15,8 +15,12 @@ const FIRST = { upper: "off", lower: "gap" };
  */
 export function createPlots(el, store, actions) {
   const data = store.data;
-  const panes = Object.entries(FIRST).map(([id, first]) =>
-    createPlotPane(data, actions, { id, first, onHover: hover, onZoom: zoomTo }),
+  const panes = PANES.map((id) =>
+    createPlotPane(data, actions, {
+      id,
+      onHover: hover,
+      onZoom: (zoom) => actions.setView({ zoom }),
+    }),
   );
   el.replaceChildren(...panes.map(({ figure }) => figure));
   let painted = 0;
@@ -27,11 +31,6 @@ export function createPlots(el, store, actions) {
   /** @param {number | null} t */
   function hover(t) {
     panes.forEach((pane) => pane.setHover(t));
-  }
-
-  /** @param {import("../widgets/plot.js").Zoom} zoom */
-  function zoomTo(zoom) {
-    panes.forEach((pane) => pane.setZoom(zoom));
   }
 
   /** @param {boolean} anew */
@@ -62,12 +61,15 @@ export function createPlots(el, store, actions) {
     methods: () => {
       if (scene !== data.scene?.id) {
         scene = data.scene?.id ?? "";
-        zoomTo(null);
+        data.view.zoom = null;
       }
       setSeries(run !== data.run);
       run = data.run;
     },
-    view: () => setSeries(false),
+    view: () => {
+      panes.forEach((pane) => pane.obey());
+      setSeries(false);
+    },
     theme: () => setSeries(false),
     reference: () => setSeries(false),
   });

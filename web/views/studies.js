@@ -3,18 +3,26 @@
 // The studies of what is on the page, in one dialog: a tab each, how far it is, and what comes of
 // it.
 import { sentenceOf } from "../api/client.js";
-import { KINDS } from "../state/catalogue.js";
+import { studyKinds } from "../state/catalogue.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
 import { createStudyBudget } from "./study-budget.js";
 import { createStudyCost } from "./study-cost.js";
 import { createStudyMap } from "./study-map.js";
 
+/** Short words for tabs, and keys; a kind that is not here has the server's own words. */
 const TABS = {
   "work-precision": { word: "What accuracy costs", letter: "W" },
   stability: { word: "Where steps are stable", letter: "B" },
   budget: { word: "Where the error comes from", letter: "E" },
 };
+
+/** A study that this page cannot draw: the server's report shows it. */
+function createPlain() {
+  const words = "This page has no picture for this study. The report has all of it.";
+  return { el: h("div", {}, h("p", { class: "told" }, words)), paint() {} };
+}
+
 const TOLD_EVERY = 2000; // [ms] for those who listen
 
 /** "12 s", "2 min" @param {number} seconds */
@@ -52,9 +60,14 @@ export function createStudies(el, store, actions) {
         }
       }, words),
   });
-  const views = { "work-precision": cost, stability: map, budget: createStudyBudget(store) };
+  /** @type {Record<string, {el: HTMLElement, paint: () => void}>} */
+  const drawn = { "work-precision": cost, stability: map, budget: createStudyBudget(store) };
+  const kinds = studyKinds();
+  const KINDS = kinds.map(({ name }) => name);
+  const views = Object.fromEntries(KINDS.map((kind) => [kind, drawn[kind] ?? createPlain()]));
+  const wordOf = (kind) => TABS[kind]?.word ?? kind;
   const title = h("h2", { id: "studies-title" });
-  const tabs = KINDS.map((kind) =>
+  const tabs = kinds.map(({ name: kind, about }) =>
     h(
       "button",
       {
@@ -63,10 +76,10 @@ export function createStudies(el, store, actions) {
         class: "quiet",
         id: `tab-${kind}`,
         "aria-controls": `study-${kind}`,
-        title: `key ${TABS[kind].letter} on the page`,
-        onclick: () => open(kind),
+        "data-tip": TABS[kind] ? `${about} (key ${TABS[kind].letter} on the page)` : about,
+        onclick: () => actions.setView({ study: kind }),
       },
-      TABS[kind].word,
+      wordOf(kind),
     ),
   );
   const bar = h("progress", { max: 1, "aria-label": "How far the study is" });
@@ -136,6 +149,7 @@ export function createStudies(el, store, actions) {
   );
   el.append(dialog);
   let told = 0;
+  let present = ""; // the kind that is shown
 
   /** @param {KeyboardEvent} event */
   function onTabKey(event) {
@@ -144,7 +158,7 @@ export function createStudies(el, store, actions) {
       event.preventDefault();
       const n = KINDS.length;
       const next = (KINDS.findIndex((kind) => kind === data.view.study) + by + n) % n;
-      open(KINDS[next]);
+      actions.setView({ study: KINDS[next] });
       tabs[next].focus();
     }
   }
@@ -168,7 +182,7 @@ export function createStudies(el, store, actions) {
     if (!data.scene) {
       return;
     }
-    data.view.study = kind;
+    present = kind;
     if (!dialog.open) {
       dialog.showModal();
       tabs[KINDS.findIndex((one) => one === kind)].focus();
@@ -219,7 +233,7 @@ export function createStudies(el, store, actions) {
     state.dataset.kind = study.state === "failed" ? "error" : "";
     if (!runs || Date.now() - told > TOLD_EVERY) {
       told = Date.now();
-      say(spoken, `${TABS[kind].word}: ${words}`);
+      say(spoken, `${wordOf(kind)}: ${words}`);
     }
   }
 
@@ -252,7 +266,7 @@ export function createStudies(el, store, actions) {
     },
     theme: show,
     view: () => {
-      if (data.view.study && !dialog.open) {
+      if (data.view.study && (!dialog.open || data.view.study !== present)) {
         open(data.view.study);
       } else if (!data.view.study && dialog.open) {
         dialog.close();

@@ -274,6 +274,9 @@ export function createPlot(el, options) {
     },
     /** @param {Zoom} wanted */
     setZoom(wanted) {
+      if (wanted === zoom) {
+        return;
+      }
       zoom = wanted;
       plot?.setData(plot.data);
     },

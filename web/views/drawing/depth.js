@@ -25,7 +25,7 @@ export function createDepth(frame, store, actions, stage, redraw) {
     try {
       const [{ createSpace }] = await Promise.all([
         import("../space/space.js"),
-        loadStyle("/style/space.css"),
+        loadStyle("style/space.css"),
       ]);
       space = createSpace(frame, store, actions, { size: stage.size, refit: redraw.refit });
     } catch (error) {
@@ -73,6 +73,8 @@ export function createDepth(frame, store, actions, stage, redraw) {
         space.draw(now);
       }
     },
+    /** The solids alone, or null. @param {number} now @param {number} scale */
+    picture: (now, scale) => (space?.shows ? space.picture(now, scale) : null),
     dispose: () => space?.dispose(),
   };
 }

@@ -202,6 +202,11 @@ export function createDrawing(el, store, actions) {
     stage,
     frame,
     overlay: layers.labels.parentNode,
+    /** The solids of a scene in space, drawn now; null: there are none. @param {number} scale */
+    solids(scale) {
+      update();
+      return depth.picture(shownIndex(data), scale);
+    },
     update,
     dispose() {
       stop();

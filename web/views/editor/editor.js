@@ -337,19 +337,34 @@ export function createEditor(el, store, actions, drawing) {
   }
 
   function show() {
-    panel.hidden = false;
-    document.body.classList.add("edits");
+    if (data.view.panel !== "editor") {
+      actions.setView({ panel: "editor" });
+    }
+    obey();
   }
-
   function close() {
-    tools.choose("");
-    panel.hidden = true;
-    document.body.classList.remove("edits");
-    document.getElementById("play")?.focus({ preventScroll: true });
+    actions.setView({ panel: "" });
+  }
+  let isOpen = false;
+
+  /** Opens or closes as the view says. */
+  function obey() {
+    const wanted = data.view.panel === "editor";
+    if (wanted === isOpen) {
+      return;
+    }
+    isOpen = wanted;
+    panel.hidden = !wanted;
+    document.body.classList.toggle("edits", wanted);
+    if (!wanted) {
+      tools.choose("");
+      document.getElementById("play")?.focus({ preventScroll: true });
+    }
   }
 
   let id = data.scene?.id;
   listen(store, {
+    view: obey,
     scene: () => {
       const other = !data.document && data.scene?.id !== id;
       id = data.document ? "" : data.scene?.id;

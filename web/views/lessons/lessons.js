@@ -10,7 +10,7 @@ import { hasMath, make, wordsOf } from "./blocks.js";
 import { createExercise } from "./exercise.js";
 import { makeExhibit, makePrediction, makeSlip } from "./live.js";
 
-const KATEX_STYLE = "/vendor/katex/katex.min.css";
+const KATEX_STYLE = "vendor/katex/katex.min.css";
 
 /**
  * @param {HTMLElement} el
@@ -22,13 +22,14 @@ export function createLessons(el, store, actions) {
   const progress = createProgress();
   let katex = null;
   let shown = "";
+  let isOpen = false;
   /** what is made when it is first seen @type {Map<Element, () => void>} */
   const waiting = new Map();
 
   const menu = h("select", {
     id: "lesson",
     "aria-label": "Lesson",
-    onchange: () => show(menu.value),
+    onchange: () => actions.setView({ lesson: menu.value }),
   });
   const text = h("article", {
     class: "lesson-text",
@@ -99,7 +100,7 @@ export function createLessons(el, store, actions) {
   function move(by) {
     const to = data.lessons[placeOf(shown) + by];
     if (to) {
-      show(to.id);
+      actions.setView({ lesson: to.id });
     }
   }
 
@@ -179,9 +180,27 @@ export function createLessons(el, store, actions) {
   }
 
   function close() {
-    panel.hidden = true;
-    document.body.classList.remove("reads");
-    document.getElementById("play")?.focus({ preventScroll: true });
+    actions.setView({ panel: "" });
+  }
+
+  /** Opens or closes as the view says; the lesson is the one it names, or that of the scene. */
+  function obey() {
+    const wanted = data.view.panel === "lessons";
+    if (wanted !== isOpen) {
+      isOpen = wanted;
+      panel.hidden = !wanted;
+      document.body.classList.toggle("reads", wanted);
+      (wanted ? text : document.getElementById("play"))?.focus({ preventScroll: true });
+    }
+    if (!wanted) {
+      return;
+    }
+    const own = data.lessons.find(({ scenes }) => scenes.includes(data.scene?.id));
+    const id = data.view.lesson || shown || (own?.id ?? data.lessons[0].id);
+    if (id !== shown) {
+      show(id);
+    }
+    data.view.lesson = id;
   }
 
   panel.addEventListener("keydown", (event) => {
@@ -190,16 +209,6 @@ export function createLessons(el, store, actions) {
     }
   });
 
-  return {
-    /** Opens the lesson of the scene that is shown, or the one that was open. */
-    open() {
-      const own = data.lessons.find(({ scenes }) => scenes.includes(data.scene?.id));
-      panel.hidden = false;
-      document.body.classList.add("reads");
-      if (!shown) {
-        show(own?.id ?? data.lessons[0].id);
-      }
-      text.focus({ preventScroll: true });
-    },
-  };
+  store.on("view", obey);
+  return { open: obey };
 }

@@ -33,7 +33,6 @@ export function makeExhibit(block, kit, actions, whenSeen) {
     say(said, "opening");
     try {
       await actions.loadScene(scene, link);
-      history.replaceState(null, "", `#${scene}`);
       const end = Number(block.time);
       say(
         said,

@@ -20,6 +20,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
  */
 export function createRig(data, size) {
   let target = [0, 0, 0]; // what the middle of the picture shows [m]
+  let held = false; // a person has set the view: it is not fitted again
   let fitted = 1; // [m] half the height of the picture at the target, as it fits
   let zoom = 1;
   let perspective = true;
@@ -62,9 +63,13 @@ export function createRig(data, size) {
     const known = data.reference?.state === "ready";
     const wanted = `${data.scene?.id} ${size.width} ${size.height} ${known}`;
     if (wanted !== fittedFor && size.width > 0 && size.height > 0) {
+      const other = fittedFor.split(" ")[0] !== String(data.scene?.id);
       fittedFor = wanted;
       footRoom = foot ?? MARGIN.bottom;
-      fit();
+      held &&= !other || data.view.space !== null;
+      if (!held) {
+        fit();
+      }
     }
   }
 
@@ -103,12 +108,34 @@ export function createRig(data, size) {
       (k) => axes.reduce((sum, axis, i) => sum + axis[k] * middle[i], 0) - lift * look.up[k],
     );
     zoom = 1;
+    held = false;
     followed = null;
   }
 
   return {
     HALF_ANGLE,
     fit,
+    /** The view as it is now, and whether a person has set it. */
+    get own() {
+      const camera = held ? [halfHeight(), ...target] : [];
+      return { camera, perspective, follow };
+    },
+    /** The view stays as it is, whatever is known later. */
+    hold() {
+      held = true;
+    },
+    /** Sets the view as a person once had. @param {import("../../state/shown.js").SpaceView} wanted */
+    setOwn(wanted) {
+      perspective = wanted.perspective;
+      follow = wanted.follow;
+      fit();
+      const [height, ...middle] = wanted.camera;
+      if (height > 0) {
+        zoom = fitted / height;
+        target = middle;
+        held = true;
+      }
+    },
     fitOnce,
     get target() {
       return target;
@@ -132,12 +159,14 @@ export function createRig(data, size) {
     /** @param {number} factor above 1: nearer */
     zoomBy(factor) {
       zoom = Math.min(ZOOM.most, Math.max(ZOOM.least, zoom * factor));
+      held = true;
     },
     /** The picture moves with the pointer. @param {number} dx [px] @param {number} dy [px] */
     pan(dx, dy) {
       const { right, up } = lookOf(data);
       const metres = (2 * halfHeight()) / Math.max(1, size.height);
       target = target.map((x, k) => x - metres * (dx * right[k] - dy * up[k]));
+      held = true;
     },
     /** Keeps what is followed at its place in the picture. @param {number[]} place */
     track(place) {

@@ -4,6 +4,7 @@
 // joints with their axes, paths as tubes. Names, arrows and cut joints stay in the SVG.
 import * as THREE from "three";
 import { referenceAt } from "../../state/reference.js";
+import { firstSpace } from "../../state/shown.js";
 import { h } from "../../widgets/dom.js";
 import { makeFloor } from "./floor.js";
 import { makeBase, makeModel, makeReference, release, widthOf } from "./models.js";
@@ -13,6 +14,7 @@ import { createTrail } from "./trail.js";
 
 const MOST_PIXELS = 2; // of the canvas per pixel of the page
 const SLOW = 30; // [ms] a picture: then shadows and fine pixels are left out
+const SETTLED = 300; // [ms] after a movement of the view
 const NEAR = 0.02; // of the distance
 const FAR = 12;
 
@@ -61,13 +63,21 @@ export function createSpace(frame, store, actions, drawing) {
   canvas.setAttribute("aria-hidden", "true");
   const place = h("div", { class: "space" }, canvas);
   frame.prepend(place);
-  const tools = createTools(frame, rig, data, actions, { refit: changed, showFrames });
 
   /** @type {{ghosts: any[], reference: any, base: any, floor: any, trails: any[]} | null} */
   let made = null;
   let frames = false;
+  let settled = 0;
+  /** what this view itself has put into the store @type {any} */
+  let told = null;
+  let seen = data.view.look;
   let lost = false;
   let pace = { last: 0, slow: 0, coarse: false };
+  const tools = createTools(frame, rig, data, actions, {
+    refit: moved,
+    frames: () => frames,
+    showFrames,
+  });
 
   function clear() {
     if (made) {
@@ -129,6 +139,42 @@ export function createSpace(frame, store, actions, drawing) {
   /** The view is another one. */
   function changed() {
     drawing.refit();
+  }
+
+  /** A person has moved the view: a link holds it, once it stands. */
+  function keepView() {
+    clearTimeout(settled);
+    const { scene } = data;
+    settled = window.setTimeout(() => {
+      if (data.scene?.id === scene?.id) {
+        told = { ...rig.own, frames };
+        actions.setView({ space: told });
+      }
+    }, SETTLED);
+  }
+
+  function moved() {
+    changed();
+    keepView();
+  }
+
+  /** The view that a link asks for. */
+  function obey() {
+    const { space, look } = data.view;
+    const turned = look !== seen;
+    seen = look;
+    if (made && space !== told) {
+      told = space;
+      clearTimeout(settled);
+      rig.setOwn(space ?? firstSpace());
+      frames = (space ?? firstSpace()).frames;
+      made.ghosts.forEach((ghost) => ghost.showFrames(frames));
+      tools.update();
+      changed();
+    } else if (made && turned && look) {
+      rig.hold(); // turned by hand: what is seen stays at its size
+      keepView();
+    }
   }
 
   function setCamera() {
@@ -221,12 +267,33 @@ export function createSpace(frame, store, actions, drawing) {
       renderer.setPixelRatio(pace.coarse ? 1 : Math.min(MOST_PIXELS, devicePixelRatio));
       renderer.setSize(width, height);
     },
+    /**
+     * The solids of now with so many pixels per pixel of the page, as a picture of their own.
+     * @param {number} now index of the frame shown @param {number} scale
+     */
+    picture(now, scale) {
+      const ratio = renderer.getPixelRatio();
+      const copy = document.createElement("canvas");
+      if (scale !== ratio) {
+        renderer.setPixelRatio(scale);
+      }
+      this.draw(now);
+      copy.width = canvas.width;
+      copy.height = canvas.height;
+      copy.getContext("2d")?.drawImage(canvas, 0, 0); // what WebGL drew is gone after this task
+      if (scale !== ratio) {
+        renderer.setPixelRatio(ratio);
+        this.draw(now);
+      }
+      return copy;
+    },
     show(on) {
       place.hidden = !on;
       tools.show(on);
     },
     /** @param {number} now index of the frame shown */
     follow(now) {
+      obey();
       if (made) {
         const { scene, history, view } = data;
         const points = history.pointsAt(view.selected, now);
@@ -253,6 +320,7 @@ export function createSpace(frame, store, actions, drawing) {
       keepPace();
     },
     dispose() {
+      clearTimeout(settled);
       clear();
       tools.dispose();
       renderer.dispose();

@@ -19,17 +19,15 @@ const KEYS =
  * @param {import("./rig.js").Rig} rig
  * @param {import("../../state/store.js").Data} data
  * @param {import("../../session/session.js").Session} actions
- * @param {{refit: () => void, showFrames: (on: boolean) => void}} view
+ * @param {{refit: () => void, frames: () => boolean, showFrames: (on: boolean) => void}} view
  */
-export function createTools(frame, rig, data, actions, { refit, showFrames }) {
+export function createTools(frame, rig, data, actions, { refit, frames, showFrames }) {
   const vertical = () => data.scene?.view?.vertical;
-  let frames = false;
 
   const toggles = {
     perspective: make("perspective", "nearer things look larger (P)", () => setPerspective()),
     frames: make("frames", "the axes of every body: x red, y green, z blue", () => {
-      frames = !frames;
-      showFrames(frames);
+      showFrames(!frames());
     }),
     follow: make("follow", "keeps the traced point at its place in the picture (F)", () => {
       rig.setFollow(!rig.follow);
@@ -70,7 +68,7 @@ export function createTools(frame, rig, data, actions, { refit, showFrames }) {
 
   function update() {
     set(toggles.perspective, { "aria-pressed": String(rig.perspective) });
-    set(toggles.frames, { "aria-pressed": String(frames) });
+    set(toggles.frames, { "aria-pressed": String(frames()) });
     set(toggles.follow, { "aria-pressed": String(rig.follow) });
   }
 
@@ -195,6 +193,7 @@ export function createTools(frame, rig, data, actions, { refit, showFrames }) {
   update();
 
   return {
+    update,
     /** @param {boolean} on */
     show(on) {
       bar.hidden = !on;
