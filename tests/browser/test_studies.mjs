@@ -9,7 +9,9 @@ import {
   dotsOf,
   floorOf,
   frameOf,
+  leftOutOf,
   meaningOf,
+  missingIn,
   sentencesOf,
 } from "../../web/state/study-documents.js";
 import { readIndex } from "../../web/state/catalogue.js";
@@ -23,6 +25,7 @@ import {
   valueOnAxis,
 } from "../../web/state/heat.js";
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
+import { cheapestFor, wantedError } from "../../web/state/wanted.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 
 const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
@@ -78,6 +81,55 @@ test("a point that failed stands on the upper edge, at what it would have cost",
     1,
     "what was not measured is not drawn, the failure is",
   );
+});
+
+test("an accuracy is read as a length, an angle, a share or the number of the axis", () => {
+  const value = (text, error = "q") => wantedError(text, error, 2)?.value;
+  assert.equal(value("1 mm"), 0.5e-3);
+  assert.equal(value("2 mrad"), 2e-3);
+  assert.equal(value("0.1 %", "energy"), 1e-3);
+  assert.equal(value("1e-3", "v"), 1e-3);
+  assert.equal(value("1 mm", "v"), undefined, "a velocity is no length");
+  assert.equal(value("0"), undefined);
+  assert.equal(value("-1 mm"), undefined);
+  assert.equal(value("much"), undefined);
+});
+
+test("the cheapest method for an accuracy lies between its measured points", () => {
+  const dot = (m, size, error, cost) => ({ m, k: 0, size, error, cost, sizeName: "h" });
+  const steep = [dot(0, 1, Infinity, 1), dot(0, 0.1, 1e-2, 10), dot(0, 0.01, 1e-6, 100)];
+  const lucky = [dot(1, 1, 1e-5, 2), dot(1, 0.1, 1e-1, 20), dot(1, 0.01, 1e-3, 200)];
+  const [first, ...others] = cheapestFor([steep, lucky], 1e-4);
+  assert.equal(first.m, 0);
+  assert.ok(Math.abs(first.cost - Math.sqrt(1000)) < 1e-9, "half-way in decades");
+  assert.ok(Math.abs(first.size - Math.sqrt(1e-3)) < 1e-9);
+  assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
+  const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
+  assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
+});
+
+test("a study that was cut short names what it left out", () => {
+  const study = {
+    methods: [
+      {
+        size: "h",
+        points: [
+          { state: "done", size: 1 },
+          { state: "skipped", size: 1e-3 },
+        ],
+      },
+      { size: "h", points: [{ state: "done", size: 1 }] },
+    ],
+  };
+  const label = (m) => ["index-1", "reduced"][m];
+  assert.match(
+    leftOutOf(study, label),
+    /^1 of 3 points was not run: .* Left out: index-1 at h = 1/,
+  );
+  assert.equal(missingIn(study, label), "index-1 1 point");
+  const map = { methods: [{ rows: [[{ class: "stable" }, { class: "skipped" }]] }] };
+  assert.equal(missingIn(map, label), "index-1 1 cell");
+  assert.equal(missingIn({ methods: [{ state: "pending" }, { state: "done" }] }, label), "index-1");
 });
 
 test("the frame holds every finite error in whole decades, and the band of the reference where it is near", () => {
@@ -241,6 +293,28 @@ test("a map over alpha and beta is asked for the methods that have them alone", 
       ({ name }) => name === "baumgarte",
     ),
   );
+});
+
+test("the map that opens first is the telling one that the scene has", () => {
+  const stability = {
+    ...STUDIES[1],
+    presets: [
+      { name: "stiffness", about: "", chooses: ["h"], stabilised: false },
+      { name: "mass-ratio", about: "", chooses: ["h"], stabilised: false },
+      ...STUDIES[1].presets,
+    ],
+  };
+  readIndex({ limits: { methods: 8 }, incidents: [], studies: [stability] });
+  const names = (units, spelling) =>
+    presetsOf({
+      catalogue: CATALOGUE,
+      methods: [{ spelling }],
+      scene: { parameters: units.map((unit) => ({ unit })) },
+    }).map(({ name }) => name);
+  assert.deepEqual(names(["m"], "index1@rk4"), ["limits"]);
+  assert.deepEqual(names(["N/m", "kg"], "index1@rk4"), ["stiffness", "limits", "mass-ratio"]);
+  assert.equal(names(["N/m"], "baumgarte@rk4")[0], "baumgarte");
+  readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
 });
 
 test("a link names the study that is open, and no other word", () => {

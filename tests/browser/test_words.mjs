@@ -53,12 +53,15 @@ test("the axis of errors says its unit, by what the coordinates of the scene are
 
 test("points that were not run are counted with the reason, and are drawn as rings, not as failures", () => {
   const points = [
-    { state: "done", reason: "" },
-    { state: "skipped", reason: "the time limit of 20 s" },
-    { state: "pending", reason: "" },
+    { state: "done", reason: "", size: 0.1 },
+    { state: "skipped", reason: "the time limit of 20 s", size: 0.05 },
+    { state: "pending", reason: "", size: 0.02 },
   ];
-  const study = { methods: [{ points }] };
-  assert.equal(leftOutOf(study), "2 of 3 points were not run: the time limit of 20 s.");
+  const study = { methods: [{ size: "h", points }] };
+  assert.equal(
+    leftOutOf(study, (m) => `method ${m}`),
+    "2 of 3 points were not run: the time limit of 20 s. Left out: method 0 at h = 50 ms, h = 20 ms.",
+  );
   assert.equal(leftOutOf({ methods: [{ points: points.slice(0, 1) }] }), "");
   const failed = markerOf({ error: Infinity, state: "failed" }, "disc");
   const skipped = markerOf({ error: Infinity, state: "skipped" }, "square");

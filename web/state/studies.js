@@ -39,14 +39,28 @@ export const noStudy = () => ({
 const hasOptions = (catalogue, spelling, { chooses, stabilised }) =>
   !stabilised || chooses.every((key) => settingOf(catalogue, spelling, key));
 
+/** Units of the parameter that a map goes over, by its preset; others need none. */
+const OVER = { stiffness: ["N/m", "N*m/rad"], "mass-ratio": ["kg"] };
+
 /**
- * The maps that the methods have.
- * @param {{catalogue: Catalogue, methods: {spelling: string}[]}} data
+ * The maps that the methods and the scene have, the most telling one first: of a method's own
+ * options, of a stiffness, of the step alone, of masses.
+ * @param {{
+ *   catalogue: Catalogue, methods: {spelling: string}[], scene?: {parameters?: {unit: string}[]},
+ * }} data
  */
-export const presetsOf = ({ catalogue, methods }) =>
-  presets().filter((preset) =>
-    methods.some(({ spelling }) => hasOptions(catalogue, spelling, preset)),
-  );
+export function presetsOf({ catalogue, methods, scene }) {
+  const has = ({ name }) =>
+    !OVER[name] || (scene?.parameters ?? []).some(({ unit }) => OVER[name].includes(unit));
+  const rank = ({ name, stabilised }) =>
+    stabilised ? 0 : name === "stiffness" ? 1 : OVER[name] ? 3 : 2;
+  return presets()
+    .filter(
+      (preset) =>
+        has(preset) && methods.some(({ spelling }) => hasOptions(catalogue, spelling, preset)),
+    )
+    .sort((a, b) => rank(a) - rank(b));
+}
 
 /**
  * Axes of a map that hold the present values of its options as well; "" where the server's own do.
@@ -180,7 +194,11 @@ export function createStudyFeed(store) {
     }
   }
 
-  const preset = () => data.view.map || (presetsOf(data)[0]?.name ?? "");
+  /** The map that is asked for, where this scene has it; else the most telling one. */
+  function preset() {
+    const names = presetsOf(data).map(({ name }) => name);
+    return names.includes(data.view.map) ? data.view.map : (names[0] ?? "");
+  }
   const order = (kind) => orderOf(kind, data, preset());
 
   return {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
-import { quantity, withPowers } from "./format.js";
+import { counted, quantity, withPowers } from "./format.js";
 
 /** @typedef {{length: number, coordinates: {kind: string}[]}} Measured of a scene */
 const shareOfLength = ({ length }) => `share of ${quantity(length, "m")}`;
@@ -141,17 +141,43 @@ export function dotsOf(study, error, cost) {
   );
 }
 
+/** The size of a point, for people. @param {string} name @param {number} size */
+const sizeWords = (name, size) =>
+  name === "h" ? `h = ${quantity(size, "s")}` : `rtol = ${Number(size.toPrecision(2))}`;
+
 /**
- * How many points were left out, and why; "" where all were run.
+ * Which points were left out, and why; "" where all were run.
  * @param {any} study
+ * @param {(m: number) => string} labelOf
  */
-export function leftOutOf(study) {
+export function leftOutOf(study, labelOf) {
+  const whose = study.methods.flatMap(({ points, size }, m) => {
+    const missing = points.filter(({ state }) => NOT_RUN.includes(state));
+    const sizes = missing.map((point) => sizeWords(size, point.size)).join(", ");
+    return missing.length ? [`${labelOf(m)} at ${sizes}`] : [];
+  });
   const points = study.methods.flatMap((method) => method.points);
   const missing = points.filter(({ state }) => NOT_RUN.includes(state));
   const reason = missing.find((point) => point.reason)?.reason ?? "the study was stopped";
+  const were = missing.length === 1 ? "was" : "were";
   return missing.length
-    ? `${missing.length} of ${points.length} points were not run: ${reason}.`
+    ? `${missing.length} of ${points.length} points ${were} not run: ${reason}. Left out: ${whose.join("; ")}.`
     : "";
+}
+
+/**
+ * What is missing in a document of whatever kind, in a few words; "" where nothing is.
+ * @param {any} document
+ * @param {(m: number) => string} labelOf
+ */
+export function missingIn(document, labelOf) {
+  const parts = document.methods.flatMap((method, m) => {
+    const all = method.points ?? method.rows?.flat() ?? [method];
+    const noun = method.points ? "point" : method.rows ? "cell" : "";
+    const count = all.filter((one) => NOT_RUN.includes(one.state ?? one.class)).length;
+    return count ? [noun ? `${labelOf(m)} ${counted(count, noun)}` : labelOf(m)] : [];
+  });
+  return parts.join(", ");
 }
 
 /** Below it an error is no more than a bound; 0: the quantity needs no reference. */
@@ -177,6 +203,13 @@ export const meaningOf = (error, length) =>
   error === "q"
     ? `An error of 10⁻³ is 1 mrad of an angle: ${quantity(1e-3 * length, "m")} at the end of ${quantity(length, "m")}.`
     : "";
+
+/**
+ * The same errors as lengths, for the title of the axis; "" where they are none.
+ * @param {string} error @param {number} length [m] of the scene
+ */
+export const lengthsOf = (error, length) =>
+  error === "q" || error === "gap" ? ` (10⁻³ is ${quantity(1e-3 * length, "m")})` : "";
 
 /**
  * Whole decades that hold all finite errors and the floor, at least two.

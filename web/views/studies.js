@@ -5,6 +5,7 @@
 import { sentenceOf } from "../api/client.js";
 import { studyKinds } from "../state/catalogue.js";
 import { listen } from "../state/store.js";
+import { missingIn } from "../state/study-documents.js";
 import { h, say, set } from "../widgets/dom.js";
 import { createStudyBudget } from "./study-budget.js";
 import { createStudyCost } from "./study-cost.js";
@@ -76,7 +77,7 @@ export function createStudies(el, store, actions) {
         class: "quiet",
         id: `tab-${kind}`,
         "aria-controls": `study-${kind}`,
-        "data-tip": TABS[kind] ? `${about} (key ${TABS[kind].letter} on the page)` : about,
+        title: TABS[kind] ? `${about} (key ${TABS[kind].letter} on the page)` : about,
         onclick: () => actions.setView({ study: kind }),
       },
       wordOf(kind),
@@ -205,11 +206,18 @@ export function createStudies(el, store, actions) {
     show();
   }
 
-  function stateWords({ state: now, progress, left, elapsed, reason }) {
+  const labelOf = (document) => (m) => data.methods[m]?.label ?? document.methods[m].method;
+
+  function stateWords({ state: now, progress, left, elapsed, reason, document }) {
     if (now === "running") {
       return `${Math.round(100 * progress)} %${left === null ? "" : `, ${span(left)} left at most`}`;
     }
-    return now === "finished" ? `done in ${span(elapsed)}` : reason;
+    const missing = document ? missingIn(document, labelOf(document)) : "";
+    return now === "finished"
+      ? `done in ${span(elapsed)}`
+      : missing
+        ? `${reason.replace(/ left something out$/, " is over")}; left out: ${missing}`
+        : reason;
   }
 
   function showRun() {

@@ -198,6 +198,15 @@ export function createStudyBudget(store) {
       shown.name === "error"
         ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. An error too large to be the sum of its parts has no bar; a shorter time or a smaller step has one."
         : "Each bar shows the parts that added energy (right) and removed energy (left) as shares. Their sum is the energy change.";
+    const judged = [...new Set(study().methods.flatMap(({ error }) => error?.coordinate ?? []))];
+    if (shown.name === "error" && judged.length) {
+      about.append(
+        ` Judged is the coordinate whose error is largest at the end: ${judged.join(", ")}.`,
+        judged.length > 1
+          ? " It is not the same for all methods, so compare the shares, not the sizes."
+          : "",
+      );
+    }
     list.replaceChildren(...study().methods.map(row));
     legend.replaceChildren(
       ...shown.order.map(({ letter, about: words }, i) =>

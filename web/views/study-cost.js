@@ -11,6 +11,7 @@ import {
   floorOf,
   frameOf,
   leftOutOf,
+  lengthsOf,
   meaningOf,
   sentencesOf,
 } from "../state/study-documents.js";
@@ -18,6 +19,7 @@ import { h, s, say } from "../widgets/dom.js";
 import { isOpen, markerOf } from "../widgets/markers.js";
 import { explained } from "../widgets/term.js";
 import { rove } from "../widgets/roving.js";
+import { createWanted } from "./study-wanted.js";
 
 const ROOM = { left: 54, top: 44, bottom: 44 };
 const LABEL = 15; // [px] between two names
@@ -91,6 +93,11 @@ export function createStudyCost(store, onPick) {
     choice(ERRORS, "error", "error of"),
     choice(COSTS, "cost", "cost in"),
   );
+  const wanted = createWanted(data, {
+    labelOf: (m) => labelOf(m),
+    costText: (value) => costText(view.cost, value),
+    onPick,
+  });
   const el = h(
     "div",
     {},
@@ -98,6 +105,7 @@ export function createStudyCost(store, onPick) {
     frame,
     told,
     h("h3", {}, "Cheapest of these methods for an accuracy"),
+    wanted.el,
     sentences,
     meaning,
     leftOut,
@@ -253,7 +261,7 @@ export function createStudyCost(store, onPick) {
       s(
         "text",
         { x: ROOM.left - 46, y: 12, class: "title" },
-        `largest error of ${error.word}, ${error.unit(data.scene)}`,
+        `largest error of ${error.word}, ${error.unit(data.scene)}${lengthsOf(view.error, data.scene.length)}`,
       ),
     );
     const ends = [];
@@ -362,9 +370,10 @@ export function createStudyCost(store, onPick) {
     });
     draw();
     fillTable();
+    wanted.show(dots, view.error);
     const lines = sentencesOf(study(), view.error, view.cost);
     say(meaning, meaningOf(view.error, data.scene.length));
-    say(leftOut, leftOutOf(study()));
+    say(leftOut, leftOutOf(study(), labelOf));
     sentences.replaceChildren(
       ...(lines.length
         ? lines

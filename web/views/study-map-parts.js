@@ -9,10 +9,12 @@ import {
   heatOf,
   heatRange,
 } from "../state/heat.js";
-import { plain } from "../state/format.js";
+import { plain, powerOfTen } from "../state/format.js";
 import { CLASSES, boundaryOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
+const WHOLE = 34; // [px] of a cell that holds 10⁻³
+const EXPONENT = 22; // [px] of one that holds the exponent
 const DEEP = 56; // [%] of the colour: beyond it letters are in the colour of the paper
 
 /**
@@ -41,7 +43,7 @@ export function shadeCells(picture, name, rows, length, columnOf) {
     const strength = Math.round(6 + 84 * share);
     const [cell, letter] = /** @type {any} */ (node.children);
     cell.style.fill = `color-mix(in oklab, var(--heat) ${strength}%, var(--paper))`;
-    letter.textContent = String(Math.floor(Math.log10(value)));
+    letter.textContent = powerWords(Math.floor(Math.log10(value)), cell.width.baseVal.value);
     node.classList.add("heat");
     node.classList.toggle("deep", strength > DEEP);
     node.classList.toggle("best", best?.i === columnOf(i) && best?.j === j);
@@ -96,6 +98,10 @@ export function drawContours(picture, name, rows, length, scale) {
   }
 }
 
+/** A power of ten for a cell: all of it, its exponent, or nothing where neither has room. */
+const powerWords = (power, width) =>
+  width >= WHOLE ? powerOfTen(power) : width >= EXPONENT ? powerOfTen(power).slice(2) : "";
+
 /** A small picture and its words. */
 function entry(className, content, words) {
   const key = s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, content);
@@ -133,7 +139,13 @@ export function fillLegend(legend, map, { heat, here, step }) {
   const unit = kind?.unit ? ` ${kind.unit}` : "";
   legend.replaceChildren(
     ...(kind
-      ? [h("li", {}, `numbers: ${kind.word} as a power of ten${unit}; framed: the least`)]
+      ? [
+          h(
+            "li",
+            {},
+            `in the cells: ${kind.word} as a power of ten${unit}, the lighter the smaller; framed: the least`,
+          ),
+        ]
       : []),
     ...outcomes,
     lineEntry("boundary", `predicted boundary${limitWords}`),
