@@ -8,49 +8,61 @@ import { createBench, playTo, soon, until } from "./support.mjs";
 const { open } = createBench();
 const LONG = 60000; // [ms] that a study may take on a busy machine
 
-/** What is opened before axe looks, by a name. */
+/** Presses Escape until no dialog is open. */
+const shutDialog = async (page) => {
+  await page.keyboard.press("Escape");
+  await soon(async () => assert.equal(await page.locator("dialog[open]").count(), 0));
+  await page.focus("#play");
+};
+const tables = async (page) => {
+  for (const k of [0, 1]) {
+    await page.locator("figure.plot").nth(k).getByRole("button", { name: "table" }).click();
+  }
+};
+const press = (name) => (page) => page.getByRole("button", { name }).click();
+
+/** What is opened before axe looks, by a name, and how it is closed again. */
 const VIEWS = {
-  "the first screen": async () => {},
-  "a card and the drawer": async (page) => {
-    await page.getByRole("button", { name: "lengths, masses, start" }).click();
-    await page.getByRole("button", { name: "Why? index-1" }).click();
-  },
-  tables: async (page) => {
-    for (const k of [0, 1]) {
-      await page.locator("figure.plot").nth(k).getByRole("button", { name: "table" }).click();
-    }
-  },
-  "forces and equations": async (page) => {
-    await page.click("#reactions summary");
-    await page.click(".equation-panel summary");
-    await page.waitForSelector(".term-block .katex");
-    await page.waitForFunction(() => document.querySelectorAll(".reaction-table tr").length > 1);
-  },
-  "the method's dialog": async (page) => {
-    await page.getByRole("button", { name: "add a method" }).click();
-  },
-  keys: (page) => page.keyboard.press("F1"),
-  export: (page) => page.getByRole("button", { name: "export" }).click(),
-  "the error budget": async (page) => {
-    await page.keyboard.press("e");
-    await until(page, (data) => data.studies.budget.state === "finished", LONG);
-  },
+  "the first screen": [async () => {}, async () => {}],
+  "the drawer": [
+    press("lengths, masses, start"),
+    (page) => page.locator("#parameters").getByRole("button", { name: "Close" }).click(),
+  ],
+  "a card": [press("Why? index-1"), (page) => page.keyboard.press("Escape")],
+  tables: [tables, tables],
+  "the method's dialog": [press("add a method"), shutDialog],
+  keys: [(page) => page.keyboard.press("F1"), shutDialog],
+  export: [press("export"), shutDialog],
+  "the error budget": [
+    async (page) => {
+      await page.keyboard.press("e");
+      await until(page, (data) => data.studies.budget.state === "finished", LONG);
+    },
+    shutDialog,
+  ],
+  "forces and equations": [
+    async (page) => {
+      await page.click("#reactions summary");
+      await page.click(".equation-panel summary");
+      await page.waitForSelector(".term-block .katex");
+      await page.waitForFunction(() => document.querySelectorAll(".reaction-table tr").length > 1);
+    },
+    async () => {},
+  ],
 };
 
-for (const [name, show] of Object.entries(VIEWS)) {
-  for (const [colorScheme, width] of [
-    ["light", 1366],
-    ["dark", 360],
-  ]) {
-    test(`axe finds nothing: ${name}, ${colorScheme}, ${width} wide`, async (t) => {
-      const page = await open(t, {
-        colorScheme,
-        viewport: { width, height: 780 },
-        bypassCSP: true,
-      });
-      await playTo(page, 1.5);
+for (const [colorScheme, width] of [
+  ["light", 1366],
+  ["dark", 360],
+]) {
+  test(`axe finds nothing on any view, ${colorScheme}, ${width} wide`, async (t) => {
+    const viewport = { width, height: 780 };
+    const page = await open(t, { colorScheme, viewport, bypassCSP: true });
+    await playTo(page, 1.5);
+    for (const [name, [show, hide]] of Object.entries(VIEWS)) {
       await show(page);
-      await soon(async () => assert.deepEqual(await violations(page), []));
-    });
-  }
+      await soon(async () => assert.deepEqual(await violations(page), [], name));
+      await hide(page);
+    }
+  });
 }

@@ -74,7 +74,8 @@ export function createParameters(homes, place, store, actions) {
 
   /** @param {boolean} open by hand: the focus goes along */
   function toggle(open) {
-    actions.setView({ parameters: open });
+    // a card that says why would lie under the drawer
+    actions.setView(open && columns.matches ? { parameters: true, why: -1 } : { parameters: open });
     const first = /** @type {HTMLElement | null} */ (list.querySelector("input[type=text]"));
     (open ? first : button)?.focus({ preventScroll: true });
   }
