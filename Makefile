@@ -227,7 +227,7 @@ TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-sci
                  slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux nginx:nginx-light
 # for make languages alone: some 700 MB
 LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base libeigen3-dev libejml-java python3-petsc4py \
-                     python3-matplotlib
+                     python3-matplotlib libmujoco-dev
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile
@@ -446,6 +446,7 @@ languages: build/.packages-languages
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/cli/test_export.py --all >build/languages.txt; status=$$?; \
 	cp build/languages.txt tests/tables/languages.txt && cat tests/tables/languages.txt; exit $$status
+	@HOLONOM=$(PROGRAM) python3 tests/cli/test_mujoco.py
 
 # some minutes on one processor; fails where a variant is bad
 exercises: all

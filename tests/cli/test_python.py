@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Python module says what the command says, and its notebook runs."""
 
+import json
 import math
 import os
 import re
@@ -64,7 +65,38 @@ class Module(unittest.TestCase):
         for name in holonom.__all__:
             self.assertTrue(getattr(holonom, name).__doc__, name)
 
-    def test_the_notebook_runs(self):
+    def test_the_notebook_has_the_cells_of_the_script_and_runs_cell_by_cell(self):
+        with open(os.path.join(MODULE, "four_bar.ipynb"), encoding="utf-8") as f:
+            notebook = json.load(f)
+        with open(os.path.join(MODULE, "four_bar.py"), encoding="utf-8") as f:
+            script = [part.split("\n", 1) for part in f.read().split("\n# %% ")[1:]]
+        code = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        titles = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "markdown"][1:]
+        self.assertEqual(code, [text.strip("\n") for _, text in script])
+        self.assertEqual([title.lower() for title in titles], [f"## {title}".lower() for title, _ in script])
+
+        # as Jupyter reads it: ids, kernel, outputs empty
+        self.assertEqual((notebook["nbformat"], notebook["nbformat_minor"], notebook["metadata"]["kernelspec"]["name"]), (4, 5, "python3"))
+        ids = [cell["id"] for cell in notebook["cells"]]
+        self.assertEqual(len(ids), len(set(ids)))
+        for cell in notebook["cells"]:
+            self.assertEqual(set(cell) - {"execution_count", "outputs"}, {"cell_type", "id", "metadata", "source"})
+        check = "import sys, nbformat; nbformat.validate(nbformat.read(sys.argv[1], as_version=4))"
+        for python in ("/usr/bin/python3", sys.executable):
+            if subprocess.run([python, "-c", "import nbformat"], capture_output=True).returncode == 0:
+                done = subprocess.run([python, "-c", check, os.path.join(MODULE, "four_bar.ipynb")], capture_output=True, text=True, timeout=120)
+                self.assertEqual(done.returncode, 0, done.stderr)
+
+        # as a kernel does: one cell after the other, in one namespace
+        cells = "import json, sys\nspace = {'__name__': '__main__'}\nfor cell in json.load(open(sys.argv[1]))['cells']:\n" \
+                "    if cell['cell_type'] == 'code':\n        exec(compile(''.join(cell['source']), cell['id'], 'exec'), space)\n"
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, "-c", cells, os.path.join(MODULE, "four_bar.ipynb")], capture_output=True, text=True, timeout=300,
+                                  cwd=folder, env={**os.environ, "PYTHONPATH": MODULE})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(re.findall(r"gap +\S+ m", done.stdout)), 5)
+
+    def test_the_script_runs(self):
         with tempfile.TemporaryDirectory() as folder:
             env = {**os.environ, "PYTHONPATH": MODULE}
             done = subprocess.run([sys.executable, os.path.join(MODULE, "four_bar.py")], capture_output=True, text=True, timeout=300, cwd=folder, env=env)
