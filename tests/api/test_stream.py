@@ -40,6 +40,23 @@ class Streams(driver.ServerCase):
         # the server closes after the end
         self.assertEqual([e for e in reader if e[0] != "comment"], [])
 
+    def test_a_comparison_whose_readers_have_left_computes_for_nobody(self):
+        c = self.server.compare(methods=METHODS, duration=3600, paused=False)
+        reader = Events(self.server, c["id"])
+        reader.take(5)
+        reader.close()
+        left = time.monotonic()
+        time.sleep(8)
+        now = self.server.ask("GET", "/api/v1/comparisons/" + c["id"]).json()
+        # as far as 2 s behind the last reader, who is missed within 1 s; the rest is for a busy machine
+        self.assertEqual(now["state"], "running")
+        self.assertLess(now["frame"] * c["frame_dt"], (time.monotonic() - left) - 2)
+        # it goes on when somebody is back, from where it stood
+        back = Events(self.server, c["id"], last_id=now["last_event"])
+        self.assertEqual([f["frame"] for f in frames(back.take(20))][:3], [now["frame"] + k for k in (1, 2, 3)])
+        back.close()
+        self.assertEqual(self.server.ask("DELETE", "/api/v1/comparisons/" + c["id"]).status, 204)
+
     def test_frames_of_a_stream_are_the_frames_of_a_run(self):
         c = self.server.compare(methods=METHODS[:1], duration=0.2, speed=50, paused=False)
         last = frames(Events(self.server, c["id"]).until("end"))[-1]

@@ -17,6 +17,8 @@
 /// Frames that come later than this are not caught up: the clock is set anew and the loss is told
 /// as `lag`.
 static const double LATE = 0.25; // [s]
+/// A running comparison whose readers have left goes on for so long, until one is back [s].
+static const double LEFT_ALONE = 2;
 
 // ---- the thread ----
 
@@ -30,6 +32,12 @@ static void wait_until(hn_session *session, double time) {
     struct timespec ts = {.tv_sec = (time_t)time};
     ts.tv_nsec = (long)((time - (double)ts.tv_sec) * 1e9);
     pthread_cond_timedwait(&session->wake, &session->lock, &ts);
+}
+
+/// Whether the readers have all left: the comparison then waits for one, and computes for nobody.
+static bool is_left(const hn_session *session) {
+    return session->had_streams && session->n_streams == 0 &&
+           hn_clock_wall() - session->touched > LEFT_ALONE;
 }
 
 static hn_request *take_patch(hn_session *session) {
@@ -80,6 +88,12 @@ static void do_next(hn_session *session) {
         pthread_mutex_unlock(&session->lock);
         hn_session_set_state(session, HN_SESSION_PAUSED, "nobody was reading");
         pthread_mutex_lock(&session->lock);
+        return;
+    }
+
+    if (is_left(session)) {
+        wait_until(session, session->touched + session->opts->idle_pause);
+        hn_session_set_anchor(session);
         return;
     }
 

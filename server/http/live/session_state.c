@@ -345,6 +345,7 @@ const char *hn_session_id(const hn_session *session) {
 void hn_session_json(hn_strbuf *b, hn_session *session) {
     pthread_mutex_lock(&session->lock);
     session->touched = hn_clock_wall();
+    pthread_cond_signal(&session->wake);
     hn_session_put_json(b, session);
     pthread_mutex_unlock(&session->lock);
 }

@@ -264,6 +264,7 @@ static int attach(hn_stream *s, hn_request *r) {
     if (open) {
         session->refs++;
         session->n_streams++;
+        pthread_cond_signal(&session->wake); // it may wait for a reader
         session->had_streams = 1;
         s->reader.next = session->readers;
         session->readers = &s->reader;
