@@ -11,6 +11,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import urllib.parse
 
 import driver
 
@@ -69,6 +70,38 @@ class Proxy(unittest.TestCase):
             run = self.ask("POST", prefix + "/api/v1/runs", {"scene": "pendulum", "method": "index1@rk4:h=1e-2", "time": 0.1})
             self.assertIn(run.status, (200, 201))
             self.assertEqual(self.ask("GET", prefix + run.headers["location"]).json()["id"], run.json()["id"])
+
+    def text_of(self, path):
+        answer = self.ask("GET", path)
+        self.assertEqual(answer.status, 200, path)
+        return answer.type, answer.body.decode(errors="replace")
+
+    def test_every_file_that_the_page_names_is_found_below_a_prefix(self):
+        """Styles, scripts with what they import, and pictures: followed from the page on, as a browser would."""
+        start = "/mechanisms/"
+        seen, ahead = set(), [start]
+        while ahead:
+            path = ahead.pop()
+            seen.add(path)
+            media, text = self.text_of(path)
+            if media == "text/html":
+                named = re.findall(r'<(?:link|script|img|source)\b[^>]*?\b(?:href|src)="([^"#?]+)', text)
+            elif media == "text/css":
+                named = re.findall(r"""url\(["']?([^"')#?]+)""", text)
+            elif "javascript" in media:
+                named = re.findall(r"""(?:\bfrom|\bimport)\s*\(?\s*["'](\.{1,2}/[^"']+)["']""", text)
+            else:
+                named = []
+            for name in named:
+                # of each font a browser takes the first form, woff2; the others are not shipped
+                if not re.match(r"(?:data|https?):", name) and not name.endswith((".ttf", ".woff")):
+                    address = urllib.parse.urljoin(path, name)
+                    self.assertTrue(address.startswith(start), f"{path} names '{name}', which is outside the prefix")
+                    if address not in seen and address not in ahead:
+                        ahead.append(address)
+        kinds = {os.path.splitext(path)[1] for path in seen}
+        self.assertLessEqual({".js", ".css", ".svg"}, kinds)
+        self.assertGreater(len(seen), 50)
 
     def test_a_stream_passes_frame_by_frame(self):
         for prefix in ("", "/mechanisms"):

@@ -274,6 +274,16 @@ class Kept(unittest.TestCase):
             self.assertEqual(server.ask("GET", "/api/v1/runs").json()["runs"], kept)
             self.assertEqual(server.stop(), 0)
 
+    def test_a_folder_that_is_not_there_is_made_for_its_owner(self):
+        with tempfile.TemporaryDirectory() as outer:
+            folder = os.path.join(outer, "runs")
+            server = driver.Server("--runs", folder)
+            made = server.ask("POST", "/api/v1/runs", {**RUN, "time": 0.1}).json()
+            self.assertEqual(server.stop(), 0)
+            self.assertEqual(server.errors, [])
+            self.assertEqual(os.listdir(folder), [made["id"] + ".json"])
+            self.assertEqual(os.stat(folder).st_mode & 0o777, 0o700)
+
     def test_what_used_up_its_time_is_computed_again(self):
         server = driver.Server("--run-cpu", "0.2")
         endless = {**RUN, "method": "index1@rk4:h=1e-7", "time": 1000}

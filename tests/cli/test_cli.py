@@ -372,6 +372,8 @@ class CommandLine(Command):
             (("grade", "p3", "x.json", "--format", "gradscope"), "gradescope"),
             (("serve", "--port", "99999"), "65535"),
             (("serve", "--port", "http"), "whole number"),
+            (("serve", "--runs", "Makefile"), "it is not a folder"),
+            (("serve", "--runs", "/proc/none/runs"), "no run can be kept in '/proc/none/runs'"),
             (("serve", "--max-streams", "99999999999"), "--max-streams is 99999999999; a whole number from 1 to 4000"),
             (("serve", "--max-comparisons", "0"), "--max-comparisons is 0; a whole number from 1 to 1000"),
             (("serve", "--keep-alive", "1e9"), "--keep-alive is 1000000000; a number from 0.1 to 20"),

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/folder.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
 #include "http/request/token.h"
 #include "http/routes/server.h"
 
+#include <errno.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -12,6 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -70,6 +73,21 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
         HN_TRY(choose(&numbers[i], diag));
     }
     return HN_OK;
+}
+
+/// Makes the folder of runs where it is not there, for its owner alone.
+static hn_status make_runs_folder(const char *path, hn_diag *diag) {
+    if (!path || mkdir(path, 0700) == 0) {
+        return HN_OK;
+    }
+    const int error = errno;
+    const char *why = error != EEXIST                  ? strerror(error)
+                      : !hn_folder_exists(path)        ? "it is not a folder"
+                      : access(path, W_OK | X_OK) != 0 ? strerror(errno)
+                                                       : NULL;
+    return why ? hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                             "--runs: no run can be kept in '%.200s': %s", path, why)
+               : HN_OK;
 }
 
 static bool is_this_machine(const char *host) {
@@ -187,6 +205,7 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     sigset_t stop;
     char token[HN_TOKEN];
     if (read_opts(args, &opts, &diag) != HN_OK ||
+        make_runs_folder(opts.runs_folder, &diag) != HN_OK ||
         choose_token(args, &opts, token, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
