@@ -225,6 +225,20 @@ def shown_slips(facts):
     return faults
 
 
+def kinds():
+    """Kinds of answers whose row in lessons/README.md names an exercise of another kind, and kinds without a row."""
+    shipped = {}
+    for path in glob.glob("lessons/*/problems/*.json"):
+        exercise = json.loads(read(path))
+        shipped.update({(exercise["id"], p["id"]): p for p in exercise.get("parts", [])})
+    rows = re.findall(r"^\| (`[^|]*`) \| [^|]* \| ([^|]*) \| ([^|]*) \|$", read("lessons/README.md"), flags=re.M)
+    copied = [(re.findall(r"`(\w+)`", names), re.findall(r"`([\w-]+)` (\w)", places), re.findall(r"`(\w+)`", members)) for names, places, members in rows]
+    copied = [row for row in copied if row[1]]
+    faults = [f"{place}: {shipped[place]['kind']}" for names, places, _ in copied for place in places if shipped[place]["kind"] not in names]
+    faults += [f"{names}: no exercise has {m}" for names, _, members in copied for m in members if not any(m in p for p in shipped.values() if p["kind"] in names)]
+    return faults + sorted({p["kind"] for p in shipped.values()} - {name for names, _, _ in copied for name in names})
+
+
 def exhibits(texts):
     """Commands of exhibits that do not run. A method that ends early, and says so (status 4), may be the point of an exhibit."""
     faults = []
@@ -288,6 +302,7 @@ def main():
     results.append(("the terminal knows every command of a formula", commands_of_tex(texts)))
     results.append(("every slip of the printed lesson is in a text and in an exercise", slips(texts)))
     results.append(("what the table of slips names runs, and shows what is seen", shown_slips(all_facts["lessons/README.md"])))
+    results.append(("every kind of answer has an exercise to copy from", kinds()))
     results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))
     results.append(("every exhibit runs", exhibits(texts)))
     results.append(("every figure has a title and is shown, and the commands in its boxes run", charts()))

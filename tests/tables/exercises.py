@@ -22,6 +22,7 @@ PROGRAM = sys.argv[1]
 SEEDS = int(sys.argv[2]) if len(sys.argv) > 2 else 200
 ONLY = sys.argv[3:]
 GREEK = {"th": "θ", "gamma": "γ", "lambda": "λ", "tau": "τ", "Phi": "Φ"}
+NUMBERS = ("number", "vector", "reading", "configuration")
 FUNCTIONS = r"\b(sin|cos|sqrt|atan2)\("
 
 
@@ -70,6 +71,13 @@ def write(folder, name, content):
     return path
 
 
+def like_answer(part, numbers):
+    """Numbers in the shape of the part's answer."""
+    if part["kind"] == "configuration":
+        return dict(zip(part["asked"], numbers))
+    return numbers if isinstance(part.get("answer"), list) else numbers[0]
+
+
 def respelt(exercise, form, expected):
     """All parts whose answers are formulas or numbers, in one spelling."""
     answers = {}
@@ -77,19 +85,19 @@ def respelt(exercise, form, expected):
         kind = part["kind"]
         if kind in ("formula", "formulas", "matrix", "blocks", "basis"):
             answers[part["id"]] = spell(part["answer"], form, kind in ("matrix", "blocks"))
-        elif kind in ("number", "vector"):
-            numbers = [e.split()[0] for name, e in expected if name.split(".")[0] == part["id"]]
-            told = [number_in(form, x, part.get("unit", "")) for x in numbers]
-            answers[part["id"]] = told if isinstance(part["answer"], list) else told[0]
+        elif kind in NUMBERS:
+            # what a reading and a configuration are measured in stands behind the number
+            told = [number_in(form, e.split()[0], part.get("unit", " ".join(e.split()[1:2]) if kind in NUMBERS[2:] else ""))
+                    for name, e in expected if name.split(".")[0] == part["id"]]  # fmt: skip
+            answers[part["id"]] = like_answer(part, told)
     return answers
 
 
 def spellings(exercise, folder, seeds):
     """(tried, accepted) of formulas and numbers in five spellings, for each seed."""
     tried = accepted = 0
-    numbers = [p for p in exercise["parts"] if p["kind"] in ("number", "vector")]
     # an answer to learn the numbers from; no reference is this large
-    asked = {p["id"]: [1e150] * len(p["answer"]) if isinstance(p["answer"], list) else 1e150 for p in numbers}
+    asked = {p["id"]: like_answer(p, [1e150] * len(p.get("asked", p.get("answer", "")) or "1")) for p in exercise["parts"] if p["kind"] in NUMBERS}
     for seed in range(1, seeds + 1):
         expected = []
         if asked:
