@@ -282,13 +282,19 @@ static void end_worker(worker *w, bool kill_it) {
 
 // ---- lines that are done ----
 
-static hn_status keep_line(grading *g, int i, const char *line, bool told) {
+/// Call it right behind the failure, while errno says why.
+static hn_status say_journal_failed(const grading *g, hn_diag *diag) {
+    return hn_diag_set(diag, HN_ERR_IO, NULL, "make room, then give the same command: it goes on",
+                       "'%.200s' cannot be written: %s", g->opts->journal, strerror(errno));
+}
+
+static hn_status keep_line(grading *g, int i, const char *line, bool told, hn_diag *diag) {
     g->out->line[i] = strdup(line);
     g->done++;
     if (told) {
         g->out->graded++;
         if (g->journal && (fprintf(g->journal, "%s\n", line) < 0 || fflush(g->journal) != 0)) {
-            return HN_ERR_IO;
+            return say_journal_failed(g, diag);
         }
         if (g->opts->tell) {
             g->opts->tell(g->opts->user, line);
@@ -298,13 +304,13 @@ static hn_status keep_line(grading *g, int i, const char *line, bool told) {
 }
 
 /// A line for a submission whose worker has ended.
-static hn_status keep_loss(grading *g, worker *w, const char *reason) {
+static hn_status keep_loss(grading *g, worker *w, const char *reason, hn_diag *diag) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     begin_line(g, w->index, &b, "failed");
     put_zero(g, &b, reason);
     hn_json_end_object(&b);
-    const hn_status status = keep_line(g, w->index, hn_strbuf_text(&b), true);
+    const hn_status status = keep_line(g, w->index, hn_strbuf_text(&b), true, diag);
     hn_strbuf_reset(&b);
     return status;
 }
@@ -325,7 +331,7 @@ static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
     // a whole line is a verdict
     if (w->text.n > 0 && w->text.text[w->text.n - 1] == '\n') {
         w->text.text[w->text.n - 1] = '\0';
-        const hn_status status = keep_line(g, w->index, hn_strbuf_text(&w->text), true);
+        const hn_status status = keep_line(g, w->index, hn_strbuf_text(&w->text), true, diag);
         hn_strbuf_clear(&w->text);
         w->index = -1;
         return status;
@@ -338,7 +344,7 @@ static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
         snprintf(reason, sizeof reason,
                  late ? "grading took longer than %g s" : "the grader ended while it graded this",
                  g->opts->time_limit);
-        const hn_status status = w->index >= 0 ? keep_loss(g, w, reason) : HN_OK;
+        const hn_status status = w->index >= 0 ? keep_loss(g, w, reason, diag) : HN_OK;
         end_worker(w, true);
         HN_TRY(status);
         return start_worker(g, w, diag);
@@ -408,7 +414,7 @@ static hn_status open_journal(grading *g, hn_diag *diag) {
                           : -1;
         if (i >= 0) {
             line[n - 1] = '\0';
-            if (keep_line(g, i, line, false) == HN_OK) {
+            if (keep_line(g, i, line, false, diag) == HN_OK) {
                 g->out->resumed++;
             }
         }
@@ -422,15 +428,14 @@ static hn_status open_journal(grading *g, hn_diag *diag) {
     // begun anew with what holds
     g->journal = fopen(g->opts->journal, "we");
     if (!g->journal) {
-        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "'%.200s' cannot be written: %s",
-                           g->opts->journal, strerror(errno));
+        return say_journal_failed(g, diag);
     }
     for (int i = 0; i < g->roster->n; i++) {
         if (g->out->line[i]) {
             fprintf(g->journal, "%s\n", g->out->line[i]);
         }
     }
-    return fflush(g->journal) == 0 ? HN_OK : HN_ERR_IO;
+    return fflush(g->journal) == 0 ? HN_OK : say_journal_failed(g, diag);
 }
 
 hn_status hn_class_grade(const hn_roster *roster, const hn_exercise *exercise,

@@ -7,6 +7,7 @@ import io
 import json
 import os
 import random
+import resource
 import signal
 import struct
 import subprocess
@@ -238,6 +239,32 @@ class Class(unittest.TestCase):
         with open(merged, "rb") as a, open(self.out, "rb") as b:
             self.assertEqual(a.read(), b.read())
         self.assertEqual(len(whole), 11)
+
+    def test_a_disk_that_is_full_is_called_that_and_the_run_goes_on_later(self):
+        for k in range(40):
+            self.put(f"student{k:02d}.json", RIGHT)
+
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a write beyond the limit fails, as on a full disk
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+        words = [driver.PROGRAM, "grade", "p3", self.folder, "--jobs", "2", "--out", self.out]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=120 * driver.SLOW, preexec_fn=small_files)
+        self.assertEqual(done.returncode, 3)
+        self.assertRegex(done.stderr, r"holonom: '.*\.part' cannot be written: File too large\n +make room")
+        self.assertFalse(os.path.exists(self.out))
+        done = subprocess.run(words, capture_output=True, text=True, timeout=120 * driver.SLOW)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"holonom: \d+ of 40 submissions were graded before")
+        with open(self.out, encoding="utf-8") as f:
+            self.assertEqual(len(set(json.loads(line)["student"] for line in f)), 40)
+
+    def test_lines_that_standard_output_does_not_take_are_no_result(self):
+        self.put("ann.json", RIGHT)
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run([driver.PROGRAM, "grade", "p3", self.folder], stdout=full, stderr=subprocess.PIPE, text=True, timeout=120 * driver.SLOW)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("standard output takes no more", done.stderr)
 
     def test_a_folder_that_is_none_is_refused(self):
         for folder, said in (("/nowhere", "cannot be graded"), (self.temporary.name + "/empty", "there is nobody")):

@@ -109,12 +109,18 @@ static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
 
 /// The result into --out, and its summary to the terminal.
 static hn_exit finish(const hn_args *args, const hn_class_result *result, bool programs) {
-    const hn_exit exit = args->out ? write_result(args, result) : HN_EXIT_DONE;
+    hn_exit exit = args->out ? write_result(args, result) : HN_EXIT_DONE;
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_class_summary(&b, result, programs);
     fputs(hn_strbuf_text(&b), args->json ? stderr : stdout);
     hn_strbuf_reset(&b);
+
+    // lines that nobody could read are no result
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "holonom: standard output takes no more: the verdicts are not all there\n");
+        exit = HN_EXIT_PROGRAM;
+    }
     return exit;
 }
 
@@ -158,6 +164,9 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
     const hn_status status = hn_class_grade(roster, subject->exercise, &opts, &result, &diag);
     hn_exit exit = HN_EXIT_PROGRAM;
     if (status != HN_OK) {
+        if (!diag.message[0]) {
+            (void)hn_diag_set(&diag, status, NULL, NULL, "%s", hn_status_text(status));
+        }
         hn_report_diag(args, &diag);
     } else {
         if (result.resumed > 0) {
