@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs with blanks: filled in rightly they get all points in every language, mistakes are named, and a class of them is graded."""
 
+import concurrent.futures
 import json
 import os
 import shutil
@@ -50,26 +51,33 @@ class Filled(unittest.TestCase):
             f.write(text)
         return path
 
+    @staticmethod
+    def two_at_a_time(function, jobs):
+        """What the function gives for each job, in their order."""
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            return list(zip(jobs, pool.map(lambda job: function(*job), jobs)))
+
     def grade(self, scene, path):
         done = call("grade", scene, path, "--json")
         return done.returncode, json.loads(done.stdout)
 
     def test_a_right_program_gets_all_points_in_every_language_and_a_blank_one_none(self):
-        tried = 0
+        jobs = []
         for language, (ending, _) in ENDINGS.items():
             if not shutil.which(NEEDS[language]) or (language == "python" and not has_numpy()):
                 print(f"# {language} is not here")
                 continue
             scenes = ("four-bar", "heavy-top", "driven-crank") if language in ("python", "c") else ("four-bar",)
             for scene in scenes:
-                tried += 1
                 blank, filled = blank_and_filled(scene, language)
-                status, verdict = self.grade(scene, self.put(f"{scene}.{ending}", filled))
-                self.assertEqual((status, verdict["score"]), (0, verdict["max_score"]), (language, scene, verdict))
+                jobs += [(scene, self.put(f"{scene}.{ending}", filled)), (scene, self.put(f"{scene}-blank.{ending}", blank))]
+        for (scene, path), (status, verdict) in self.two_at_a_time(self.grade, jobs):
+            if "-blank." in path:
+                self.assertEqual((status, verdict["score"], {e["mistake"] for e in verdict["entries"]}), (0, 0, {"empty"}), path)
+            else:
+                self.assertEqual((status, verdict["score"]), (0, verdict["max_score"]), (path, verdict))
                 self.assertGreaterEqual(verdict["max_score"], 4)
-                status, verdict = self.grade(scene, self.put(f"{scene}-blank.{ending}", blank))
-                self.assertEqual((status, verdict["score"], {e["mistake"] for e in verdict["entries"]}), (0, 0, {"empty"}), (language, scene))
-        self.assertGreaterEqual(tried, 3)
+        self.assertGreaterEqual(len(jobs), 6)
 
     def test_the_blanks_do_not_hold_the_answer(self):
         blank, filled = blank_and_filled("four-bar", "c")
@@ -93,8 +101,9 @@ class Filled(unittest.TestCase):
                  "velocity": ("force", "{ double still[NV] = {-0.5*g*l1*(m1 + 2*m2)*cos(th1), -0.5*g*l2*m2*cos(theta_coupler), -0.5*g*l3*m3*cos(th3)}; "
                                        "memcpy(force, still, sizeof still); }"),
                  "other": ("force", "force[2] += 0.001;")}  # fmt: skip
-        for mistake, (part, statement) in cases.items():
-            status, verdict = self.grade("four-bar", self.put(f"{mistake}.c", filled[:last] + "    " + statement + "\n" + filled[last:]))
+        jobs = [("four-bar", self.put(f"{mistake}.c", filled[:last] + "    " + statement + "\n" + filled[last:]))
+                for mistake, (_, statement) in cases.items()]  # fmt: skip
+        for (mistake, (part, _)), (_, (status, verdict)) in zip(cases.items(), self.two_at_a_time(self.grade, jobs)):
             entries = {e["name"]: e for e in verdict["entries"]}
             self.assertEqual((status, verdict["score"], entries[part]["mistake"]), (0, POINTS - 2, mistake), verdict)
             self.assertTrue(entries[part]["explanation"])
@@ -116,8 +125,8 @@ class Filled(unittest.TestCase):
                  "takes all memory": ("x = []\nwhile True: x.append(bytearray(1 << 24))", "MemoryError|MB of memory"),
                  "floods": ("import os\nwhile True: os.write(1, b'x' * 65536)", "without an end of line"),
                  "writes away": ("open('/usr/mine', 'w')", "Read-only file system")}  # fmt: skip
-        for name, (text, said) in cases.items():
-            status, verdict = self.grade("four-bar", self.put(f"{name}.py", text + "\n"))
+        jobs = [("four-bar", self.put(f"{name}.py", text + "\n")) for name, (text, _) in cases.items()]
+        for (name, (_, said)), (_, (status, verdict)) in zip(cases.items(), self.two_at_a_time(self.grade, jobs)):
             self.assertEqual(status, 2, (name, verdict))
             self.assertRegex(verdict["reason"], said, name)
         status, verdict = self.grade("four-bar", self.put("a.txt", "x"))
