@@ -63,12 +63,13 @@ static const hn_command COMMANDS[] = {
     {"extreme", "[ID...]",
      "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
      "--csv --out -o --wide", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
-    {"snapshot", "SCENE",
-     "a picture of where the methods have taken it, PNG or SVG by the ending of -o",
+    {"snapshot", "SCENE|ID",
+     "a picture of where the methods have taken a scene, or of an exercise with the numbers of "
+     "--seed or --student; PNG or SVG by the ending of -o",
      MODEL_OPTIONS
      " --allow-programs --trust-programs --answer-time --method --methods --time "
      "--at --ghosts --animate --trace --dimensions --forces --describe --out -o --width "
-     "--height --theme --view",
+     "--height --theme --view --seed --student",
      1, 1, hn_command_snapshot},
     {"import", "FILE",
      "convert a MuJoCo MJCF or URDF file to a scene; unsupported elements are listed with their "

@@ -2,8 +2,12 @@
 #include "grade/exercise_check.h"
 
 #include "base/hash.h"
+#include "expr/print.h"
+#include "grade/exam.h"
+#include "grade/grade.h"
 #include "grade/variant.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -147,6 +151,98 @@ static long long count_distinct(uint64_t *hashes, long long n) {
     return distinct;
 }
 
+// ---- a matrix of formulas ----
+
+/// Central differences of phi agree with the derivative at every state.
+static void try_differences(trial *t, hn_exam *exam) {
+    static const double STEP = 1e-5; // the error of a central difference is then about 1e-10
+    const hn_exercise *e = exam->problem;
+    for (int k = 0; k < e->n_rows * e->n_columns; k++) {
+        const int name = hn_graph_find_symbol(exam->graph, e->by[k % e->n_columns]);
+        for (int s = 0; s < exam->n_states; s++) {
+            double *x = &exam->state[s][name];
+            const double middle = *x;
+            *x = middle + STEP;
+            const double above = hn_exam_value(exam, exam->phi[k / e->n_columns], s);
+            *x = middle - STEP;
+            const double below = hn_exam_value(exam, exam->phi[k / e->n_columns], s);
+            *x = middle;
+            if (!(fabs((above - below) / (2 * STEP) - exam->expected[k][s]) <=
+                  1e-7 * (1 + exam->size[k]))) {
+                complain(t, e->answer,
+                         "entry %d: the derivative and a difference of phi do not "
+                         "agree",
+                         k + 1);
+                return;
+            }
+        }
+    }
+}
+
+/// The reference as a submission, its k-th entry turned round by its sign (k = -1: none).
+static void write_reference(hn_strbuf *b, hn_exam *exam, int turned) {
+    const hn_exercise *e = exam->problem;
+    hn_strbuf_printf(b, "{\"%s\": [", e->answer);
+    for (int k = 0; k < e->n_rows * e->n_columns; k++) {
+        const int column = k % e->n_columns;
+        hn_strbuf_printf(b, "%s\"%s(", column ? ", " : k ? ", [" : "[", k == turned ? "-" : "");
+        hn_print(b, exam->graph, exam->reference[k], HN_PRINT_TEXT, 0);
+        hn_strbuf_add(b, column == e->n_columns - 1 ? ")\"]" : ")\"");
+    }
+    hn_strbuf_add(b, "]}");
+}
+
+/// The reference is accepted, and a wrong sign in any entry is named.
+static hn_status try_matrix(trial *t, hn_exam *exam, uint64_t seed) {
+    const hn_exercise *e = exam->problem;
+    hn_verdict *v = calloc(1, sizeof *v);
+    hn_status status = v ? HN_OK : HN_ERR_MEMORY;
+    try_differences(t, exam);
+    for (int k = -1; k < e->n_rows * e->n_columns && status == HN_OK; k++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        write_reference(&b, exam, k);
+        status = b.failed ? HN_ERR_MEMORY : hn_grade_json(e, hn_strbuf_text(&b), b.n, seed, v);
+        const bool zero = k >= 0 && exam->size[k] <= e->absolute;
+        if (k < 0) {
+            t->report->rights++;
+            if (status == HN_OK && v->n_right != v->n_entries) {
+                complain(t, e->answer, "the reference is not accepted: %s", v->summary);
+            }
+        } else if (!zero) {
+            t->report->faults++;
+            if (status == HN_OK && strcmp(v->entry[k].mistake, "sign") != 0) {
+                complain(t, v->entry[k].name, "a wrong sign is named '%s'", v->entry[k].mistake);
+            }
+        }
+        hn_strbuf_reset(&b);
+    }
+    free(v);
+    return status == HN_ERR_MEMORY ? status : HN_OK;
+}
+
+static hn_status try_matrix_seed(const hn_exercise *exercise, uint64_t seed, uint64_t *hash,
+                                 hn_exercise_report *out) {
+    trial t = {.report = out, .good = 1, .variant = {.seed = seed}};
+    hn_diag diag = {0};
+    hn_exam *exam = malloc(sizeof *exam);
+    hn_status status = exam ? hn_exam_init(exam, exercise, seed, &diag) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        *hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, exam->state[0], sizeof exam->state[0]));
+        status = try_matrix(&t, exam, seed);
+    } else if (status != HN_ERR_MEMORY) {
+        complain(&t, "", "%s", diag.message);
+        status = HN_OK;
+    }
+    out->variants++;
+    out->bad += !t.good;
+    if (exam) {
+        hn_exam_reset(exam);
+    }
+    free(exam);
+    return status;
+}
+
 static hn_status try_seed(const hn_exercise *exercise, uint64_t seed, uint64_t *hash,
                           hn_exercise_report *out) {
     trial t = {.report = out, .good = 1};
@@ -174,7 +270,8 @@ hn_status hn_exercise_check(const hn_exercise *exercise, uint64_t from, uint64_t
     uint64_t *hashes = calloc(n, sizeof *hashes);
     hn_status status = hashes ? HN_OK : HN_ERR_MEMORY;
     for (uint64_t i = 0; i < n && status == HN_OK; i++) {
-        status = try_seed(exercise, from + i, &hashes[i], out);
+        status =
+            (exercise->n_parts ? try_seed : try_matrix_seed)(exercise, from + i, &hashes[i], out);
     }
     out->distinct = hashes ? count_distinct(hashes, out->variants) : 0;
     free(hashes);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/exercise_shelf.h"
 
+#include "grade/exam.h"
+#include "grade/parts/part_model.h"
+#include "grade/variant.h"
 #include "session/compare/picture.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_PROBLEMS = 512 };
@@ -90,6 +94,54 @@ static hn_part_view view_of_matrix(const hn_verdict *v) {
         view.given[view.n_entries++] = v->values[i];
     }
     return view;
+}
+
+/// The first state of a matrix exercise.
+static hn_status view_state(const hn_exercise *e, uint64_t seed, hn_part_view *out, hn_diag *diag) {
+    hn_exam *exam = malloc(sizeof *exam);
+    hn_status status = exam ? hn_exam_init(exam, e, seed, diag) : HN_ERR_MEMORY;
+    for (int i = 0; i < e->n_names && status == HN_OK; i++) {
+        const double x = exam->state[0][i];
+        if (i < e->n_params) {
+            out->settings[out->n_settings++] = (hn_setting){.name = e->names[i].name, .value = x};
+        } else {
+            snprintf(out->names[out->n_entries], sizeof out->names[0], "%.31s", e->names[i].name);
+            out->given[out->n_entries++] = x;
+        }
+    }
+    if (exam) {
+        hn_exam_reset(exam);
+    }
+    free(exam);
+    return status;
+}
+
+/// The first part that is about a scene, with the numbers of the variant.
+static hn_status view_part(const hn_exercise *e, uint64_t seed, hn_part_view *out, hn_diag *diag) {
+    hn_variant x;
+    hn_status status = hn_variant_init(&x, e, seed, diag);
+    for (int i = 0; i < x.n_parts && status == HN_OK && !out->scene[0]; i++) {
+        out->scene = hn_part_text(x.part[i].node, "scene");
+        if (out->scene[0]) {
+            status = hn_part_settings(&x.part[i], out->settings, &out->n_settings, diag);
+        }
+    }
+    hn_variant_reset(&x);
+    return status;
+}
+
+hn_status hn_shelf_exercise_view(const hn_exercise *exercise, uint64_t seed, hn_part_view *out,
+                                 hn_diag *diag) {
+    *out = (hn_part_view){.scene = hn_exercise_scene(exercise)};
+    if (exercise->n_parts) {
+        HN_TRY(view_part(exercise, seed, out, diag));
+    }
+    if (!out->scene[0]) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "no part of exercise '%.40s' is about a scene",
+                           hn_exercise_id(exercise));
+    }
+    return exercise->n_parts ? HN_OK : view_state(exercise, seed, out, diag);
 }
 
 static int take_entries(const hn_part_view *view, const double *values, hn_state_entry *entries) {

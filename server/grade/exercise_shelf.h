@@ -13,6 +13,11 @@ HN_MUST_CHECK hn_status hn_shelf_exercise_load(const hn_library *lib, const char
 /// {"problems":[{"id","title","scene","points"}...]}; one that does not load stands there with its
 /// "errors".
 void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib);
+/// The scene of an exercise with the numbers of a variant (seed 0: the exercise's own): that of its
+/// matrix in the first state, or that of the first part with a scene. Names are borrowed from the
+/// exercise. Fails: HN_ERR_INPUT (no part has a scene, or the exercise is at fault), HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_shelf_exercise_view(const hn_exercise *exercise, uint64_t seed,
+                                               hn_part_view *out, hn_diag *diag);
 /// The picture of the state at which the first wrong entry shows, as PNG; HN_ERR_UNSUPPORTED when
 /// the verdict has none.
 HN_MUST_CHECK hn_status hn_shelf_verdict_png(hn_strbuf *png, const hn_library *lib,

@@ -272,6 +272,19 @@ def other_numbers(folder):
     expect("and nobody else is accused", said.count("the variant of") == 1, said)
 
 
+def named_file(folder):
+    """-o names a file where its ending is the form's; a folder of this name stays a folder."""
+    path = write(folder, "s.json", {"a": 1})
+    target = os.path.join(folder, "new", "results.json")
+    done = run("grade", "fourbar", path, "--format", "gradescope", "-o", target)
+    expect("a verdict goes into the file that -o names", done.returncode == 0 and os.path.isfile(target), done.stderr)
+    expect("it is that platform's", "tests" in json.load(open(target, encoding="utf-8")))
+    done = run("grade", "fourbar", path, "--json", "-o", path)
+    expect("it does not overwrite its submission", done.returncode == 2 and json.load(open(path, encoding="utf-8")) == {"a": 1}, done.stdout)
+    done = run("problem", "p3", "--seeds", "1..5", "--check")
+    expect("a matrix is proved too", done.returncode == 0 and "5 variants, 5 distinct; 5 right answers" in done.stdout, done.stdout + done.stderr)
+
+
 def for_teachers(folder):
     """Right numbers are in no verdict of a student, and numbers say how exact they must be."""
     path = write(folder, "half.json", {"a": 1, "d": [1, 2]})
@@ -364,6 +377,7 @@ def main():
         whole_check(folder)
         own_exercise(folder)
         whose_variant(folder)
+        named_file(folder)
         other_numbers(folder)
         for_teachers(folder)
         broken_exercise(folder)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Snapshots from the command line: formats, several moments, marks, the built-in renderer."""
 
+import json
 import os
 import sys
 import tempfile
@@ -102,6 +103,15 @@ class Snapshot(Command):
                 pens = [p for p in xml.etree.ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}path") if p.get("class") == "p"]
                 self.assertGreater(len(pens), 30)
                 self.assertTrue(all(float(p.get("stroke-width")) > 0 and p.get("stroke") for p in pens))
+
+    def test_an_exercise_is_drawn_with_the_numbers_of_a_variant(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "p.png")
+            places = [call("snapshot", "p3", *seed, "-o", path, "--describe").stdout for seed in ((), ("--seed", "42"), ("--seed", "42"), ("--student", "ada"))]
+            self.assertEqual(places[1], places[2])
+            self.assertEqual(len(set(places)), 3)
+            self.assertEqual(json.loads(places[1])["scene"], "four-angles-as-printed")
+            self.assert_exit(call("snapshot", "four-bar", "--seed", "42", "-o", path), INPUT)
 
     def test_times_must_rise(self):
         done = call("snapshot", "four-bar", "--at", "0.5,0.2", "-o", os.path.join(tempfile.gettempdir(), "never.png"))

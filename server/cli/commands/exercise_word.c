@@ -2,7 +2,10 @@
 #include "cli/commands/exercise_word.h"
 
 #include "cli/shell/forms.h"
+#include "cli/shell/notes.h"
+#include "grade/variant.h"
 
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -22,4 +25,13 @@ hn_status hn_cli_load_exercise(const hn_library *lib, const char *word, hn_exerc
 
 bool hn_cli_is_exercise(const hn_library *lib, const char *word) {
     return is_path(word) ? access(word, F_OK) == 0 : hn_library_problem_path(lib, word) != NULL;
+}
+
+uint64_t hn_cli_variant_seed(const hn_args *args, const hn_exercise *exercise) {
+    const uint64_t seed = isnan(args->seed) ? 0 : (uint64_t)args->seed;
+    if (args->student && seed) {
+        hn_cli_note("holonom: --student '%.60s' chooses the variant; --seed is not used\n",
+                    args->student);
+    }
+    return args->student ? hn_variant_seed(exercise, args->student) : seed;
 }

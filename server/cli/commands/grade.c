@@ -122,9 +122,7 @@ static hn_exit grade_one(const task *t) {
     hn_verdict *v = calloc(1, sizeof *v);
 
     // the variant of this student, or of the seed given, or what the file says
-    const uint64_t seed = t->args->student ? hn_variant_seed(t->subject.exercise, t->args->student)
-                          : isnan(t->args->seed) ? 0
-                                                 : (uint64_t)t->args->seed;
+    const uint64_t seed = hn_cli_variant_seed(t->args, t->subject.exercise);
     hn_status status = !v ? HN_ERR_MEMORY
                        : t->subject.programs
                            ? hn_filled_program_grade(t->subject.programs, t->submission, v)

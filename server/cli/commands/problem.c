@@ -69,12 +69,6 @@ static hn_exit check(const hn_args *args, const hn_exercise *e) {
                     args->seeds);
         return hn_report_diag(args, &diag);
     }
-    if (e->n_parts == 0) {
-        hn_diag_set(&diag, HN_ERR_INPUT, NULL, "its reference is differentiated from phi",
-                    "%s has no variants to check", hn_exercise_id(e));
-        return hn_report_diag(args, &diag);
-    }
-
     if (hn_exercise_check(e, from, to, &report) != HN_OK) {
         return HN_EXIT_PROGRAM;
     }
@@ -132,9 +126,7 @@ static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
     hn_diag diag = {0};
 
     // the variant of this student, or of the seed given
-    const uint64_t seed = args->student       ? hn_variant_seed(e, args->student)
-                          : isnan(args->seed) ? 0
-                                              : (uint64_t)args->seed;
+    const uint64_t seed = hn_cli_variant_seed(args, e);
     const hn_status status = hn_variant_init(&x, e, seed, &diag);
     x.student = args->student;
 

@@ -113,6 +113,9 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
                               "the verdict does not hold the submission");
     }
 
+    if (status == HN_OK) {
+        snprintf(v->student, sizeof v->student, "%s", text_of(old, "student"));
+    }
     hn_exit result =
         status == HN_OK ? compare(args, old, v) : hn_report_diags(args, status, &diags);
     if (result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE) {

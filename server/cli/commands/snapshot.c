@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom snapshot: a picture of where several methods have taken a scene.
+#include "cli/commands/exercise_word.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/forms.h"
@@ -90,8 +91,49 @@ static void choose_methods(const hn_args *args, const hn_scene *scene,
     request->time = isnan(args->time) ? 0 : args->time;
 }
 
+/// What a word names: a scene, or an exercise with the numbers of a variant.
+typedef struct subject {
+    hn_model *model;
+    hn_exercise *exercise;
+    hn_part_view view;
+    hn_state_entry entries[HN_PART_ENTRIES];
+} subject;
+
+/// The scene of an exercise, with the numbers of the variant.
+static hn_status load_exercise(const hn_library *lib, const hn_args *args, subject *s,
+                               hn_diags *diags) {
+    hn_diag diag = {0};
+    HN_TRY(hn_cli_load_exercise(lib, args->words.word[0], &s->exercise, diags));
+    hn_status status = hn_shelf_exercise_view(s->exercise, hn_cli_variant_seed(args, s->exercise),
+                                              &s->view, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
+    }
+    const hn_model_source source = {.name = s->view.scene,
+                                    .settings = s->view.settings,
+                                    .n_settings = s->view.n_settings,
+                                    .allow_open = s->view.n_entries > 0};
+    for (int i = 0; i < s->view.n_entries; i++) {
+        s->entries[i] = (hn_state_entry){.name = s->view.names[i], .value = s->view.given[i]};
+    }
+    return hn_model_load(lib, &source, &s->model, diags);
+}
+
+static hn_status load_subject(const hn_library *lib, const hn_args *args, subject *s,
+                              hn_diags *diags) {
+    const char *word = args->words.word[0];
+    if (!hn_library_scene_path(lib, word) && hn_library_problem_path(lib, word)) {
+        return load_exercise(lib, args, s, diags);
+    }
+    if (args->student || !isnan(args->seed)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "name an exercise, or leave them out",
+                            "--seed and --student choose a variant, and a scene has none");
+    }
+    return hn_args_load_model(lib, args, word, 0, &s->model, diags);
+}
+
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
-    hn_model *model = NULL;
+    subject s = {0};
     hn_diags diags = {0};
     hn_picture_request request = {0};
     hn_status ended = HN_OK;
@@ -99,12 +141,16 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&png);
     hn_strbuf_init(&description);
     hn_status status = read_opts(args, &request, &diags);
-    HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags));
-    if (status == HN_OK) {
-        choose_methods(args, hn_model_scene(model), &request);
-        status = hn_model_picture(&png, &description, model, &request, &ended, &diags);
+    HN_THEN(status, load_subject(lib, args, &s, &diags));
+    if (status == HN_OK && s.view.n_entries > 0) {
+        request.entries = s.entries;
+        request.n_entries = s.view.n_entries;
+    } else if (status == HN_OK) {
+        choose_methods(args, hn_model_scene(s.model), &request);
     }
-    hn_model_free(model);
+    HN_THEN(status, hn_model_picture(&png, &description, s.model, &request, &ended, &diags));
+    hn_model_free(s.model);
+    hn_exercise_free(s.exercise);
 
     // the picture, then what it shows
     if (status != HN_OK) {

@@ -138,11 +138,28 @@ static hn_status check_overwriting(const hn_verdict_names *names, const char *co
     return HN_OK;
 }
 
+/// Whether --out names the file of one verdict itself, as results.json: its ending is the form's,
+/// and no folder has this name.
+static bool is_file_name(const char *out, const char *ending) {
+    struct stat info;
+    const size_t n = strlen(out), m = strlen(ending);
+    const bool ends = n > m + 1 && out[n - m - 1] == '.' && strcmp(out + n - m, ending) == 0;
+    return ends && !(stat(out, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
 hn_status hn_verdict_names_choose(hn_verdict_names *names, const char *folder,
                                   const char *const *submissions, int n, const char *ending,
                                   int single, hn_diags *diags) {
     // as little of the path as keeps them apart
     int first = 0, second = 0, pair = 1;
+    const bool file = n == 1 && is_file_name(folder, ending);
+    if (file) {
+        hn_verdict_names_reset(names);
+        names->path[0] = strndup(folder, strlen(folder) - strlen(ending) - 1);
+        names->n = names->path[0] != NULL;
+        pair = 0;
+        HN_TRY(names->n ? HN_OK : HN_ERR_MEMORY);
+    }
     for (kept keep = NAME_ALONE; keep < N_KEPT && pair; keep++) {
         HN_TRY(put_paths(names, folder, submissions, n, keep, single));
         pair = find_pair(names, &first, &second);
