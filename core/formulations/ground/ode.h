@@ -34,6 +34,9 @@ typedef struct hn_ode {
     /// length no motion changes, are along rotations.
     hn_status (*jacobian)(void *self, double t, const double *y, double *jac);
     const hn_ode_newton *newton; ///< NULL: not offered
+    /// Units of the absolute tolerance of each entry (n_pos + n_vel), see
+    /// hn_tolerance_units() in integrators/step/control.h; NULL: all 1.
+    const double *unit;
     /// Reserves the memory that jacobian and newton need from the formulation's arena; otherwise
     /// their first call does so. NULL: they need none.
     hn_status (*prepare)(void *self);

@@ -25,6 +25,7 @@ typedef struct gsl_stepper {
     int start_order; // power of h in the error of the first step
     int n;
     double rtol, atol, h0, hmax;
+    bool has_units; ///< the library has the units of the tolerance
     gsl_odeiv2_system system;
     gsl_odeiv2_driver *driver; // NULL: no entries
     const hn_ode *ode;         // of the call that is under way
@@ -149,11 +150,33 @@ static void accepted(void *self, int changed) {
 
 // ---- a step ----
 
+/// Gives the library the units of the tolerance where they are not all 1; once, as it allocates.
+static hn_status use_units(gsl_stepper *s) {
+    bool plain = true;
+    for (int i = 0; i < s->n && s->ode->unit; i++) {
+        plain = plain && s->ode->unit[i] == 1;
+    }
+    if (plain || s->has_units) {
+        return HN_OK;
+    }
+    gsl_odeiv2_control *c =
+        gsl_odeiv2_control_scaled_new(s->atol, s->rtol, 1, 0, s->ode->unit, (size_t)s->n);
+    if (!c) {
+        return HN_ERR_MEMORY;
+    }
+    gsl_odeiv2_control_free(s->driver->c);
+    s->driver->c = c;
+    gsl_odeiv2_control_set_driver(c, s->driver);
+    s->has_units = true;
+    return HN_OK;
+}
+
 static hn_status restart(gsl_stepper *s, double t, const double *y) {
     gsl_odeiv2_step_reset(s->driver->s);
     gsl_odeiv2_evolve_reset(s->driver->e);
     s->failed_before = 0;
     s->fresh = 0;
+    HN_TRY(use_units(s));
     if (s->h > 0) {
         return HN_OK; // the motion goes on at its pace
     }

@@ -2,6 +2,7 @@
 #include "integrators/step/dae_base.h"
 #include "integrators/external/ida_jacobian.h"
 #include "integrators/external/ida_words.h"
+#include "integrators/step/control.h"
 #include "integrators/step/options.h"
 
 #include "formulations/ground/flops.h"
@@ -55,6 +56,8 @@ typedef struct ida_stepper {
     double rtol, atol, h0, hmax, loosen;
     double first; // step, 0: the library's choice
     int suppress, max_order, by_differences;
+    bool default_atol;
+    double *unit; // nq + nv, of the absolute tolerance
     SUNContext context;
     void *ida;
     int n; // of the vectors below
@@ -164,7 +167,8 @@ static void destroy(void *self) {
 
 static void take_options(ida_stepper *s, hn_dae_form form, const double *options) {
     s->rtol = options[OPT_RTOL];
-    s->atol = options[OPT_ATOL] > 0 ? options[OPT_ATOL] : s->rtol;
+    s->default_atol = !(options[OPT_ATOL] > 0);
+    s->atol = s->default_atol ? s->rtol : options[OPT_ATOL];
     s->h0 = options[OPT_H0];
     s->hmax = options[OPT_HMAX];
     s->suppress = (int)options[OPT_SUPPRESS];
@@ -214,6 +218,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     s->start_y = hn_arena_doubles(arena, room);
     s->start_ydot = hn_arena_doubles(arena, room);
     s->lambda = hn_arena_doubles(arena, (size_t)s->problem.nc);
+    s->unit = hn_arena_doubles(arena, (size_t)(s->problem.nq + s->problem.nv));
     if (hn_arena_failed(arena) || SUNContext_Create(NULL, &s->context) != 0) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
@@ -246,7 +251,7 @@ static void fill_weights(ida_stepper *s) {
         const int tested = s->suppress == SUPPRESS_SPEEDS ? i < speeds : i < multipliers;
         data_of(s->id)[i] = tested ? 1 : 0;
         data_of(s->tolerance)[i] =
-            s->atol * (i < multipliers ? 1 : s->loosen * force / LARGE_FORCE);
+            s->atol * (i < multipliers ? s->unit[i] : s->loosen * force / LARGE_FORCE);
     }
 }
 
@@ -342,12 +347,23 @@ static hn_status choose_first_step(ida_stepper *s, double t, const double *y) {
     if (s->h0 != 0) {
         return HN_OK;
     }
-    return hn_ida_problem_first_step(&s->problem, t, y, s->rtol, s->atol,
+    return hn_ida_problem_first_step(&s->problem, t, y, s->rtol, s->atol, s->unit,
                                      s->hmax > 0 ? s->hmax : HUGE_VAL, &s->first);
+}
+
+static void choose_units(ida_stepper *s, const double *v) {
+    if (s->default_atol) {
+        hn_tolerance_units(s->problem.sys, v, s->unit);
+        return;
+    }
+    for (int i = 0; i < s->problem.nq + s->problem.nv; i++) {
+        s->unit[i] = 1;
+    }
 }
 
 static hn_status start(void *self, double t, const double *y) {
     ida_stepper *s = self;
+    choose_units(s, y + s->problem.nq);
     HN_TRY(choose_first_step(s, t, y));
     HN_TRY(hn_ida_problem_start(&s->problem, t, y, s->start_y, s->start_ydot));
     add_counters(s, &s->cost);
@@ -366,7 +382,7 @@ static bool is_another_state(const ida_stepper *s, const double *y) {
     const double *mine = data_of(s->y);
     double sum = 0;
     for (int i = 0; i < n; i++) {
-        const double d = (y[i] - mine[i]) / (s->atol + s->rtol * fabs(y[i]));
+        const double d = (y[i] - mine[i]) / (s->atol * s->unit[i] + s->rtol * fabs(y[i]));
         sum += d * d;
     }
     return sqrt(sum / n) > SAME_STATE;

@@ -58,7 +58,8 @@ HN_MUST_CHECK hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const 
 /// small as rtol, loses the multipliers in rounding divided by h when they stand in constraints on
 /// speeds or positions. Fails like hn_accel_eval().
 HN_MUST_CHECK hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state,
-                                                  double rtol, double atol, double hmax, double *h);
+                                                  double rtol, double atol, const double *unit,
+                                                  double hmax, double *h);
 /// r (n).
 void hn_ida_problem_residual(hn_ida_problem *p, double t, const double *y, const double *ydot,
                              double *r);

@@ -43,6 +43,7 @@ typedef struct implicit_dae {
         *lambda_start; // at the start of the trial: consistent at first, then the last stage's
     double *last_a, *last_lambda; // stages x nv, stages x nc of the last accepted step
     double *raw;                  // nc
+    double *unit;                 // nq + nv, of the absolute tolerance
     double h, last_h;             // of the trial, of the last accepted step (0: none)
     double *force;                // nv: f + J' lambda at the start of the trial
     double *pushed;               // nv: Y mu
@@ -190,7 +191,8 @@ static hn_status allocate(implicit_dae *s, const hn_collocation *col, hn_arena *
                   {&s->force, nv},
                   {&s->pushed, nv},
                   {&s->last_lambda, stages * nc},
-                  {&s->raw, nc}};
+                  {&s->raw, nc},
+                  {&s->unit, nq + nv}};
 
     // all from one list, so that none is forgotten
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
@@ -262,10 +264,21 @@ void hn_implicit_dae_destroy(void *self) {
     s->projector = NULL;
 }
 
+static void choose_units(implicit_dae *s, const double *v) {
+    if (s->opts.default_atol) {
+        hn_tolerance_units(s->sys, v, s->unit);
+        return;
+    }
+    for (int i = 0; i < s->nq + s->nv; i++) {
+        s->unit[i] = 1;
+    }
+}
+
 hn_status hn_implicit_dae_start(void *self, double t, const double *y) {
     implicit_dae *s = self;
     s->h = s->last_h = 0;
     s->why[0] = '\0';
+    choose_units(s, y + s->nq);
     const hn_status status =
         hn_accel_eval(s->accel, t, y, y + s->nq, 0, 0, s->a_start, s->lambda_start, NULL);
     s->accelerations++;
@@ -290,9 +303,11 @@ static void set_scale(implicit_dae *s, double h) {
         const int at = hn_system_position_of(s->sys, i);
         const double q = at >= 0 ? fabs(s->q0[at]) : 1;
         const int chosen = s->opts.rtol > 0;
-        scale[i] = chosen ? (s->opts.atol + s->opts.rtol * q) / s->weight : size_q;
+        const double unit = at >= 0 ? s->unit[at] : 1;
+        scale[i] = chosen ? (s->opts.atol * unit + s->opts.rtol * q) / s->weight : size_q;
         scale[s->nv + i] =
-            chosen ? (s->opts.atol + s->opts.rtol * fabs(s->v0[i])) / s->weight : size_v;
+            chosen ? (s->opts.atol * s->unit[s->nq + i] + s->opts.rtol * fabs(s->v0[i])) / s->weight
+                   : size_v;
     }
 }
 
@@ -394,7 +409,7 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     weigh_for_error(s, h, 1, ew);
     filter_error(s, s->v0, s->force, ex, ew);
     put_error(s, h, err);
-    if (hn_error_norm(n, err, y, y_new, s->opts.rtol, s->opts.atol) < 1) {
+    if (hn_error_norm(n, err, y, y_new, s->opts.rtol, s->opts.atol, s->unit) < 1) {
         return;
     }
     place(s, s->st.parts, 1);

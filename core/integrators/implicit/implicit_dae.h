@@ -23,6 +23,7 @@ typedef struct hn_implicit_dae_opts {
     int projects; ///< 1, index 3: the speeds are projected at the end of each step
     /// of an adaptive method; rtol 0: Newton's method goes on to rounding, no error estimate
     double rtol, atol;
+    bool default_atol; ///< of an adaptive method: the user chose none, see hn_tolerance_units()
 } hn_implicit_dae_opts;
 
 /// Prepares the collocation method `col` for constraints of this form. Returns in *self, which

@@ -206,7 +206,8 @@ static void set_scale(implicit_ode *s, const hn_ode *ode) {
     const double size_pos = 1 + hn_norm_max(ode->n_pos, s->y0);
     const double size_vel = 1 + hn_norm_max(ode->n_vel, s->y0 + ode->n_pos);
     for (int i = 0; i < s->n; i++) {
-        s->nw.scale[i] = s->rtol > 0      ? (s->atol + s->rtol * fabs(s->y0[i])) / s->weight
+        const double unit = ode->unit ? ode->unit[i] : 1;
+        s->nw.scale[i] = s->rtol > 0      ? (s->atol * unit + s->rtol * fabs(s->y0[i])) / s->weight
                          : i < ode->n_pos ? size_pos
                                           : size_vel;
     }
@@ -262,7 +263,7 @@ static hn_status estimate_error(implicit_ode *s, double t, double h, const doubl
         for (int k = 0; k < n; k++) {
             err[k] *= s->weight;
         }
-        if (pass == 1 || hn_error_norm(n, err, s->y0, y_new, s->rtol, s->atol) < 1) {
+        if (pass == 1 || hn_error_norm(n, err, s->y0, y_new, s->rtol, s->atol, s->ode->unit) < 1) {
             return HN_OK;
         }
         for (int k = 0; k < n; k++) {

@@ -35,8 +35,8 @@ static hn_status create_dae(const hn_system *sys, hn_dae_form form, const double
                                  .projects = hn_dae_projects_speeds(form, form_options)};
     if (!(options[HN_ADAPTIVE_FIXED_STEP] > 0)) {
         opts.rtol = options[HN_ADAPTIVE_RTOL];
-        opts.atol =
-            options[HN_ADAPTIVE_ATOL] > 0 ? options[HN_ADAPTIVE_ATOL] : options[HN_ADAPTIVE_RTOL];
+        opts.default_atol = !(options[HN_ADAPTIVE_ATOL] > 0);
+        opts.atol = opts.default_atol ? options[HN_ADAPTIVE_RTOL] : options[HN_ADAPTIVE_ATOL];
     }
     return hn_implicit_dae_create(sys, form, &col, &opts, arena, self, diag);
 }

@@ -6,10 +6,11 @@
 #include <math.h>
 
 double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
-                     double atol) {
+                     double atol, const double *unit) {
     double sum = 0;
     for (int i = 0; i < n; i++) {
-        const double e = err[i] / (atol + rtol * fmax(fabs(y0[i]), fabs(y1[i])));
+        const double e =
+            err[i] / (atol * (unit ? unit[i] : 1) + rtol * fmax(fabs(y0[i]), fabs(y1[i])));
         if (!isfinite(e) || !isfinite(y1[i])) {
             return HUGE_VAL;
         }
@@ -45,13 +46,15 @@ double hn_step_factor(hn_step_control *control, double err, int k) {
     return factor;
 }
 
+static bool is_length(const hn_system *sys, int i) {
+    const hn_scene *scene = hn_system_scene(sys);
+    return i < hn_system_get_info(sys).n_user &&
+           scene->coordinates[hn_system_user_coordinate(sys, i)].kind == HN_LENGTH;
+}
+
 // what counts as one for speed i: a radian, or the characteristic length
 static double unit_of(const hn_system *sys, int i) {
-    const hn_scene *scene = hn_system_scene(sys);
-    const bool known = i < hn_system_get_info(sys).n_user;
-    const bool is_length =
-        known && scene->coordinates[hn_system_user_coordinate(sys, i)].kind == HN_LENGTH;
-    return is_length ? hn_system_length(sys) : 1;
+    return is_length(sys, i) ? hn_system_length(sys) : 1;
 }
 
 double hn_drive_norm(const hn_system *sys, const double *q0, const double *q1) {
@@ -75,8 +78,46 @@ double hn_drive_first_step(const hn_system *sys, const double *v) {
     return fastest > 0 ? 0.1 * HN_DRIVE_STEP / fastest : 0;
 }
 
-static double scaled_norm(int n, const double *x, const double *y, double rtol, double atol) {
-    return hn_error_norm(n, x, y, y, rtol, atol);
+/// A power of ten; 1 where the size is between `least` and `most`, or none is known.
+static double round_unit(double size, double least, double most) {
+    const bool plain = !(size > 0) || !isfinite(size) || (size >= least && size <= most);
+    return plain ? 1 : pow(10, round(log10(size)));
+}
+
+static double fastest_rate(const hn_system *sys, const double *v) {
+    const hn_quantity *g = hn_system_scene(sys)->gravity;
+    const double weight =
+        sqrt(g[0].value * g[0].value + g[1].value * g[1].value + g[2].value * g[2].value);
+    double rate = sqrt(weight / hn_system_length(sys));
+    for (int i = 0; i < hn_system_get_info(sys).nv; i++) {
+        rate = fmax(rate, fabs(v[i]) / unit_of(sys, i));
+    }
+    return rate;
+}
+
+void hn_tolerance_units(const hn_system *sys, const double *v, double *unit) {
+    const hn_system_info info = hn_system_get_info(sys);
+    const double length =
+        round_unit(hn_system_length(sys), HN_UNIT_LENGTH_LEAST, HN_UNIT_LENGTH_MOST);
+    const double rate = round_unit(fastest_rate(sys, v), HN_UNIT_RATE_LEAST, HN_UNIT_RATE_MOST);
+
+    // quaternions and angles are numbers of order one
+    for (int i = 0; i < info.nq; i++) {
+        unit[i] = 1;
+    }
+    for (int i = 0; i < info.nv; i++) {
+        const int at = hn_system_position_of(sys, i);
+        const double own = is_length(sys, i) ? length : 1;
+        if (at >= 0) {
+            unit[at] = own;
+        }
+        unit[info.nq + i] = own * rate;
+    }
+}
+
+static double scaled_norm(const hn_ode *ode, const double *x, const double *y, double rtol,
+                          double atol) {
+    return hn_error_norm(ode->n_pos + ode->n_vel, x, y, y, rtol, atol, ode->unit);
 }
 
 hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order, double rtol,
@@ -84,7 +125,7 @@ hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
                         double *h) {
     const int n = ode->n_pos + ode->n_vel;
     HN_TRY(ode->rhs(ode->self, t, y, f0));
-    const double d0 = scaled_norm(n, y, y, rtol, atol), d1 = scaled_norm(n, f0, y, rtol, atol);
+    const double d0 = scaled_norm(ode, y, y, rtol, atol), d1 = scaled_norm(ode, f0, y, rtol, atol);
     double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
     h0 = fmin(h0, hmax);
     for (int i = 0; i < n; i++) {
@@ -94,7 +135,7 @@ hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
     for (int i = 0; i < n; i++) {
         work2[i] -= f0[i];
     }
-    const double d2 = scaled_norm(n, work2, y, rtol, atol) / h0;
+    const double d2 = scaled_norm(ode, work2, y, rtol, atol) / h0;
     const double steepest = fmax(d1, d2);
     const double h1 = steepest <= 1e-15 ? fmax(1e-6, h0 * 1e-3) : pow(0.01 / steepest, 1.0 / order);
     *h = fmin(fmin(100 * h0, h1), hmax);

@@ -11,10 +11,27 @@
 #define HN_STEP_GROW 5.0
 #define HN_STEP_SHRINK 0.2
 
-/// sqrt(mean((err_i / (atol + rtol max(|y0_i|, |y1_i|)))^2)); accepted when <= 1. Infinite when an
-/// entry is not finite, 0 for n = 0.
+/// sqrt(mean((err_i / (atol unit_i + rtol max(|y0_i|, |y1_i|)))^2)); accepted when <= 1. `unit`:
+/// NULL: all 1. Infinite when an entry is not finite, 0 for n = 0.
 double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
-                     double atol);
+                     double atol, const double *unit);
+
+/// Units of an absolute tolerance that the user did not choose, so that a mechanism of any size is
+/// computed alike: atol of an entry is rtol times its unit.
+///
+/// A coordinate that is a length has the characteristic length L, any other 1. Velocities have the
+/// unit of their coordinate times a rate w, the larger of the fastest velocity at the start and of
+/// sqrt(g / L). L and w are powers of ten, and 1 between HN_UNIT_LENGTH_LEAST and
+/// HN_UNIT_LENGTH_MOST [m], and HN_UNIT_RATE_LEAST and HN_UNIT_RATE_MOST [1/s]: there plain numbers
+/// serve, which are easier to read.
+///
+/// v     in  (nv) velocities at the start
+/// unit  out (nq + nv)
+void hn_tolerance_units(const hn_system *sys, const double *v, double *unit);
+#define HN_UNIT_LENGTH_LEAST 1e-2
+#define HN_UNIT_LENGTH_MOST 1e2
+#define HN_UNIT_RATE_LEAST 1e-2
+#define HN_UNIT_RATE_MOST 1e3
 
 /// A PI controller; start from {.last = 1}.
 typedef struct hn_step_control {

@@ -19,10 +19,11 @@
         .key = "rtol", .initial = 1e-6, .min = 1e-14, .max = 0.1, \
         .about = "relative error allowed in a step"               \
     }
-#define HN_OPTION_ATOL                                                          \
-    {                                                                           \
-        .key = "atol", .max = 1,                                                \
-        .about = "absolute error allowed in a step; 0: the same number as rtol" \
+#define HN_OPTION_ATOL                                                                         \
+    {                                                                                          \
+        .key = "atol", .max = 1,                                                               \
+        .about = "absolute error allowed in a step; 0: rtol, in units of the mechanism where " \
+                 "lengths or rates are far from 1 m and 1/s"                                   \
     }
 #define HN_OPTION_FIRST_STEP \
     { .key = "h0", .max = 100, .unit = "s", .about = "first step; 0: chosen from the first slopes" }

@@ -106,8 +106,9 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
         const double part = even_part(h - done, next);
         const hn_status status =
             dop853->step(f->stepper, ode, t + done, part, f->y, f->y_new, f->err);
-        const double err =
-            status == HN_OK ? hn_error_norm(f->n, f->err, f->y, f->y_new, tol, tol) : HUGE_VAL;
+        const double err = status == HN_OK
+                               ? hn_error_norm(f->n, f->err, f->y, f->y_new, tol, tol, NULL)
+                               : HUGE_VAL;
         next = part * factor_of(err, dop853->order);
 
         // an error that does not fall with the step is rounding, and is accepted

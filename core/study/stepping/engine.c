@@ -2,6 +2,7 @@
 #include "study/stepping/engine.h"
 
 #include "dynamics/compile/coordinates.h"
+#include "integrators/step/control.h"
 #include "integrators/step/dae.h"
 
 #include <string.h>
@@ -41,11 +42,26 @@ static void ode_destroy(hn_engine *e) {
     }
 }
 
+/// Gives the equation the units of a tolerance that the user did not choose. A chart or a basis has
+/// coordinates of its own, which keep plain numbers.
+static void use_units(hn_engine *e, const double *v) {
+    const unsigned local = HN_TRAIT_HAS_CHART | HN_TRAIT_HAS_BASIS;
+    const bool whole = e->ode.n_pos == e->info.nq && e->ode.n_vel == e->info.nv &&
+                       !(e->spec->formulation->traits & local);
+    const bool chosen = hn_method_option(e->spec, "atol", 0) > 0;
+    e->ode.unit = NULL;
+    if (whole && !chosen) {
+        hn_tolerance_units(e->sys, v, e->unit);
+        e->ode.unit = e->unit;
+    }
+}
+
 static hn_status ode_start(hn_engine *e, double t, const double *q, const double *v) {
     const hn_formulation *f = e->spec->formulation;
     const hn_stepper *stepper = e->spec->stepper;
     HN_TRY(f->set_state(e->formulation, t, q, v, e->y));
     f->ode(e->formulation, &e->ode);
+    use_units(e, v);
     if (e->stepper) {
         stepper->on_accepted(e->stepper, 1);
         return HN_OK;
@@ -183,6 +199,7 @@ static void dae_destroy(hn_engine *e) {
 static hn_status dae_start(hn_engine *e, double t, const double *q, const double *v) {
     memcpy(e->y, q, (size_t)e->info.nq * sizeof *q);
     memcpy(e->y + e->info.nq, v, (size_t)e->info.nv * sizeof *v);
+    use_units(e, v);
     return dae_of(e)->start(e->stepper, t, e->y);
 }
 
@@ -272,6 +289,7 @@ hn_status hn_engine_create(const hn_system *sys, const hn_method_spec *spec, hn_
     e->y_new = hn_arena_doubles(arena, room);
     e->err = hn_arena_doubles(arena, room);
     e->lambda = hn_arena_doubles(arena, (size_t)info.nc);
+    e->unit = hn_arena_doubles(arena, room);
     if (hn_arena_failed(arena)) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }

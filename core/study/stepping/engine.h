@@ -30,6 +30,7 @@ typedef struct hn_engine {
     double *y, *y_new, *err; ///< nq + nv each
     hn_accel *accel;         ///< borrowed; for that first step size
     double *lambda;          ///< nc, scratch beside it
+    double *unit;            ///< nq + nv, see hn_ode.unit
     /// Receives the state at the end of a step before it is corrected; NULL: nobody asks.
     hn_state_at *uncorrected;
 } hn_engine;

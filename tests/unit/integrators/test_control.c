@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/compile/coordinates.h"
+#include "support/model.h"
 #include "support/near.h"
 #include "support/odes.h"
 
@@ -12,15 +14,54 @@ static void error_norm_is_the_rms_of_scaled_errors(void **state) {
     (void)state;
     const double err[2] = {3e-3, 4e-3}, y0[2] = {1, -2}, y1[2] = {0.5, 1};
     // scales 1e-3 + 1e-3 * {1, 2} = {2e-3, 3e-3}
-    assert_rel(hn_error_norm(2, err, y0, y1, 1e-3, 1e-3), sqrt((2.25 + 16.0 / 9) / 2), 1e-14);
-    assert_near(hn_error_norm(0, err, y0, y1, 1e-3, 1e-3), 0, 0);
+    assert_rel(hn_error_norm(2, err, y0, y1, 1e-3, 1e-3, NULL), sqrt((2.25 + 16.0 / 9) / 2), 1e-14);
+    assert_near(hn_error_norm(0, err, y0, y1, 1e-3, 1e-3, NULL), 0, 0);
 }
 
 static void error_norm_of_a_state_that_is_not_finite_is_infinite(void **state) {
     (void)state;
     const double err[1] = {0}, y0[1] = {1}, bad[1] = {nan("")}, nan_err[1] = {nan("")};
-    assert_true(isinf(hn_error_norm(1, err, y0, bad, 1e-3, 1e-3)));
-    assert_true(isinf(hn_error_norm(1, nan_err, y0, y0, 1e-3, 1e-3)));
+    assert_true(isinf(hn_error_norm(1, err, y0, bad, 1e-3, 1e-3, NULL)));
+    assert_true(isinf(hn_error_norm(1, nan_err, y0, y0, 1e-3, 1e-3, NULL)));
+}
+
+static void a_unit_scales_the_absolute_tolerance_of_its_entry(void **state) {
+    (void)state;
+    const double err[2] = {3e-3, 4e3}, y0[2] = {1, 0}, y1[2] = {0.5, 0}, unit[2] = {1, 1e6};
+    // scales 1e-3 + 1e-3, and 1e-3 * 1e6
+    assert_rel(hn_error_norm(2, err, y0, y1, 1e-3, 1e-3, unit), sqrt((2.25 + 16.0) / 2), 1e-14);
+}
+
+// x of a slider-crank is a length, its angles are not
+static void units_are_powers_of_ten_and_one_for_mechanisms_of_our_size(void **state) {
+    (void)state;
+    static const struct {
+        const char *settings;
+        double length, rate;
+    } cases[] = {{NULL, 1, 1},
+                 {"r=1e5 l=3e5 w1_0=0", 1e5, 1e-2},
+                 {"r=1e-6 l=3e-6 w1_0=0", 1e-6, 1e3},
+                 {"r=1e-6 l=3e-6 g=0 w1_0=0", 1e-6, 1},
+                 {"w1_0=2e4", 1, 1e4}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        hn_model m;
+        hn_model_open_closed(&m, "slider-crank", cases[k].settings);
+        const hn_system_info info = hn_system_get_info(m.sys);
+        double unit[16];
+        assert_true(info.nq + info.nv <= 16);
+        hn_tolerance_units(m.sys, m.v, unit);
+        int lengths = 0;
+        for (int i = 0; i < info.nv; i++) {
+            const int c = hn_system_user_coordinate(m.sys, i);
+            const bool is_length = hn_system_scene(m.sys)->coordinates[c].kind == HN_LENGTH;
+            const double own = is_length ? cases[k].length : 1;
+            lengths += is_length;
+            assert_rel(unit[hn_system_position_of(m.sys, i)], own, 1e-12);
+            assert_rel(unit[info.nq + i], own * cases[k].rate, 1e-12);
+        }
+        assert_true(lengths > 0);
+        hn_model_close(&m);
+    }
 }
 
 static void a_rejection_always_shrinks_and_the_next_step_does_not_grow(void **state) {
@@ -70,7 +111,7 @@ static double controlled_error(double rtol, int *steps) {
     while (t < T) {
         h = fmin(h, T - t);
         assert_int_equal(s->step(self, &ode, t, h, y, next, err), HN_OK);
-        const double norm = hn_error_norm(4, err, y, next, rtol, rtol);
+        const double norm = hn_error_norm(4, err, y, next, rtol, rtol, NULL);
         if (norm <= 1) {
             s->on_accepted(self, 0);
             memcpy(y, next, sizeof y);
@@ -105,6 +146,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(error_norm_is_the_rms_of_scaled_errors),
         cmocka_unit_test(error_norm_of_a_state_that_is_not_finite_is_infinite),
+        cmocka_unit_test(a_unit_scales_the_absolute_tolerance_of_its_entry),
+        cmocka_unit_test(units_are_powers_of_ten_and_one_for_mechanisms_of_our_size),
         cmocka_unit_test(a_rejection_always_shrinks_and_the_next_step_does_not_grow),
         cmocka_unit_test(first_step_is_of_the_size_of_the_motion),
         cmocka_unit_test(first_step_respects_the_largest_one),
