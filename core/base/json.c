@@ -3,13 +3,12 @@
 #include "base/strbuf.h"
 
 #include "base/diag.h"
+#include "base/shortest.h"
 
-#include <locale.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-enum { MAX_DEPTH = 63, NUMBER_TEXT = 48 };
+enum { MAX_DEPTH = 63 };
 
 /// The comma before a value, unless it is the first one or follows its key.
 static void begin_value(hn_strbuf *b) {
@@ -110,17 +109,6 @@ void hn_json_key(hn_strbuf *b, const char *key) {
     b->after_key = 1;
 }
 
-/// printf writes the locale's decimal sign; JSON knows only the point.
-static void force_point(char *text) {
-    const char *sign = localeconv()->decimal_point;
-    char *found = strcmp(sign, ".") != 0 ? strstr(text, sign) : NULL;
-    if (found != NULL) {
-        const size_t n = strlen(sign);
-        *found = '.';
-        memmove(found + 1, found + n, strlen(found + n) + 1);
-    }
-}
-
 void hn_json_number(hn_strbuf *b, double value) {
     if (!isfinite(value)) {
         hn_json_null(b);
@@ -129,14 +117,8 @@ void hn_json_number(hn_strbuf *b, double value) {
     begin_value(b);
 
     // the fewest digits that read back to the same double
-    char text[NUMBER_TEXT];
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (digits == 17 || strtod(text, NULL) == value) {
-            break;
-        }
-    }
-    force_point(text);
+    char text[HN_SHORTEST_TEXT];
+    hn_shortest_write(value, text);
     hn_strbuf_add(b, text);
 }
 
