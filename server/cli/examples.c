@@ -20,7 +20,7 @@ static const struct {
     {"export",
      {"export four-bar --language python",
       "export slider-crank --language python --blanks -o slider-crank.py",
-      "export four-bar --format urdf --loops four-bar.loops.json -o four-bar.urdf"}},
+      "export four-bar --format urdf --loops loops.json -o four-bar.urdf"}},
     {"program", {"program python -o mine.py", "program c", "program octave -o mine.m"}},
     {"run",
      {"run four-bar --time 1 --plot",
