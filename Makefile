@@ -375,7 +375,8 @@ compilers: build/.packages-check
 	@cp build/compilers.txt tests/tables/compilers.txt && cat tests/tables/compilers.txt
 
 run-fuzz: $(FUZZERS)
-	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing $(HARNESS)
+	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing \
+	    $(if $(HARNESS),$(HARNESS),--table tests/tables/fuzz.txt)
 
 bench: all
 	@$(MAKE) -s $(JOBS) --no-print-directory run-bench

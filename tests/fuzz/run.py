@@ -186,17 +186,26 @@ def main():
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--programs", default="build/fuzz/tests/fuzz")
     parser.add_argument("--work", default="build/fuzzing")
+    parser.add_argument("--table", help="a file that gets the table too, when all harnesses have been run")
     parser.add_argument("names", nargs="*", metavar="HARNESS")
     options = parser.parse_args()
     unknown = set(options.names) - set(HARNESSES)
     if unknown:
         parser.error(f"no harness is called {', '.join(sorted(unknown))}; there are {', '.join(HARNESSES)}")
-    bad = 0
-    print(f"{'harness':12} {'executions':>11} {'edges':>7}  found in {options.minutes:g} min", flush=True)
+    bad, table = 0, []
+
+    def tell(line):
+        table.append(line + "\n")
+        print(line, flush=True)
+
+    tell(f"{'harness':12} {'executions':>11} {'edges':>7}  found in {options.minutes:g} min")
     for name in options.names or HARNESSES:
         executed, edges, fresh = run(name, options)
         bad += bool(fresh) or executed == 0
-        print(f"{name:12} {executed:11,} {edges:7,}  {', '.join(fresh) or 'nothing'}", flush=True)
+        tell(f"{name:12} {executed:11,} {edges:7,}  {', '.join(fresh) or 'nothing'}")
+    if options.table:
+        with open(options.table, "w") as f:
+            f.writelines(table)
     sys.exit(1 if bad else 0)
 
 
