@@ -164,6 +164,21 @@ class Studies(driver.ServerCase):
             self.assertGreater(document.pop("elapsed"), 0)
         self.assertEqual(done["document"], same)
 
+    def test_a_map_without_a_preset_is_the_telling_one_with_the_largest_steps_beside_it(self):
+        body = {"scene": "four-bar", "kind": "stability", "time": 1, "columns": 4, "rows": 3, "methods": ["projection@rk4", "baumgarte@rk4:h=1e-2"]}
+        done = wait(self.server, start(self.server, body))
+        self.assertEqual((done["state"], done["progress"]), ("finished", 1), done["reason"])
+        document = done["document"]
+        self.assertEqual((document["preset"], document["stiff"], document["telling"]), ("baumgarte", False, None))
+        self.assertEqual([m["method"] for m in document["methods"]], ["baumgarte@rk4:h=0.01"])
+        self.assertEqual([m["method"] for m in document["steps"]], ["projection@rk4", "baumgarte@rk4"])
+        self.assertIn("the velocities err by less than 1 %", document["steps"][0]["agreement"]["text"])
+        # a stiff one is answered by the steps
+        done = wait(self.server, start(self.server, {**body, "scene": "stiff-four-bar", "time": 0.1}))
+        document = done["document"]
+        self.assertEqual((document["preset"], document["stiff"], document["telling"], document["steps"]), ("limits", True, None, None))
+        self.assertIsNone(document["x"])
+
     def test_a_map_over_a_parameter_loads_the_scene_with_each_value(self):
         body = but(MAP, methods=["projection@symplectic-euler"], preset=None, over="g=1..20:lin,h=1e-3..1e-1", time=0.3)
         done = wait(self.server, start(self.server, body))
