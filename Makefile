@@ -307,7 +307,7 @@ help:
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
 	@echo 'make compilers    the numbers of gcc and clang on every shipped scene, none may differ: tests/tables/compilers.txt'
-	@echo 'make bench        time the engine: CSV on standard output'
+	@echo 'make bench        time the engine beside hand-written C: tests/tables/bench.csv'
 	@echo 'make bench-tui    what drawing six methods in a terminal costs: CSV on standard output'
 	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
@@ -537,7 +537,8 @@ run-server: $(PROGRAM)
 	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(SCRIPTS))
 
 run-bench: $(BENCH)
-	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
+	@for b in $(BENCH); do echo "# $$(basename $$b)"; $$b || exit 1; done >build/bench.csv
+	@cp build/bench.csv tests/tables/bench.csv && cat tests/tables/bench.csv
 
 # ---- checking -------------------------------------------------------------------------------------------------
 .PHONY: check check-house test-map check-layers check-width check-contracts check-names check-circles check-licence check-openapi check-headers check-format check-web format
