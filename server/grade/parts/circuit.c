@@ -16,6 +16,7 @@ static const double BENT = 0.2;      // [rad] between the tangents of one step
 typedef struct walk {
     hn_pose_solver *solver;
     hn_circuit *out;
+    hn_graph *graph; ///< of the system: it knows when the work must end
     hn_circuit_visit *visit;
     void *user;
     double stride, step;
@@ -108,14 +109,17 @@ static bool advance(walk *w) {
     return true;
 }
 
-static void follow(walk *w) {
+static hn_status follow(walk *w) {
     hn_circuit *out = w->out;
     double far, before = 0;
     for (out->steps = 1; out->steps <= MAX_STEPS; out->steps++) {
+        if (hn_graph_is_interrupted(w->graph)) {
+            return HN_ERR_STOPPED;
+        }
         if (!advance(w)) {
             snprintf(out->why, sizeof out->why,
                      "the motion comes to a singular configuration, where it is not determined");
-            return;
+            return HN_OK;
         }
 
         // the plane through the start is crossed from behind, near the start
@@ -123,12 +127,13 @@ static void follow(walk *w) {
         if (out->steps > 2 && before < 0 && ahead >= 0 && far < 2 * w->stride &&
             dot(out->n, w->tangent, w->first) > 0.5) {
             close_circuit(w);
-            return;
+            return HN_OK;
         }
         before = ahead;
     }
     snprintf(out->why, sizeof out->why, "the motion does not come back to its start in %d steps",
              MAX_STEPS);
+    return HN_OK;
 }
 
 static void begin(walk *w, const hn_model *model) {
@@ -146,7 +151,12 @@ static void begin(walk *w, const hn_model *model) {
 
 hn_status hn_circuit_walk(const hn_model *model, double stride, hn_circuit_visit *visit, void *user,
                           hn_circuit *out) {
-    walk w = {.out = out, .visit = visit, .user = user, .stride = stride, .step = stride};
+    walk w = {.out = out,
+              .visit = visit,
+              .user = user,
+              .stride = stride,
+              .step = stride,
+              .graph = hn_system_graph(hn_model_system(model))};
     *out = (hn_circuit){.n = hn_system_get_info(hn_model_system(model)).n_user};
     if (out->n > N) {
         snprintf(out->why, sizeof out->why,
@@ -166,14 +176,15 @@ hn_status hn_circuit_walk(const hn_model *model, double stride, hn_circuit_visit
     HN_TRY(hn_pose_solver_create(model, &w.solver));
 
     // exactly one degree of freedom has a tangent
+    hn_status status = HN_OK;
     const int freedoms = hn_pose_solver_direction(w.solver, w.tangent);
     if (freedoms == 1) {
         begin(&w, model);
-        follow(&w);
+        status = follow(&w);
     } else {
         snprintf(out->why, sizeof out->why,
                  "the mechanism has %d degrees of freedom at its start; one is needed", freedoms);
     }
     hn_pose_solver_free(w.solver);
-    return HN_OK;
+    return status;
 }

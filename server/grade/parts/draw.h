@@ -16,7 +16,7 @@
 #include <cjson/cJSON.h>
 #include <stdint.h>
 
-enum { HN_DRAW_NAMES = 32, HN_DRAW_STATES = 16 };
+enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16 };
 
 typedef struct hn_draw {
     hn_graph *graph; ///< owned; its symbols are the names in their order

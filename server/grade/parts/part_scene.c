@@ -29,7 +29,7 @@
 #include <string.h>
 
 enum { MAX_COORDINATES = HN_CIRCUIT_COORDINATES };
-static const double SECONDS = 4; // of computing, to compile a scene that was handed in
+static const double SECONDS = 4; // of computing, for a scene that was handed in
 
 static const cJSON *field(const hn_part *p, const char *name) {
     return cJSON_GetObjectItemCaseSensitive(p->node, name);
@@ -75,23 +75,26 @@ static bool is_late(void *user) {
     return hn_clock_thread() > *(const double *)user;
 }
 
-/// Makes the model of an answer. HN_OK with NULL: the result says why there is none.
+/// Makes the model of an answer, which asks for the time until it is freed. `end`: of computing [s].
+/// HN_OK with NULL: the result says why there is none.
 static hn_status load(const hn_part *p, const hn_setting *settings, int n, const cJSON *given,
-                      hn_model **model, hn_part_result *r) {
+                      double *end, hn_model **model, hn_part_result *r) {
     hn_diags diags = {0};
-    double end = hn_clock_thread() + SECONDS;
     char *text = is_scene(given) ? cJSON_PrintUnformatted(given) : NULL;
     const hn_model_source source = {.name = text ? NULL : hn_part_text(p->node, "scene"),
                                     .text = text,
                                     .n_text = text ? strlen(text) : 0,
                                     .settings = settings,
                                     .n_settings = text ? 0 : n,
-                                    .interrupt = {.must_end = is_late, .user = &end}};
+                                    .interrupt = {.must_end = is_late, .user = end}};
     hn_status status =
         is_scene(given) && !text ? HN_ERR_MEMORY : hn_model_load(p->lib, &source, model, &diags);
     free(text);
     if (status != HN_OK && status != HN_ERR_MEMORY) {
         const bool open = status == HN_ERR_UNREACHABLE;
+        if (status == HN_ERR_STOPPED) {
+            hn_diags_add(&diags, status, NULL, NULL, "it takes more than %g s to compile", SECONDS);
+        }
         hn_part_wrong(r, open ? "not-assembled" : "no-scene", 0, "%s: %.250s",
                       open ? "the loop cannot be closed" : "the scene cannot be used",
                       diags.item[0].message);
@@ -162,14 +165,18 @@ static hn_status grade_object(const hn_part *p, const cJSON *given, hn_part_resu
     if (!is_scene(given)) {
         HN_TRY(read_answer(p, given, settings, &n, r, &good, diag));
     }
-    hn_status status = good ? load(p, settings, n, given, &model, r) : HN_OK;
+    double end = hn_clock_thread() + SECONDS;
+    hn_status status = good ? load(p, settings, n, given, &end, &model, r) : HN_OK;
     if (status == HN_OK && model) {
         n = is_scene(given) ? scene_parameters(model, settings) : n;
         hn_diag why = {0};
         status = grade_model(p, model, settings, n, r, &why);
 
-        // a name that a scene of the student's own does not have
-        if (status == HN_ERR_INPUT && is_scene(given)) {
+        // too large, or without a name that is tested: a scene of the student's own
+        if (status == HN_ERR_STOPPED) {
+            hn_part_unreadable(r, "following its motion takes more than %g s", SECONDS);
+            status = HN_OK;
+        } else if (status == HN_ERR_INPUT && is_scene(given)) {
             hn_part_unreadable(r, "your scene lacks what is tested: %.250s", why.message);
             status = HN_OK;
         } else if (status != HN_OK) {
