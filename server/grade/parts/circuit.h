@@ -27,8 +27,9 @@ typedef void hn_circuit_visit(void *user, const double *coordinates, const doubl
 
 /// Follows the circuit from the assembled start of the model, in steps of at most `stride` [rad, or
 /// characteristic length]. `visit` may be NULL.
-/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, HN_ERR_STOPPED (the interrupt of the model). A mechanism with another number of degrees of freedom, and
-/// one that comes to a singular configuration, give a circuit that is not closed.
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, HN_ERR_STOPPED (the model's interrupt). A mechanism with
+/// another number of degrees of freedom, and one that comes to a singular configuration, give a
+/// circuit that is not closed.
 HN_MUST_CHECK hn_status hn_circuit_walk(const hn_model *model, double stride,
                                         hn_circuit_visit *visit, void *user, hn_circuit *out);
 #endif

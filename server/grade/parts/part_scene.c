@@ -75,7 +75,7 @@ static bool is_late(void *user) {
     return hn_clock_thread() > *(const double *)user;
 }
 
-/// Makes the model of an answer, which asks for the time until it is freed. `end`: of computing [s].
+/// Makes the model of an answer, which asks for the time until it is freed: `end` [s] of computing.
 /// HN_OK with NULL: the result says why there is none.
 static hn_status load(const hn_part *p, const hn_setting *settings, int n, const cJSON *given,
                       double *end, hn_model **model, hn_part_result *r) {
