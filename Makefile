@@ -306,6 +306,7 @@ help:
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
+	@echo 'make page-speed   frames a second, first paint and bytes of the page, on a machine that does nothing else: tests/tables/page_speed.txt'
 	@echo 'make compilers    the numbers of gcc and clang on every shipped scene, none may differ: tests/tables/compilers.txt'
 	@echo 'make bench        time the engine beside hand-written C: tests/tables/bench.csv'
 	@echo 'make bench-tui    what drawing six methods in a terminal costs: CSV on standard output'
@@ -340,7 +341,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
+.PHONY: test test-quick asan tsan fuzz load page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -364,6 +365,11 @@ fuzz: build/.packages-check
 # a class of 300 readers, 30 browsers, 10,000 questions asked twice with kill -9 between: four minutes, nothing else should run
 load: all
 	@python3 tests/load/load.py $(PROGRAM)
+
+page-speed: all $(WEB_READY) $(BROWSER_READY)
+	@mkdir -p build
+	@HOLONOM=$(PROGRAM) node tests/browser/page_speed.mjs >build/page_speed.txt || { cat build/page_speed.txt; exit 1; }
+	@cp build/page_speed.txt tests/tables/page_speed.txt && cat tests/tables/page_speed.txt
 
 bench-tui: all
 	@HOLONOM=$(PROGRAM) python3 tests/bench/tui_share.py

@@ -38,7 +38,7 @@ function freePort() {
 }
 
 /** @param {string[]} options of `holonom serve` */
-async function startServer(options = []) {
+export async function startServer(options = []) {
   assert.ok(existsSync(PROGRAM), `${PROGRAM} is built`);
   const child = spawn(PROGRAM, ["serve", "--port", String(await freePort()), ...options], {
     cwd: ROOT,
@@ -76,9 +76,10 @@ async function startServer(options = []) {
   return { url, port: Number(new URL(url).port), stop };
 }
 
-export async function startBrowser() {
+/** @param {string[]} [more] flags of the browser */
+export async function startBrowser(more = []) {
   assert.ok(existsSync(CHROMIUM), `${CHROMIUM} is installed`);
-  return chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
+  return chromium.launch({ executablePath: CHROMIUM, args: [...FLAGS, ...more] });
 }
 
 /** What the page must not do, noted while it lives. @returns {string[]} */
@@ -281,8 +282,29 @@ export async function stood(page) {
   await drawn(page);
 }
 
-/** Plays to a time at least and stands. @param {number} t [s] */
+/**
+ * Computes to the first frame after a time and stands there, as by pressing the right arrow: the
+ * same frame on every machine, however busy.
+ * @param {number} t [s]
+ */
 export async function playTo(page, t) {
+  const { id, frame, dt } = await read(page, (data) => ({
+    id: data.id,
+    frame: data.latest?.frame ?? 0,
+    dt: data.frameDt,
+  }));
+  const step = Math.floor(t / dt + 1e-9) + 1 - frame;
+  const answer = await fetch(new URL(`/api/v1/comparisons/${id}`, page.url()), {
+    method: "PATCH",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ step }),
+  });
+  assert.equal(answer.status, 200, `a step of ${step} frames`);
+  await stood(page);
+}
+
+/** Plays to a time at least, as a person sees it, and stands. @param {number} t [s] */
+export async function watchTo(page, t) {
   await page.keyboard.press("Space");
   await until(page, `(data) => data.latest?.t > ${t}`);
   await page.keyboard.press("Space");

@@ -116,6 +116,37 @@ test("the drawer of parameters moves nothing and closes with Escape", async (t) 
   await soon(async () => assert.ok(await page.locator("#parameters").isHidden()));
 });
 
+test("at 1024 the drawer lies over the methods and leaves the mechanism in sight", async (t) => {
+  const page = await open(t, { viewport: { width: 1024, height: 768 } });
+  await page.getByRole("button", { name: "lengths, masses, start" }).click();
+  await page.locator("#parameter-l1").waitFor();
+  const { drawer, stage, methods } = await boxesOf(page, {
+    drawer: "#parameters",
+    stage: ".stage",
+    methods: "#methods",
+  });
+  assert.ok(drawer.left >= stage.right, "nothing of the drawing is covered");
+  assert.ok(drawer.top >= methods.top && drawer.bottom <= methods.bottom + 1);
+  await page.setViewportSize({ width: 360, height: 780 });
+  await soon(async () => assert.equal(await page.locator(".stage #parameters").count(), 1));
+});
+
+test("the columns say what is now and what is worst; alpha and beta say what they do", async (t) => {
+  const page = await open(t);
+  const heads = await page.locator(".method-table thead th").allTextContents();
+  assert.deepEqual(heads.slice(3), [
+    "worst so far",
+    "gap now",
+    "error now",
+    "energy now",
+    "operations",
+  ]);
+  assert.match(await page.textContent("label[for=set-alpha]"), /α damps the gap/);
+  assert.match(await page.textContent("label[for=set-beta]"), /β pulls the gap shut/);
+  await page.locator(".tear-inset .power").hover();
+  await soon(async () => assert.match(await page.textContent("#tip"), /^Magnification: /));
+});
+
 test("table, sentence and live region say the same of a run that is closed and wrong", async (t) => {
   const page = await open(t);
   await playTo(page, 3);

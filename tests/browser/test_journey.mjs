@@ -3,7 +3,7 @@
 // shown, and words that belong to what is open.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, playTo, read, soon, until } from "./support.mjs";
+import { createBench, read, soon, until, watchTo } from "./support.mjs";
 
 const { open } = createBench();
 
@@ -132,6 +132,6 @@ test("the sentence and the table are of one frame while the run goes on", async 
       });
     }).observe(document.querySelector(".seen"), { childList: true });
   });
-  await playTo(page, 2);
+  await watchTo(page, 1.5);
   assert.deepEqual(await page.evaluate(() => globalThis.torn), []);
 });

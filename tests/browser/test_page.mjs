@@ -14,6 +14,7 @@ import {
   soon,
   stood,
   until,
+  watchTo,
 } from "./support.mjs";
 
 const SMALLEST_TARGET = 24; // [px] WCAG 2.5.8
@@ -40,7 +41,7 @@ function noteShifts() {
 for (const theme of THEMES) {
   test(`1280 wide, ${theme}: nothing overflows and nothing moves after the first paint`, async (t) => {
     const page = await open(t, { colorScheme: theme, fresh: true, init: noteShifts });
-    await playTo(page, 2.5);
+    await watchTo(page, 1.5);
     await soon(async () => assert.deepEqual(await page.evaluate(() => globalThis.shifts), []));
     await screenshot(page, `page-1280-${theme}`); // resizes the page, so it comes after
     await soon(async () =>

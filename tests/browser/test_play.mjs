@@ -370,7 +370,6 @@ test("the forces in the joints are those of the state shown, as numbers and as a
   const page = await open(t);
   await page.click("#reactions summary");
   await page.getByRole("button", { name: "draw as arrows" }).click();
-  await page.focus("#play");
   await playTo(page, 0.5);
   await until(page, (data) => data.state === "paused" && data.reactions?.t === data.latest.t);
   const { at, list, state } = await read(page, (data) => ({

@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { triesOfIncident } from "../../web/state/cards.js";
 import { counted, gapWords } from "../../web/state/format.js";
 import { GLOSSARY, termsIn } from "../../web/state/glossary.js";
+import { markWords } from "../../web/state/reactions.js";
 import { QUANTITIES } from "../../web/state/quantities.js";
 import { ERRORS, byName, leftOutOf } from "../../web/state/study-documents.js";
 import { isOpen, markerOf } from "../../web/widgets/markers.js";
@@ -68,6 +69,22 @@ test("points that were not run are counted with the reason, and are drawn as rin
   assert.notEqual(failed, skipped);
   assert.ok(isOpen({ error: Infinity, state: "skipped" }, "disc"));
   assert.ok(!isOpen({ error: 1, state: "done" }, "disc"));
+});
+
+test("what a mark says of multipliers is a sentence; a sound one says nothing", () => {
+  assert.equal(markWords("determined"), "");
+  assert.equal(markWords(undefined), "");
+  const marks = ["one of many", "no digit left", "no solution", "of open loops"];
+  for (const mark of marks) {
+    assert.match(markWords(mark), /^[A-Z].{30,}\.$/, mark);
+  }
+  assert.match(markWords("of open loops"), /A loop stands open/);
+});
+
+test("a dead point, a magnification and a multiplier have their sentence", () => {
+  assert.deepEqual(keysIn("it stands at a dead point"), ["singular"]);
+  assert.match(GLOSSARY.magnified.means, /×20/);
+  assert.match(GLOSSARY.multipliers.means, /force/);
 });
 
 test("one is one, and a gap of rounding has one digit", () => {

@@ -170,10 +170,14 @@ export function createExportDialog(el, store, actions, mechanism) {
     ),
   );
 
-  /** @type {{name: string, suffix: string, about: string, solvers: {name: string, about: string}[]}[]} */
+  /**
+   * @type {{name: string, suffix: string, about: string,
+   *   solvers: {name: string, about: string}[]}[]}
+   */
   let known = [];
 
-  // the solvers of the chosen language; a program with blanks has the first, and keeps its self-check
+  // the solvers of the chosen language; a program with blanks has the first, and keeps its check of
+  // itself
   function offerChoices() {
     const chosen = known.find(({ name }) => name === languages.value);
     const before = solvers.value;
