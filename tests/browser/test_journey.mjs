@@ -2,10 +2,12 @@
 // Where a reader goes: back and forward through scenes and views, links that hold all that is
 // shown, and words that belong to what is open.
 import assert from "node:assert/strict";
+import http from "node:http";
 import { test } from "node:test";
 import { createBench, read, soon, until, watchTo } from "./support.mjs";
 
-const { open } = createBench();
+const bench = createBench();
+const { open } = bench;
 
 const spellings = (data) => data.methods.map(({ spelling }) => spelling);
 
@@ -134,4 +136,63 @@ test("the sentence and the table are of one frame while the run goes on", async 
   });
   await watchTo(page, 1.5);
   assert.deepEqual(await page.evaluate(() => globalThis.torn), []);
+});
+
+const PREFIX = "/course/mechanisms";
+
+/** A proxy that serves everything below a prefix, and nothing beside it. */
+async function startProxy(t) {
+  const target = new URL(bench.url);
+  const proxy = http.createServer((request, response) => {
+    if (!request.url?.startsWith(`${PREFIX}/`)) {
+      response.writeHead(404).end();
+      return;
+    }
+    const { origin: _, ...headers } = request.headers;
+    const onward = http.request(
+      {
+        host: target.hostname,
+        port: target.port,
+        method: request.method,
+        path: request.url.slice(PREFIX.length),
+        headers: { ...headers, host: target.host },
+      },
+      (answer) => {
+        response.writeHead(answer.statusCode ?? 502, answer.headers);
+        answer.pipe(response);
+      },
+    );
+    onward.on("error", () => response.destroy());
+    response.on("close", () => onward.destroy());
+    request.pipe(onward);
+  });
+  await new Promise((resolve) => proxy.listen(0, "127.0.0.1", () => resolve(undefined)));
+  t.after(() => {
+    proxy.closeAllConnections();
+    proxy.close();
+  });
+  return `http://127.0.0.1:${proxy.address().port}${PREFIX}/`;
+}
+
+test("the page works below a prefix: it runs, opens what it loads later, and saves a report", async (t) => {
+  const page = await open(t, { url: await startProxy(t), hash: "#rssr" });
+  await page.waitForSelector(".stage.solid"); // three.js and its style sheet
+  await page.selectOption("#scene", "pendulum");
+  await until(page, (data) => data.scene.id === "pendulum" && data.history.count > 0);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.2);
+  await page.keyboard.press("Space");
+  await page.click(".equation-panel summary");
+  await page.waitForSelector(".term-block .katex");
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.waitForSelector(".lesson-text h2, .lesson-text h3");
+  await page.keyboard.press("Escape");
+  await page.focus("#play");
+  await page.keyboard.press("e");
+  await until(page, (data) => data.studies.budget.state === "finished", 60000);
+  const report = await read(page, (data) => data.studies.budget.report);
+  assert.ok(report.startsWith(`${PREFIX}/api/v1/`), report);
+  const status = await page.evaluate((path) => fetch(path).then((one) => one.status), report);
+  assert.equal(status, 200);
 });

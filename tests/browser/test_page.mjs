@@ -550,7 +550,7 @@ test("without script there is a picture, an explanation and the way to the JSON"
   await soon(async () => assert.ok(await page.locator(".still img").isVisible()));
   await soon(async () => assert.ok((await page.locator(".still img").boundingBox()).height > 100));
   await soon(async () =>
-    assert.equal(await page.locator(".still a").first().getAttribute("href"), "/api/v1/"),
+    assert.equal(await page.locator(".still a").first().getAttribute("href"), "api/v1/"),
   );
   await soon(async () => assert.equal(await page.locator("main").isVisible(), false));
   await screenshot(page, "page-no-script");
