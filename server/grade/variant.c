@@ -112,6 +112,47 @@ static void put_variant(hn_strbuf *b, const hn_variant *x) {
     }
 }
 
+/// How formulas are written, once for the kinds of answers that have them.
+static void put_notation(hn_strbuf *b, const hn_variant *x) {
+    static const struct {
+        const char *kinds[4], *says;
+    } NOTATIONS[] = {
+        {{"formula", "formulas", "basis"},
+         "Formulas: a*b or a b, a^2, a/b, sin(th1), sqrt(x), pi; angles in radians; theta_1 is "
+         "th1, "
+         "in Greek letters too.\n"},
+        {{"matrix", "blocks"},
+         "Formulas of matrices: M J or M*J is the product, J' or J^T the transpose, inv(M) the "
+         "inverse.\n"},
+    };
+    for (size_t i = 0; i < sizeof NOTATIONS / sizeof *NOTATIONS; i++) {
+        bool used = false;
+        for (int k = 0; k < x->n_parts; k++) {
+            const char *kind = hn_part_text(x->part[k].node, "kind");
+            for (int j = 0; NOTATIONS[i].kinds[j]; j++) {
+                used |= strcmp(kind, NOTATIONS[i].kinds[j]) == 0;
+            }
+        }
+        hn_strbuf_add(b, used ? NOTATIONS[i].says : "");
+    }
+}
+
+/// The shape of the submission, how formulas are written, and where the hints are.
+static void put_hand_in(hn_strbuf *b, const hn_variant *x) {
+    const hn_exercise *p = x->exercise;
+    hn_strbuf_add(b, "\nHand in a JSON file: {");
+    put_variant(b, x);
+    for (int i = 0; i < x->n_parts; i++) {
+        hn_strbuf_printf(b, "%s\"%s\": ...", i ? ", " : "", x->part[i].id);
+    }
+    hn_strbuf_add(b, "}\n");
+    put_notation(b, x);
+    if (p->n_hints) {
+        hn_strbuf_printf(b, "%d hint%s: holonom problem %s --hint 1\n", p->n_hints,
+                         p->n_hints == 1 ? "" : "s", p->id);
+    }
+}
+
 void hn_variant_text(hn_strbuf *b, hn_variant *x) {
     const hn_exercise *p = x->exercise;
     hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g point%s; seed %llu)\n\n", p->id,
@@ -131,18 +172,7 @@ void hn_variant_text(hn_strbuf *b, hn_variant *x) {
             part->kind->figure(b, part, false);
         }
     }
-
-    // how to hand it in
-    hn_strbuf_add(b, "\nHand in a JSON file: {");
-    put_variant(b, x);
-    for (int i = 0; i < x->n_parts; i++) {
-        hn_strbuf_printf(b, "%s\"%s\": ...", i ? ", " : "", x->part[i].id);
-    }
-    hn_strbuf_printf(b, "}\n");
-    if (p->n_hints) {
-        hn_strbuf_printf(b, "%d hint%s: holonom problem %s --hint 1\n", p->n_hints,
-                         p->n_hints == 1 ? "" : "s", p->id);
-    }
+    put_hand_in(b, x);
 }
 
 /// The figure that a part asks about, as text for a terminal and as SVG for a page.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lesson/lesson_text.h"
 
+#include "lesson/tex_ascii.h"
 #include "lesson/tex_text.h"
 #include "terminal/cells.h"
 
@@ -9,6 +10,9 @@
 #include <string.h>
 
 enum { MAX_COLUMNS = 12, INDENT = 4, GUTTER = 2, MIN_COLUMN = 6 };
+
+/// The member of a formula that holds its spelling in ASCII.
+static const char SPELLED[] = "ascii";
 
 static const char *text_of(const cJSON *node, const char *key) {
     const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(node, key));
@@ -31,7 +35,11 @@ static void put_math(hn_strbuf *b, const cJSON *node) {
     const bool display = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(node, "display"));
     hn_strbuf tex;
     hn_strbuf_init(&tex);
-    hn_tex_text(&tex, text_of(node, "tex"));
+    if (text_of(node, SPELLED)[0]) {
+        hn_strbuf_add(&tex, text_of(node, SPELLED));
+    } else {
+        hn_tex_text(&tex, text_of(node, "tex"));
+    }
     hn_strbuf_add(b, display ? "\n\n" : "");
 
     // a display on lines of its own, indented; \x01 keeps its blanks from being folded
@@ -427,6 +435,21 @@ void hn_lesson_nodes_text(hn_strbuf *b, const cJSON *nodes, int columns) {
     put_blocks(&all, nodes, 0, columns);
     put_tidy(b, &all);
     hn_strbuf_reset(&all);
+}
+
+void hn_lesson_spell_out(cJSON *lesson) {
+    if (is_kind(lesson, "math")) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_tex_ascii(&b, text_of(lesson, "tex"));
+        cJSON_AddStringToObject(lesson, SPELLED, hn_strbuf_text(&b));
+        hn_strbuf_reset(&b);
+        return;
+    }
+    cJSON *child;
+    cJSON_ArrayForEach(child, lesson) {
+        hn_lesson_spell_out(child);
+    }
 }
 
 void hn_lesson_text(hn_strbuf *b, const cJSON *lesson, int columns) {

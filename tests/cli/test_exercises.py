@@ -38,6 +38,10 @@ def variants():
     expect("every student has a variant", s != t and s == run("problem", "p1", "--student", "s1001").stdout)
     hints = run("problem", "p1", "--hint", "1").stdout
     expect("a hint is printed when asked for", hints.startswith("hint 1 of 3:") and hints.count("hint") == 1, hints)
+    written = {name: run("problem", name).stdout for name in ("closure", "p1", "slips-1")}
+    expect("an exercise with formulas says how they are written, once",
+           {name: (text.count("Formulas: "), text.count("Formulas of matrices: ")) for name, text in written.items()}
+           == {"closure": (1, 0), "p1": (0, 1), "slips-1": (0, 0)}, str(written))  # fmt: skip
     near = run("problem", "p11111")
     expect("an unknown exercise is the input's fault", near.returncode == 2, near.stderr)
 

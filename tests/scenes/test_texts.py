@@ -225,6 +225,15 @@ def shown_slips(facts):
     return faults
 
 
+def unreadable_in_ascii(texts):
+    """Lessons with characters that a terminal without UTF-8 shows as question marks."""
+    def marks(text, locale):
+        done = subprocess.run([PROGRAM, "lesson", text.split("/")[1]], capture_output=True, text=True, timeout=60, env={**os.environ, "LC_ALL": locale})
+        return done.stdout.count("?")
+
+    return [t for t in texts if marks(t, "C") != marks(t, "C.UTF-8")]
+
+
 def kinds():
     """Kinds of answers whose row in lessons/README.md names an exercise of another kind, and kinds without a row."""
     shipped = {}
@@ -302,6 +311,7 @@ def main():
     results.append(("the terminal knows every command of a formula", commands_of_tex(texts)))
     results.append(("every slip of the printed lesson is in a text and in an exercise", slips(texts)))
     results.append(("what the table of slips names runs, and shows what is seen", shown_slips(all_facts["lessons/README.md"])))
+    results.append(("a terminal without UTF-8 shows every text and formula", unreadable_in_ascii(texts)))
     results.append(("every kind of answer has an exercise to copy from", kinds()))
     results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))
     results.append(("every exhibit runs", exhibits(texts)))

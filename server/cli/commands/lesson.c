@@ -2,10 +2,13 @@
 // holonom lesson
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/plain.h"
 #include "cli/shell/print.h"
 #include "lesson/lesson.h"
 #include "lesson/lesson_text.h"
 #include "terminal/width.h"
+
+#include <stdlib.h>
 
 enum { WIDEST = 100 };
 
@@ -22,6 +25,9 @@ hn_exit hn_command_lesson(const hn_library *lib, const hn_args *args) {
     if (args->json) {
         hn_lesson_json(&b, lesson);
     } else {
+        if (hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"))) {
+            hn_lesson_spell_out(lesson);
+        }
         hn_lesson_text(&b, lesson, columns < WIDEST ? columns : WIDEST);
     }
     cJSON_Delete(lesson);

@@ -2,6 +2,7 @@
 // Lessons: Markdown and its special blocks as a tree, formulas as text, the whole for a terminal.
 #include "lesson/lesson.h"
 #include "lesson/lesson_text.h"
+#include "lesson/tex_ascii.h"
 #include "lesson/tex_text.h"
 
 #include "support/alloc.h"
@@ -31,6 +32,23 @@ static void formulas_become_text(void **state) {
     expect_tex("-\\sin x", "-sin x");
     expect_tex("2\\cdot 3\\times4", "2 · 3 × 4");
     expect_tex("x^{-12}", "x⁻¹²");
+}
+
+static void expect_ascii(const char *tex, const char *wanted) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_tex_ascii(&b, tex);
+    assert_string_equal(hn_strbuf_text(&b), wanted);
+    hn_strbuf_reset(&b);
+}
+
+static void formulas_are_spelled_out_in_ascii(void **state) {
+    (void)state;
+    expect_ascii("\\tfrac12 m\\ell_1^2\\dot\\theta_1^2", "1/2 m l_1^2 thetadot_1^2");
+    expect_ascii("M\\ddot q + h = Q + J^{\\top}\\lambda", "M qddot + h = Q + J' lambda");
+    expect_ascii("\\ell_1\\sin\\theta_1\\ell_{12}", "l_1 sin theta_1 l_12");
+    expect_ascii("N^{\\top}M x^{-12}y", "N' M x^-12 y");
+    expect_ascii("2\\cdot 3 \\ne 7", "2 * 3 != 7");
 }
 
 static void formulas_that_are_torn_end(void **state) {
@@ -187,6 +205,7 @@ static void every_shipped_lesson_can_be_read(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formulas_become_text),
+        cmocka_unit_test(formulas_are_spelled_out_in_ascii),
         cmocka_unit_test(formulas_that_are_torn_end),
         cmocka_unit_test(an_exhibit_says_its_command),
         cmocka_unit_test(a_prediction_has_its_right_choice),
