@@ -81,11 +81,12 @@ static const hn_language LANGUAGES[] = {
      .matrix = "#1[#2, #3] = #4",
      .entry = "#1[#2]",
      .solvers = PYTHON_SOLVERS,
-     .reserved = OWN "and as assert async await break class continue def del elif else except "
-                     "finally for from global if import in is lambda nonlocal not or pass raise "
-                     "return try while with yield np solve_ivp abs min max print range sys "
-                     "plot residual put_residual put_derivative independent_rows qr PETSc "
-                     "SimpleNamespace same_sign difference main sign step",
+     .reserved =
+         OWN "and as assert async await break class continue def del elif else except "
+             "finally for from global if import in is lambda nonlocal not or pass raise "
+             "return try while with yield np solve_ivp abs min max print range sys "
+             "plot loop_gaps residual put_residual put_derivative independent_rows qr PETSc "
+             "SimpleNamespace same_sign difference main sign step",
      .call = {[HN_OP_RECIP] = "1 / (#1)", [HN_OP_POW] = "(#1)**(#2)"}},
     {.name = "c",
      .suffix = ".c",

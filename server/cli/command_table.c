@@ -31,7 +31,7 @@ static const hn_command COMMANDS[] = {
      "urdf",
      MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o", 1, 1,
      hn_command_export},
-    {"program", "python|javascript|octave|c|cpp|java",
+    {"program", "python|javascript|octave|c|cpp|java|julia",
      "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,
      hn_command_program},
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",

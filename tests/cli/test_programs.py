@@ -18,8 +18,8 @@ import driver  # noqa: E402
 PROGRAM = os.path.abspath(driver.PROGRAM)
 DONE, INPUT, ENDED = 0, 2, 4
 BUILDS = {"c": ["gcc", "-O2", "-Wall", "-Werror", "-x", "c"], "cpp": ["g++", "-O2", "-Wall", "-Werror", "-x", "c++"]}
-NEEDS = {"python": "python3", "javascript": "node", "octave": "octave-cli", "java": "java", "c": "gcc", "cpp": "g++"}
-ENDINGS = {"python": "py", "javascript": "js", "octave": "m", "c": "c", "cpp": "cpp", "java": "java"}
+NEEDS = {"python": "python3", "javascript": "node", "octave": "octave-cli", "java": "java", "c": "gcc", "cpp": "g++", "julia": "julia"}
+ENDINGS = {"python": "py", "javascript": "js", "octave": "m", "c": "c", "cpp": "cpp", "java": "java", "julia": "jl"}
 
 
 def call(*words, cwd=None):
@@ -73,6 +73,21 @@ class StartingPoints(unittest.TestCase):
         self.assertGreaterEqual(len(there), 2)
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             list(pool.map(self.compare_with_baumgarte, there))
+
+    def test_the_starting_point_in_julia_has_what_the_conversation_needs(self):
+        """Debian 12 has no Julia: the text is read here, and run by the test above where there is one."""
+        text = call("program", "julia").stdout
+        for word in ('\\"holonom\\":1', '\\"provides\\":\\"accelerations\\"', '\\"id\\":', '\\"lambda\\":', "flush(stdout)"):
+            self.assertIn(word, text)
+        wanted = re.search(r'wants.*\[(.*?)\]', text).group(1).replace("\\", "").replace('"', "").split(",")
+        self.assertEqual(wanted, ["M", "f", "J", "gamma", "phi", "phi_t"])
+        # what is wanted is what is read
+        self.assertEqual(set(re.findall(r'numbers\(line, "(\w+)"\)', text)), {*wanted, "v", "id"})
+        text = re.sub(r'"(\\.|[^"\\])*"|\'.\'|#.*', "", text.replace("J'", "J"))
+        for pair in ("()", "[]", "{}"):
+            self.assertEqual(text.count(pair[0]), text.count(pair[1]), pair)
+        opened = len(re.findall(r"^(function|for)\b", text, re.M))
+        self.assertEqual((opened, len(re.findall(r"^end$", text, re.M))), (3, 3))
 
     def test_a_language_that_is_not_there_is_answered_with_those_that_are(self):
         done = call("program", "pyton")

@@ -12,8 +12,8 @@ enum { LARGEST = 1 << 16, LONGEST_PATH = 4096 };
 
 static const struct {
     const char *language, *suffix;
-} STARTS[] = {{"python", "py"}, {"javascript", "js"}, {"octave", "m"},
-              {"c", "c"},       {"cpp", "cpp"},       {"java", "java"}};
+} STARTS[] = {{"python", "py"}, {"javascript", "js"}, {"octave", "m"}, {"c", "c"},
+              {"cpp", "cpp"},   {"java", "java"},     {"julia", "jl"}};
 enum { N_STARTS = sizeof STARTS / sizeof *STARTS };
 
 static hn_status find_suffix(const char *language, const char **suffix, hn_diags *diags) {
