@@ -367,6 +367,37 @@ class FairShares(Timed):
         self.assertEqual(server.ask("GET", "/api/v1/comparisons/" + first["id"]).status, 404)
         self.assertEqual(server.stop(), 0)
 
+    def test_connections_are_shared_out(self):
+        server = driver.Server("--max-connections", "80")
+        request = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+
+        def connect():
+            """A connection of 127.0.0.2 that stays open, None where the server does not take it."""
+            s = socket.socket()
+            s.settimeout(20 * driver.SLOW)
+            s.bind(("127.0.0.2", 0))
+            s.connect(("127.0.0.1", server.port))
+            try:
+                s.sendall(request)
+                if s.recv(100).startswith(b"HTTP/1.1 200"):
+                    return s
+            except OSError:
+                pass
+            s.close()
+            return None
+
+        held = [connect() for _ in range(50)]
+        self.assertEqual([s is not None for s in held], [True] * 40 + [False] * 10)
+        # the others have their places, and one that is given up can be had again
+        self.assertEqual(From(server, "127.0.0.3").ask("GET", "/healthz").status, 200)
+        self.assertEqual(server.ask("GET", "/healthz").status, 200)
+        held[0].close()
+        again = []
+        self.assertTrue(driver.until(lambda: again.append(connect()) or again[-1]))
+        for s in held[1:40] + again[-1:]:
+            s.close()
+        self.assertEqual(server.stop(), 0)
+
     def test_streams_are_shared_out(self):
         server = driver.Server("--max-streams", "4")
         c = server.compare()

@@ -13,6 +13,8 @@ enum { LOOK_MS = 250 };
 
 struct hn_connection_watch {
     int fd;
+    hn_client client;
+    bool has_place;  ///< it is counted
     double deadline; ///< [s, wall clock]
     hn_connection_watch *next, *before;
 };
@@ -22,6 +24,7 @@ struct hn_connections {
     pthread_cond_t ending;
     const hn_http_opts *opts;
     hn_connection_watch *first;
+    hn_shares *places;
     pthread_t thread;
     int has_thread, stop;
 };
@@ -66,8 +69,10 @@ hn_connections *hn_connections_create(const hn_http_opts *opts) {
     pthread_condattr_destroy(&attr);
     pthread_mutex_init(&all->lock, NULL);
     all->opts = opts;
+    all->places =
+        hn_shares_create(opts->max_connections, hn_http_opts_share(opts, opts->max_connections));
 
-    all->has_thread = pthread_create(&all->thread, NULL, watch, all) == 0;
+    all->has_thread = all->places && pthread_create(&all->thread, NULL, watch, all) == 0;
     if (!all->has_thread) {
         hn_connections_free(all);
         return NULL;
@@ -88,13 +93,20 @@ void hn_connections_free(hn_connections *all) {
     }
     pthread_cond_destroy(&all->ending);
     pthread_mutex_destroy(&all->lock);
+    hn_shares_free(all->places);
     free(all);
 }
 
-hn_connection_watch *hn_connections_add(hn_connections *all, int fd) {
+bool hn_connections_may_add(hn_connections *all, hn_client client) {
+    return hn_shares_has_place(all->places, client);
+}
+
+hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client) {
     hn_connection_watch *w = calloc(1, sizeof *w);
     if (w) {
         w->fd = fd;
+        w->client = client;
+        w->has_place = hn_shares_take(all->places, client);
         w->deadline = hn_clock_wall() + all->opts->head_deadline;
         pthread_mutex_lock(&all->lock);
         w->next = all->first;
@@ -117,6 +129,9 @@ void hn_connections_remove(hn_connections *all, hn_connection_watch *w) {
         w->next->before = w->before;
     }
     pthread_mutex_unlock(&all->lock);
+    if (w->has_place) {
+        hn_shares_give(all->places, w->client);
+    }
     free(w);
 }
 

@@ -3,9 +3,12 @@
 #define HN_HTTP_CONNECTIONS_H
 // Deadlines of connections. The HTTP library counts the seconds since the last byte, so that a
 // client which sends a byte now and then keeps its place for ever; here a head and a body have a
-// time in all.
+// time in all. And the connections of each client are counted: it may have its share of them.
 
 #include "http/ground/http_opts.h"
+#include "http/ground/shares.h"
+
+#include <stdbool.h>
 
 typedef struct hn_connections hn_connections;
 typedef struct hn_connection_watch hn_connection_watch;
@@ -14,8 +17,10 @@ typedef struct hn_connection_watch hn_connection_watch;
 hn_connections *hn_connections_create(const hn_http_opts *opts);
 void hn_connections_free(hn_connections *all); ///< NULL is legal; no connection may be left
 
+/// Whether a client may have one more connection.
+bool hn_connections_may_add(hn_connections *all, hn_client client);
 /// A connection has been accepted. NULL when memory is out: it then has no deadline of its own.
-hn_connection_watch *hn_connections_add(hn_connections *all, int fd);
+hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client);
 /// The connection is about to be closed; from here on its descriptor is not touched. NULL is legal.
 void hn_connections_remove(hn_connections *all, hn_connection_watch *w);
 

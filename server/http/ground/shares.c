@@ -49,12 +49,25 @@ static int find_row(const hn_shares *shares, hn_client client) {
     return i;
 }
 
+/// The places that row i holds, and whether its client may have one more. With the lock held.
+static bool may_take(const hn_shares *shares, hn_client client, int i, int *held) {
+    *held = i < shares->n_clients ? shares->client[i].n : 0;
+    return shares->taken < shares->in_all && (client == 0 || *held < shares->per_client);
+}
+
+bool hn_shares_has_place(hn_shares *shares, hn_client client) {
+    int held;
+    pthread_mutex_lock(&shares->lock);
+    const bool has = may_take(shares, client, find_row(shares, client), &held);
+    pthread_mutex_unlock(&shares->lock);
+    return has;
+}
+
 int hn_shares_take(hn_shares *shares, hn_client client) {
+    int held;
     pthread_mutex_lock(&shares->lock);
     const int i = find_row(shares, client);
-    const int held = i < shares->n_clients ? shares->client[i].n : 0;
-    const int free_place =
-        shares->taken < shares->in_all && (client == 0 || held < shares->per_client);
+    const int free_place = may_take(shares, client, i, &held);
     if (free_place) {
         shares->client[i] = (share){.client = client, .n = held + 1};
         shares->n_clients += i == shares->n_clients;

@@ -3,6 +3,7 @@
 #define HN_HTTP_SHARES_H
 // Places of one kind (streams, comparisons), so many in all and so many for one client.
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /// Who asks: a hash of the address; 0 is this machine, whose share is all of it.
@@ -15,6 +16,8 @@ hn_shares *hn_shares_create(int in_all, int per_client);
 void hn_shares_free(hn_shares *shares); ///< NULL is legal
 /// Takes a place. Returns 1, or 0 when there is none left, in all or for this client.
 int hn_shares_take(hn_shares *shares, hn_client client);
+/// Whether a place could be taken now.
+bool hn_shares_has_place(hn_shares *shares, hn_client client);
 void hn_shares_give(hn_shares *shares, hn_client client);
 int hn_shares_taken(hn_shares *shares);
 #endif

@@ -10,8 +10,7 @@ static hn_client make_client(const void *bytes, size_t n) {
     return hn_hash_mix(hn_hash_bytes(HN_HASH_START, bytes, n)) | 1; // 0 is this machine
 }
 
-/// A hash of the address; 0 for this machine.
-static hn_client find_address(const struct sockaddr *address) {
+hn_client hn_client_of_address(const struct sockaddr *address) {
     if (!address) {
         return 0;
     }
@@ -39,7 +38,7 @@ static hn_client find_forwarded(const hn_request *r) {
 void hn_request_identify(hn_request *r) {
     const union MHD_ConnectionInfo *info =
         MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-    r->client = find_address(info ? info->client_addr : NULL);
+    r->client = hn_client_of_address(info ? info->client_addr : NULL);
     if (r->client == 0) {
         r->client = find_forwarded(r);
     }

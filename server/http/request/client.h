@@ -9,6 +9,8 @@
 
 #include "http/request/request.h"
 
+/// The client of an address (NULL: unknown); 0 for this machine.
+hn_client hn_client_of_address(const struct sockaddr *address);
 /// Sets the client of a request whose head is complete.
 void hn_request_identify(hn_request *r);
 #endif

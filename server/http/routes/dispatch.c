@@ -371,13 +371,23 @@ void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **
     *req_cls = NULL;
 }
 
+enum MHD_Result hn_dispatch_accept(void *cls, const struct sockaddr *address, socklen_t length) {
+    hn_dispatch *d = cls;
+    (void)length;
+    return hn_connections_may_add(d->connections, hn_client_of_address(address)) ? MHD_YES : MHD_NO;
+}
+
 void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,
                             enum MHD_ConnectionNotificationCode what) {
     hn_dispatch *d = cls;
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
-        const union MHD_ConnectionInfo *info =
-            MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-        *socket_context = info ? hn_connections_add(d->connections, info->connect_fd) : NULL;
+        const union MHD_ConnectionInfo *info = MHD_get_connection_info(
+                                           connection, MHD_CONNECTION_INFO_CONNECTION_FD),
+                                       *from = MHD_get_connection_info(
+                                           connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+        const hn_client client = hn_client_of_address(from ? from->client_addr : NULL);
+        *socket_context =
+            info ? hn_connections_add(d->connections, info->connect_fd, client) : NULL;
     } else {
         hn_connections_remove(d->connections, *socket_context);
         *socket_context = NULL;

@@ -52,14 +52,15 @@ static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
     const int connections = s->context.opts.max_connections;
     const int loops = connections / LOOP_CONNECTIONS + 1;
     s->daemon = MHD_start_daemon(
-        MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
-        hn_dispatch_request, &s->dispatch, MHD_OPTION_LISTEN_SOCKET, fd,
-        MHD_OPTION_URI_LOG_CALLBACK, hn_dispatch_address, &s->dispatch, MHD_OPTION_NOTIFY_COMPLETED,
-        hn_dispatch_completed, &s->dispatch, MHD_OPTION_NOTIFY_CONNECTION, hn_dispatch_connection,
-        &s->dispatch, MHD_OPTION_THREAD_POOL_SIZE, (unsigned)(loops > 1 ? loops : 2),
-        MHD_OPTION_CONNECTION_LIMIT, (unsigned)connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-        (size_t)HEAD_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
-        (unsigned)s->context.opts.connection_timeout, MHD_OPTION_END);
+        MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0,
+        hn_dispatch_accept, &s->dispatch, hn_dispatch_request, &s->dispatch,
+        MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_URI_LOG_CALLBACK, hn_dispatch_address,
+        &s->dispatch, MHD_OPTION_NOTIFY_COMPLETED, hn_dispatch_completed, &s->dispatch,
+        MHD_OPTION_NOTIFY_CONNECTION, hn_dispatch_connection, &s->dispatch,
+        MHD_OPTION_THREAD_POOL_SIZE, (unsigned)(loops > 1 ? loops : 2), MHD_OPTION_CONNECTION_LIMIT,
+        (unsigned)connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEAD_BYTES,
+        MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->context.opts.connection_timeout,
+        MHD_OPTION_END);
     if (!s->daemon) {
         close(fd);
         return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the HTTP library could not be started");
