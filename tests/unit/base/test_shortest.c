@@ -37,8 +37,8 @@ static void check_around(double value) {
     for (int k = 0; k < 6; k++) {
         check(up);
         check(down);
-        up = nextafter(up, INFINITY);
-        down = nextafter(down, -INFINITY);
+        up = nextafter(up, HUGE_VAL);
+        down = nextafter(down, -HUGE_VAL);
     }
 }
 
