@@ -184,6 +184,8 @@ hn_status hn_shelf_verdict_png(hn_strbuf *png, const hn_library *lib, const hn_v
         hn_picture_request request = {.entries = given,
                                       .n_entries = take_entries(&view, view.given, given),
                                       .caption = caption};
+        request.lines = view.trace;
+        request.n_lines = view.n_trace;
         if (view.overlay && v->show_expected) {
             request.expected = expected;
             request.n_expected = take_entries(&view, view.expected, expected);

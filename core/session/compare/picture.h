@@ -37,6 +37,9 @@ typedef struct hn_picture_request {
     /// NULL: none
     const hn_state_entry *expected;
     int n_expected;
+    const double
+        *lines; ///< n_lines points drawn with one pose (3 each, world [m]; NaN: a new line)
+    int n_lines;
     const char *caption; ///< NULL: the scene's
     int width, height;   ///< [px]; 0: 1200 x 720
     hn_theme theme;

@@ -223,7 +223,11 @@ static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
     const hn_picture_request *r = p->request;
     double *other = p->points + 3 * (size_t)hn_system_get_info(hn_model_system(p->model)).n_points;
     hn_status status = place_pose(p, r->entries, r->n_entries, p->points, diags);
-    p->poses[0] = (hn_snapshot_pose){.points = p->points, .name = "this pose", .selected = 1};
+    p->poses[0] = (hn_snapshot_pose){.points = p->points,
+                                     .name = "this pose",
+                                     .selected = 1,
+                                     .trace = r->lines,
+                                     .n_trace = r->n_lines};
     p->n_poses = 1;
     if (status == HN_OK && r->expected) {
         status = place_pose(p, r->expected, r->n_expected, other, diags);

@@ -34,7 +34,7 @@ typedef struct hn_part {
 } hn_part;
 
 /// A scene in the state that an answer describes, for a picture.
-enum { HN_PART_ENTRIES = 24 };
+enum { HN_PART_ENTRIES = 24, HN_PART_TRACE = 460 };
 typedef struct hn_part_view {
     const char *scene; ///< borrowed from the exercise; NULL: there is nothing to draw
     int n_settings, n_entries;
@@ -42,6 +42,8 @@ typedef struct hn_part_view {
     char names[HN_PART_ENTRIES][32];                          ///< of coordinates
     double given[HN_PART_ENTRIES], expected[HN_PART_ENTRIES]; ///< [m], [rad]
     bool overlay; ///< `expected` is set: another pose than the one given
+    int n_trace;  ///< points of lines to draw (3 each, world [m]; NaN: a new line begins)
+    double trace[3 * HN_PART_TRACE];
 } hn_part_view;
 
 typedef struct hn_part_kind {

@@ -245,6 +245,26 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     }
 }
 
+/// The curve that a test asks about, of the mechanism that was handed in.
+static void draw_curves(const hn_part *p, const hn_setting *settings, int n, const cJSON *given,
+                        hn_part_view *out) {
+    hn_part_result r = {.mistake = ""};
+    hn_model *model = NULL;
+    double end = hn_clock_thread() + SECONDS;
+    if (!p->lib || load(p, settings, n, given, &end, &model, &r) != HN_OK || !model) {
+        return;
+    }
+    hn_scene_check check = {.p = p, .model = model};
+    const cJSON *node = field(p, "checks") ? field(p, "checks")->child : NULL;
+    if (hn_scene_check_open(&check, settings, n, NULL) == HN_OK) {
+        for (; node; node = node->next) {
+            hn_scene_check_draw(&check, node, out);
+        }
+    }
+    hn_scene_check_close(&check);
+    hn_model_free(model);
+}
+
 static void view(const hn_part *p, const cJSON *given, hn_part_view *out) {
     hn_part_result r = {.mistake = ""};
     hn_diag diag = {0};
@@ -256,6 +276,7 @@ static void view(const hn_part *p, const cJSON *given, hn_part_view *out) {
         out->scene = hn_part_text(p->node, "scene");
         out->n_settings = n;
         memcpy(out->settings, settings, (size_t)n * sizeof *settings);
+        draw_curves(p, settings, n, given, out);
     }
 }
 

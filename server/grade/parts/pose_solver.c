@@ -115,22 +115,27 @@ double hn_pose_solver_reach(const hn_pose_solver *s, int coordinate) {
 }
 
 /// Largest |phi|, each row divided by its unit; HUGE_VAL where it is not finite.
-static double measure(const hn_pose_solver *s, bool scaled) {
+static double measure(const hn_pose_solver *s) {
     const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);
     double worst = 0;
     for (int i = 0; i < s->nc; i++) {
-        const double size = fabs(phi[i]) / (scaled ? s->unit[i] : 1);
+        const double size = fabs(phi[i]) / s->unit[i];
         worst = isfinite(size) ? fmax(worst, size) : HUGE_VAL;
     }
     return worst;
 }
 
 double hn_pose_solver_gap(const hn_pose_solver *s) {
-    return measure(s, true);
+    return measure(s);
 }
 
 double hn_pose_solver_open(const hn_pose_solver *s) {
-    return measure(s, false);
+    const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);
+    double sum = 0;
+    for (int i = 0; i < s->nc; i++) {
+        sum = hypot(sum, phi[i]);
+    }
+    return sum;
 }
 
 void hn_pose_solver_place(hn_pose_solver *s, const double *coordinates) {
@@ -189,7 +194,7 @@ static void move(hn_pose_solver *s, int m, double share) {
 
 /// One iteration: false where no shorter correction makes the gap smaller.
 static bool correct(hn_pose_solver *s, const bool *held) {
-    const double before = measure(s, true), *phi = hn_eval_get(s->eval, HN_TERM_PHI);
+    const double before = measure(s), *phi = hn_eval_get(s->eval, HN_TERM_PHI);
     const int m = factor(s, held);
     double longest = 0;
     for (int i = 0; i < s->nc; i++) {
@@ -205,7 +210,7 @@ static bool correct(hn_pose_solver *s, const bool *held) {
     memcpy(s->tried, s->q, (size_t)s->nq * sizeof *s->q);
     for (int i = 0; i < MAX_HALVINGS; i++, share /= 2) {
         move(s, m, share);
-        if (measure(s, true) < before) {
+        if (measure(s) < before) {
             return true;
         }
     }
@@ -215,14 +220,14 @@ static bool correct(hn_pose_solver *s, const bool *held) {
 
 hn_status hn_pose_solver_close(hn_pose_solver *s, const bool *held) {
     for (int i = 0; i < MAX_ITERATIONS; i++) {
-        if (measure(s, true) <= CLOSED) {
+        if (measure(s) <= CLOSED) {
             return HN_OK;
         }
-        if (!isfinite(measure(s, true)) || !correct(s, held)) {
+        if (!isfinite(measure(s)) || !correct(s, held)) {
             break;
         }
     }
-    return measure(s, true) <= CLOSED ? HN_OK : HN_ERR_UNREACHABLE;
+    return measure(s) <= CLOSED ? HN_OK : HN_ERR_UNREACHABLE;
 }
 
 int hn_pose_solver_direction(hn_pose_solver *s, double *direction) {

@@ -27,7 +27,7 @@ const double *hn_pose_solver_coordinates(const hn_pose_solver *s);
 const double *hn_pose_solver_points(const hn_pose_solver *s);
 /// Largest |phi| of the pose, in units of the rows (lengths by the characteristic length).
 double hn_pose_solver_gap(const hn_pose_solver *s);
-/// The same in metres or radians, as the rows are.
+/// Length of phi, in metres or radians as its rows are: the gap that pictures and runs show.
 double hn_pose_solver_open(const hn_pose_solver *s);
 /// 1 rad, or the characteristic length [m], of a coordinate.
 double hn_pose_solver_reach(const hn_pose_solver *s, int coordinate);

@@ -313,6 +313,60 @@ static hn_status test_curve(hn_scene_check *c, const cJSON *node, hn_part_result
     return good ? judge_curve(c, node, point, r, diag) : HN_OK;
 }
 
+static void add_point(hn_part_view *out, double x, double y, double z) {
+    if (out->n_trace < HN_PART_TRACE) {
+        double *at = out->trace + 3 * out->n_trace++;
+        at[0] = x;
+        at[1] = y;
+        at[2] = z;
+    }
+}
+
+/// Two lines that cross at (x, y), each 2 r long.
+static void add_cross(hn_part_view *out, double x, double y, double r) {
+    const double nan = (double)NAN;
+    for (int k = 0; k < 2; k++) {
+        add_point(out, nan, nan, nan);
+        add_point(out, x - (k ? 0 : r), y - (k ? r : 0), 0);
+        add_point(out, x + (k ? 0 : r), y + (k ? r : 0), 0);
+    }
+}
+
+/// The path of a point in at most `most` points; returns the larger of its two extents.
+static double add_path(const hn_scene_check *c, int point, int most, hn_part_view *out) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int k = 0; k < most && c->n_path > 1; k++) {
+        const size_t at = (size_t)k * ((size_t)c->n_path - 1) / ((size_t)most - 1);
+        const double *xyz = c->points + 3 * (at * (size_t)c->n_points + (size_t)point);
+        add_point(out, xyz[0], xyz[1], xyz[2]);
+        for (int i = 0; i < 2; i++) {
+            low[i] = fmin(low[i], xyz[i]);
+            high[i] = fmax(high[i], xyz[i]);
+        }
+    }
+    return fmax(high[0] - low[0], high[1] - low[1]);
+}
+
+void hn_scene_check_draw(hn_scene_check *c, const cJSON *node, hn_part_view *out) {
+    enum { LEAST_LEFT = 6 * MAX_THROUGH };
+    const int point = find_point(c, hn_part_text(node, "point"));
+    const cJSON *m;
+    if (strcmp(hn_part_text(node, "test"), "curve") != 0 || point < 0 || walk(c) != HN_OK) {
+        return;
+    }
+    out->n_trace = 0;
+    const double size = add_path(c, point, HN_PART_TRACE - LEAST_LEFT, out);
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(node, "through")) {
+        double x, y;
+        const char *fx = cJSON_GetStringValue(cJSON_GetArrayItem(m, 0));
+        const char *fy = cJSON_GetStringValue(cJSON_GetArrayItem(m, 1));
+        if (fx && fy && hn_draw_value(&c->draw, fx, &x, NULL) == HN_OK &&
+            hn_draw_value(&c->draw, fy, &y, NULL) == HN_OK) {
+            add_cross(out, x, y, 0.04 * size);
+        }
+    }
+}
+
 static hn_status test_stays(hn_scene_check *c, const cJSON *node, hn_part_result *r,
                             hn_diag *diag) {
     hn_ex e;

@@ -29,6 +29,9 @@ typedef struct hn_scene_check {
 HN_MUST_CHECK hn_status hn_scene_check_open(hn_scene_check *c, const hn_setting *settings, int n,
                                             hn_diag *diag);
 void hn_scene_check_close(hn_scene_check *c);
+/// Writes the curve of a test "curve", and a cross at each point that it should pass, as lines for
+/// a picture. Nothing for other tests, and where the motion cannot be followed.
+void hn_scene_check_draw(hn_scene_check *c, const cJSON *node, hn_part_view *out);
 /// Runs one test; `r` becomes wrong where it fails. Fails: HN_ERR_INPUT (the exercise is at fault),
 /// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_scene_check_run(hn_scene_check *c, const cJSON *node, hn_part_result *r,

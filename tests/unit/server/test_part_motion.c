@@ -260,6 +260,15 @@ static void a_curve_is_measured_at_the_points_asked_for(void **state) {
     const hn_entry_verdict *e = grade(MADE, "b", "{\"l1\": 0.4}", "b", v);
     assert_string_equal(e->mistake, "misses");
     assert_non_null(strstr(e->explanation, "distances 0.05, 0.05, 0.05 m"));
+
+    // the picture has the circle of the tip, and a cross at each of the three points
+    const double *at = v->view.trace;
+    assert_true(v->view.n_trace > 400);
+    assert_near(hypot(at[0], at[1]), 0.4, 1e-9);
+    assert_near(hypot(at[600], at[601]), 0.4, 1e-9);
+    const double *cross = at + 3 * (v->view.n_trace - 1);
+    assert_near(cross[0], 0.27, 1e-12);
+    assert_near(cross[1], -0.36 + 0.04 * 0.8, 1e-3);
     free(v);
 }
 
