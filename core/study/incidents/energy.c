@@ -103,9 +103,7 @@ void hn_energy_explain(const hn_watch *w, char why[256]) {
     const size_t used = strlen(why);
     if (e->conservative && fabs(change) > ANOTHER * size) {
         snprintf(why + used, 256 - used,
-                 "; the energy had changed by %.3g J before, so this is no longer the motion that "
-                 "began",
-                 change);
+                 "; the energy had changed by %.3g J before, " HN_ENERGY_ANOTHER, change);
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/run/diagnosis.h"
 
+#include "study/incidents/energy.h"
 #include "study/spectrum/load_share.h"
 #include "study/spectrum/region.h"
 
@@ -137,6 +138,9 @@ static void tell_wrong_before(hn_run *run) {
         return;
     }
     hn_incident *last = &w->log.list[w->log.n - 1];
+    if (strstr(last->message, HN_ENERGY_ANOTHER)) {
+        return; // said already
+    }
     for (int k = 0; k < w->log.n - 1; k++) {
         const hn_incident *i = &w->log.list[k];
         if (hn_incident_kinds()[i->code]->is_wrong && i->t < last->t - w->run->h) {
