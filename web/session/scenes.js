@@ -214,7 +214,7 @@ export function createSceneActions(store, exchange, notice) {
       const id = [link.scene, FIRST_SCENE, ids[0]].find((one) => ids.includes(one)) ?? FIRST_SCENE;
       if (link.scene && id !== link.scene) {
         const near = nearest(link.scene, ids);
-        const hint = near.length ? `; did you mean ${near.join(" or ")}?` : "";
+        const hint = near.length ? `; did you mean ${near.join(" or ")}?` : ".";
         faults.unshift(`no scene is called '${link.scene}'${hint} The page shows ${id}`);
       }
       if (link.build && link.build !== data.build) {
