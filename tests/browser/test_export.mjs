@@ -55,10 +55,17 @@ test("a scene in space is saved with its solids, as a film, and as a program", a
   await page.getByRole("button", { name: "export" }).click();
   await soon(async () => assert.deepEqual(await violations(page), []));
   const svg = (await fileOf(page, "SVG")).bytes.toString();
-  assert.match(svg, /<image href="data:image\/png/);
+  const [, below] = /<image href="data:image\/png;base64,([^"]+)"/.exec(svg) ?? [];
+  const [, width] = /<svg[^>]* width="(\d+)"/.exec(svg) ?? [];
+  // the width in the head of a PNG file
+  assert.equal(
+    Buffer.from(below, "base64").readUInt32BE(16),
+    2 * Number(width),
+    "drawn, not blown up",
+  );
   const film = await fileOf(page, "WebM");
   assert.equal(film.bytes.subarray(0, 4).toString("hex"), "1a45dfa3", "the mark of a WebM file");
-  assert.ok(film.bytes.length > 200);
+  assert.ok(film.bytes.length > 1000);
   await page.waitForSelector("#export-language option", { state: "attached" });
   await page.selectOption("#export-language", "python");
   const code = await fileOf(page, "Program");
