@@ -7,7 +7,6 @@ import { evaluate, valuesAt } from "../../web/state/formula.js";
 import {
   createBench,
   drawn,
-  fastest,
   playTo,
   read,
   screenshot,
@@ -504,14 +503,7 @@ test("every shipped scene opens, moves and draws no NaN", async (t) => {
   for (const id of ids) {
     await page.selectOption("#scene", id);
     await until(page, `(data) => data.scene.id === "${id}" && data.history.count > 0`);
-    if (await read(page, (data) => data.speed >= 1)) {
-      await fastest(page); // a short run is shown slowly, and stays so
-    }
-    await page.focus("#play");
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.latest?.t > Math.min(0.4, 0.1 * data.duration));
-    await page.keyboard.press("ArrowRight"); // a run that moves stops, one that has ended stays as it is
-    await stood(page);
+    await playTo(page, await read(page, (data) => Math.min(0.4, 0.1 * data.duration)));
     assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/, id);
     assert.doesNotMatch(
       await page.evaluate(() => document.querySelector(".picture").outerHTML),
