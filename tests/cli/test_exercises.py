@@ -369,6 +369,21 @@ def the_guide_for_teachers(folder):
     expect("the guide's script grades for Gradescope", result["score"] == 1 and len(result["tests"]) >= 3, str(result)[:300])
 
 
+def readings(folder):
+    """A plot that is read: a coarse reading is no slip, a value of the other axis is."""
+    def entry(value, *more):
+        done = run("grade", "gap-plot", write(folder, "read.json", {"a": value}), "--json", "--no-pictures", *more)
+        return next(e for e in json.loads(done.stdout)["entries"] if e["name"] == "a")
+
+    right = float(entry(1e150, "--show-expected")["expected"].split()[0])
+    axis = max(float(x) for x in re.findall(r'text-anchor="end">([\d.]+)<', json.loads(run("problem", "gap-plot", "--json").stdout)["parts"][0]["figure"]["svg"]))
+    allowed = 0.05 * 1000 * axis  # the axis is in metres, the answer in millimetres
+    told = {name: entry(value)["mistake"] for name, value in
+            (("right", right + 0.9 * allowed), ("coarse", right + 1.5 * allowed), ("time", 10.0), ("metres", right / 1000))}  # fmt: skip
+    expect("a coarse reading is not taken for a value of the other axis",
+           told == {"right": "", "coarse": "inexact", "time": "other-axis", "metres": "power-of-ten"}, str(told))  # fmt: skip
+
+
 def main():
     variants()
     checks()
@@ -378,6 +393,7 @@ def main():
         forms(folder)
         platforms(folder)
         rubrics(folder)
+        readings(folder)
         whole_check(folder)
         own_exercise(folder)
         whose_variant(folder)

@@ -17,6 +17,7 @@
 #include <string.h>
 
 enum { COLUMNS = 78 };
+static const double COARSE = 2;      // times what is allowed: a coarse reading, not a slip
 static const double OF_RANGE = 0.03; // a twentieth of an interval between labels is 1 % of the axis
 
 /// The curve, what is asked, and the answer.
@@ -127,8 +128,10 @@ static bool get_slip(const sheet *s, int i, slip *out) {
         return false;
     }
     if (other != s->reading && !(other->needs_number && !s->reading->needs_number)) {
-        out->value = other->read(&s->curve, s->number);
-        out->near = tolerance_of(s->p) * span_of(s, other);
+        // what is read on the other axis is typed as it stands there
+        const double typed = other->is_time == s->reading->is_time ? 1 : s->factor;
+        out->value = other->read(&s->curve, s->number) / typed;
+        out->near = tolerance_of(s->p) * span_of(s, other) / typed;
         snprintf(out->id, sizeof out->id, "%s",
                  other->is_time == s->reading->is_time ? "other-place" : "other-axis");
         snprintf(out->says, sizeof out->says, "this is %s; %s is asked for", other->says,
@@ -154,6 +157,10 @@ static void judge(const sheet *s, double value, hn_part_result *r) {
     const double apart = fabs(value - s->answer);
     if (apart <= s->allowed) {
         hn_part_right(r);
+    } else if (apart <= COARSE * s->allowed) {
+        hn_part_wrong(r, "inexact", 0.5,
+                      "near, but read too coarsely: %.2g %s away, %.2g %s are allowed",
+                      apart * s->factor, s->unit, s->allowed * s->factor, s->unit);
     } else if (find_slip(s, value, &found)) {
         hn_part_wrong(r,
                       !strcmp(found.id, "sign")           ? "sign"
@@ -161,10 +168,6 @@ static void judge(const sheet *s, double value, hn_part_result *r) {
                       : !strcmp(found.id, "other-axis")   ? "other-axis"
                                                           : "other-place",
                       found.share, "%s", found.says);
-    } else if (apart <= 3 * s->allowed) {
-        hn_part_wrong(r, "inexact", 0.5,
-                      "near, but read too coarsely: %.2g %s away, %.2g %s are allowed",
-                      apart * s->factor, s->unit, s->allowed * s->factor, s->unit);
     } else {
         hn_part_wrong(r, "other", 0,
                       "the plot does not show this: follow the curve to %s, then go to the axis",
@@ -209,7 +212,8 @@ static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
     cJSON *out = NULL;
     *id = "";
     if (s && get_slip(s, i, &asked)) {
-        const bool clear = isfinite(asked.value) && fabs(asked.value - s->answer) > s->allowed &&
+        const bool clear = isfinite(asked.value) &&
+                           fabs(asked.value - s->answer) > COARSE * s->allowed &&
                            find_slip(s, asked.value, &found);
         for (int k = 0; k < 4 && clear; k++) {
             *id = strcmp(IDS[k], found.id) == 0 ? IDS[k] : *id;
