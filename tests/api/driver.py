@@ -146,6 +146,13 @@ class Server:
         return status
 
 
+def run_to_end(server, question):
+    """Asks for a run until it has ended, however slow the machine; the answer, which holds the whole document."""
+    while (answer := server.ask("POST", "/api/v1/runs?wait=60", question, timeout=90)).status == 202:
+        time.sleep(0.05)
+    return answer
+
+
 class Events:
     """A reader of a comparison's event stream, or of the one at an address: yields (event, id or None, data)."""
 

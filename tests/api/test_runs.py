@@ -118,7 +118,7 @@ class Runs(unittest.TestCase):
         self.assertEqual(self.ask(LONG, "?wait=0", 202).headers["location"], address)
         self.assertEqual(self.server.ask("DELETE", address).status, 204)
         self.assertEqual(self.server.ask("GET", address).status, 404)
-        self.assertEqual(self.ask({**LONG, "time": 0.01}).json()["state"], "finished")
+        self.assertEqual(driver.run_to_end(self.server, {**LONG, "time": 0.01}).json()["state"], "finished")
 
 
 PYTHON = next((p for p in (sys.executable, "/usr/bin/python3") if subprocess.run([p, "-c", "import numpy, scipy"], capture_output=True).returncode == 0), None)
@@ -127,7 +127,7 @@ FALLS_APART = {"scene": "four-bar", "methods": ["index1@euler:h=0.05", "projecti
 
 class Events(unittest.TestCase):
     def setUp(self):
-        self.server = driver.Server()
+        self.server = driver.Server("--run-cpu", str(20 * driver.SLOW))
         self.addCleanup(lambda: self.assertEqual(self.server.stop(), 0, self.server.errors))
 
     def read(self, address, last=None, query=""):
@@ -141,7 +141,7 @@ class Events(unittest.TestCase):
         return events
 
     def test_samples_and_incidents_come_in_the_order_of_time(self):
-        run = self.server.ask("POST", "/api/v1/runs", FALLS_APART).json()
+        run = driver.run_to_end(self.server, FALLS_APART).json()
         events = self.read(run["links"]["events"])
         self.assertEqual((events[0][0], events[-1][0]), ("hello", "end"))
         self.assertEqual([i for _, i, _ in events[1:]], list(range(1, len(events))))
@@ -157,7 +157,7 @@ class Events(unittest.TestCase):
         self.assertEqual(events[-1][2], self.server.ask("GET", run["links"]["self"]).json())
 
     def test_a_reader_goes_on_behind_any_event(self):
-        address = self.server.ask("POST", "/api/v1/runs", FALLS_APART).json()["links"]["events"]
+        address = driver.run_to_end(self.server, FALLS_APART).json()["links"]["events"]
         every = self.read(address, query="?fields=t,gap")
         self.assertEqual(set(every[1][2]), {"method", "t", "gap"})
         for last in (1, 2, 57, len(every) - 2):
@@ -167,7 +167,7 @@ class Events(unittest.TestCase):
         self.assertEqual((whole.status, whole.body), (204, b""))
 
     def test_live_leaves_out_samples_and_no_incident(self):
-        address = self.server.ask("POST", "/api/v1/runs", {**FALLS_APART, "every": 1e-3}).json()["links"]["events"]
+        address = driver.run_to_end(self.server, {**FALLS_APART, "every": 1e-3}).json()["links"]["events"]
         every, live = self.read(address), self.read(address, query="?mode=live")
         self.assertTrue(all(event in every for event in live))
         self.assertEqual([e for e in live if e[0] != "sample"], [e for e in every if e[0] != "sample"])

@@ -44,9 +44,11 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
     return status;
 }
 
+/// The same share by another sum may be less by a rounding error: what is told never falls.
 static void keep_share(void *user, const char *part, double share) {
+    hn_study_work *w = user;
     (void)part;
-    atomic_store(&((hn_study_work *)user)->share, share);
+    atomic_store(&w->share, fmax(share, atomic_load(&w->share)));
 }
 
 /// The members of the body that are fields of the kind, checked and with the bounds of this server.
