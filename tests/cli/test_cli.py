@@ -452,6 +452,8 @@ class CommandLine(Command):
             if estimate["q"] is not None:
                 self.assertIn(f"off by up to {estimate['q']:.1e} (rad", done["verdict"]["text"])
         self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
+        stuck = json.loads(call("run", "four-bar", "--method", "index3@genalpha:h=5", "--time", "1", "--at", "1", "--json").stdout)
+        self.assertEqual((stuck["t_reached"], stuck["verdict"]["is"]), (0, "unknown"))
         compared = call("compare", "four-bar", "--methods", "index1@rk4:h=1e-2", "projection@rk4:h=1e-3", "--time", "10", "--json")
         self.assertEqual([m["verdict"]["is"] for m in json.loads(compared.stdout)["methods"]], ["wrong", "right"])
         # a tolerance bounds the error of a step: what is more than ten times as much is said as a multiple

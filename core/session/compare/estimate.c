@@ -30,7 +30,8 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
 static const double WHOLE = 0.99;
 
 static const char *verdict_of(const hn_estimate *e, double t_run) {
-    if (!e->known) {
+    // a run that ended where it began shows no motion to be right
+    if (!e->known || !(t_run > 0)) {
         return "unknown";
     }
     return e->q >= HN_ACCURACY_WRONG                    ? "wrong"
@@ -51,7 +52,9 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
             "mechanism's length), reactions by %.1e of their largest",
             e.t, e.q, e.reaction);
     }
-    if (!e.known || e.t < WHOLE * t_run) {
+    if (!(t_run > 0)) {
+        snprintf(text, sizeof text, "nothing was computed beyond the start");
+    } else if (!e.known || e.t < WHOLE * t_run) {
         snprintf(text + used, sizeof text - (size_t)used, "%s: %s",
                  e.known ? "; the error beyond that is not known" : "the error is not known",
                  e.reason[0] ? e.reason : "nothing was compared");
