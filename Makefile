@@ -368,8 +368,7 @@ load: all
 
 page-speed: all $(WEB_READY) $(BROWSER_READY)
 	@mkdir -p build
-	@HOLONOM=$(PROGRAM) node tests/browser/page_speed.mjs >build/page_speed.txt || { cat build/page_speed.txt; exit 1; }
-	@cp build/page_speed.txt tests/tables/page_speed.txt && cat tests/tables/page_speed.txt
+	@HOLONOM=$(PROGRAM) node tests/browser/page_speed.mjs >tests/tables/page_speed.txt; status=$$?; cat tests/tables/page_speed.txt; exit $$status
 
 bench-tui: all
 	@HOLONOM=$(PROGRAM) python3 tests/bench/tui_share.py

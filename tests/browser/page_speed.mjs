@@ -2,7 +2,8 @@
 // How fast the page is, measured by the browser's own trace in software rendering: frames a second
 // while methods run, first paint, bytes before the first interaction. Prints a table; ends with
 // status 1 where a figure is beyond its bound. The machine should do nothing else.
-import { loadavg } from "node:os";
+import { readFileSync, readdirSync } from "node:fs";
+import { availableParallelism, loadavg } from "node:os";
 import { startBrowser, startServer } from "./support.mjs";
 
 const SECONDS = 6; // of playing that are traced
@@ -18,6 +19,37 @@ const SIX = ["index1", "baumgarte", "projection", "nullspace", "reduced", "parti
 
 const FB0 = `#scene=fb0${SIX.map((name) => `&method=${name}@rk4:h=0.01`).join("")}`;
 const STEWART = "#stewart-6-6";
+
+const TICK = 10; // [ms] of the counters of /proc
+
+/** The processes below one, itself left out, from /proc. @param {number} root */
+function below(root) {
+  const parents = readdirSync("/proc")
+    .filter((name) => /^\d+$/.test(name))
+    .flatMap((name) => {
+      try {
+        const text = readFileSync(`/proc/${name}/stat`, "utf8");
+        return [{ pid: Number(name), fields: text.slice(text.lastIndexOf(")") + 2).split(" ") }];
+      } catch {
+        return []; // it has ended meanwhile
+      }
+    });
+  const found = new Set([root]);
+  for (let before = 0; before !== found.size; ) {
+    before = found.size;
+    parents
+      .filter(({ fields }) => found.has(Number(fields[1])))
+      .forEach(({ pid }) => found.add(pid));
+  }
+  return parents.filter(({ pid }) => pid !== root && found.has(pid));
+}
+
+/** Processor time of the browser and the server so far [ms]: other programs do not lengthen it. */
+const spent = () =>
+  below(process.pid).reduce(
+    (sum, { fields }) => sum + TICK * (Number(fields[11]) + Number(fields[12])),
+    0,
+  );
 
 const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
 
@@ -40,6 +72,7 @@ async function playing(browser, url, solid) {
   await page.keyboard.press("Space");
   await page.waitForFunction(() => globalThis.holonom.data.latest.t > 0.1);
   await browser.startTracing(page, { categories: TRACED });
+  const before = spent();
   const frames = await page.evaluate(
     (seconds) =>
       new Promise((done) => {
@@ -58,6 +91,7 @@ async function playing(browser, url, solid) {
       }),
     SECONDS,
   );
+  const used = spent() - before;
   const { traceEvents } = JSON.parse(String(await browser.stopTracing()));
   const shown = traceEvents.filter(({ name }) => name === "DrawFrame").map(({ ts }) => ts / 1e6);
   const mains = new Set(
@@ -70,7 +104,11 @@ async function playing(browser, url, solid) {
     .reduce((sum, { tdur = 0 }) => sum + tdur / 1000, 0);
   await page.context().close();
   const span = Math.max(...shown) - Math.min(...shown);
-  return { frames, shown: (shown.length - 1) / span, computing: busy / (frames * SECONDS) };
+  return {
+    shown: (shown.length - 1) / span,
+    computing: busy / (frames * SECONDS),
+    all: used / (frames * SECONDS),
+  };
 }
 
 /** First paint [ms], and what was on the line before anybody did anything [bytes]. */
@@ -108,41 +146,29 @@ const stewart = await playing(solid, server.url + STEWART, true);
 await Promise.all([flat.close(), solid.close()]);
 await server.stop();
 
-/** What, the figure, its bound, whether it holds, the unit. */
+/** A picture's share of all processors, at a rate. @param {number} rate [1/s] */
+const share = (rate) => (1000 * availableParallelism()) / rate;
+
+/** What, the figure, its bound, whether more is better, the unit. */
 const ROWS = [
-  ["FB0, six methods: pictures shown", fb0.shown, 55, fb0.shown >= 55, "1/s"],
-  [
-    "FB0, six methods: computing of the main thread",
-    fb0.computing,
-    16.7,
-    fb0.computing <= 16.7,
-    "ms",
-  ],
-  [
-    "Stewart 6-6, solids by software: pictures shown",
-    stewart.shown,
-    30,
-    stewart.shown >= 30,
-    "1/s",
-  ],
-  [
-    "Stewart 6-6: computing of the main thread",
-    stewart.computing,
-    33.3,
-    stewart.computing <= 33.3,
-    "ms",
-  ],
-  [`first paint, median of ${LOADS} empty caches`, load.paint, 200, load.paint <= 200, "ms"],
-  ["on the line before the first interaction", load.bytes / 1000, 500, load.bytes <= 5e5, "kB"],
+  ["FB0, six methods: pictures shown", fb0.shown, 55, true, "1/s"],
+  ["  computing of the main thread for a picture", fb0.computing, 1000 / 60, false, "ms"],
+  ["  computing of browser and server for a picture", fb0.all, share(60), false, "ms"],
+  ["Stewart 6-6, solids by software: pictures shown", stewart.shown, 30, true, "1/s"],
+  ["  computing of the main thread for a picture", stewart.computing, 1000 / 30, false, "ms"],
+  ["  computing of browser and server for a picture", stewart.all, share(30), false, "ms"],
+  [`first paint, median of ${LOADS} empty caches`, load.paint, 200, false, "ms"],
+  ["on the line before the first interaction", load.bytes / 1000, 500, false, "kB"],
 ];
-console.log(
-  `speed of the page, 1366 x 768, software rendering, load average ${loadavg()[0].toFixed(1)}`,
-);
-console.log(`${"what".padEnd(50)}${"measured".padStart(10)}${"bound".padStart(8)}  unit`);
-for (const [what, figure, bound, holds, unit] of ROWS) {
-  const mark = holds ? "" : "  BEYOND";
-  console.log(
-    `${what.padEnd(50)}${figure.toFixed(1).padStart(10)}${String(bound).padStart(8)}  ${unit}${mark}`,
-  );
+const holds = ([, figure, limit, more]) => (more ? figure >= limit : figure <= limit);
+const line = (what, figure, limit, unit) =>
+  `${what.padEnd(50)}${figure.padStart(10)}${limit.padStart(8)}  ${unit}`;
+const average = loadavg()[0].toFixed(1);
+console.log(`speed of the page, 1366 x 768, software rendering, load average ${average}`);
+console.log(line("what", "measured", "bound", "unit"));
+for (const row of ROWS) {
+  const [what, figure, limit, , unit] = row;
+  const mark = holds(row) ? "" : "  BEYOND";
+  console.log(line(what, figure.toFixed(1), limit.toFixed(1), `${unit}${mark}`));
 }
-process.exitCode = ROWS.every(([, , , holds]) => holds) ? 0 : 1;
+process.exitCode = ROWS.every(holds) ? 0 : 1;
