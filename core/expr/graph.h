@@ -38,13 +38,13 @@ enum { HN_NODE_ONE = 0 };
 #define HN_CANCEL_TOL 1e-13 ///< |c1 + c2| below this times max(|c1|, |c2|) counts as cancelled
 
 hn_graph *hn_graph_create(void); ///< returns owned; NULL when memory is out
-/// Frees all nodes; NULL is legal. Whether memory ran out while building.
-void hn_graph_free(hn_graph *g);
+void hn_graph_free(hn_graph *g); ///< frees all nodes; NULL is legal
+/// Returns whether the graph has failed: memory ran out, or the interrupt ended the work.
 bool hn_graph_failed(const hn_graph *g);
 /// Returns HN_OK, HN_ERR_MEMORY, or HN_ERR_STOPPED where the interrupt ended the work.
 hn_status hn_graph_status(const hn_graph *g);
-/// Sets the question that building asks now and then, as does compiling a tape. What it reads must
-/// outlive the graph.
+/// Sets the callback that building a graph and compiling a tape ask now and then whether to stop.
+/// What it reads must outlive the graph.
 void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt);
 /// Asks it now. Returns true where the graph has been interrupted, which marks it failed for good.
 bool hn_graph_is_interrupted(hn_graph *g);

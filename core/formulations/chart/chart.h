@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_H
 #define HN_FORMULATIONS_CHART_H
-// A chart of the closed mechanism: speeds split into dependent and independent ones, J = [J_d J_i]
+// A chart of the closed mechanism: speeds split into independent and dependent ones, J = [J_i J_d]
 // P, so that
 //
 //  q_d by Newton on phi = 0,    v = N u + s,   N = [I; -J_d^-1 J_i],   s = [0; -J_d^-1 phi_t]  (1)
-//  a = N u' + c,                   c = [0; -J_d^-1 gamma]                                  (2)
-//  (N' M N) u' = N' (f - M c)                                                              (3)
+//  a = N udot + c,                 c = [0; -J_d^-1 gamma]                                  (2)
+//  (N^T M N) udot = N^T (f - M c)                                                          (3)
 //
-// where u are the independent speeds. The basis rate needs no differentiation: with this N, N' u
-// plus the rate of s is exactly c. A chart ends where det J_d = 0 (a dead point of the chosen
-// coordinates); the mechanism does not.
+// where u are the independent speeds. The rate of the basis needs no differentiation: with this N,
+// Ndot u + sdot is exactly c. A chart ends where J_d loses rank (a dead point of the chosen
+// coordinates); the motion may go on in another chart.
 //
 // A square J_d (no redundant rows) is factored sparse, in an order chosen where the chart was
 // chosen, and M and J are taken entry by entry, so that an evaluation costs what they hold:
 // linearly for a chain of loops. With redundant rows J_d holds rank J columns and is solved in the
 // least-squares sense by dense QR, which for consistent rows is exact.
 //
-// Positions move along speeds (hn_system_move), so balls need no chart of their own; but the speed
-// of a ball has no position of its own and cannot be integrated alone: minimal coordinates keep
-// balls dependent (see minimal_state.h).
+// Positions move along speeds (hn_system_move), so ball joints need no chart for their position.
+// Their speeds are no rates of positions and cannot be integrated alone: minimal coordinates keep
+// ball joints dependent (see minimal_state.h).
 //
 // Null-space, partitioning and reduced coordinates are built on this. Source: Wehage & Haug 1982;
 // for which columns to take, Goreinov, Tyrtyshnikov & Zamarashkin 1997 (submatrices of locally

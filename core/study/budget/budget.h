@@ -2,7 +2,8 @@
 #ifndef HN_STUDY_BUDGET_H
 #define HN_STUDY_BUDGET_H
 // The error budget of a run: what each step adds to the error at the end, and to the energy, split
-// by cause. The parts add up to the whole.
+// by cause. While errors are small the parts add up to the whole; where they no longer do, the
+// document says so, and until when they did.
 //
 // Step k takes y_k = (q, v) to y_k+1; u_k+1 is its result before the projection, y_k+1 after it.
 // From the same y_k two exact flows are computed to all digits: B solves the differential equation
@@ -14,9 +15,9 @@
 //
 // with DI the derivative of I by its start, carried backwards from T: one row of it, transposed
 // step by step from exact derivatives (flow.h). Each part is split at y_k+1 into what lies along
-// the loops' motion and what leads off the loops; what leads off them is summed as drift, where
-// projection takes back what truncation did. Rounding and the linear solve are measured by a second
-// run with compensated sums, and one with another solver, and are then taken off truncation.
+// the loops' motion and what leads off the loops; what leads off them, after projection has
+// taken its part back, is summed as drift. Rounding and the linear solve are measured by a second
+// run with compensated sums, and one with another solver, and are then subtracted from truncation.
 //
 // The same for energy, where the flow I itself may do work: through the loops, as lambda'(J v +
 // phi_t), when they are not closed at speed level, and from outside (dampers, drives). In a
