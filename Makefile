@@ -537,7 +537,7 @@ run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW)) $(COMMA_LOCALE)
 	    tests/run-tests.sh $(if $(filter asan,$(VARIANT)),$(SLOW)) $(UNIT)
 
 run-server: $(PROGRAM)
-	@$(SANITISED) HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \
+	@$(SANITISED) HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=$(CURDIR)/tests/support/tsan.supp \
 	    LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(SCRIPTS))
 

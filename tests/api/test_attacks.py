@@ -130,7 +130,8 @@ class NobodyWaitsForAnother(Timed):
         self.assertLess(peak, 250000 * driver.SLOW)  # 607 MB without the budget
 
     def test_equations_count_against_the_limit(self):
-        limit = 0.2 * driver.SLOW  # the scene that a comparison goes on with has its equations within it
+        # the scene that a comparison goes on with has its equations within it, a sanitised program's too
+        limit = 0.2 if driver.SLOW == 1 else 3
         server = driver.Server("--run-cpu", str(limit))
         ring = {"scene": "ring", "parameters": {"n": 60}}
         for method, path, body in (("GET", "scenes/ring?set=n:60", None), ("POST", "inspect", ring), ("POST", "terms", ring),
