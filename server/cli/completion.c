@@ -5,6 +5,7 @@
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
 #include "integrators/method/catalogue.h"
+#include "session/model/lists.h"
 #include "session/model/model.h"
 
 #include <cjson/cJSON.h>
@@ -82,6 +83,26 @@ static void offer_scenes(const completing *c, const hn_library *lib) {
     }
 }
 
+static void offer_lessons(const completing *c, const hn_library *lib) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_lessons_json(&text, lib);
+    cJSON *document = cJSON_Parse(hn_strbuf_text(&text));
+    const cJSON *lesson;
+    cJSON_ArrayForEach(lesson, cJSON_GetObjectItem(document, "lessons")) {
+        offer(c, cJSON_GetStringValue(cJSON_GetObjectItem(lesson, "id")), "",
+              cJSON_GetStringValue(cJSON_GetObjectItem(lesson, "title")));
+    }
+    cJSON_Delete(document);
+    hn_strbuf_reset(&text);
+}
+
+static void offer_problems(const completing *c, const hn_library *lib) {
+    for (int i = 0; i < hn_library_n_problems(lib); i++) {
+        offer(c, hn_library_problem_id(lib, i), "", NULL);
+    }
+}
+
 static void offer_parameters(const completing *c, const hn_library *lib, const char *scene) {
     hn_model *model = NULL;
     hn_diags diags = {0};
@@ -137,8 +158,8 @@ static void offer_word(const completing *c, const hn_library *lib, const hn_comm
             offer(c, hn_command_at(i)->name, "", hn_command_at(i)->about);
         }
     }
-    for (int i = 0; first && strstr(command->words, "ID") && i < hn_library_n_problems(lib); i++) {
-        offer(c, hn_library_problem_id(lib, i), "", NULL);
+    if (first && strstr(command->words, "ID")) {
+        (strcmp(command->name, "lesson") == 0 ? offer_lessons : offer_problems)(c, lib);
     }
     if (!first || !strstr(command->words, "SCENE")) {
         offer_listed(c, command->words);

@@ -165,6 +165,16 @@ int hn_cells_fold(hn_cells *c, hn_area area, int y, int colour, const char *text
     return y;
 }
 
+int hn_text_rows(const char *text, int columns) {
+    int rows = 0;
+    while (*text && columns > 0) {
+        text += fitting(text, columns);
+        text += *text == ' ' || *text == '\n';
+        rows++;
+    }
+    return rows;
+}
+
 hn_area hn_cells_frame(hn_cells *c, hn_area area, const char *title) {
     const int right = area.columns - 1, bottom = area.rows - 1;
     for (int x = 1; x < right; x++) {

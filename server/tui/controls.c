@@ -6,9 +6,11 @@
 #include "tui/panels.h"
 #include "tui/prompt.h"
 #include "tui/remedies.h"
+#include "tui/text_panel.h"
 #include "tui/undo.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double SPEEDS[] = {0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10};
 enum { N_SPEEDS = sizeof SPEEDS / sizeof *SPEEDS };
@@ -40,8 +42,22 @@ static void play(hn_workbench *w) {
 static void copy_link(hn_workbench *w) {
     hn_strbuf_clear(&w->link);
     hn_workbench_link(w, &w->link);
-    hn_workbench_say(w, "link copied: %s", hn_strbuf_text(&w->link));
     w->copy = true;
+
+    // whole, in lines of the panel's width: a terminal need not take what it is sent
+    const char *rest = hn_strbuf_text(&w->link);
+    const size_t width = w->columns > 24 ? (size_t)w->columns - 4 : 20;
+    hn_text_panel_open(w, "link: Esc goes back");
+    hn_strbuf_add(&w->text, "The link was sent to the terminal's clipboard (OSC 52). Whether the "
+                            "terminal took it is not known; this is the whole link:\n\n");
+    while (*rest) {
+        const size_t n = strlen(rest) < width ? strlen(rest) : width;
+        hn_strbuf_printf(&w->text, "%.*s\n", (int)n, rest);
+        rest += n;
+    }
+    hn_strbuf_add(&w->text, "\nIt opens in a browser while 'holonom serve' runs; where the page "
+                            "has another address, put that in place of the part before #. "
+                            "'holonom tui LINK' opens it here.\n");
 }
 
 static void select_method(hn_workbench *w, int by) {

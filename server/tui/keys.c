@@ -31,7 +31,9 @@ int hn_tui_key_read(const char **text) {
                  {"<Enter>", HN_KEY_ENTER},
                  {"<Esc>", HN_KEY_ESCAPE},
                  {"<ShiftLeft>", HN_KEY_SHIFT_LEFT},
-                 {"<ShiftRight>", HN_KEY_SHIFT_RIGHT}};
+                 {"<ShiftRight>", HN_KEY_SHIFT_RIGHT},
+                 {"<CtrlU>", HN_KEY_CTRL_U},
+                 {"<CtrlW>", HN_KEY_CTRL_W}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         const size_t n = strlen(names[i].name);
         if (strncmp(*text, names[i].name, n) == 0) {

@@ -21,7 +21,9 @@ enum {
     HN_KEY_ESCAPE,
     HN_KEY_TAB,
     HN_KEY_SHIFT_LEFT,
-    HN_KEY_SHIFT_RIGHT
+    HN_KEY_SHIFT_RIGHT,
+    HN_KEY_CTRL_U, ///< clears a line that is typed
+    HN_KEY_CTRL_W  ///< takes its last word away
 };
 
 #define HN_TUI_ACTIONS(X)                                          \

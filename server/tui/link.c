@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/link.h"
 
+#include "base/shortest.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +25,9 @@ void hn_workbench_link(const hn_workbench *w, hn_strbuf *b) {
     hn_strbuf_printf(b, "%sscene=", ADDRESS);
     add_escaped(b, w->scene);
     for (int i = 0; i < w->n_settings; i++) {
-        hn_strbuf_printf(b, "&set.%s=%.17g", w->settings[i].name, w->settings[i].value);
+        char value[HN_SHORTEST_TEXT];
+        hn_shortest_write(w->settings[i].value, value);
+        hn_strbuf_printf(b, "&set.%s=%s", w->settings[i].name, value);
     }
     for (int i = 0; i < w->n_methods; i++) {
         hn_strbuf_add(b, "&method=");
@@ -49,35 +53,66 @@ static void unescape(char *text) {
     *to = '\0';
 }
 
-bool hn_workbench_read_link(const char *link, char scene[HN_TUI_LINE], hn_setting *settings,
-                            char (*names)[64], int *n_settings, char (*methods)[HN_SPEC_MAX],
-                            int *n_methods) {
-    const char *hash = strchr(link, '#');
+static void take_setting(hn_tui_link *link, const char *name, const char *value) {
+    if (link->n_settings < HN_TUI_SETTINGS) {
+        char *to = link->names[link->n_settings];
+        snprintf(to, sizeof *link->names, "%s", name);
+        link->settings[link->n_settings++] = (hn_setting){to, strtod(value, NULL)};
+    }
+}
+
+/// A whole number from 0 to `most`; a value that is none leaves what was there.
+static void take_number(int *to, const char *value, double most) {
+    char *end;
+    const double number = strtod(value, &end);
+    if (end != value && *end == '\0' && number >= 0 && number <= most) {
+        *to = (int)number;
+    }
+}
+
+static void take_item(hn_tui_link *link, const char *name, const char *value) {
+    if (strcmp(name, "scene") == 0) {
+        snprintf(link->scene, sizeof link->scene, "%s", value);
+    } else if (strcmp(name, "method") == 0 && link->n_methods < HN_COMPARISON_MAX_METHODS) {
+        snprintf(link->methods[link->n_methods++], HN_SPEC_MAX, "%.250s", value);
+    } else if (strncmp(name, "set.", 4) == 0) {
+        take_setting(link, name + 4, value);
+    } else if (strcmp(name, "frame") == 0) {
+        take_number(&link->frame, value, 1e6);
+    } else if (strcmp(name, "selected") == 0) {
+        take_number(&link->selected, value, HN_COMPARISON_MAX_METHODS - 1);
+    }
+}
+
+bool hn_workbench_read_link(const char *text, hn_tui_link *link) {
+    const char *hash = strchr(text, '#');
     char copy[4096];
-    if (!hash && strncmp(link, "scene=", 6) != 0) {
+    *link = (hn_tui_link){.frame = -1};
+    if (!hash && strncmp(text, "scene=", 6) != 0) {
         return false;
     }
-    snprintf(copy, sizeof copy, "%s", hash ? hash + 1 : link);
-    scene[0] = '\0';
-    *n_settings = *n_methods = 0;
+    snprintf(copy, sizeof copy, "%s", hash ? hash + 1 : text);
     for (char *rest = copy, *item = strsep(&rest, "&"); item; item = strsep(&rest, "&")) {
         char *value = strchr(item, '=');
         if (!value) {
-            snprintf(scene, HN_TUI_LINE, "%s", item);
+            snprintf(link->scene, sizeof link->scene, "%s", item);
             continue;
         }
         *value++ = '\0';
         unescape(item);
         unescape(value);
-        if (strcmp(item, "scene") == 0) {
-            snprintf(scene, HN_TUI_LINE, "%s", value);
-        } else if (strcmp(item, "method") == 0 && *n_methods < HN_COMPARISON_MAX_METHODS) {
-            snprintf(methods[(*n_methods)++], HN_SPEC_MAX, "%.250s", value);
-        } else if (strncmp(item, "set.", 4) == 0 && *n_settings < HN_TUI_SETTINGS) {
-            snprintf(names[*n_settings], 64, "%s", item + 4);
-            settings[*n_settings] = (hn_setting){names[*n_settings], strtod(value, NULL)};
-            (*n_settings)++;
-        }
+        take_item(link, item, value);
     }
-    return scene[0] != '\0';
+    return link->scene[0] != '\0';
+}
+
+void hn_workbench_go_to_link(hn_workbench *w, const hn_tui_link *link) {
+    if (link->frame >= 0) {
+        const int last = hn_recording_last(w->recording);
+        const int frame = link->frame / hn_recording_page_frame(w->recording, 1);
+        w->clock = frame < last ? frame : last;
+        w->playing = false;
+        hn_recording_want(w->recording, (int)w->clock);
+    }
+    w->selected = link->selected < w->n_methods ? link->selected : 0;
 }

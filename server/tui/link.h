@@ -8,9 +8,21 @@
 
 /// The address of the page's link to what is shown: "http://127.0.0.1:8080/#scene=...".
 void hn_workbench_link(const hn_workbench *w, hn_strbuf *b);
-/// Where the scene and its methods come from in a link of the page (the part after #, or the whole
-/// address); false: no link.
-bool hn_workbench_read_link(const char *link, char scene[HN_TUI_LINE], hn_setting *settings,
-                            char (*names)[64], int *n_settings, char (*methods)[HN_SPEC_MAX],
-                            int *n_methods);
+
+/// What a link of the page opens.
+typedef struct hn_tui_link {
+    char scene[HN_TUI_LINE];
+    hn_setting settings[HN_TUI_SETTINGS]; ///< their names are those in `names`
+    char names[HN_TUI_SETTINGS][64];
+    char methods[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
+    int n_settings, n_methods;
+    int frame;    ///< of the page, at which it is paused; -1: it runs from the start
+    int selected; ///< method
+} hn_tui_link;
+
+/// Reads a link of the page (the part after #, or the whole address). False: it is no link; scene
+/// and numbers are then empty and frame is -1.
+bool hn_workbench_read_link(const char *text, hn_tui_link *link);
+/// Shows the frame and selects the method of a link that was opened.
+void hn_workbench_go_to_link(hn_workbench *w, const hn_tui_link *link);
 #endif

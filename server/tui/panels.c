@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/panels.h"
 
+#include "base/shortest.h"
 #include "base/units.h"
 #include "dynamics/compile/coordinates.h"
 #include "lesson/lesson.h"
@@ -202,7 +203,7 @@ static void choose(hn_workbench *w) {
         hn_prompt_open(w, HN_PROMPT_METHOD, w->cursor < w->n_methods ? w->methods[w->cursor] : "");
         break;
     case HN_LIST_PARAMETERS:
-        snprintf(text, sizeof text, "%.17g", item->value);
+        hn_shortest_write(item->value, text);
         hn_prompt_open(w, HN_PROMPT_PARAMETER, text);
         break;
     case HN_LIST_EXPORTS:
@@ -299,7 +300,7 @@ void hn_panel_key(hn_workbench *w, int key) {
         list_key(w, key);
     } else {
         const int to = w->scroll + (key == ' ' ? 15 : step_of(key));
-        w->scroll = to < 0 ? 0 : to;
+        hn_text_panel_scroll(w, to);
     }
 }
 

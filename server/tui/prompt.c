@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/prompt.h"
 
+#include "base/shortest.h"
 #include "tui/keys.h"
 #include "tui/methods.h"
 #include "tui/text_panel.h"
@@ -77,6 +78,15 @@ static void accept_parameter(hn_workbench *w) {
     hn_prompt_set_parameter(w, name, value);
 }
 
+/// The shortest text that reads back the same; what is not known stays empty.
+static void write_number(FILE *file, const char *before, double value) {
+    char text[HN_SHORTEST_TEXT] = "";
+    if (isfinite(value)) {
+        hn_shortest_write(value, text);
+    }
+    fprintf(file, "%s%s", before, text);
+}
+
 /// One row a frame: time, then gap, energy and error of each method, in a file that was not there.
 static void write_recording(hn_workbench *w) {
     FILE *file = fopen(w->input, "wx");
@@ -95,12 +105,12 @@ static void write_recording(hn_workbench *w) {
     // one row a frame; what is not known stays empty
     const int n = hn_recording_frames(w->recording);
     for (int k = 0; k < n; k++) {
-        fprintf(file, "%.17g", hn_recording_time(w->recording, k));
+        write_number(file, "", hn_recording_time(w->recording, k));
         for (int m = 0; m < w->n_methods; m++) {
             const hn_track *t = hn_recording_track(w->recording, m);
             const double values[] = {t->gap[k], t->energy[k], t->error[k]};
             for (int i = 0; i < 3; i++) {
-                fprintf(file, isfinite(values[i]) ? ",%.17g" : ",", values[i]);
+                write_number(file, ",", values[i]);
             }
         }
         fprintf(file, "\n");
@@ -130,6 +140,24 @@ static void accept_export(hn_workbench *w) {
     hn_text_panel_run(w, "export: Esc goes back", words, 6);
 }
 
+/// Cuts the line after its first n characters.
+static void cut_input(hn_workbench *w, int n) {
+    w->n_input = n;
+    w->input[n] = '\0';
+}
+
+/// Where the last word of the line begins.
+static int last_word(const hn_workbench *w) {
+    int n = w->n_input;
+    while (n > 0 && w->input[n - 1] == ' ') {
+        n--;
+    }
+    while (n > 0 && w->input[n - 1] != ' ') {
+        n--;
+    }
+    return n;
+}
+
 void hn_prompt_key(hn_workbench *w, int key) {
     static void (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
                                                      [HN_PROMPT_METHOD] = accept_method,
@@ -144,7 +172,11 @@ void hn_prompt_key(hn_workbench *w, int key) {
         w->prompt = HN_PROMPT_NONE;
         accept[kind](w);
     } else if (key == HN_KEY_BACKSPACE && w->n_input > 0) {
-        w->input[--w->n_input] = '\0';
+        cut_input(w, w->n_input - 1);
+    } else if (key == HN_KEY_CTRL_U) {
+        cut_input(w, 0);
+    } else if (key == HN_KEY_CTRL_W) {
+        cut_input(w, last_word(w));
     } else if (key >= 32 && key < 127 && w->n_input < HN_TUI_LINE - 1) {
         w->input[w->n_input++] = (char)key;
         w->input[w->n_input] = '\0';

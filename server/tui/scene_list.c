@@ -29,15 +29,18 @@ static bool has_word(const char *text, const char *word, size_t n) {
     return false;
 }
 
-/// Whether every word of the search is in one of the scene's texts.
-static bool fits(const cJSON *scene, const char *search) {
-    static const char *const texts[] = {"id", "title", "about", "look_for", "kind", "caption"};
+/// Texts of a scene that are searched: its names first.
+static const char *const TEXTS[] = {"id", "title", "about", "look_for", "kind", "caption"};
+enum { N_TEXTS = sizeof TEXTS / sizeof *TEXTS, N_NAMES = 2 };
+
+/// Whether every word of the search is in one of the first n texts of the scene.
+static bool fits(const cJSON *scene, const char *search, int n_texts) {
     bool all = true;
     for (const char *word = search; *word && all;) {
         const size_t n = strcspn(word, " ");
         bool found = n == 0;
-        for (size_t i = 0; i < sizeof texts / sizeof *texts && !found; i++) {
-            found = has_word(text_of(scene, texts[i]), word, n);
+        for (int i = 0; i < n_texts && !found; i++) {
+            found = has_word(text_of(scene, TEXTS[i]), word, n);
         }
         all = found;
         word += n + (word[n] == ' ');
@@ -54,20 +57,31 @@ static void write_title(hn_workbench *w, int of) {
     }
 }
 
-/// The scenes that fit, from the document that is read once.
+/// One scene more in the list.
+static void list_scene(hn_workbench *w, const cJSON *scene) {
+    hn_item *item = hn_list_add(w, text_of(scene, "id"), text_of(scene, "title"));
+    if (item) {
+        snprintf(item->more, sizeof item->more, "%s. %s", text_of(scene, "caption"),
+                 text_of(scene, "about"));
+    }
+    if (item && w->n_search == 0 && strcmp(item->name, w->scene) == 0) {
+        w->cursor = w->n_items - 1;
+    }
+}
+
+/// The scenes that fit, from the document that is read once: first those that have every word in
+/// their name or title.
 static void list_fitting(hn_workbench *w) {
     const cJSON *scene, *scenes = cJSON_GetObjectItem(w->scenes, "scenes");
     hn_list_begin(w, HN_LIST_SCENES, "");
     cJSON_ArrayForEach(scene, scenes) {
-        hn_item *item = fits(scene, w->search)
-                            ? hn_list_add(w, text_of(scene, "id"), text_of(scene, "title"))
-                            : NULL;
-        if (item) {
-            snprintf(item->more, sizeof item->more, "%s. %s", text_of(scene, "caption"),
-                     text_of(scene, "about"));
+        if (fits(scene, w->search, N_NAMES)) {
+            list_scene(w, scene);
         }
-        if (item && w->n_search == 0 && strcmp(item->name, w->scene) == 0) {
-            w->cursor = w->n_items - 1;
+    }
+    cJSON_ArrayForEach(scene, scenes) {
+        if (!fits(scene, w->search, N_NAMES) && fits(scene, w->search, N_TEXTS)) {
+            list_scene(w, scene);
         }
     }
     write_title(w, cJSON_GetArraySize(scenes));

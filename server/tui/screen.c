@@ -387,14 +387,29 @@ static int translate(int key) {
     // keys of ncurses, and control characters that stand for keys
     static const struct {
         int from, to;
-    } table[] = {
-        {KEY_LEFT, HN_KEY_LEFT}, {KEY_RIGHT, HN_KEY_RIGHT},      {KEY_UP, HN_KEY_UP},
-        {KEY_DOWN, HN_KEY_DOWN}, {KEY_PPAGE, HN_KEY_PAGE_UP},    {KEY_NPAGE, HN_KEY_PAGE_DOWN},
-        {KEY_HOME, HN_KEY_HOME}, {KEY_END, HN_KEY_END},          {KEY_BACKSPACE, HN_KEY_BACKSPACE},
-        {127, HN_KEY_BACKSPACE}, {8, HN_KEY_BACKSPACE},          {KEY_ENTER, HN_KEY_ENTER},
-        {'\n', HN_KEY_ENTER},    {'\r', HN_KEY_ENTER},           {27, HN_KEY_ESCAPE},
-        {'\t', HN_KEY_TAB},      {KEY_SLEFT, HN_KEY_SHIFT_LEFT}, {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
-        {KEY_F(1), '?'},         {KEY_RESIZE, HN_KEY_RESIZE},    {KEY_NAME, HN_KEY_ANSWER}};
+    } table[] = {{KEY_LEFT, HN_KEY_LEFT},
+                 {KEY_RIGHT, HN_KEY_RIGHT},
+                 {KEY_UP, HN_KEY_UP},
+                 {KEY_DOWN, HN_KEY_DOWN},
+                 {KEY_PPAGE, HN_KEY_PAGE_UP},
+                 {KEY_NPAGE, HN_KEY_PAGE_DOWN},
+                 {KEY_HOME, HN_KEY_HOME},
+                 {KEY_END, HN_KEY_END},
+                 {KEY_BACKSPACE, HN_KEY_BACKSPACE},
+                 {127, HN_KEY_BACKSPACE},
+                 {8, HN_KEY_BACKSPACE},
+                 {KEY_ENTER, HN_KEY_ENTER},
+                 {'\n', HN_KEY_ENTER},
+                 {'\r', HN_KEY_ENTER},
+                 {27, HN_KEY_ESCAPE},
+                 {'\t', HN_KEY_TAB},
+                 {KEY_SLEFT, HN_KEY_SHIFT_LEFT},
+                 {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
+                 {KEY_F(1), '?'},
+                 {KEY_RESIZE, HN_KEY_RESIZE},
+                 {KEY_NAME, HN_KEY_ANSWER},
+                 {21, HN_KEY_CTRL_U},
+                 {23, HN_KEY_CTRL_W}};
 
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         if (table[i].from == key) {

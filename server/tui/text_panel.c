@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/text_panel.h"
 
+#include "base/shortest.h"
+#include "terminal/cells.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -12,6 +15,44 @@ void hn_text_panel_open(hn_workbench *w, const char *title) {
     snprintf(w->title, sizeof w->title, "%s", title);
 }
 
+/// Rows that the line (n bytes) takes when it is folded.
+static int rows_of(const hn_workbench *w, const char *line, size_t n) {
+    char row[1024];
+    snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), line);
+    const int rows = hn_text_rows(row, w->columns - 4);
+    return rows > 0 ? rows : 1;
+}
+
+/// The first line of the last full page.
+static int last_page(const hn_workbench *w) {
+    const char *text = hn_strbuf_text(&w->text), *at = text + strlen(text);
+    int line = 0, rows = 0, last = 0;
+    for (const char *c = text; *c; c++) {
+        last += *c == '\n' && c[1] != '\0';
+    }
+    line = last;
+
+    // upwards from the end, until the page is full
+    at -= at > text && at[-1] == '\n';
+    for (; at > text; line--) {
+        const char *begin = at;
+        while (begin > text && begin[-1] != '\n') {
+            begin--;
+        }
+        rows += rows_of(w, begin, (size_t)(at - begin));
+        if (rows > w->rows - 5) {
+            return line < last ? line + 1 : last;
+        }
+        at = begin > text ? begin - 1 : begin;
+    }
+    return 0;
+}
+
+void hn_text_panel_scroll(hn_workbench *w, int line) {
+    const int last = last_page(w);
+    w->scroll = line < 0 ? 0 : line > last ? last : line;
+}
+
 void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *words, int n) {
     char settings[HN_TUI_SETTINGS][128];
     const char *arguments[HN_TUI_WORDS + 2 * HN_TUI_SETTINGS + 1] = {NULL};
@@ -21,8 +62,9 @@ void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *wo
     }
     // exercises have numbers of their own; everything else is of the scene as it is shown
     for (int i = 0; i < w->n_settings && strcmp(words[0], "problem") != 0; i++) {
-        snprintf(settings[i], sizeof settings[i], "%s=%.17g", w->settings[i].name,
-                 w->settings[i].value);
+        char value[HN_SHORTEST_TEXT];
+        hn_shortest_write(w->settings[i].value, value);
+        snprintf(settings[i], sizeof settings[i], "%s=%s", w->settings[i].name, value);
         arguments[used++] = "--set";
         arguments[used++] = settings[i];
     }

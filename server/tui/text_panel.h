@@ -7,6 +7,8 @@
 
 /// An empty text with this title; a command that was shown ends.
 void hn_text_panel_open(hn_workbench *w, const char *title);
+/// Shows the text from this line on, but never less than its last page.
+void hn_text_panel_scroll(hn_workbench *w, int line);
 enum { HN_TUI_WORDS = 16 };
 /// Runs `holonom` with these words, and with the settings of the scene, and shows its text.
 void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *words, int n);

@@ -385,8 +385,21 @@ static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
     }
 }
 
+/// Whether the views would lie over each other.
+static bool is_too_small(const hn_cells *c, const hn_workbench *w) {
+    const hn_places places = hn_views_places(c->columns, c->rows, w);
+    const bool views = w->panel == HN_PANEL_MAIN;
+    return c->columns < HN_TUI_LEAST_COLUMNS || c->rows < HN_TUI_LEAST_ROWS ||
+           (views && places.plot.rows < 0);
+}
+
 void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     hn_cells_clear(c);
+    if (is_too_small(c, w)) {
+        hn_cells_put(c, (hn_area){0, 0, c->columns, 1}, 0, 0, HN_CELL_ALARM, 0,
+                     c->columns < 26 ? "80x24 is needed" : "too small: 80x24 is needed");
+        return;
+    }
     draw_header(c, w);
 
     const hn_area whole = panel_area(c->columns, c->rows);

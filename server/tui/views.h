@@ -13,8 +13,9 @@
 
 #include "tui/workbench.h"
 
-/// Least size of a screen that shows everything; smaller ones show what fits.
-enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24 };
+/// Least size of a screen that shows everything; smaller ones show what fits, and below the second
+/// pair nothing but the size that is needed.
+enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24, HN_TUI_LEAST_COLUMNS = 20, HN_TUI_LEAST_ROWS = 8 };
 
 /// Draws the whole screen.
 void hn_views_draw(hn_cells *c, const hn_workbench *w);

@@ -68,6 +68,21 @@ class CommandLine(Command):
         self.assertIn("the others: Newton, because 4 unknowns hang", self.assert_exit(call("equations", "3-rrr"), DONE))
         self.assertNotIn("independent:", self.assert_exit(call("equations", "pendulum"), DONE))
 
+    def test_terms_say_of_which_state_they_are(self):
+        at_start = self.assert_exit(call("terms", "four-bar"), DONE)
+        self.assertTrue(at_start.startswith("four-bar at its start: "), at_start[:80])
+        # a time does not move the mechanism, and the text says so
+        later = self.assert_exit(call("terms", "four-bar", "--t", "1", "--reactions"), DONE)
+        self.assertIn("at its start, with t = 1 s in the formulas that depend on time: ", later.split("\n")[0])
+        self.assertIn("holonom run four-bar --at 1 --reactions", later.split("\n")[1])
+        moved = self.assert_exit(call("terms", "four-bar", "--q", "th1=1"), DONE)
+        self.assertIn("four-bar at its start, changed by --q and --v: ", moved)
+
+    def test_the_equations_name_the_mirror_of_a_symmetric_matrix(self):
+        text = self.assert_exit(call("equations", "four-bar"), DONE)
+        self.assertRegex(text, r"M \(mass matrix; each entry stands for its mirror too, M\[i,j\] = M\[j,i\]; others that are not listed are zero\)")
+        self.assertRegex(text, r"J \(closure Jacobian; entries not listed are zero\)")
+
     def test_terms_show_the_equations_left_on_the_free_motion(self):
         text = self.assert_exit(call("terms", "five-bar"), DONE)
         self.assertIn("independent: th1, th2 (the motors)", text)

@@ -2,6 +2,7 @@
 """Comfort in a shell: completion asks the program, the manual is made from the tables of the help."""
 
 import fcntl
+import json
 import os
 import pty
 import re
@@ -36,6 +37,8 @@ class Completion(unittest.TestCase):
         self.assertEqual(candidates("run", "slider"), ["slider-crank"])
         self.assertEqual(candidates("study", "four-bar", "stab"), ["stability"])
         self.assertLessEqual({"p1", "p2", "p3", "p4", "p5"}, set(candidates("grade", "p")))
+        lessons = json.loads(call("list", "lessons", "--json").stdout)["lessons"]
+        self.assertEqual(candidates("lesson", ""), [lesson["id"] for lesson in lessons])
 
     def test_methods_and_their_options_are_offered_in_pieces(self):
         self.assertEqual(candidates("run", "four-bar", "--method", "baum"), ["baumgarte@"])

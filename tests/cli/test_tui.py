@@ -141,6 +141,43 @@ class Frame(unittest.TestCase):
         self.assertIn("slider-crank", out)
         self.assertEqual(len(re.findall(r"^│\d", out, re.M)), 1)
 
+    def test_a_link_opens_paused_at_its_frame_with_its_method_selected(self):
+        link = "#scene=four-bar&method=projection@rk4:h=0.02&method=index1@rk4:h=0.02&frame=150&selected=1"
+        _, out, _ = once(link, "--once", "--keys", "i")
+        self.assertRegex(out, r"t 3\.000 s of 10 s .*paused")
+        self.assertIn("why: index-1", out)
+        # a frame beyond the motion is its end, and what is no number is no frame
+        _, out, _ = once(link.replace("150", "999999"), "--once")
+        self.assertIn("t 10.000 s of 10 s", out)
+        _, out, _ = once(link.replace("150", "soon"), "--once", "--t", "0")
+        self.assertIn("t 0.000 s of 10 s", out)
+
+    def test_json_is_refused(self):
+        status, out, err = once("--json")
+        self.assertEqual(status, 2)
+        self.assertIn("tui draws text and has no --json", out + err)
+
+    def test_a_text_ends_with_a_full_page(self):
+        def lesson(keys):
+            return once("--once", "--keys", "t<Enter>" + keys)[1].split("\n")[2:-4]
+        end = lesson("<End>")
+        self.assertEqual(lesson("<End><PageDown>"), end)
+        self.assertGreater(sum(line.strip("│ ") != "" for line in end[-6:]), 3)
+        self.assertEqual(lesson("<End><Up>")[1:], end[:-1])
+        self.assertTrue(any(line.strip("│ ") for line in lesson("<End><PageUp>")[:5]))
+
+    def test_numbers_are_as_short_as_they_can_be_and_lines_are_cleared(self):
+        def line(keys):
+            return once("four-bar", "--once", "--t", "0.1", "--set", "l1=0.55", "--keys", keys)[1].rstrip("\n").split("\n")[-1].strip()
+        self.assertEqual(line("p<Enter>"), "value: 0.55")
+        self.assertEqual(line("p<Enter><CtrlU>0.6"), "value: 0.6")
+        self.assertEqual(line("d20 ms<CtrlW>s"), "dt [s, or 20 ms]: 20 s")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "r.csv")
+            once("pendulum", "--once", "--t", "0.1", "--methods", "index1@rk4:h=0.017", "--keys", "x<Enter><CtrlU>" + path + "<Enter>")
+            with open(path) as file:
+                self.assertEqual(file.read().split("\n")[2].split(",")[0], "0.017")
+
 
 KEY_NAMES = {"HN_KEY_RIGHT": "<Right>", "HN_KEY_LEFT": "<Left>", "HN_KEY_SHIFT_RIGHT": "<ShiftRight>", "HN_KEY_SHIFT_LEFT": "<ShiftLeft>",
              "HN_KEY_BACKSPACE": "<Backspace>", "HN_KEY_UP": "<Up>", "HN_KEY_DOWN": "<Down>"}
@@ -150,7 +187,7 @@ SEEN = {"PLAY": "running", "NEXT": r"t 0\.520 s", "BACK": r"t 0\.480 s", "NEXT_T
         "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "STEP": r"dt \[s, or 20 ms\]:",
         "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "01-closed-loops",
         "STUDY": "what accuracy costs: Esc goes back", "MAP": "stability over alpha and beta: arrows", "BUDGET": "their sum",
-        "LINK": r"link copied:\s+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",
+        "LINK": r"sent to the terminal's clipboard \(OSC 52\)[^#]+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",
         "REDO": "nothing to redo", "HELP": "play or pause", "QUIT": None}
 METHODS = ("--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02", "projection@rk4:h=0.02")
 
@@ -357,6 +394,7 @@ class Keys(unittest.TestCase):
         terminal.clear()
         terminal.type("l")
         self.assertTrue(terminal.wait_for(rb"\033\]52;c;[A-Za-z0-9+/=]+\a"))
+        terminal.type("q")  # the panel that shows it
         return base64.b64decode(re.findall(rb"\033\]52;c;([A-Za-z0-9+/=]+)\a", terminal.seen)[-1]).decode()
 
     def test_the_copied_link_is_whole_and_opens_the_same(self):
@@ -366,6 +404,25 @@ class Keys(unittest.TestCase):
         status, out, err = once(link, "--once", "--t", "0.1")
         self.assertEqual((status, err), (0, ""))
         self.assertEqual(len(re.findall(r"Baumgarte", out)), 8)
+
+    def test_a_link_opens_paused_in_a_terminal(self):
+        terminal = Terminal("#scene=four-bar&method=projection@rk4:h=0.02&frame=50")
+        self.addCleanup(terminal.close)
+        self.assertTrue(terminal.wait_for(rb"paused"))
+        self.assertNotIn(b"running", terminal.seen)
+        # the frame is recorded first
+        end = time.monotonic() + PATIENCE
+        while "&frame=50&" not in (link := self.copied(terminal)):
+            self.assertLess(time.monotonic(), end, link)
+
+    def test_the_link_is_shown_whole_in_a_narrow_window(self):
+        methods = ["baumgarte:alpha=5,beta=%d@rk4:h=0.01" % k for k in range(11, 19)]
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--set", "l1=0.6", "--methods", *methods, "--keys", "l")
+        lines = [line[1:-1].strip() for line in out.split("\n") if line.startswith("│")]
+        link = "".join(lines[lines.index("") + 1:]).split("It opens")[0]
+        self.assertTrue(link.startswith("http://127.0.0.1:8080/#scene=four-bar&set.l1=0.6&"), link)
+        self.assertEqual([m in link for m in methods], [True] * 8)
+        self.assertTrue(link.endswith("&selected=0"), link)
 
     def test_a_cell_of_the_map_is_taken_and_says_what_was_before(self):
         with tempfile.TemporaryDirectory() as cache:
@@ -445,6 +502,8 @@ class Keys(unittest.TestCase):
         self.assertIn("loop gap", found("cardan<Esc><Esc>"))
         self.assertRegex(found("cardan<Enter>"), r"holonom  cardan-shaft")
         self.assertRegex(found("cardan", "80x24"), r"1 degree of freedom \(4 − 3\)")
+        # a hit in the name comes before one in the text
+        self.assertRegex(found("triple<Enter>"), r"holonom  triple-rocker")
 
     def test_values_taken_from_a_map_have_four_digits_and_long_ones_are_shown_so(self):
         with tempfile.TemporaryDirectory() as cache:

@@ -198,8 +198,10 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
 
     // entries of every term, then the position form
     for (int k = 0; k < N_TERMS; k++) {
-        hn_strbuf_printf(b, "\n%s (%s; entries not listed are zero)\n", terms[k].name,
-                         terms[k].meaning);
+        hn_strbuf_printf(b, "\n%s (%s; %s)\n", terms[k].name, terms[k].meaning,
+                         terms[k].symmetric ? "each entry stands for its mirror too, M[i,j] = "
+                                              "M[j,i]; others that are not listed are zero"
+                                            : "entries not listed are zero");
         write_entries(b, hn_system_graph(sys), &terms[k], write_text);
     }
     hn_position_form_text(b, position);

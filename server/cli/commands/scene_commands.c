@@ -241,7 +241,25 @@ static void put_mark(hn_strbuf *b, const cJSON *d) {
     }
 }
 
-static void put_terms(hn_strbuf *b, const cJSON *d) {
+/// "four-bar at its start": of a state, its time is only that of formulas.
+static void put_terms_heading(hn_strbuf *b, const cJSON *d, const hn_args *args) {
+    const bool given = args->state_q.n > 0 || args->state_v.n > 0;
+    hn_strbuf_printf(b, "%s %s", hn_document_text(d, "scene"),
+                     given ? "at its start, changed by --q and --v" : "at its start");
+    if (!isnan(args->t)) {
+        hn_strbuf_printf(b, ", with t = %g s in the formulas that depend on time",
+                         hn_document_number(d, "t"));
+    }
+    hn_strbuf_printf(b, ": %s\n", hn_document_text(d, "equations"));
+    if (!isnan(args->t) && !given) {
+        hn_strbuf_printf(b,
+                         "--t does not move the mechanism; the motion at that time: holonom run "
+                         "%s --at %g --reactions\n",
+                         args->words.word[0], hn_document_number(d, "t"));
+    }
+}
+
+static void put_terms(hn_strbuf *b, const cJSON *d, const hn_args *args) {
     static const struct {
         const char *title, *key;
         int matrix, by_row;
@@ -255,8 +273,7 @@ static void put_terms(hn_strbuf *b, const cJSON *d) {
                  {"a, accelerations", "a", 0, 0},
                  {"lambda, multipliers", "lambda", 0, 1}};
     const cJSON *names = hn_document_get(d, "coordinates"), *rows = hn_document_get(d, "rows");
-    hn_strbuf_printf(b, "%s at t = %g s: %s\n", hn_document_text(d, "scene"),
-                     hn_document_number(d, "t"), hn_document_text(d, "equations"));
+    put_terms_heading(b, d, args);
 
     // matrices where they have rows, vectors always
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
@@ -308,7 +325,7 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
         return hn_cli_print(&b);
     }
     cJSON *document = hn_document_parse(&b);
-    put_terms(&b, document);
+    put_terms(&b, document, args);
     b.failed |= document == NULL;
     cJSON_Delete(document);
     return hn_cli_print_text(&b);

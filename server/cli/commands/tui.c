@@ -11,6 +11,7 @@
 #include "render/look.h"
 #include "tui/keys.h"
 #include "tui/link.h"
+#include "tui/views.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,18 +19,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/// What is to be opened: from words and options, or from a link of the page.
-typedef struct opening {
-    char scene[HN_TUI_LINE];
-    hn_setting settings[HN_TUI_SETTINGS];
-    char names[HN_TUI_SETTINGS][64];
-    char spellings[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
-    const char *methods[HN_COMPARISON_MAX_METHODS];
-    int n_settings, n_methods;
-} opening;
-
 static hn_status see_setting(void *user, const char *name, double value) {
-    opening *o = user;
+    hn_tui_link *o = user;
     if (o->n_settings < HN_TUI_SETTINGS) {
         snprintf(o->names[o->n_settings], sizeof *o->names, "%s", name);
         o->settings[o->n_settings] = (hn_setting){o->names[o->n_settings], value};
@@ -38,15 +29,17 @@ static hn_status see_setting(void *user, const char *name, double value) {
     return HN_OK;
 }
 
-static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) {
+/// What is to be opened, from words and options, or from a link of the page; `methods` are those
+/// of the options in place of those of the link.
+static hn_status read_opening(const hn_args *args, hn_tui_link *o, const char **methods,
+                              hn_diags *diags) {
     const char *word = args->words.n > 0 ? args->words.word[0] : "four-bar";
-    if (!hn_workbench_read_link(word, o->scene, o->settings, o->names, &o->n_settings, o->spellings,
-                                &o->n_methods)) {
+    if (!hn_workbench_read_link(word, o)) {
         snprintf(o->scene, sizeof o->scene, "%s", word);
     }
     HN_TRY(hn_assignments_read(&args->set, "--set", see_setting, o, diags));
     for (int i = 0; i < o->n_methods; i++) {
-        o->methods[i] = o->spellings[i];
+        methods[i] = o->methods[i];
     }
     if (args->methods.n > HN_COMPARISON_MAX_METHODS || args->set.n > HN_TUI_SETTINGS) {
         return hn_diags_add(diags, HN_ERR_LIMIT,
@@ -55,7 +48,7 @@ static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) 
                             HN_COMPARISON_MAX_METHODS, HN_TUI_SETTINGS);
     }
     for (int i = 0; i < args->methods.n; i++) {
-        o->methods[i] = args->methods.word[i];
+        methods[i] = args->methods.word[i];
         o->n_methods = i + 1;
     }
     return HN_OK;
@@ -64,9 +57,9 @@ static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) 
 /// "100x30"; left at 0 x 0 where nothing is given.
 static hn_status read_size(const char *text, hn_tui_opts *opts, hn_diags *diags) {
     char behind;
-    if (text &&
-        (sscanf(text, "%dx%d%c", &opts->columns, &opts->rows, &behind) != 2 || opts->columns < 20 ||
-         opts->rows < 8 || opts->columns > 1000 || opts->rows > 500)) {
+    if (text && (sscanf(text, "%dx%d%c", &opts->columns, &opts->rows, &behind) != 2 ||
+                 opts->columns < HN_TUI_LEAST_COLUMNS || opts->rows < HN_TUI_LEAST_ROWS ||
+                 opts->columns > 1000 || opts->rows > 500)) {
         return hn_diags_add(
             diags, HN_ERR_INPUT, "/size", NULL,
             "--size is '%.40s'; COLUMNSxROWS from 20x8 to 1000x500 is needed, as 100x30", text);
@@ -100,7 +93,8 @@ static bool colours_wanted(void) {
     return !(no && no[0]) && !(term && strcmp(term, "dumb") == 0);
 }
 
-static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
+/// `paused`: a link names the frame, which --t alone changes.
+static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, bool paused) {
     const bool terminal = isatty(STDOUT_FILENO) && isatty(STDIN_FILENO);
     opts->colours = colours_wanted() && isatty(STDOUT_FILENO);
     if (terminal && !args->once) {
@@ -117,7 +111,9 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
     // no terminal, or one frame was asked for
     hn_strbuf b;
     hn_strbuf_init(&b);
-    opts->t = isnan(args->t) ? hn_recording_duration(w->recording) : args->t;
+    const double otherwise = paused ? w->clock * hn_recording_frame_dt(w->recording)
+                                    : hn_recording_duration(w->recording);
+    opts->t = isnan(args->t) ? otherwise : args->t;
     hn_tui_frame(&b, w, opts);
     if (opts->ascii) {
         hn_strbuf plain;
@@ -130,7 +126,8 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
 }
 
 hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
-    opening o = {0};
+    hn_tui_link o;
+    const char *methods[HN_COMPARISON_MAX_METHODS];
     hn_diags diags = {0};
     hn_workbench w;
     hn_tui_opts opts = {.theme = args->theme && strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT
@@ -141,17 +138,25 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     opts.ascii =
         args->ascii || hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"));
 
+    if (args->json) {
+        hn_diags_add(&diags, HN_ERR_INPUT, "/json",
+                     "the numbers of a run as JSON: holonom compare SCENE --json",
+                     "tui draws text and has no --json");
+        return hn_report_diags(args, HN_ERR_INPUT, &diags);
+    }
+
     // everything is read before anything is opened
     hn_status status = read_size(args->size, &opts, &diags);
     HN_THEN(status, read_pictures(args->pictures, &opts, &diags));
     HN_THEN(status, check_keys(args->keys, &diags));
-    status = status == HN_OK ? read_opening(args, &o, &diags) : status;
-    HN_THEN(status, hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods,
+    status = status == HN_OK ? read_opening(args, &o, methods, &diags) : status;
+    HN_THEN(status, hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, methods,
                                       o.n_methods, &diags));
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
-    const hn_exit result = show(args, &w, &opts);
+    hn_workbench_go_to_link(&w, &o);
+    const hn_exit result = show(args, &w, &opts, o.frame >= 0);
     hn_workbench_close(&w);
     return result;
 }

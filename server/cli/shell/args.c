@@ -66,7 +66,9 @@ static const option OPTIONS[] = {
     {"--raw-lambda", NULL, OPTION_FLAG, AT(raw_lambda),
      "a column raw_lambda too: the multipliers the scheme itself found, where it has some"},
     {"--format", "FORMAT", OPTION_TEXT, AT(format), "form of the output"},
-    {"--t", "T", OPTION_NUMBER, AT(t), "time [s]"},
+    {"--t", "T", OPTION_NUMBER, AT(t),
+     "of tui: time of the frame [s]; of terms: the time in formulas that depend on it [s]; the "
+     "mechanism stays at its start"},
     {"--q", "NAME=VALUE...", OPTION_WORDS, AT(state_q),
      "coordinates that differ from the assembled start"},
     {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
