@@ -82,6 +82,19 @@ static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
     return w->prompt == HN_PROMPT_NONE && hn_text_columns(w->message) > c->columns - 2;
 }
 
+/// Whether an incident of the selected method has a remedy to try.
+static bool has_remedy(const hn_workbench *w) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    for (int i = 0; i < n; i++) {
+        if (whose[i] == w->selected && list[i].remedy[0][0]) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// The keys of what is shown.
 static const char *keys_line(const hn_workbench *w, int columns) {
     static const char *const lists[] = {
@@ -103,7 +116,9 @@ static const char *keys_line(const hn_workbench *w, int columns) {
                    : "↑↓ scroll the words  Esc back";
     default:
         if (w->why) {
-            return "Enter try a remedy  ↑↓ another method  i close  Space run  ? menu  q";
+            return has_remedy(w)
+                       ? "Enter try a remedy  ↑↓ another method  i close  Space run  ? menu  q"
+                       : "↑↓ another method  i close  Space run  ? menu  q";
         }
         return columns < 92 ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene "
                               " ? menu  q"
@@ -310,7 +325,9 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_track *track = hn_recording_track(w->recording, w->selected);
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     char title[96];
-    snprintf(title, sizeof title, "why: %s (Enter tries, i closes)", track->name);
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    snprintf(title, sizeof title, "why: %s (%si closes)", track->name,
+             has_remedy(w) ? "Enter tries, " : "");
     const hn_area in = hn_cells_frame(c, area, title);
     int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
     if (end.failed) {
@@ -318,7 +335,6 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
     }
 
     // every incident of the method, with what to try
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
     int same = 0;
     for (int i = 0; i < n && y < in.rows; i++) {
         // incidents of one cause are one entry with a count

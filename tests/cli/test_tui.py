@@ -470,6 +470,11 @@ class Keys(unittest.TestCase):
         self.assertEqual(len(re.findall(r"(?m)^│\d\S +projection", twice)), 1)
         _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "i<Enter>", "--methods", "projection@rk4:h=0.001")
         self.assertIn("nothing has happened that asks for a remedy", out)
+        # the card offers Enter only where it has something to try
+        def card(*words):
+            return re.search(r"why: [^─]*", once("four-bar", "--once", "--size", "120x40", "--keys", "i", *words)[1]).group()
+        self.assertEqual(card("--t", "4", *METHODS[:2]).strip(), "why: index-1 (Enter tries, i closes)")
+        self.assertEqual(card("--t", "0.1", "--methods", "projection@rk4:h=0.001").strip(), "why: projection (i closes)")
 
     def test_frames_are_those_of_the_page_and_a_new_step_keeps_the_moment(self):
         # frames are multiples of the largest step of at least 1/60 s: 3 s are frame 150 of 20 ms, as in the page
