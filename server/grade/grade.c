@@ -402,6 +402,23 @@ static void keep_submission(hn_verdict *v, const char *text, size_t n) {
     }
 }
 
+/// Refuses text that is not JSON. One that does not even begin like an object or a list is another
+/// kind of file: a hint on its first character would mislead.
+static void refuse_text(hn_verdict *v, const char *json, const hn_diag *diag) {
+    const char *first = json + strspn(json, " \t\r\n");
+    if (!*first || strchr("{[", *first)) {
+        hn_submission_refuse(v, diag->hint, "the submission is not JSON: %s", diag->message);
+        return;
+    }
+    char hint[160], begins[24] = "";
+    if (*first > 0x20 && *first < 0x7F) {
+        snprintf(begins, sizeof begins, ": it begins with '%c'", *first);
+    }
+    snprintf(hint, sizeof hint, "hand in a file like {...}; 'holonom problem %.60s' shows the form",
+             v->problem->id);
+    hn_submission_refuse(v, hint, "the submission is not JSON%s", begins);
+}
+
 /// Grades text in UTF-8 after its slips of JSON are put right, with a remark.
 static hn_status grade_text(hn_verdict *v, const char *text, size_t n, bool chosen) {
     hn_strbuf mended;
@@ -422,7 +439,7 @@ static hn_status grade_text(hn_verdict *v, const char *text, size_t n, bool chos
     hn_status status = mended.failed ? HN_ERR_MEMORY : HN_OK;
     const char *json = hn_strbuf_text(&mended);
     if (status == HN_OK && hn_json_text_check(json, mended.n, MAX_DEPTH, &diag) != HN_OK) {
-        hn_submission_refuse(v, diag.hint, "the submission is not JSON: %s", diag.message);
+        refuse_text(v, json, &diag);
     } else if (status == HN_OK) {
         cJSON *root = cJSON_ParseWithLength(json, mended.n);
         status = root ? grade_tree(v, root, chosen) : HN_ERR_MEMORY;

@@ -2,6 +2,7 @@
 // holonom compare: several methods on one clock, and a table of where they part.
 #include "base/units.h"
 #include "cli/shell/commands.h"
+#include "cli/commands/error_advice.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/notes.h"
@@ -145,14 +146,14 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_cell(t, "%s to %s", low, high);
 }
 
-/// Says what WRONG stands for.
-static void put_wrong(hn_strbuf *b, const cJSON *m) {
-    const cJSON *e = hn_document_get(m, "error_estimate");
+/// Says what WRONG stands for; i: number of the method in the summary.
+static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
     hn_strbuf_printf(b,
                      "! %s is wrong: its coordinates are off by up to %.1e (angles in rad, lengths "
-                     "over the mechanism's); a smaller %s is needed\n",
-                     hn_document_text(m, "method"), hn_document_number(e, "q"),
-                     isnan(hn_document_number(e, "over_rtol")) ? "step" : "tolerance");
+                     "over the mechanism's)%s\n",
+                     hn_document_text(m, "method"),
+                     hn_document_number(hn_document_get(m, "error_estimate"), "q"),
+                     hn_error_advice(m, hn_document_get(summary, "incidents"), i));
 }
 
 /// What a spelling deserves to be told, and the first few incidents of each method; all of them are
@@ -167,7 +168,7 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
                              hn_document_text(m, "warning"));
         }
         if (!has_failed(m) && is_wrong(m)) {
-            put_wrong(b, m);
+            put_wrong(b, summary, m, i);
         }
 
         // its first incidents; the rest are counted

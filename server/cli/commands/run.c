@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom run: one method, its samples as CSV, NDJSON or JSON.
 #include "cli/shell/commands.h"
+#include "cli/commands/error_advice.h"
 #include "cli/commands/run_rows.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
@@ -61,39 +62,88 @@ static void tell_marks(const cJSON *run) {
     }
 }
 
-/// Says what was noticed on the way; samples alone would hide it.
-/// The first remedy that was tried and removes the incident.
-static void tell_remedies(const cJSON *incident) {
-    const cJSON *remedy = hn_document_get(incident, "remedies")->child;
-    const cJSON *tried = hn_document_get(incident, "tried")->child;
-    if (remedy && tried && tried->valuestring[0]) {
-        hn_cli_note("holonom:     try %s (%s)\n", remedy->valuestring, tried->valuestring);
-    }
-}
-
 enum { MOST = 5 }; // incidents that are told one by one
 
-/// What removes the end of a run, where its incident is not among those told: "" otherwise.
-static void end_remedy(const cJSON *run, char *out, size_t size) {
-    const cJSON *incidents = hn_document_get(run, "incidents");
-    const int n = cJSON_GetArraySize(incidents);
-    const cJSON *last = n > MOST ? cJSON_GetArrayItem(incidents, n - 1) : NULL;
-    const cJSON *remedy = last ? hn_document_get(last, "remedies")->child : NULL;
-    const cJSON *tried = last ? hn_document_get(last, "tried")->child : NULL;
-    out[0] = '\0';
-    if (remedy && tried && tried->valuestring[0]) {
-        snprintf(out, size, "holonom:     try %s (%s)\n", remedy->valuestring, tried->valuestring);
+/// The first remedy of an incident, where it was tried; NULL otherwise.
+static const char *first_remedy(const cJSON *incident) {
+    const cJSON *remedy = incident ? hn_document_get(incident, "remedies")->child : NULL;
+    const cJSON *tried = incident ? hn_document_get(incident, "tried")->child : NULL;
+    return remedy && tried && tried->valuestring[0] ? remedy->valuestring : NULL;
+}
+
+static void put_remedy(const cJSON *incident, char *out, size_t size) {
+    snprintf(out, size, "holonom:     try %s (%s)\n", first_remedy(incident),
+             hn_document_get(incident, "tried")->child->valuestring);
+}
+
+/// Whether the first remedy of list[k] is that of a later one of the n incidents too.
+static bool is_repeated(const cJSON *const *list, int n, int k) {
+    const char *own = first_remedy(list[k]);
+    for (int j = k + 1; j < n; j++) {
+        const char *other = first_remedy(list[j]);
+        if (own && other && strcmp(own, other) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Sorts incidents by time; those of one time keep their order. A sample inside a step may find an
+/// incident later than the end of the run, and is taken before it.
+static void sort_by_time(const cJSON **list, int n) {
+    for (int i = 1; i < n; i++) {
+        const cJSON *moved = list[i];
+        const double t = hn_document_number(moved, "t");
+        int j = i;
+        for (; j > 0 && hn_document_number(list[j - 1], "t") > t; j--) {
+            list[j] = list[j - 1];
+        }
+        list[j] = moved;
     }
 }
 
-static void tell_incidents(const cJSON *run) {
-    const cJSON *incidents = hn_document_get(run, "incidents"), *incident;
+/// Takes the run's incidents in order of time; returns their number.
+static int collect_incidents(const cJSON *run, const cJSON *list[HN_RUN_MAX_INCIDENTS]) {
+    const cJSON *incident;
     int n = 0;
-    cJSON_ArrayForEach(incident, incidents) {
-        if (n++ < MOST) {
-            hn_cli_note("holonom: t = %.4g s: %s\n", hn_document_number(incident, "t"),
-                        hn_document_text(incident, "message"));
-            tell_remedies(incident);
+    cJSON_ArrayForEach(incident, hn_document_get(run, "incidents")) {
+        if (n < HN_RUN_MAX_INCIDENTS) {
+            list[n++] = incident;
+        }
+    }
+    sort_by_time(list, n);
+    return n;
+}
+
+/// What removes the end of a run, where no incident that is told has this remedy: "" otherwise.
+static void end_remedy(const cJSON *run, char *out, size_t size) {
+    const cJSON *list[HN_RUN_MAX_INCIDENTS], *incidents = hn_document_get(run, "incidents");
+    const int n = collect_incidents(run, list);
+    const cJSON *last = n > MOST ? cJSON_GetArrayItem(incidents, n - 1) : NULL;
+    out[0] = '\0';
+    if (first_remedy(last)) {
+        put_remedy(last, out, size);
+    }
+    for (int k = 0; k < MOST && out[0]; k++) {
+        const char *told = first_remedy(list[k]);
+        if (told && strcmp(told, first_remedy(last)) == 0) {
+            out[0] = '\0';
+        }
+    }
+}
+
+/// Says what was noticed on the way, in order of time; samples alone would hide it. A remedy of
+/// several incidents is said once, after the last of them.
+static void tell_incidents(const cJSON *run) {
+    const cJSON *list[HN_RUN_MAX_INCIDENTS];
+    const int n = collect_incidents(run, list), told = n < MOST ? n : MOST;
+    for (int k = 0; k < told; k++) {
+        hn_cli_note("holonom: t = %.4g s: %s\n", hn_document_number(list[k], "t"),
+                    hn_document_text(list[k], "message"));
+        if (first_remedy(list[k]) && !is_repeated(list, told, k)) {
+            char text[240];
+            put_remedy(list[k], text, sizeof text);
+            hn_cli_note("%s", text);
         }
     }
     if (n > MOST) {
@@ -124,9 +174,7 @@ static void tell_estimate(const cJSON *run) {
             "their largest%s%s\n",
             hn_document_number(e, "t"), q, factor, reaction,
             q >= HN_ACCURACY_WRONG ? "; the motion is wrong" : "",
-            !far           ? ""
-            : isnan(times) ? "; a smaller step is needed"
-                           : "; a smaller tolerance is needed");
+            far ? hn_error_advice(run, hn_document_get(run, "incidents"), -1) : "");
     }
     if (reason[0]) {
         hn_cli_note("holonom: no error estimate%s: %s\n", isfinite(q) ? " beyond that" : "",
@@ -222,6 +270,16 @@ static const char *choose_format(const hn_args *args, hn_diags *diags) {
     return NULL;
 }
 
+/// " at t = 1.43 s: REASON"; a reason that begins with its own time is given no other.
+static void put_ending(const cJSON *run, char *out, size_t size) {
+    const char *reason = hn_document_text(run, "reason");
+    char when[40] = "";
+    if (strncmp(reason, "after t = ", 10) != 0) {
+        snprintf(when, sizeof when, " at t = %.6g s", hn_document_number(run, "t_reached"));
+    }
+    snprintf(out, size, "%s: %.480s", when, reason);
+}
+
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     hn_diags diags = {0};
     hn_status ended = HN_OK;
@@ -242,8 +300,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     char reason[560] = "", remedy[240] = "";
     if (strcmp(format, "json") != 0) {
         run = hn_document_parse(&b);
-        snprintf(reason, sizeof reason, "at t = %.6g s: %.480s",
-                 hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
+        put_ending(run, reason, sizeof reason);
         if (streams && !rows.begun) {
             hn_run_rows_begin(&rows, run); // no sample was made
         }
@@ -270,7 +327,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         result = HN_EXIT_PROGRAM;
     }
     if (ended != HN_OK && reason[0]) {
-        hn_cli_note("holonom: the run ended early %s\n%s", reason, remedy);
+        hn_cli_note("holonom: the run ended early%s\n%s", reason, remedy);
     }
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }
