@@ -55,8 +55,8 @@ static struct {
 
 // ---- leaving the terminal as it was ----
 
-static const int FATAL[] = {SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGBUS,
-                            SIGABRT, SIGFPE, SIGILL,  SIGPIPE};
+static const int FATAL[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV,
+                            SIGBUS, SIGABRT, SIGFPE, SIGILL,  SIGPIPE};
 enum { N_FATAL = sizeof FATAL / sizeof *FATAL };
 
 /// Reads to the end of an answer that is on its way, or the shell would take it for typed keys.

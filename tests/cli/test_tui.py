@@ -357,7 +357,7 @@ class Keys(unittest.TestCase):
         self.assertEqual(terminal.ended(), 0)
 
     def test_signals_restore_the_terminal(self):
-        for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV):
             terminal = self.open("four-bar")
             terminal.process.send_signal(number)
             self.assertEqual(terminal.ended(), -number)
