@@ -45,7 +45,8 @@ static void describe_all(hn_strbuf *b) {
                      "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...],\n"
                      "as projection@rk4:h=1e-3.\n"
                      "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault,\n"
-                     "4 a run ended early and said why, or a prediction failed.\n"
+                     "4 a run ended early and said why, or a prediction failed,\n"
+                     "130 Ctrl-C ended the workbench in the terminal.\n"
                      "lessons, problems, scenes and methods are short for list lessons etc.\n");
 }
 

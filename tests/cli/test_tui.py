@@ -152,6 +152,11 @@ class Frame(unittest.TestCase):
         _, out, _ = once(link.replace("150", "soon"), "--once", "--t", "0")
         self.assertIn("t 0.000 s of 10 s", out)
 
+    def test_the_help_and_the_manual_say_how_ctrl_c_ends(self):
+        for word in ("help", "manual"):
+            said = subprocess.run([PROGRAM, word], capture_output=True, text=True, timeout=60).stdout
+            self.assertRegex(said, r"130\s+Ctrl\\?-C ended the workbench in the terminal", word)
+
     def test_json_is_refused(self):
         status, out, err = once("--json")
         self.assertEqual(status, 2)
