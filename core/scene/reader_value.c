@@ -14,6 +14,10 @@
 #include <stdio.h>
 #include <string.h>
 
+static bool is_computable(double value) {
+    return fabs(value) <= HN_SCENE_MAX_NUMBER;
+}
+
 static bool is_name_start(char c) {
     return isalpha((unsigned char)c) || c == '_';
 }
@@ -190,6 +194,10 @@ bool hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantit
     if (!isfinite(value)) {
         return hn_rd_fault(r, NULL, "the formula '%.80s' has no finite value here", text);
     }
+    if (!is_computable(value)) {
+        return hn_rd_fault(r, NULL, "the formula '%.80s' is %g here, and 1e100 is the most", text,
+                           value);
+    }
     out->value = value;
     return true;
 }
@@ -279,7 +287,9 @@ bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_sco
     // a number, or a formula
     if (cJSON_IsNumber(node)) {
         out->value = node->valuedouble;
-        return isfinite(out->value) ? 1 : hn_rd_fault(r, NULL, "expected a finite number");
+        return is_computable(out->value) ||
+               hn_rd_fault(r, NULL, "%g is too large to be computed with: 1e100 is the most",
+                           out->value);
     }
     if (!cJSON_IsString(node)) {
         return hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",

@@ -18,6 +18,8 @@
 #include <stdint.h>
 
 enum { HN_GROUND = -1 };
+/// Largest number of a scene: products of a mass, a length squared and a rate must stay finite.
+#define HN_SCENE_MAX_NUMBER 1e100
 enum {
     HN_SCENE_MAX_BYTES = 4 << 20,
     HN_SCENE_MAX_BODIES = 2000,

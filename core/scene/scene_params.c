@@ -240,6 +240,9 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
         hn_rd_fault_at(r, "min", NULL, "min %g is larger than max %g", p->min, p->max);
     } else if (!isfinite(p->value)) {
         hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
+    } else if (fabs(p->value) > HN_SCENE_MAX_NUMBER) {
+        hn_rd_fault(r, NULL, "%s = %g is too large to be computed with: 1e100 is the most", p->name,
+                    p->value);
     } else if ((p->value < p->min || p->value > p->max) && is_set(r, p) && is_possible(p)) {
         p->beyond = true;
     } else if (has_other_sign(p)) {

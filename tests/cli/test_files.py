@@ -70,6 +70,11 @@ class Files(Command):
             self.assertIn(b"there is no file 'nothing.json'", missing.stderr)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
+    def test_a_name_cannot_command_the_terminal(self):
+        done = call("inspect", "no\x1b[31m\nfile.json")
+        self.assert_exit(done, INPUT)
+        self.assertIn(b"'no?[31m?file.json'", done.stderr)
+
     def test_an_output_that_cannot_be_written_is_no_fault_of_the_input(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "s.json")

@@ -69,6 +69,8 @@ CASES = [
     ("infinity as a number", lambda: changed("bodies/0/com", [float("inf"), 0]), "Infinity"),
     ("a number beyond all doubles", lambda: changed("bodies/0/mass", "@").replace('"@"', "1e999"), "1e999"),
     ("a formula without a value", lambda: changed("bodies/0/mass", "0/0"), "0/0"),
+    ("a number whose products overflow", lambda: changed("bodies/0/mass", 1e308), "too large to be computed with"),
+    ("a formula whose products overflow", lambda: changed("bodies/0/mass", "exp(600)"), "1e100 is the most"),
     ("a formula beyond all doubles", lambda: changed("bodies/0/mass", "exp(1e6)"), "not a finite number"),
     ("a mass of zero that a coordinate needs", lambda: json.dumps(dict(GOOD, bodies=[{"name": "a", "mass": 0}])), "moves nothing that has mass"),
     ("a mass of zero with inertia", lambda: changed("bodies/0/mass", 0), "inertia but no mass"),

@@ -20,10 +20,20 @@ static hn_exit exit_of(hn_status status, const hn_diags *diags) {
     return ours ? HN_EXIT_PROGRAM : HN_EXIT_INPUT;
 }
 
+/// Adds a text that may quote a file's name or content: control characters, which a terminal would
+/// obey, stand as '?'.
+static void add_quoted(hn_strbuf *b, const char *text) {
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        hn_strbuf_printf(b, "%c", c < 0x20 || c == 0x7f ? '?' : c);
+    }
+}
+
 static void tell(const hn_diag *d) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_strbuf_printf(&b, "holonom: %s", d->message);
+    hn_strbuf_add(&b, "holonom: ");
+    add_quoted(&b, d->message);
     if (d->pointer[0]) {
         hn_strbuf_printf(&b, " (at %s", d->pointer);
         if (d->column > 0) {
@@ -33,7 +43,9 @@ static void tell(const hn_diag *d) {
     }
     hn_strbuf_add(&b, "\n");
     if (d->hint[0]) {
-        hn_strbuf_printf(&b, "         %s\n", d->hint);
+        hn_strbuf_add(&b, "         ");
+        add_quoted(&b, d->hint);
+        hn_strbuf_add(&b, "\n");
     }
     hn_cli_note_lines(&b);
     hn_strbuf_reset(&b);
