@@ -28,7 +28,7 @@ static const char *const GENERAL[] = {
     "unit",          "not-null",     "rank",        "power-of-ten", "other-place",  "other-axis",
     "inexact",       "other-branch", "half-turn",   "absolute",     "relative",     "swapped",
     "not-assembled", "stuck",        "some-points", "change-point", "out-of-range", "no-scene",
-    "inaccurate",    "costly",       "ended-early"};
+    "inaccurate",    "costly",       "ended-early", "zero",         "constant"};
 enum { N_GENERAL = sizeof GENERAL / sizeof *GENERAL };
 
 /// Calls for every mistake that a part names by itself: its faults, its tests, its wrong options.

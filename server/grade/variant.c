@@ -323,6 +323,22 @@ static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *
                                 student->valuestring, (unsigned long long)x->seed);
 }
 
+/// The hints that a submission says were used: a whole number of those that there are.
+static int check_hints(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(submission, "hints");
+    const int n = x->exercise->n_hints;
+    const double said = cJSON_IsNumber(m) ? m->valuedouble : -1;
+    if (!m || cJSON_IsNull(m) || (said >= 0 && said <= n && said == floor(said))) {
+        return 1;
+    }
+    char *given = cJSON_PrintUnformatted(m);
+    hn_submission_refuse(v, "\"hints\" is how many hints were read; leave it out for none",
+                         "\"hints\" is %.60s; a whole number from 0 to %d is allowed",
+                         given ? given : "", n);
+    cJSON_free(given);
+    return 0;
+}
+
 /// Fields that no part asks for; the file of another exercise or another seed.
 static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     static const char *const others[] = {"problem", "exercise", "student",
@@ -352,7 +368,7 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
         return hn_submission_refuse(v, NULL, "the submission says it answers '%.40s', this is '%s'",
                                     id->valuestring, x->exercise->id);
     }
-    if (!check_seed(x, submission, v)) {
+    if (!check_seed(x, submission, v) || !check_hints(x, submission, v)) {
         return 0;
     }
 
@@ -398,8 +414,7 @@ static void refuse_unreadable(hn_verdict *v) {
 
 /// Takes off what the hints that the submission says it used cost by the rubric.
 static void charge_hints(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
-    const double said = hn_part_number(submission, "hints", 0);
-    const int n = said >= 1 && said <= HN_GRADE_MAX_HINTS ? (int)said : 0;
+    const int n = (int)hn_part_number(submission, "hints", 0);
     const double cost = fmin(hn_rubric_hints_cost(x->exercise->rubric, n), v->score);
     if (cost > 0) {
         v->score -= cost;

@@ -251,6 +251,83 @@ def whose_variant(folder):
     expect("a rate of LaTeX is read", "1 / 1  right" in run("grade", "closure", rates).stdout, run("grade", "closure", rates).stdout)
 
 
+def rates_of_a_part(folder):
+    """Every spelling of the crank's rate is the rate that the part asks for, not the given speed."""
+    for spelt in ("u1", "w1", "omega_1", "\\omega_1", "\\dot\\theta_1", "\\dot{\\theta}_1", "thdot1"):
+        second = "\\dot\\theta_2" if "dot\\" in spelt else "u2"
+        path = write(folder, "rate.json", {"student": "s1001", "a": f"-l1*sin(th1)*{spelt}-l2*sin(th2)*{second}"})
+        done = run("grade", "closure", path)
+        expect(f"closure a with {spelt} is right", "2 / 2  right" in done.stdout, done.stdout + done.stderr)
+        path = write(folder, "rate.json", {"c": f"-m2*l1*l2*sin(th1-th2)*{spelt}^2/2+9.81*m2*l2*cos(th2)/2"})
+        done = run("grade", "fourbar", path)
+        expect(f"fourbar c with {spelt} squared is right", "2 / 2  right" in done.stdout, done.stdout + done.stderr)
+
+    # the given number keeps its name where the part has no such rate; of two rates the name must say which
+    part = {"id": "a", "ask": "?", "kind": "formula", "points": 1, "states": {"x": {"range": [1, 2]}}, "answer": "w1*x", "second": "x*w1"}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"w1": {"range": [2, 3], "digits": 1, "unit": "rad/s"}}, "parts": [part]}  # fmt: skip
+    for spelt in ("w1", "omega1"):
+        done = run("grade", write(folder, "mine.json", exercise), write(folder, "a.json", {"a": f"{spelt}*x"}))
+        expect(f"{spelt} is the given number", "1 / 1  right" in done.stdout, done.stdout)
+    part.update(states={"u1": {"range": [1, 2]}, "om1": {"range": [3, 4]}}, answer="u1-om1", second="-om1+u1")
+    done = run("grade", write(folder, "mine.json", exercise), write(folder, "a.json", {"a": "omega_1-u1"}))
+    expect("a name of two rates is unreadable, and both are named", done.returncode == 2 and "'omega1' may be om1 or u1" in done.stdout, done.stdout)
+
+
+def nothing_for_nothing(folder):
+    """A formula that is 0, or one number everywhere, earns nothing and is not told what it lacks."""
+    for exercise, part in (("fourbar", "b"), ("fourbar", "c"), ("fourbar", "e"), ("closure", "b"), ("code", "b"), ("code", "d")):
+        for zero in ("0", "th3-th3" if part in "be" and exercise != "fourbar" else "th2-th2", "3.5"):
+            zero = zero.replace("2", "3") if (exercise, part) == ("closure", "b") else zero
+            done = json.loads(run("grade", exercise, write(folder, "0.json", {part: zero}), "--json").stdout)
+            entry = [e for e in done["entries"] if e["name"] == part][0]
+            expect(f"{exercise} {part} = {zero} earns 0", done["score"] == 0 and entry["mistake"] in ("zero", "constant", "point-masses", "masked"), str(entry))
+    for exercise, part in (("driven", "b"), ("code", "f")):
+        zero = json.loads(run("grade", exercise, write(folder, "0.json", {part: 0}), "--json").stdout)
+        expect(f"{exercise} {part} = 0 earns 0", zero["score"] == 0, str(zero["entries"]))
+    half = json.loads(run("grade", "fourbar", write(folder, "half.json", {"b": "m2*l1*l2*cos(th1-th2)"}), "--json").stdout)
+    expect("a mistake in a formula keeps its share", half["score"] == 1, str(half["score"]))
+
+
+def what_is_told_of_choices_hints_and_rods(folder):
+    """The right option is printed when asked for; hints are counted; l^2/12 is named."""
+    asked = run("problem", "closure").stdout
+    right = re.search(r"\(([a-d])\) the velocity with which the loop opens at B", asked)
+    wrong = write(folder, "d.json", {"d": "abcd".replace(right[1], "")[0]})
+    done = run("grade", "closure", wrong, "--show-expected").stdout
+    expect("the right option is printed", f"expected  ({right[1]}) the velocity with which the loop opens at B" in done, done)
+    silent = run("grade", "closure", wrong).stdout
+    expect("and only when asked for", "the loop opens" not in silent, silent)
+
+    # as many hints as there are
+    for hints in ("two", -1, 5, 1.5, True, [1]):
+        done = run("grade", "fourbar", write(folder, "h.json", {"a": 1, "hints": hints}))
+        expect(f"hints {hints} are refused", done.returncode == 2 and "a whole number from 0 to 2 is allowed" in done.stdout, done.stdout)
+    for hints in (0, 2, None):
+        done = run("grade", "fourbar", write(folder, "h.json", {"a": 1, "hints": hints}))
+        expect(f"hints {hints} are read", done.returncode == 0, done.stdout)
+
+    # the moment of inertia about the wrong point
+    x = json.loads(run("problem", "fourbar", "--json").stdout)["numbers"]
+    done = run("grade", "fourbar", write(folder, "m.json", {"a": x["m1"] * x["l1"] ** 2 / 12 + x["m2"] * x["l1"] ** 2}))
+    expect("m l^2/12 is named", "centre-of-mass" in done.stdout and "not about the pivot" in done.stdout, done.stdout)
+
+
+def regrading_the_ungradable(folder):
+    """What cannot be graded has no score, before or now."""
+    verdict = json.loads(run("grade", "fourbar", write(folder, "good.json", {"a": 1}), "--json").stdout)
+    kept, bad = write(folder, "kept.json", verdict), write(folder, "bad.json", "{")
+    done = run("regrade", kept, bad)
+    expect("it cannot be graded now", done.returncode == 2 and "0 of 8 before, cannot be graded now" in done.stdout, done.stdout)
+    done = run("regrade", kept, bad, "--json")
+    expect("and has no score", json.loads(done.stdout)["score"] is None, done.stdout)
+    none = write(folder, "none.json", run("grade", "fourbar", bad, "--json").stdout)
+    done = run("regrade", none, bad)
+    expect("nor had it before", "could not be graded before, cannot be graded now" in done.stdout, done.stdout)
+    done = run("regrade", none, write(folder, "good.json", {"a": 1}))
+    expect("what can be graded now is told", "could not be graded before, 0 of 8 now" in done.stdout, done.stdout)
+
+
 def other_numbers(folder):
     """Numbers of another variant are named with their owner; a number that agrees by chance is not."""
     part = {"ask": "?", "kind": "number", "points": 1, "unit": "m", "tolerance": {"relative": 0.001}}
@@ -397,6 +474,10 @@ def main():
         whole_check(folder)
         own_exercise(folder)
         whose_variant(folder)
+        rates_of_a_part(folder)
+        nothing_for_nothing(folder)
+        what_is_told_of_choices_hints_and_rods(folder)
+        regrading_the_ungradable(folder)
         named_file(folder)
         other_numbers(folder)
         for_teachers(folder)

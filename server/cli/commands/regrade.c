@@ -66,6 +66,26 @@ static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     }
 }
 
+/// Both scores; a verdict without one says so in its place.
+static void put_scores(hn_strbuf *b, const cJSON *old, const hn_verdict *v, bool same) {
+    const bool graded = strcmp(text_of(old, "status"), "graded") == 0;
+    hn_strbuf_printf(b, "%s, seed %s: ", v->problem->id, text_of(old, "seed"));
+
+    // what could not be graded has no score to compare
+    if (v->kind == HN_VERDICT_UNGRADABLE && !graded) {
+        hn_strbuf_add(b, "could not be graded before, cannot be graded now\n");
+    } else if (v->kind == HN_VERDICT_UNGRADABLE) {
+        hn_strbuf_printf(b, "%g of %g before, cannot be graded now\n",
+                         hn_part_number(old, "score", (double)NAN), v->max_score);
+    } else if (!graded) {
+        hn_strbuf_printf(b, "could not be graded before, %g of %g now\n", v->score, v->max_score);
+    } else {
+        hn_strbuf_printf(b, "%s: %g before, %g now, of %g\n",
+                         same ? "the same score" : "ANOTHER SCORE",
+                         hn_part_number(old, "score", (double)NAN), v->score, v->max_score);
+    }
+}
+
 static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *v) {
     // the same score, up to the rounding of its text
     const double score = hn_part_number(old, "score", (double)NAN);
@@ -81,14 +101,12 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
         hn_json_put_string(&b, "problem", v->problem->id);
         hn_json_put_bool(&b, "same", same);
         hn_json_put_number(&b, "score_before", score);
-        hn_json_put_number(&b, "score", v->score);
+        hn_json_put_number(&b, "score", v->kind == HN_VERDICT_GRADED ? v->score : (double)NAN);
         hn_json_put_number(&b, "max_score", v->max_score);
         hn_json_end_object(&b);
         return hn_cli_print(&b);
     }
-    hn_strbuf_printf(&b, "%s, seed %s: %s: %g before, %g now, of %g\n", v->problem->id,
-                     text_of(old, "seed"), same ? "the same score" : "ANOTHER SCORE", score,
-                     v->score, v->max_score);
+    put_scores(&b, old, v, same);
     put_changes(&b, old, v);
     hn_verdict_text(&b, v);
     return hn_cli_print_text(&b);

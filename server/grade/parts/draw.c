@@ -64,6 +64,77 @@ hn_status hn_draw_parse(hn_draw *d, const char *text, hn_ex *out, hn_diag *diag)
     return hn_graph_failed(d->graph) ? HN_ERR_MEMORY : status;
 }
 
+// ---- formulas of answers ----
+
+/// The names of an answer; `clash` says which of them may be two, "" when none.
+typedef struct answer_names {
+    hn_draw *draw;
+    char clash[160];
+} answer_names;
+
+/// The names from `first` on that `name` may stand for: how many, with the first two in `found`.
+static int find_aliases(const hn_draw *d, const char *name, int first, int found[2]) {
+    char other[MAX_WORD];
+    int n = 0;
+    for (int i = 0; hn_spelling_alias(name, i, other, sizeof other); i++) {
+        const int k = find_name(d, other);
+        if (k >= first && (n == 0 || k != found[0])) {
+            found[n > 0] = k;
+            n++;
+        }
+    }
+    return n;
+}
+
+static int find_answer_name(answer_names *a, const char *name) {
+    const hn_draw *d = a->draw;
+    char joined[MAX_WORD];
+    int found[2] = {-1, -1}, i = find_name(d, name);
+    if (i < 0 && hn_spelling_join(name, joined, sizeof joined)) {
+        i = find_name(d, joined);
+        name = joined;
+    }
+
+    // a given number keeps its name, but a given rate yields to the rate of the part
+    if (i >= d->n_outer || (i >= 0 && strcmp(d->unit[i], "rad/s") != 0)) {
+        return i;
+    }
+    int n = find_aliases(d, name, d->n_outer, found);
+    if (n == 0 && i >= 0) {
+        return i;
+    }
+    n = n > 0 ? n : find_aliases(d, name, 0, found);
+    if (n > 1) {
+        snprintf(a->clash, sizeof a->clash, "'%.40s' may be %.40s or %.40s; write which", name,
+                 d->name[found[0]], d->name[found[1]]);
+    }
+    return n == 1 ? found[0] : -1;
+}
+
+static int lookup_answer(void *user, const char *name, hn_ex *out) {
+    answer_names *a = user;
+    const int i = find_answer_name(a, name);
+    if (i >= 0) {
+        *out = hn_graph_symbol_expr(a->draw->graph, i);
+    }
+    return i >= 0;
+}
+
+hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex *out, hn_diag *diag) {
+    answer_names names = {.draw = d};
+    const hn_parse_opts opts = {.lookup = lookup_answer,
+                                .user = &names,
+                                .known = d->name,
+                                .n_known = d->n_names,
+                                .max_depth = 100,
+                                .max_chars = MAX_CHARS};
+    hn_status status = hn_parse(d->graph, text, &opts, out, diag);
+    if (status == HN_ERR_INPUT && names.clash[0]) {
+        status = hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s", names.clash);
+    }
+    return hn_graph_failed(d->graph) ? HN_ERR_MEMORY : status;
+}
+
 double hn_draw_eval(hn_draw *d, hn_ex e, int state) {
     return hn_graph_eval(d->graph, e, d->value[state]);
 }
@@ -172,6 +243,7 @@ static void copy_outer(hn_draw *d, const hn_draw *outer) {
         }
         d->n_names++;
     }
+    d->n_outer = d->n_names;
 }
 
 hn_status hn_draw_init(hn_draw *d, const cJSON *names, const cJSON *conditions,

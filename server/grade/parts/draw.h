@@ -21,6 +21,7 @@ enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16 };
 typedef struct hn_draw {
     hn_graph *graph; ///< owned; its symbols are the names in their order
     int n_names, n_states;
+    int n_outer; ///< the first names, which are given; the others are the part's own
     const char *name[HN_DRAW_NAMES], *unit[HN_DRAW_NAMES]; ///< borrowed from the JSON
     int digits[HN_DRAW_NAMES]; ///< decimals of a drawn number; -1: as many as it has
     double value[HN_DRAW_STATES][HN_DRAW_NAMES];
@@ -35,6 +36,12 @@ HN_MUST_CHECK hn_status hn_draw_init(hn_draw *d, const cJSON *names, const cJSON
 void hn_draw_reset(hn_draw *d);
 /// One formula in these names; theta_1 and theta1 stand for th1 where th1 is a name.
 HN_MUST_CHECK hn_status hn_draw_parse(hn_draw *d, const char *text, hn_ex *out, hn_diag *diag);
+/// One formula of an answer. Other spellings (thetadot1, omega1) are looked for among the part's
+/// own names before those that are given, and a given rate (in rad/s) is read as the part's own
+/// rate of that index: w1 as u1. Fails: HN_ERR_INPUT (also for a spelling of two names; `diag`
+/// names both), HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex *out,
+                                             hn_diag *diag);
 double hn_draw_eval(hn_draw *d, hn_ex e, int state);
 /// The value of a formula in the first state.
 HN_MUST_CHECK hn_status hn_draw_value(hn_draw *d, const char *text, double *out, hn_diag *diag);

@@ -79,6 +79,16 @@ static int read_letter(const cJSON *node, int n, const char *what, hn_part_resul
     return i;
 }
 
+/// The right option as the question prints it: "(b) its text".
+static void write_expected(const hn_part *p, const cJSON *option, int letter, hn_part_result *r) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_strbuf_printf(&b, "(%c) ", 'a' + letter);
+    hn_draw_text(&b, p->draw, hn_part_text(option, "text"));
+    snprintf(r->expected, sizeof r->expected, "%s", hn_strbuf_text(&b));
+    hn_strbuf_reset(&b);
+}
+
 /// Grades one of the two lists into one result.
 static hn_status grade_list(const hn_part *p, const char *key, const cJSON *given,
                             hn_part_result *r, hn_diag *diag) {
@@ -91,6 +101,7 @@ static hn_status grade_list(const hn_part *p, const char *key, const cJSON *give
         return hn_diag_set(diag, HN_ERR_INPUT, "/parts/options", NULL,
                            "part %s: exactly one of the %s must be right", p->id, key);
     }
+    write_expected(p, order[right], right, r);
     hn_part_keep_given(r, given);
     const int i = read_letter(given, n, reasons ? "reason" : "choice", r);
     if (i == right) {

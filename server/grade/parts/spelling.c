@@ -521,7 +521,7 @@ int hn_spelling_alias(const char *name, int i, char *out, size_t size) {
         {"dtheta", "w"},   {"dtheta", "u"},    {"dth", "w"},      {"dth", "u"},    {"qdot", "w"},
         {"qdot", "u"},     {"dq", "w"},        {"dq", "u"},       {"theta", "th"}, {"q", "th"},
         {"omega", "w"},    {"omega", "om"},    {"omega", "u"},    {"alpha", "al"}, {"beta", "be"},
-        {"gamma", "ga"},   {"lambda", "la"},
+        {"gamma", "ga"},   {"lambda", "la"},   {"w", "om"},       {"w", "u"},
     };
     char plain[MAX_NAME];
     move_dot(name, plain);

@@ -19,8 +19,8 @@
 /// Fails: HN_ERR_INPUT (a command of LaTeX that is not known, or a/b c, which may be read in two
 /// ways; `diag` says the column of what was typed), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_spelling_normalise(hn_strbuf *out, const char *text, hn_diag *diag);
-/// The i-th shorter name that a name may stand for: theta1 is th1, omega1 is w1, om1 or u1, q1 is
-/// th1; a dot may stand before the index or behind it: thetadot1, theta1_dot.
+/// The i-th shorter name that a name may stand for: theta1 is th1, omega1 is w1, om1 or u1, w1 is
+/// om1 or u1, q1 is th1; a dot may stand before the index or behind it: thetadot1, theta1_dot.
 /// Returns 0 when there is none.
 int hn_spelling_alias(const char *name, int i, char *out, size_t size);
 /// Copies `name` without underscores: theta_1 is theta1. Returns 0 when it has none or is too long.

@@ -23,12 +23,12 @@ static hn_status read_quantity(hn_value_sheet *s, const char *text, hn_ex *e, hn
                                hn_diag *diag) {
     char head[MAX_CHARS];
     *unit = s->unit;
-    hn_status status = hn_draw_parse(s->draw, text, e, diag);
+    hn_status status = hn_draw_parse_answer(s->draw, text, e, diag);
     for (size_t i = 1; status != HN_OK && text[i]; i++) {
         if (may_begin_unit(text, i)) {
             snprintf(head, sizeof head, "%.*s", (int)i, text);
             if (hn_unit_parse(text + i, unit) && text[i + strspn(text + i, " ")] &&
-                hn_draw_parse(s->draw, head, e, NULL) == HN_OK) {
+                hn_draw_parse_answer(s->draw, head, e, NULL) == HN_OK) {
                 status = HN_OK;
             }
         }
@@ -84,7 +84,7 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
     if (status != HN_OK) {
         status = hn_spelling_normalise(&plain, text, &diag);
         if (status == HN_OK && s->symbolic) {
-            status = hn_draw_parse(s->draw, hn_strbuf_text(&plain), e, &diag);
+            status = hn_draw_parse_answer(s->draw, hn_strbuf_text(&plain), e, &diag);
         } else if (status == HN_OK) {
             status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
         }

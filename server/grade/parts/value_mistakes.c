@@ -239,6 +239,42 @@ static int find_entry(const hn_value_sheet *s, int k, const double *given, hn_pa
     return 0;
 }
 
+/// Lowest and highest value of the states.
+static void find_range(const double *x, int n, double *low, double *high) {
+    *low = *high = x[0];
+    for (int i = 1; i < n; i++) {
+        *low = fmin(*low, x[i]);
+        *high = fmax(*high, x[i]);
+    }
+}
+
+/// 0 in every state where the right value is not; rounding is far below 1e-12 of the size.
+static bool is_zero(const hn_value_sheet *s, int k, const double *given) {
+    double low, high, lowest, highest;
+    find_range(given, s->draw->n_states, &low, &high);
+    find_range(s->reference.x[k], s->draw->n_states, &lowest, &highest);
+    return fmax(fabs(low), fabs(high)) <= 1e-12 * fmax(fabs(lowest), fabs(highest));
+}
+
+/// An answer that is 0, or a formula that is the same in every state where the right one is not: it
+/// has missed the question, and what may be missing in it would be a guess.
+static bool find_constant(const hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
+    double low, high, lowest, highest;
+    if (is_zero(s, k, given)) {
+        hn_part_wrong(r, "zero", 0, "this is 0; the right answer is not");
+        return true;
+    }
+    find_range(given, s->draw->n_states, &low, &high);
+    find_range(s->reference.x[k], s->draw->n_states, &lowest, &highest);
+    const bool same = high - low <= 1e-12 * fmax(fabs(low), fabs(high));
+    if (s->symbolic && same && highest - lowest > s->allowed[k]) {
+        hn_part_wrong(r, "constant", 0,
+                      "this has the same value whatever its names are; the right answer has not");
+        return true;
+    }
+    return false;
+}
+
 hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
     int found = 0;
     if (!isfinite(given[0])) {
@@ -248,8 +284,11 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_par
 
     // one mistake explains more than two: pairs come last
     HN_TRY(find_listed(s, k, given, false, r, &found));
-    found = found || find_factor(s, k, given, r) || find_angles(s, k, given, r) ||
-            find_names(s, k, given, r) || find_entry(s, k, given, r);
+    if (found && is_zero(s, k, given)) { // named, but worth nothing
+        r->share = 0;
+    }
+    found = found || find_constant(s, k, given, r) || find_factor(s, k, given, r) ||
+            find_angles(s, k, given, r) || find_names(s, k, given, r) || find_entry(s, k, given, r);
     if (!found) {
         HN_TRY(find_listed(s, k, given, true, r, &found));
     }
