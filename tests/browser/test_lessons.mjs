@@ -3,7 +3,7 @@
 // check, progress, print.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
+import { formOf, matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
 import { violations } from "./axe.mjs";
 import { createBench, read, screenshot, soon, until } from "./support.mjs";
 
@@ -105,6 +105,16 @@ test("what is asked is read from the exercise, what is typed is a value or a for
     columns: 2,
   });
   assert.equal(matrixOf("none"), null);
+});
+
+test("a field asks for no quotes: they belong to files of answers", () => {
+  const form = (words) =>
+    formOf({ id: "e", kind: "formula", points: 1, ask: "", answer_form: words });
+  assert.equal(form("a formula in quotes; names: th2"), "a formula; names: th2");
+  assert.equal(
+    form('a number in m, or with its unit: "1.2 m"; right to 1 %'),
+    "a number in m, or with its unit: 1.2 m; right to 1 %",
+  );
 });
 
 test("an exhibit runs beside its text, a prediction is kept", async (t) => {

@@ -256,3 +256,15 @@ test("a setting outside its range, in another unit or not among the choices is t
   assert.equal(faultOf(rule, "auto"), "");
   assert.equal(faultOf(rule, "often"), "one of given, auto");
 });
+
+test("a number without a unit has no prefix", () => {
+  const cases = { 0.8: "0.80", "-0.0123": "−0.012", 7: "7.0", 12: "12", 1234: "1200", 0: "0" };
+  for (const [value, words] of Object.entries(cases)) {
+    assert.equal(quantity(Number(value), ""), words);
+  }
+  assert.deepEqual(
+    [2.5e6, 99999, 4e-5].map((value) => quantity(value, "")),
+    ["2.5×10⁶", "1.0×10⁵", "4.0×10⁻⁵"],
+  );
+  assert.equal(quantity(0.8, "m"), "800 mm");
+});

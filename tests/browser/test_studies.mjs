@@ -25,7 +25,7 @@ import {
   valueOnAxis,
 } from "../../web/state/heat.js";
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
-import { cheapestFor, wantedError } from "../../web/state/wanted.js";
+import { cheapestFor, sizeToRun, wantedError } from "../../web/state/wanted.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 
 const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
@@ -106,6 +106,12 @@ test("the cheapest method for an accuracy lies between its measured points", () 
   assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
   const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
   assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
+});
+
+test("the step that runs has two digits and is not larger than what was found", () => {
+  const of = (size, atMost) => sizeToRun({ m: 0, cost: 1, size, dot: null, atMost });
+  assert.equal(of(2.86e-3, false), 2.8e-3);
+  assert.equal(of(0.0625, true), 0.0625, "a measured step is run as it is");
 });
 
 test("a study that was cut short names what it left out", () => {

@@ -23,8 +23,15 @@ export function readChoice(form) {
   return { options: read(first), reasons: read(second) };
 }
 
-/** How an answer is written; what follows of a choice are its options. @param {Part} part */
-export const formOf = ({ kind, answer_form: form }) => (kind === "choice" ? "" : form);
+/**
+ * How an answer is written in a field: quotes belong to files of answers. What follows of a choice
+ * are its options.
+ * @param {Part} part
+ */
+export const formOf = ({ kind, answer_form: form }) =>
+  kind === "choice"
+    ? ""
+    : form.replaceAll(" in quotes", "").replace(/with its unit: "([^"]*)"/, "with its unit: $1");
 
 /** Typed text as a value: JSON where it is JSON, else the text itself. @param {string} text */
 export function readAnswer(text) {

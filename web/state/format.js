@@ -72,9 +72,22 @@ export function scientific(value, digits = 2) {
   return `${mantissa.replace("-", "−")}×${powerOfTen(Number(exponent))}`;
 }
 
+/** What is read at a glance without a power of ten. */
+const BARE = [1e-3, 1e5];
+
+/** A number without a unit. @param {number} value @param {number} rounded @param {number} digits */
+function bare(value, rounded, digits) {
+  if (rounded < BARE[0] || rounded >= BARE[1]) {
+    return scientific(value, Math.min(2, digits));
+  }
+  const before = Math.floor(Math.log10(rounded) + 1e-9) + 1;
+  const text = rounded.toFixed(Math.max(0, digits - before));
+  return `${value < 0 ? "−" : ""}${text}`;
+}
+
 /**
  * With an SI prefix so that one to three digits stand before the point: 4.2 mm. Below 1e-12 as a
- * power of ten.
+ * power of ten. A number without a unit has no prefix: 0.80, 1200, 3.0×10⁶.
  * @param {number | null | undefined} value
  * @param {string} unit
  * @param {number} [digits] significant
@@ -84,13 +97,15 @@ export function quantity(value, unit, digits = 2) {
     return "–";
   }
   const size = Math.abs(value);
-  const space = unit ? " " : "";
   if (size === 0) {
-    return `0${space}${unit}`;
+    return `0 ${unit}`.trimEnd();
   }
   const rounded = Number(size.toPrecision(digits));
+  if (!unit) {
+    return bare(value, rounded, digits);
+  }
   if (size < SMALLEST_PREFIXED || rounded >= 1e12) {
-    return `${scientific(value, Math.min(2, digits))}${space}${unit}`;
+    return `${scientific(value, Math.min(2, digits))} ${unit}`;
   }
   const exponent = Math.floor(Math.log10(rounded) / 3 + 1e-9) * 3;
   const [power, prefix] = SHOWN.find(([e]) => e === exponent) ?? SHOWN[5];

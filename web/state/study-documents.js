@@ -251,7 +251,12 @@ export const CAUSES = [
     letter: "P",
     about: "displacement by the projection along the motion",
   },
-  { name: "drift", word: "drift", letter: "D", about: "constraint violation that remains" },
+  {
+    name: "drift",
+    word: "drift",
+    letter: "D",
+    about: "error caused by constraint violation, accumulated",
+  },
   { name: "solve", word: "solve", letter: "L", about: "rounding of the linear solve" },
   { name: "rounding", word: "rounding", letter: "R", about: "rounding of the sums" },
 ];

@@ -79,6 +79,13 @@ function reachOf(dots, wanted) {
 }
 
 /**
+ * The step or tolerance that is told and run: of two digits, not larger than what was found.
+ * @param {Reach} reach
+ */
+export const sizeToRun = ({ size, atMost }) =>
+  atMost ? size : Number((size * 0.995).toPrecision(2));
+
+/**
  * Who reaches an accuracy, the cheapest first.
  * @param {Dot[][]} dots by method
  * @param {number} wanted

@@ -3,17 +3,19 @@
 // A field for the accuracy that is wanted, and the method that reaches it for the least.
 import { plain, quantity } from "../state/format.js";
 import { withSetting } from "../state/spelling.js";
-import { cheapestFor, wantedError } from "../state/wanted.js";
+import { cheapestFor, sizeToRun, wantedError } from "../state/wanted.js";
 import { listed } from "../state/verdict.js";
 import { h, say } from "../widgets/dom.js";
 
 const FIRST = "1 mm";
 
 /** @param {import("../state/wanted.js").Reach} reach */
-const sizeWords = ({ dot, size }) =>
-  dot.sizeName === "h"
+function sizeWords(reach) {
+  const size = sizeToRun(reach);
+  return reach.dot.sizeName === "h"
     ? `h = ${quantity(size, "s")}`
     : `rtol = ${plain(Number(size.toPrecision(2)))}`;
+}
 
 /**
  * @param {import("../state/store.js").Data} data
@@ -47,15 +49,12 @@ export function createWanted(data, { labelOf, costText, onPick }) {
   /** @type {import("../state/wanted.js").Reach | null} */
   let best = null;
 
-  /** The step or tolerance of the best run, not larger than what was found. */
-  const roundSize = (size) => Number((size * 0.995).toPrecision(2));
-
   function pick() {
     if (best) {
       const { m, dot } = best;
-      const size = best.atMost ? best.size : roundSize(best.size);
-      const spelling = withSetting(data.catalogue, dot.spelling, dot.sizeName, plain(size));
-      onPick(m, spelling, `${labelOf(m)} runs with ${sizeWords({ ...best, size })}`);
+      const size = plain(sizeToRun(best));
+      const spelling = withSetting(data.catalogue, dot.spelling, dot.sizeName, size);
+      onPick(m, spelling, `${labelOf(m)} runs with ${sizeWords(best)}`);
     }
   }
 
