@@ -9,6 +9,7 @@ import {
   dotsOf,
   floorOf,
   frameOf,
+  labelsIn,
   leftOutOf,
   meaningOf,
   missingIn,
@@ -106,6 +107,17 @@ test("the cheapest method for an accuracy lies between its measured points", () 
   assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
   const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
   assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
+});
+
+test("a method of a document keeps its name where the page has others before it", () => {
+  const page = [
+    { spelling: "index1@rk4:h=0.01", label: "index-1" },
+    { spelling: "baumgarte:alpha=5,beta=5@rk4:h=0.01", label: "Baumgarte" },
+  ];
+  const of = (method) => labelsIn({ methods: [{ method }] }, page)(0);
+  assert.equal(of("baumgarte:alpha=7,beta=5@rk4:h=0.02"), "Baumgarte");
+  assert.equal(of("index1@rk4:h=0.02"), "index-1");
+  assert.equal(of("penalty@rk4:h=0.01"), "penalty@rk4:h=0.01", "it is no longer on the page");
 });
 
 test("the step that runs has two digits and is not larger than what was found", () => {

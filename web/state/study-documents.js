@@ -2,6 +2,7 @@
 // @ts-check
 // Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
 import { counted, quantity, withPowers } from "./format.js";
+import { parseSpelling } from "./spelling.js";
 
 /** @typedef {{length: number, coordinates: {kind: string}[]}} Measured of a scene */
 const shareOfLength = ({ length }) => `share of ${quantity(length, "m")}`;
@@ -163,6 +164,25 @@ export function leftOutOf(study, labelOf) {
   return missing.length
     ? `${missing.length} of ${points.length} points ${were} not run: ${reason}. Left out: ${whose.join("; ")}.`
     : "";
+}
+
+/**
+ * The page's name for a method of a document, which may have others than the page: that of the
+ * same formulation and integrator, in the same place where there are several; else its own.
+ * @param {any} document
+ * @param {{spelling: string, label: string}[]} methods of the page
+ * @returns {(m: number) => string}
+ */
+export function labelsIn(document, methods) {
+  const kindOf = (spelling) => {
+    const { formulation, integrator } = parseSpelling(spelling);
+    return `${formulation.name}@${integrator.name}`;
+  };
+  return (m) => {
+    const { method } = document.methods[m];
+    const isSame = (one) => kindOf(one?.spelling ?? "") === kindOf(method);
+    return (isSame(methods[m]) ? methods[m] : methods.find(isSame))?.label ?? method;
+  };
 }
 
 /**

@@ -5,7 +5,7 @@
 import { sentenceOf } from "../api/client.js";
 import { studyKinds } from "../state/catalogue.js";
 import { listen } from "../state/store.js";
-import { missingIn } from "../state/study-documents.js";
+import { labelsIn, missingIn } from "../state/study-documents.js";
 import { h, say, set } from "../widgets/dom.js";
 import { createStudyBudget } from "./study-budget.js";
 import { createStudyCost } from "./study-cost.js";
@@ -206,13 +206,11 @@ export function createStudies(el, store, actions) {
     show();
   }
 
-  const labelOf = (document) => (m) => data.methods[m]?.label ?? document.methods[m].method;
-
   function stateWords({ state: now, progress, left, elapsed, reason, document }) {
     if (now === "running") {
       return `${Math.round(100 * progress)} %${left === null ? "" : `, ${span(left)} left at most`}`;
     }
-    const missing = document ? missingIn(document, labelOf(document)) : "";
+    const missing = document ? missingIn(document, labelsIn(document, data.methods)) : "";
     return now === "finished"
       ? `done in ${span(elapsed)}`
       : missing
