@@ -521,7 +521,7 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   await soon(async () =>
     assert.match(
       await page.locator(".budgets").textContent(),
-      /first order has ended, its parts add up to .*; they agree until/,
+      /the errors are too large to be split, the parts add up to .*; they agree until/,
     ),
   );
 });

@@ -58,7 +58,7 @@ class Budget(unittest.TestCase):
         self.assertGreater(error["mismatch"], 0.2)
         self.assertFalse(error["holds"])
         self.assertEqual(error["holds_until"], 5)
-        self.assertIn("first order has ended", page)
+        self.assertIn("the errors are too large to be split", page)
         errors, energies = page.split("Who put energy in", 1)
         self.assertNotIn('<g class="part">', errors)
         self.assertIn('<g class="part">', energies)

@@ -263,7 +263,7 @@ class Hostile(OneFile):
         self.assertLess(len(done.stderr), 4000, name)
         # one that fails on its way leaves the others in the table
         if done.returncode == ENDED:
-            self.assertRegex(done.stdout, r"(?m)^baumgarte@rk4\S* +ok", name)
+            self.assertRegex(done.stdout, r"(?m)^baumgarte@rk4\S* +right", name)
             self.assertRegex(done.stdout, r"(?m)^program:\S+ +ENDED EARLY", name)
 
     def test_whatever_it_does_its_line_says_what(self):

@@ -130,7 +130,7 @@ export function createStudyBudget(store) {
     const agree =
       ended && budget.until !== null ? `; they agree until ${seconds(budget.until)}` : "";
     const warning = ended
-      ? `: first order has ended, its parts add up to ${numberOf(budget.sum, budget.unit)}${agree}`
+      ? `: the errors are too large to be split, the parts add up to ${numberOf(budget.sum, budget.unit)}${agree}`
       : "";
     const words = budget
       ? `${budget.what} ${numberOf(budget.total, budget.unit)}${warning}${partly}`

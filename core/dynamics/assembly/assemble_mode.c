@@ -131,7 +131,8 @@ static hn_status report_missing(const mode_search *m) {
         used += wrote > 0 ? (size_t)wrote : 0;
     }
     return hn_diags_add(m->s->diags, HN_ERR_UNREACHABLE, "/start/mode",
-                        "ask for one of these, release a pin, or begin nearer to the one wanted",
+                        "ask for one of these, free a start value that is held, or begin "
+                        "nearer to the one wanted",
                         "the assembly mode '%s' was not found with what is pinned; found: %s",
                         m->s->scene->mode, list);
 }

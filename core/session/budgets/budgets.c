@@ -60,7 +60,8 @@ void hn_budget_note(const hn_model *model, const hn_budget_row *row, char out[HN
     }
     const int n =
         snprintf(out, HN_BUDGET_NOTE,
-                 "first order has ended: the parts add up to %.3g %s, the error is %.3g %s",
+                 "the errors are too large to be split: the parts add up to %.3g %s, the error "
+                 "is %.3g %s",
                  row->budget.sum, unit, row->budget.error, unit);
     if (isfinite(row->holds_until) && n > 0 && n < HN_BUDGET_NOTE) {
         snprintf(out + n, (size_t)(HN_BUDGET_NOTE - n), "; they agree until t = %.3g s",

@@ -403,6 +403,12 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
         return;
     }
 
+    // one column says it without counts
+    if (a.by_columns && map->x.n == 1 && a.agree == 1) {
+        hn_strbuf_printf(b, "prediction within %.0f %%", 100 * HN_MAP_AGREES);
+        return;
+    }
+
     // how many columns or cells agree
     hn_strbuf_printf(b,
                      a.by_columns ? "prediction within %.0f %% on %d of %d columns"

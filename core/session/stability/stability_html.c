@@ -279,10 +279,10 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
     hn_page_table(b, "Boundaries");
     hn_strbuf_add(b, "<thead><tr><th>method</th>");
     hn_strbuf_printf(b, "<th class=\"n\">%s</th>", hn_map_x(map)->name);
-    hn_strbuf_add(
-        b, "<th class=\"n\">velocities to 1 %% [s]</th>"
-           "<th class=\"n\">predicted [s]</th><th class=\"n\">last stable [s]</th>"
-           "<th class=\"n\">first not [s]</th><th>how it ended there</th></tr></thead><tbody>");
+    hn_strbuf_add(b, "<th class=\"n\">step for 1 %% error [s]</th>"
+                     "<th class=\"n\">predicted [s]</th><th class=\"n\">last stable [s]</th>"
+                     "<th class=\"n\">first unstable [s]</th>"
+                     "<th>what happened at the first unstable step</th></tr></thead><tbody>");
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         for (int i = 0; i < hn_map_x(map)->n; i++) {
             const hn_map_column *c = hn_map_get_column(map, m, i);

@@ -189,10 +189,12 @@ static bool is_right(const hn_run *pilot, hn_status status) {
 typedef enum outcome { REMOVES, FAILS, UNKNOWN } outcome;
 
 /// Where the pilot runs of report k begin. A state shortly before the event may hold its error
-/// already, so the start of the run is taken where it is not many steps away.
+/// already, so the start of the run is taken where it is not many steps away, and in any case where
+/// the equations of the run are wrong: a state on its way belongs to another motion.
 static const hn_state_at *pilot_start(const hn_watch *w, int k) {
     const bool near = w->before_at[k] <= PILOT_STEPS / FINER;
-    return near || !(w->before[k].t < w->log.list[k].t) ? &w->run->start : &w->before[k];
+    const bool wrong = w->run->spec.formulation->traits & HN_TRAIT_COUNTER_EXAMPLE;
+    return near || wrong || !(w->before[k].t < w->log.list[k].t) ? &w->run->start : &w->before[k];
 }
 
 /// How long a pilot run is: past the event, as far as its steps reach where they are fixed. Large
@@ -264,7 +266,8 @@ static outcome try_remedy(const hn_watch *w, int k, const char *text, hn_remedy 
     if (from != &s->start) {
         snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
     }
-    snprintf(said, sizeof(hn_remedy), TRIED "%sto t = %.*g s: %s gap %.2g m, energy %.2g J", begun,
+    snprintf(said, sizeof(hn_remedy),
+             TRIED "%sto t = %.*g s: %s gap %.2g m, energy changed by %.2g J", begun,
              begun[0] ? 4 : 3, sum.t, begun[0] ? "last" : "largest",
              begun[0] ? last_gap : sum.worst_gap, sum.worst_energy_change);
     return right ? REMOVES : FAILS;

@@ -93,6 +93,15 @@ static bool is_wrong(const cJSON *method) {
     return hn_document_number(e, "q") >= HN_ACCURACY_WRONG;
 }
 
+/// The verdict on the motion, where the run came to its end.
+static const char *status_of(const cJSON *method) {
+    const char *is = hn_document_text(hn_document_get(method, "verdict"), "is");
+    return has_failed(method)           ? "ENDED EARLY"
+           : is_wrong(method)           ? "WRONG"
+           : strcmp(is, "unknown") == 0 ? "not judged"
+                                        : is;
+}
+
 /// The larger of the estimates of coordinates and reactions, and where it ends before the run, or
 /// how many times the tolerance the coordinates are off.
 static void put_estimate(hn_table *t, const cJSON *e) {
@@ -117,7 +126,7 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 
     // how the run went
     hn_table_cell(t, "%s", hn_document_text(m, "method"));
-    hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : is_wrong(m) ? "WRONG" : "ok");
+    hn_table_cell(t, "%s", status_of(m));
     if (has_failed(m) || is_wrong(m)) {
         hn_table_bad(t);
     }

@@ -39,6 +39,7 @@ static const struct {
         const char *member;
         int n;
         hn_list_column columns[MAX_COLUMNS];
+        const char *note; ///< below the table: what its letters mean; NULL: none
     } tables[MAX_TABLES];
 } LISTS[] = {
     {"scenes",
@@ -48,7 +49,8 @@ static const struct {
        {{"scene", "id", NULL},
         {"title", "title", NULL},
         {"kind", "kind", NULL},
-        {"what it is", "caption", NULL}}}}},
+        {"what it is", "caption", NULL}},
+       NULL}}},
     {"methods",
      methods_json,
      {{"formulations",
@@ -57,16 +59,19 @@ static const struct {
         {"title", "title", NULL},
         {"index", "index", ""},
         {"the gap", "drift", NULL},
-        {"needs", "needs", NULL}}},
+        {"needs", "needs", NULL}},
+       "h: step, p: order of the integrator, t: time; needs: the terms evaluated (M mass matrix, "
+       "f forces, phi constraints, J their Jacobian, gamma of J a + gamma = 0)"},
       {"integrators",
        4,
        {{"integrator", "name", NULL},
         {"title", "title", NULL},
         {"order", "order", ""},
-        {"adaptive", "adaptive", NULL}}}}},
+        {"adaptive", "adaptive", NULL}},
+       NULL}}},
     {"lessons",
      hn_lessons_json,
-     {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}}}},
+     {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}, NULL}}},
     {"problems",
      hn_shelf_exercises_json,
      {{"problems",
@@ -75,7 +80,8 @@ static const struct {
         {"title", "title", NULL},
         {"lesson", "lesson", NULL},
         {"points", "points", ""},
-        {"drawn from the seed", "varied", NULL}}}}},
+        {"drawn from the seed", "varied", NULL}},
+       NULL}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 
@@ -192,6 +198,9 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
         const cJSON *array = hn_document_get(document, LISTS[which].tables[i].member);
         hn_strbuf_add(&text, i ? "\n" : "");
         hn_document_list(&text, array, LISTS[which].tables[i].columns, LISTS[which].tables[i].n);
+        if (LISTS[which].tables[i].note) {
+            hn_strbuf_printf(&text, "  %s\n", LISTS[which].tables[i].note);
+        }
         put_faults(&text, array);
     }
     for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {

@@ -57,8 +57,8 @@ static double whole_of(const sheet *s, int i) {
 /// A line a method, a column a cause.
 static void fill_by_method(hn_table *t, const sheet *s) {
     hn_table_column(t, "method", 0);
-    hn_table_column(t, s->energy ? "to t" : "error of", s->energy);
-    hn_table_column(t, s->energy ? "change" : "at the end", 1);
+    hn_table_column(t, s->energy ? "to t" : "coordinate", s->energy);
+    hn_table_column(t, s->energy ? "change" : "error at the end", 1);
     for (int k = 0; k < s->n_parts; k++) {
         hn_table_column(t, name_of(s, k), 1);
     }
@@ -109,7 +109,7 @@ static void put_by_cause(hn_strbuf *b, const sheet *s) {
         }
 
         // the whole, its parts, and their sum
-        put_line(&t, s, from, to, s->energy ? "change" : "at the end", -1);
+        put_line(&t, s, from, to, s->energy ? "change" : "error at the end", -1);
         for (int k = 0; k < s->n_parts; k++) {
             put_line(&t, s, from, to, name_of(s, k), k);
         }

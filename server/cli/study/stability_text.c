@@ -66,9 +66,13 @@ static void put_limit(hn_table *t, const hn_map *map, int m) {
 }
 
 static void put_limits(hn_strbuf *b, const hn_map *map) {
-    static const char *const heads[] = {
-        "method", "velocities to 1 %", "predicted", "last stable", "first not",
-        "ratio",  "how it ended there"};
+    static const char *const heads[] = {"method",
+                                        "step for 1 % error",
+                                        "predicted",
+                                        "last stable",
+                                        "first unstable",
+                                        "observed / predicted",
+                                        "what happened at the first unstable step"};
     enum { N_HEADS = sizeof heads / sizeof *heads };
     hn_table t;
     hn_table_init(&t);
