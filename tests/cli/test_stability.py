@@ -62,6 +62,10 @@ class Stability(unittest.TestCase):
         # asked for by name, it stays, and names the map that tells more
         self.assertEqual((study["preset"], study["stiff"], study["telling"], study["steps"]), ("limits", False, "baumgarte", None))
         self.assertIn("the preset baumgarte maps error and gap", study["methods"][0]["agreement"]["text"])
+        # its table says what each column holds
+        words = ["study", "four-bar", "stability", "--preset", "limits", "--time-limit", "0", "--methods", "projection@rk4", "--wide"]
+        text = self.call(*words).stdout.decode()
+        self.assertRegex(text, r"step for 1 % error \[ms\] +predicted \[ms\] +last stable \[ms\] +first unstable \[ms\] +observed / predicted +what happened at the first unstable step")
 
     def test_the_default_question_of_a_mechanism_without_stiffness_is_answered_by_the_map_that_tells(self):
         for scene in ("four-bar", "slider-crank"):
@@ -197,6 +201,9 @@ class Stability(unittest.TestCase):
         text = self.call(*SMALL).stdout.decode()
         self.assertIn("\u2501", text)
         self.assertRegex(text, r"prediction within 5 % on \d of \d columns")
+        # one column is not counted; a stiff one agrees with its prediction
+        study = strict(self.call("study", "stiff-four-bar", "stability", "--preset", "limits", "--time-limit", "0", "--methods", "projection@rk4", "--json").stdout)
+        self.assertEqual(study["methods"][0]["agreement"]["text"], "prediction within 5 %")
 
     def test_what_is_at_fault_is_told(self):
         for words, said in (
