@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/mechanism.h"
+#include "session/export/xml_attribute.h"
 
 #include "linalg/small3.h"
 #include "session/export/mjcf_writer.h"
@@ -153,7 +154,7 @@ static void gather_loads(hn_mjcf *m) {
         const bool held = l->kind == HN_LOAD_JOINT_SPRING ? gather_spring(m, l) : has_drive(m, l);
         m->is_drive[i] = held && l->kind != HN_LOAD_JOINT_SPRING;
         if (!held) {
-            hn_mjcf_leave_out(m, "load", l->name, kinds[l->kind]);
+            hn_xml_leave_out(m->left_out, "load", l->name, kinds[l->kind]);
         }
     }
 }
@@ -173,7 +174,7 @@ static void name_constraints(hn_mjcf *m) {
         m->is_gear[i] = c->kind == HN_CONSTRAINT_GEAR && is_single(m, c->coordinate[0]) &&
                         is_single(m, c->coordinate[1]);
         if (!m->is_gear[i]) {
-            hn_mjcf_leave_out(m, "constraint", c->name, kinds[c->kind]);
+            hn_xml_leave_out(m->left_out, "constraint", c->name, kinds[c->kind]);
         }
     }
 }
@@ -184,18 +185,17 @@ static void name_the_rest(hn_mjcf *m) {
         const bool holds = j->type == HN_JOINT_REVOLUTE || j->type == HN_JOINT_SPHERICAL ||
                            j->type == HN_JOINT_FIXED;
         if (hn_system_joint_is_cut(hn_model_system(m->model), i) && !holds) {
-            hn_mjcf_leave_out(m, "joint", j->name,
-                              "it closes a loop, and is neither a hinge, a ball nor fixed");
+            hn_xml_leave_out(m->left_out, "joint", j->name,
+                             "it closes a loop, and is neither a hinge, a ball nor fixed");
         }
     }
     if (m->scene->has_formulas) {
-        hn_mjcf_leave_out(m, "lagrangian", NULL, "energies written as formulas");
+        hn_xml_leave_out(m->left_out, "lagrangian", NULL, "energies written as formulas");
     }
     for (int i = 0; i < m->scene->n_bodies; i++) {
         if (!(m->scene->bodies[i].mass.value > 0)) {
-            hn_mjcf_leave_out(
-                m, "mass of body", m->scene->bodies[i].name,
-                "it is 0, and MuJoCo moves no body without mass: give it a small one");
+            hn_xml_leave_out(m->left_out, "mass of body", m->scene->bodies[i].name,
+                             "it is 0, and MuJoCo moves no body without mass: give it a small one");
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "session/export/mjcf_writer.h"
 
 #include "linalg/small3.h"
+#include "session/export/xml_attribute.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,29 +14,7 @@ static const double LEAST_SHARE = 1e-10, LEAST_MOMENT = 1e-14;
 /// the joints are, so that rows which depend on each other do so to the rounding of the first.
 static const double ALONG = 0.5;
 
-void hn_mjcf_leave_out(hn_mjcf *m, const char *what, const char *name, const char *why) {
-    hn_strbuf_printf(m->left_out, "left out: %s%s%s%s: %s\n", what, name ? " '" : "",
-                     name ? name : "", name ? "'" : "", why);
-}
-
 // ---- attributes ----
-
-static void put_text(hn_mjcf *m, const char *key, const char *text) {
-    hn_strbuf_printf(m->out, " %s=\"", key);
-    for (const char *c = text; *c; c++) {
-        const char *name = *c == '&'   ? "&amp;"
-                           : *c == '<' ? "&lt;"
-                           : *c == '>' ? "&gt;"
-                           : *c == '"' ? "&quot;"
-                                       : NULL;
-        if (name) {
-            hn_strbuf_add(m->out, name);
-        } else {
-            hn_strbuf_add_n(m->out, c, 1);
-        }
-    }
-    hn_strbuf_add(m->out, "\"");
-}
 
 static void put_values(hn_strbuf *b, const double *x, int n) {
     for (int i = 0; i < n; i++) {
@@ -43,16 +22,8 @@ static void put_values(hn_strbuf *b, const double *x, int n) {
     }
 }
 
-static void put_numbers(hn_mjcf *m, const char *key, const double *x, int n) {
-    hn_strbuf_printf(m->out, " %s=\"", key);
-    for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(m->out, "%s%.17g", i ? " " : "", x[i] + 0.0);
-    }
-    hn_strbuf_add(m->out, "\"");
-}
-
 static void put_number(hn_mjcf *m, const char *key, double x) {
-    put_numbers(m, key, &x, 1);
+    hn_xml_put_numbers(m->out, key, &x, 1);
 }
 
 static void begin_line(hn_mjcf *m, int depth, const char *element) {
@@ -117,10 +88,11 @@ static void put_inertial(hn_mjcf *m, const hn_body *body, int depth) {
 
     // products only where there are some: the eigenvalues of a diagonal are what is written
     begin_line(m, depth, "inertial");
-    put_numbers(m, "pos", c, 3);
+    hn_xml_put_numbers(m->out, "pos", c, 3);
     put_number(m, "mass", body->mass.value);
     const bool has_products = I[3] != 0 || I[4] != 0 || I[5] != 0;
-    put_numbers(m, has_products ? "fullinertia" : "diaginertia", I, has_products ? 6 : 3);
+    hn_xml_put_numbers(m->out, has_products ? "fullinertia" : "diaginertia", I,
+                       has_products ? 6 : 3);
     hn_strbuf_add(m->out, "/>\n");
 }
 
@@ -137,8 +109,8 @@ static void put_actions(hn_mjcf *m, int coordinate) {
         put_number(m, "damping", s->damping);
     }
     if (isfinite(c->min) && isfinite(c->max)) {
-        put_numbers(m, "range", (double[]){c->min, c->max}, 2);
-        put_text(m, "limited", "false");
+        hn_xml_put_numbers(m->out, "range", (double[]){c->min, c->max}, 2);
+        hn_xml_put_text(m->out, "limited", "false", "");
     }
 }
 
@@ -147,10 +119,10 @@ static void put_single(hn_mjcf *m, const hn_pose *pose, const hn_pose_part *p) {
     const double q = m->poses.q[p->coordinate], v = m->poses.v[p->coordinate];
     place_back(&pose->world, p->at, at);
     turn_back(&pose->world, p->axis, axis);
-    put_text(m, "name", m->scene->coordinates[p->coordinate].name);
-    put_text(m, "type", p->kind == HN_POSE_HINGE ? "hinge" : "slide");
-    put_numbers(m, "pos", at, 3);
-    put_numbers(m, "axis", axis, 3);
+    hn_xml_put_text(m->out, "name", m->scene->coordinates[p->coordinate].name, "");
+    hn_xml_put_text(m->out, "type", p->kind == HN_POSE_HINGE ? "hinge" : "slide", "");
+    hn_xml_put_numbers(m->out, "pos", at, 3);
+    hn_xml_put_numbers(m->out, "axis", axis, 3);
     put_number(m, "ref", q);
     put_actions(m, p->coordinate);
     put_values(&m->qpos, &q, 1);
@@ -161,12 +133,12 @@ static void put_single(hn_mjcf *m, const hn_pose *pose, const hn_pose_part *p) {
 static void put_whole(hn_mjcf *m, hn_pose *pose, const hn_pose_part *p) {
     static const double unturned[4] = {1, 0, 0, 0};
     double at[3], spin[3], turn[4];
-    put_text(m, "name", m->scene->joints[pose->joint].name);
+    hn_xml_put_text(m->out, "name", m->scene->joints[pose->joint].name, "");
     turn_back(&pose->world, p->spin, spin);
     if (p->kind == HN_POSE_BALL) {
         place_back(&pose->world, p->at, at);
-        put_text(m, "type", "ball");
-        put_numbers(m, "pos", at, 3);
+        hn_xml_put_text(m->out, "type", "ball", "");
+        hn_xml_put_numbers(m->out, "pos", at, 3);
         put_values(&m->qpos, unturned, 4);
     } else {
         find_quaternion(pose->world.R, turn);
@@ -205,9 +177,9 @@ static void put_bodies(hn_mjcf *m, int parent, int depth) {
         hn_im_frame local = hn_im_frame_mul(&back, &pose->world);
         find_quaternion(local.R, turn);
         begin_line(m, depth, "body");
-        put_text(m, "name", m->scene->bodies[i].name);
-        put_numbers(m, "pos", local.p, 3);
-        put_numbers(m, "quat", turn, 4);
+        hn_xml_put_text(m->out, "name", m->scene->bodies[i].name, "");
+        hn_xml_put_numbers(m->out, "pos", local.p, 3);
+        hn_xml_put_numbers(m->out, "quat", turn, 4);
         hn_strbuf_add(m->out, ">\n");
         put_joints(m, pose, depth + 1);
         if (m->scene->bodies[i].mass.value > 0) {
@@ -233,24 +205,24 @@ static void put_connect(hn_mjcf *m, const hn_joint *j, double along, const char 
     hn_strbuf name;
     hn_strbuf_init(&name);
     hn_strbuf_printf(&name, "%s%s", j->name, suffix);
-    put_text(m, "name", hn_strbuf_text(&name));
+    hn_xml_put_text(m->out, "name", hn_strbuf_text(&name), "");
     m->out->failed |= name.failed;
     hn_strbuf_reset(&name);
-    put_text(m, "body1", m->scene->bodies[first].name);
+    hn_xml_put_text(m->out, "body1", m->scene->bodies[first].name, "");
     if (second != HN_GROUND) {
-        put_text(m, "body2", m->scene->bodies[second].name);
+        hn_xml_put_text(m->out, "body2", m->scene->bodies[second].name, "");
     }
-    put_numbers(m, "anchor", anchor, 3);
+    hn_xml_put_numbers(m->out, "anchor", anchor, 3);
     hn_strbuf_add(m->out, "/>\n");
 }
 
 static void put_weld(hn_mjcf *m, const hn_joint *j) {
     const bool on_ground = j->parent == HN_GROUND;
     hn_strbuf_add(m->out, "    <weld");
-    put_text(m, "name", j->name);
-    put_text(m, "body1", m->scene->bodies[on_ground ? j->child : j->parent].name);
+    hn_xml_put_text(m->out, "name", j->name, "");
+    hn_xml_put_text(m->out, "body1", m->scene->bodies[on_ground ? j->child : j->parent].name, "");
     if (!on_ground) {
-        put_text(m, "body2", m->scene->bodies[j->child].name);
+        hn_xml_put_text(m->out, "body2", m->scene->bodies[j->child].name, "");
     }
     hn_strbuf_add(m->out, "/>\n");
 }
@@ -273,10 +245,10 @@ static void put_gear(hn_mjcf *m, const hn_constraint *c) {
     const double slope = -c->ratio.value;
     const double offset = c->value.value + slope * m->poses.q[y] - m->poses.q[x];
     hn_strbuf_add(m->out, "    <joint");
-    put_text(m, "name", c->name);
-    put_text(m, "joint1", m->scene->coordinates[x].name);
-    put_text(m, "joint2", m->scene->coordinates[y].name);
-    put_numbers(m, "polycoef", (double[]){offset, slope, 0, 0, 0}, 5);
+    hn_xml_put_text(m->out, "name", c->name, "");
+    hn_xml_put_text(m->out, "joint1", m->scene->coordinates[x].name, "");
+    hn_xml_put_text(m->out, "joint2", m->scene->coordinates[y].name, "");
+    hn_xml_put_numbers(m->out, "polycoef", (double[]){offset, slope, 0, 0, 0}, 5);
     hn_strbuf_add(m->out, "/>\n");
 }
 
@@ -300,14 +272,15 @@ static void put_equalities(hn_mjcf *m) {
 static void put_drive(hn_mjcf *m, const hn_load *l) {
     const bool follows = l->kind == HN_LOAD_FOLLOW;
     hn_strbuf_printf(m->out, "    <%s", follows ? "position" : "motor");
-    put_text(m, "name", l->name);
-    put_text(m, "joint", m->scene->coordinates[l->coordinate].name);
+    hn_xml_put_text(m->out, "name", l->name, "");
+    hn_xml_put_text(m->out, "joint", m->scene->coordinates[l->coordinate].name, "");
     if (follows) {
         put_number(m, "kp", l->stiffness.value);
         put_number(m, "kv", l->damping.value);
     }
     if (follows && l->value[1].value > 0) {
-        put_numbers(m, "forcerange", (double[]){-l->value[1].value, l->value[1].value}, 2);
+        hn_xml_put_numbers(m->out, "forcerange", (double[]){-l->value[1].value, l->value[1].value},
+                           2);
     }
     hn_strbuf_add(m->out, "/>\n");
 }
@@ -329,7 +302,7 @@ static void put_start(hn_mjcf *m) {
                      "qvel=\"%s\"",
                      hn_strbuf_text(&m->qpos), hn_strbuf_text(&m->qvel));
     if (control.n > 0) {
-        put_text(m, "ctrl", hn_strbuf_text(&control));
+        hn_xml_put_text(m->out, "ctrl", hn_strbuf_text(&control), "");
     }
     hn_strbuf_add(m->out, "/>\n  </keyframe>\n");
     m->out->failed |= control.failed;
@@ -347,9 +320,9 @@ void hn_mjcf_write(hn_mjcf *m) {
 
     // units are the scene's
     begin_line(m, 0, "mujoco");
-    put_text(m, "model", scene->name);
+    hn_xml_put_text(m->out, "model", scene->name, "");
     hn_strbuf_add(m->out, ">\n  <compiler angle=\"radian\"/>\n  <option");
-    put_numbers(m, "gravity", gravity, 3);
+    hn_xml_put_numbers(m->out, "gravity", gravity, 3);
     if (scene->step > 0) {
         put_number(m, "timestep", scene->step);
     }

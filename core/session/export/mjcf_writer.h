@@ -24,8 +24,6 @@ typedef struct hn_mjcf {
     hn_strbuf qpos, qvel; ///< of the keyframe, in the order of the joints
 } hn_mjcf;
 
-/// Notes that something of the scene is not in the model; `name` may be NULL.
-void hn_mjcf_leave_out(hn_mjcf *m, const char *what, const char *name, const char *why);
 /// Writes the whole model. Failures of memory show in `out`.
 void hn_mjcf_write(hn_mjcf *m);
 

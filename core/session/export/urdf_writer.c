@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/urdf_writer.h"
 
+#include "session/export/xml_attribute.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,38 +21,6 @@ typedef struct urdf {
     hn_im_frame *link; ///< by body: the frame of its link in the axes of the body
     hn_strbuf *out, *loops, *left_out;
 } urdf;
-
-static void leave_out(urdf *u, const char *what, const char *name, const char *why) {
-    hn_strbuf_printf(u->left_out, "left out: %s%s%s%s: %s\n", what, name ? " '" : "",
-                     name ? name : "", name ? "'" : "", why);
-}
-
-// ---- attributes ----
-
-static void put_text(urdf *u, const char *key, const char *text, const char *suffix) {
-    hn_strbuf_printf(u->out, " %s=\"", key);
-    for (const char *c = text; *c; c++) {
-        const char *name = *c == '&'   ? "&amp;"
-                           : *c == '<' ? "&lt;"
-                           : *c == '>' ? "&gt;"
-                           : *c == '"' ? "&quot;"
-                                       : NULL;
-        if (name) {
-            hn_strbuf_add(u->out, name);
-        } else {
-            hn_strbuf_add_n(u->out, c, 1);
-        }
-    }
-    hn_strbuf_printf(u->out, "%s\"", suffix);
-}
-
-static void put_numbers(urdf *u, const char *key, const double *x, int n) {
-    hn_strbuf_printf(u->out, " %s=\"", key);
-    for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(u->out, "%s%.17g", i ? " " : "", x[i] + 0.0);
-    }
-    hn_strbuf_add(u->out, "\"");
-}
 
 /// Angles about the fixed axes x, y and z, one after the other; where y is a right angle the others
 /// are one turn, given to z.
@@ -71,8 +41,8 @@ static void put_origin(urdf *u, hn_im_frame *at) {
     double rpy[3];
     find_angles(at->R, rpy);
     hn_strbuf_add(u->out, "<origin");
-    put_numbers(u, "xyz", at->p, 3);
-    put_numbers(u, "rpy", rpy, 3);
+    hn_xml_put_numbers(u->out, "xyz", at->p, 3);
+    hn_xml_put_numbers(u->out, "rpy", rpy, 3);
     hn_strbuf_add(u->out, "/>");
 }
 
@@ -101,7 +71,7 @@ static void put_link(urdf *u, int body) {
         at.p[i] = b->com[i].value;
     }
     hn_strbuf_add(u->out, "  <link");
-    put_text(u, "name", b->name, "");
+    hn_xml_put_text(u->out, "name", b->name, "");
     if (!(b->mass.value > 0)) {
         hn_strbuf_add(u->out, "/>\n");
         return;
@@ -113,10 +83,10 @@ static void put_link(urdf *u, int body) {
     hn_strbuf_add(u->out, ">\n    <inertial>");
     put_origin(u, &inertial);
     hn_strbuf_add(u->out, "<mass");
-    put_numbers(u, "value", &b->mass.value, 1);
+    hn_xml_put_numbers(u->out, "value", &b->mass.value, 1);
     hn_strbuf_add(u->out, "/><inertia");
     for (int k = 0; k < 6; k++) {
-        put_numbers(u, names[k], &b->inertia[k].value, 1);
+        hn_xml_put_numbers(u->out, names[k], &b->inertia[k].value, 1);
     }
     hn_strbuf_add(u->out, "/></inertial>\n  </link>\n");
 }
@@ -152,7 +122,7 @@ static void put_side(urdf *u, const char *key, int body, int between) {
         snprintf(suffix, sizeof suffix, " carrier %d", between);
     }
     hn_strbuf_printf(u->out, "<%s", key);
-    put_text(u, "link", name_of(u, body), suffix);
+    hn_xml_put_text(u->out, "link", name_of(u, body), suffix);
     hn_strbuf_add(u->out, "/>");
 }
 
@@ -165,10 +135,10 @@ static void put_limit(urdf *u, const piece *p) {
         return;
     }
     hn_strbuf_add(u->out, "<limit");
-    put_numbers(u, "lower", &low, 1);
-    put_numbers(u, "upper", &high, 1);
-    put_numbers(u, "effort", &none, 1);
-    put_numbers(u, "velocity", &none, 1);
+    hn_xml_put_numbers(u->out, "lower", &low, 1);
+    hn_xml_put_numbers(u->out, "upper", &high, 1);
+    hn_xml_put_numbers(u->out, "effort", &none, 1);
+    hn_xml_put_numbers(u->out, "velocity", &none, 1);
     hn_strbuf_add(u->out, "/>");
 }
 
@@ -198,30 +168,30 @@ static bool is_mimic(const urdf *u, const hn_constraint *c) {
 
 static void put_piece(urdf *u, int body, const hn_joint *j, piece *p) {
     hn_strbuf_add(u->out, "  <joint");
-    put_text(u, "name", p->coordinate < 0 ? j->name : u->scene->coordinates[p->coordinate].name,
-             "");
+    hn_xml_put_text(u->out, "name",
+                    p->coordinate < 0 ? j->name : u->scene->coordinates[p->coordinate].name, "");
     hn_strbuf_printf(u->out, " type=\"%s\">", p->type);
     put_origin(u, &p->origin);
     put_side(u, "parent", p->part ? body : u->poses.body[body].parent, p->part);
     put_side(u, "child", body, p->part < p->n - 1 ? p->part + 1 : 0);
     if (p->coordinate >= 0) {
         hn_strbuf_add(u->out, "<axis");
-        put_numbers(u, "xyz", p->axis, 3);
+        hn_xml_put_numbers(u->out, "xyz", p->axis, 3);
         hn_strbuf_add(u->out, "/>");
         put_limit(u, p);
         const double damping = damping_of(u, p->coordinate);
         const hn_constraint *gear = find_gear(u, p->coordinate);
         if (damping > 0) {
             hn_strbuf_add(u->out, "<dynamics");
-            put_numbers(u, "damping", &damping, 1);
+            hn_xml_put_numbers(u->out, "damping", &damping, 1);
             hn_strbuf_add(u->out, "/>");
         }
         if (gear && is_mimic(u, gear)) {
             const double multiplier = -gear->ratio.value;
             hn_strbuf_add(u->out, "<mimic");
-            put_text(u, "joint", u->scene->coordinates[gear->coordinate[1]].name, "");
-            put_numbers(u, "multiplier", &multiplier, 1);
-            put_numbers(u, "offset", &gear->value.value, 1);
+            hn_xml_put_text(u->out, "joint", u->scene->coordinates[gear->coordinate[1]].name, "");
+            hn_xml_put_numbers(u->out, "multiplier", &multiplier, 1);
+            hn_xml_put_numbers(u->out, "offset", &gear->value.value, 1);
             hn_strbuf_add(u->out, "/>");
         }
     }
@@ -267,7 +237,7 @@ static void put_joints(urdf *u, int body) {
             hn_strbuf_add(u->out, "  <link");
             char suffix[24];
             snprintf(suffix, sizeof suffix, " carrier %d", k + 1);
-            put_text(u, "name", name_of(u, body), suffix);
+            hn_xml_put_text(u->out, "name", name_of(u, body), suffix);
             hn_strbuf_add(u->out, "/>\n");
         }
         put_piece(u, body, j, &p);
@@ -376,9 +346,10 @@ static void name_loads(urdf *u) {
                                !l->stiffness.varies && is_single(u, l->coordinate) &&
                                l->damping.value >= 0;
         if (!is_damper) {
-            leave_out(u, "load", l->name, "URDF holds dampers of joints only");
+            hn_xml_leave_out(u->left_out, "load", l->name, "URDF holds dampers of joints only");
         } else if (l->stiffness.value != 0) {
-            leave_out(u, "stiffness of load", l->name, "URDF holds dampers of joints only");
+            hn_xml_leave_out(u->left_out, "stiffness of load", l->name,
+                             "URDF holds dampers of joints only");
         }
     }
 }
@@ -388,8 +359,8 @@ static void name_loops(urdf *u) {
     bool is_at_zero = true, has_gravity = true;
     for (int i = 0; i < u->scene->n_joints; i++) {
         if (hn_system_joint_is_cut(hn_model_system(u->model), i)) {
-            leave_out(u, "joint", u->scene->joints[i].name,
-                      "it closes a loop, and URDF is a tree: --loops FILE keeps it");
+            hn_xml_leave_out(u->left_out, "joint", u->scene->joints[i].name,
+                             "it closes a loop, and URDF is a tree: --loops FILE keeps it");
         }
     }
     for (int i = 0; i < u->scene->n_coordinates; i++) {
@@ -399,11 +370,12 @@ static void name_loops(urdf *u) {
         has_gravity &= u->scene->gravity[i].value == GRAVITY[i];
     }
     if (!is_at_zero) {
-        leave_out(u, "start", NULL, "a URDF begins at 0, at rest: --loops FILE keeps it");
+        hn_xml_leave_out(u->left_out, "start", NULL,
+                         "a URDF begins at 0, at rest: --loops FILE keeps it");
     }
     if (!has_gravity) {
-        leave_out(u, "gravity", NULL,
-                  "readers of URDF take 9.81 m/s^2 against z: --loops FILE keeps it");
+        hn_xml_leave_out(u->left_out, "gravity", NULL,
+                         "readers of URDF take 9.81 m/s^2 against z: --loops FILE keeps it");
     }
 }
 
@@ -411,12 +383,12 @@ static void name_the_rest(urdf *u) {
     name_loads(u);
     for (int i = 0; i < u->scene->n_constraints; i++) {
         if (!is_mimic(u, &u->scene->constraints[i])) {
-            leave_out(u, "constraint", u->scene->constraints[i].name,
-                      "URDF holds gears between joints of one coordinate only");
+            hn_xml_leave_out(u->left_out, "constraint", u->scene->constraints[i].name,
+                             "URDF holds gears between joints of one coordinate only");
         }
     }
     if (u->scene->has_formulas) {
-        leave_out(u, "lagrangian", NULL, "energies written as formulas");
+        hn_xml_leave_out(u->left_out, "lagrangian", NULL, "energies written as formulas");
     }
     if (!u->loops) {
         name_loops(u);
@@ -465,7 +437,7 @@ hn_status hn_urdf_write(hn_strbuf *out, hn_strbuf *loops, hn_strbuf *left_out,
 
     // the ground, then each body with what carries it
     hn_strbuf_add(out, "<?xml version=\"1.0\"?>\n<robot");
-    put_text(&u, "name", u.scene->name, "");
+    hn_xml_put_text(u.out, "name", u.scene->name, "");
     hn_strbuf_add(out, ">\n  <link name=\"" GROUND_LINK "\"/>\n");
     for (int i = 0; i < u.scene->n_bodies; i++) {
         put_link(&u, i);

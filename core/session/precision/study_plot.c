@@ -20,31 +20,6 @@ typedef struct frame {
     double x0, x1, y0, y1; ///< powers of ten: costs, errors
 } frame;
 
-void hn_html_text(hn_strbuf *b, const char *text) {
-    hn_html_text_n(b, text, strlen(text));
-}
-
-void hn_html_text_n(hn_strbuf *b, const char *text, size_t n) {
-    for (const char *end = text + n; text < end; text++) {
-        switch (*text) {
-        case '&':
-            hn_strbuf_add(b, "&amp;");
-            break;
-        case '<':
-            hn_strbuf_add(b, "&lt;");
-            break;
-        case '>':
-            hn_strbuf_add(b, "&gt;");
-            break;
-        case '"':
-            hn_strbuf_add(b, "&quot;");
-            break;
-        default:
-            hn_strbuf_add_n(b, text, 1);
-        }
-    }
-}
-
 void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about) {
     hn_strbuf_printf(b, "<svg viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">", width, height,
                      about);

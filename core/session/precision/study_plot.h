@@ -5,6 +5,7 @@
 // Colours are variables of the page (--slot-0 to --slot-6, --ink, --muted, --hairline, --raised),
 // so that one picture serves the light theme, the dark theme and paper.
 
+#include "base/markup.h"
 #include "session/precision/study.h"
 
 /// Writes one <svg> element. Labels stand at the ends of the curves. A failed run is a cross on the
@@ -17,7 +18,4 @@ void hn_study_key(hn_strbuf *b, int m);
 void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about);
 /// Writes a text at (x, y) in a class of style/plots.css.
 void hn_plot_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text);
-/// Writes a text with &, <, > and " escaped.
-void hn_html_text(hn_strbuf *b, const char *text);
-void hn_html_text_n(hn_strbuf *b, const char *text, size_t n); ///< its first n bytes
 #endif
