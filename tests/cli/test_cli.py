@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line as a person and a script use it: exit statuses, outputs that parse, faults that are told."""
 
-import csv
-import io
 import json
 import os
-import pty
 import re
 import subprocess
 import sys
@@ -118,16 +115,6 @@ class CommandLine(Command):
         self.assertRegex(text, r"ground +no +vertical 0, .*, \u2026\n")  # the bodies of the ground's group are 122
         self.assertIn("B60: tilt 2\n", text)  # rows that vanish: not in a table
 
-    def test_a_mechanism_without_mass_is_refused_with_the_freedom(self):
-        with open("lessons/01-closed-loops/scenes/four-bar.json") as f:
-            scene = json.load(f)
-        for body in scene["bodies"]:
-            body.update(mass=0, inertia={"zz": 0})
-        for method in ("projection@rk4", "index1@dopri5", "ggl@radau5"):
-            done = call("run", "-", "--method", method, stdin=json.dumps(scene))
-            self.assertEqual(done.returncode, ENDED, done.stderr)
-            self.assertIn("moves no mass, such as that of th1", done.stderr.decode())
-
     def test_inspect_tells_how_positions_are_found(self):
         def answers(scene):
             return strict(self.assert_exit(call("inspect", scene, "--json"), DONE))["position_analysis"]
@@ -164,98 +151,6 @@ class CommandLine(Command):
         self.assertIn("loop x            along th1", alone)
         self.assertNotIn("reactions on the body", alone)
 
-    def test_raw_multipliers_come_when_asked_for_and_where_there_are_some(self):
-        words = ("run", "four-bar", "--method", "ggl@radau5:h=0.01", "--time", "0.1", "--every", "0.05")
-        plain = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]
-        self.assertNotIn("raw_lambda", plain)
-        raw = strict(self.assert_exit(call(*words, "--raw-lambda", "--json"), DONE))["samples"]
-        self.assertEqual(raw["q"], plain["q"])
-        self.assertEqual(raw["raw_lambda"][0], [None, None])
-        for found, recomputed in zip(raw["raw_lambda"][1:], raw["lambda"][1:]):
-            self.assertAlmostEqual(found[0], recomputed[0], delta=0.01)
-        head = self.assert_exit(call(*words, "--raw-lambda"), DONE).splitlines()[0]
-        self.assertEqual(head.count("raw lambda"), 2)
-        words = ("run", "four-bar", "--method", RK4, "--time", "0.1", "--raw-lambda", "--json")
-        self.assertNotIn("raw_lambda", strict(self.assert_exit(call(*words), DONE))["samples"])
-
-    def test_multipliers_without_a_digit_are_told_beside_them(self):
-        # a bead where two rails cross at an angle e that grows with time: the condition number is 6 / e^2
-        rails = json.dumps({
-            "holonom": 1, "name": "rails", "title": "rails",
-            "lagrangian": {
-                "coordinates": [{"name": "x", "rate": "u", "unit": "m"}, {"name": "y", "rate": "v", "unit": "m"}],
-                "kinetic": "(u^2 + v^2)/2", "potential": "9.81*y",
-                "constraints": [{"name": "level", "formula": "y"}, {"name": "turning", "formula": "y*cos(1e-7 + t) - x*sin(1e-7 + t)"}],
-            },
-            "start": {"positions": {"x": 0, "y": 0}, "rates": {"u": 0, "v": 0}}, "duration": 1, "step": 0.01,
-        })
-        text = self.assert_exit(call("terms", "-", stdin=rails), DONE)
-        self.assertIn("multipliers, and reactions that rest on them: no digit left (condition 6e+14, rank 2 of 2)", text)
-        self.assertNotIn("no digit", self.assert_exit(call("terms", "-", "--t", "1", stdin=rails), DONE))
-        result = call("run", "-", "--method", RK4, "--time", "1", "--at", "0,1", stdin=rails)
-        rows = list(csv.DictReader(io.StringIO(self.assert_exit(result, DONE))))
-        self.assertEqual([row["lambda_mark"] for row in rows], ["2", "0"])
-        said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
-        self.assertIn("no digit left in 1 of 2 samples (lambda_mark 2)", said)
-
-    def test_a_run_ends_where_it_is_told_to_whatever_its_step_is(self):
-        # the shorter step to the end fails; the whole step of 5 s is none of this run
-        done = call("run", "four-bar", "--method", "index3@genalpha:h=5", "--time", "1", "--at", "1", "--json")
-        self.assertEqual(done.returncode, ENDED)
-        told = json.loads(done.stdout)
-        self.assertEqual((told["status"], told["t_reached"]), ("no-convergence", 0))
-        self.assertEqual([i["code"] for i in told["incidents"]], ["step-long"])
-
-    def test_forces_of_loops_that_stand_open_are_marked(self):
-        # not stabilised, at a long step, the loop of 1.2 m opens by more than a thousandth of it
-        words = ("run", "four-bar", "--method", "index1@rk4:h=0.02", "--time", "3", "--reactions", "--every", "0.5")
-        result = call(*words)
-        rows = list(csv.DictReader(io.StringIO(self.assert_exit(result, DONE))))
-        for row in rows:
-            self.assertEqual(row["lambda_mark"], "4" if float(row["gap"]) > 1.2e-3 else "0", row["t"])
-        self.assertEqual({row["lambda_mark"] for row in rows}, {"0", "4"})
-        said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
-        self.assertRegex(said, r"reactions that rest on them: of open loops in \d of 7 samples")
-        # the same of one state: joint B 24 mm apart
-        torn = ("terms", "four-bar", "--q", "th3=1")
-        self.assertIn("of open loops", self.assert_exit(call(*torn), DONE))
-        self.assertNotIn("open loops", self.assert_exit(call("terms", "four-bar"), DONE))
-
-    def test_a_pair_that_does_not_fit_is_refused_with_what_fits(self):
-        result = call("run", "four-bar", "--method", "index3@rk4")
-        said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
-        self.assertEqual(result.returncode, 2)
-        self.assertIn("index3 hands over a differential-algebraic system", said)
-        self.assertIn("radau5", said)
-        self.assertIn("rk4 serves index1", said)
-
-    def test_a_run_is_csv_by_default_and_the_same_numbers_in_every_form(self):
-        words = ("run", "four-bar", "--method", RK4, "--time", "1", "--every", "0.1")
-        rows = list(csv.reader(io.StringIO(self.assert_exit(call(*words), DONE))))
-        self.assertEqual(rows[0][0], "t")
-        self.assertEqual(rows[0][-5:], ["gap", "velocity_gap", "energy", "work", "energy_change"])
-        self.assertEqual(len(rows), 12)
-        self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
-        lines = [strict(line) for line in self.assert_exit(call(*words, "--format", "ndjson"), DONE).splitlines()]
-        self.assertEqual(lines[0]["columns"], rows[0])
-        self.assertEqual(lines[-1]["status"], "ok")
-        self.assertEqual(lines[1:-1], [[float(x) for x in row] for row in rows[1:]])
-        run = strict(self.assert_exit(call(*words, "--json"), DONE))
-        self.assertEqual(run["samples"]["t"], [row[0] for row in lines[1:-1]])
-        self.assertEqual(run["samples"]["q"][5], lines[6][1:1 + len(run["coordinates"])])
-
-    def test_output_times_can_be_chosen(self):
-        run = strict(self.assert_exit(call("run", "four-bar", "--method", RK4, "--time", "1", "--at", "0,0.25,0.7", "--json"), DONE))
-        self.assertEqual(run["samples"]["t"], [0, 0.25, 0.7])
-
-    def test_a_scene_may_be_a_name_a_file_or_standard_input(self):
-        path = "lessons/01-closed-loops/scenes/pendulum.json"
-        words = ("--method", RK4, "--time", "0.5", "--json")
-        runs = [strict(self.assert_exit(done, DONE))["samples"] for done in
-                (call("run", "pendulum", *words), call("run", path, *words), call("run", "-", *words, stdin=open(path).read()))]
-        self.assertEqual(runs[0], runs[1])
-        self.assertEqual(runs[0], runs[2])
-
     def test_a_setting_changes_the_scene(self):
         before = strict(self.assert_exit(call("list", "scenes", "--json"), DONE))
         parameter = next(s for s in before["scenes"] if s["id"] == "four-bar")["parameters"][0]
@@ -263,106 +158,9 @@ class CommandLine(Command):
         plain, moved = (strict(self.assert_exit(call("terms", "four-bar", "--json", *more), DONE)) for more in ((), ("--set", changed)))
         self.assertNotEqual(plain["M"], moved["M"])
 
-    def test_a_run_that_ends_early_is_4_with_its_reason_and_its_samples(self):
-        done = call("run", "four-bar", "--method", "index1@euler:h=0.5", "--time", "500")
-        text = self.assert_exit(done, ENDED)
-        self.assertGreater(len(text.splitlines()), 1)
-        self.assertIn(b"ended early", done.stderr)
-        run = strict(self.assert_exit(call("run", "four-bar", "--method", "index1@euler:h=0.5", "--time", "500", "--json"), ENDED))
-        self.assertTrue(run["reason"])
-        # a sample between two steps finds the end before the next step does
-        run = strict(self.assert_exit(call("run", "four-bar", "--set", "l2=1.55", "--method", "reduced@rk4:h=1e-2", "--time", "1", "--json"), ENDED))
-        self.assertIn("cannot be closed with this value", run["reason"])
-        self.assertEqual(run["incidents"][-1]["code"], "chart-lost")
-
-    def test_a_weight_that_hangs_is_held_up_as_help_and_readme_say(self):
-        bodies = [{"name": "bob", "mass": 2, "com": [0, 0, 0], "inertia": {"zz": 0.1}}]
-        pin = {"name": "pin", "type": "revolute", "parent": {"body": "ground"}, "child": {"body": "bob", "at": [0, 1, 0]}, "coordinate": "th"}
-        slide = {"name": "slide", "type": "prismatic", "axis": [0, 1, 0], "parent": {"body": "ground"}, "child": {"body": "bob"}, "coordinate": "y"}
-        rod = {"name": "rod", "distance": {"from": [0, 2, 0], "to": {"body": "bob", "at": [0, 0, 0]}, "length": 1}}
-        for joints, constraints, carrier, start in (([pin], [], "pin", {"th": 0}), ([slide], [rod], "rod", {"y": {"guess": 0.9}})):
-            scene = {"holonom": 1, "name": "weight", "gravity": [0, -10, 0], "bodies": bodies, "joints": joints, "constraints": constraints,
-                     "start": {"positions": start}}
-            done = call("run", "-", "--method", "projection@rk4:h=1e-3", "--time", "0.01", "--at", "0.01", "--reactions", "--json",
-                        stdin=json.dumps(scene))
-            run = strict(self.assert_exit(done, DONE))
-            force, at = run["samples"]["reaction_force"][-1], run["carriers"].index(carrier)
-            upward = force[3 * at + 1]
-            self.assertAlmostEqual(upward, 20, delta=1e-9, msg=carrier)  # m g, upward
-        self.assertRegex(b" ".join(call("run", "--help").stdout.split()), rb"Of a joint they act on the child, by its parent")
-        with open("core/README.md", encoding="utf-8") as readme:
-            self.assertIn("| a joint | its child | its parent |", readme.read())
-
-    def test_compare_prints_a_row_for_each_method(self):
-        text = self.assert_exit(call("compare", "four-bar", "--methods", RK4, "projection@rk4:h=1e-3", "--time", "1"), DONE)
-        self.assertRegex(text, r"worst gap \[m\] +velocity gap \[m/s\] +energy change \[\wJ\] +error estimate +steps +evals +ops +ops/step +CPU/step \[.?s\] +quartiles")
-        self.assertRegex(text, r"(?m)^index1@rk4\S* +right +1.00 ")
-        self.assertRegex(text, r"(?m)^projection@rk4\S* +right +1.00 ")
-        summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", RK4, "--time", "0.5", "--json"), DONE))
-        self.assertEqual([m["state"] for m in summary["methods"]], ["finished"])
-
-    def test_a_motion_that_is_wrong_is_not_called_ok(self):
-        # the step is longer than the run: it comes to the end 19 rad off
-        far = "projection@rk4:h=2"
-        text = self.assert_exit(call("compare", "four-bar", "--methods", far, RK4, "--time", "1"), DONE)
-        self.assertRegex(text, r"(?m)^projection@rk4\S* +WRONG +1.00 ")
-        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\.\de\+0\d \(angles in rad, lengths over the mechanism's\)$")
-        self.assertRegex(text, r"(?m)^index1@rk4\S* +right +1.00 ")
-        self.assertNotRegex(text, r"index1@rk4\S* is wrong")
-        told = call("run", "four-bar", "--method", far, "--time", "1", "--at", "1").stderr.decode()
-        self.assertRegex(told, r"coordinates 1\.9e\+01, .*; the motion is wrong\n")
-        near = call("run", "four-bar", "--method", "index1@rk4:h=0.05", "--time", "1", "--at", "1").stderr.decode()
-        self.assertNotIn("the motion is wrong", near)
-
-    def test_a_smaller_step_is_advised_only_where_it_was_seen_to_help(self):
-        # half the step keeps the loop closed to the end of this run
-        helped = call("run", "four-bar", "--method", "index1@rk4:h=0.01", "--time", "5", "--at", "5").stderr.decode()
-        self.assertRegex(helped, r"error estimate .*; a smaller step may help\n")
-        # up to 10 s half the step was tried against the change of energy, in vain
-        vain = call("run", "four-bar", "--method", "index1@rk4:h=0.01", "--time", "10", "--at", "10").stderr.decode()
-        self.assertIn("tried in vain: h=", vain)
-        self.assertNotIn("smaller step", vain)
-        # equations that lack a term are wrong at any step
-        for method, word in ("rk4:h=0.01", "step"), ("dopri5:rtol=1e-5", "tolerance"):
-            method = f"nullspace-as-printed@{method}"
-            printed = call("run", "four-bar", "--method", method, "--time", "1", "--at", "1").stderr.decode()
-            self.assertIn(f"; the motion is wrong; a smaller {word} does not help: the error lies in the equations of the formulation", printed)
-            text = call("compare", "four-bar", "--methods", method, "--time", "1").stdout.decode()
-            self.assertIn(f"a smaller {word} does not help", text)
-
-    def test_remedies_of_wrong_equations_are_tried_from_the_start(self):
-        # 1615 steps in: a trial from a state of this motion would begin with its error, 0.27 J there
-        done = call("run", "four-bar", "--method", "nullspace-as-printed@rk4:h=0.001", "--time", "10", "--json")
-        end = json.loads(done.stdout)["incidents"][-1]
-        self.assertEqual(end["code"], "chart-lost")
-        tried = re.fullmatch(r"tried to t = \S+ s: largest gap \S+ m, energy changed by (\S+) J", end["tried"][0])
-        self.assertLess(abs(float(tried[1])), 1e-3, end["tried"])
-
     def test_the_letters_of_the_list_of_methods_are_explained(self):
         text = " ".join(call("list", "methods").stdout.decode().split())
         self.assertEqual(text.count("h: step, p: order of the integrator, t: time; needs: the terms evaluated"), 1)
-
-    def test_a_status_is_the_verdict_on_the_motion(self):
-        methods = ("projection@rk4:h=1e-3", "index1@rk4:h=0.01", "projection@rk4:h=0.1")
-        done = call("compare", "four-bar", "--methods", *methods, "--time", "4")
-        said = dict(re.findall(r"(?m)^(\w\S+@\S+) +(right|inaccurate|WRONG|ENDED EARLY) ", done.stdout.decode()))
-        self.assertEqual([said[m] for m in ("projection@rk4:h=0.001", *methods[1:])], ["right", "inaccurate", "ENDED EARLY"])
-
-    def test_incidents_come_in_order_of_time_and_each_remedy_once(self):
-        # a sample at 1 s, inside the step from 0.9 s, finds another branch before the step ends the run
-        told = call("run", "four-bar", "--method", "projection@rk4:h=0.3", "--time", "10").stderr.decode()
-        times = [float(t) for t in re.findall(r"(?m)^holonom: t = (\S+) s: ", told)]
-        self.assertGreater(len(times), 2)
-        self.assertEqual(times, sorted(times))
-        self.assertEqual(told.count("try ggl@radau5"), 1)
-        self.assertIn("the run ended early: after t = 0.9 s the state stopped being finite", told)
-
-    def test_compare_keeps_a_method_that_failed_and_says_which(self):
-        done = call("compare", "four-bar", "--methods", "index1@euler:h=0.05", "projection@rk4:h=1e-3", "--time", "60")
-        text = self.assert_exit(done, ENDED)
-        self.assertRegex(text, r"(?m)^index1@euler\S* +ENDED EARLY")
-        self.assertRegex(text, r"(?m)^projection@rk4\S* +(right|not judged) ")
-        self.assertIn(b"index1@euler", done.stderr)
 
     def test_grading_a_wrong_answer_is_done_and_an_unreadable_one_is_not(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -454,95 +252,6 @@ class CommandLine(Command):
         self.assertIn("four-bar", document["errors"][0]["hint"])
         self.assertEqual(done.stderr, b"")
 
-    def test_samples_appear_as_they_are_made(self):
-        # half an hour of steps; the first rows are there long before its end
-        for form, first in (("csv", b"t,th1"), ("ndjson", b'{"scene":"four-bar"')):
-            words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=1e-7", "--time", "200", "--every", "1e-3", "--format", form]
-            with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as run:
-                try:
-                    lines = [run.stdout.readline() for _ in range(3)]
-                    self.assertIsNone(run.poll())
-                finally:
-                    run.kill()
-            self.assertTrue(lines[0].startswith(first), lines[0])
-            self.assertEqual([float(line.strip(b"[]\n").split(b",")[0]) for line in lines[1:]], [0, 1e-3])
-        # a row has the numbers of the document
-        words = ("run", "driven-crank", "--method", "index3@genalpha:h=1e-3", "--raw-lambda", "--reactions", "--at", "0,0.5")
-        samples = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]
-        rows = list(csv.reader(io.StringIO(self.assert_exit(call(*words), DONE))))
-        flat = []
-        for key in ("t", "q", "v", "lambda", "raw_lambda", "lambda_mark", "reaction_force", "reaction_moment", "effort", "points",
-                    "gap", "velocity_gap", "energy", "work", "energy_change"):
-            value = samples[key][1]
-            flat += value if isinstance(value, list) else [value]
-        self.assertEqual(len(rows[0]), len(flat))
-        self.assertEqual([float(x) if x else None for x in rows[2]], flat)
-
-    def test_a_run_ends_at_the_time_asked_for(self):
-        words = ("four-bar", "--method", "projection@rk4:h=0.013", "--time", "10", "--json")
-        run = strict(self.assert_exit(call("run", *words), DONE))
-        self.assertEqual((run["samples"]["t"][-1], run["t_reached"]), (10, 10))
-        summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", "projection@rk4:h=0.013", "--time", "10", "--json"), DONE))
-        self.assertEqual((summary["t"], summary["methods"][0]["t_reached"]), (10, 10))
-
-    def test_a_setting_beyond_its_range_is_taken_with_a_remark(self):
-        done = call("run", "car-axis", "--set", "eps=0.001", "--at", "0.1")
-        self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertIn(b"eps = 0.001 is outside its range, 0.002 to 0.1", done.stderr)
-        for refused in ("car-axis", "eps=-0.01"), ("ring", "n=1000000"):
-            self.assertEqual(call("run", refused[0], "--set", refused[1]).returncode, INPUT)
-
-    def test_every_run_has_an_estimate_of_its_error(self):
-        far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
-        self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; the motion is wrong\n")
-        near = call("run", "four-bar", "--method", "projection@rk4:h=1e-3", "--at", "1", "--json")
-        estimate = json.loads(near.stdout)["error_estimate"]
-        self.assertEqual((estimate["t"], estimate["reason"]), (1, ""))
-        self.assertLess(max(estimate["q"], estimate["v"], estimate["reaction"]), 1e-6)
-        # the verdict is another question than whether the run reached its end
-        verdicts = []
-        for method, time, scene in ("projection@rk4:h=1e-3", "1", ["four-bar"]), ("index1@rk4:h=1e-2", "10", ["four-bar"]), \
-                ("projection@rk4:h=0.02", "2", ["four-bar"]), ("projection@rk4:h=1e-3", "0.01", ["n-four-bar", "--set", "N=200"]):
-            done = json.loads(call("run", *scene, "--method", method, "--time", time, "--at", time, "--json").stdout)
-            self.assertEqual(done["status"], "ok")
-            verdicts.append(done["verdict"]["is"])
-            estimate = done["error_estimate"]
-            if estimate["q"] is not None:
-                self.assertIn(f"off by up to {estimate['q']:.1e} (rad", done["verdict"]["text"])
-        self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
-        stuck = json.loads(call("run", "four-bar", "--method", "index3@genalpha:h=5", "--time", "1", "--at", "1", "--json").stdout)
-        self.assertEqual((stuck["t_reached"], stuck["verdict"]["is"]), (0, "unknown"))
-        compared = call("compare", "four-bar", "--methods", "index1@rk4:h=1e-2", "projection@rk4:h=1e-3", "--time", "10", "--json")
-        self.assertEqual([m["verdict"]["is"] for m in json.loads(compared.stdout)["methods"]], ["wrong", "right"])
-        # a tolerance bounds the error of a step: what is more than ten times as much is said as a multiple
-        loose = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6", "--time", "5", "--at", "5", "--json")
-        told = json.loads(loose.stdout)["error_estimate"]
-        self.assertGreater(told["over_rtol"], 10)
-        self.assertAlmostEqual(told["over_rtol"] / (told["q"] / 1e-6), 1, delta=1e-6)
-        said = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6", "--time", "5", "--at", "5").stderr.decode()
-        self.assertIn(f"({told['over_rtol']:.0f} times rtol, which bounds the error of a step)", said)
-        table = call("compare", "four-bar", "--methods", "ggl@ida:rtol=1e-6", "projection@rk4:h=1e-3", "--time", "5", "--wide").stdout.decode()
-        self.assertRegex(table, r"ggl@ida.* \d+ rtol ")
-        self.assertEqual(table.count(" rtol "), 1)
-        self.assertIsNone(estimate["over_rtol"])
-        # the work that a drive does is no change of energy
-        driven = json.loads(call("run", "driven-crank", "--method", "projection@rk4:h=1e-3", "--at", "1", "--json").stdout)
-        samples = driven["samples"]
-        self.assertGreater(abs(samples["work"][0]), 0.1)
-        self.assertLess(abs(samples["energy_change"][0]), 1e-8)
-        self.assertLess(driven["worst_energy_change"], 1e-8)
-
-    def test_what_was_noticed_is_said_beside_the_samples(self):
-        for form in "csv", "ndjson":
-            done = call("run", "parallelogram", "--method", "projection@dop853:rtol=1e-6", "--time", "0.6", "--at", "0.6", "--format", form)
-            self.assert_exit(done, DONE)
-            said = done.stderr.decode().splitlines()
-            # flat at 0.3448 s and at 0.679 s, announced before; at 0.6 s the second lies ahead still
-            self.assertEqual(len(said), 3, said)
-            self.assertRegex(said[0], r"^holonom: t = 0\.20\d* s: J loses rank in .* at t = 0\.3448 s")
-            self.assertRegex(said[1], r"^holonom: t = 0\.34\d* s: one step of .* 2 degrees of freedom there instead of 1")
-            self.assertRegex(said[2], r"^holonom: t = 0\.3\d* s: J loses rank in .* at t = 0\.67\d* s")
-
     def test_malformed_scenes_never_crash_it(self):
         for text in ("{", "[]", "null", '{"a": 1}', "\x00", "[" * 10000, '{"bodies": 1}', "é", '{"title": "\\ud800"}'):
             with self.subTest(text=text[:20]):
@@ -552,25 +261,6 @@ class CommandLine(Command):
         for command in (("list", "scenes"), ("compare", "four-bar", "--methods", RK4, "--time", "0.1")):
             done = call(*command)
             self.assertNotIn(b"\x1b", done.stdout + done.stderr)
-
-    def test_progress_is_shown_to_a_terminal_and_to_nobody_else(self):
-        words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=4e-5", "--time", "60", "--at", "60"]
-        piped = subprocess.run(words, capture_output=True, timeout=300 * driver.SLOW)
-        self.assertEqual((piped.returncode, piped.stderr), (DONE, b""))
-        terminal, end = pty.openpty()
-        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=end)
-        os.close(end)
-        seen = b""
-        try:
-            while piece := os.read(terminal, 4096):
-                seen += piece
-        except OSError:  # the other end is closed
-            pass
-        self.assertEqual(process.stdout.read(), piped.stdout)
-        self.assertEqual(process.wait(), DONE)
-        process.stdout.close()
-        os.close(terminal)
-        self.assertRegex(seen.decode(), r"running \[[#.]+\] +\d+ %")
 
     def test_without_its_scenes_the_program_says_where_it_looked(self):
         done = call("list", "scenes", environment={"HOLONOM_HOME": "/nowhere"})

@@ -93,6 +93,17 @@ class Mechanism(unittest.TestCase):
         self.assertEqual(result.returncode, DONE, result.stderr)
         return path, re.findall(r"^left out: (.*?'.*?'):", result.stderr, re.MULTILINE)
 
+    def there_and_back(self, scene):
+        """The motions of a scene that MJCF holds whole, and of what import reads back of its model."""
+        with tempfile.TemporaryDirectory() as folder:
+            own, model, back = (os.path.join(folder, f) for f in ("own.json", "model.xml", "back.json"))
+            with open(own, "w") as f:
+                json.dump(scene, f)
+            result = call("export", own, "--format", "mjcf", "-o", model)
+            self.assertEqual((result.returncode, result.stderr), (DONE, ""))
+            self.assertEqual(call("import", model, "-o", back).returncode, DONE)
+            return run(own), run(back)
+
     def test_what_mjcf_holds_moves_as_the_scene_does(self):
         held = [name for name in names() if name not in LEFT_OUT and name not in WITHOUT_BODIES]
         self.assertGreater(len(held), 20)
@@ -142,16 +153,9 @@ class Mechanism(unittest.TestCase):
                  "constraints": [{"name": "wheels", "gear": {"coordinates": ["x", "y"], "ratio": 2, "phase": 0.5}}],
                  "start": {"positions": {"x": 0.3, "y": {"guess": 0.1}, "u": 0.2, "w": -0.3, "f1": 0.4, "f2": 0.1, "f3": 0, "fy": 0.5},
                            "rates": {"d_x": 1, "d_u": -1, "d_f1": 2, "d_f3": 1, "d_fx": 0.5}}}
-        with tempfile.TemporaryDirectory() as folder:
-            own, model, back = (os.path.join(folder, f) for f in ("own.json", "model.xml", "back.json"))
-            with open(own, "w") as f:
-                json.dump(scene, f)
-            result = call("export", own, "--format", "mjcf", "-o", model)
-            self.assertEqual((result.returncode, result.stderr), (DONE, ""))
-            self.assertEqual(call("import", model, "-o", back).returncode, DONE)
-            n, error = worst(run(own), run(back))
-            self.assertGreaterEqual(n, 6)  # energy, x, y, u, w, the flyer's spin
-            self.assertLess(error, NEAR)
+        n, error = worst(*self.there_and_back(scene))
+        self.assertGreaterEqual(n, 6)  # energy, x, y, u, w, the flyer's spin
+        self.assertLess(error, NEAR)
 
     def refused(self, scene, folder):
         path = os.path.join(folder, "scene.json")
@@ -176,18 +180,11 @@ class Mechanism(unittest.TestCase):
                             {"name": "W", "type": "fixed", "parent": {"body": "c"}, "child": {"body": "d"}, "cut": True}],
                  "start": {"positions": {"x": 0.3, "s": 0.2, "y": 0.4, "z": {"guess": 0.3}, "b1": 0.2, "b2": 0.1, "b3": 0.3},
                            "rates": {"d_x": 1, "d_s": 0.2, "d_b1": 2, "d_b2": -1, "d_b3": 0.5, "d_y": 1}}}
-        with tempfile.TemporaryDirectory() as folder:
-            own, model, back = (os.path.join(folder, f) for f in ("own.json", "model.xml", "back.json"))
-            with open(own, "w") as f:
-                json.dump(scene, f)
-            result = call("export", own, "--format", "mjcf", "-o", model)
-            self.assertEqual((result.returncode, result.stderr), (DONE, ""))
-            self.assertEqual(call("import", model, "-o", back).returncode, DONE)
-            a, b = run(own), run(back)
-            for name in ("x", "s", "y", "z"):
-                for p, q in zip(column(a, "q", name), column(b, "q", name)):
-                    self.assertLess(abs(p - q), NEAR)
-            self.assertLess(abs(a["samples"]["energy"][-1] - b["samples"]["energy"][-1]), NEAR * 10)
+        a, b = self.there_and_back(scene)
+        for name in ("x", "s", "y", "z"):
+            for p, q in zip(column(a, "q", name), column(b, "q", name)):
+                self.assertLess(abs(p - q), NEAR)
+        self.assertLess(abs(a["samples"]["energy"][-1] - b["samples"]["energy"][-1]), NEAR * 10)
 
     def test_a_body_named_world_and_a_free_joint_between_bodies_are_refused(self):
         body = {"mass": 1, "inertia": {"xx": 1, "yy": 1, "zz": 1}}

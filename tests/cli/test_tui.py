@@ -1,90 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The terminal workbench in a pseudo-terminal and as text: keys, sizes, character sets, and the terminal after every end.
 import base64
-import fcntl
 import os
-import pty
 import re
-import select
 import signal
-import struct
 import subprocess
+import sys
 import tempfile
 import termios
 import time
 import unittest
 
-PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-PATIENCE = 20.0  # [s] a crowded machine; what is waited for comes in a fraction of a second
-
-
-def once(*words, **environment):
-    """(status, standard output, standard error) of one frame as text."""
-    env = {**os.environ, "LC_ALL": "C.UTF-8", **environment}
-    done = subprocess.run([PROGRAM, "tui", *words], capture_output=True, timeout=60, env=env, stdin=subprocess.DEVNULL)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
-
-
-class Terminal:
-    """The program in a pseudo-terminal of its own; `seen` is all that it has written."""
-
-    def __init__(self, *words, columns=100, rows=30, **environment):
-        self.master, slave = pty.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-        self.before_start(slave)
-        self.modes = termios.tcgetattr(slave)
-        env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **environment}
-        self.process = subprocess.Popen([PROGRAM, "tui", *words], stdin=slave, stdout=slave, stderr=slave, env=env,
-                                        start_new_session=True)
-        self.slave = slave
-        self.seen = b""
-
-    def before_start(self, slave):
-        """For terminals that know more."""
-
-    def read(self, seconds=0.05):
-        while select.select([self.master], [], [], seconds)[0]:
-            try:
-                self.seen += os.read(self.master, 65536)
-            except OSError:
-                return
-
-    def wait_for(self, pattern):
-        """True when the pattern has been written since the last call of clear()."""
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end:
-            self.read()
-            if re.search(pattern, self.seen):
-                return True
-        return False
-
-    def clear(self):
-        self.read()
-        self.seen = b""
-
-    def type(self, text):
-        os.write(self.master, text.encode())
-
-    def resize(self, columns, rows):
-        fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-        self.process.send_signal(signal.SIGWINCH)
-
-    def ended(self):
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end:
-            self.read(0.02)
-            if self.process.poll() is not None:
-                self.read(0.02)
-                return self.process.returncode
-        return None
-
-    def close(self):
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
-        os.close(self.slave)
-        os.close(self.master)
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+from terminal import PATIENCE, PROGRAM, ROOT, Terminal, once  # noqa: E402
 
 
 class Frame(unittest.TestCase):
@@ -547,134 +476,5 @@ class Keys(unittest.TestCase):
         self.assertTrue(terminal.wait_for(rb"paused"))
 
 
-class SlowLine:
-    """A terminal that takes 2 kB/s, and knows the top row of its screen; it answers the question after its health as terminals do."""
-
-    RATE = 2000.0  # [bytes/s]
-    SEQUENCE = re.compile(rb"\033\[([?0-9;]*)([@-~])|\033\][^\a]*\a|\033[()][0-9A-Z]|\033[=>78M]")
-
-    def __init__(self, terminal):
-        self.terminal = terminal
-        self.line = b""  # what has arrived and is not yet understood
-        self.row, self.column, self.top = 0, 0, {}
-        self.since = time.monotonic()
-        self.read_bytes = 0
-
-    def serve(self, until, seconds):
-        """Reads at the rate until the condition holds; returns whether it did within the time."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            time.sleep(0.01)
-            due = int((time.monotonic() - self.since) * self.RATE) - self.read_bytes
-            if due > 0 and select.select([self.terminal.master], [], [], 0)[0]:
-                try:
-                    piece = os.read(self.terminal.master, due)
-                except OSError:
-                    piece = b""
-                self.read_bytes += len(piece)
-                self.line += piece
-                self.understand()
-            elif due > 0:
-                self.read_bytes += due  # what is not used of the line is lost
-            if until():
-                return True
-        return False
-
-    def understand(self):
-        while self.line:
-            found = self.SEQUENCE.match(self.line)
-            if found:
-                self.line = self.line[found.end():]
-                self.obey(found.group(1), found.group(2))
-            elif self.line[:1] == b"\033" and len(self.line) < 64:
-                return  # the rest of it is on its way
-            else:
-                length = 1 + (self.line[0] >= 0xC0) + (self.line[0] >= 0xE0) + (self.line[0] >= 0xF0)
-                if len(self.line) < length:
-                    return
-                self.put(self.line[:length].decode("utf-8", "replace"))
-                self.line = self.line[length:]
-
-    def put(self, character):
-        if character == "\r":
-            self.column = 0
-        elif character == "\n":
-            self.row += 1
-        elif character == "\b":
-            self.column -= 1
-        elif character >= " ":
-            if self.row == 0:
-                self.top[self.column] = character
-            self.column += 1
-
-    def obey(self, numbers, final):
-        if final == b"n" and numbers == b"5":
-            os.write(self.terminal.master, b"\033[0n")
-        if not final or numbers.startswith(b"?"):
-            return
-        values = [int(v) if v else 1 for v in numbers.split(b";")]
-        if final == b"H":
-            self.row, self.column = values[0] - 1, (values + [1])[1] - 1
-        elif final == b"d":
-            self.row = values[0] - 1
-        elif final in b"G`":
-            self.column = values[0] - 1
-        elif final == b"C":
-            self.column += values[0]
-        elif final == b"D":
-            self.column -= values[0]
-        elif final == b"A":
-            self.row -= values[0]
-        elif final == b"B":
-            self.row += values[0]
-
-    def paused(self):
-        return "paused" in "".join(self.top.get(k, " ") for k in range(100))
-
-    def time_shown(self):
-        """[s] of the motion, as the top row has it; None before it is there."""
-        row = "".join(self.top.get(k, " ") for k in range(100))
-        found = re.search(r"t (\d+\.\d+) s", row)
-        return float(found.group(1)) if found else None
-
-
-class ASlowLine(unittest.TestCase):
-    def open(self):
-        """The workbench after eight seconds: what queues up has queued up by then."""
-        terminal = Terminal("four-bar")
-        self.addCleanup(terminal.close)
-        line = SlowLine(terminal)
-        self.assertTrue(line.serve(lambda: line.read_bytes > 8 * line.RATE and line.time_shown() is not None, 3 * PATIENCE), line.top)
-        return terminal, line
-
-    def test_fewer_pictures_are_sent_and_none_is_late(self):
-        # of these eight seconds 7.8 have been shown, the rest is under way; 0.7 where every picture is sent
-        terminal, line = self.open()
-        self.assertGreater(line.time_shown(), 3.5)
-        # one picture and the next have to pass until a key is seen: 1.5 s
-        before = line.read_bytes
-        terminal.type(" ")
-        self.assertTrue(line.serve(line.paused, 2 * PATIENCE))
-        self.assertLess(line.read_bytes - before, 5 * line.RATE)
-
-    def test_q_quits_at_once(self):
-        # at most 1.5 s for the answer to the last picture, that the shell shall not read
-        terminal, line = self.open()
-        before = line.read_bytes
-        terminal.type("q")
-        self.assertTrue(line.serve(lambda: terminal.process.poll() is not None, 2 * PATIENCE))
-        self.assertEqual(terminal.process.returncode, 0)
-        self.assertLess(line.read_bytes - before, 5 * line.RATE)
-
-
 if __name__ == "__main__":
-    suite = unittest.defaultTestLoader.loadTestsFromModule(__import__("__main__"))
-    cases = [case for group in suite for case in group]
-    print(f"1..{len(cases)}")
-    for number, case in enumerate(cases, 1):
-        result = unittest.TestResult()
-        case.run(result)
-        bad = result.failures + result.errors
-        print(f"{'not ok' if bad else 'ok'} {number} - {case.id().split('.')[-1]}", flush=True)
-        for _, words in bad:
-            print("\n".join("# " + line for line in words.strip().split("\n")))
+    driver.main()

@@ -15,7 +15,7 @@ import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
-from test_tui import PATIENCE, ROOT, Terminal  # noqa: E402
+from terminal import PATIENCE, ROOT, Terminal  # noqa: E402
 
 CELL = (10, 18)  # [px]; bands of six rows fill cells of 18
 METHODS = ("--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02", "projection@rk4:h=0.02")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The recipes for a Slurm job array and for GNU parallel, run as they are: both merge to the file of one process."""
 
+import contextlib
 import glob
 import os
 import subprocess
@@ -17,6 +18,8 @@ import slurm  # noqa: E402
 PROGRAM = os.path.abspath(driver.PROGRAM)
 STUDY = ["fb0", "work-precision", "--methods", "projection@rk4", "baumgarte:alpha=20,beta=20@rk4", "projection@dopri5", "ggl@radau5", "--time", "1",
          "--levels", "5", "--samples", "0", "--time-limit", "0"]
+
+with_root = unittest.skipUnless(os.geteuid() == 0, f"SLURM WAS NOT TRIED: its daemons start as root only, and this is user {os.geteuid()}")
 
 
 def bytes_of(path):
@@ -49,6 +52,15 @@ class Cluster(unittest.TestCase):
                 self.holonom("merge", *parts, "--out", self.path("merged" + ending))
             self.assertEqual(bytes_of(self.path("merged" + ending)), bytes_of(self.path("one" + ending)))
 
+    @contextlib.contextmanager
+    def slurm_of_two_processors(self):
+        """Slurm started anew; its jobs see the program and the folder of unfinished work that all these tests use."""
+        self.assertEqual(slurm.missing(), [], "not installed")
+        os.chmod(self.folder, 0o755)
+        with slurm.Slurm(cpus=2) as cluster:
+            cluster.environment.update(self.environment, SLURM_CONF=cluster.environment["SLURM_CONF"], PATH=cluster.environment["PATH"])
+            yield cluster
+
     def test_gnu_parallel_with_two_jobs_merges_to_the_file_of_one_process(self):
         done = subprocess.run([os.path.join(HERE, "parallel.sh"), "2", "5", self.path("results"), *STUDY], env=self.environment, capture_output=True,
                               stdin=subprocess.DEVNULL, timeout=120 * driver.SLOW)
@@ -61,13 +73,9 @@ class Cluster(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn(b"no shipped scene is called 'no-such-scene'", done.stderr)
 
-    @unittest.skipUnless(os.geteuid() == 0, "SLURM WAS NOT TRIED: its daemons start as root only, and this is user "
-                         f"{os.geteuid()}")
+    @with_root
     def test_a_slurm_array_of_four_tasks_merges_to_the_file_of_one_process(self):
-        self.assertEqual(slurm.missing(), [], "not installed")
-        os.chmod(self.folder, 0o755)
-        with slurm.Slurm(cpus=2) as cluster:
-            cluster.environment.update(self.environment, SLURM_CONF=cluster.environment["SLURM_CONF"], PATH=cluster.environment["PATH"])
+        with self.slurm_of_two_processors() as cluster:
             array = cluster.call("sbatch", "--parsable", "--array=1-4", "--chdir=" + self.folder, os.path.join(HERE, "array.sbatch"), "4",
                                  "results", *STUDY)
             cluster.call("sbatch", "--dependency=afterok:" + array, "--chdir=" + self.folder, "--output=merge.log",
@@ -125,13 +133,9 @@ class Class(Cluster):
             self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_like_one_process(sorted(glob.glob(self.path("results/part-*-of-4.ndjson"))), 4)
 
-    @unittest.skipUnless(os.geteuid() == 0, "SLURM WAS NOT TRIED: its daemons start as root only, and this is user "
-                         f"{os.geteuid()}")
+    @with_root
     def test_a_slurm_array_of_four_tasks_merges_to_the_file_of_one_process(self):
-        self.assertEqual(slurm.missing(), [], "not installed")
-        os.chmod(self.folder, 0o755)
-        with slurm.Slurm(cpus=2) as cluster:
-            cluster.environment.update(self.environment, SLURM_CONF=cluster.environment["SLURM_CONF"], PATH=cluster.environment["PATH"])
+        with self.slurm_of_two_processors() as cluster:
             cluster.call("sbatch", "--parsable", "--array=1-4", "--chdir=" + self.folder, os.path.join(HERE, "class.sbatch"), "4", "results", "p3",
                          self.path("handed in"))
             cluster.wait_for_jobs()

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the tests of the terminal workbench share: one frame as text, and the program in a pseudo-terminal of its own."""
+
+import fcntl
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import termios
+import time
+
+PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+PATIENCE = 20.0  # [s] a crowded machine; what is waited for comes in a fraction of a second
+
+
+def once(*words, **environment):
+    """(status, standard output, standard error) of one frame as text."""
+    env = {**os.environ, "LC_ALL": "C.UTF-8", **environment}
+    done = subprocess.run([PROGRAM, "tui", *words], capture_output=True, timeout=60, env=env, stdin=subprocess.DEVNULL)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+class Terminal:
+    """The program in a pseudo-terminal of its own; `seen` is all that it has written."""
+
+    def __init__(self, *words, columns=100, rows=30, **environment):
+        self.master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+        self.before_start(slave)
+        self.modes = termios.tcgetattr(slave)
+        env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **environment}
+        self.process = subprocess.Popen([PROGRAM, "tui", *words], stdin=slave, stdout=slave, stderr=slave, env=env,
+                                        start_new_session=True)
+        self.slave = slave
+        self.seen = b""
+
+    def before_start(self, slave):
+        """For terminals that know more."""
+
+    def read(self, seconds=0.05):
+        while select.select([self.master], [], [], seconds)[0]:
+            try:
+                self.seen += os.read(self.master, 65536)
+            except OSError:
+                return
+
+    def wait_for(self, pattern):
+        """True when the pattern has been written since the last call of clear()."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            self.read()
+            if re.search(pattern, self.seen):
+                return True
+        return False
+
+    def clear(self):
+        self.read()
+        self.seen = b""
+
+    def type(self, text):
+        os.write(self.master, text.encode())
+
+    def resize(self, columns, rows):
+        fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+        self.process.send_signal(signal.SIGWINCH)
+
+    def ended(self):
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            self.read(0.02)
+            if self.process.poll() is not None:
+                self.read(0.02)
+                return self.process.returncode
+        return None
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        os.close(self.slave)
+        os.close(self.master)
