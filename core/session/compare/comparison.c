@@ -98,6 +98,19 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     return HN_OK;
 }
 
+/// Returns the least multiple of `step`, from `least` to twice as many, of which whole frames make
+/// up the duration, so that the last frame is at the end; `least` where there is none.
+static double fit_frames(double step, double least, double duration) {
+    const double steps = round(duration / step);
+    const bool is_whole = fabs(steps * step - duration) <= 1e-9 * duration;
+    for (double k = least; is_whole && k <= fmin(2 * least, least + 1000); k++) {
+        if (fmod(steps, k) == 0) {
+            return step * k;
+        }
+    }
+    return step * least;
+}
+
 /// Returns a multiple of the largest fixed step, at least 1/60 s, or 1/240 of a short run.
 static double choose_frame_dt(const hn_comparison *c) {
     const double shortest = fmin(FRAME, c->duration / LEAST_FRAMES);
@@ -105,7 +118,7 @@ static double choose_frame_dt(const hn_comparison *c) {
     for (int i = 0; i < c->n; i++) {
         h = fmax(h, c->entries[i].h);
     }
-    return h > 0 ? h * fmax(1, ceil(shortest / h - 1e-9)) : shortest;
+    return h > 0 ? fit_frames(h, fmax(1, ceil(shortest / h - 1e-9)), c->duration) : shortest;
 }
 
 static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_diags *diags) {

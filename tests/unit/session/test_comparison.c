@@ -138,10 +138,32 @@ static void a_short_run_has_hundreds_of_frames(void **state) {
     hn_library *lib = open_library();
     hn_model *model = load(lib, "seven-body-squeezer");
     hn_comparison *c = compare(model, (const char *const[]){"projection@rk4:h=2e-5"}, 1, NULL);
-    assert_near(hn_comparison_frame_dt(c), 1.4e-4, 1e-15); // whole steps, above 0.03 s / 240
+    // whole steps, at least 0.03 s / 240, and whole frames up to the end
+    assert_near(hn_comparison_frame_dt(c), 2e-4, 1e-15);
     hn_comparison_free(c);
     c = compare(model, (const char *const[]){"projection@dopri5:rtol=1e-6"}, 1, NULL);
     assert_near(hn_comparison_frame_dt(c), 0.03 / 240, 1e-15);
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+// 17 steps of 1 ms are the least above 1/60 s; frames of 17 ms would pass 5 s by 15 ms
+static void the_last_frame_is_at_the_end(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "slider-crank");
+    hn_comparison *c = compare(model, (const char *const[]){"projection@rk4:h=1e-3"}, 1, NULL);
+    assert_near(hn_comparison_frame_dt(c), 0.02, 1e-15);
+    const double frames = hn_comparison_duration(c) / hn_comparison_frame_dt(c);
+    assert_near(frames, round(frames), 1e-9);
+    hn_comparison_free(c);
+
+    // a prime number of steps has no such frames
+    hn_comparison_opts opts = hn_comparison_opts_default();
+    opts.duration = 4.999;
+    c = compare(model, (const char *const[]){"projection@rk4:h=1e-3"}, 1, &opts);
+    assert_near(hn_comparison_frame_dt(c), 0.017, 1e-15);
     hn_comparison_free(c);
     hn_model_free(model);
     hn_library_free(lib);
@@ -394,6 +416,7 @@ int main(void) {
         cmocka_unit_test(a_scene_without_methods_gets_some),
         cmocka_unit_test(all_methods_share_one_clock_and_one_start),
         cmocka_unit_test(a_short_run_has_hundreds_of_frames),
+        cmocka_unit_test(the_last_frame_is_at_the_end),
         cmocka_unit_test(a_second_comparison_and_a_reset_give_the_same_bits),
         cmocka_unit_test(a_failed_method_stays_with_its_last_state_and_its_reason),
         cmocka_unit_test(bad_methods_are_named_by_their_place),
