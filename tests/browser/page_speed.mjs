@@ -5,6 +5,7 @@
 import { readFileSync, readdirSync } from "node:fs";
 import { availableParallelism, loadavg } from "node:os";
 import { startBrowser, startServer } from "./support.mjs";
+import { mainThreadTime } from "./trace.mjs";
 
 const SECONDS = 6; // of playing that are traced
 const LOADS = 9; // of the page: the median counts
@@ -94,19 +95,11 @@ async function playing(browser, url, solid) {
   const used = spent() - before;
   const { traceEvents } = JSON.parse(String(await browser.stopTracing()));
   const shown = traceEvents.filter(({ name }) => name === "DrawFrame").map(({ ts }) => ts / 1e6);
-  const mains = new Set(
-    traceEvents
-      .filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain")
-      .map(({ pid, tid }) => `${pid} ${tid}`),
-  );
-  const busy = traceEvents
-    .filter(({ name, pid, tid }) => name === "RunTask" && mains.has(`${pid} ${tid}`))
-    .reduce((sum, { tdur = 0 }) => sum + tdur / 1000, 0);
   await page.context().close();
   const span = Math.max(...shown) - Math.min(...shown);
   return {
     shown: (shown.length - 1) / span,
-    computing: busy / (frames * SECONDS),
+    computing: mainThreadTime(traceEvents) / (frames * SECONDS),
     all: used / (frames * SECONDS),
   };
 }

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, playTo, read, screenshot, soon, until } from "./support.mjs";
+import { mainThreadTime } from "./trace.mjs";
 
 const TRACED = ["toplevel", "devtools.timeline", "disabled-by-default-devtools.timeline"];
 const MOST_BYTES = 500e3; // on the line
@@ -282,15 +283,7 @@ test("six methods on FB0 leave the main thread room for 60 frames a second", asy
     90,
   );
   const { traceEvents } = JSON.parse(String(await browser.stopTracing()));
-  const mains = new Set(
-    traceEvents
-      .filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain")
-      .map(({ pid, tid }) => `${pid} ${tid}`),
-  );
-  // computing time of the thread, which other programs on the machine do not lengthen
-  const busy = traceEvents
-    .filter(({ name, pid, tid }) => name === "RunTask" && mains.has(`${pid} ${tid}`))
-    .reduce((sum, { tdur = 0 }) => sum + tdur / 1000, 0);
+  const busy = mainThreadTime(traceEvents);
   assert.ok(busy > 0, "the trace tells of the main thread");
   assert.ok(busy / frames < 1000 / 60, `${busy / frames} ms of computing per frame`);
 });
