@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What MJCF says and how it stands in the scene.
+#include "base/clock.h"
+#include "base/strbuf.h"
 #include "support/near.h"
 
 #include "support/imported.h"
@@ -315,6 +317,35 @@ static void only_geoms_that_mujoco_lets_touch_are_told(void **state) {
     }
 }
 
+/// 1,900 bodies, fixed to one another in long chains, whose geoms touch nothing: each pair of them
+/// is looked at without a walk down its chain, which took minutes.
+static void many_fixed_bodies_are_read_soon(void **state) {
+    (void)state;
+    enum { CHAINS = 20, LONG = 95 };
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_strbuf_add(&text, "<mujoco><worldbody>");
+    for (int i = 0; i < CHAINS * LONG; i++) {
+        hn_strbuf_add(&text, "<body>");
+        hn_strbuf_add(&text, i % LONG == 0 ? HINGE : "");
+        hn_strbuf_add(&text, "<geom type='sphere' size='0.01' contype='1' conaffinity='0'/>");
+        for (int k = 0; i % LONG == LONG - 1 && k < LONG; k++) {
+            hn_strbuf_add(&text, "</body>");
+        }
+    }
+    hn_strbuf_add(&text, "</worldbody></mujoco>");
+
+    // about a tenth of a second; the bound is far above what a busy machine needs
+    hn_imported x;
+    const double began = hn_clock_thread();
+    imported_open(&x, hn_strbuf_text(&text), NULL);
+    assert_true(hn_clock_thread() - began < 20);
+    assert_int_equal(x.scene->n_bodies, CHAINS * LONG);
+    assert_null(imported_note(&x, "/geom"));
+    imported_close(&x);
+    hn_strbuf_reset(&text);
+}
+
 static void everything_that_is_not_taken_is_named_with_its_line(void **state) {
     (void)state;
     hn_imported x;
@@ -381,6 +412,7 @@ int main(void) {
         cmocka_unit_test(drives_become_loads_whose_control_is_a_parameter),
         cmocka_unit_test(a_free_body_starts_where_the_file_places_it),
         cmocka_unit_test(only_geoms_that_mujoco_lets_touch_are_told),
+        cmocka_unit_test(many_fixed_bodies_are_read_soon),
         cmocka_unit_test(everything_that_is_not_taken_is_named_with_its_line),
         cmocka_unit_test(an_unknown_attribute_or_element_anywhere_is_named),
     };
