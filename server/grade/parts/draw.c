@@ -187,6 +187,9 @@ static hn_status read_source(hn_draw *d, const cJSON *node, source *out, hn_diag
     d->name[i] = node->string;
     d->unit[i] = unit ? unit : "";
     d->digits[i] = cJSON_IsNumber(digits) ? digits->valueint : -1;
+    d->origin[i] = out->has_formula        ? HN_DRAW_DERIVED
+                   : cJSON_IsNumber(value) ? HN_DRAW_FIXED
+                                           : HN_DRAW_DRAWN;
     d->n_names++;
     const hn_ex e = hn_symbol(d->graph, node->string, NULL);
     return hn_ex_symbol(d->graph, e) == i || hn_graph_failed(d->graph)
@@ -237,6 +240,7 @@ static void copy_outer(hn_draw *d, const hn_draw *outer) {
         d->name[i] = outer->name[i];
         d->unit[i] = outer->unit[i];
         d->digits[i] = outer->digits[i];
+        d->origin[i] = outer->origin[i];
         hn_symbol(d->graph, d->name[i], NULL);
         for (int s = 0; s < d->n_states; s++) {
             d->value[s][i] = outer->value[0][i];

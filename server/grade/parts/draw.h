@@ -18,11 +18,19 @@
 
 enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16 };
 
+/// Where the number of a name comes from.
+typedef enum hn_draw_origin {
+    HN_DRAW_FIXED,  ///< the same in every variant
+    HN_DRAW_DRAWN,  ///< from a range or a list
+    HN_DRAW_DERIVED ///< from other names
+} hn_draw_origin;
+
 typedef struct hn_draw {
     hn_graph *graph; ///< owned; its symbols are the names in their order
     int n_names, n_states;
     int n_outer; ///< the first names, which are given; the others are the part's own
     const char *name[HN_DRAW_NAMES], *unit[HN_DRAW_NAMES]; ///< borrowed from the JSON
+    hn_draw_origin origin[HN_DRAW_NAMES];
     int digits[HN_DRAW_NAMES]; ///< decimals of a drawn number; -1: as many as it has
     double value[HN_DRAW_STATES][HN_DRAW_NAMES];
 } hn_draw;

@@ -19,6 +19,7 @@ typedef struct hn_part_result {
     char name[32]; ///< "" for an answer of one entry, else "2", "12"
     double share;  ///< of the points of this entry, 0 .. 1
     int right, unreadable;
+    bool likely;         ///< the mistake explains the answer, but chance may do so as well
     const char *mistake; ///< id: static, or borrowed from the exercise; "" when right
     char explanation[HN_PART_TEXT], given[HN_PART_TEXT], expected[HN_PART_TEXT];
 } hn_part_result;

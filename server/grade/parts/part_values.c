@@ -52,7 +52,23 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
         hn_part_right(r);
         return HN_OK;
     }
-    return hn_value_explain(s, k, x, r);
+    return hn_value_explain(s, k, x, e, r);
+}
+
+/// A mistake that chance may explain is called likely, unless two entries show it.
+static void qualify(hn_part_result *results, int n) {
+    for (int k = 0; k < n; k++) {
+        hn_part_result *r = &results[k];
+        int shown = 0;
+        for (int j = 0; j < n; j++) {
+            shown += strcmp(results[j].mistake, r->mistake) == 0;
+        }
+        if (r->likely && shown < 2) {
+            char text[HN_PART_TEXT];
+            memcpy(text, r->explanation, sizeof text);
+            snprintf(r->explanation, sizeof r->explanation, "this looks like: %.380s", text);
+        }
+    }
 }
 
 static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_result *results,
@@ -80,6 +96,7 @@ static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_resu
     for (int k = 0; k < *n; k++) {
         HN_TRY(grade_entry(s, k, given ? list[k] : NULL, &results[k]));
     }
+    qualify(results, *n);
     return HN_OK;
 }
 

@@ -129,5 +129,6 @@ bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_
     for (int i = 0; i < s->draw->n_states; i++) {
         x[i] = hn_draw_eval(s->draw, *e, i) * unit.factor / s->unit.factor;
     }
+    *e = hn_scale(unit.factor / s->unit.factor, *e);
     return true;
 }

@@ -3,28 +3,10 @@
 
 #include "expr/construct.h"
 #include "expr/diff.h"
+#include "grade/parts/value_search.h"
 
 #include <math.h>
 #include <stdio.h>
-
-/// 1 when the values are those of `x`, times a factor, at all states.
-static int agrees(const hn_value_sheet *s, int k, const double *given, const double *x,
-                  double factor) {
-    double worst = 0, size = 0;
-    for (int i = 0; i < s->draw->n_states; i++) {
-        const double difference = fabs(given[i] - factor * x[i]);
-        if (!isfinite(difference)) {
-            return 0;
-        }
-        worst = fmax(worst, difference);
-        size = fmax(size, fabs(factor * x[i]));
-    }
-    // a mistake is told as finely as a right answer, relative to its own size
-    const double own = fmax(fabs(s->reference.x[k][0]), 1e-300);
-    const double scaled =
-        s->symbolic ? s->allowed[k] + 1e-6 * size : s->allowed[k] * fmax(size, 1e-300) / own;
-    return worst <= scaled;
-}
 
 /// Factors between the answer and the reference that everyone gets wrong; `again`: as a second
 /// mistake beside another.
@@ -61,25 +43,39 @@ static hn_status read_fault(hn_value_sheet *s, int k, const cJSON *fault, hn_val
     return HN_OK;
 }
 
-/// A listed mistake, alone, or together with a factor.
-static hn_status find_listed(hn_value_sheet *s, int k, const double *given, bool pairs,
-                             hn_part_result *r, int *found) {
+/// A listed mistake alone.
+static hn_status try_listed(hn_value_search *f) {
+    hn_value_sheet *s = f->sheet;
+    const int k = f->entry;
     const cJSON *fault;
-    for (int i = 0; (fault = hn_part_fault_at(s->p, i)) != NULL && !*found; i++) {
+    for (int i = 0; (fault = hn_part_fault_at(s->p, i)) != NULL; i++) {
+        hn_values wrong;
+        bool differs;
+        HN_TRY(read_fault(s, k, fault, &wrong, &differs));
+        if (differs) {
+            hn_value_search_try(f, wrong.e[k], 1, hn_part_text(fault, "id"),
+                                hn_part_number(fault, "share", 0), "%s",
+                                hn_part_text(fault, "says"));
+        }
+    }
+    return HN_OK;
+}
+
+/// A listed mistake together with a factor.
+static hn_status try_listed_pairs(hn_value_search *f) {
+    hn_value_sheet *s = f->sheet;
+    const int k = f->entry;
+    const cJSON *fault;
+    for (int i = 0; (fault = hn_part_fault_at(s->p, i)) != NULL; i++) {
         hn_values wrong;
         bool differs;
         HN_TRY(read_fault(s, k, fault, &wrong, &differs));
         const double share = hn_part_number(fault, "share", 0);
-        if (!pairs && differs && agrees(s, k, given, wrong.x[k], 1)) {
-            hn_part_wrong(r, hn_part_text(fault, "id"), share, "%s", hn_part_text(fault, "says"));
-            *found = 1;
-        }
-        for (int f = 0; f < N_FACTORS && pairs && differs && !*found; f++) {
-            if ((!FACTORS[f].numbers || !s->symbolic) &&
-                agrees(s, k, given, wrong.x[k], FACTORS[f].factor)) {
-                hn_part_wrong(r, hn_part_text(fault, "id"), share * FACTORS[f].share, "%s; and %s",
-                              hn_part_text(fault, "says"), FACTORS[f].again);
-                *found = 1;
+        for (int m = 0; m < N_FACTORS && differs; m++) {
+            if (!FACTORS[m].numbers || !s->symbolic) {
+                hn_value_search_try(f, wrong.e[k], FACTORS[m].factor, hn_part_text(fault, "id"),
+                                    share * FACTORS[m].share, "%s; and %s",
+                                    hn_part_text(fault, "says"), FACTORS[m].again);
             }
         }
     }
@@ -88,155 +84,126 @@ static hn_status find_listed(hn_value_sheet *s, int k, const double *given, bool
 
 /// Two listed mistakes at once, when they change different terms or different factors: the answer
 /// is a + b - reference, or a b / reference.
-static hn_status find_two_listed(hn_value_sheet *s, int k, const double *given, hn_part_result *r,
-                                 int *found) {
+static hn_status try_two_listed(hn_value_search *f) {
+    hn_value_sheet *s = f->sheet;
+    hn_graph *g = s->draw->graph;
+    const int k = f->entry;
     const cJSON *first, *second;
-    const double *x = s->reference.x[k];
-    for (int i = 0; (first = hn_part_fault_at(s->p, i)) != NULL && !*found; i++) {
-        for (int j = 0; j < i && !*found; j++) {
+    for (int i = 0; (first = hn_part_fault_at(s->p, i)) != NULL; i++) {
+        for (int j = 0; j < i; j++) {
             hn_values a, b;
             bool differs[2];
-            double sum[HN_DRAW_STATES], product[HN_DRAW_STATES];
             second = hn_part_fault_at(s->p, j);
             HN_TRY(read_fault(s, k, first, &a, &differs[0]));
             HN_TRY(read_fault(s, k, second, &b, &differs[1]));
-            for (int n = 0; n < s->draw->n_states; n++) {
-                sum[n] = a.x[k][n] + b.x[k][n] - x[n];
-                product[n] = a.x[k][n] * b.x[k][n] / x[n];
-            }
-            if (differs[0] && differs[1] &&
-                (agrees(s, k, given, sum, 1) || agrees(s, k, given, product, 1))) {
-                hn_part_wrong(r, hn_part_text(second, "id"),
-                              hn_part_number(first, "share", 0) *
-                                  hn_part_number(second, "share", 0),
-                              "two mistakes at once: %s; and %s", hn_part_text(second, "says"),
-                              hn_part_text(first, "says"));
-                *found = 1;
+            const hn_ex both[2] = {hn_sub(g, hn_add(g, a.e[k], b.e[k]), s->reference.e[k]),
+                                   hn_div(g, hn_mul(g, a.e[k], b.e[k]), s->reference.e[k])};
+            const double share =
+                hn_part_number(first, "share", 0) * hn_part_number(second, "share", 0);
+            for (int m = 0; m < 2 && differs[0] && differs[1]; m++) {
+                hn_value_search_try(f, both[m], 1, hn_part_text(second, "id"), share,
+                                    "two mistakes at once: %s; and %s",
+                                    hn_part_text(second, "says"), hn_part_text(first, "says"));
             }
         }
     }
     return HN_OK;
 }
 
-static int find_factor(const hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
+static void try_factors(hn_value_search *f) {
+    const hn_value_sheet *s = f->sheet;
     for (int i = 0; i < N_FACTORS; i++) {
-        if ((!FACTORS[i].numbers || !s->symbolic) &&
-            agrees(s, k, given, s->reference.x[k], FACTORS[i].factor)) {
-            hn_part_wrong(r, FACTORS[i].id, FACTORS[i].share, "%s", FACTORS[i].says);
-            return 1;
+        if (!FACTORS[i].numbers || !s->symbolic) {
+            hn_value_search_try(f, s->reference.e[f->entry], FACTORS[i].factor, FACTORS[i].id,
+                                FACTORS[i].share, "%s", FACTORS[i].says);
         }
     }
-    return 0;
 }
 
-/// The reference with some names replaced by a + b * itself: 1 when the answer has these values, -1
-/// when it has them with the other sign, else 0.
-static int has_replaced(hn_value_sheet *s, int k, const double *given, const int *names, int n,
-                        double a, double b) {
-    hn_graph *g = s->draw->graph;
-    hn_ex with[HN_DRAW_NAMES], e = s->reference.e[k];
-    double x[HN_DRAW_STATES];
+/// The reference with some names replaced by a + b * itself.
+static hn_ex replace_names(const hn_value_search *f, const int *names, int n, double a, double b) {
+    hn_graph *g = f->sheet->draw->graph;
+    const hn_ex *reference = &f->sheet->reference.e[f->entry];
+    hn_ex with[HN_DRAW_NAMES], e = *reference;
     for (int i = 0; i < n; i++) {
         with[i] = hn_add(g, hn_num(a), hn_scale(b, hn_graph_symbol_expr(g, names[i])));
     }
-    hn_substitute(g, &s->reference.e[k], 1, names, with, n, &e);
-    for (int i = 0; i < s->draw->n_states; i++) {
-        x[i] = hn_draw_eval(s->draw, e, i);
-    }
-    return agrees(s, k, given, x, 1) ? 1 : agrees(s, k, given, x, -1) ? -1 : 0;
+    hn_substitute(g, reference, 1, names, with, n, &e);
+    return e;
 }
 
-/// Writes a mistake found with its own sign or with the other one.
-static int write_signed(hn_part_result *r, int sign, const char *id, double share,
-                        const char *says) {
-    if (sign != 0) {
-        hn_part_wrong(r, id, sign < 0 ? share / 2 : share, "%s%s", says,
-                      sign < 0 ? "; and the sign is wrong as well" : "");
+/// A candidate with its own sign or with the other one.
+static void try_signed(hn_value_search *f, hn_ex e, const char *id, double share,
+                       const char *says) {
+    if (!hn_value_search_try(f, e, 1, id, share, "%s", says)) {
+        hn_value_search_try(f, e, -1, id, share / 2, "%s; and the sign is wrong as well", says);
     }
-    return sign != 0;
 }
 
 /// Angles in degrees, sine for cosine.
-static int find_angles(hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
+static void try_angles(hn_value_search *f) {
+    static const double DEGREES[] = {57.29577951308232, 0.017453292519943295};
+    const hn_draw *d = f->sheet->draw;
     int names[HN_DRAW_NAMES], n = 0;
-    for (int i = 0; i < s->draw->n_names; i++) {
-        if (hn_draw_is_angle(s->draw, i)) {
+    for (int i = 0; i < d->n_names; i++) {
+        if (hn_draw_is_angle(d, i)) {
             names[n++] = i;
         }
     }
-    if (n == 0) {
-        return 0;
+    for (int i = 0; i < 2 && n > 0; i++) {
+        try_signed(f, replace_names(f, names, n, 0, DEGREES[i]), "degrees", 0.5,
+                   "sine and cosine were taken of degrees");
     }
-    const int degrees = has_replaced(s, k, given, names, n, 0, 57.29577951308232);
-    const int radians = has_replaced(s, k, given, names, n, 0, 0.017453292519943295);
-    if (write_signed(r, degrees ? degrees : radians, "degrees", 0.5,
-                     "sine and cosine were taken of degrees")) {
-        return 1;
+    if (n > 0) {
+        hn_value_search_try(f, replace_names(f, names, n, 1.5707963267948966, -1), 1, "sine", 0.25,
+                            "sine and cosine are exchanged");
     }
-    if (has_replaced(s, k, given, names, n, 1.5707963267948966, -1)) {
-        hn_part_wrong(r, "sine", 0.25, "sine and cosine are exchanged");
-        return 1;
-    }
-    return 0;
 }
 
 /// What may have become of one name: left out as a factor, its terms left out, or turned round.
-static int find_name(hn_value_sheet *s, int k, const double *given, int name, hn_part_result *r) {
+static void try_name(hn_value_search *f, int name) {
     char says[80];
-    snprintf(says, sizeof says, "the factor %.40s is missing", s->draw->name[name]);
-    if (write_signed(r, has_replaced(s, k, given, &name, 1, 1, 0), "missing-name", 0.25, says)) {
-        return 1;
-    }
-    snprintf(says, sizeof says, "the terms with %.40s are missing", s->draw->name[name]);
-    if (write_signed(r, has_replaced(s, k, given, &name, 1, 0, 0), "missing-term", 0.25, says)) {
-        return 1;
-    }
-    if (has_replaced(s, k, given, &name, 1, 0, -1)) {
-        hn_part_wrong(r, "sign-term", 0.5, "the terms with %s have the wrong sign",
-                      s->draw->name[name]);
-        return 1;
-    }
-    return 0;
+    const char *word = f->sheet->draw->name[name];
+    snprintf(says, sizeof says, "the factor %.40s is missing", word);
+    try_signed(f, replace_names(f, &name, 1, 1, 0), "missing-name", 0.25, says);
+    snprintf(says, sizeof says, "the terms with %.40s are missing", word);
+    try_signed(f, replace_names(f, &name, 1, 0, 0), "missing-term", 0.25, says);
+    hn_value_search_try(f, replace_names(f, &name, 1, 0, -1), 1, "sign-term", 0.5,
+                        "the terms with %s have the wrong sign", word);
 }
 
 /// One name, or two factors at once: formulas alone, for a number tells too little.
-static int find_names(hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
+static void try_names(hn_value_search *f) {
+    const hn_value_sheet *s = f->sheet;
     int used[HN_DRAW_NAMES], n = 0;
     for (int i = 0; i < s->draw->n_names && s->symbolic; i++) {
-        if (hn_depends_on(s->draw->graph, s->reference.e[k], i)) {
+        if (hn_depends_on(s->draw->graph, s->reference.e[f->entry], i)) {
             used[n++] = i;
         }
     }
     for (int i = 0; i < n; i++) {
-        if (find_name(s, k, given, used[i], r)) {
-            return 1;
-        }
+        try_name(f, used[i]);
     }
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n && f->n_found == 0; i++) {
         for (int j = 0; j < i; j++) {
             char says[120];
             const int both[2] = {used[j], used[i]};
             snprintf(says, sizeof says, "the factors %.40s and %.40s are missing",
                      s->draw->name[both[0]], s->draw->name[both[1]]);
-            if (write_signed(r, has_replaced(s, k, given, both, 2, 1, 0), "missing-name", 0.1,
-                             says)) {
-                return 1;
-            }
+            try_signed(f, replace_names(f, both, 2, 1, 0), "missing-name", 0.1, says);
         }
     }
-    return 0;
 }
 
 /// The value of another entry.
-static int find_entry(const hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
-    for (int j = 0; j < s->reference.n; j++) {
-        if (j != k && (agrees(s, k, given, s->reference.x[j], 1) ||
-                       agrees(s, k, given, s->reference.x[j], -1))) {
-            hn_part_wrong(r, "other-entry", 0.25, "this is entry %d, perhaps with its sign", j + 1);
-            return 1;
+static void try_entries(hn_value_search *f) {
+    const hn_values *reference = &f->sheet->reference;
+    for (int j = 0; j < reference->n; j++) {
+        for (int sign = 1; sign >= -1 && j != f->entry; sign -= 2) {
+            hn_value_search_try(f, reference->e[j], sign, "other-entry", 0.25,
+                                "this is entry %d, perhaps with its sign", j + 1);
         }
     }
-    return 0;
 }
 
 /// Lowest and highest value of the states.
@@ -275,27 +242,38 @@ static bool find_constant(const hn_value_sheet *s, int k, const double *given, h
     return false;
 }
 
-hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
-    int found = 0;
+hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex formula,
+                           hn_part_result *r) {
+    hn_value_search f;
+    hn_value_search_begin(&f, s, k, given, formula, r);
     if (!isfinite(given[0])) {
         hn_part_wrong(r, "not-finite", 0, "the formula has no finite value at some states");
         return HN_OK;
     }
 
-    // one mistake explains more than two: pairs come last
-    HN_TRY(find_listed(s, k, given, false, r, &found));
-    if (found && is_zero(s, k, given)) { // named, but worth nothing
+    // one mistake; what is 0, or the same everywhere, is nothing but that
+    HN_TRY(try_listed(&f));
+    if (f.n_found > 0 && is_zero(s, k, given)) { // named, but worth nothing
         r->share = 0;
     }
-    found = found || find_constant(s, k, given, r) || find_factor(s, k, given, r) ||
-            find_angles(s, k, given, r) || find_names(s, k, given, r) || find_entry(s, k, given, r);
-    if (!found) {
-        HN_TRY(find_listed(s, k, given, true, r, &found));
+    if (f.n_found == 0 && find_constant(s, k, given, r)) {
+        return HN_OK;
     }
-    if (!found) {
-        HN_TRY(find_two_listed(s, k, given, r, &found));
+    if (!is_zero(s, k, given)) {
+        try_factors(&f);
+        try_angles(&f);
+        try_names(&f);
+        try_entries(&f);
     }
-    if (!found) {
+
+    // one mistake explains more than two: pairs come last
+    if (f.n_found == 0) {
+        HN_TRY(try_listed_pairs(&f));
+    }
+    if (f.n_found == 0) {
+        HN_TRY(try_two_listed(&f));
+    }
+    if (f.n_found == 0) {
         hn_part_wrong(r, "other", 0, "no known mistake gives this");
     }
     return hn_graph_failed(s->draw->graph) ? HN_ERR_MEMORY : HN_OK;

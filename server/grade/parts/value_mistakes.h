@@ -6,8 +6,9 @@
 
 #include "grade/parts/value_sheet.h"
 
-/// Writes the mistake in entry k, whose values are wrong, and its share of the points.
+/// Writes the mistake in entry k, whose values are wrong, and its share of the points. `formula`:
+/// the answer itself. r->likely says that chance may explain the answer as well.
 /// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given,
-                                         hn_part_result *r);
+                                         hn_ex formula, hn_part_result *r);
 #endif

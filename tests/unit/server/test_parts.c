@@ -123,6 +123,56 @@ static void mistakes_in_numbers_are_named(void **state) {
     assert_near(v.points, 0.5, 1e-12);
 }
 
+/// The sentence about the entry `name` of an answer.
+static const char *explain(const hn_exercise *e, const char *part, const char *answer) {
+    static hn_entry_verdict v;
+    v = grade(e, part, answer);
+    return v.explanation;
+}
+
+static void a_mistake_that_chance_explains_is_called_likely(void **state) {
+    const hn_exercise *e = *state;
+
+    // a number that equals l by chance: the formula names l, so that l can be changed
+    expect(e, "b", with_number(e, "l", "\"-l*sin(th1)*w1/%.2f\""), "other");
+    expect(e, "b", "\"-sin(th1)*w1\"", "missing-name");
+    assert_null(strstr(explain(e, "b", "\"-sin(th1)*w1\""), "looks like"));
+    assert_null(strstr(explain(e, "b", "\"l*sin(th1)*w1\""), "looks like"));
+
+    // a number in its place cannot be changed
+    assert_string_equal(explain(e, "b", with_number(e, "l", "\"%.2f*sin(th1)*w1\"")),
+                        "this looks like: the sign is wrong");
+    assert_string_equal(explain(e, "a", with_number(e, "l+w", "%.4f")),
+                        "this looks like: a product");
+
+    // two numbers that show the same mistake are more than chance
+    char both[64];
+    snprintf(both, sizeof both, "%s", with_number(e, "-l", "[%.4f, "));
+    snprintf(both + strlen(both), sizeof both - strlen(both), "%s",
+             with_number(e, "-2*l-1", "%.4f]"));
+    assert_string_equal(explain(e, "c", both), "the sign is wrong");
+}
+
+static void two_mistakes_that_explain_a_number_are_both_named(void **state) {
+    static const char EQUAL[] =
+        "{\"exercise\":2,\"id\":\"t\",\"title\":\"t\",\"lesson\":\"l\",\"section\":\"s\","
+        "\"statement\":[\"A rod of {l} m.\"],\"draw\":{\"l\":{\"choose\":[2]}},\"parts\":["
+        "{\"id\":\"a\",\"ask\":\"v?\",\"kind\":\"number\",\"points\":2,"
+        "\"answer\":\"l+7\",\"second\":\"7+l\",\"faults\":["
+        "{\"id\":\"twice\",\"answer\":\"2*l\",\"says\":\"not two rods\",\"share\":0.25},"
+        "{\"id\":\"sum\",\"answer\":\"l+l\",\"says\":\"not a sum\",\"share\":0.75},"
+        "{\"id\":\"square\",\"answer\":\"l^2\",\"says\":\"not a square\",\"share\":0.5}]}]}";
+    (void)state;
+    hn_exercise *e = load(EQUAL);
+    const hn_entry_verdict v = grade(e, "a", "4");
+
+    // l + l is 2 l in every variant: that is one mistake, and the first of its names is taken
+    assert_string_equal(v.mistake, "twice");
+    assert_string_equal(v.explanation, "this looks like: not two rods; or: not a square");
+    assert_near(v.points, 1, 1e-12);
+    hn_exercise_free(e);
+}
+
 static void two_mistakes_in_formulas_are_named(void **state) {
     static const struct {
         const char *formula, *id, *words;
@@ -495,6 +545,9 @@ int main(void) {
         cmocka_unit_test_setup_teardown(no_digit_of_a_number_is_taken_for_a_unit, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_numbers_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(formulas_are_right_in_any_form, setup, teardown),
+        cmocka_unit_test_setup_teardown(a_mistake_that_chance_explains_is_called_likely, setup,
+                                        teardown),
+        cmocka_unit_test(two_mistakes_that_explain_a_number_are_both_named),
         cmocka_unit_test_setup_teardown(two_mistakes_in_formulas_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_formulas_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(vectors_are_graded_entry_by_entry, setup, teardown),
