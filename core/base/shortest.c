@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/shortest.h"
 
-#include <float.h>
 #include <locale.h>
 #include <math.h>
 #include <stdbool.h>
@@ -12,14 +11,16 @@
 
 // Half of what a run costs may be the printing of its numbers, and nearly all of that the search
 // for the digits by printf and strtod. For numbers of usual size the digits follow from one product
+// of integers: with |value| = m 2^e, m < 2^53,
 //
-//     y = |value| 10^k,    10^16 <= y < 10^17,    0 <= k <= 27                                  (1)
+//     y = |value| 10^k = m 5^k / 2^s,    s = -(e + k),    10^16 <= y < 10^17                    (1)
 //
-// in a long double of 64 bits: 10^27 = 2^27 5^27 is the last power of ten that it holds exactly,
-// so y is known to 2^-8, half a unit in its last place. What depends on less than MARGIN is left
-// to printf.
-static const long double MARGIN = 0.01L;
-enum { MOST_POWER = 27, MOST_DIGITS = 17 };
+// The product is exact, so nothing is left to a guess: neither to which side y is rounded, nor
+// which of its digits read back to the same double. The bounds keep each number below 2^128.
+enum { MOST_POWER = 52, LEAST_SHIFT = 1, MOST_SHIFT = 120, MOST_DIGITS = 17 };
+#define TEN_TO_16 10000000000000000ull
+
+__extension__ typedef unsigned __int128 wide;
 
 // ---- by printf ----
 
@@ -46,73 +47,78 @@ static void write_by_trial(double value, char text[HN_SHORTEST_TEXT]) {
 
 // ---- by one product ----
 
-/// 10^k, exact.
-static long double power_of_ten(int k) {
-    static const long double power[MOST_POWER + 1] = {
-        1e0L,  1e1L,  1e2L,  1e3L,  1e4L,  1e5L,  1e6L,  1e7L,  1e8L,  1e9L,
-        1e10L, 1e11L, 1e12L, 1e13L, 1e14L, 1e15L, 1e16L, 1e17L, 1e18L, 1e19L,
-        1e20L, 1e21L, 1e22L, 1e23L, 1e24L, 1e25L, 1e26L, 1e27L};
-    return power[k];
+/// 5^k for 0 <= k <= 54.
+static wide power_of_five(int k) {
+    // clang-format off
+    static const uint64_t power[] = {
+        1u, 5u, 25u, 125u, 625u, 3125u, 15625u, 78125u, 390625u, 1953125u, 9765625u, 48828125u,
+        244140625u, 1220703125u, 6103515625ull, 30517578125ull, 152587890625ull, 762939453125ull,
+        3814697265625ull, 19073486328125ull, 95367431640625ull, 476837158203125ull,
+        2384185791015625ull, 11920928955078125ull, 59604644775390625ull, 298023223876953125ull,
+        1490116119384765625ull, 7450580596923828125ull
+    };
+    // clang-format on
+    return k < 28 ? power[k] : (wide)power[27] * power[k - 27];
 }
 
-/// Whether long doubles carry 64 bits here: some processors, and tools that stand in for one, have
-/// fewer.
-static bool has_wide_sums(void) {
-    volatile long double one = 1;
-    return LDBL_MANT_DIG >= 64 && one + 0x1p-60L != one;
-}
-
-/// A number y of (1): its integer part, the rest, and how far from it other doubles begin.
+/// A number y of (1).
 typedef struct scaled {
-    uint64_t whole;
-    long double rest, half_gap;
-    bool is_uneven; ///< the gap above is twice as wide
+    uint64_t whole; ///< integer part
+    wide rest;      ///< in units of 2^-s
+    wide five;      ///< 5^k: the gap between y and the next double in the same units
+    int shift;      ///< s
+    bool is_even;   ///< m is: what lies half way to the next double reads back to this one
+    bool is_uneven; ///< m is a power of two: the gap below is half as wide
     int exponent;   ///< of the first digit
 } scaled;
 
-static bool scale(double size, scaled *y) {
-    int two;
-    const double fraction = frexp(size, &two);
-    int exponent = (int)floor((two - 1) * 0.30102999566398120); // log10 of 2; may be one too small
-    if (exponent < 16 - MOST_POWER || exponent > 15) {
+/// y for this exponent of the first digit, which may be one too small or too large.
+static bool multiply(uint64_t m, int e, int exponent, scaled *y) {
+    const int k = 16 - exponent, s = -(e + k);
+    if (k < 0 || k > MOST_POWER || s < LEAST_SHIFT || s > MOST_SHIFT) {
         return false;
     }
-    long double product = (long double)size * power_of_ten(16 - exponent);
-    if (product >= 1e17L) {
-        exponent++;
-        product = (long double)size * power_of_ten(16 - exponent);
-    }
-    if (!(product >= 1e16L && product < 1e17L)) {
-        return false;
-    }
-
-    // a double stands half a unit in the last place from the next; a power of two nearer to the
-    // one below it
-    y->exponent = exponent;
-    y->whole = (uint64_t)product;
-    y->rest = product - (long double)y->whole;
-    y->is_uneven = fraction == 0.5;
-    y->half_gap = ldexpl(power_of_ten(16 - exponent), two - 54 - y->is_uneven);
+    const wide five = power_of_five(k), first = (wide)m * (uint64_t)five,
+               second = (wide)m * (uint64_t)(five >> 64);
+    const wide low = first + (second << 64), top = (second >> 64) + (low < first);
+    *y = (scaled){.whole = (uint64_t)((low >> s) | (top << (128 - s))),
+                  .rest = low & (((wide)1 << s) - 1),
+                  .five = five,
+                  .shift = s,
+                  .exponent = exponent};
     return true;
 }
 
-typedef enum verdict { NO, YES, UNSURE } verdict;
+static bool scale(double size, scaled *y) {
+    int two;
+    const uint64_t m = (uint64_t)ldexp(frexp(size, &two), 53);
+    const int least = (int)floor((two - 1) * 0.30102999566398120); // log10 of 2; or one too small
+    if (!multiply(m, two - 53, least, y) ||
+        (y->whole >= 10 * TEN_TO_16 && !multiply(m, two - 53, least + 1, y))) {
+        return false;
+    }
+    y->is_even = m % 2 == 0;
+    y->is_uneven = m == 1ull << 52;
+    return y->whole >= TEN_TO_16 && y->whole < 10 * TEN_TO_16;
+}
 
-/// Rounds y to its first 17 - dropped digits; YES: they read back to the same double.
-static verdict round_to(const scaled *y, int dropped, uint64_t *digits) {
+/// Rounds y to its first 17 - dropped digits, halves to even; returns whether they read back to the
+/// same double.
+static bool round_to(const scaled *y, int dropped, uint64_t *digits) {
     static const uint64_t unit[] = {1, 10, 100};
-    const uint64_t u = unit[dropped];
-    const long double left = (long double)(y->whole % u) + y->rest, half = 0.5L * (long double)u;
-    const bool up = left > half;
-    const long double off = up ? (long double)u - left : left;
-    *digits = y->whole / u + up;
-    if (fabsl(left - half) < MARGIN) {
-        return UNSURE;
-    }
-    if (off < y->half_gap - MARGIN) {
-        return YES;
-    }
-    return off > y->half_gap + MARGIN && !y->is_uneven ? NO : UNSURE;
+    const uint64_t u = unit[dropped], left = y->whole % u;
+    const wide one = (wide)1 << y->shift;
+
+    // twice what is left against a whole unit
+    const wide twice = 2 * (left * one + y->rest), all = u * one;
+    *digits = y->whole / u;
+    const bool up = twice > all || (twice == all && *digits % 2 == 1);
+    *digits += up;
+
+    // how far that is from y, against half the gap to the next double: both in units of 2^-s / 4
+    const wide off = up ? 2 * all - twice : twice;
+    const wide half = y->is_uneven && !up ? y->five : 2 * y->five;
+    return 2 * off < half || (2 * off == half && y->is_even);
 }
 
 /// As %g with this precision: `n` digits are left of it once the zeros at the end are gone.
@@ -148,22 +154,22 @@ static void layout(const char *digits, int n, int precision, int exponent, char 
     *out = '\0';
 }
 
-/// False where the digits depend on less than is known.
+/// False where the number is too large, too small, or rounded up to one digit more.
 static bool write_by_product(double value, char *text) {
+    static const uint64_t most[] = {10 * TEN_TO_16, TEN_TO_16, TEN_TO_16 / 10};
     scaled y;
-    if (!has_wide_sums() || !scale(fabs(value), &y)) {
+    if (!scale(fabs(value), &y)) {
         return false;
     }
 
     // 15, 16 or 17 digits: the last always read back
     uint64_t number = 0;
     int dropped = 2;
-    verdict is_same = round_to(&y, dropped, &number);
-    while (is_same == NO && dropped > 0) {
-        is_same = round_to(&y, --dropped, &number);
+    while (!round_to(&y, dropped, &number) && dropped > 0) {
+        dropped--;
     }
     const int precision = MOST_DIGITS - dropped;
-    if (is_same != YES || (long double)number >= power_of_ten(precision)) {
+    if (number >= most[dropped]) {
         return false;
     }
 

@@ -260,6 +260,9 @@ void hn_graph_free(hn_graph *g) {
         free(g->sweep->slot);
         free(g->sweep->order);
     }
+    if (g->tapes) {
+        g->free_tapes(g->tapes);
+    }
     free(g->sweep);
     free(g->symbols);
     free(g->table);

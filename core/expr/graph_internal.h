@@ -62,6 +62,8 @@ struct hn_graph {
     char *piece;
     size_t piece_left;
     hn_sweep *sweep;
+    struct hn_tape_store *tapes; ///< that have been compiled; NULL: none yet
+    void (*free_tapes)(struct hn_tape_store *tapes);
     int failed;
     hn_interrupt interrupt;
     bool interrupted; ///< and for that reason failed

@@ -100,6 +100,7 @@ static hn_tape *copy_tape(const hn_tape *tape) {
         return NULL;
     }
     t->native = NULL;
+    t->sharers = NULL;
     t->code = copy_of(tape->code, ((size_t)tape->info.instructions + 1) * sizeof *t->code);
     t->constants = copy_of(tape->constants, (size_t)tape->n_constants * sizeof *t->constants);
     t->outputs = copy_of(tape->outputs, (size_t)tape->info.n_outputs * sizeof *t->outputs);

@@ -10,13 +10,17 @@
 #include <string.h>
 
 void hn_tape_free(hn_tape *tape) {
-    if (tape) {
+    if (!tape) {
+        return;
+    }
+    if (!tape->sharers || atomic_fetch_sub(tape->sharers, 1) == 1) {
         free(tape->code);
         free(tape->constants);
         free(tape->outputs);
-        hn_native_state_release(tape->native);
-        free(tape);
+        free(tape->sharers);
     }
+    hn_native_state_release(tape->native);
+    free(tape);
 }
 
 hn_tape_info hn_tape_get_info(const hn_tape *tape) {

@@ -25,7 +25,7 @@ typedef struct hn_tape_info {
 
 /// Compiles n_out expressions; input i of the tape is symbols[i]. A symbol used but not listed is a
 /// programmer's error. Returns owned in *out. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 65,000
-/// live values).
+/// live values). The graph keeps the code: the same outputs and inputs again are compiled once.
 HN_MUST_CHECK hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out,
                                         const int *symbols, int n_sym, hn_tape **out);
 void hn_tape_free(hn_tape *tape);

@@ -11,6 +11,7 @@
 #include "expr/tape.h"
 #include "expr/tape_ir.h"
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 /// code, key of a sum (or 0), operands, what is stored (a .. f are the operands)
@@ -74,6 +75,7 @@ typedef struct hn_tape_instruction {
 } hn_tape_instruction;
 
 struct hn_tape {
+    atomic_int *sharers;       ///< tapes that share the three arrays (tape_store.h); NULL: only one
     hn_tape_instruction *code; ///< ends in TAPE_END
     double *constants;         ///< loaded to work[n_inputs ...]
     uint16_t *outputs;         ///< slot of each output

@@ -3,9 +3,11 @@
 
 #include "expr/tape_code.h"
 
+#include "expr/graph_internal.h"
 #include "expr/native.h"
 #include "expr/tape_interpret.h"
 #include "expr/tape_lower.h"
+#include "expr/tape_store.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -519,15 +521,15 @@ static hn_status assemble(compiler *c, int n_inputs, hn_tape *tape) {
     return status;
 }
 
-hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const int *symbols,
-                          int n_sym, hn_tape **out) {
+/// Compiles a tape that the graph has not yet.
+static hn_status compile(hn_graph *g, const hn_tape_key *key, hn_tape **out) {
     compiler c = {0};
     hn_tape *tape = calloc(1, sizeof *tape);
     hn_status status = tape ? HN_OK : HN_ERR_MEMORY;
 
     // graph to operations without coefficients
     if (!status) {
-        status = hn_ir_lower(&c.ir, g, outputs, n_out, symbols, n_sym);
+        status = hn_ir_lower(&c.ir, g, key->outputs, key->n_out, key->symbols, key->n_sym);
     }
 
     // sums of two and three terms, dead code gone
@@ -546,13 +548,46 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
         find_partners(&c);
         order_all(&c);
         find_last_uses(&c);
-        status = assemble(&c, n_sym, tape);
+        status = assemble(&c, key->n_sym, tape);
     }
 
     compiler_reset(&c);
     if (status) {
         hn_tape_free(tape);
         return status;
+    }
+    *out = tape;
+    return HN_OK;
+}
+
+/// The same, and the graph keeps it for the next who asks.
+static hn_status compile_and_keep(hn_graph *g, const hn_tape_key *key, hn_tape **out) {
+    hn_tape *tape = NULL;
+    HN_TRY(compile(g, key, &tape));
+    tape->sharers = malloc(sizeof *tape->sharers);
+    hn_status status = tape->sharers ? HN_OK : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        atomic_init(tape->sharers, 1);
+        g->free_tapes = hn_tape_store_free;
+        status = hn_tape_store_keep(&g->tapes, key, tape);
+    }
+    if (status != HN_OK) {
+        hn_tape_free(tape);
+        return status;
+    }
+    *out = tape;
+    return HN_OK;
+}
+
+hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const int *symbols,
+                          int n_sym, hn_tape **out) {
+    const hn_tape_key key = {outputs, n_out, symbols, n_sym};
+    hn_tape *tape = NULL;
+    if (!g->failed) {
+        HN_TRY(hn_tape_store_find(g->tapes, &key, &tape));
+    }
+    if (!tape) {
+        HN_TRY(compile_and_keep(g, &key, &tape));
     }
     tape->native = hn_native_state_create(tape);
     *out = tape;
