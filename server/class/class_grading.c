@@ -138,11 +138,28 @@ static void put_likeness(const grading *g, hn_strbuf *b, const char *text) {
     hn_json_put_string(b, "shape", shape);
 }
 
+/// The wrong entries by which copies of a part are found: "b: other 0123456789abcdef".
+static void put_alike(hn_strbuf *b, const hn_verdict *v) {
+    hn_json_key(b, "alike");
+    hn_json_array(b);
+    for (int k = 0; k < v->n_entries; k++) {
+        const hn_entry_verdict *e = &v->entry[k];
+        if (!e->right && e->likeness) {
+            char hex[17], what[96];
+            hn_hash_hex(e->likeness, hex);
+            snprintf(what, sizeof what, "%s: %.32s %s", e->name, e->mistake, hex);
+            hn_json_string(b, what);
+        }
+    }
+    hn_json_end_array(b);
+}
+
 static void put_graded(const grading *g, hn_strbuf *b, const hn_verdict *v, const char *text) {
     hn_json_put_number(b, "score", v->score);
     hn_json_put_number(b, "max_score", v->max_score);
     hn_json_put_string(b, "summary", v->summary);
     put_likeness(g, b, text);
+    put_alike(b, v);
     hn_json_key(b, "mistakes");
     hn_json_array(b);
     for (int k = 0; k < v->n_entries; k++) {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BINS = 10, BAR = 40, MOST_NAMED = 10, WORD = 96 };
+enum { BINS = 10, BAR = 40, MOST_NAMED = 10, MOST_ALIKE = 5, WORD = 96 };
 
 /// How often a word was seen, and who is behind it.
 typedef struct count {
@@ -76,7 +76,7 @@ typedef struct tally {
     int graded, ungradable, failed, bin[BINS + 1];
     double sum, most;
     bool programs; ///< what was handed in
-    counts mistakes, equal, like, names;
+    counts mistakes, equal, like, alike, names;
 } tally;
 
 /// Who has the same shape: a group counts once two of its texts differ.
@@ -118,6 +118,9 @@ static void take_line(tally *t, const cJSON *o) {
     const cJSON *m;
     cJSON_ArrayForEach(m, cJSON_GetObjectItem(o, "mistakes")) {
         add_count(&t->mistakes, m->valuestring, student);
+    }
+    cJSON_ArrayForEach(m, cJSON_GetObjectItem(o, "alike")) {
+        add_count(&t->alike, m->valuestring, student);
     }
     // right formulas are alike by nature; wrong ones are not, and programs are not
     if (score < most || t->programs) {
@@ -164,6 +167,29 @@ static void put_like(hn_strbuf *b, counts *c) {
     }
 }
 
+/// Whether equal wrong answers to a part are worth a look: a known mistake that many make is none.
+static bool is_alike(const count *c) {
+    return c->n > 1 && (c->n <= MOST_ALIKE || strstr(c->word, ": other "));
+}
+
+/// Wrong answers to one part that are equal.
+static void put_alike(hn_strbuf *b, counts *c) {
+    int shown = 0;
+    sort(c);
+    for (int k = 0; k < c->n; k++) {
+        const char *word = c->item[k].word, *hash = strrchr(word, ' ');
+        if (is_alike(&c->item[k]) && hash) {
+            const char *mistake = strstr(word, ": ") + 2;
+            hn_strbuf_printf(b, "%s  %.*s %s (%.*s)\n",
+                             shown++ ? ""
+                                     : "equal wrong parts, each variant's numbers replaced by "
+                                       "their names\n",
+                             (int)(mistake - word - 1), word, hn_strbuf_text(&c->item[k].who),
+                             (int)(hash - mistake), mistake);
+        }
+    }
+}
+
 void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
     tally t = {.programs = programs};
     for (int i = 0; i < r->n; i++) {
@@ -196,9 +222,11 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
                          hn_strbuf_text(&t.equal.item[k].who));
     }
     put_like(b, &t.like);
+    put_alike(b, &t.alike);
     put_names(b, &t.names);
     free_counts(&t.names);
     free_counts(&t.mistakes);
     free_counts(&t.equal);
     free_counts(&t.like);
+    free_counts(&t.alike);
 }

@@ -134,6 +134,17 @@ static void explain(hn_verdict *v, hn_exam *exam, hn_entry_verdict *e, hn_ex giv
     }
 }
 
+/// The hash of wrong values at the states of this seed, by which copies of an entry are found.
+static uint64_t hash_values(const hn_exam *exam, const double *value) {
+    uint64_t hash = HN_HASH_START;
+    for (int s = 0; s < exam->n_states; s++) {
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.6e", value[s]);
+        hash = hn_hash_text(hash, digits);
+    }
+    return hash;
+}
+
 static hn_status grade_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_verdict *e) {
     int index = e->row * v->problem->n_columns + e->column;
     hn_ex given;
@@ -150,6 +161,7 @@ static hn_status grade_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn
     e->right = compare(exam, index, e, value);
     if (!e->right) {
         explain(v, exam, e, given, value);
+        e->likeness = strcmp(e->mistake, "other") == 0 ? hash_values(exam, value) : 0;
     } else {
         e->points = e->max_points;
     }

@@ -272,6 +272,7 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
             e->max_points * (r->right ? r->share : hn_rubric_share(rubric, r->mistake, r->share));
         e->right = r->right;
         e->mistake = r->mistake;
+        e->likeness = r->likeness;
         snprintf(e->explanation, sizeof e->explanation, "%s", r->explanation);
         snprintf(e->given, sizeof e->given, "%s", r->given);
         snprintf(e->expected, sizeof e->expected, "%s", r->expected);

@@ -7,6 +7,7 @@ import io
 import json
 import os
 import random
+import re
 import resource
 import signal
 import struct
@@ -222,7 +223,54 @@ class Class(unittest.TestCase):
         self.put("dan.json", wrong)
         text = self.grade().stdout
         self.assertRegex(text, r"(?m)^near-copies: the same but for the names\n  ann, bob$")
-        self.assertNotIn("cid", text.split("near-copies")[1])
+        self.assertNotIn("cid", text.split("near-copies")[1].split("equal wrong parts")[0])
+
+    def copies(self, exercise, **answers):
+        """The groups of equal wrong parts in a class in which everybody has a variant of his own."""
+        for name, answer in answers.items():
+            self.put(f"{name}.json", json.dumps(answer))
+        text = call("grade", exercise, self.folder).stdout
+        return re.findall(r"(?m)^  (.*)$", text.partition("equal wrong parts, each variant's numbers replaced by their names\n")[2])
+
+    def test_equal_wrong_parts_are_listed_among_variants(self):
+        asked = {name: json.loads(call("problem", "fourbar", "--student", name, "--json").stdout) for name in ("ann", "bob", "cid", "dan")}
+        own = {name: {"m2": float(re.search(r"m2 = ([0-9.]+) kg", text).group(1)), "l1": float(re.search(r"l1 = ([0-9.]+) m;", text).group(1))}
+               for name, text in ((name, json.dumps(e)) for name, e in asked.items())}
+        self.assertNotIn(own["bob"]["l1"], [own[name]["l1"] for name in ("ann", "cid", "dan")])
+
+        # a mistake that nobody expects: spelled otherwise, with the own number; and one that has the same name but is another
+        groups = self.copies("fourbar", ann={"b": "m2*l1*l2*cos(th1-th2)/7", "c": "th1"}, bob={"b": f"cos(th2-th1) {own['bob']['l1']} l2 m2 / 7", "c": "th2"},
+                             cid={"b": f"m2*{own['cid']['l1']}*l2*cos(th1-th2)/8"}, dan={"b": f"m2*{own['bob']['l1']}*l2*cos(th1-th2)/7"})
+        self.assertEqual(groups, ["b: ann, bob (other)"])
+
+        # a known mistake: the same text, or else it is only a frequent mistake
+        groups = self.copies("fourbar", ann={"b": "m2*l1*l2*cos(th1+th2)/2"}, bob={"b": f"{own['bob']['m2']} * L1*l2*cos(th1+th2)/2".lower()},
+                             cid={"b": "0.5*m2*l1*l2*cos(th1+th2)"}, dan={"b": "m2*l1*l2*cos(th1-th2)/2"})
+        self.assertEqual(groups, ["b: ann, bob (sum-of-angles)"])
+
+        # numbers alone say nothing among variants
+        self.assertEqual(self.copies("fourbar", ann={"a": 1.2345}, bob={"a": 1.2345}, cid={}, dan={}), [])
+
+    def test_equal_wrong_entries_of_a_matrix_are_listed(self):
+        def answer(first, second):
+            return {"J": [[first, "l2*th2", "sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", second, "-l3*cos(th3)", "-l4*cos(th4)"]]}
+
+        groups = self.copies("p3", ann=answer("l1*th1", "th1^2"), bob=answer("th1*l1", "th2^2"), cid=answer("l1", "th2^3"))
+        self.assertEqual(groups, ["J12: ann, bob, cid (other)", "J11: ann, bob (other)"])
+
+    def test_scores_of_before_are_kept(self):
+        out = os.path.join(self.temporary.name, "scores.csv")
+        self.put("ann.json", RIGHT)
+        self.assertNotIn("held other scores", self.grade("--out", out).stderr)
+        self.assertNotIn("held other scores", self.grade("--out", out).stderr)  # the same scores once more
+        for n in (1, 2):
+            with open(out, "a", encoding="utf-8") as f:
+                f.write(f"changed by hand, {n}\n")
+            self.assertIn(f"'{out}' held other scores: they are kept in '{out}.{n}'", self.grade("--out", out).stderr)
+            with open(f"{out}.{n}", encoding="utf-8") as f:
+                self.assertIn(f"changed by hand, {n}", f.read())
+        with open(out, encoding="utf-8") as f:
+            self.assertNotIn("changed", f.read())
 
     def test_parts_put_together_are_the_whole(self):
         for k in range(11):

@@ -20,6 +20,7 @@ typedef struct hn_part_result {
     double share;  ///< of the points of this entry, 0 .. 1
     int right, unreadable;
     bool likely;         ///< the mistake explains the answer, but chance may do so as well
+    uint64_t likeness;   ///< equal for equal wrong answers, whatever the variant; 0: says nothing
     const char *mistake; ///< id: static, or borrowed from the exercise; "" when right
     char explanation[HN_PART_TEXT], given[HN_PART_TEXT], expected[HN_PART_TEXT];
 } hn_part_result;

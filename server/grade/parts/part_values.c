@@ -6,6 +6,7 @@
 #include "grade/parts/part_list.h"
 
 #include "grade/parts/value_entry.h"
+#include "grade/parts/value_likeness.h"
 #include "grade/parts/value_mistakes.h"
 
 #include <math.h>
@@ -52,7 +53,11 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
         hn_part_right(r);
         return HN_OK;
     }
-    return hn_value_explain(s, k, x, e, r);
+    HN_TRY(hn_value_explain(s, k, x, e, r));
+
+    // a known mistake has the same values whoever makes it
+    r->likeness = hn_value_likeness(s, node, strcmp(r->mistake, "other") == 0);
+    return HN_OK;
 }
 
 /// A mistake that chance may explain is called likely, unless two entries show it.
