@@ -43,6 +43,25 @@ int hn_scene_find_body(const hn_scene *scene, const char *name) {
     return -2;
 }
 
+hn_status hn_scene_add_pull(hn_scene *scene, int point) {
+    if (point < 0 || point >= scene->n_points) {
+        return HN_ERR_INPUT;
+    }
+    const size_t n = (size_t)scene->n_loads;
+    hn_load *loads = hn_arena_get(scene->arena, (n + 1) * sizeof *loads);
+    if (!loads) {
+        return HN_ERR_MEMORY;
+    }
+    if (n > 0) {
+        memcpy(loads, scene->loads, n * sizeof *loads);
+    }
+    loads[n] = (hn_load){
+        .name = "pull", .pointer = "", .kind = HN_LOAD_PULL, .p = point, .q = -1, .coordinate = -1};
+    scene->loads = loads;
+    scene->n_loads++;
+    return HN_OK;
+}
+
 void hn_scene_free(hn_scene *scene) {
     if (scene) {
         hn_arena_free(scene->arena); // the scene itself lives in it

@@ -133,7 +133,10 @@ typedef enum hn_load_kind {
     HN_LOAD_FOLLOW, ///< actuator on a coordinate x that follows value[0] = target(t):
     /// < stiffness (target - x) + damping (target' - x'), no more than value[1] either way if that
     /// is > 0
-    HN_LOAD_TABLE ///< on a coordinate: `table` over time
+    HN_LOAD_TABLE, ///< on a coordinate: `table` over time
+    /// a hand that holds point p while the mechanism runs (dynamics/compile/pull.h); never in a
+    /// scene file
+    HN_LOAD_PULL
 } hn_load_kind;
 
 /// Values over time, times strictly increasing; before the first and after the last time the end
@@ -262,6 +265,9 @@ HN_MUST_CHECK hn_status hn_scene_load_json(const char *text, size_t n, const cha
 HN_MUST_CHECK hn_status hn_scene_load_file(const char *path, const hn_setting *settings,
                                            int n_settings, hn_scene **out, hn_diags *diags);
 void hn_scene_free(hn_scene *scene); ///< NULL is legal
+/// Adds a load of kind HN_LOAD_PULL on a point; nothing holds it yet. The hash of the scene stays.
+/// Fails: HN_ERR_INPUT (no such point), HN_ERR_MEMORY
+HN_MUST_CHECK hn_status hn_scene_add_pull(hn_scene *scene, int point);
 
 int hn_scene_find_coordinate(const hn_scene *scene, const char *name); ///< index by name, or -1
 /// Index of the parameter; -1: there is none of this name.

@@ -76,7 +76,7 @@ static hn_status finish(hn_system *sys) {
     sys->info.nv = sys->info.n_user = sys->nv;
     sys->info.nc = sys->nc;
     sys->info.n_loops = sys->n_loops;
-    sys->info.has_time = depends_on_time(sys);
+    sys->info.has_time = depends_on_time(sys) || sys->n_pulls > 0;
     return check_freedoms(sys);
 }
 
@@ -165,6 +165,7 @@ void hn_system_free(hn_system *sys) {
     hn_entries_reset(&sys->M);
     hn_entries_reset(&sys->J);
     hn_entries_reset(&sys->efforts);
+    hn_pull_log_free(sys->pulls);
     hn_graph_free(sys->g);
     hn_arena_free(sys->arena);
     free(sys);

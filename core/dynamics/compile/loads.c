@@ -135,6 +135,26 @@ static hn_status add_force(hn_system *sys, const hn_geometry *geometry, const hn
     return HN_OK;
 }
 
+/// A hand's spring with its damper: force = k (hand - p) - c p'.
+static hn_status add_pull(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    hn_graph *g = sys->g;
+    hn_span span;
+    HN_TRY(geometry->span(geometry->self, load->p, -1, &span));
+    const hn_ex *in = sys->pull_inputs + HN_PULL_INPUTS * hn_pull_log_find(sys->pulls, load->p);
+    hn_vec3 force, rate = hn_vec3_zero();
+    for (int i = 0; i < span.n; i++) {
+        const hn_vec3 part = hn_vec3_scale(g, sys->v[span.coordinate[i]], span.coefficient[i]);
+        rate = hn_vec3_add(g, rate, part);
+    }
+    for (int i = 0; i < 3; i++) {
+        const hn_ex elastic = hn_mul(g, in[0], hn_sub(g, in[2 + i], span.delta.x[i]));
+        force.x[i] = hn_sub(g, elastic, hn_mul(g, in[1], rate.x[i]));
+    }
+    note_value(sys, load, force);
+    add_power(sys, force, &span);
+    return HN_OK;
+}
+
 static hn_status add_moment(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
     hn_vec3 moment;
     hn_span span;
@@ -220,7 +240,7 @@ static const load_adder ADDERS[] = {
     [HN_LOAD_SPRING] = add_spring,         [HN_LOAD_JOINT_SPRING] = add_joint_spring,
     [HN_LOAD_COORDINATE] = add_coordinate, [HN_LOAD_FORCE] = add_force,
     [HN_LOAD_MOMENT] = add_moment,         [HN_LOAD_FOLLOW] = add_follow,
-    [HN_LOAD_TABLE] = add_table,
+    [HN_LOAD_TABLE] = add_table,           [HN_LOAD_PULL] = add_pull,
 };
 
 hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry) {

@@ -10,6 +10,7 @@
 //     on a coordinate x:  Q_i = tau dx'/du_i
 //         follower   tau = k (x_d(t) - x) + c (x_d' - x'), clamped
 //         table      tau(t)
+//     a hand at h that pulls point p:  Q_i = (k (h - p) - c p') . dp'/du_i
 
 #include "dynamics/compile/system_impl.h"
 

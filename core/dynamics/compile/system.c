@@ -93,8 +93,12 @@ int hn_system_position_of(const hn_system *sys, int i) {
     return sys->scene->is_lagrangian ? i : sys->tree.position[i];
 }
 
+hn_pull_log *hn_system_pulls(const hn_system *sys) {
+    return sys->pulls;
+}
+
 double hn_system_next_corner(const hn_system *sys, double t) {
-    double next = HUGE_VAL;
+    double next = sys->pulls ? hn_pull_log_next_corner(sys->pulls, t) : HUGE_VAL;
     for (int k = 0; k < sys->scene->n_loads; k++) {
         const hn_profile *table = &sys->scene->loads[k].table;
         for (int i = 0; i < table->n; i++) {

@@ -18,10 +18,12 @@
 // joints): q then has a unit quaternion of four entries, the user sees its rotation vector (axis
 // times angle, no longer than pi), and the velocity of both is the angular velocity.
 //
-// Threads. A system is constant after compilation, and threads may share it, with one exception:
-// creating an evaluator, or anything else with a tape of its own, adds nodes to its graph. Create
-// those from one thread at a time.
+// Threads. A system is constant after compilation, and threads may share it, with two exceptions:
+// creating an evaluator, or anything else with a tape of its own, adds nodes to its graph: create
+// those from one thread at a time. And a system with pulls belongs to the thread that writes their
+// log.
 
+#include "dynamics/compile/pull.h"
 #include "expr/graph.h"
 #include "scene/scene.h"
 
@@ -73,8 +75,10 @@ bool hn_system_joint_is_cut(const hn_system *sys, int joint);
 
 /// The entry of q whose rate entry i of v is; -1 for the angular velocity of a ball.
 int hn_system_position_of(const hn_system *sys, int i);
-/// The first time after t at which a load given as a table has a corner (an integrator restarts
-/// there), HUGE_VAL: none.
+/// What a hand does to it while it runs; NULL in a system whose scene has no load for that.
+hn_pull_log *hn_system_pulls(const hn_system *sys);
+/// The first time after t at which a load given as a table, or a pull, has a corner (an integrator
+/// restarts there), HUGE_VAL: none.
 double hn_system_next_corner(const hn_system *sys, double t);
 
 // ---- expressions, for printing, exporting and grading; borrowed arrays in the system's graph ----

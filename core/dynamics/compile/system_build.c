@@ -31,6 +31,33 @@ static hn_ex new_symbol(hn_system *sys, const char *stem, int *number) {
     return e;
 }
 
+/// The inputs and the log of the loads by which a hand pulls.
+static hn_status make_pulls(hn_system *sys) {
+    static const char *const stems[HN_PULL_INPUTS] = {"pull_k", "pull_c", "pull_x", "pull_y",
+                                                      "pull_z"};
+    const hn_scene *scene = sys->scene;
+    int *points = hn_arena_ints(sys->arena, (size_t)scene->n_loads);
+    for (int i = 0; points && i < scene->n_loads; i++) {
+        if (scene->loads[i].kind == HN_LOAD_PULL) {
+            points[sys->n_pulls++] = scene->loads[i].p;
+        }
+    }
+    if (sys->n_pulls == 0) {
+        return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
+    }
+
+    sys->pull_inputs = hn_system_get_zeros(sys, (size_t)(HN_PULL_INPUTS * sys->n_pulls));
+    sys->pulls = hn_pull_log_create(points, sys->n_pulls);
+    if (!sys->pull_inputs || !sys->pulls) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < HN_PULL_INPUTS * sys->n_pulls; i++) {
+        int number;
+        sys->pull_inputs[i] = new_symbol(sys, stems[i % HN_PULL_INPUTS], &number);
+    }
+    return HN_OK;
+}
+
 hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
                                  const char *const *rates) {
     for (int i = 0; i < sys->nq; i++) {
@@ -47,6 +74,7 @@ hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
         sys->params[i] =
             sys->opts.symbolic_params ? hn_symbol(sys->g, param->name, NULL) : hn_num(param->value);
     }
+    HN_TRY(make_pulls(sys));
     return hn_graph_status(sys->g);
 }
 

@@ -7,6 +7,7 @@
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/drawing.h"
 #include "dynamics/compile/entries.h"
+#include "dynamics/compile/pull.h"
 #include "dynamics/compile/system.h"
 #include "dynamics/compile/tree.h"
 #include "dynamics/compile/vec3.h"
@@ -87,6 +88,9 @@ struct hn_system {
     hn_drawing drawing;
     const struct hn_mech *mech; ///< bodies: the trace, kept for reactions
     hn_load_value *load_values; ///< per load
+    int n_pulls;                ///< loads of kind HN_LOAD_PULL
+    hn_ex *pull_inputs;         ///< HN_PULL_INPUTS symbols for each, in the order of pull.h
+    hn_pull_log *pulls;         ///< owned; NULL where nothing can be pulled
     hn_entries efforts;         ///< row, scene coordinate: d phi / dx of gears and formulas
 };
 

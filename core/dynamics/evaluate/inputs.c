@@ -15,7 +15,16 @@ static void begin(const hn_system *sys, double *x, hn_inputs *in) {
 }
 
 static void set_sizes(const hn_system *sys, hn_inputs *in) {
-    *in = (hn_inputs){.nq = sys->nq, .nv = sys->nv, .n = sys->nq + sys->nv + 3 + count_params(sys)};
+    const int pulled = HN_PULL_INPUTS * sys->n_pulls;
+    *in = (hn_inputs){.nq = sys->nq,
+                      .nv = sys->nv,
+                      .n = sys->nq + sys->nv + 3 + count_params(sys) + pulled,
+                      .n_pulled = pulled,
+                      .pulls = sys->pulls};
+}
+
+void hn_inputs_put_pulls(hn_inputs *in, double t) {
+    hn_pull_log_put(in->pulls, t, in->x + in->n - in->n_pulled);
 }
 
 hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in) {
@@ -33,6 +42,9 @@ static void list_symbols(const hn_system *sys, int *symbols) {
     symbols[at++] = sys->beta_symbol;
     for (int i = 0; i < count_params(sys); i++) {
         symbols[at++] = hn_ex_symbol(sys->g, sys->params[i]);
+    }
+    for (int i = 0; i < HN_PULL_INPUTS * sys->n_pulls; i++) {
+        symbols[at++] = hn_ex_symbol(sys->g, sys->pull_inputs[i]);
     }
 }
 

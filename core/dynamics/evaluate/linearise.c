@@ -23,9 +23,10 @@ typedef struct term_values {
 } term_values;
 
 struct hn_linear {
-    int nq, nv, nc;
+    int nq, nv, nc, n_params;
+    const hn_pull_log *pulls; ///< NULL: none
     hn_tape *tape;
-    double *x; ///< the tape's workspace: q, v, t, a, lambda, parameters first
+    double *x; ///< the tape's workspace: q, v, t, a, lambda, parameters, pulls first
     double **target;
     int *source;
     int n_scatter;
@@ -222,7 +223,7 @@ static int count_params(const hn_system *sys) {
 }
 
 static int count_inputs(const hn_linear *l, const hn_system *sys) {
-    return l->nq + l->nv + 1 + l->nv + l->nc + count_params(sys);
+    return l->nq + l->nv + 1 + l->nv + l->nc + count_params(sys) + HN_PULL_INPUTS * sys->n_pulls;
 }
 
 static void list_symbols(const builder *b, int *symbols) {
@@ -242,6 +243,9 @@ static void list_symbols(const builder *b, int *symbols) {
     }
     for (int i = 0; i < count_params(sys); i++) {
         *symbols++ = hn_ex_symbol(b->g, sys->params[i]);
+    }
+    for (int i = 0; i < HN_PULL_INPUTS * sys->n_pulls; i++) {
+        *symbols++ = hn_ex_symbol(b->g, sys->pull_inputs[i]);
     }
 }
 
@@ -344,7 +348,11 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     if (!l) {
         return HN_ERR_MEMORY;
     }
-    *l = (hn_linear){.nq = sys->info.nq, .nv = sys->nv, .nc = sys->nc};
+    *l = (hn_linear){.nq = sys->info.nq,
+                     .nv = sys->nv,
+                     .nc = sys->nc,
+                     .n_params = count_params(sys),
+                     .pulls = sys->pulls};
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
     // the derivatives, and their tape
     builder b = {.l = l, .sys = sys, .g = sys->g, .arena = arena};
@@ -391,7 +399,10 @@ void hn_linear_run(hn_linear *l, double t, const double *q, const double *v, con
     x = set_part(x, v, l->nv);
     x = set_part(x, &t, 1);
     x = set_part(x, a, l->nv);
-    set_part(x, lambda, l->nc);
+    x = set_part(x, lambda, l->nc);
+    if (l->pulls) {
+        hn_pull_log_put(l->pulls, t, x + l->n_params);
+    }
     hn_tape_run(l->tape, l->x);
     for (int k = 0; k < l->n_scatter; k++) {
         *l->target[k] = l->x[l->source[k]];

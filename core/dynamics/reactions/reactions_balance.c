@@ -97,7 +97,8 @@ static void act_loads(hn_reactions *r) {
         }
 
         // along a coordinate
-        if (load->kind != HN_LOAD_FORCE && load->kind != HN_LOAD_SPRING) {
+        const bool is_force = load->kind == HN_LOAD_FORCE || load->kind == HN_LOAD_PULL;
+        if (!is_force && load->kind != HN_LOAD_SPRING) {
             r->tau[load->coordinate] += v[0];
             continue;
         }
@@ -105,7 +106,7 @@ static void act_loads(hn_reactions *r) {
         // a force at a point
         const hn_point *at = &scene->points[load->p];
         hn_reaction_place_of(r, at->body, at->at, p);
-        if (load->kind == HN_LOAD_FORCE) {
+        if (is_force) {
             act(r, at->body, 1, v, p, NULL);
             continue;
         }

@@ -43,6 +43,7 @@ struct hn_comparison {
     long long frame;
     hn_accuracy *accuracy; ///< one for all methods
     int in_frame;          ///< the frame after the present one was begun, and interrupted
+    hn_hand hand;          ///< pulls while it runs
 };
 
 hn_comparison_opts hn_comparison_opts_default(void) {
@@ -166,6 +167,7 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
     c->cpu_limit = chosen.cpu_limit > 0 ? chosen.cpu_limit : hn_comparison_opts_default().cpu_limit;
     status = hn_accuracy_create(hn_model_system(model), hn_model_q(model), hn_model_v(model),
                                 c->duration, &c->accuracy);
+    HN_THEN(status, hn_hand_create(hn_model_system(model), &c->hand));
     if (status != HN_OK) {
         hn_comparison_free(c);
         return hn_diags_add(diags, status, NULL, NULL, "%s", hn_status_text(status));
@@ -180,6 +182,7 @@ void hn_comparison_free(hn_comparison *c) {
             hn_run_free(c->entries[i].run);
         }
         hn_accuracy_free(c->accuracy);
+        hn_hand_free(&c->hand);
         free(c);
     }
 }
@@ -305,6 +308,56 @@ static void watch_accuracy(hn_comparison *c) {
     }
 }
 
+// ---- the hand ----
+
+hn_status hn_comparison_pull(hn_comparison *c, hn_pull *pull, hn_diag *diag) {
+    return hn_hand_add(&c->hand, c->frame + c->in_frame, pull, diag);
+}
+
+hn_status hn_comparison_set_pulls(hn_comparison *c, const hn_pull_event *events, int n,
+                                  hn_diag *diag) {
+    HN_ASSERT(c->frame == 0 && !c->in_frame);
+    for (int i = 0; i < n; i++) {
+        hn_pull pull = events[i].pull;
+        c->hand.done = i; // those before it are to be kept
+        HN_TRY(hn_hand_add(&c->hand, events[i].frame, &pull, diag));
+    }
+    hn_hand_rewind(&c->hand);
+    return HN_OK;
+}
+
+int hn_comparison_pulls(const hn_comparison *c, const hn_pull_event **out) {
+    *out = c->hand.events;
+    return c->hand.n;
+}
+
+static void tell_loads_changed(hn_comparison *c, double t) {
+    for (int i = 0; i < c->n; i++) {
+        hn_run_loads_changed(c->entries[i].run, t);
+    }
+    hn_accuracy_loads_changed(c->accuracy, t);
+}
+
+/// What the hand does at the present frame. While it holds on, all stop at the next one, so that no
+/// method runs far ahead of it.
+static void do_pulls(hn_comparison *c) {
+    hn_pull_log *log = hn_system_pulls(hn_model_system(c->model));
+    if (!log) {
+        return;
+    }
+    if (hn_hand_is_due(&c->hand, c->frame)) {
+        double t = fmax((double)c->frame * c->frame_dt, hn_accuracy_time(c->accuracy));
+        for (int i = 0; i < c->n; i++) {
+            t = is_live(&c->entries[i]) ? fmax(t, hn_run_time(c->entries[i].run)) : t;
+        }
+        hn_hand_do(&c->hand, c->frame, t);
+        tell_loads_changed(c, t);
+    }
+    const double next = (double)(c->frame + 1) * c->frame_dt;
+    hn_pull_log_set_stop(log, hn_pull_log_at(log, next) ? next : HUGE_VAL);
+    tell_loads_changed(c, HUGE_VAL);
+}
+
 bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && !c->in_frame; i++) {
         const hn_run_summary s = hn_run_get_summary(c->entries[i].run);
@@ -314,6 +367,9 @@ bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     }
 
     // a method that has already reached t does nothing
+    if (!c->in_frame) {
+        do_pulls(c);
+    }
     c->in_frame = 1;
     const double t = (double)(c->frame + 1) * c->frame_dt;
     for (int k = 0; k < c->n; k++) {
@@ -342,6 +398,7 @@ void hn_comparison_next(hn_comparison *c) {
 void hn_comparison_reset(hn_comparison *c) {
     c->frame = 0;
     c->in_frame = 0;
+    hn_hand_rewind(&c->hand);
     hn_accuracy_reset(c->accuracy);
     for (int i = 0; i < c->n; i++) {
         c->entries[i].over_limit = 0;
@@ -470,6 +527,15 @@ static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sa
     hn_json_put_int(b, "rank", sample->rank);
 }
 
+/// The force of the hand on this state [N].
+static void put_pull_force(hn_strbuf *b, const hn_comparison *c, const hn_sample *sample) {
+    double force[3];
+    if (c->hand.force && sample->q) {
+        hn_pull_force_run(c->hand.force, sample->t, sample->q, sample->v, force);
+        hn_json_put_numbers(b, "pull_force", force, 3);
+    }
+}
+
 static void put_incidents(hn_strbuf *b, const hn_comparison *c) {
     hn_json_key(b, "incidents");
     hn_json_array(b);
@@ -484,6 +550,9 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_put_int(b, "frame", c->frame);
     hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
     hn_json_put_bool(b, "finished", hn_comparison_finished(c));
+    if (c->hand.force) {
+        hn_hand_put_json(b, &c->hand, (double)c->frame * c->frame_dt);
+    }
 
     // state, sample and cost of every method at this frame
     hn_json_key(b, "methods");
@@ -496,6 +565,7 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
         put_reason(b, c, &c->entries[i], &s);
         put_sample(b, c, &sample);
+        put_pull_force(b, c, &sample);
         put_cost(b, &s);
         put_step_cost(b, c, i);
         hn_estimate_put_json(b, c->accuracy, hn_run_spec(c->entries[i].run), &c->entries[i].track,

@@ -7,6 +7,7 @@
 
 #include "base/diag.h"
 #include "base/strbuf.h"
+#include "session/compare/hand.h"
 #include "session/model/model.h"
 #include "study/run/run.h"
 
@@ -41,6 +42,17 @@ long long
 hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
 bool hn_comparison_finished(
     const hn_comparison *c); ///< the clock reached the duration, or every method failed
+/// Lets the hand hold a point from the present frame on, or let go (stiffness and damping 0). All
+/// methods feel it from the same time on: that of the frame, or the latest time beyond it that a
+/// method has stepped to. Stiffness and damping below 0 are chosen, and written to *pull. Events
+/// that were not done yet are forgotten. The point needs a load (hn_model_source.pulls). A
+/// comparison that does the same events at the same frames by the same methods gives the same bits.
+/// Fails as hn_hand_add() does.
+HN_MUST_CHECK hn_status hn_comparison_pull(hn_comparison *c, hn_pull *pull, hn_diag *diag);
+/// Gives a comparison at frame 0 the events that it will do. Fails as hn_comparison_pull() does.
+HN_MUST_CHECK hn_status hn_comparison_set_pulls(hn_comparison *c, const hn_pull_event *events,
+                                                int n, hn_diag *diag);
+int hn_comparison_pulls(const hn_comparison *c, const hn_pull_event **out); ///< count; borrowed
 /// Advances every method to the next frame. The failure of one method is not an error of the
 /// comparison.
 void hn_comparison_next(hn_comparison *c);
@@ -48,6 +60,7 @@ void hn_comparison_next(hn_comparison *c);
 /// few milliseconds; may be NULL) returned 1. The next call continues the frame; until it is
 /// complete there are no samples. hn_comparison_reset() discards an unfinished frame.
 bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
+/// Back to frame 0. The log of pulls stays, and is done again.
 void hn_comparison_reset(hn_comparison *c);
 /// Changes an option, such as "alpha", of one method while it runs; method -1: of all that have it.
 HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,

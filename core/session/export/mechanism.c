@@ -148,7 +148,8 @@ static void gather_loads(hn_mjcf *m) {
         [HN_LOAD_FORCE] = "a force at a point",
         [HN_LOAD_MOMENT] = "a moment on a body",
         [HN_LOAD_FOLLOW] = "a drive whose target is not constant along a hinge or slide",
-        [HN_LOAD_TABLE] = "a load given as a table"};
+        [HN_LOAD_TABLE] = "a load given as a table",
+        [HN_LOAD_PULL] = "a hand that pulls"};
     for (int i = 0; i < m->scene->n_loads; i++) {
         const hn_load *l = &m->scene->loads[i];
         const bool held = l->kind == HN_LOAD_JOINT_SPRING ? gather_spring(m, l) : has_drive(m, l);

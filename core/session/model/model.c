@@ -85,6 +85,18 @@ static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
     return status;
 }
 
+static hn_status add_pulls(hn_scene *scene, const hn_model_source *source, hn_diags *diags) {
+    for (int i = 0; i < source->n_pulls; i++) {
+        const hn_status status = hn_scene_add_pull(scene, source->pulls[i]);
+        if (status != HN_OK) {
+            return hn_diags_add(diags, status, "/pull/point", NULL,
+                                "point %d is not one of the scene's %d points", source->pulls[i],
+                                scene->n_points);
+        }
+    }
+    return HN_OK;
+}
+
 hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn_model **out,
                         hn_diags *diags) {
     hn_arena *arena = hn_arena_create(0);
@@ -97,6 +109,7 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     // scene, equations, consistent start
     model->arena = arena;
     hn_status status = load_scene(lib, source, &model->scene, diags);
+    HN_THEN(status, add_pulls(model->scene, source, diags));
     hn_system_opts opts = hn_system_opts_default();
     opts.interrupt = source->interrupt;
     HN_THEN(status, hn_system_compile(model->scene, &opts, &model->system, diags));

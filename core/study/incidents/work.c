@@ -174,6 +174,7 @@ static double work_between(hn_work_record *w, const hn_work_node *older, const h
 void hn_work_start(hn_work_record *w) {
     w->done = w->until = 0;
     w->n = 0;
+    w->at_corner = false;
     if (w->on) {
         set_node(w, &w->node[w->n++], &w->run->now, w->run->now.t);
     }

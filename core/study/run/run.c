@@ -384,6 +384,14 @@ void hn_run_watch(hn_run *run, int every) {
     run->watch.every = every > 0 ? every : 0;
 }
 
+void hn_run_loads_changed(hn_run *run, double t) {
+    if (run->state == HN_RUN_FAILED) {
+        return;
+    }
+    hn_stepping_loads_changed(&run->stepping, t);
+    run->watch.work.at_corner |= run->stepping.now.t >= t;
+}
+
 // ---- options while running ----
 
 static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) {

@@ -98,6 +98,9 @@ void hn_run_watch(hn_run *run, int every);
 /// reason in diag: HN_ERR_INPUT: unknown key or bad value; HN_ERR_UNSUPPORTED: fixed once the run
 /// is made (an integrator's option, a basis).
 hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag);
+/// The log of pulls of its system has a new entry at time t [s], not before the present time, or a
+/// new stop at t = HUGE_VAL.
+void hn_run_loads_changed(hn_run *run, double t);
 const hn_method_spec *hn_run_spec(const hn_run *run);
 /// The inside of a run, for a study that follows its steps: the stepping half and the engine of the
 /// samples.

@@ -76,7 +76,8 @@ const hn_load *hn_load_share_find(const hn_system *sys, const hn_mode_at *mode, 
     const hn_scene *scene = hn_system_scene(sys);
     const hn_load *found = NULL;
     double all = 0, most = GOOD_PART * rate;
-    if (scene->n_loads > MOST_LOADS || resistance(sys, mode, &all) != HN_OK) {
+    if (hn_system_pulls(sys) || scene->n_loads > MOST_LOADS ||
+        resistance(sys, mode, &all) != HN_OK) {
         return NULL;
     }
     for (int k = 0; k < scene->n_loads; k++) {

@@ -103,6 +103,19 @@ static hn_status accept_at_corner(hn_stepping *s, double h) {
     return status;
 }
 
+void hn_stepping_loads_changed(hn_stepping *s, double t) {
+    find_corner(s);
+    if (s->now.t < t) {
+        return;
+    }
+    s->restart = true;
+    s->control = (hn_step_control){.last = 1};
+    s->h_next = s->adaptive ? 0 : s->h_next;
+    if (s->engine.stepper) {
+        hn_engine_accepted(&s->engine, 1); // slopes kept from before are stale
+    }
+}
+
 // ---- fixed steps ----
 
 static hn_status step_fixed(hn_stepping *s) {

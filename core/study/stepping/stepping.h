@@ -75,6 +75,9 @@ void hn_stepping_free(hn_stepping *s);
 /// hn_stepping_start_engine().
 void hn_stepping_clear(hn_stepping *s);
 HN_MUST_CHECK hn_status hn_stepping_start_engine(hn_stepping *s, hn_engine *e);
+/// The log of pulls has a new entry at time t or a new stop: the next step ends at the next corner,
+/// and where the state is at t already the integrator starts anew.
+void hn_stepping_loads_changed(hn_stepping *s, double t);
 /// Makes one accepted step. Fails with the method's status, and the state stays where it was.
 HN_MUST_CHECK hn_status hn_stepping_step(hn_stepping *s);
 /// The size of a step from one time towards a corner: it ends a few roundings before.

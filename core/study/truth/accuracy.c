@@ -106,6 +106,20 @@ void hn_accuracy_reset(hn_accuracy *a) {
     }
 }
 
+double hn_accuracy_time(const hn_accuracy *a) {
+    double t = 0;
+    for (int i = 0; i < RUNS && is_there(a); i++) {
+        t = fmax(t, hn_run_time(a->run[i]));
+    }
+    return t;
+}
+
+void hn_accuracy_loads_changed(hn_accuracy *a, double t) {
+    for (int i = 0; i < RUNS && is_there(a); i++) {
+        hn_run_loads_changed(a->run[i], t);
+    }
+}
+
 double hn_accuracy_ops(const hn_accuracy *a) {
     return is_there(a) ? hn_run_get_summary(a->run[PILOT]).cost.ops +
                              hn_run_get_summary(a->run[ROUGH]).cost.ops

@@ -58,6 +58,9 @@ HN_MUST_CHECK hn_status hn_accuracy_create(const hn_system *sys, const double *q
                                            double t_end, hn_accuracy **out);
 void hn_accuracy_free(hn_accuracy *a); ///< NULL is legal
 void hn_accuracy_reset(hn_accuracy *a);
+/// The time that the pilot and the rough run have reached [s].
+double hn_accuracy_time(const hn_accuracy *a);
+void hn_accuracy_loads_changed(hn_accuracy *a, double t); ///< see hn_run_loads_changed()
 /// Whether a comparison is due at t.
 bool hn_accuracy_is_due(const hn_accuracy *a, double t);
 /// Brings the pilot to t, where a comparison is due there; `ops` are the operations of the

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "http/ground/jobs.h"
 #include "session/job/field.h"
+#include "http/live/pulls.h"
 #include "http/live/session.h"
 #include "http/live/stream.h"
 #include "http/request/context.h"
@@ -359,9 +360,16 @@ static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **s
         .stopping = &r->context->stopping,
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };
+    hn_pull_list pulls = {0};
     hn_status status = hn_scene_request_read(&scene, body, diags);
     HN_THEN(status,
+            hn_pull_list_read(cJSON_GetObjectItemCaseSensitive(body, "pulls"), &pulls, diags));
+    HN_THEN(status, hn_pull_list_name_points(&pulls, &scene, diags));
+    order.pulls = pulls.at;
+    order.n_pulls = pulls.n;
+    HN_THEN(status,
             hn_session_create(all->opts, all->lib, &order, thread_gone, all, session, diags));
+    hn_pull_list_reset(&pulls);
     hn_scene_request_reset(&scene);
     return status;
 }
@@ -402,6 +410,17 @@ void hn_handle_comparison_get(hn_request *r) {
         hn_strbuf b;
         hn_strbuf_init(&b);
         hn_session_json(&b, session);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+        hn_session_release(session);
+    }
+}
+
+void hn_handle_comparison_pulls(hn_request *r) {
+    hn_session *session = find_session(r);
+    if (session) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_session_pulls_json(&b, session);
         hn_reply_json(r, MHD_HTTP_OK, &b);
         hn_session_release(session);
     }

@@ -21,6 +21,7 @@ void hn_comparisons_free(hn_comparisons *all);
 void hn_handle_comparisons_list(struct hn_request *r);
 void hn_handle_comparisons_create(struct hn_request *r);
 void hn_handle_comparison_get(struct hn_request *r);
+void hn_handle_comparison_pulls(struct hn_request *r);
 void hn_handle_comparison_patch(struct hn_request *r);
 void hn_handle_comparison_delete(struct hn_request *r);
 void hn_handle_comparison_events(struct hn_request *r);

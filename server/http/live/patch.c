@@ -4,6 +4,7 @@
 #include "http/live/patch.h"
 
 #include "base/clock.h"
+#include "http/live/pulls.h"
 #include "session/job/field.h"
 
 #include <stdbool.h>
@@ -11,12 +12,18 @@
 
 /// Steps on request are not interrupted by other requests for so long [s].
 static const double UNDISTURBED = 0.2;
+/// Frames computed again for a point that is pulled for the first time are not interrupted for so
+/// long [s].
+static const double CATCHING_UP = 10;
 
 /// The body, read.
 typedef struct change {
-    const cJSON *methods, *settings, *set;
+    const cJSON *methods, *settings, *set, *pull, *pulls;
     int wants_state, run, reset, step;
+    bool release; ///< the hand lets go
+    bool is_new;  ///< the point of `pull` was not pulled before
     double speed; ///< 0: as it is
+    hn_pull hand; ///< of `pull`
 } change;
 
 static change read_change(const cJSON *body) {
@@ -25,6 +32,9 @@ static change read_change(const cJSON *body) {
         .methods = cJSON_GetObjectItemCaseSensitive(body, "methods"),
         .settings = cJSON_GetObjectItemCaseSensitive(body, "parameters"),
         .set = cJSON_GetObjectItemCaseSensitive(body, "set"),
+        .pull = cJSON_GetObjectItemCaseSensitive(body, "pull"),
+        .pulls = cJSON_GetObjectItemCaseSensitive(body, "pulls"),
+        .release = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(body, "release")),
         .wants_state = state != NULL,
         .run = state && strcmp(state, "running") == 0,
         .reset = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(body, "reset")),
@@ -33,9 +43,14 @@ static change read_change(const cJSON *body) {
     };
 }
 
+/// Whether the clock goes back to 0.
+static bool starts_anew(const change *c) {
+    return c->methods || c->settings || c->reset || c->pulls;
+}
+
 /// 1 when the change fits the state; otherwise the reply is a problem.
 static bool fits_state(const hn_session *session, const change *c, hn_request *r) {
-    int restart = c->methods || c->settings || c->reset;
+    int restart = starts_anew(c);
     int running = c->wants_state ? c->run : session->state == HN_SESSION_RUNNING;
     if (c->step > 0 && running) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"state\": \"paused\" as well",
@@ -43,7 +58,7 @@ static bool fits_state(const hn_session *session, const change *c, hn_request *r
         return false;
     }
     if (session->state == HN_SESSION_FINISHED && !restart &&
-        (c->step > 0 || (c->wants_state && c->run))) {
+        (c->step > 0 || c->pull || (c->wants_state && c->run))) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"reset\": true as well",
                          "the comparison has finished");
         return false;
@@ -70,23 +85,46 @@ static int choose_methods(const hn_session *session, const cJSON *asked, char (*
     return n;
 }
 
+/// What the hand does in what is built: as asked, or as it did so far.
+static hn_status choose_pulls(const hn_session *session, const change *c, hn_pull_list *pulls,
+                              hn_diags *diags) {
+    const hn_comparison *now = session->bench.comparison;
+    return c->pulls ? hn_pull_list_read(c->pulls, pulls, diags)
+                    : hn_pull_list_copy(now, hn_comparison_frame_dt(now), pulls);
+}
+
+/// A new model, with other settings or other points that a hand may pull.
+static hn_status build_model(hn_session *session, const change *c, const char *const *methods,
+                             int n, hn_subject *fresh, hn_diags *diags) {
+    hn_scene_request scene = {0};
+    hn_pull_list pulls = {0};
+    hn_status status = hn_scene_request_copy(&scene, &session->bench.scene);
+    if (status == HN_OK && c->settings) {
+        status = hn_scene_request_read_settings(&scene, c->settings, diags);
+    }
+    HN_THEN(status, choose_pulls(session, c, &pulls, diags));
+    HN_THEN(status, hn_pull_list_name_points(&pulls, &scene, diags));
+    if (status == HN_OK && c->pull) {
+        status = hn_scene_request_add_pull(&scene, c->hand.point, diags);
+    }
+    HN_THEN(status, hn_subject_create(session, &scene, methods, n, fresh, diags));
+    HN_THEN(status, hn_pull_list_give(&pulls, fresh->comparison, diags));
+    hn_pull_list_reset(&pulls);
+    hn_scene_request_reset(&scene);
+    return status;
+}
+
 /// What the change asks for; new methods run on the model that is there (then fresh->model is
-/// NULL).
+/// NULL), unless a hand has pulled it.
 static hn_status build(hn_session *session, const change *c, hn_subject *fresh, hn_diags *diags) {
     char kept[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     const char *methods[HN_COMPARISON_MAX_METHODS];
     int n = choose_methods(session, c->methods, kept, methods);
-    if (!c->settings) {
+    if (!c->settings && !c->pulls && !c->is_new && session->bench.scene.n_pulls == 0) {
         return hn_subject_compare(session, session->bench.model, methods, n, &fresh->comparison,
                                   diags);
     }
-
-    hn_scene_request scene = {0};
-    hn_status status = hn_scene_request_copy(&scene, &session->bench.scene);
-    HN_THEN(status, hn_scene_request_read_settings(&scene, c->settings, diags));
-    HN_THEN(status, hn_subject_create(session, &scene, methods, n, fresh, diags));
-    hn_scene_request_reset(&scene);
-    return status;
+    return build_model(session, c, methods, n, fresh, diags);
 }
 
 /// Puts what was built in the place of what is there.
@@ -131,6 +169,9 @@ static hn_status restart(hn_session *session) {
     pthread_mutex_unlock(&session->lock);
 
     // readers get the whole description, then frame 0
+    hn_strbuf_clear(&session->pulls_json);
+    session->n_pulls = 0;
+    hn_session_publish_pulls(session);
     hn_status status = hn_session_publish_setup(session);
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -166,16 +207,52 @@ static hn_status publish_set(hn_session *session, const cJSON *set) {
     return status;
 }
 
-/// Nothing here can be at fault any more.
+/// Frames of a comparison that was built again, up to where it stood.
+static void catch_up(hn_session *session, long long frame) {
+    session->undisturbed = hn_clock_wall() + CATCHING_UP;
+    while (session->frame < frame && hn_session_advance(session) &&
+           session->state != HN_SESSION_FINISHED) {}
+    session->undisturbed = 0;
+    pthread_mutex_lock(&session->lock);
+    hn_session_set_anchor(session);
+    pthread_mutex_unlock(&session->lock);
+}
+
+/// Tells the comparison, and writes down, what the hand does from the present frame on.
+static hn_status pull(hn_session *session, const change *c) {
+    hn_comparison *of = session->bench.comparison;
+    const hn_pull_event *events;
+    const int n = hn_comparison_pulls(of, &events);
+    hn_pull hand = c->hand;
+    if (c->release && n == 0) {
+        return HN_OK;
+    }
+    if (c->release) {
+        hand = events[n - 1].pull;
+        hand.stiffness = hand.damping = 0;
+    }
+    const hn_status status = hn_comparison_pull(of, &hand, NULL);
+    hn_session_publish_pulls(session);
+    return status;
+}
+
+/// Nothing here can be at fault any more, but what memory and the length of a log allow.
 static hn_status carry_out(hn_session *session, const change *c, hn_subject *fresh) {
     hn_status status = HN_OK;
+    const long long frame = session->frame;
     if (fresh->comparison) {
         replace(session, fresh);
     } else if (c->reset) {
         hn_comparison_reset(session->bench.comparison);
     }
-    if (c->methods || c->settings || c->reset) {
+    if (starts_anew(c) || c->is_new) {
         status = restart(session);
+    }
+    if (c->is_new && !starts_anew(c)) {
+        catch_up(session, frame);
+    }
+    if (status == HN_OK && (c->pull || c->release)) {
+        status = pull(session, c);
     }
     if (c->set && status == HN_OK) {
         status = publish_set(session, c->set);
@@ -205,11 +282,24 @@ static hn_status carry_out(hn_session *session, const change *c, hn_subject *fre
     return status;
 }
 
+/// The hand of the change, and whether its point was ever pulled.
+static void find_hand(const hn_session *session, change *c) {
+    if (!c->pull) {
+        return;
+    }
+    c->hand = hn_pull_read(c->pull);
+    c->is_new = true;
+    for (int i = 0; i < session->bench.scene.n_pulls; i++) {
+        c->is_new &= session->bench.scene.pulls[i] != c->hand.point;
+    }
+}
+
 void hn_session_apply(hn_session *session, hn_request *r) {
     if (!hn_request_read_body(r)) {
         return;
     }
     change c = read_change(r->json);
+    find_hand(session, &c);
     if (!fits_state(session, &c, r)) {
         return;
     }
@@ -218,8 +308,8 @@ void hn_session_apply(hn_session *session, hn_request *r) {
     hn_subject fresh = {0};
     hn_diags diags = {0};
     hn_status status = HN_OK;
-    hn_session_limit_equations(session, c.settings != NULL);
-    if (c.methods || c.settings) {
+    hn_session_limit_equations(session, c.settings || c.pulls || c.is_new);
+    if (c.methods || c.settings || c.pulls || c.is_new) {
         status = build(session, &c, &fresh, &diags);
     }
     if (session->interrupted) {

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "http/live/patch.h"
+#include "http/live/pulls.h"
 #include "http/live/session_state.h"
 #include "http/live/stream.h"
 
@@ -203,12 +204,15 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
             diags, HN_ERR_LIMIT, "/duration", NULL, "the duration is %g s; at most %g s are run",
             hn_comparison_duration(session->bench.comparison), opts->max_duration);
     }
+    hn_pull_list pulls = {(hn_pull_event *)order->pulls, order->n_pulls};
+    HN_THEN(status, hn_pull_list_give(&pulls, session->bench.comparison, diags));
     HN_THEN(status, hn_session_publish_setup(session));
     if (session->interrupted) {
         diags->n = 0;
         status = HN_ERR_STOPPED;
     }
     if (status == HN_OK) {
+        hn_session_publish_pulls(session);
         hn_session_publish_frame(session);
         hn_session_limit_equations(session, false);
         status = start_thread(session);

@@ -30,6 +30,8 @@ typedef struct hn_session_request {
     const hn_scene_request *scene;
     const char *const *methods;
     int n_methods;
+    const hn_pull_event *pulls; ///< what the hand does; the scene names their points
+    int n_pulls;
     double frame_dt, duration; ///< 0: chosen, the scene's
     double speed;
     int running;
@@ -50,6 +52,9 @@ double hn_session_untouched(hn_session *session);
 const char *hn_session_id(const hn_session *session);
 /// The description; counts as a reader's look.
 void hn_session_json(hn_strbuf *b, hn_session *session);
+/// What the hand has done: {"generation","frame_dt","pulls":[[frame, point, x, y, z, stiffness,
+/// damping], ...]}
+void hn_session_pulls_json(hn_strbuf *b, hn_session *session);
 /// Hands over a suspended PATCH request with its body: the thread carries it out and answers.
 /// Answers itself when the thread has ended.
 void hn_session_patch(hn_session *session, struct hn_request *r);

@@ -2,6 +2,7 @@
 #include "http/live/session_state.h"
 
 #include "base/clock.h"
+#include "http/live/pulls.h"
 #include "session/compare/incident_json.h"
 #include "session/model/model_json.h"
 
@@ -91,6 +92,7 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
     hn_json_put_int(b, "generation", session->generation);
     hn_json_put_number(b, "lag", session->lag);
     hn_json_put_int(b, "last_event", (long long)session->history.last_id);
+    hn_json_put_int(b, "pulls", session->n_pulls);
 
     // texts that were written before
     put_raw(b, "scene", &session->scene_json);
@@ -146,6 +148,19 @@ static hn_status publish_scene(hn_session *session) {
     hn_strbuf_reset(&scene);
     hn_strbuf_reset(&settings);
     return status;
+}
+
+void hn_session_publish_pulls(hn_session *session) {
+    const hn_pull_event *events;
+    const int n = hn_comparison_pulls(session->bench.comparison, &events);
+    pthread_mutex_lock(&session->lock);
+    if (n <= session->n_pulls) { // those that were not done yet were forgotten
+        hn_strbuf_clear(&session->pulls_json);
+        session->n_pulls = 0;
+    }
+    hn_pulls_json(&session->pulls_json, session->bench.comparison, session->n_pulls);
+    session->n_pulls = n;
+    pthread_mutex_unlock(&session->lock);
 }
 
 hn_status hn_session_publish_setup(hn_session *session) {
@@ -317,6 +332,7 @@ static void free_session(hn_session *session) {
     hn_strbuf_reset(&session->comparison_json);
     hn_strbuf_reset(&session->settings_json);
     hn_strbuf_reset(&session->latest);
+    hn_strbuf_reset(&session->pulls_json);
     pthread_cond_destroy(&session->wake);
     pthread_mutex_destroy(&session->lock);
     free(session);
@@ -347,6 +363,15 @@ void hn_session_json(hn_strbuf *b, hn_session *session) {
     session->touched = hn_clock_wall();
     pthread_cond_signal(&session->wake);
     hn_session_put_json(b, session);
+    pthread_mutex_unlock(&session->lock);
+}
+
+void hn_session_pulls_json(hn_strbuf *b, hn_session *session) {
+    pthread_mutex_lock(&session->lock);
+    session->touched = hn_clock_wall();
+    hn_strbuf_printf(b, "{\"generation\":%lld,\"frame_dt\":%.17g,\"pulls\":[%s]}",
+                     session->generation, session->frame_dt, hn_strbuf_text(&session->pulls_json));
+    b->failed |= session->pulls_json.failed;
     pthread_mutex_unlock(&session->lock);
 }
 

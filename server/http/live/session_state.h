@@ -58,6 +58,8 @@ struct hn_session {
     long long anchor_frame;
     double frame_dt, duration;
     hn_strbuf scene_json, comparison_json, settings_json, latest;
+    hn_strbuf pulls_json; ///< entries of a list
+    int n_pulls;          ///< of them
     hn_history history;
 
     // under the lock, by anybody
@@ -86,6 +88,8 @@ void hn_subject_reset(hn_subject *bench);
 void hn_session_limit_equations(hn_session *session, bool limited);
 /// Writes out what does not change from frame to frame. HN_ERR_MEMORY leaves the old texts.
 HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *session);
+/// Writes down what the hand has done since the last time; all of it after a restart.
+void hn_session_publish_pulls(hn_session *session);
 /// The present frame as an event, then its incidents, then the end if it is reached.
 void hn_session_publish_frame(hn_session *session);
 /// One frame further; 0 when a request, or the end, came before the frame was complete.

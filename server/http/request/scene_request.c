@@ -69,6 +69,21 @@ hn_status hn_scene_request_read(hn_scene_request *order, const cJSON *body, hn_d
         order, cJSON_GetObjectItemCaseSensitive(body, "parameters"), diags);
 }
 
+hn_status hn_scene_request_add_pull(hn_scene_request *order, int point, hn_diags *diags) {
+    for (int i = 0; i < order->n_pulls; i++) {
+        if (order->pulls[i] == point) {
+            return HN_OK;
+        }
+    }
+    if (order->n_pulls == HN_SCENE_REQUEST_PULLS) {
+        return hn_diags_add(
+            diags, HN_ERR_LIMIT, "/pull/point", "send \"pulls\": [] to forget the pulls so far",
+            "%d points were pulled already, no more are served", HN_SCENE_REQUEST_PULLS);
+    }
+    order->pulls[order->n_pulls++] = point;
+    return HN_OK;
+}
+
 hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from) {
     *to = (hn_scene_request){.name = from->name ? strdup(from->name) : NULL};
     if (from->text) {
@@ -81,6 +96,8 @@ hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *fr
     if (!to->name && !to->text) {
         return HN_ERR_MEMORY;
     }
+    to->n_pulls = from->n_pulls;
+    memcpy(to->pulls, from->pulls, sizeof to->pulls);
     for (int i = 0; i < from->n; i++) {
         const hn_setting *s = &from->settings[i];
         hn_status status = hn_scene_request_add(to, s->name, strlen(s->name), s->value, NULL);
@@ -95,7 +112,8 @@ hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *fr
 static void prefix_pointers(hn_diags *diags, int first) {
     for (int i = first; i < diags->n; i++) {
         char *p = diags->item[i].pointer;
-        if (strncmp(p, "/parameters", 11) != 0 && strncmp(p, "/scene", 6) != 0) {
+        if (strncmp(p, "/parameters", 11) != 0 && strncmp(p, "/scene", 6) != 0 &&
+            strncmp(p, "/pull", 5) != 0) {
             char longer[HN_DIAG_POINTER + 8];
             snprintf(longer, sizeof longer, "/scene%s", p);
             snprintf(p, HN_DIAG_POINTER, "%.*s", HN_DIAG_POINTER - 1, longer);
@@ -112,6 +130,8 @@ hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library 
                               .n_text = order->text ? strlen(order->text) : 0,
                               .settings = order->settings,
                               .n_settings = order->n,
+                              .pulls = order->pulls,
+                              .n_pulls = order->n_pulls,
                               .allow_open = allow_open,
                               .interrupt = interrupt};
     hn_status status = hn_model_load(lib, &source, out, diags);

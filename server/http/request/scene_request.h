@@ -14,12 +14,15 @@
 #include <cjson/cJSON.h>
 #include <stdbool.h>
 
+enum { HN_SCENE_REQUEST_PULLS = 8 };
+
 /// What a model is made from; owns copies of everything it names.
 typedef struct hn_scene_request {
     char *name, *text; ///< one of them
     int n;
     hn_setting settings[HN_SCENE_MAX_PARAMS];
     char *names[HN_SCENE_MAX_PARAMS];
+    int n_pulls, pulls[HN_SCENE_REQUEST_PULLS]; ///< points that a hand may pull
 } hn_scene_request;
 
 /// From the members "scene" and "parameters". Start from a zeroed order; hn_scene_request_reset()
@@ -31,6 +34,9 @@ HN_MUST_CHECK hn_status hn_scene_request_read_settings(hn_scene_request *order,
                                                        const cJSON *settings, hn_diags *diags);
 HN_MUST_CHECK hn_status hn_scene_request_add(hn_scene_request *order, const char *name,
                                              size_t n_name, double value, hn_diags *diags);
+/// Lets a hand pull a point too; one that it may pull already changes nothing.
+HN_MUST_CHECK hn_status hn_scene_request_add_pull(hn_scene_request *order, int point,
+                                                  hn_diags *diags);
 HN_MUST_CHECK hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from);
 void hn_scene_request_reset(hn_scene_request *order);
 /// Loads; pointers of faults inside a scene object begin with "/scene". `interrupt` ends the work

@@ -47,6 +47,38 @@ static const hn_field IMPORT[] = {
 
 static const hn_field SCENE_ONLY[] = {SCENE_FIELDS, END_OF_FIELDS};
 
+/// A hand at a place that holds a point; entries of `pulls` say the same in numbers.
+static const hn_field PULL[] = {
+    {.name = "point",
+     .type = HN_FIELD_INTEGER,
+     .required = 1,
+     .min = 0,
+     .max = 1e6,
+     .about = "index among the points of the scene"},
+    {.name = "to",
+     .type = HN_FIELD_NUMBERS,
+     .required = 1,
+     .min = 2,
+     .max = 3,
+     .about = "place of the hand in the world [m], [x, y] or [x, y, z]"},
+    {.name = "stiffness",
+     .type = HN_FIELD_NUMBER,
+     .min = 0,
+     .max = 1e12,
+     .about = "of the hand's spring [N/m]; chosen from weight and size when left out"},
+    {.name = "damping",
+     .type = HN_FIELD_NUMBER,
+     .min = 0,
+     .max = 1e12,
+     .about = "of the hand's spring [N s/m]; chosen when left out"},
+    END_OF_FIELDS};
+#define PULLS_FIELD                                                                                \
+    {                                                                                              \
+        .name = "pulls", .type = HN_FIELD_ANY,                                                     \
+        .about = "what the hand does: a list of [frame, point, x, y, z, stiffness, damping]; the " \
+                 "methods start anew and do it again, to the same bits"                            \
+    }
+
 static const hn_field TERMS[] = {
     SCENE_FIELDS,
     {.name = "t", .type = HN_FIELD_NUMBER, .about = "time [s]"},
@@ -58,6 +90,7 @@ static const hn_field TERMS[] = {
      .about = "what every joint and constraint carries too: forces [N] and moments [N m], and "
               "efforts along coordinates; on the child of a joint, on the body of a distance's "
               "'to', on a body that is guided"},
+    {.name = "pull", .type = HN_FIELD_RECORD, .record = PULL, .about = "a hand that holds a point"},
     END_OF_FIELDS};
 
 static const hn_field DRAG[] = {
@@ -168,6 +201,7 @@ static const hn_field COMPARISON[] = {
      .max = 100,
      .about = "simulated seconds per second"},
     {.name = "paused", .type = HN_FIELD_BOOL, .about = "true when left out"},
+    PULLS_FIELD,
     END_OF_FIELDS};
 
 static const char *const THEMES[] = {"light", "dark", NULL};
@@ -254,6 +288,13 @@ static const hn_field CHANGE[] = {
      .type = HN_FIELD_RECORD,
      .record = SET,
      .about = "an option of a formulation, changed while running"},
+    {.name = "pull",
+     .type = HN_FIELD_RECORD,
+     .record = PULL,
+     .about = "a hand holds a point by a spring from the present frame on; all methods feel it, "
+              "and its work counts"},
+    {.name = "release", .type = HN_FIELD_BOOL, .about = "the hand lets go"},
+    PULLS_FIELD,
     END_OF_FIELDS};
 
 static const char *const STOPPED[] = {"stopped", NULL};
@@ -433,6 +474,8 @@ static const hn_route ROUTES[] = {
      "{\"state\":\"paused\",\"step\":10}"},
     {"DELETE", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_delete, NULL, JSON,
      "204", NULL, "Ends a comparison", NULL, NULL},
+    {"GET", "/api/v1/comparisons/{id}/pulls", HN_WORK_LIGHT, hn_handle_comparison_pulls, NULL, JSON,
+     "200", "Document", "What a hand has pulled so far, for POST and PATCH", NULL, NULL},
     {"GET", "/api/v1/comparisons/{id}/events", HN_WORK_LIGHT, hn_handle_comparison_events, NULL,
      "text/event-stream", "200", "Events", "Server-sent events: one stream for all methods",
      EVENTS_QUERY, NULL},

@@ -5,6 +5,7 @@
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
 #include "grade/variant.h"
+#include "http/live/pulls.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/request/scene_request.h"
@@ -24,16 +25,31 @@
 /// Computing time of one drag: a page asks many times a second.
 static const double DRAG_SECONDS = 0.05;
 
+/// The hand of the body holds its point at all times.
+static hn_status hold(const hn_model *model, const cJSON *body) {
+    hn_pull pull = hn_pull_read(body);
+    hn_pull_choose_spring(hn_model_system(model), &pull);
+    return hn_pull_log_add(hn_system_pulls(hn_model_system(model)), 0, &pull);
+}
+
 /// Loads the scene that the body names; NULL with a problem as reply.
 static hn_model *load_model(hn_request *r, bool allow_open) {
     hn_scene_request order = {0};
     hn_diags diags = {0};
     hn_model *model = NULL;
+    const cJSON *pull = cJSON_GetObjectItemCaseSensitive(r->json, "pull");
     hn_status status = hn_scene_request_read(&order, r->json, &diags);
+    if (status == HN_OK && pull) {
+        status = hn_scene_request_add_pull(&order, hn_pull_read(pull).point, &diags);
+    }
     HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open,
                                           hn_request_interrupt(r), &model, &diags));
     hn_scene_request_reset(&order);
+    if (status == HN_OK && pull) {
+        status = hold(model, pull);
+    }
     if (status != HN_OK) {
+        hn_model_free(model);
         hn_reply_diags(r, status, &diags);
         return NULL;
     }
