@@ -37,7 +37,8 @@ int hn_map_plot_rows(const hn_map_plot *p);
 /// mark.
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
                       hn_map_place cursor);
-/// "alpha = 12, beta = 40: stable, error below 1e-2; worst gap 73 µm; 0.35 of the predicted limit"
+/// "alpha = 12, beta = 40: stable, velocities right to 1 %; worst gap 73 µm; the step is 0.35 of
+/// the predicted limit"
 void hn_map_plot_words(hn_strbuf *b, const hn_map_plot *p, hn_map_place at);
 /// Adds the method's name and the map, as wide as `columns`.
 void hn_map_plot_text(hn_strbuf *b, const hn_map_plot *p, int columns, bool colours);

@@ -5,6 +5,7 @@
 #include "tui/link.h"
 #include "tui/panels.h"
 #include "tui/prompt.h"
+#include "tui/reactions_view.h"
 #include "tui/remedies.h"
 #include "tui/text_panel.h"
 #include "tui/undo.h"
@@ -118,6 +119,10 @@ static void act(hn_workbench *w, hn_tui_action action) {
         break;
     case HN_TUI_WHY:
         w->why = !w->why;
+        w->reactions = false;
+        break;
+    case HN_TUI_REACTIONS:
+        hn_reactions_toggle(w);
         break;
     case HN_TUI_PICTURES:
         hn_workbench_say(w, "%s", hn_pictures_next(&w->pictures));
@@ -150,9 +155,11 @@ void hn_controls_key(hn_workbench *w, int key) {
     } else if (key >= '1' && key < '1' + w->n_methods) {
         w->selected = key - '1';
     } else if (key == HN_KEY_ESCAPE) {
-        w->why = false;
+        w->why = w->reactions = false;
     } else if (key == HN_KEY_ENTER && w->why) {
         hn_remedies_open(w);
+    } else if (w->reactions && (key == HN_KEY_PAGE_UP || key == HN_KEY_PAGE_DOWN)) {
+        hn_reactions_scroll(w, key == HN_KEY_PAGE_DOWN ? 1 : -1);
     } else {
         act(w, hn_tui_action_of(key));
     }

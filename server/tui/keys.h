@@ -41,6 +41,7 @@ enum {
     X(HIDE, 'v', "v", "hide or show the selected method")          \
     X(PLOT, 'g', "g", "next plot: gap, error, energy")             \
     X(WHY, 'i', "i", "why: the incidents of the method")           \
+    X(REACTIONS, 'r', "r", "reactions: multipliers, joint forces") \
     X(PICTURES, 'c', "c", "characters or pictures, if shown here") \
     X(STEP, 'd', "d", "type another step dt")                      \
     X(PARAMETERS, 'p', "p", "change parameters")                   \

@@ -18,7 +18,7 @@
 enum { MOST_INCIDENTS = 64 * HN_COMPARISON_MAX_METHODS, MOST_FRAMES = 20000 };
 
 typedef struct track_store {
-    double *gap, *velocity_gap, *energy, *error, *points, *evaluations;
+    double *gap, *velocity_gap, *energy, *error, *points, *evaluations, *q, *v;
 } track_store;
 
 typedef struct told_incident {
@@ -29,7 +29,7 @@ typedef struct told_incident {
 struct hn_recording {
     const hn_model *model;
     hn_comparison *comparison;
-    int n_tracks, n_points, last;
+    int n_tracks, n_points, n_user, last;
     double frame_dt, duration; ///< [s]
     int stride;                ///< frames of the page for each frame here
     hn_track tracks[HN_COMPARISON_MAX_METHODS];
@@ -128,6 +128,9 @@ static void keep_sample(hn_recording *r, int m, int frame, const hn_sample *samp
     track_store *to = &r->stores[m];
     double *points = to->points + (size_t)frame * 3 * (size_t)r->n_points;
     memcpy(points, sample->points, 3 * (size_t)r->n_points * sizeof *points);
+    const size_t n = (size_t)r->n_user;
+    memcpy(to->q + (size_t)frame * n, sample->q, n * sizeof *to->q);
+    memcpy(to->v + (size_t)frame * n, sample->v, n * sizeof *to->v);
     to->gap[frame] = sample->gap;
     to->velocity_gap[frame] = sample->velocity_gap;
     to->energy[frame] = sample->energy_change;
@@ -142,6 +145,10 @@ static void keep_end(hn_recording *r, int m, int frame) {
     for (size_t k = 0; k < n; k++) {
         to->points[(size_t)frame * n + k] =
             frame > 0 ? to->points[(size_t)(frame - 1) * n + k] : (double)NAN;
+    }
+    for (size_t k = (size_t)frame * (size_t)r->n_user; k < ((size_t)frame + 1) * (size_t)r->n_user;
+         k++) {
+        to->q[k] = to->v[k] = (double)NAN;
     }
 }
 
@@ -219,13 +226,17 @@ static bool allocate_track(hn_recording *r, int m) {
         good = good && *columns[i];
     }
     to->points = calloc(frames * 3 * (size_t)r->n_points + 1, sizeof(double));
+    to->q = calloc(frames * (size_t)r->n_user + 1, sizeof(double));
+    to->v = calloc(frames * (size_t)r->n_user + 1, sizeof(double));
     r->tracks[m].gap = to->gap;
     r->tracks[m].velocity_gap = to->velocity_gap;
     r->tracks[m].energy = to->energy;
     r->tracks[m].error = to->error;
     r->tracks[m].points = to->points;
+    r->tracks[m].q = to->q;
+    r->tracks[m].v = to->v;
     r->tracks[m].evaluations = to->evaluations;
-    return good && to->points;
+    return good && to->points && to->q && to->v;
 }
 
 static void describe_track(hn_recording *r, int m) {
@@ -274,6 +285,7 @@ static hn_status open_comparison(hn_recording *r, const char *const *methods, in
     }
     r->n_tracks = hn_comparison_n_methods(r->comparison);
     r->n_points = hn_system_get_info(hn_model_system(r->model)).n_points;
+    r->n_user = hn_system_get_info(hn_model_system(r->model)).n_user;
     return HN_OK;
 }
 
@@ -330,6 +342,8 @@ void hn_recording_free(hn_recording *r) {
         free(s->error);
         free(s->evaluations);
         free(s->points);
+        free(s->q);
+        free(s->v);
     }
 
     // nobody reads any more

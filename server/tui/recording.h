@@ -27,6 +27,7 @@ typedef struct hn_track {
     /// frame 0
     const double *error;
     const double *points;      ///< 3 n_points a frame
+    const double *q, *v;       ///< n_user a frame: coordinates and rates as in the scene
     const double *evaluations; ///< since the start
 } hn_track;
 

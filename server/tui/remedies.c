@@ -19,12 +19,19 @@ static bool is_listed(const hn_workbench *w, const char *remedy) {
     return false;
 }
 
+static bool is_recorded(const hn_workbench *w) {
+    return hn_recording_frames(w->recording) > hn_recording_last(w->recording);
+}
+
 /// Each remedy once, with what it gave in a trial, or what it is a remedy of.
 static void list_remedies(hn_workbench *w, const hn_incident *incident) {
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
         const char *tried = incident->tried[k];
         if (!is_listed(w, incident->remedy[k])) {
-            hn_list_add(w, incident->remedy[k], tried[0] ? tried : incident->message);
+            char words[2 * HN_TUI_LINE];
+            const char *yet = is_recorded(w) ? "not tried" : "not tried yet";
+            snprintf(words, sizeof words, "%s, against: %.400s", yet, incident->message);
+            hn_list_add(w, incident->remedy[k], tried[0] ? tried : words);
         }
     }
 }

@@ -70,7 +70,7 @@ static void point_at(hn_workbench *w, const hn_cells *c, hn_mouse mouse) {
         hn_drag_begin(w, mechanism, mouse.x, mouse.y);
     } else if (inside(places.table, mouse) && row >= 0 && row < w->n_methods) {
         w->selected = row;
-    } else if (inside(places.plot, mouse) && !w->why) {
+    } else if (inside(places.plot, mouse) && !w->why && !w->reactions) {
         const double share =
             (mouse.x - places.plot.x - LABELS) / (double)(places.plot.columns - LABELS - 1);
         w->clock = fmax(0, fmin(1, share)) * hn_recording_last(w->recording);
@@ -188,10 +188,12 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     return true;
 }
 
-/// Everything up to the present time is recorded.
+/// Everything that the views need is recorded: up to the present time, or all where remedies are
+/// tried at the end.
 static void wait_for_frames(hn_workbench *w) {
-    hn_recording_want(w->recording, (int)w->clock);
-    while (hn_recording_frames(w->recording) <= (int)w->clock) {
+    const int wanted = w->why ? hn_recording_last(w->recording) : (int)w->clock;
+    hn_recording_want(w->recording, wanted);
+    while (hn_recording_frames(w->recording) <= wanted) {
         poll(NULL, 0, 5);
     }
 }

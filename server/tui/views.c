@@ -6,7 +6,9 @@
 #include "terminal/plot.h"
 #include "tui/keys.h"
 #include "tui/mechanism_view.h"
+#include "tui/reactions_view.h"
 #include "tui/study_panel.h"
+#include "tui/why_view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -82,19 +84,6 @@ static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
     return w->prompt == HN_PROMPT_NONE && hn_text_columns(w->message) > c->columns - 2;
 }
 
-/// Whether an incident of the selected method has a remedy to try.
-static bool has_remedy(const hn_workbench *w) {
-    static hn_incident list[MOST_INCIDENTS];
-    static int whose[MOST_INCIDENTS];
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
-    for (int i = 0; i < n; i++) {
-        if (whose[i] == w->selected && list[i].remedy[0][0]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /// The keys of what is shown.
 static const char *keys_line(const hn_workbench *w, int columns) {
     static const char *const lists[] = {
@@ -116,9 +105,12 @@ static const char *keys_line(const hn_workbench *w, int columns) {
                    : "↑↓ scroll the words  Esc back";
     default:
         if (w->why) {
-            return has_remedy(w)
+            return hn_why_has_remedy(w)
                        ? "Enter try a remedy  ↑↓ another method  i close  Space run  ? menu  q"
                        : "↑↓ another method  i close  Space run  ? menu  q";
+        }
+        if (w->reactions) {
+            return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";
         }
         return columns < 92 ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene "
                               " ? menu  q"
@@ -319,43 +311,6 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
 
 // ---- panels ----
 
-static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
-    static hn_incident list[MOST_INCIDENTS];
-    static int whose[MOST_INCIDENTS];
-    const hn_track *track = hn_recording_track(w->recording, w->selected);
-    const hn_track_end end = hn_recording_end(w->recording, w->selected);
-    char title[96];
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
-    snprintf(title, sizeof title, "why: %s (%si closes)", track->name,
-             has_remedy(w) ? "Enter tries, " : "");
-    const hn_area in = hn_cells_frame(c, area, title);
-    int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
-    if (end.failed) {
-        y = hn_cells_fold(c, in, y, HN_CELL_ALARM, end.reason);
-    }
-
-    // every incident of the method, with what to try
-    int same = 0;
-    for (int i = 0; i < n && y < in.rows; i++) {
-        // incidents of one cause are one entry with a count
-        const bool again = i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
-        same += whose[i] == w->selected && again;
-        if (whose[i] != w->selected || again) {
-            continue;
-        }
-        char line[512];
-        snprintf(line, sizeof line, "%.4g s: %s", list[i].t, list[i].message);
-        y = hn_cells_fold(c, in, y + 1, HN_CELL_ALARM, line);
-        for (int k = 0; k < 3 && list[i].remedy[k][0]; k++) {
-            snprintf(line, sizeof line, "  try %s", list[i].remedy[k]);
-            y = hn_cells_fold(c, in, y, HN_CELL_INK, line);
-        }
-    }
-    if (same > 0 && y + 1 < in.rows) {
-        hn_cells_printf(c, in, 0, y + 1, HN_CELL_MUTED, 0, "and %d more of the same causes", same);
-    }
-}
-
 /// The items; below them what the chosen one is about, and of scenes a picture to the right.
 static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_area frame = hn_cells_frame(c, area, w->title);
@@ -430,7 +385,9 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
         const hn_area left = {0, 1, places.plot.x, places.plot.rows};
         hn_mechanism_view(c, hn_cells_frame(c, left, "mechanism"), w);
         if (w->why) {
-            draw_why(c, places.plot, w);
+            hn_why_draw(c, places.plot, w);
+        } else if (w->reactions) {
+            hn_reactions_draw(c, places.plot, w);
         } else {
             draw_plot(c, places.plot, w);
         }

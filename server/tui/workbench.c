@@ -116,6 +116,8 @@ void hn_workbench_close(hn_workbench *w) {
     hn_model_free(w->model);
     hn_model_free(w->preview.model);
     hn_versions_free(w->versions);
+    hn_joint_forces_free(w->forces);
+    w->forces = NULL;
     hn_strbuf_reset(&w->text);
     hn_strbuf_reset(&w->link);
     free(w->preview.points);
@@ -150,6 +152,7 @@ static void carry_over(hn_workbench *to, hn_workbench *from) {
     to->form = from->form;
     to->pictures = from->pictures;
     to->plot = from->plot;
+    to->reactions = from->reactions;
     to->speed = from->speed;
     to->columns = from->columns;
     to->rows = from->rows;
@@ -195,6 +198,18 @@ int hn_workbench_frame(const hn_workbench *w) {
     return now < 0 ? 0 : now > ready ? (ready < 0 ? 0 : ready) : now;
 }
 
+/// Where the joint forces cannot be computed, their view closes and the fault is said.
+static void open_forces(hn_workbench *w) {
+    const hn_model_source source = hn_workbench_source(w);
+    hn_diags diags = {0};
+    const hn_status status = hn_joint_forces_create(w->library, &source, &w->forces, &diags);
+    if (status != HN_OK) {
+        w->reactions = false;
+        hn_workbench_say(w, "joint forces: %.200s",
+                         diags.n > 0 ? diags.item[0].message : hn_status_text(status));
+    }
+}
+
 void hn_workbench_tick(hn_workbench *w, double seconds) {
     const int last = hn_recording_last(w->recording);
     if (w->playing && w->panel == HN_PANEL_MAIN) {
@@ -205,7 +220,11 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
             w->playing = false;
         }
     }
-    hn_recording_want(w->recording, (int)w->clock + AHEAD);
+    // the card of the reasons has remedies tried, which is done at the end of the motion
+    hn_recording_want(w->recording, w->why ? last : (int)w->clock + AHEAD);
+    if (w->reactions && !w->forces) {
+        open_forces(w);
+    }
     if (w->child.pid != 0 && !hn_child_read(&w->child, &w->text)) {
         hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
     }

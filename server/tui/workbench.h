@@ -8,6 +8,7 @@
 #include "session/model/envelope.h"
 #include "terminal/dots.h"
 #include "tui/child.h"
+#include "tui/joint_forces.h"
 #include "tui/pictures.h"
 #include "tui/recording.h"
 #include "tui/study_job.h"
@@ -92,7 +93,8 @@ typedef struct hn_workbench {
     bool playing, quit;
     int selected;
     bool hidden[HN_COMPARISON_MAX_METHODS];
-    bool why;
+    bool why, reactions;     ///< in place of the plot, one of them at most
+    hn_joint_forces *forces; ///< of `reactions`; owned, NULL while not needed
     hn_tui_plot plot;
     hn_dot_form form;
     hn_pictures pictures; ///< in place of characters, for the mechanism

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The terminal workbench in a pseudo-terminal and as text: keys, sizes, character sets, and the terminal after every end.
 import base64
+import json
+import math
 import os
 import re
 import signal
@@ -118,7 +120,7 @@ KEY_NAMES = {"HN_KEY_RIGHT": "<Right>", "HN_KEY_LEFT": "<Left>", "HN_KEY_SHIFT_R
 # what is seen after each key, typed at t = 0.5 s while the second of the methods is selected
 SEEN = {"PLAY": "running", "NEXT": r"t 0\.520 s", "BACK": r"t 0\.480 s", "NEXT_TEN": r"t 0\.700 s", "BACK_TEN": r"t 0\.300 s",
         "START": r"t 0\.000 s", "SLOWER": "×0.5", "FASTER": "×2", "UP": "why: index-1", "DOWN": "why: projection", "CYCLE": "why: projection",
-        "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "STEP": r"dt \[s, or 20 ms\]:",
+        "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "REACTIONS": r"joint forces: Baumgarte .*\n.*multipliers lambda: determined", "STEP": r"dt \[s, or 20 ms\]:",
         "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "01-closed-loops",
         "STUDY": "what accuracy costs: Esc goes back", "MAP": "stability over alpha and beta: arrows", "BUDGET": "their sum",
         "LINK": r"sent to the terminal's clipboard \(OSC 52\)[^#]+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",
@@ -409,6 +411,47 @@ class Keys(unittest.TestCase):
             return re.search(r"why: [^─]*", once("four-bar", "--once", "--size", "120x40", "--keys", "i", *words)[1]).group()
         self.assertEqual(card("--t", "4", *METHODS[:2]).strip(), "why: index-1 (Enter tries, i closes)")
         self.assertEqual(card("--t", "0.1", "--methods", "projection@rk4:h=0.001").strip(), "why: projection (i closes)")
+
+    def test_the_card_says_which_remedies_were_tried_and_which_not(self):
+        # a loop that opens is tried against; a restart of the integrator or a long step is not
+        _, out, _ = once("four-bar", "--once", "--t", "4", "--size", "150x40", *METHODS[:2], "--keys", "i")
+        card = " ".join("".join(line[67:149] for line in out.split("\n")[2:20]).split())
+        self.assertRegex(card, r"try projection@rk4:h=0\.02 \(tried to t = [\d.]+ s: largest gap")
+        self.assertNotIn("not tried", card)
+        _, out, _ = once("triple-rocker", "--once", "--t", "1", "--size", "150x60", "--methods", "nullspace@rk4:h=0.02", "--keys", "i")
+        card = " ".join("".join(line[67:149] for line in out.split("\n")[2:50]).split())
+        self.assertNotRegex(card, r"(?<!\() try (?!\S+ \(tried to)")
+
+    def test_joint_forces_are_those_of_run(self):
+        method, at = "projection@rk4:h=0.01", "1"
+        done = subprocess.run([PROGRAM, "run", "four-bar", "--method", method, "--time", at, "--at", at, "--reactions", "--json"], capture_output=True, check=True)
+        run = json.loads(done.stdout)
+        _, out, _ = once("four-bar", "--once", "--t", at, "--size", "120x40", "--methods", method, "--keys", "r")
+        rows = {name: [float(x) for x in numbers.split()] for name, numbers in re.findall(r"│ (\w+: \w+(?: \[N\])?)((?: +-?[\d.e+-]+)+) *│", out)}
+        forces = [run["samples"]["reaction_force"][0][3 * i:3 * i + 3] for i in range(len(run["carriers"]))]
+        for name, (x, y, z) in zip(run["carriers"], forces):
+            row = next(numbers for key, numbers in rows.items() if key.startswith(name + ": ") and "[N]" not in key)
+            self.assertEqual(z, 0)
+            for seen, true in zip(row, (math.hypot(x, y), x, y)):
+                self.assertAlmostEqual(seen / true, 1, delta=5e-3, msg=name)  # three digits are shown
+        for name, true in zip(("B: x [N]", "B: y [N]"), run["samples"]["lambda"][0]):
+            self.assertAlmostEqual(rows[name][0] / true, 1, delta=5e-3, msg=name)
+
+    def test_joint_forces_scroll_and_say_what_has_no_room_and_when_they_are_not_unique(self):
+        def view(scene, keys, size="80x24", *words):
+            return once(scene, "--once", "--t", "0.1", "--size", size, *words, "--keys", "r" + keys)[1]
+        self.assertIn("no room for z, [N m]", view("stewart-6-3", "<PageDown>" * 9))
+        self.assertRegex(view("stewart-6-3", "<PageDown>" * 9, "150x30"), r"S6: platform .*-15 +33\.2 +16\.4 +0 *│")
+        self.assertIn("multipliers lambda: determined", view("stewart-6-3", "<PageDown><PageUp><PageUp>"))
+        self.assertIn("multipliers lambda: one of many", view("bennett", ""))
+        self.assertIn("no multipliers", view("pendulum", ""))
+        # another key, another view; r closes
+        self.assertIn("loop gap", view("four-bar", "r"))
+        self.assertIn("loop gap", view("four-bar", "<Esc>"))
+        self.assertIn("why: index-1", view("four-bar", "i"))
+        self.assertIn("joint forces: Baumgarte", view("four-bar", "<Down>"))
+        # a method that has ended has no state
+        self.assertIn("has ended before this time", once("four-bar", "--once", "--t", "9", "--methods", "index1@euler:h=0.5", "--keys", "r")[1])
 
     def test_frames_are_those_of_the_page_and_a_new_step_keeps_the_moment(self):
         # frames are multiples of the largest step of at least 1/60 s: 3 s are frame 150 of 20 ms, as in the page

@@ -90,7 +90,7 @@ static void a_map_finds_the_nearest_cell_and_says_what_is_in_it(void **state) {
     hn_strbuf_init(&b);
     hn_map_plot_words(&b, &p, at);
     assert_string_equal(hn_strbuf_text(&b),
-                        "alpha = 10 1/s, beta = 1 1/s: stable, error below 1e-2; "
+                        "alpha = 10 1/s, beta = 1 1/s: stable, velocities right to 1 %; "
                         "worst gap 1.0 mm; the step is 0.5 of the predicted limit");
     hn_strbuf_reset(&b);
     assert_int_equal(hn_map_plot_place(&p, -1, 3).column, -1);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/why_view.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_INCIDENTS = 512 };
+
+/// How the result of a trial begins that was not made, or not to its end.
+static const char NOT_TRIED[] = "not tried";
+
+void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,
+                   char out[HN_WHY_WORDS]) {
+    const char *remedy = incident->remedy[k], *tried = incident->tried[k];
+    const bool recorded = hn_recording_frames(w->recording) > hn_recording_last(w->recording);
+    if (tried[0] && strncmp(tried, NOT_TRIED, strlen(NOT_TRIED)) != 0) {
+        snprintf(out, HN_WHY_WORDS, "try %s (%s)", remedy, tried);
+    } else if (tried[0]) {
+        snprintf(out, HN_WHY_WORDS, "%s: %s", remedy, tried);
+    } else {
+        snprintf(out, HN_WHY_WORDS, "%s: %s", recorded ? NOT_TRIED : "not tried yet", remedy);
+    }
+}
+
+bool hn_why_has_remedy(const hn_workbench *w) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    for (int i = 0; i < n; i++) {
+        if (whose[i] == w->selected && list[i].remedy[0][0]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// One incident with what to try; returns the row below.
+static int draw_incident(hn_cells *c, hn_area in, int y, const hn_workbench *w,
+                         const hn_incident *incident) {
+    char line[512], words[HN_WHY_WORDS];
+    snprintf(line, sizeof line, "%.4g s: %s", incident->t, incident->message);
+    y = hn_cells_fold(c, in, y, HN_CELL_ALARM, line);
+    for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
+        hn_why_remedy(w, incident, k, words);
+        const hn_area inset = {in.x + 2, in.y, in.columns - 2, in.rows};
+        y = hn_cells_fold(c, inset, y, HN_CELL_INK, words);
+    }
+    return y;
+}
+
+void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const hn_track *track = hn_recording_track(w->recording, w->selected);
+    const hn_track_end end = hn_recording_end(w->recording, w->selected);
+    char title[96];
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    snprintf(title, sizeof title, "why: %s (%si closes)", track->name,
+             hn_why_has_remedy(w) ? "Enter tries, " : "");
+    const hn_area in = hn_cells_frame(c, area, title);
+    int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
+    if (end.failed) {
+        y = hn_cells_fold(c, in, y, HN_CELL_ALARM, end.reason);
+    }
+
+    // incidents of one cause are one entry with a count
+    int same = 0;
+    for (int i = 0; i < n && y < in.rows; i++) {
+        const bool again = i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
+        same += whose[i] == w->selected && again;
+        if (whose[i] == w->selected && !again) {
+            y = draw_incident(c, in, y + 1, w, &list[i]);
+        }
+    }
+    if (same > 0 && y + 1 < in.rows) {
+        hn_cells_printf(c, in, 0, y + 1, HN_CELL_MUTED, 0, "and %d more of the same causes", same);
+    }
+}

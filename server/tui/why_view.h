@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_WHY_VIEW_H
+#define HN_TUI_WHY_VIEW_H
+// The card that says why: the rule of the selected method, its incidents, and the remedies of each,
+// apart those that a trial confirmed and those that nobody has tried.
+
+#include "tui/workbench.h"
+
+enum { HN_WHY_WORDS = 320 };
+
+/// Writes remedy k of an incident: "try h=0.005 (tried to t = 3.6 s: largest gap 0.3 mm, ...)"
+/// where a trial removed the incident, "not tried yet: ..." while the recording is under way, else
+/// "not tried: ...".
+void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,
+                   char out[HN_WHY_WORDS]);
+/// Whether an incident of the selected method has a remedy.
+bool hn_why_has_remedy(const hn_workbench *w);
+void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w);
+#endif
