@@ -120,7 +120,8 @@ typedef struct hn_run_request {
     /// Called with each sample when it is made; NULL: not wanted. `values` are t, q, v, lambda,
     /// raw_lambda, lambda_mark, reaction_force, reaction_moment, effort, points, gap, velocity_gap,
     /// energy, work, energy_change, those that the document of the run has. `names` is that
-    /// document with this sample alone, at the first call, and NULL at all others.
+    /// document with this sample alone, at the first call, and NULL at all others. The document at
+    /// the end then has "lambda_mark" alone of its samples.
     void (*row)(void *user, const hn_strbuf *names, const double *values, int n);
     void *row_user;
     const char *stop_reason; ///< reason if `progress` stops the run; NULL: "stopped on request"

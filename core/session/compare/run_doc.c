@@ -442,6 +442,16 @@ static void put_names(hn_strbuf *b, const hn_model *model) {
     hn_json_strings(b, hn_multiplier_marks, HN_N_MULTIPLIER_MARKS);
 }
 
+/// Of samples that were handed out one by one, the marks alone: numbers are written once.
+static void put_marks(hn_strbuf *b, const table *tab) {
+    hn_json_key(b, "samples");
+    hn_json_object(b);
+    if (tab->nc > 0) {
+        hn_json_put_numbers(b, "lambda_mark", tab->mark, (size_t)tab->n);
+    }
+    hn_json_end_object(b);
+}
+
 static void put_run_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_key(b, "cost");
     hn_json_object(b);
@@ -503,7 +513,11 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     if (tab->reactions) {
         hn_reaction_writer_names(b, tab->reactions);
     }
-    put_samples(b, tab);
+    if (request->row && tab->n > 0) {
+        put_marks(b, tab);
+    } else {
+        put_samples(b, tab);
+    }
     hn_json_put_number(b, "worst_gap", s.worst_gap);
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
     hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);

@@ -2,6 +2,7 @@
 #include "cli/commands/run_rows.h"
 
 #include "base/clock.h"
+#include "base/shortest.h"
 #include "cli/shell/document.h"
 
 #include <errno.h>
@@ -161,17 +162,15 @@ void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run) {
 }
 
 void hn_run_rows_put(hn_run_rows *rows, const double *values, int n) {
-    hn_strbuf text, number;
+    hn_strbuf text;
+    char number[HN_SHORTEST_TEXT];
     hn_strbuf_init(&text);
     hn_strbuf_add(&text, rows->ndjson ? "[" : "");
     for (int c = 0; c < n && c < rows->n; c++) {
         hn_strbuf_add(&text, c ? "," : "");
         if (isfinite(values[c])) {
-            hn_strbuf_init(&number); // a buffer of its own: no commas
-            hn_json_number(&number, values[c]);
-            hn_strbuf_add(&text, hn_strbuf_text(&number));
-            text.failed |= number.failed;
-            hn_strbuf_reset(&number);
+            hn_shortest_write(values[c], number);
+            hn_strbuf_add(&text, number);
         } else {
             hn_strbuf_add(&text, rows->ndjson ? "null" : "");
         }
