@@ -35,6 +35,9 @@ static bool write_png(png_structp png, png_infop info, int width, int height,
     png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
+
+    // drawings are flat: their rows repeat bytes, and differences between pixels break that up
+    png_set_filter(png, 0, PNG_FILTER_NONE);
     png_write_info(png, info);
     for (int y = 0; y < height; y++) {
         png_write_row(png, rgb + 3 * (size_t)y * (size_t)width);
