@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "dynamics/assembly/assemble.h"
 #include "dynamics/compile/compile.h"
-#include "dynamics/evaluate/accel.h"
+#include "dynamics/evaluate/accel_lanes.h"
 #include "expr/native.h"
 #include "study/run/run.h"
 
@@ -34,6 +34,7 @@ typedef struct subject {
     double (*batch)(struct subject *);
     hn_system *sys;
     hn_accel *accel;
+    hn_accel_lanes lanes;
     hn_run *run;
     hn_arena *arena;
     double *q, *v, *a, *lambda;
@@ -72,6 +73,25 @@ static double time_accel(subject *s) {
         give_up(s->name, "the tape did not answer");
     }
     return each;
+}
+
+/// A block of lanes at states of their own; the time is that of one of them.
+static double time_lanes(subject *s) {
+    hn_accel_lanes *l = &s->lanes;
+    const int blocks = s->evals / HN_LANES;
+    const double start = hn_clock_thread();
+    for (int k = 0; k < blocks; k++) {
+        if (hn_accel_lanes_eval(l) != (hn_lane_bits)-1) {
+            give_up(s->name, "not every lane has an answer");
+        }
+        for (int i = 0; i < s->n; i++) {
+            const double *a = hn_accel_lanes_a(l, i);
+            for (int lane = 0; lane < HN_LANES; lane++) {
+                l->v[HN_LANES * i + lane] += 1e-12 * a[lane];
+            }
+        }
+    }
+    return (hn_clock_thread() - start) / (blocks * HN_LANES);
 }
 
 /// The classical Runge-Kutta step by hand.
@@ -172,6 +192,17 @@ static void make_accel(subject *s, int native) {
     s->evals = s->n == 3 ? EVALS : EVALS / LADDER;
 }
 
+static void make_lanes(subject *s, hn_lanes_set set) {
+    make_accel(s, 0);
+    if (hn_accel_lanes_create(s->accel, set, s->arena, &s->lanes) != HN_OK) {
+        give_up(s->name, "no lanes");
+    }
+    for (int i = 0; i < s->n * HN_LANES; i++) {
+        s->lanes.q[i] = s->q[i / HN_LANES];
+        s->lanes.v[i] = s->v[i / HN_LANES] * (1 + 0.01 * (i % HN_LANES));
+    }
+}
+
 static void make_run(subject *s, const char *formulation, int native, int watched) {
     char text[HN_SPEC_MAX];
     hn_method_spec spec;
@@ -228,11 +259,20 @@ static void bench_evaluation(hn_system *sys) {
     subject s[] = {
         {.name = "fb0 evaluation", .code = "hand", .batch = time_hand},
         {.name = "fb0 evaluation", .code = "interpreter", .batch = time_accel, .sys = sys},
-        {.name = "fb0 evaluation", .code = "native", .batch = time_accel, .sys = sys}};
+        {.name = "fb0 evaluation", .code = "native", .batch = time_accel, .sys = sys},
+        {.name = "fb0 evaluation", .batch = time_lanes, .sys = sys},
+        {.name = "fb0 evaluation", .batch = time_lanes, .sys = sys},
+        {.name = "fb0 evaluation", .batch = time_lanes, .sys = sys}};
+    static const char *const codes[] = {"32 lanes plain", "32 lanes avx2", "32 lanes avx512"};
+    const int n = 4 + (int)hn_lanes_set_best();
     make_accel(&s[1], 0);
     make_accel(&s[2], 1);
-    measure(s, 3);
-    print(s, 3, 0);
+    for (int i = 3; i < n; i++) { // each instruction set that the processor has
+        s[i].code = codes[i - 3];
+        make_lanes(&s[i], (hn_lanes_set)(i - 3));
+    }
+    measure(s, n);
+    print(s, n, 0);
 }
 
 static void bench_steps(hn_system *sys) {

@@ -22,8 +22,6 @@ const char *const hn_solver_names[HN_SOLVER_COUNT] = {
 #undef HN_SOLVER_NAME
 };
 
-// Far above the bounds at which an answer is in doubt: roundings of the comparison do not matter.
-static const double SURE_PIVOT = 2 * HN_PIVOT_DOUBT, SURE_ROW = 2 * HN_ROW_LOST;
 static const double ROW_RESIDUAL = 1e-2; // by which rows that have all but vanished may disagree
 
 struct hn_accel {
@@ -404,7 +402,8 @@ static bool solve_at_once(hn_accel *s, double *a, double *lambda, const hn_accel
     }
     hn_tape_run(s->in.tape, s->in.x);
     s->ops += s->tape_ops;
-    return !info && hn_accel_tape_take_sure(&s->tape, &s->in, SURE_PIVOT, SURE_ROW, a, lambda);
+    return !info && hn_accel_tape_take_sure(&s->tape, &s->in, HN_ACCEL_SURE_PIVOT,
+                                            HN_ACCEL_SURE_ROW, a, lambda);
 }
 
 /// Takes the answer of the tape that has been run. HN_ERR_SINGULAR: a pivot is lost, or so small
@@ -509,6 +508,11 @@ hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const d
     return condition > HN_CONDITION_LOST ? HN_MULTIPLIERS_LOST
            : info->rank < s->nc          ? HN_MULTIPLIERS_ONE_OF_MANY
                                          : HN_MULTIPLIERS_DETERMINED;
+}
+
+const hn_accel_tape *hn_accel_get_tape(const hn_accel *s, const hn_inputs **in) {
+    *in = &s->in;
+    return s->tape.available ? &s->tape : NULL;
 }
 
 hn_tape_info hn_accel_tape_info(const hn_accel *s) {

@@ -102,6 +102,11 @@ extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
 /// know the gap. Allocates nothing.
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info);
+struct hn_accel_tape;
+struct hn_inputs;
+/// How the outputs of the tape are laid out, and in *in the tape with its workspace, for a
+/// workspace in lanes; NULL: there is no tape. Borrowed.
+const struct hn_accel_tape *hn_accel_get_tape(const hn_accel *s, const struct hn_inputs **in);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
 /// Compiles the tape of the sparse solve natively, waits for it and measures (expr/native.h).
 /// Fails as hn_native_measure(), and with HN_ERR_UNSUPPORTED where the solve has no tape.

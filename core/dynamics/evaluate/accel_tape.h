@@ -6,9 +6,16 @@
 // lambda if wanted, then pivot and reference of each guard, then the squared length of each row of
 // J.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/inputs.h"
+#include "dynamics/evaluate/row_groups.h"
 
 #include <stdbool.h>
+
+/// Bounds for an answer that nobody need look at, far above those at which one is in doubt:
+/// roundings of the comparison do not matter.
+#define HN_ACCEL_SURE_PIVOT (2 * HN_PIVOT_DOUBT)
+#define HN_ACCEL_SURE_ROW (2 * HN_ROW_LOST)
 
 typedef struct hn_accel_tape {
     bool available; ///< a static order exists; without one there is no tape
