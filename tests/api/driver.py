@@ -64,8 +64,9 @@ class Server:
 
     def __init__(self, *options, environment=None, program=PROGRAM, folder=None):
         env = {k: v for k, v in {**os.environ, **(environment or {})}.items() if v is not None}
+        command = program if isinstance(program, list) else [program]
         self.process = subprocess.Popen(
-            [program, "serve", "--port", "0", "--json", *options],
+            [*command, "serve", "--port", "0", "--json", *options],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=env, cwd=folder)
         line = self.process.stdout.readline()
         if not line:

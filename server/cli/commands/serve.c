@@ -187,15 +187,30 @@ static void end_in_time(void) {
     }
 }
 
-/// Room for a descriptor per connection, as far as the system lets us.
-static void raise_descriptors(const hn_http_opts *opts) {
+/// Makes room for a descriptor per connection; where the system allows fewer, there are fewer
+/// connections.
+static void fit_descriptors(hn_http_opts *opts) {
     struct rlimit limit;
-    const rlim_t wanted = (rlim_t)opts->max_connections + 256;
-    if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < wanted) {
-        limit.rlim_cur =
-            limit.rlim_max == RLIM_INFINITY || limit.rlim_max > wanted ? wanted : limit.rlim_max;
-        setrlimit(RLIMIT_NOFILE, &limit);
+    const rlim_t wanted = (rlim_t)hn_server_descriptors(opts);
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) {
+        return;
     }
+    const bool enough = limit.rlim_max == RLIM_INFINITY || limit.rlim_max >= wanted;
+    limit.rlim_cur = enough ? wanted : limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+    if (enough) {
+        return;
+    }
+
+    // as many connections as fit, ten at least
+    const int asked = opts->max_connections;
+    while (opts->max_connections > 10 && (rlim_t)hn_server_descriptors(opts) > limit.rlim_max) {
+        opts->max_connections--;
+    }
+    fprintf(stderr,
+            "holonom: the system allows %llu open files: %d connections at once, not %d; ulimit -n "
+            "%d allows them\n",
+            (unsigned long long)limit.rlim_max, opts->max_connections, asked, (int)wanted);
 }
 
 hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
@@ -219,7 +234,7 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     if (args->open) {
         signal(SIGCHLD, SIG_IGN);
     }
-    raise_descriptors(&opts);
+    fit_descriptors(&opts);
     if (hn_server_start(lib, &opts, &server, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }

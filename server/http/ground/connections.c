@@ -11,11 +11,20 @@
 
 enum { LOOK_MS = 250 };
 
+/// What a connection does; one whose place is needed is looked for in this order.
+typedef enum connection_state {
+    STATE_IDLE,  ///< nothing, or its request comes in
+    STATE_SENDS, ///< its answer goes out
+    STATE_SERVED ///< its place is its own
+} connection_state;
+
 struct hn_connection_watch {
     int fd;
     hn_client client;
-    bool has_place;  ///< it is counted
-    double deadline; ///< [s, wall clock]
+    bool has_place; ///< it is counted; under the lock, as is all that follows
+    connection_state state;
+    double since;    ///< it has been in this state since then [s, wall clock]
+    double deadline; ///< it is closed then [s, wall clock]
     hn_connection_watch *next, *before;
 };
 
@@ -29,14 +38,23 @@ struct hn_connections {
     int has_thread, stop;
 };
 
-/// Ends what is beyond its deadline: the library then finds the connection closed. With the lock
+/// Ends a connection, which the library then finds closed, and gives up its place. With the lock
 /// held.
+static void end(hn_connections *all, hn_connection_watch *w) {
+    shutdown(w->fd, SHUT_RDWR);
+    w->deadline = HUGE_VAL;
+    if (w->has_place) {
+        hn_shares_give(all->places, w->client);
+        w->has_place = false;
+    }
+}
+
+/// Ends what is beyond its deadline. With the lock held.
 static void look(hn_connections *all) {
     const double now = hn_clock_wall();
     for (hn_connection_watch *w = all->first; w; w = w->next) {
         if (now > w->deadline) {
-            shutdown(w->fd, SHUT_RDWR);
-            w->deadline = HUGE_VAL;
+            end(all, w);
         }
     }
 }
@@ -97,8 +115,42 @@ void hn_connections_free(hn_connections *all) {
     free(all);
 }
 
-bool hn_connections_may_add(hn_connections *all, hn_client client) {
-    return hn_shares_has_place(all->places, client);
+/// Whether `a` is to give up its place rather than `b`.
+static bool goes_before(const hn_connection_watch *a, const hn_connection_watch *b) {
+    return a->state != b->state ? a->state < b->state : a->since < b->since;
+}
+
+/// Ends the connection, of a client or (`of_any`) of all, that goes before the others. With the
+/// lock held. Returns false when each of them is being served.
+static bool end_oldest(hn_connections *all, hn_client client, bool of_any) {
+    hn_connection_watch *first = NULL;
+    for (hn_connection_watch *w = all->first; w; w = w->next) {
+        if (w->has_place && w->state < STATE_SERVED && (of_any || w->client == client) &&
+            (!first || goes_before(w, first))) {
+            first = w;
+        }
+    }
+    if (first) {
+        end(all, first);
+    }
+    return first != NULL;
+}
+
+bool hn_connections_make_room(hn_connections *all, hn_client client) {
+    pthread_mutex_lock(&all->lock);
+    bool has_room = hn_shares_has_place(all->places, client);
+    if (!has_room && hn_shares_has_share(all->places, client)) {
+        has_room = end_oldest(all, client, false);
+    } else if (!has_room) {
+        // where all are being served, the event loops still take some connections without a place
+        const hn_client greediest = hn_shares_greediest(all->places);
+        if (!end_oldest(all, greediest, false)) {
+            end_oldest(all, 0, true);
+        }
+        has_room = true;
+    }
+    pthread_mutex_unlock(&all->lock);
+    return has_room;
 }
 
 hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client) {
@@ -106,9 +158,10 @@ hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client c
     if (w) {
         w->fd = fd;
         w->client = client;
-        w->has_place = hn_shares_take(all->places, client);
-        w->deadline = hn_clock_wall() + all->opts->head_deadline;
+        w->since = hn_clock_wall();
+        w->deadline = w->since + all->opts->head_deadline;
         pthread_mutex_lock(&all->lock);
+        w->has_place = hn_shares_take(all->places, client);
         w->next = all->first;
         if (w->next) {
             w->next->before = w;
@@ -128,29 +181,37 @@ void hn_connections_remove(hn_connections *all, hn_connection_watch *w) {
     if (w->next) {
         w->next->before = w->before;
     }
-    pthread_mutex_unlock(&all->lock);
     if (w->has_place) {
         hn_shares_give(all->places, w->client);
     }
+    pthread_mutex_unlock(&all->lock);
     free(w);
 }
 
-static void set_deadline(hn_connections *all, hn_connection_watch *w, double seconds) {
+/// What the connection does from now on, and for how long it may [s].
+static void set_state(hn_connections *all, hn_connection_watch *w, connection_state state,
+                      double seconds) {
     if (w) {
         pthread_mutex_lock(&all->lock);
-        w->deadline = hn_clock_wall() + seconds;
+        w->state = state;
+        w->since = hn_clock_wall();
+        w->deadline = w->since + seconds;
         pthread_mutex_unlock(&all->lock);
     }
 }
 
 void hn_connection_reads_body(hn_connections *all, hn_connection_watch *w) {
-    set_deadline(all, w, all->opts->request_deadline);
+    set_state(all, w, STATE_IDLE, all->opts->request_deadline);
 }
 
 void hn_connection_is_served(hn_connections *all, hn_connection_watch *w) {
-    set_deadline(all, w, HUGE_VAL);
+    set_state(all, w, STATE_SERVED, HUGE_VAL);
+}
+
+void hn_connection_sends(hn_connections *all, hn_connection_watch *w) {
+    set_state(all, w, STATE_SENDS, HUGE_VAL);
 }
 
 void hn_connection_is_idle(hn_connections *all, hn_connection_watch *w) {
-    set_deadline(all, w, all->opts->request_deadline);
+    set_state(all, w, STATE_IDLE, all->opts->request_deadline);
 }

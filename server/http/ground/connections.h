@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_CONNECTIONS_H
 #define HN_HTTP_CONNECTIONS_H
-// Deadlines of connections. The HTTP library counts the seconds since the last byte, so that a
-// client which sends a byte now and then keeps its place for ever; here a head and a body have a
-// time in all. And the connections of each client are counted: it may have its share of them.
+// Deadlines and places of connections. The HTTP library counts the seconds since the last byte, so
+// that a client which sends a byte now and then keeps its place for ever; here a head and a body
+// have a time in all. And the connections of each client are counted: it may have its share of
+// them. Where all places are taken, a new connection takes that of the oldest one that is idle, or
+// else of the oldest one that has not read its answer: of the same client where its share is used
+// up, otherwise of the client with the most.
 
 #include "http/ground/http_opts.h"
 #include "http/ground/shares.h"
@@ -17,8 +20,9 @@ typedef struct hn_connection_watch hn_connection_watch;
 hn_connections *hn_connections_create(const hn_http_opts *opts);
 void hn_connections_free(hn_connections *all); ///< NULL is legal; no connection may be left
 
-/// Whether a client may have one more connection.
-bool hn_connections_may_add(hn_connections *all, hn_client client);
+/// Makes room for one more connection of a client: closes one that is not being served where no
+/// place is left. Returns false when the client has its share and each of them is being served.
+bool hn_connections_make_room(hn_connections *all, hn_client client);
 /// A connection has been accepted. NULL when memory is out: it then has no deadline of its own.
 hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client);
 /// The connection is about to be closed; from here on its descriptor is not touched. NULL is legal.
@@ -27,5 +31,7 @@ void hn_connections_remove(hn_connections *all, hn_connection_watch *w);
 // what the connection is doing; NULL is legal
 void hn_connection_reads_body(hn_connections *all, hn_connection_watch *w);
 void hn_connection_is_served(hn_connections *all, hn_connection_watch *w); ///< no deadline
+/// The answer goes out, one with an end.
+void hn_connection_sends(hn_connections *all, hn_connection_watch *w);
 void hn_connection_is_idle(hn_connections *all, hn_connection_watch *w);
 #endif

@@ -16,6 +16,8 @@ hn_http_opts hn_http_opts_default(void) {
                           // workers and their queues
                           .pool = 3,
                           .queue = 32,
+                          .aside = 16,
+                          .aside_of_one = 4,
                           .quick_pool = 2,
                           .quick_queue = 256,
 
@@ -40,6 +42,14 @@ hn_http_opts hn_http_opts_default(void) {
                           .connection_timeout = 30,
                           .head_deadline = 10,
                           .request_deadline = 60};
+}
+
+hn_jobs_opts hn_http_opts_pool(const hn_http_opts *opts) {
+    return (hn_jobs_opts){.at_once = opts->pool,
+                          .n_waiting = opts->queue,
+                          .n_waiting_of_one = hn_http_opts_share(opts, opts->queue),
+                          .n_aside = opts->aside,
+                          .n_aside_of_one = opts->aside_of_one};
 }
 
 int hn_http_opts_share(const hn_http_opts *opts, int places) {

@@ -8,6 +8,8 @@
 // (http/request/client.h says who asks). For this machine itself only the limits in all hold; its
 // programs share the queues out among them.
 
+#include "http/ground/jobs.h"
+
 #include <stdbool.h>
 
 enum { HN_MAX_HOSTS = 16 };
@@ -28,6 +30,8 @@ typedef struct hn_http_opts {
     int max_studies;     ///< at once
     double client_share; ///< of the places, for one client [-]
     int pool, queue;     ///< threads for long requests; how many may wait
+    int aside;           ///< long requests that are set aside while others have their turn
+    int aside_of_one;    ///< those of one client that make way for its own
     int quick_pool;      ///< threads for requests that read a shipped scene or open a comparison
     int quick_queue;     ///< how many of them may wait: a class that opens the page at once
 
@@ -51,6 +55,8 @@ typedef struct hn_http_opts {
 } hn_http_opts;
 hn_http_opts hn_http_opts_default(void);
 
+/// Returns the options of a pool of threads for long requests.
+hn_jobs_opts hn_http_opts_pool(const hn_http_opts *opts);
 /// Returns the part of `places` that one client may take, at least 1.
 int hn_http_opts_share(const hn_http_opts *opts, int places);
 #endif

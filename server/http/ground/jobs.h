@@ -3,15 +3,27 @@
 #define HN_HTTP_JOBS_H
 // A pool of threads with a bounded queue: long requests are done here, so that short ones and
 // streams never wait. Among those that wait, the client with the fewest jobs at work comes first.
+//
+// A job that works for long makes way: it asks now and then whether others wait, and is then set
+// aside, on its thread, until its turn comes again. So a job of 20 ms waits for a slice of time of
+// those before it, not for their ends.
 
 #include "base/status.h"
 #include "http/ground/shares.h"
 
 typedef struct hn_jobs hn_jobs;
+typedef struct hn_job_turn hn_job_turn; ///< a thread of the pool while it does a job
 
-/// `run` does one job, on a thread of the pool. At most `n_waiting` jobs wait, `per_client` of them
-/// of one client. NULL when memory or threads are out.
-hn_jobs *hn_jobs_create(int n_threads, int n_waiting, int per_client, void (*run)(void *job));
+typedef struct hn_jobs_opts {
+    int at_once;          ///< jobs at work
+    int n_waiting;        ///< jobs that wait, at most
+    int n_waiting_of_one; ///< of them of one client
+    int n_aside;          ///< jobs that are set aside, at most; 0: a job works to its end
+    int n_aside_of_one;   ///< jobs of one client that make way for another job of that client
+} hn_jobs_opts;
+
+/// `run` does one job, on a thread of the pool. NULL when memory or threads are out.
+hn_jobs *hn_jobs_create(const hn_jobs_opts *opts, void (*run)(void *job, hn_job_turn *turn));
 /// Returns 0 when the queue is full, in all or for this client, or the pool is stopping.
 int hn_jobs_push(hn_jobs *jobs, void *job, hn_client client);
 /// Returns the seconds after which a job that is pushed now will probably be taken up: 1 to 60.
@@ -19,4 +31,8 @@ int hn_jobs_wait(hn_jobs *jobs);
 /// Takes on nothing new, works off what is queued, and joins the threads. NULL is legal.
 void hn_jobs_stop(hn_jobs *jobs);
 void hn_jobs_free(hn_jobs *jobs); ///< stops first; NULL is legal
+
+/// To be called by a job often: returns when it may go on, at once unless others wait and it has
+/// worked for a slice of time. NULL is legal.
+void hn_job_make_way(hn_job_turn *turn);
 #endif

@@ -63,6 +63,24 @@ bool hn_shares_has_place(hn_shares *shares, hn_client client) {
     return has;
 }
 
+bool hn_shares_has_share(hn_shares *shares, hn_client client) {
+    pthread_mutex_lock(&shares->lock);
+    const int i = find_row(shares, client);
+    const int held = i < shares->n_clients ? shares->client[i].n : 0;
+    pthread_mutex_unlock(&shares->lock);
+    return client != 0 && held >= shares->per_client;
+}
+
+hn_client hn_shares_greediest(hn_shares *shares) {
+    share greediest = {0};
+    pthread_mutex_lock(&shares->lock);
+    for (int i = 0; i < shares->n_clients; i++) {
+        greediest = shares->client[i].n > greediest.n ? shares->client[i] : greediest;
+    }
+    pthread_mutex_unlock(&shares->lock);
+    return greediest.client;
+}
+
 int hn_shares_take(hn_shares *shares, hn_client client) {
     int held;
     pthread_mutex_lock(&shares->lock);

@@ -18,6 +18,10 @@ void hn_shares_free(hn_shares *shares); ///< NULL is legal
 int hn_shares_take(hn_shares *shares, hn_client client);
 /// Whether a place could be taken now.
 bool hn_shares_has_place(hn_shares *shares, hn_client client);
+/// Whether the client holds as many places as one client may.
+bool hn_shares_has_share(hn_shares *shares, hn_client client);
+/// Returns the client that holds the most places; 0 when nobody holds any.
+hn_client hn_shares_greediest(hn_shares *shares);
 void hn_shares_give(hn_shares *shares, hn_client client);
 int hn_shares_taken(hn_shares *shares);
 #endif

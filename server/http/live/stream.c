@@ -250,6 +250,7 @@ static void reply_stream(hn_stream *s, hn_request *r) {
         return;
     }
     hn_reply_response(r, MHD_HTTP_OK, response);
+    r->is_endless = true;
     hn_reply_header_add(r, "Content-Type", "text/event-stream");
     hn_reply_header_add(r, "Cache-Control", "no-cache");
     hn_reply_header_add(r, "X-Accel-Buffering", "no");

@@ -186,8 +186,15 @@ void hn_request_add_time(hn_request *r) {
 
 static bool must_end(void *user) {
     hn_request *r = user;
+    hn_job_make_way(r->turn);
     r->interrupted |= atomic_load(&r->context->stopping) || hn_clock_thread() > r->cpu_end;
     return r->interrupted;
+}
+
+int hn_request_is_stopping(void *request) {
+    const hn_request *r = request;
+    hn_job_make_way(r->turn);
+    return atomic_load(&r->context->stopping);
 }
 
 hn_interrupt hn_request_interrupt(hn_request *r) {

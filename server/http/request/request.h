@@ -9,6 +9,7 @@
 #include "base/diag.h"
 #include "base/interrupt.h"
 #include "base/strbuf.h"
+#include "http/ground/jobs.h"
 #include "http/ground/problem_document.h"
 #include "http/ground/shares.h"
 #include "http/request/route.h"
@@ -55,6 +56,7 @@ typedef struct hn_request {
     double wait_until;       ///< in a queue of those who wait for a run [s, wall clock]
     int is_new;              ///< it has begun what it asks for
     double cpu_end;          ///< of the thread that works on it [s]
+    hn_job_turn *turn;       ///< of that thread; NULL where it is no pool's
     bool interrupted;        ///< the work was ended early
     bool has_place;          ///< it has waited for a place, and has it
 
@@ -64,6 +66,7 @@ typedef struct hn_request {
     const char *media_type; ///< static text
     hn_strbuf text;
     struct MHD_Response *response; ///< instead of `text`: a stream, a file
+    bool is_endless;               ///< `response` is a stream
     int n_headers;
     hn_reply_header headers[HN_MAX_REPLY_HEADERS];
 } hn_request;
@@ -105,6 +108,9 @@ void hn_request_add_time(hn_request *r);
 /// The question of the work on this request: whether the computing time is used up, or the server
 /// ends. The reply to what was ended early is then a problem that says which.
 hn_interrupt hn_request_interrupt(hn_request *r);
+/// The question of work that has a time of its own: whether the server ends. `request` is a
+/// hn_request. It makes way for others too, as the question above does.
+int hn_request_is_stopping(void *request);
 
 /// Parses the body and checks it against the fields of the route. Returns 0 with a problem as
 /// reply. Cost: the length of the body; not for the connection's thread. A body that was read is

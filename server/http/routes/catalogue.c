@@ -51,6 +51,7 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
                 {"studies_kept", HN_STUDIES_KEPT},
                 {"long_requests_at_once", o->pool},
                 {"long_requests_waiting", o->queue},
+                {"long_requests_set_aside", o->aside},
                 {"quick_requests_at_once", o->quick_pool},
                 {"quick_requests_waiting", o->quick_queue},
                 {"share_of_one_client", o->client_share},
@@ -231,11 +232,6 @@ static hn_status read_number(const hn_request *r, const char *name, double most,
     return HN_OK;
 }
 
-static int is_stopping(void *user) {
-    const hn_context *context = user;
-    return atomic_load(&context->stopping);
-}
-
 typedef struct reference_order {
     hn_ref_request request;
     double every; ///< NaN: no motion between
@@ -244,7 +240,7 @@ typedef struct reference_order {
 
 static hn_status read_reference_order(hn_request *r, reference_order *o, hn_diags *diags) {
     const char *compute = hn_request_query(r, "compute");
-    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu / MEANS, is_stopping, r->context};
+    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu / MEANS, hn_request_is_stopping, r};
     o->request = hn_ref_request_default();
     o->request.opts.limits = o->limits;
     o->request.only_stored = !compute || strcmp(compute, "true") != 0;

@@ -147,8 +147,9 @@ static void take_body(hn_request *r, const char *data, size_t n) {
 
 // ---- the work ----
 
-void hn_dispatch_job(void *job) {
+void hn_dispatch_job(void *job, hn_job_turn *turn) {
     hn_request *r = job;
+    r->turn = turn;
     hn_request_add_time(r);
     if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
@@ -241,9 +242,12 @@ static void add_headers(hn_request *r, struct MHD_Response *response) {
     }
 }
 
-static enum MHD_Result send_reply(hn_request *r) {
+static enum MHD_Result send_reply(hn_dispatch *d, hn_request *r) {
     struct MHD_Response *response = r->response;
     r->response = NULL;
+    if (!r->is_endless) {
+        hn_connection_sends(d->connections, r->watch);
+    }
     if (!response) {
         size_t n = r->text.n;
         r->n_unread = (long long)n;
@@ -315,7 +319,7 @@ static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const 
 
     // a client that waits to be told before it sends its body is told; so is one that sends much
     if (hn_request_header(r, "Expect")) {
-        return send_reply(r) == MHD_YES;
+        return send_reply(d, r) == MHD_YES;
     }
     if (is_too_long_to_drain(r)) {
         answer_and_drain(r);
@@ -353,7 +357,7 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
     if (r->stage == HN_STAGE_BODY && !start_work(cls, r)) {
         return MHD_YES;
     }
-    return send_reply(r);
+    return send_reply(cls, r);
 }
 
 void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **req_cls,
@@ -374,7 +378,8 @@ void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **
 enum MHD_Result hn_dispatch_accept(void *cls, const struct sockaddr *address, socklen_t length) {
     hn_dispatch *d = cls;
     (void)length;
-    return hn_connections_may_add(d->connections, hn_client_of_address(address)) ? MHD_YES : MHD_NO;
+    return hn_connections_make_room(d->connections, hn_client_of_address(address)) ? MHD_YES
+                                                                                   : MHD_NO;
 }
 
 void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,

@@ -30,5 +30,5 @@ enum MHD_Result hn_dispatch_accept(void *cls, const struct sockaddr *address, so
 void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,
                             enum MHD_ConnectionNotificationCode what);
 /// Serves one request on a thread of a pool.
-void hn_dispatch_job(void *job);
+void hn_dispatch_job(void *job, hn_job_turn *turn);
 #endif

@@ -14,11 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static int is_stopping(void *user) {
-    const hn_context *context = user;
-    return atomic_load(&context->stopping);
-}
-
 void hn_handle_languages(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -88,12 +83,13 @@ static hn_status write_program(hn_request *r, const hn_model *model, const wante
     char spelling[HN_SPEC_MAX];
     HN_TRY(check_style(w->style, diags));
     HN_TRY(read_method(w->method, spelling, diags));
-    hn_export_request request = {.language = w->language ? w->language : "python",
-                                 .method = is_held_by_programs(spelling) ? spelling : NULL,
-                                 .solver = w->solver,
-                                 .blanks = w->blanks,
-                                 .skeleton = w->style && strcmp(w->style, "skeleton") == 0,
-                                 .limits = {r->context->opts.max_run_cpu, is_stopping, r->context}};
+    hn_export_request request = {
+        .language = w->language ? w->language : "python",
+        .method = is_held_by_programs(spelling) ? spelling : NULL,
+        .solver = w->solver,
+        .blanks = w->blanks,
+        .skeleton = w->style && strcmp(w->style, "skeleton") == 0,
+        .limits = {r->context->opts.max_run_cpu, hn_request_is_stopping, r}};
     HN_TRY(hn_model_export(b, model, r->context->lib, &request, diags));
     *suffix = request.suffix;
 

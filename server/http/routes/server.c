@@ -18,7 +18,9 @@
 #include <unistd.h>
 
 /// Connections of one event loop; with its own descriptors fewer than the 128 events of one look.
-enum { LOOP_CONNECTIONS = 100 };
+enum { LOOP_CONNECTIONS = 120 };
+/// Of an event loop itself, and of all that is not a connection: files, libraries, guests.
+enum { LOOP_DESCRIPTORS = 4, OTHER_DESCRIPTORS = 128 };
 /// For a head, and what the library makes of it: 72 bytes and more for each parameter and header.
 enum { HEAD_BYTES = 64 << 10 };
 enum { DRAIN_LOOKS = 30, DRAIN_NS = 10000000 }; // 0.3 s in all
@@ -45,22 +47,37 @@ static void set_hosts(hn_server *s) {
                    .any_address = strcmp(host, "0.0.0.0") == 0 || strcmp(host, "::") == 0};
 }
 
+/// Connections that may be open: those with a place, and those whose place was given to another and
+/// that their loop has not closed yet.
+static int count_connections(const hn_http_opts *opts) {
+    return opts->max_connections + opts->max_connections / 4 + 16;
+}
+
+/// Event loops; two at least, for which alone the library starts a pool.
+static int count_loops(const hn_http_opts *opts) {
+    const int loops = count_connections(opts) / LOOP_CONNECTIONS + 1;
+    return loops > 1 ? loops : 2;
+}
+
+int hn_server_descriptors(const hn_http_opts *opts) {
+    return count_connections(opts) + count_loops(opts) * LOOP_DESCRIPTORS + OTHER_DESCRIPTORS;
+}
+
 /// Several event loops of the HTTP library, each with its share of the connections. The library
 /// asks for 128 events at a time and, when it gets as many, asks again before it serves them: a
 /// loop with fewer sockets than that never waits there.
 static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
-    const int connections = s->context.opts.max_connections;
-    const int loops = connections / LOOP_CONNECTIONS + 1;
+    const int loops = count_loops(&s->context.opts);
     s->daemon = MHD_start_daemon(
         MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0,
         hn_dispatch_accept, &s->dispatch, hn_dispatch_request, &s->dispatch,
         MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_URI_LOG_CALLBACK, hn_dispatch_address,
         &s->dispatch, MHD_OPTION_NOTIFY_COMPLETED, hn_dispatch_completed, &s->dispatch,
         MHD_OPTION_NOTIFY_CONNECTION, hn_dispatch_connection, &s->dispatch,
-        MHD_OPTION_THREAD_POOL_SIZE, (unsigned)(loops > 1 ? loops : 2), MHD_OPTION_CONNECTION_LIMIT,
-        (unsigned)connections, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEAD_BYTES,
-        MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->context.opts.connection_timeout,
-        MHD_OPTION_END);
+        MHD_OPTION_THREAD_POOL_SIZE, (unsigned)loops, MHD_OPTION_CONNECTION_LIMIT,
+        (unsigned)count_connections(&s->context.opts), MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        (size_t)HEAD_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
+        (unsigned)s->context.opts.connection_timeout, MHD_OPTION_END);
     if (!s->daemon) {
         close(fd);
         return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the HTTP library could not be started");
@@ -72,12 +89,14 @@ static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
 static hn_status create_parts(hn_server *s, hn_diag *diag) {
     hn_context *c = &s->context;
     const hn_http_opts *o = &c->opts;
-    const int waiting = hn_http_opts_share(o, o->queue);
+    const hn_jobs_opts heavy = hn_http_opts_pool(o);
+    const hn_jobs_opts quick = {.at_once = o->quick_pool,
+                                .n_waiting = o->quick_queue,
+                                .n_waiting_of_one = hn_http_opts_share(o, o->quick_queue)};
     HN_TRY(hn_static_files_create(hn_library_web(c->lib), &c->files, diag));
     s->dispatch.context = c;
-    s->dispatch.heavy = hn_jobs_create(o->pool, o->queue, waiting, hn_dispatch_job);
-    s->dispatch.quick = hn_jobs_create(o->quick_pool, o->quick_queue,
-                                       hn_http_opts_share(o, o->quick_queue), hn_dispatch_job);
+    s->dispatch.heavy = hn_jobs_create(&heavy, hn_dispatch_job);
+    s->dispatch.quick = hn_jobs_create(&quick, hn_dispatch_job);
     c->quick = s->dispatch.quick;
     s->dispatch.connections = hn_connections_create(o);
     c->streams = hn_shares_create(o->max_streams, hn_http_opts_share(o, o->max_streams));

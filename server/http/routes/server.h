@@ -14,6 +14,8 @@ typedef struct hn_server hn_server;
 /// could be had: diag says which and why (a privileged port, an address that is not ours).
 HN_MUST_CHECK hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts,
                                         hn_server **out, hn_diag *diag);
+/// Returns how many descriptors a server with these options may need.
+int hn_server_descriptors(const hn_http_opts *opts);
 /// "http://127.0.0.1:8080"
 const char *hn_server_address(const hn_server *server);
 int hn_server_port(const hn_server *server);

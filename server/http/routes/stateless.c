@@ -195,11 +195,6 @@ void hn_handle_equations(hn_request *r) {
     conclude(r, model, status, &b, &diags);
 }
 
-static int is_stopping(void *user) {
-    const hn_context *context = user;
-    return atomic_load(&context->stopping);
-}
-
 void hn_handle_snapshot(hn_request *r) {
     hn_model *model = load_model(r, 0);
     if (!model) {
@@ -224,8 +219,8 @@ void hn_handle_snapshot(hn_request *r) {
                                                                                : HN_THEME_LIGHT,
                                   .view = hn_fields_text(r->json, "view"),
                                   .cpu_limit = r->context->opts.max_run_cpu,
-                                  .stop = is_stopping,
-                                  .user = r->context};
+                                  .stop = hn_request_is_stopping,
+                                  .user = r};
 
     // drawn, or refused with the reason
     hn_strbuf png;

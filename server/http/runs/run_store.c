@@ -33,7 +33,7 @@ struct hn_runs {
     int has_thread;
 };
 
-static void compute(void *arg);
+static void compute(void *arg, hn_job_turn *turn);
 
 // ---- one run ----
 
@@ -218,6 +218,7 @@ static void *look(void *arg) {
 
 typedef struct allowance {
     hn_kept_run *run;
+    hn_job_turn *turn;
     double cpu_end;
     int method;
     bool used_up;
@@ -225,15 +226,17 @@ typedef struct allowance {
 
 static int may_go_on(void *user, double share) {
     const allowance *a = user;
+    hn_job_make_way(a->turn);
     atomic_store(&a->run->share, (a->method + share) / a->run->question.n_methods);
     return !atomic_load(&a->run->stop) && hn_clock_thread() < a->cpu_end;
 }
 
 /// The document of one method.
-static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model *model,
-                            int method) {
+static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model *model, int method,
+                            hn_job_turn *turn) {
     const hn_run_question *q = &run->question;
     allowance a = {.run = run,
+                   .turn = turn,
                    .method = method,
                    .cpu_end = hn_clock_thread() + all->opts->max_run_cpu / q->n_methods};
     const hn_run_request request = {.method = q->methods[method],
@@ -265,20 +268,21 @@ static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model
 /// Whether the equations, of the scene and of the methods, take too long or are no longer wanted.
 static bool must_end(void *user) {
     allowance *a = user;
+    hn_job_make_way(a->turn);
     a->used_up |= hn_clock_thread() > a->cpu_end;
     return a->used_up || atomic_load(&a->run->stop);
 }
 
-static hn_status run_all(const hn_runs *all, hn_kept_run *run) {
+static hn_status run_all(const hn_runs *all, hn_kept_run *run, hn_job_turn *turn) {
     // as much time for equations as for all steps
     hn_model *model = NULL;
     const double seconds = all->opts->max_run_cpu;
-    allowance a = {.run = run, .cpu_end = hn_clock_thread() + seconds};
+    allowance a = {.run = run, .turn = turn, .cpu_end = hn_clock_thread() + seconds};
     hn_status status = hn_scene_request_load(&run->question.scene, all->lib, 0,
                                              (hn_interrupt){must_end, &a}, &model, &run->diags);
     a.cpu_end += seconds;
     for (int i = 0; i < run->question.n_methods && status == HN_OK; i++) {
-        status = run_method(all, run, model, i);
+        status = run_method(all, run, model, i, turn);
     }
     hn_model_free(model);
     if (status != HN_OK && a.used_up) {
@@ -291,13 +295,13 @@ static hn_status run_all(const hn_runs *all, hn_kept_run *run) {
 }
 
 /// On a thread of the pool.
-static void compute(void *arg) {
+static void compute(void *arg, hn_job_turn *turn) {
     hn_kept_run *run = arg;
     hn_runs *all = run->question.store;
     pthread_mutex_lock(&all->lock);
     run->phase = HN_RUN_COMPUTES;
     pthread_mutex_unlock(&all->lock);
-    run->refused = atomic_load(&run->stop) ? HN_ERR_STOPPED : run_all(all, run);
+    run->refused = atomic_load(&run->stop) ? HN_ERR_STOPPED : run_all(all, run, turn);
 
     // a run that was stopped is not the answer to its question
     const int stopped = atomic_load(&run->stop);
@@ -333,8 +337,8 @@ hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib, hn_run_
     all->opts = opts;
     all->lib = lib;
     all->answer = answer;
-    all->jobs =
-        hn_jobs_create(opts->pool, opts->queue, hn_http_opts_share(opts, opts->queue), compute);
+    const hn_jobs_opts pool = hn_http_opts_pool(opts);
+    all->jobs = hn_jobs_create(&pool, compute);
     all->has_thread = all->jobs && pthread_create(&all->thread, NULL, look, all) == 0;
     if (!all->has_thread) {
         hn_runs_free(all);

@@ -268,6 +268,7 @@ static void reply_stream(hn_request *r, run_stream *s) {
     }
     hn_runs_add_reader(s->runs, &s->reader);
     hn_reply_response(r, MHD_HTTP_OK, response);
+    r->is_endless = true;
     hn_reply_header_add(r, "Content-Type", "text/event-stream");
     hn_reply_header_add(r, "Cache-Control", "no-cache");
     hn_reply_header_add(r, "X-Accel-Buffering", "no");
