@@ -21,89 +21,145 @@ struct hn_sparse_spd {
 
 // ---- order and pattern ----
 
+// What is left of the matrix, each unknown with the list of those that it is joined to.
 typedef struct graph {
     int n;
-    char *joined; // n x n
-    int *degree, *gone;
+    hn_arena *arena;
+    int **list, *degree, *room; ///< degree[i] unknowns in list[i], room for room[i]
+    int *seen;                  ///< marks of the step under way
+    int *heap, *place, in_heap; ///< unknowns left, the one of least degree on top
 } graph;
 
-static int find_lowest(const graph *g) {
-    int best = -1;
-    for (int i = 0; i < g->n; i++) {
-        if (!g->gone[i] && (best < 0 || g->degree[i] < g->degree[best])) {
-            best = i;
-        }
-    }
-    return best;
+// of two of the same degree the first one
+static bool goes_before(const graph *g, int i, int j) {
+    return g->degree[i] < g->degree[j] || (g->degree[i] == g->degree[j] && i < j);
 }
 
-// takes out unknown i; its neighbours (into list) all become neighbours of each other. Returns how
-// many there are.
-static int take_out(graph *g, int i, int *list) {
-    const size_t n = (size_t)g->n;
-    int count = 0;
-    for (int j = 0; j < g->n; j++) {
-        if (g->joined[(size_t)i * n + (size_t)j] && !g->gone[j] && j != i) {
-            list[count++] = j;
-        }
+static void put_in_heap(graph *g, int at, int i) {
+    g->heap[at] = i;
+    g->place[i] = at;
+}
+
+// moves unknown i, whose degree has changed, to where it belongs
+static void settle(graph *g, int i) {
+    int at = g->place[i];
+    while (at > 0 && goes_before(g, i, g->heap[(at - 1) / 2])) {
+        put_in_heap(g, at, g->heap[(at - 1) / 2]);
+        at = (at - 1) / 2;
     }
-    g->gone[i] = 1;
+    for (int below = 2 * at + 1; below < g->in_heap; below = 2 * at + 1) {
+        below += below + 1 < g->in_heap && goes_before(g, g->heap[below + 1], g->heap[below]);
+        if (!goes_before(g, g->heap[below], i)) {
+            break;
+        }
+        put_in_heap(g, at, g->heap[below]);
+        at = below;
+    }
+    put_in_heap(g, at, i);
+}
+
+static int take_lowest(graph *g) {
+    const int lowest = g->heap[0], last = g->heap[--g->in_heap];
+    if (g->in_heap > 0) {
+        put_in_heap(g, 0, last);
+        settle(g, last);
+    }
+    return lowest;
+}
+
+// false when memory is out
+static bool join(graph *g, int i, int j) {
+    if (g->degree[i] == g->room[i]) {
+        const int room = 2 * g->room[i] + 4;
+        int *list = hn_arena_ints(g->arena, (size_t)room);
+        if (!list) {
+            return false;
+        }
+        if (g->degree[i] > 0) {
+            memcpy(list, g->list[i], (size_t)g->degree[i] * sizeof *list);
+        }
+        g->list[i] = list;
+        g->room[i] = room;
+    }
+    g->list[i][g->degree[i]++] = j;
+    return true;
+}
+
+static void part(graph *g, int i, int j) {
+    int *list = g->list[i], k = 0;
+    while (list[k] != j) {
+        k++;
+    }
+    list[k] = list[--g->degree[i]];
+}
+
+// takes out unknown i: its neighbours, which stay in its list, all become neighbours of each other.
+// Returns false when memory is out.
+static bool take_out(graph *g, int i) {
+    const int count = g->degree[i], *list = g->list[i];
     for (int a = 0; a < count; a++) {
-        g->degree[list[a]]--;
+        const int j = list[a];
+        part(g, j, i);
+
+        // joined to those of the list that it was not joined to
+        g->seen[j] = j + 1;
+        for (int k = 0; k < g->degree[j]; k++) {
+            g->seen[g->list[j][k]] = j + 1;
+        }
         for (int b = 0; b < count; b++) {
-            char *edge = &g->joined[(size_t)list[a] * n + (size_t)list[b]];
-            if (a != b && !*edge) {
-                *edge = 1;
-                g->degree[list[a]]++;
+            if (g->seen[list[b]] != j + 1 && !join(g, j, list[b])) {
+                return false;
             }
         }
+        settle(g, j);
     }
-    return count;
+    return true;
 }
 
 static bool graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const int *row,
                        const int *col) {
     *g = (graph){.n = n,
-                 .joined = hn_arena_get(scratch, (size_t)n * (size_t)n + 1),
+                 .arena = scratch,
+                 .list = hn_arena_get(scratch, ((size_t)n + 1) * sizeof *g->list),
                  .degree = hn_arena_ints(scratch, (size_t)n),
-                 .gone = hn_arena_ints(scratch, (size_t)n)};
+                 .room = hn_arena_ints(scratch, (size_t)n),
+                 .seen = hn_arena_ints(scratch, (size_t)n),
+                 .heap = hn_arena_ints(scratch, (size_t)n),
+                 .place = hn_arena_ints(scratch, (size_t)n)};
     if (hn_arena_failed(scratch)) {
         return false;
     }
     for (int k = 0; k < n_entries; k++) {
-        const size_t i = (size_t)row[k], j = (size_t)col[k];
-        if (i != j) {
-            g->joined[i * (size_t)n + j] = g->joined[j * (size_t)n + i] = 1;
-            g->degree[i]++;
-            g->degree[j]++;
+        if (row[k] != col[k] && (!join(g, row[k], col[k]) || !join(g, col[k], row[k]))) {
+            return false;
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        put_in_heap(g, g->in_heap++, i);
+        settle(g, i);
+    }
+    return true;
+}
+
+// the order; what an unknown was joined to when it was taken out stays in its list: its column of L
+static bool choose_order(hn_sparse_spd *spd, graph *g) {
+    for (int k = 0; k < spd->n; k++) {
+        const int i = take_lowest(g), count = g->degree[i];
+        spd->order[k] = i;
+        spd->at[i] = k;
+        spd->nnz += count;
+        spd->factor_ops += (double)count * (count + 3);
+        if (!take_out(g, i)) {
+            return false;
         }
     }
     return true;
 }
 
-// the order, and the number of entries of each row of L in row_start[k + 1]; the entries themselves
-// stay in the graph
-static void choose_order(hn_sparse_spd *spd, graph *g, int *list) {
-    for (int k = 0; k < spd->n; k++) {
-        const int i = find_lowest(g);
-        spd->order[k] = i;
-        spd->at[i] = k;
-        const int count = take_out(g, i, list);
-        spd->nnz += count;
-        // a row loses its entries of unknowns taken out later: what is left joined to i is its
-        // column of L
-        for (int j = 0; j < spd->n; j++) {
-            g->joined[(size_t)i * (size_t)spd->n + (size_t)j] = 0;
-        }
-        for (int a = 0; a < count; a++) {
-            g->joined[(size_t)i * (size_t)spd->n + (size_t)list[a]] = 1;
-        }
-        spd->factor_ops += (double)count * (count + 3);
-    }
-}
-
+// the columns of L by rows, and then the rows by columns: either way what is listed rises
 static bool list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
-    const size_t n = (size_t)spd->n;
+    const int n = spd->n;
+    int *next = spd->filled;
     spd->row_col = hn_arena_ints(arena, (size_t)spd->nnz);
     spd->col_row = hn_arena_ints(arena, (size_t)spd->nnz);
     spd->L = hn_arena_doubles(arena, (size_t)spd->nnz);
@@ -111,25 +167,34 @@ static bool list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
         return false;
     }
 
-    // joined unknowns: entries of L by rows and by columns
-    int n_row = 0, n_col = 0;
-    for (int k = 0; k < spd->n; k++) {
-        spd->row_start[k] = n_row;
-        spd->col_start[k] = n_col;
-        for (int m = 0; m < k; m++) {
-            if (g->joined[(size_t)spd->order[m] * n + (size_t)spd->order[k]]) {
-                spd->row_col[n_row++] = m;
-            }
+    // how many there are in each
+    for (int k = 0; k < n; k++) {
+        const int i = spd->order[k];
+        spd->col_start[k + 1] = spd->col_start[k] + g->degree[i];
+        for (int e = 0; e < g->degree[i]; e++) {
+            spd->row_start[spd->at[g->list[i][e]] + 1]++;
         }
-        for (int m = k + 1; m < spd->n; m++) {
-            if (g->joined[(size_t)spd->order[k] * n + (size_t)spd->order[m]]) {
-                spd->col_row[n_col++] = m;
-            }
+    }
+    for (int k = 0; k < n; k++) {
+        next[k] = spd->row_start[k];
+        spd->row_start[k + 1] += spd->row_start[k];
+    }
+
+    // rows, column after column
+    for (int k = 0; k < n; k++) {
+        const int i = spd->order[k];
+        for (int e = 0; e < g->degree[i]; e++) {
+            spd->row_col[next[spd->at[g->list[i][e]]]++] = k;
         }
     }
 
-    spd->row_start[spd->n] = n_row;
-    spd->col_start[spd->n] = n_col;
+    // columns, row after row
+    memcpy(next, spd->col_start, (size_t)n * sizeof *next);
+    for (int k = 0; k < n; k++) {
+        for (int e = spd->row_start[k]; e < spd->row_start[k + 1]; e++) {
+            spd->col_row[next[spd->row_col[e]]++] = k;
+        }
+    }
     return true;
 }
 
@@ -172,8 +237,7 @@ hn_sparse_spd *hn_sparse_spd_create(hn_arena *arena, int n, int n_entries, const
         spd->work = hn_arena_doubles(arena, (size_t)n);
 
         // the order first: everything else follows it
-        if (!hn_arena_failed(arena)) {
-            choose_order(spd, &g, spd->filled);
+        if (!hn_arena_failed(arena) && choose_order(spd, &g)) {
             list_entries(spd, row, col);
             ok = list_pattern(spd, &g, arena);
         }

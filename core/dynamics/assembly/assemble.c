@@ -6,20 +6,21 @@
 #include "dynamics/assembly/assemble_mode.h"
 #include "dynamics/assembly/assemble_pose.h"
 #include "dynamics/assembly/assemble_position.h"
+#include "dynamics/assembly/assemble_rates.h"
+#include "dynamics/assembly/assemble_rows.h"
 #include "dynamics/assembly/mode.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "linalg/dense.h"
 #include "linalg/qr.h"
-#include "linalg/saddle.h"
+#include "linalg/gram.h"
+#include "linalg/row_check.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-// a velocity gap below this times |J| |v| + |phi_t| is rounding
-static const double VELOCITY_ROUNDING = 4 * DBL_EPSILON;
 // rank of J D for the report, as in linalg/saddle.h
 static const double RANK_TOL = 1e-10;
 
@@ -67,50 +68,6 @@ static hn_status check_orientations(const hn_assembler *s) {
     return HN_OK;
 }
 
-/// T^-1 column by column, nonzeros only.
-static hn_status read_map(hn_assembler *s) {
-    int n = s->n, count = 0;
-    double *user = hn_arena_doubles(s->arena, (size_t)n),
-           *rates = hn_arena_doubles(s->arena, (size_t)n);
-    s->map_start = hn_arena_ints(s->arena, (size_t)n + 1);
-    if (!user || !rates || !s->map_start) {
-        return HN_ERR_MEMORY;
-    }
-
-    // count the entries, then store them
-    for (int pass = 0; pass < 2; pass++) {
-        if (pass == 1) {
-            s->map_row = hn_arena_ints(s->arena, (size_t)count);
-            s->map_value = hn_arena_doubles(s->arena, (size_t)count);
-            if (!s->map_row || !s->map_value) {
-                return HN_ERR_MEMORY;
-            }
-            count = 0;
-        }
-
-        // column k: the rates of a unit rate of user coordinate k
-        for (int k = 0; k < n; k++) {
-            user[k] = 1;
-            hn_system_rates_from_user(s->sys, user, rates);
-            user[k] = 0;
-            s->map_start[k] = count;
-            for (int i = 0; i < n; i++) {
-                if (rates[i] == 0) {
-                    continue;
-                }
-                if (pass == 1) {
-                    s->map_row[count] = i;
-                    s->map_value[count] = rates[i];
-                }
-                count++;
-            }
-        }
-
-        s->map_start[n] = count;
-    }
-    return HN_OK;
-}
-
 static hn_status start(hn_assembler *s) {
     size_t n = (size_t)s->n, nc = (size_t)s->nc;
     s->x = hn_arena_doubles(s->arena, n);
@@ -142,7 +99,7 @@ static hn_status start(hn_assembler *s) {
         s->row_scale[i] = 1 / hn_system_row_unit(s->sys, i);
     }
     HN_TRY(check_orientations(s));
-    HN_TRY(read_map(s));
+    HN_TRY(hn_rate_tree_init(&s->rates, s->sys, s->arena));
     unsigned terms = HN_TERM_M | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
     return hn_eval_create(s->sys, terms, s->arena, &s->eval);
 }
@@ -193,186 +150,6 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
     return status;
 }
 
-// ---- velocities ----
-
-/// gap = J v + phi_t, and whether it is more than rounding.
-static int velocity_gap(const hn_assembler *s, const double *v, double *gap) {
-    const double *J = hn_eval_get(s->eval, HN_TERM_J), *phi_t = hn_eval_get(s->eval, HN_TERM_PHI_T);
-    int open = 0;
-    for (int i = 0; i < s->nc; i++) {
-        double size = fabs(phi_t[i]);
-        gap[i] = phi_t[i];
-        for (int k = 0; k < s->n; k++) {
-            double part = J[(size_t)i * s->n + k] * v[k];
-            gap[i] += part;
-            size += fabs(part);
-        }
-        open |= fabs(gap[i]) > VELOCITY_ROUNDING * size;
-    }
-    return open;
-}
-
-/// x' M y for two columns of T^-1, so that M in user rates costs only what is not zero.
-static double user_mass(const hn_assembler *s, int k, int l) {
-    const double *M = hn_eval_get(s->eval, HN_TERM_M);
-    double sum = 0;
-    for (int e = s->map_start[k]; e < s->map_start[k + 1]; e++) {
-        for (int d = s->map_start[l]; d < s->map_start[l + 1]; d++) {
-            sum +=
-                s->map_value[e] * M[(size_t)s->map_row[e] * s->n + s->map_row[d]] * s->map_value[d];
-        }
-    }
-    return sum;
-}
-
-/// The least change of the free rates that closes J v + phi_t: J (nc x n_free), weight
-/// (n_free x n_free).
-typedef struct rate_problem {
-    int n_free, *free;
-    double *J, *weight, *force, *change, *gap;
-    hn_saddle_ws *ws;
-} rate_problem;
-
-static hn_status rate_problem_init(rate_problem *p, hn_assembler *s) {
-    *p = (rate_problem){.free = hn_arena_ints(s->arena, (size_t)s->n)};
-    if (!p->free) {
-        return HN_ERR_MEMORY;
-    }
-
-    // rates that may change
-    for (int i = 0; i < s->n; i++) {
-        if (!user_coordinate(s, i)->v0_pinned) {
-            p->free[p->n_free++] = i;
-        }
-    }
-
-    size_t n = (size_t)p->n_free, nc = (size_t)s->nc;
-    p->J = hn_arena_doubles(s->arena, nc * n);
-    p->weight = hn_arena_doubles(s->arena, n * n);
-    p->force = hn_arena_doubles(s->arena, n);
-    p->change = hn_arena_doubles(s->arena, n);
-    p->gap = hn_arena_doubles(s->arena, nc);
-    p->ws = hn_saddle_ws_create(s->arena, p->n_free, s->nc);
-    double *row = hn_arena_doubles(s->arena, (size_t)s->n);
-    if (!p->ws || !row || hn_arena_failed(s->arena)) {
-        return HN_ERR_MEMORY;
-    }
-
-    // rows of J in these rates
-    for (int i = 0; i < s->nc; i++) {
-        hn_assemble_user_row(s, i, row);
-        for (int k = 0; k < p->n_free; k++) {
-            p->J[(size_t)i * p->n_free + k] = row[p->free[k]];
-        }
-    }
-    return HN_OK;
-}
-
-/// Weight of least change: the mass matrix, or the plain sizes of the coordinates where mass alone
-/// decides nothing.
-static void fill_weight(const hn_assembler *s, rate_problem *p, int by_mass) {
-    int n = p->n_free;
-    for (int k = 0; k < n; k++) {
-        for (int l = 0; l <= k; l++) {
-            double reach = s->reach[p->free[k]];
-            double w =
-                by_mass ? user_mass(s, p->free[k], p->free[l]) : (k == l ? 1 / (reach * reach) : 0);
-            p->weight[(size_t)k * n + l] = w;
-        }
-    }
-}
-
-static hn_status factor_rates(const hn_assembler *s, rate_problem *p) {
-    fill_weight(s, p, 1);
-    hn_status status = hn_saddle_factor(p->n_free, s->nc, p->weight, p->J, NULL, NULL, p->ws);
-    if (status == HN_ERR_SINGULAR || status == HN_ERR_NOT_SPD) {
-        fill_weight(s, p, 0);
-        status = hn_saddle_factor(p->n_free, s->nc, p->weight, p->J, NULL, NULL, p->ws);
-    }
-    return status;
-}
-
-/// "w1, w3" into text: the rates that are held.
-static void list_pinned_rates(const hn_assembler *s, char *text, size_t size) {
-    size_t used = 0;
-    text[0] = '\0';
-    for (int i = 0; i < s->n && used + 1 < size; i++) {
-        const hn_coordinate *c = user_coordinate(s, i);
-        if (c->v0_pinned) {
-            int wrote =
-                snprintf(text + used, size - used, "%s%s = %.6g", used ? ", " : "", c->rate, c->v0);
-            used += wrote > 0 ? (size_t)wrote : 0;
-        }
-    }
-}
-
-static hn_status report_contradiction(hn_assembler *s, const double *gap) {
-    char pinned[160];
-    list_pinned_rates(s, pinned, sizeof pinned);
-    const char *pointer = NULL;
-    for (int i = 0; i < s->n; i++) {
-        pointer = user_coordinate(s, i)->v0_pinned ? user_coordinate(s, i)->v0_pointer : pointer;
-    }
-    return hn_diags_add(
-        s->diags, HN_ERR_INCONSISTENT, pointer, "let one of these rates be free",
-        "the pinned rates %s contradict the closed loops: |J v| = %.3g is left whatever the other "
-        "rates are",
-        pinned[0] ? pinned : "(none)", hn_norm2(s->nc, gap));
-}
-
-/// Changes the free user rates least so that J v + phi_t = 0; v (n) in system rates, in and out.
-static hn_status correct_rates(hn_assembler *s, double *user_v, double *v, rate_problem *p) {
-    // the second round takes what rounding left of the first
-    for (int round = 0; round < 2; round++) {
-        hn_status status = hn_saddle_apply(p->force, p->gap, p->change, NULL, NULL, p->ws);
-        if (status == HN_ERR_INCONSISTENT) {
-            return round == 0 ? report_contradiction(s, p->gap) : HN_OK;
-        }
-        if (status != HN_OK) {
-            return status;
-        }
-        for (int k = 0; k < p->n_free; k++) {
-            user_v[p->free[k]] += p->change[k];
-        }
-        hn_system_rates_from_user(s->sys, user_v, v);
-        if (!velocity_gap(s, v, p->gap)) {
-            break;
-        }
-    }
-    return HN_OK;
-}
-
-static hn_status find_rates(hn_assembler *s, double *v, hn_assembly *report) {
-    double *user_v = hn_arena_doubles(s->arena, (size_t)s->n),
-           *gap = hn_arena_doubles(s->arena, (size_t)s->nc);
-    if (!user_v || !gap) {
-        return HN_ERR_MEMORY;
-    }
-
-    // the rates asked for, and how far they open the loops
-    for (int i = 0; i < s->n; i++) {
-        user_v[i] = user_coordinate(s, i)->v0;
-    }
-    hn_system_rates_from_user(s->sys, user_v, v);
-    hn_eval_run(s->eval, s->t, s->q, v);
-    int open = velocity_gap(s, v, gap);
-    report->velocity_gap_before = report->velocity_gap = hn_norm2(s->nc, gap);
-    if (!open) {
-        return HN_OK;
-    }
-
-    // the smallest change that closes them
-    rate_problem p;
-    HN_TRY(rate_problem_init(&p, s));
-    memcpy(p.gap, gap, (size_t)s->nc * sizeof *gap);
-    HN_TRY(factor_rates(s, &p));
-    const hn_status status = correct_rates(s, user_v, v, &p);
-
-    (void)velocity_gap(s, v, gap);
-    report->velocity_gap = hn_norm2(s->nc, gap);
-    return status;
-}
-
 // ---- accelerations and the report ----
 
 static hn_status find_accelerations(hn_assembler *s, const double *v, double *a, double *lambda) {
@@ -408,38 +185,89 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
     return status;
 }
 
-/// Rank and singular values of J D with D = diag(M)^-1/2: independent of the units of the
-/// coordinates.
-static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
-    int n = s->n;
-    hn_qr qr;
-    double *d = hn_arena_doubles(s->arena, (size_t)n);
-    if (!hn_qr_init(&qr, s->arena, n, s->nc) || !d) {
+/// D = diag(M)^-1/2; massless velocities count as the heaviest.
+static void scale_by_mass(const hn_assembler *s, double *d) {
+    const double *M = hn_eval_get(s->eval, HN_TERM_M);
+    const size_t n = (size_t)s->n;
+    double heaviest = 0;
+    for (size_t k = 0; k < n; k++) {
+        heaviest = fmax(heaviest, M[k * n + k]);
+    }
+    for (size_t k = 0; k < n; k++) {
+        const double m = M[k * n + k];
+        d[k] = 1 / sqrt(m > 1e-14 * heaviest ? m : (heaviest > 0 ? heaviest : 1));
+    }
+}
+
+/// Of a large mechanism whose rows stand well apart, entry by entry. *found = 0: they may not.
+static hn_status find_sigma_sparse(const hn_assembler *s, const double *d, hn_assembly *report,
+                                   int *found) {
+    const double *J = hn_eval_get(s->eval, HN_TERM_J);
+    const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_J, &row, &col);
+    hn_row_check *check;
+    hn_gram *gram;
+    double *entry = hn_arena_doubles(s->arena, (size_t)n);
+    *found = 0;
+
+    // whether every row counts
+    if (!entry) {
         return HN_ERR_MEMORY;
     }
-
-    // J D with D = diag(M)^-1/2; massless velocities count as the heaviest
-    const double *M = hn_eval_get(s->eval, HN_TERM_M), *J = hn_eval_get(s->eval, HN_TERM_J);
-    double heaviest = 0;
-    for (int k = 0; k < n; k++) {
-        heaviest = fmax(heaviest, M[(size_t)k * n + k]);
+    HN_TRY(hn_row_check_create(s->arena, s->nc, s->n, n, row, col, &check));
+    if (!check || !hn_row_check_run(check, J, d)) {
+        return HN_OK;
     }
+
+    // the singular values; squared, they lose what is below 1e-6 of the largest
+    HN_TRY(hn_gram_create(s->arena, s->nc, s->n, n, row, col, &gram));
     for (int k = 0; k < n; k++) {
-        double m = M[(size_t)k * n + k];
-        d[k] = 1 / sqrt(m > 1e-14 * heaviest ? m : (heaviest > 0 ? heaviest : 1));
+        entry[k] = J[(size_t)row[k] * (size_t)s->n + (size_t)col[k]] * d[col[k]];
+    }
+    hn_gram_fill(gram, entry);
+    if (hn_gram_factor(gram, 0, 0) == HN_OK) {
+        hn_gram_sigma(gram, &report->sigma_min, &report->sigma_max);
+        *found = report->sigma_min > 1e-6 * report->sigma_max;
+    }
+    return HN_OK;
+}
+
+static hn_status find_sigma_dense(const hn_assembler *s, const double *d, hn_assembly *report,
+                                  int *rank) {
+    const double *J = hn_eval_get(s->eval, HN_TERM_J);
+    const int n = s->n;
+    hn_qr qr;
+    if (!hn_qr_init(&qr, s->arena, n, s->nc)) {
+        return HN_ERR_MEMORY;
     }
     for (int i = 0; i < s->nc; i++) {
         for (int k = 0; k < n; k++) {
             qr.a[(size_t)i * n + k] = J[(size_t)i * n + k] * d[k];
         }
     }
-
-    // rank and singular values
     hn_qr_factor(&qr, n, s->nc, RANK_TOL);
     hn_qr_sigma(&qr, &report->sigma_min, &report->sigma_max);
-    report->rank = qr.rank;
-    report->freedoms = n - qr.rank;
-    report->redundant = s->nc - qr.rank;
+    *rank = qr.rank;
+    return HN_OK;
+}
+
+/// Rank and singular values of J D with D = diag(M)^-1/2: independent of the units of the
+/// coordinates.
+static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
+    double *d = hn_arena_doubles(s->arena, (size_t)s->n);
+    int found = 0, rank = s->nc;
+    if (!d) {
+        return HN_ERR_MEMORY;
+    }
+    scale_by_mass(s, d);
+    if (hn_assemble_is_large(s)) {
+        HN_TRY(find_sigma_sparse(s, d, report, &found));
+    }
+    if (!found) {
+        HN_TRY(find_sigma_dense(s, d, report, &rank));
+    }
+    report->rank = rank;
+    report->freedoms = s->n - rank;
+    report->redundant = s->nc - rank;
     return HN_OK;
 }
 
@@ -496,7 +324,7 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
     // pose, velocities, accelerations
     hn_status status = find_pose(s, report);
     memcpy(q, s->q, (size_t)s->nq * sizeof *q);
-    HN_THEN(status, find_rates(s, v, report));
+    HN_THEN(status, hn_assemble_rates(s, v, report));
     if (status == HN_OK && (a || lambda)) {
         status = find_accelerations(s, v, a, lambda);
     }

@@ -3,6 +3,7 @@
 #include "dynamics/assembly/assemble_position.h"
 
 #include "dynamics/assembly/assemble_pose.h"
+#include "dynamics/assembly/assemble_rows.h"
 #include "linalg/dense.h"
 #include "linalg/qr.h"
 
@@ -31,11 +32,12 @@ enum {
 struct hn_assemble_search {
     hn_assembler *s;
     int n, nc;
-    double *J;     // nc x n, scaled
-    double *goal;  // nc: the residual aimed at; 0 but during homotopy
-    double *A, *g; // J'J + mu I, J' r
-    double *step, *start, *r;
-    double *delta; // n of all user coordinates, unscaled
+    double *J;                         // nc x n, scaled
+    double *goal;                      // nc: the residual aimed at; 0 but during homotopy
+    double *A, *g;                     // J'J + mu I, J' r
+    hn_assemble_rows *rows;            // of a large mechanism; J, A and qr are not used then
+    double *step, *start, *r, *change; // change: J dz
+    double *delta;                     // n of all user coordinates, unscaled
     double *best_x, best_size;
     int damped; // damped steps taken
     hn_qr qr;
@@ -45,8 +47,6 @@ typedef struct hn_assemble_search search;
 static hn_status search_init(search *w, hn_assembler *s) {
     size_t n = (size_t)s->n_free, nc = (size_t)s->nc;
     *w = (search){.s = s, .n = s->n_free, .nc = s->nc, .best_size = HUGE_VAL};
-    w->J = hn_arena_doubles(s->arena, nc * n);
-    w->A = hn_arena_doubles(s->arena, n * n);
     w->g = hn_arena_doubles(s->arena, n);
     w->step = hn_arena_doubles(s->arena, (size_t)s->n);
     w->delta = hn_arena_doubles(s->arena, (size_t)s->n);
@@ -54,8 +54,20 @@ static hn_status search_init(search *w, hn_assembler *s) {
     w->best_x = hn_arena_doubles(s->arena, (size_t)s->n);
     w->goal = hn_arena_doubles(s->arena, nc);
     w->r = hn_arena_doubles(s->arena, nc);
-    int got = hn_qr_init(&w->qr, s->arena, s->n_free, s->nc);
-    return got && !hn_arena_failed(s->arena) ? HN_OK : HN_ERR_MEMORY;
+    w->change = hn_arena_doubles(s->arena, nc);
+    if (hn_assemble_is_large(s)) {
+        HN_TRY(hn_assemble_rows_create(s, s->n_free, s->free, &w->rows));
+    }
+
+    // the dense matrices where they are used
+    if (!w->rows) {
+        w->J = hn_arena_doubles(s->arena, nc * n);
+        w->A = hn_arena_doubles(s->arena, n * n);
+        if (!hn_qr_init(&w->qr, s->arena, s->n_free, s->nc)) {
+            return HN_ERR_MEMORY;
+        }
+    }
+    return hn_arena_failed(s->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
 /// Evaluates at s->x and sets w->r = residual - goal. Returns |r|, HUGE_VAL when not finite.
@@ -79,6 +91,10 @@ static void keep_best(search *w) {
 /// The scaled J of the free coordinates where s->eval was last run.
 static void fill_jacobian(search *w) {
     hn_assembler *s = w->s;
+    if (w->rows) {
+        hn_assemble_rows_fill(w->rows, s->row_scale);
+        return;
+    }
     for (int i = 0; i < w->nc; i++) {
         hn_assemble_user_row(s, i, w->step);
         for (int k = 0; k < w->n; k++) {
@@ -123,15 +139,27 @@ static double go_back(search *w) {
     return evaluate(w);
 }
 
-/// One least-norm Newton step, dz = -J^+ r. Returns the new |r|, or a negative number when it did
-/// not pay (x is then as before).
-static double newton_step(search *w, double size) {
+/// dz = -J^+ r. Returns false where the rows of a large mechanism depend on each other: damped
+/// steps serve those.
+static bool find_newton_step(search *w) {
     fill_jacobian(w);
+    if (w->rows) {
+        return hn_assemble_rows_step(w->rows, w->r, 0, w->step) == HN_OK;
+    }
     memcpy(w->qr.a, w->J, (size_t)w->nc * w->n * sizeof *w->J);
     hn_qr_factor(&w->qr, w->n, w->nc, RANK_TOL);
     hn_qr_least_norm(&w->qr, w->r, w->step);
     for (int k = 0; k < w->n; k++) {
         w->step[k] = -w->step[k];
+    }
+    return true;
+}
+
+/// One least-norm Newton step. Returns the new |r|, or a negative number when it did not pay (x is
+/// then as before).
+static double newton_step(search *w, double size) {
+    if (!find_newton_step(w)) {
+        return -1;
     }
     cap_step(w);
     save_start(w);
@@ -145,10 +173,14 @@ static double newton_step(search *w, double size) {
     return -1;
 }
 
-/// A = J'J and g = J' r; returns the largest diagonal entry. Rows of J are mostly zero, so they are
-/// walked one by one.
+/// g = J' r, and where that is dense A = J'J; returns the largest diagonal entry of J'J (dense) or
+/// J J'. Rows of J are mostly zero, so they are walked one by one.
 static double fill_normal_equations(search *w) {
     int n = w->n;
+    if (w->rows) {
+        hn_assemble_rows_gradient(w->rows, w->r, w->g);
+        return hn_assemble_rows_largest(w->rows);
+    }
     memset(w->A, 0, (size_t)n * n * sizeof *w->A);
     memset(w->g, 0, (size_t)n * sizeof *w->g);
     for (int i = 0; i < w->nc; i++) {
@@ -167,14 +199,35 @@ static double fill_normal_equations(search *w) {
     return largest;
 }
 
+static double jacobian_size(const search *w) {
+    return w->rows ? hn_assemble_rows_size(w->rows) : hn_norm2(w->nc * w->n, w->J);
+}
+
 /// |r|^2 - |r + J dz|^2, what the linear model promises.
 static double predicted_gain(const search *w) {
     double gain = 0;
+    if (w->rows) {
+        hn_assemble_rows_change(w->rows, w->step, w->change);
+    }
     for (int i = 0; i < w->nc; i++) {
-        double change = hn_dot(w->n, w->J + (size_t)i * w->n, w->step);
+        double change = w->rows ? w->change[i] : hn_dot(w->n, w->J + (size_t)i * w->n, w->step);
         gain -= change * (2 * w->r[i] + change);
     }
     return gain;
+}
+
+/// (J'J + mu I) dz = -J' r, either way. A dense factor overwrites A.
+static hn_status find_damped_step(search *w, double mu) {
+    if (w->rows) {
+        return hn_assemble_rows_step(w->rows, w->r, mu, w->step);
+    }
+    for (int k = 0; k < w->n; k++) {
+        w->A[(size_t)k * w->n + k] += mu;
+        w->step[k] = -w->g[k];
+    }
+    HN_TRY(hn_cholesky(w->n, w->A, w->n, 0));
+    hn_cholesky_solve(w->n, w->A, w->n, w->step);
+    return HN_OK;
 }
 
 /// One damped step (J'J + mu I) dz = -J' r with damping *mu (0: to be chosen), which follows the
@@ -185,7 +238,7 @@ static double damped_step(search *w, double size, double *mu) {
 
     // a stationary point of |r| ends the descent
     double largest = fill_normal_equations(w);
-    double steepness = hn_norm2(w->n, w->g) / (hn_norm2(w->nc * w->n, w->J) * size);
+    double steepness = hn_norm2(w->n, w->g) / (jacobian_size(w) * size);
     if (!(steepness > STATIONARY) || largest == 0) {
         return -1;
     }
@@ -196,14 +249,7 @@ static double damped_step(search *w, double size, double *mu) {
     // more damping until a step pays
     save_start(w);
     for (int attempt = 0; attempt < 40; attempt++) {
-        for (int k = 0; k < w->n; k++) {
-            w->A[(size_t)k * w->n + k] += *mu;
-            w->step[k] = -w->g[k];
-        }
-
-        hn_status status = hn_cholesky(w->n, w->A, w->n, 0);
-        if (status == HN_OK) {
-            hn_cholesky_solve(w->n, w->A, w->n, w->step);
+        if (find_damped_step(w, *mu) == HN_OK) {
             cap_step(w);
             double predicted = predicted_gain(w);
             move_from_start(w);

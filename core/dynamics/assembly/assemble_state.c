@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 bool hn_assemble_evaluate(hn_assembler *s) {
     hn_system_from_user(s->sys, s->x, s->q);
@@ -46,12 +47,11 @@ double hn_assemble_moved(const hn_assembler *s, int i) {
 
 void hn_assemble_user_row(const hn_assembler *s, int row, double *out) {
     const double *J = hn_eval_get(s->eval, HN_TERM_J) + (size_t)row * s->n;
-    for (int k = 0; k < s->n; k++) {
-        double sum = 0;
-        for (int e = s->map_start[k]; e < s->map_start[k + 1]; e++) {
-            sum += J[s->map_row[e]] * s->map_value[e];
+    memset(out, 0, (size_t)s->n * sizeof *out);
+    for (int i = 0; i < s->n; i++) {
+        for (int k = J[i] != 0 ? i : -1; k >= 0; k = s->rates.base[k]) {
+            out[k] += J[i] * s->rates.sign[k];
         }
-        out[k] = sum;
     }
 }
 

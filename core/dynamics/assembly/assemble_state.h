@@ -4,6 +4,7 @@
 // The state of one assembly at work, and what all its stages do with it: evaluate, move, measure.
 
 #include "base/diag.h"
+#include "dynamics/compile/rate_tree.h"
 #include "dynamics/evaluate/eval.h"
 
 #include <stdbool.h>
@@ -29,10 +30,7 @@ typedef struct hn_assembler {
     int n_free, *free;      ///< user coordinates that may move
     double *residual, size; ///< scaled phi (nc) and its length
 
-    // column k of T^-1: rates of the system coordinates for a unit rate of user coordinate k,
-    // nonzeros only
-    int *map_start, *map_row;
-    double *map_value;
+    hn_rate_tree rates; ///< how velocities are made of the user's rates
 
     int iterations;
     const char *route;
