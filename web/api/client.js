@@ -115,6 +115,8 @@ export const api = {
   comparison: (id) => request("GET", `${BASE}/comparisons/${id}`),
   /** @param {string} id @param {object} change */
   changeComparison: (id, change) => request("PATCH", `${BASE}/comparisons/${id}`, change),
+  /** What a hand has pulled so far. @param {string} id */
+  pulls: (id) => request("GET", `${BASE}/comparisons/${id}/pulls`),
   /** @param {string} id */
   deleteComparison: (id) => request("DELETE", `${BASE}/comparisons/${id}`),
   /** The page is going away: no answer is waited for. @param {string} id */

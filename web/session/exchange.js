@@ -50,7 +50,7 @@ const isOfClock = (change) => Object.keys(change).every((key) => ["state", "spee
 
 /** Does a change start the runs anew? @param {object} change */
 const startsAnew = (change) =>
-  ["methods", "parameters", "reset"].some((key) => Object.hasOwn(change, key));
+  ["methods", "parameters", "reset", "pulls"].some((key) => Object.hasOwn(change, key));
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -129,6 +129,7 @@ export function createExchange(store, notice) {
     parameters: data.settings,
     methods: data.methods.map((m) => m.spelling),
     speed: data.speed,
+    ...(data.pulls.length ? { pulls: data.pulls } : {}),
   });
 
   /**

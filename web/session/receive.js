@@ -91,6 +91,17 @@ export function createReceiver(store, notice) {
     clearView();
   }
 
+  /** @param {boolean} pulled does a hand pull somewhere in this run? */
+  function applyPulled(pulled) {
+    if (!pulled) {
+      data.pulls = [];
+    }
+    if (data.pulled !== pulled) {
+      data.pulled = pulled;
+      store.emit("hand");
+    }
+  }
+
   /** @param {{state?: string, speed?: number}} change */
   function applyState(change) {
     data.state = change.state ?? data.state;
@@ -120,6 +131,7 @@ export function createReceiver(store, notice) {
     const restarted = description.generation !== data.generation;
     data.generation = description.generation;
     data.settings = description.parameters ?? {};
+    applyPulled(description.pulls > 0);
     data.frameDt = description.frame_dt ?? description.comparison.frame_dt;
     data.duration = description.duration ?? description.comparison.duration;
     if (restarted) {

@@ -11,6 +11,7 @@ import { createDragActions } from "./drag.js";
 import { createExchange } from "./exchange.js";
 import { createMethodActions } from "./methods.js";
 import { createPlayback } from "./playback.js";
+import { createPullActions } from "./pull.js";
 import { createSceneActions } from "./scenes.js";
 import { createUndo } from "./undo.js";
 
@@ -43,6 +44,7 @@ export function createSession(store) {
   return {
     ...scenes,
     ...createDragActions(store, exchange, notice),
+    ...createPullActions(store, exchange, notice),
     ...undo,
     ...createPlayback(store, exchange),
     ...createMethodActions(store, exchange, notice),

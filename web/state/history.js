@@ -52,6 +52,10 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
   /** code of what ended a method, or "" @type {string[]} */
   const causes = Array.from({ length: nMethods }, () => "");
   const frames = new Int32Array(capacity);
+  /** what a hand did in each kept frame, and its force [N] on each method
+   * @type {({point: number, to: number[], stiffness: number, damping: number,
+   *   forces: (number[] | undefined)[]} | null)[]} */
+  const pulls = [];
   let count = 0;
   let stride = 1;
   let lastFrame = -1;
@@ -62,6 +66,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     for (let i = 0; i < count / 2; i++) {
       t[i] = t[2 * i];
       frames[i] = frames[2 * i];
+      pulls[i] = pulls[2 * i];
       for (let m = 0; m < nMethods; m++) {
         for (const name of COLUMNS) {
           columns[m][name][i] = columns[m][name][2 * i];
@@ -143,6 +148,9 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
       }
       t[count] = frame.t;
       frames[count] = frame.frame;
+      pulls[count] = frame.pull
+        ? { ...frame.pull, forces: frame.methods.map((method) => method.pull_force) }
+        : null;
       frame.methods.forEach((method, m) => put(m, method, frame.t));
       count++;
       return true;
@@ -155,6 +163,8 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     pointsAt(m, i) {
       return points[m].subarray(i * 3 * nPoints, (i + 1) * 3 * nPoints);
     },
+    /** The hand in the i-th kept frame; null: none. @param {number} i */
+    pullAt: (i) => pulls[i] ?? null,
     /** Which frame of the clock the i-th kept one is. @param {number} i */
     frameAt: (i) => frames[i],
     /**

@@ -8,6 +8,9 @@ import { sourceOf } from "./store.js";
 
 const PAUSE = 100; // [ms] between an answer and the next question while the mechanism moves
 
+/** The hand of a frame, as a request says it. */
+const holdOf = ({ point, to, stiffness, damping }) => ({ point, to, stiffness, damping });
+
 /** @param {import("./store.js").Store} store @returns {() => void} ends it */
 export function createReactionFeed(store) {
   const data = store.data;
@@ -32,6 +35,7 @@ export function createReactionFeed(store) {
     const { q, v } = history.stateAt(m, index);
     const points = history.pointsAt(m, index).slice();
     const t = history.t[index];
+    const pull = history.pullAt(index);
     try {
       const answer = await api.terms({
         scene: sourceOf(data),
@@ -39,6 +43,7 @@ export function createReactionFeed(store) {
         t,
         state: namedState(scene.coordinates, q, v),
         reactions: true,
+        ...(pull ? { pull: holdOf(pull) } : {}),
       });
       const list = answer.reactions.map((item) => ({
         ...item,

@@ -67,7 +67,13 @@ export function createReferenceFeed(store) {
 
   const keyOf = () =>
     data.scene
-      ? JSON.stringify([sourceOf(data), changedSettings(data), data.frameDt, strideOf(data)])
+      ? JSON.stringify([
+          sourceOf(data),
+          changedSettings(data),
+          data.frameDt,
+          strideOf(data),
+          data.pulled,
+        ])
       : "";
 
   /** @param {Reference} reference */
@@ -116,7 +122,9 @@ export function createReferenceFeed(store) {
       return;
     }
     const changed = Object.keys(changedSettings(data));
-    if (data.document) {
+    if (data.pulled) {
+      tell(without(key, "none", "those that are stored have no hand that pulls"));
+    } else if (data.document) {
       tell(without(key, "none", "only shipped scenes have one"));
     } else if (changed.length > 0 && changed.every(isStart)) {
       ask(true); // the mechanism is the one that the scene's own reference solution was made for
@@ -127,18 +135,19 @@ export function createReferenceFeed(store) {
     }
   }
 
-  const stop = store.on("scene", () => {
+  const lookSoon = () => {
     if (keyOf() !== data.reference?.key) {
       data.reference = null;
       store.emit("reference");
     }
     clearTimeout(timer);
     timer = window.setTimeout(look, PAUSE);
-  });
+  };
+  const stops = ["scene", "hand"].map((name) => store.on(name, lookSoon));
   return {
     compute: () => ask(true),
     dispose() {
-      stop();
+      stops.forEach((stop) => stop());
       clearTimeout(timer);
     },
   };

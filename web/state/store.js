@@ -32,6 +32,7 @@ export const EVENTS = [
   "reference", // the reference solution of the scene, or why there is none
   "study", // a study goes on or has ended; the detail is its kind
   "notice", // a sentence for the status line
+  "hand", // a hand took hold of a point, moved, or let go
   "drag", // the mechanism is dragged, or was let go
   "undo", // how much can be undone and redone
   "file", // something is to be saved: {name, type, text}
@@ -120,6 +121,11 @@ function initialData() {
     stream: { state: "connecting", id: "" },
     /** while the mechanism is dragged @type {import("../session/drag.js").Drag | null} */
     drag: null,
+    /** while a hand pulls a point @type {import("./types.js").Hand | null} */ hand: null,
+    /** a hand pulls somewhere in this run */ pulled: false,
+    /** what hands did in this comparison: [frame, point, x, y, z, stiffness, damping]
+     * @type {number[][]} */
+    pulls: [],
     /** changes that can be undone and redone */ undo: { past: 0, future: 0 },
     notice: "",
     /** what was written beside the comparison; it travels with the link */ note: "",

@@ -55,6 +55,11 @@
  */
 
 /**
+ * A hand that holds a drawn point from a place of the world [m].
+ * @typedef {{point: number, to: number[]}} Hand
+ */
+
+/**
  * One method in one frame. `worst_` are the largest values since the start.
  * @typedef {{
  *   state: string, status: string, reason: string, t: number,
@@ -62,7 +67,7 @@
  *   gap?: number, velocity_gap?: number, energy_change?: number,
  *   steps: number, rejected: number, evals: number, ops: number, cpu: number,
  *   work?: number, sigma_min?: number, lambda_max?: number, condition?: number,
- *   energy?: number,
+ *   energy?: number, pull_force?: number[],
  *   error_estimate?: {
  *     q: number | null, v: number | null, reaction: number | null, own: number | null,
  *     t: number | null, reason: string,
@@ -73,6 +78,7 @@
  * }} MethodFrame
  * @typedef {{
  *   generation: number, frame: number, t: number, finished: boolean, methods: MethodFrame[],
+ *   pull?: Hand & {stiffness: number, damping: number} | null,
  * }} Frame
  */
 

@@ -263,7 +263,7 @@ export function createPlotPane(data, actions, { id, onHover, onZoom }) {
       lacks
         ? `no reference solution: ${reference?.reason || "it is being asked for"} `
         : "this mechanism has no loop that could open",
-      ...(lacks && reference?.state === "none" ? [compute] : []),
+      ...(lacks && reference?.state === "none" && !data.pulled ? [compute] : []),
     );
   }
 

@@ -7,6 +7,7 @@ import { listen, shownIndex } from "../../state/store.js";
 import { h, s, say, set } from "../../widgets/dom.js";
 import { createDepth } from "./depth.js";
 import { createGhosts } from "./ghosts.js";
+import { createHand } from "./hand.js";
 import { createHandles } from "./handles.js";
 import { createLengths } from "./lengths.js";
 import { createLight } from "./light.js";
@@ -24,6 +25,7 @@ const LAYERS = /** @type {const} */ ([
   "lengths",
   "tears",
   "arrows",
+  "hand",
   "labels",
   "scale",
 ]);
@@ -51,6 +53,7 @@ export function createDrawing(el, store, actions) {
   const marks = createMarks(layers, data, stage);
   const notices = createNotices(data);
   const handles = createHandles(svg, layers.drag, data, stage, actions);
+  const hand = createHand(layers.hand, data, stage, actions);
   const lengths = createLengths(layers.lengths, data, stage, actions);
 
   const toggles = Object.fromEntries(
@@ -64,7 +67,13 @@ export function createDrawing(el, store, actions) {
   const caption = h("p", { class: "caption" });
   const tools = h("div", { class: "undo-tools" }, lengths.button);
   const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note, tools);
-  const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
+  const choices = h(
+    "div",
+    { class: "choices" },
+    ...Object.values(toggles),
+    describe,
+    ...hand.tools,
+  );
   const demonstrations = h(
     "div",
     { class: "demonstrations" },
@@ -104,6 +113,7 @@ export function createDrawing(el, store, actions) {
       ghosts.draw(now);
     }
     marks.draw(now);
+    hand.draw(now);
     light.draw();
     lengths.draw();
     notices.update(now);
@@ -186,6 +196,10 @@ export function createDrawing(el, store, actions) {
     drag: () => {
       handles.draw();
       lengths.draw();
+    },
+    hand: () => {
+      hand.say();
+      update();
     },
     reference: makeReference,
     theme: makeGhosts,

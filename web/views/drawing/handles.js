@@ -23,7 +23,9 @@ const MOST_SNAPS = 1e4; // farther away a grid means nothing
  */
 export function createHandles(svg, layer, data, stage, actions) {
   const note = h("p", { class: "drag-note", role: "status", hidden: true });
-  /** @type {{point: number, x: number, y: number, from: number[], target: number[]} | null} */
+  /** pulls: the methods run, and a hand pulls them; otherwise the start is dragged
+   * @type {{point: number, x: number, y: number, from: number[], target: number[],
+   *   pulls: boolean} | null} */
   let held = null;
   /** @type {{shapes: any[], path: SVGElement}[]} */
   let pieces = [];
@@ -87,9 +89,10 @@ export function createHandles(svg, layer, data, stage, actions) {
     }
     event.stopPropagation(); // it would turn the view
     event.preventDefault();
-    if (actions.beginDrag()) {
+    const pulls = data.state === "running" && data.view.shown < 0;
+    if (pulls || actions.beginDrag()) {
       const from = placeOf(points, point);
-      held = { point, x, y, from, target: from };
+      held = { point, x, y, from, target: from, pulls };
       svg.setPointerCapture(event.pointerId);
     }
   }
@@ -116,21 +119,27 @@ export function createHandles(svg, layer, data, stage, actions) {
       return;
     }
     held.target = targetOf(held, x, y, event.shiftKey);
+    if (held.pulls) {
+      actions.pull(held.point, held.target);
+      return;
+    }
     const flat = !data.scene.view?.spatial;
     actions.dragPoint(held.point, flat ? held.target.slice(0, 2) : held.target);
   }
 
   function letGo() {
+    const { pulls } = held ?? {};
     if (held) {
       held = null;
-      actions.endDrag();
+      (pulls ? actions.letGo : actions.endDrag)();
     }
   }
 
   function cancel() {
+    const { pulls } = held ?? {};
     if (held) {
       held = null;
-      actions.cancelDrag();
+      (pulls ? actions.letGo : actions.cancelDrag)();
     }
   }
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A hand that pulls the mechanism while it runs: with the mouse, by keys, and again from its log.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { createBench, drawn, read, soon, stood, until } from "./support.mjs";
+
+const bench = createBench();
+
+/** Where a joint is on the screen: the pin nearest to its name. */
+function jointAt(page, name) {
+  return page.evaluate((wanted) => {
+    const svg = document.querySelector(".picture").getBoundingClientRect();
+    const texts = [...document.querySelectorAll(".picture .labels text")];
+    const label = texts.find(({ textContent }) => textContent === wanted);
+    const near = [Number(label.getAttribute("x")), Number(label.getAttribute("y"))];
+    const pins = document.querySelector(".ghosts .ghost.selected .pins").getAttribute("d");
+    const places = [...pins.matchAll(/M([-\d.]+) ([-\d.]+)a([\d.]+)/g)].map(([, x, y, r]) => [
+      Number(x) + Number(r),
+      Number(y),
+    ]);
+    const distance = ([x, y]) => Math.hypot(x - near[0], y - near[1]);
+    const [x, y] = places.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+    return { x: svg.left + x, y: svg.top + y };
+  }, name);
+}
+
+const last = (data) => ({
+  t: data.latest?.t,
+  q: data.latest?.methods.map(({ q }) => q),
+  frame: data.latest?.frame,
+});
+
+test("a hand pulls while it runs, its force is told, and the log done again gives the same bits", async (t) => {
+  const page = await bench.open(t);
+  for (let k = 0; k < 3; k++) {
+    await page.keyboard.press("-"); // slow enough for a hand that takes its time
+  }
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running" && data.latest?.t > 0.05);
+  const at = await jointAt(page, "B");
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 60, at.y - 60, { steps: 4 });
+  await until(page, (data) => data.hand !== null && data.latest?.pull);
+  await soon(async () =>
+    assert.match(await page.textContent(".picture .hand text"), /^[\d.]+ (m|k)?N$/),
+  );
+  await page.mouse.up();
+  await until(page, (data) => data.hand === null && data.pulls.length >= 2);
+  await page.keyboard.press("Space");
+  await stood(page);
+
+  // all methods, by an independent client: the same frames with the log
+  const live = await read(page, last);
+  const { pulls, methods, scene, speed } = await read(page, (data) => ({
+    pulls: data.pulls,
+    methods: data.methods.map(({ spelling }) => spelling),
+    scene: data.scene.id,
+    speed: data.settings,
+  }));
+  const ask = async (method, path, body) => {
+    const answer = await fetch(new URL(path, bench.url), {
+      method,
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+    return answer.json();
+  };
+  const made = await ask("POST", "/api/v1/comparisons", {
+    scene,
+    methods,
+    pulls,
+    parameters: speed,
+  });
+  const again = await ask("PATCH", `/api/v1/comparisons/${made.id}`, { step: live.frame });
+  assert.deepEqual(
+    again.latest.methods.map(({ q }) => q),
+    live.q,
+  );
+  assert.ok(again.latest.methods.every(({ work }) => Math.abs(work) > 0));
+
+  // the stored reference is of another motion; without the hand it is back
+  await until(page, (data) => data.reference?.state === "none");
+  await page.getByRole("button", { name: "forget the pulls" }).click();
+  await until(page, (data) => !data.pulled && data.reference?.state === "ready");
+});
+
+test("a hand pulls by keys, and lets go with Escape", async (t) => {
+  const page = await bench.open(t);
+  await page.getByRole("button", { name: "pull", exact: true }).click();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Shift+ArrowUp");
+  await until(page, (data) => data.hand !== null);
+  const { hand, from } = await read(page, (data) => ({
+    hand: data.hand,
+    from: Array.from(data.history.pointsAt(data.view.selected, 0)),
+  }));
+  assert.ok(hand.to[0] > from[3 * hand.point], "to the right");
+  assert.ok(hand.to[1] > from[3 * hand.point + 1], "and up");
+  await until(page, (data) => data.pulled);
+  await page.keyboard.press("Escape");
+  await until(page, (data) => data.hand === null);
+  await drawn(page);
+});

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// A hand that holds a point by a spring while the methods run. The server keeps a log of what it
+// does; a start anew does it again, to the same bits.
+import { api, sentenceOf } from "../api/client.js";
+
+const ENTRY = 7; // numbers of an entry of the log
+
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {import("./exchange.js").Exchange} exchange
+ * @param {(text: string) => void} notice
+ */
+export function createPullActions(store, exchange, notice) {
+  const data = store.data;
+  /** the newest place that was not asked for yet */
+  let wish = /** @type {{point: number, to: number[]} | null} */ (null);
+  let asking = /** @type {Promise<void> | null} */ (null);
+
+  /** @param {import("../state/types.js").Hand | null} hand */
+  function put(hand) {
+    data.hand = hand;
+    store.emit("hand");
+  }
+
+  /** One question at a time; a newer place replaces one that waits. */
+  function follow() {
+    asking ??= (async () => {
+      while (wish) {
+        const pull = wish;
+        wish = null;
+        await exchange.change({ pull });
+      }
+    })()
+      .catch((error) => {
+        wish = null;
+        put(null);
+        notice(sentenceOf(error));
+      })
+      .finally(() => {
+        asking = null;
+      });
+    return asking;
+  }
+
+  /** Fetches the log, so that a link and a new server do it again. */
+  async function keepLog() {
+    const { id } = data;
+    const { pulls } = await api.pulls(id);
+    if (data.id === id && pulls.every((entry) => entry.length === ENTRY)) {
+      data.pulls = pulls;
+      store.emit("hand");
+    }
+  }
+
+  return {
+    /** Holds a drawn point from a place of the world. @param {number} point @param {number[]} to */
+    pull(point, to) {
+      wish = { point, to };
+      put({ point, to });
+      return follow();
+    },
+    /** Lets go. */
+    async letGo() {
+      if (!data.hand) {
+        return;
+      }
+      wish = null;
+      put(null);
+      await asking;
+      await exchange
+        .change({ release: true })
+        .then(keepLog)
+        .catch((error) => notice(sentenceOf(error)));
+    },
+    /** The motion without any hand, from the start. */
+    forgetPulls() {
+      put(null);
+      return exchange.restart({ pulls: [] }).catch((error) => notice(sentenceOf(error)));
+    },
+  };
+}
