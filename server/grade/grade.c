@@ -161,6 +161,7 @@ static hn_status grade_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn
     e->right = compare(exam, index, e, value);
     if (!e->right) {
         explain(v, exam, e, given, value);
+        hn_spelling_remark_bare(e->given, e->explanation, sizeof e->explanation);
         e->likeness = strcmp(e->mistake, "other") == 0 ? hash_values(exam, value) : 0;
     } else {
         e->points = e->max_points;
@@ -490,6 +491,21 @@ hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n, 
     return status;
 }
 
+/// Standard input under one of its names. Other pipes are refused: nobody may be at their end.
+static bool is_stdin(const char *path) {
+    return strcmp(path, "-") == 0 || strcmp(path, "/dev/stdin") == 0 ||
+           strcmp(path, "/dev/fd/0") == 0 || strcmp(path, "/proc/self/fd/0") == 0;
+}
+
+static hn_status read_stdin(hn_strbuf *text, hn_diag *diag) {
+    hn_diags diags = {0};
+    const hn_status status = hn_file_read_stdin(HN_GRADE_MAX_BYTES, text, &diags);
+    if (diags.n > 0) {
+        *diag = diags.item[0];
+    }
+    return status;
+}
+
 hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t seed,
                         hn_verdict *out) {
     HN_ASSERT(problem && path && out);
@@ -497,7 +513,8 @@ hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t s
     hn_diag diag = {0};
     hn_strbuf text;
     hn_strbuf_init(&text);
-    hn_status status = hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
+    hn_status status = is_stdin(path) ? read_stdin(&text, &diag)
+                                      : hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
     if (status == HN_OK) {
         status = hn_grade_json(problem, hn_strbuf_text(&text), text.n, seed, out);
     } else if (status != HN_ERR_MEMORY) {

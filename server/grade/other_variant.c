@@ -83,7 +83,9 @@ void hn_other_variant_say(const hn_variant *x, const cJSON *submission, hn_verdi
     const size_t used = strlen(v->summary);
     if (owner.name) {
         snprintf(v->summary + used, sizeof v->summary - used,
-                 "; these are the numbers of the variant of '%.60s'", owner.name);
+                 "; these are the numbers of the variant of '%.60s' (seed %llu), and this is seed "
+                 "%llu",
+                 owner.name, (unsigned long long)owner.seed, (unsigned long long)x->seed);
     } else {
         snprintf(v->summary + used, sizeof v->summary - used,
                  "; these are the numbers of seed %llu%s, and this is seed %llu",

@@ -70,6 +70,13 @@ def statuses(folder):
         done = run("grade", "p1", write(folder, "x.json", content))
         expect(name, done.returncode == status, f"{done.returncode}: {done.stdout}{done.stderr}")
 
+    # a pipe under the names of standard input
+    for name in ("-", "/dev/stdin"):
+        done = subprocess.run([PROGRAM, "grade", "p1", name, "--seed", "5", "--format", "json"], input=json.dumps(right), capture_output=True, text=True)
+        expect(f"{name} is standard input", done.returncode == 0 and json.loads(done.stdout)["score"] == 4, done.stdout[:300])
+    done = run("grade", "fourbar", write(folder, "bare.json", {"b": "m2 l1 l2 cos th1-th2"}), "--no-pictures")
+    expect("a function before a sum is remarked", "'cos th1' was read without the sum behind it" in done.stdout, done.stdout)
+
     # what the verdict says is reproduced
     kept = write(folder, "verdict.json", verdict)
     again = run("regrade", kept, "--json")
@@ -349,7 +356,9 @@ def other_numbers(folder):
     for who, answers in (("ada", bobs), ("bob", bobs), ("eve", dict(numbers("--student", "eve"), c=0))):
         write(os.path.join(folder, "class"), who + ".json", answers)
     said = run("grade", path, os.path.join(folder, "class")).stdout
-    expect("in a class the owner of the numbers is named", "ada: 0 of 3" in said and "the variant of 'bob'" in said, said)
+    expect("in a class the owner of the numbers is named", "ada: 0 of 3" in said and "the variant of 'bob' (seed " in said, said)
+    bobs_seed, adas_seed = (json.loads(run("problem", path, "--json", "--student", who).stdout)["seed"] for who in ("bob", "ada"))
+    expect("with both seeds", f"'bob' (seed {bobs_seed}), and this is seed {adas_seed}" in said, said)
     expect("and nobody else is accused", said.count("the variant of") == 1, said)
 
 

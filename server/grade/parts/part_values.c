@@ -5,6 +5,7 @@
 // formula invites.
 #include "grade/parts/part_list.h"
 
+#include "grade/parts/spelling.h"
 #include "grade/parts/value_entry.h"
 #include "grade/parts/value_likeness.h"
 #include "grade/parts/value_mistakes.h"
@@ -54,6 +55,10 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
         return HN_OK;
     }
     HN_TRY(hn_value_explain(s, k, x, e, r));
+
+    if (s->symbolic && cJSON_IsString(node)) {
+        hn_spelling_remark_bare(node->valuestring, r->explanation, sizeof r->explanation);
+    }
 
     // a known mistake has the same values whoever makes it
     r->likeness = hn_value_likeness(s, node, strcmp(r->mistake, "other") == 0);

@@ -20,6 +20,8 @@ static const struct {
     {"\xef\xbb\xbf", ""},                                                        // byte-order mark
     {"−", "-"},     {"–", "-"},    {"—", "-"},   {"‐", "-"},      {"‑", "-"},    // dashes
     {"×", "*"},     {"·", "*"},    {"⋅", "*"},   {"∗", "*"},      {"•", "*"},    // products
+    {"½", "(1/2)"}, {"⅓", "(1/3)"}, {"⅔", "(2/3)"}, {"¼", "(1/4)"}, {"¾", "(3/4)"}, // fractions
+    {"⅙", "(1/6)"}, {"⅛", "(1/8)"},                                              //
     {"÷", "/"},     {"∕", "/"},    {"⁄", "/"},   {"√", "sqrt"},                  // quotients
     {"⁰", "^0"},    {"¹", "^1"},   {"²", "^2"},  {"³", "^3"},     {"⁴", "^4"},   // powers
     {"₀", "0"},     {"₁", "1"},    {"₂", "2"},   {"₃", "3"},      {"₄", "4"},    // indices
@@ -34,6 +36,13 @@ static const struct {
 // clang-format on
 enum { N_CHARACTERS = sizeof CHARACTERS / sizeof *CHARACTERS };
 
+/// Whether a fraction would stand behind a digit: 2½ is a sum, not the product that 2(1/2) is. It is
+/// left to the parser to refuse.
+static bool is_mixed(const hn_strbuf *out, const char *ascii) {
+    return ascii[0] == '(' && ascii[1] && out->n > 0 &&
+           isdigit((unsigned char)out->text[out->n - 1]);
+}
+
 /// Copies the text with the characters of the table in ASCII; others stay.
 static void to_ascii(hn_strbuf *out, const char *text) {
     while (*text) {
@@ -43,7 +52,7 @@ static void to_ascii(hn_strbuf *out, const char *text) {
             i++;
         }
 
-        if (i < N_CHARACTERS) {
+        if (i < N_CHARACTERS && !is_mixed(out, CHARACTERS[i].ascii)) {
             hn_strbuf_add(out, CHARACTERS[i].ascii);
             text += strlen(CHARACTERS[i].utf8);
         } else {
@@ -101,6 +110,8 @@ static const char *const LETTERS[][2] = {{"varphi", "phi"},
 static const char *const ELL[] = {"ell", NULL};
 static const char *const DOT[] = {"dot", NULL};
 static const char *const PRODUCTS[] = {"cdot", "times", "ast", NULL};
+/// Commands without an index: the digits behind them are operands of their own.
+static const char *const INDEXLESS[] = {"frac", "dfrac", "tfrac", "pi", NULL};
 static const char *const FRACTIONS[] = {"frac", "dfrac", "tfrac", NULL};
 
 // ---- rewriting ----
@@ -116,6 +127,7 @@ typedef struct rewriter {
     int below;       ///< 1: a / was written last, 2: that operand stands below a /
     int nesting;
     const char *fault_at, *fault; ///< the first place that cannot be read; NULL: none
+    const char *bare, *bare_end;  ///< the first "sin a" with a sum behind it; NULL: none
 } rewriter;
 
 static void rewrite(rewriter *w, char stop);
@@ -156,10 +168,17 @@ static void end_operand(rewriter *w, operand written) {
     w->below = w->below ? 2 : 0;
 }
 
+/// Whether a name of LaTeX ends before this letter: in m_2l_1 two names stand side by side.
+static bool ends_at_letter(const rewriter *w, const char *name, size_t n) {
+    return w->latex && n > 0 && isdigit((unsigned char)name[n - 1]) && memchr(name, '_', n) &&
+           isalpha((unsigned char)*w->at) && strncmp(w->at, "dot", 3) != 0;
+}
+
 /// A name with its index: theta_1, theta_{12}; the backslash has been read.
 static void read_name(rewriter *w, char name[MAX_NAME]) {
     size_t n = 0;
-    while ((isalnum((unsigned char)*w->at) || *w->at == '_') && n < MAX_NAME - 1) {
+    while ((isalnum((unsigned char)*w->at) || *w->at == '_') && n < MAX_NAME - 1 &&
+           !ends_at_letter(w, name, n)) {
         name[n++] = *w->at++;
     }
     if (n > 0 && name[n - 1] == '_' && *w->at == '{') {
@@ -204,17 +223,29 @@ static void write_group(rewriter *w) {
     end_operand(w, A_NAME);
 }
 
-/// \frac{a}{b} as ((a)/(b)); without its braces it is left to the parser to report.
+static void write_word(rewriter *w);
+
+/// Numerator or denominator: a group, or as LaTeX reads it the one digit, letter or command that
+/// follows, as in \frac12. What is nothing of that is left to the parser to report.
+static void write_fraction_part(rewriter *w) {
+    skip_spaces(w);
+    if (*w->at == '{') {
+        write_group(w);
+    } else if (*w->at == '\\') {
+        write_word(w);
+    } else if (isalnum((unsigned char)*w->at)) {
+        hn_strbuf_add_n(w->out, w->at++, 1);
+    }
+}
+
+/// \frac{a}{b} as ((a)/(b)).
 static void write_fraction(rewriter *w) {
     begin_operand(w, A_NAME);
     const int below = w->below;
     w->below = 0;
     hn_strbuf_add(w->out, "(");
     for (int part = 0; part < 2; part++) {
-        skip_spaces(w);
-        if (*w->at == '{') {
-            write_group(w);
-        }
+        write_fraction_part(w);
         w->operand = NOTHING;
         w->below = 0;
         hn_strbuf_add(w->out, part == 0 ? "/" : ")");
@@ -222,8 +253,6 @@ static void write_fraction(rewriter *w) {
     w->below = below;
     end_operand(w, A_NAME);
 }
-
-static void write_word(rewriter *w);
 
 /// The exponent of sin^2(x), which stands behind the argument in the parser's spelling.
 static void read_exponent(rewriter *w, char exponent[MAX_NAME]) {
@@ -280,6 +309,11 @@ static void write_function(rewriter *w, const char *function) {
     }
     const bool bare = *w->at == '\\' || isalpha((unsigned char)*w->at);
     write_argument(w);
+    const char sum = w->at[strspn(w->at, " \t\r\n")];
+    if (bare && !w->bare && (sum == '+' || sum == '-')) {
+        w->bare = w->word;
+        w->bare_end = w->at;
+    }
     if (exponent[0]) { // it stood before the argument
         hn_strbuf_printf(w->out, "^%s", exponent);
     }
@@ -363,6 +397,10 @@ static void read_word(rewriter *w, char name[MAX_NAME], bool *command) {
         return;
     }
     read_name(w, name);
+    if (*command && hn_latex_is_word(name, INDEXLESS)) {
+        name[strcspn(name, "_0123456789")] = 0;
+        w->at = start + 1 + strlen(name);
+    }
     if (*command && !is_known(name)) {
         refuse(w, start, "this command of LaTeX is not read here");
     }
@@ -483,6 +521,25 @@ hn_status hn_spelling_normalise(hn_strbuf *out, const char *text, hn_diag *diag)
     }
     hn_strbuf_reset(&ascii);
     return status;
+}
+
+void hn_spelling_remark_bare(const char *formula, char *sentence, size_t size) {
+    hn_strbuf ascii, plain;
+    hn_strbuf_init(&ascii);
+    hn_strbuf_init(&plain);
+    to_ascii(&ascii, formula);
+    rewriter w = {.at = hn_strbuf_text(&ascii), .out = &plain};
+    w.start = w.at;
+    w.latex = strchr(w.at, '\\') != NULL;
+    rewrite(&w, 0);
+    if (w.bare) {
+        const size_t used = strlen(sentence);
+        snprintf(sentence + used, size - used,
+                 "; '%.*s' was read without the sum behind it: write brackets around its argument",
+                 (int)(w.bare_end - w.bare), w.bare);
+    }
+    hn_strbuf_reset(&ascii);
+    hn_strbuf_reset(&plain);
 }
 
 int hn_spelling_join(const char *name, char *out, size_t size) {

@@ -19,6 +19,9 @@
 /// Fails: HN_ERR_INPUT (a command of LaTeX that is not known, or a/b c, which may be read in two
 /// ways; `diag` says the column of what was typed), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_spelling_normalise(hn_strbuf *out, const char *text, hn_diag *diag);
+/// Adds to the sentence about a wrong formula that it has a function without brackets before a sum,
+/// as in cos th1-th2, which is read as cos(th1)-th2. Other formulas leave the sentence as it is.
+void hn_spelling_remark_bare(const char *formula, char *sentence, size_t size);
 /// The i-th shorter name that a name may stand for: theta1 is th1, omega1 is w1, om1 or u1, w1 is
 /// om1 or u1, q1 is th1; a dot may stand before the index or behind it: thetadot1, theta1_dot.
 /// Returns 0 when there is none.

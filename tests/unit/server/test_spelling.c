@@ -66,6 +66,9 @@ static void typographic_characters_become_ascii(void **state) {
     check("l1\xc2\xa0* l2", "l1 * l2");
     check("π", "pi");
     check("ℓ₁", "l1");
+    check("½ m v²", "(1/2) *m *v^2");
+    check("¾l1", "(3/4)*l1");
+    check("2½", "2½");       // a sum; 2(1/2) would be a product
     check("ж\xff", "ж\xff"); // the parser reports what is no formula
 }
 
@@ -74,6 +77,10 @@ static void latex_is_read(void **state) {
     check("-l_1\\sin\\theta_1", "-l_1*sin(theta_1)");
     check("-l_{1} \\sin(\\theta_{12})", "-l_1 *sin(theta_12)");
     check("\\frac{l_1}{2}\\cos\\left(\\theta_1\\right)", "((l_1)/(2))*cos(theta_1)");
+    check("\\frac12 m", "(1/2) *m");
+    check("\\tfrac{1}2", "((1)/2)");
+    check("\\frac\\pi2", "(pi/2)");
+    check("\\frac12m_2l_1\\cos\\theta_1", "(1/2)*m_2*l_1*cos(theta_1)");
     check("$\\sqrt{x}$", "sqrt(x)");
     check("2\\pi", "2*pi");
     check("\\sin^2\\theta", "sin(theta)^2");
@@ -121,6 +128,30 @@ static void what_reads_in_two_ways_is_refused_at_its_column(void **state) {
             fail_msg("%s: %s", rows[i][0], diag.message);
         }
         hn_strbuf_reset(&b);
+    }
+}
+
+static void a_function_before_a_sum_is_remarked(void **state) {
+    static const char *const quiet[] = {"cos(th1)-th2",  "cos(th1-th2)",
+                                        "cos th1",       "cos th1*th2",
+                                        "(cos th1)-th2", "\\cos\\left(\\theta_1-\\theta_2\\right)"};
+    static const char *const bare[][2] = {{"m2 cos th1-th2", "'cos th1' was read without"},
+                                          {"cos th1 + th2", "'cos th1' was read without"},
+                                          {"2*(\\sin\\theta_1-\\theta_2)", "'\\sin\\theta_1' was"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof quiet / sizeof *quiet; i++) {
+        char said[200] = "wrong";
+        hn_spelling_remark_bare(quiet[i], said, sizeof said);
+        if (strcmp(said, "wrong") != 0) {
+            fail_msg("%s: %s", quiet[i], said);
+        }
+    }
+    for (size_t i = 0; i < sizeof bare / sizeof *bare; i++) {
+        char said[200] = "wrong", few[12] = "wrong";
+        hn_spelling_remark_bare(bare[i][0], said, sizeof said);
+        assert_non_null(strstr(said, bare[i][1]));
+        hn_spelling_remark_bare(bare[i][0], few, sizeof few); // cut, never beyond its end
+        assert_int_equal(strlen(few), sizeof few - 1);
     }
 }
 
@@ -187,6 +218,7 @@ int main(void) {
         cmocka_unit_test(latex_is_read),
         cmocka_unit_test(factors_side_by_side_are_multiplied),
         cmocka_unit_test(what_reads_in_two_ways_is_refused_at_its_column),
+        cmocka_unit_test(a_function_before_a_sum_is_remarked),
         cmocka_unit_test(a_name_stands_for_shorter_ones),
         cmocka_unit_test(any_bytes_end_and_grow_by_a_factor_alone),
         cmocka_unit_test(an_index_is_part_of_the_name),
