@@ -17,7 +17,8 @@
 /// otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time and memory are bounded.
 HN_MUST_CHECK hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n,
                                       uint64_t seed, hn_verdict *out);
-/// Grades a file, or standard input ("-", "/dev/stdin"). One that is missing, too large or no regular file is ungradable.
+/// Grades a file, or standard input ("-", "/dev/stdin"). One that is missing, too large or no
+/// regular file is ungradable.
 HN_MUST_CHECK hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t seed,
                                       hn_verdict *out);
 #endif

@@ -221,26 +221,38 @@ static hn_status take_memory(hn_conversation *c, hn_arena *arena) {
 }
 
 hn_status hn_conversation_begin(hn_conversation *c, const hn_system *sys, char *const *argv,
-                                const char *file, const hn_program_limits *limits, hn_arena *arena,
-                                hn_diag *diag) {
+                                const char *file, const hn_program_limits *limits,
+                                hn_arena *arena) {
     const hn_system_info info = hn_system_get_info(sys);
     *c = (hn_conversation){
         .sys = sys, .nu = info.n_user, .nv = info.nv, .nq = info.nq, .nc = info.nc};
     hn_strbuf_init(&c->text);
     hn_strbuf_init(&c->line);
 
-    // memory, the process, its greeting, the terms that it wants
-    hn_status status = take_memory(c, arena);
-    HN_THEN(status, hn_guest_process_start(&c->process, argv, file, limits, &c->why));
+    // the process, its greeting, the terms that it wants
+    HN_TRY(take_memory(c, arena));
+    hn_status status = hn_guest_process_start(&c->process, argv, file, limits, &c->why);
     HN_THEN(status, greet(c));
     if (status == HN_OK && c->wants) {
         status = hn_eval_create(sys, c->wants, arena, &c->eval);
     }
-    if (status != HN_OK) {
-        return hn_diag_set(diag, status, NULL, NULL, "%s",
-                           c->why.message[0] ? c->why.message : hn_status_text(status));
+
+    // whoever asks next gets the reason
+    if (status != HN_OK && status != HN_ERR_MEMORY) {
+        fail(c, status);
+        status = HN_OK;
     }
-    return HN_OK;
+    return status;
+}
+
+hn_status hn_conversation_check(const hn_conversation *c, bool own, hn_diag *diag) {
+    const bool provides_steps = c->service != HN_PROGRAM_ACCELERATIONS;
+    return c->failed || own == provides_steps
+               ? HN_OK
+               : hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                             own ? "spell it with an integrator, as program:FILE@rk4:h=1e-3"
+                                 : "spell it with @own: it makes its own steps",
+                             "the program provides %s", SERVICES[c->service]);
 }
 
 // ---- questions ----
@@ -343,16 +355,11 @@ static cJSON *end_question(hn_conversation *c) {
     return answer;
 }
 
-static hn_status check_service(hn_conversation *c, bool fits, const char *how) {
-    return c->failed ? c->why.status
-           : fits    ? HN_OK
-                     : REFUSE(c, "it provides %s; %s", SERVICES[c->service], how);
-}
-
 hn_status hn_conversation_accelerations(hn_conversation *c, double t, const double *q,
                                         const double *v, double *a) {
-    HN_TRY(check_service(c, c->service == HN_PROGRAM_ACCELERATIONS,
-                         "spell it with @own: it makes its own steps"));
+    if (c->failed) {
+        return c->why.status;
+    }
     begin_question(c, t, q, v);
     put_terms(c, t, q, v);
     cJSON *answer = end_question(c);
@@ -429,8 +436,9 @@ static bool is_ahead(const hn_conversation *c, double t, double h) {
 
 hn_status hn_conversation_step(hn_conversation *c, double t, double h, const double *q,
                                const double *v, double *q_new, double *v_new) {
-    HN_TRY(check_service(c, c->service != HN_PROGRAM_ACCELERATIONS,
-                         "spell it with an integrator, as program:FILE@rk4:h=1e-3"));
+    if (c->failed) {
+        return c->why.status;
+    }
     if (c->service == HN_PROGRAM_STEP) {
         HN_TRY(ask_step(c, t, h, q, v));
     } else {

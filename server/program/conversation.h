@@ -20,6 +20,8 @@
 #include "dynamics/evaluate/eval.h"
 #include "program/guest_process.h"
 
+#include <stdbool.h>
+
 typedef enum hn_program_service {
     HN_PROGRAM_ACCELERATIONS,
     HN_PROGRAM_STEP,
@@ -50,11 +52,16 @@ typedef struct hn_conversation {
 } hn_conversation;
 
 /// Starts the program (hn_guest_process_start()) and exchanges greetings. Memory from `arena`.
-/// Fails with the reason in diag; hn_conversation_end() afterwards in any case.
+/// Fails: HN_ERR_MEMORY. A program that does not start or does not greet is no failure here: the
+/// first question to it fails, with the reason in c->why. hn_conversation_end() afterwards in any
+/// case.
 HN_MUST_CHECK hn_status hn_conversation_begin(hn_conversation *c, const hn_system *sys,
                                               char *const *argv, const char *file,
-                                              const hn_program_limits *limits, hn_arena *arena,
-                                              hn_diag *diag);
+                                              const hn_program_limits *limits, hn_arena *arena);
+/// Whether the program provides what is asked of it: its own steps (`own`), or accelerations for an
+/// integrator. Fails: HN_ERR_INPUT, with the other spelling in diag. A program that did not greet
+/// passes.
+HN_MUST_CHECK hn_status hn_conversation_check(const hn_conversation *c, bool own, hn_diag *diag);
 /// Asks for the accelerations a (nv, system coordinates) at (t, q, v). After a failure the
 /// conversation is over: later calls fail in the same way.
 HN_MUST_CHECK hn_status hn_conversation_accelerations(hn_conversation *c, double t, const double *q,

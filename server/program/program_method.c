@@ -65,17 +65,13 @@ static hn_status create(const hn_system *sys, const double *set, hn_arena *arena
     HN_TRY(hn_state_ode_init(&g->base, sys, arena));
     HN_TRY(hn_sandbox_build(&command, g->program->file, NULL, options.trusted, &limits, diag));
 
-    // its greeting says whether it can be talked to
-    hn_diag why = {0};
-    const hn_status status = hn_conversation_begin(
-        &g->talk, sys, command.argv, command.file[0] ? command.file : NULL, &limits, arena, &why);
-    if (status != HN_OK) {
-        hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%.100s: %.300s", g->program->name,
-                    why.message);
-        hn_conversation_end(&g->talk);
-        return HN_ERR_UNSUPPORTED;
-    }
-    return HN_OK;
+    return hn_conversation_begin(&g->talk, sys, command.argv, command.file[0] ? command.file : NULL,
+                                 &limits, arena);
+}
+
+static hn_status check(const void *self, const char *integrator, hn_diag *diag) {
+    const guest *g = self;
+    return hn_conversation_check(&g->talk, strcmp(integrator, HN_GUEST_STEPPER) == 0, diag);
 }
 
 static void destroy(void *self) {
@@ -130,6 +126,7 @@ static const hn_formulation FORMULATION = {
     .after_step = hn_state_ode_after_step,
     .add_cost = hn_state_ode_add_cost,
     .why = hn_state_ode_why,
+    .check = check,
 };
 
 // ---- the integrator of programs that make their own steps ----

@@ -174,11 +174,24 @@ class Services(OneFile):
 
     def test_the_wrong_way_of_asking_is_answered_with_the_right_one(self):
         done = self.run_program(STEP, method="program:./mine.py@rk4:h=1e-2")
-        self.assertEqual(done.returncode, ENDED)
+        self.assertEqual(done.returncode, INPUT)
         self.assertIn("it makes its own steps", done.stderr)
         done = self.run_program("greet()\nfor ask in questions(): say(id=ask['id'], a=[0.0] * n)\n")
-        self.assertEqual(done.returncode, ENDED)
+        self.assertEqual(done.returncode, INPUT)
         self.assertIn("spell it with an integrator", done.stderr)
+
+    def test_one_that_does_not_start_leaves_the_others_in_the_table(self):
+        done = self.run_program("sys.exit(3)\n")
+        self.assertEqual(done.returncode, ENDED)
+        self.assertRegex(done.stdout, r"(?m)^program:\S+ +ENDED EARLY +0 ")
+        self.assertRegex(done.stdout, r"(?m)^baumgarte@rk4\S* +right")
+        self.assertIn("it ended with exit status 3 instead of an answer", " ".join(done.stdout.split()))
+
+    def test_operations_that_nobody_counts_are_no_zeros(self):
+        done = self.run_program(STEP)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        heads, row = (re.split(r" {2,}", line) for line in done.stdout.splitlines()[1:3])
+        self.assertEqual([row[heads.index(head)] for head in ("ops", "ops/step")], ["-", "-"], done.stdout)
 
     def test_a_file_that_is_none_is_refused(self):
         for name, said in (("no-such.py", "there is no program"), ("/tmp", "is not a file"), ("/etc/passwd", "cannot be started")):
@@ -196,7 +209,7 @@ HOSTILE = {
     "greets with another version": ("say(holonom=7, provides='step')", 'must say "holonom": 1'),
     "greets with nothing to offer": ("say(holonom=1, provides='miracles')", "what it provides"),
     "wants what there is not": ("greet(wants=['truth'])", "wants 'truth'"),
-    "greets twice": ("greet('step'); greet('step'); time.sleep(9)", "before it was asked"),
+    "greets twice": ("greet('step'); greet('step'); time.sleep(9)", "before it was asked|has no id"),
     "dies after a while": (STEP.replace("    say(", "    if ask['id'] == 5: sys.exit(3)\n    say("), "exit status 3"),
     "sends too many numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[0.0] * 50, v=ask['v'])", "q has 50 numbers, 1 are needed"),
     "sends no numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'])", "has no list q"),

@@ -132,7 +132,10 @@ export function costWords(data, m, shown) {
   if (!(steps[shown] > 0)) {
     return "";
   }
-  const count = `A step costs ${Math.round(ops[shown] / steps[shown])} operations`;
+  const count =
+    ops[shown] > 0
+      ? `A step costs ${Math.round(ops[shown] / steps[shown])} operations`
+      : "A step of this program costs operations that are not counted";
   return median
     ? `${count}, ${quantity(median, "s", 2)} of computing (${quantity(Number(low), "s", 2)} to ${quantity(Number(high), "s", 2)} in the middle half of the frames).`
     : `${count}.`;

@@ -279,7 +279,8 @@ export function createMethods(el, store, actions, openDialog) {
     say(parts.gap, data.scene?.m > 0 ? gapWords(column.gap[last]) : "no loop");
     say(parts.off, errorWords(m, last));
     say(parts.energy, quantity(column.energy_change[last], "J"));
-    say(parts.cost, steps > 0 ? `${Math.round(column.ops[last] / steps)}/step` : "–");
+    const ops = column.ops[last]; // nobody counts those of a program
+    say(parts.cost, steps > 0 && ops > 0 ? `${Math.round(ops / steps)}/step` : "–");
     set(parts.off, { "data-tip": estimateWords(data, m) || null });
     set(parts.energy, { "data-tip": workWords(column.work[last]) });
     set(parts.cost, { "data-tip": costWords(data, m, last) || null });

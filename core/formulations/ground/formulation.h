@@ -114,6 +114,9 @@ typedef struct hn_formulation {
     /// formulation without charts. NULL: add_cost tells.
     long long (*fallbacks)(const void *self);
     const char *(*why)(const void *self); ///< reason of the last failure in words, or NULL
+    /// Whether the integrator of this name can be used with it: HN_ERR_INPUT with the reason in
+    /// `diag` where not. NULL: every one of its form.
+    hn_status (*check)(const void *self, const char *integrator, hn_diag *diag);
 } hn_formulation;
 
 /// Returns the name of a form as the API spells it: "ode", "index3", "index2", "ggl", "index1",

@@ -29,8 +29,9 @@ struct hn_engine_kind {
 // ---- ordinary differential equation and a stepper of it ----
 
 static hn_status ode_create(hn_engine *e, hn_diag *diag) {
-    return e->spec->formulation->create(e->sys, e->spec->formulation_set, e->arena, &e->formulation,
-                                        diag);
+    const hn_formulation *f = e->spec->formulation;
+    HN_TRY(f->create(e->sys, e->spec->formulation_set, e->arena, &e->formulation, diag));
+    return f->check ? f->check(e->formulation, e->spec->stepper->name, diag) : HN_OK;
 }
 
 static void ode_destroy(hn_engine *e) {

@@ -36,8 +36,8 @@ static const struct {
 // clang-format on
 enum { N_CHARACTERS = sizeof CHARACTERS / sizeof *CHARACTERS };
 
-/// Whether a fraction would stand behind a digit: 2½ is a sum, not the product that 2(1/2) is. It is
-/// left to the parser to refuse.
+/// Whether a fraction would stand behind a digit: 2½ is a sum, not the product that 2(1/2) is. It
+/// is left to the parser to refuse.
 static bool is_mixed(const hn_strbuf *out, const char *ascii) {
     return ascii[0] == '(' && ascii[1] && out->n > 0 &&
            isdigit((unsigned char)out->text[out->n - 1]);
