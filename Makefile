@@ -55,7 +55,7 @@ ROOMS_server       := program: terminal: lesson:terminal grade/parts:terminal gr
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,grade/parts,lesson,http/ground,http/request,http/live,http/studies,http/runs \
-                      cli/shell:terminal tui:terminal,lesson,cli/shell \
+                      cli/shell:terminal tui:terminal,lesson,grade,grade/parts,cli/shell \
                       cli/commands:class,grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
                       cli/study:terminal,cli/shell cli:program,terminal,cli/shell :cli
 

@@ -112,8 +112,7 @@ static void put_variant(hn_strbuf *b, const hn_variant *x) {
     }
 }
 
-/// How formulas are written, once for the kinds of answers that have them.
-static void put_notation(hn_strbuf *b, const hn_variant *x) {
+void hn_variant_notation(hn_strbuf *b, const hn_variant *x) {
     static const struct {
         const char *kinds[4], *says;
     } NOTATIONS[] = {
@@ -146,7 +145,7 @@ static void put_hand_in(hn_strbuf *b, const hn_variant *x) {
         hn_strbuf_printf(b, "%s\"%s\": ...", i ? ", " : "", x->part[i].id);
     }
     hn_strbuf_add(b, "}\n");
-    put_notation(b, x);
+    hn_variant_notation(b, x);
     if (p->n_hints) {
         hn_strbuf_printf(b, "%d hint%s: holonom problem %s --hint 1\n", p->n_hints,
                          p->n_hints == 1 ? "" : "s", p->id);

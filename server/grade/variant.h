@@ -29,6 +29,8 @@ uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submissi
 bool hn_variant_check_names(const hn_exercise *exercise, const cJSON *submission, hn_verdict *v);
 /// Statement, parts with their numbers, and the shape of a submission.
 void hn_variant_text(hn_strbuf *b, hn_variant *x);
+/// Writes how formulas are typed, a line for each kind of answer that has them.
+void hn_variant_notation(hn_strbuf *b, const hn_variant *x);
 /// Writes a hint of the exercise, from 1 to its n_hints, with the numbers of this variant.
 void hn_variant_hint(hn_strbuf *b, hn_variant *x, int number);
 void hn_variant_json(hn_strbuf *b, hn_variant *x);

@@ -175,6 +175,17 @@ int hn_text_rows(const char *text, int columns) {
     return rows;
 }
 
+void hn_cells_mark(hn_cells *c, hn_area area) {
+    for (int y = 0; y < area.rows; y++) {
+        for (int x = 0; x < area.columns; x++) {
+            hn_cell *cell = cell_at(c, area, x, y);
+            if (cell) {
+                cell->style |= HN_CELL_REVERSE;
+            }
+        }
+    }
+}
+
 hn_area hn_cells_frame(hn_cells *c, hn_area area, const char *title) {
     const int right = area.columns - 1, bottom = area.rows - 1;
     for (int x = 1; x < right; x++) {

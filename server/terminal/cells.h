@@ -45,6 +45,8 @@ int hn_cells_printf(hn_cells *c, hn_area area, int x, int y, int colour, int sty
 /// Writes text in lines no longer than the area, broken at blanks, from row y on; returns the row
 /// after the last one.
 int hn_cells_fold(hn_cells *c, hn_area area, int y, int colour, const char *text);
+/// Writes what stands in an area in reverse.
+void hn_cells_mark(hn_cells *c, hn_area area);
 /// The rows that hn_cells_fold() needs for the text in lines of at most `columns` (at least 1).
 int hn_text_rows(const char *text, int columns);
 /// A frame with a title along the edge of the area; returns what is inside.

@@ -48,7 +48,7 @@ enum {
     X(METHODS, 'm', "m", "add, change or remove methods")          \
     X(SCENES, 's', "s", "choose another scene")                    \
     X(FORMULAS, 'f', "f", "formulas: the equations of motion")     \
-    X(LESSONS, 't', "t", "texts of lessons and exercises")         \
+    X(LESSONS, 't', "t", "lessons to read, exercises to answer")   \
     X(STUDY, 'w', "w", "what accuracy costs (work-precision)")     \
     X(MAP, 'b', "b", "map of stability over alpha and beta")       \
     X(BUDGET, 'e', "e", "where the error comes from")              \

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/list.h"
 
+#include "tui/keys.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -20,4 +22,23 @@ hn_item *hn_list_add(hn_workbench *w, const char *name, const char *about) {
     snprintf(item->name, sizeof item->name, "%s", name);
     snprintf(item->about, sizeof item->about, "%s", about ? about : "");
     return item;
+}
+
+int hn_list_step(int key) {
+    switch (key) {
+    case HN_KEY_UP:
+        return -1;
+    case HN_KEY_DOWN:
+        return 1;
+    case HN_KEY_PAGE_UP:
+        return -HN_TUI_PAGE;
+    case HN_KEY_PAGE_DOWN:
+        return HN_TUI_PAGE;
+    case HN_KEY_HOME:
+        return -1000000;
+    case HN_KEY_END:
+        return 1000000;
+    default:
+        return 0;
+    }
 }

@@ -4,12 +4,14 @@
 #include "base/shortest.h"
 #include "base/units.h"
 #include "dynamics/compile/coordinates.h"
+#include "grade/exercise_shelf.h"
 #include "lesson/lesson.h"
 #include "lesson/lesson_text.h"
 #include "session/export/export.h"
 #include "session/model/equations.h"
 #include "session/model/lists.h"
 #include "terminal/short_spelling.h"
+#include "tui/exercise_panel.h"
 #include "tui/list.h"
 #include "tui/methods.h"
 #include "tui/prompt.h"
@@ -26,9 +28,6 @@
 #include <string.h>
 
 enum { MOST_TEXT = 100 }; // [columns] a line is easily read
-
-/// What the list says of an exercise.
-static const char EXERCISE[] = "exercise, with numbers of its own";
 
 // ---- lists ----
 
@@ -100,19 +99,34 @@ static void list_parameters(hn_workbench *w) {
     list_starts(w);
 }
 
+/// A lesson, then its exercises.
+static void list_lesson(hn_workbench *w, const cJSON *lesson, const cJSON *exercises) {
+    const cJSON *one;
+    hn_list_add(w, text_of(lesson, "id"), text_of(lesson, "title"));
+    cJSON_ArrayForEach(one, exercises) {
+        if (strcmp(text_of(one, "lesson"), text_of(lesson, "id")) == 0) {
+            hn_item *item = hn_list_add(w, text_of(one, "id"), text_of(one, "title"));
+            if (item) {
+                item->is_exercise = true;
+            }
+        }
+    }
+}
+
 static void list_lessons(hn_workbench *w) {
     hn_strbuf b;
     const cJSON *lesson;
     hn_strbuf_init(&b);
     hn_lessons_json(&b, w->library);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
-    hn_list_begin(w, HN_LIST_LESSONS, "lessons and exercises: Enter reads, Esc goes back");
+    hn_strbuf_clear(&b);
+    hn_shelf_exercises_json(&b, w->library);
+    cJSON *exercises = cJSON_Parse(hn_strbuf_text(&b));
+    hn_list_begin(w, HN_LIST_LESSONS, "lessons and exercises: Enter opens, Esc goes back");
     cJSON_ArrayForEach(lesson, cJSON_GetObjectItem(document, "lessons")) {
-        hn_list_add(w, text_of(lesson, "id"), text_of(lesson, "title"));
+        list_lesson(w, lesson, cJSON_GetObjectItem(exercises, "problems"));
     }
-    for (int i = 0; i < hn_library_n_problems(w->library); i++) {
-        hn_list_add(w, hn_library_problem_id(w->library, i), EXERCISE);
-    }
+    cJSON_Delete(exercises);
     cJSON_Delete(document);
     hn_strbuf_reset(&b);
 }
@@ -180,11 +194,6 @@ static void show_budget(hn_workbench *w) {
     hn_text_panel_run(w, title, words, n);
 }
 
-static void show_exercise(hn_workbench *w, const char *id) {
-    const char *const words[] = {"problem", id};
-    hn_text_panel_run(w, "exercise: Esc goes back", words, 2);
-}
-
 // ---- keys of panels ----
 
 static void choose(hn_workbench *w) {
@@ -200,11 +209,12 @@ static void choose(hn_workbench *w) {
 
     // a value to be typed, beginning with the present one
     case HN_LIST_METHODS:
-        hn_prompt_open(w, HN_PROMPT_METHOD, w->cursor < w->n_methods ? w->methods[w->cursor] : "");
+        hn_workbench_ask(w, HN_PROMPT_METHOD,
+                         w->cursor < w->n_methods ? w->methods[w->cursor] : "");
         break;
     case HN_LIST_PARAMETERS:
         hn_shortest_write(item->value, text);
-        hn_prompt_open(w, HN_PROMPT_PARAMETER, text);
+        hn_workbench_ask(w, HN_PROMPT_PARAMETER, text);
         break;
     case HN_LIST_EXPORTS:
         hn_prompt_export(w);
@@ -212,7 +222,7 @@ static void choose(hn_workbench *w) {
 
     // a text to be read
     case HN_LIST_LESSONS:
-        (strcmp(item->about, EXERCISE) == 0 ? show_exercise : show_lesson)(w, item->name);
+        (item->is_exercise ? hn_exercise_panel_open : show_lesson)(w, item->name);
         break;
     case HN_LIST_REMEDIES:
         hn_remedies_take(w);
@@ -242,26 +252,6 @@ static void nudge(hn_workbench *w, int by) {
     w->cursor = cursor < w->n_items ? cursor : 0;
 }
 
-/// How far a key moves in a list or a text; 0: it does not.
-static int step_of(int key) {
-    switch (key) {
-    case HN_KEY_UP:
-        return -1;
-    case HN_KEY_DOWN:
-        return 1;
-    case HN_KEY_PAGE_UP:
-        return -15;
-    case HN_KEY_PAGE_DOWN:
-        return 15;
-    case HN_KEY_HOME:
-        return -1000000;
-    case HN_KEY_END:
-        return 1000000;
-    default:
-        return 0;
-    }
-}
-
 /// A letter goes to the next item that begins with it.
 static void find_letter(hn_workbench *w, int key) {
     for (int i = 1; i <= w->n_items; i++) {
@@ -274,14 +264,14 @@ static void find_letter(hn_workbench *w, int key) {
 }
 
 static void list_key(hn_workbench *w, int key) {
-    const int to = w->cursor + step_of(key);
+    const int to = w->cursor + hn_list_step(key);
     if (key == HN_KEY_ENTER && w->n_items > 0) {
         choose(w);
     } else if (key == 'x' && w->list == HN_LIST_METHODS) {
         hn_methods_remove(w, w->cursor);
     } else if (key == HN_KEY_LEFT || key == HN_KEY_RIGHT) {
         nudge(w, key == HN_KEY_RIGHT ? 1 : -1);
-    } else if (step_of(key) != 0) {
+    } else if (hn_list_step(key) != 0) {
         w->cursor = to < 0 ? 0 : to >= w->n_items ? w->n_items - 1 : to;
     } else if (key < 128 && isalnum(key)) {
         find_letter(w, key);
@@ -293,14 +283,15 @@ void hn_panel_key(hn_workbench *w, int key) {
         hn_study_panel_key(w, key);
     } else if (w->panel == HN_PANEL_LIST && hn_scene_list_key(w, key)) {
         // the search has taken it
-    } else if (key == HN_KEY_ESCAPE || (key == 'q' && w->panel == HN_PANEL_TEXT)) {
+    } else if (key == HN_KEY_ESCAPE || (key == 'q' && w->panel != HN_PANEL_LIST)) {
         hn_child_stop(&w->child);
         w->panel = HN_PANEL_MAIN;
     } else if (w->panel == HN_PANEL_LIST) {
         list_key(w, key);
+    } else if (w->panel == HN_PANEL_EXERCISE) {
+        hn_exercise_panel_key(w, key);
     } else {
-        const int to = w->scroll + (key == ' ' ? 15 : step_of(key));
-        hn_text_panel_scroll(w, to);
+        hn_text_panel_key(w, key);
     }
 }
 
@@ -320,7 +311,7 @@ void hn_panel_open(hn_workbench *w, hn_tui_action action) {
 
     // a line to type, the studies
     if (action == HN_TUI_STEP) {
-        hn_prompt_open(w, HN_PROMPT_STEP, "");
+        hn_workbench_ask(w, HN_PROMPT_STEP, "");
     } else if (action == HN_TUI_STUDY || action == HN_TUI_MAP) {
         hn_study_panel_open(w, action == HN_TUI_STUDY ? HN_TUI_COST : HN_TUI_STABILITY);
     }

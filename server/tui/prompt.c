@@ -2,6 +2,7 @@
 #include "tui/prompt.h"
 
 #include "base/shortest.h"
+#include "tui/exercise_panel.h"
 #include "tui/keys.h"
 #include "tui/methods.h"
 #include "tui/text_panel.h"
@@ -10,11 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void hn_prompt_open(hn_workbench *w, hn_prompt_kind kind, const char *initial) {
-    w->prompt = kind;
-    w->n_input = snprintf(w->input, sizeof w->input, "%s", initial);
-}
 
 void hn_prompt_export(hn_workbench *w) {
     static const struct {
@@ -35,7 +31,7 @@ void hn_prompt_export(hn_workbench *w) {
     for (char *c = file; *c; c++) {
         *c = *c == '-' ? '_' : *c;
     }
-    hn_prompt_open(w, HN_PROMPT_EXPORT, file);
+    hn_workbench_ask(w, HN_PROMPT_EXPORT, file);
 }
 
 // ---- what is done with a line ----
@@ -162,7 +158,8 @@ void hn_prompt_key(hn_workbench *w, int key) {
     static void (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
                                                      [HN_PROMPT_METHOD] = accept_method,
                                                      [HN_PROMPT_PARAMETER] = accept_parameter,
-                                                     [HN_PROMPT_EXPORT] = accept_export};
+                                                     [HN_PROMPT_EXPORT] = accept_export,
+                                                     [HN_PROMPT_ANSWER] = hn_exercise_panel_accept};
 
     // Escape forgets the line, Enter hands it over
     if (key == HN_KEY_ESCAPE) {

@@ -8,8 +8,6 @@
 /// The first of the exports: the recording as CSV; the others are languages.
 #define HN_TUI_RECORDING "recording"
 
-/// Begins a line with `initial` in it.
-void hn_prompt_open(hn_workbench *w, hn_prompt_kind kind, const char *initial);
 /// Asks for the file that the chosen item of the list of exports goes to.
 void hn_prompt_export(hn_workbench *w);
 /// A key while a line is typed: Escape forgets it, Enter hands it over.

@@ -3,6 +3,7 @@
 
 #include "base/shortest.h"
 #include "terminal/cells.h"
+#include "tui/list.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -11,6 +12,7 @@ void hn_text_panel_open(hn_workbench *w, const char *title) {
     hn_child_stop(&w->child);
     w->panel = HN_PANEL_TEXT;
     w->scroll = 0;
+    w->marked = -1;
     hn_strbuf_clear(&w->text);
     snprintf(w->title, sizeof w->title, "%s", title);
 }
@@ -53,6 +55,29 @@ void hn_text_panel_scroll(hn_workbench *w, int line) {
     w->scroll = line < 0 ? 0 : line > last ? last : line;
 }
 
+/// Rows that the lines from first to before last take.
+static int rows_between(const hn_workbench *w, int first, int last) {
+    int line = 0, rows = 0;
+    for (const char *at = hn_strbuf_text(&w->text); *at && line < last; line++) {
+        const size_t n = strcspn(at, "\n");
+        rows += line >= first ? rows_of(w, at, n) : 0;
+        at += n + (at[n] == '\n');
+    }
+    return rows;
+}
+
+void hn_text_panel_reveal(hn_workbench *w, int first, int last) {
+    int scroll = first < w->scroll ? first : w->scroll;
+    while (scroll < first && rows_between(w, scroll, last) > w->rows - 5) {
+        scroll++;
+    }
+    hn_text_panel_scroll(w, scroll);
+}
+
+void hn_text_panel_key(hn_workbench *w, int key) {
+    hn_text_panel_scroll(w, w->scroll + (key == ' ' ? HN_TUI_PAGE : hn_list_step(key)));
+}
+
 void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *words, int n) {
     char settings[HN_TUI_SETTINGS][128];
     const char *arguments[HN_TUI_WORDS + 2 * HN_TUI_SETTINGS + 1] = {NULL};
@@ -60,8 +85,7 @@ void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *wo
     for (int i = 0; i < n && i < HN_TUI_WORDS; i++) {
         arguments[used++] = words[i];
     }
-    // exercises have numbers of their own; everything else is of the scene as it is shown
-    for (int i = 0; i < w->n_settings && strcmp(words[0], "problem") != 0; i++) {
+    for (int i = 0; i < w->n_settings; i++) {
         char value[HN_SHORTEST_TEXT];
         hn_shortest_write(w->settings[i].value, value);
         snprintf(settings[i], sizeof settings[i], "%s=%s", w->settings[i].name, value);

@@ -7,6 +7,11 @@
 
 /// An empty text with this title; a command that was shown ends.
 void hn_text_panel_open(hn_workbench *w, const char *title);
+/// Scrolls no further than is needed to show the lines from first to before last; the first of them
+/// where not all have room.
+void hn_text_panel_reveal(hn_workbench *w, int first, int last);
+/// Keys of a text: lines, pages, its ends.
+void hn_text_panel_key(hn_workbench *w, int key);
 /// Shows the text from this line on, but never less than its last page.
 void hn_text_panel_scroll(hn_workbench *w, int line);
 enum { HN_TUI_WORDS = 16 };

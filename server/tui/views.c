@@ -90,7 +90,7 @@ static const char *keys_line(const hn_workbench *w, int columns) {
         [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
         [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
         [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  a letter finds  Esc back",
-        [HN_LIST_LESSONS] = "↑↓ choose  Enter read  a letter finds  Esc back",
+        [HN_LIST_LESSONS] = "↑↓ choose  Enter open  a letter finds  Esc back",
         [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
         [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back",
         [HN_LIST_REMEDIES] = "↑↓ choose  Enter try it  Esc back"};
@@ -99,6 +99,8 @@ static const char *keys_line(const hn_workbench *w, int columns) {
         return lists[w->list];
     case HN_PANEL_TEXT:
         return "↑↓ line  PageUp PageDown Space page  Home End  Esc back";
+    case HN_PANEL_EXERCISE:
+        return "↑↓ part  Enter type  c check  h hint  PageUp PageDown  Esc back";
     case HN_PANEL_STUDY:
         return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
                    ? "arrows choose a cell  Enter take its alpha and beta  Esc back"
@@ -124,11 +126,14 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
     static const char *const asks[] = {[HN_PROMPT_STEP] = "dt [s, or 20 ms]: ",
                                        [HN_PROMPT_METHOD] = "method: ",
                                        [HN_PROMPT_PARAMETER] = "value: ",
-                                       [HN_PROMPT_EXPORT] = "write to: "};
+                                       [HN_PROMPT_EXPORT] = "write to: ",
+                                       [HN_PROMPT_ANSWER] = "answer: "};
     const hn_area area = {1, c->rows - 1, c->columns - 2, 1};
     if (w->prompt != HN_PROMPT_NONE) {
         const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);
-        const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input);
+        const int room = area.columns - x - 1;
+        const int from = w->n_input > room && room > 0 ? w->n_input - room : 0;
+        const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input + from);
         hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
     } else if (!needs_two_lines(c, w)) {
         hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0, keys_line(w, area.columns));
@@ -350,6 +355,9 @@ static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
         if (line >= w->scroll) {
             const hn_area rest = {in.x + 1, in.y + y, in.columns - 2, in.rows - y};
             const int used = hn_cells_fold(c, rest, 0, HN_CELL_INK, row);
+            if (line == w->marked) {
+                hn_cells_mark(c, (hn_area){rest.x, rest.y, rest.columns, used});
+            }
             y += used > 0 ? used : 1;
         }
         at += n + (at[n] == '\n');
@@ -376,7 +384,7 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     const hn_area whole = panel_area(c->columns, c->rows);
     if (w->panel == HN_PANEL_LIST) {
         draw_list(c, whole, w);
-    } else if (w->panel == HN_PANEL_TEXT) {
+    } else if (w->panel == HN_PANEL_TEXT || w->panel == HN_PANEL_EXERCISE) {
         draw_text(c, whole, w);
     } else if (w->panel == HN_PANEL_STUDY) {
         hn_study_panel_draw(c, whole, w);

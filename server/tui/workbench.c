@@ -117,6 +117,8 @@ void hn_workbench_close(hn_workbench *w) {
     hn_model_free(w->preview.model);
     hn_versions_free(w->versions);
     hn_joint_forces_free(w->forces);
+    hn_tui_exercise_free(w->exercise);
+    w->exercise = NULL;
     w->forces = NULL;
     hn_strbuf_reset(&w->text);
     hn_strbuf_reset(&w->link);
@@ -132,6 +134,11 @@ void hn_workbench_close(hn_workbench *w) {
     w->recording = NULL;
     w->model = NULL;
     w->items = NULL;
+}
+
+void hn_workbench_ask(hn_workbench *w, hn_prompt_kind kind, const char *initial) {
+    w->prompt = kind;
+    w->n_input = snprintf(w->input, sizeof w->input, "%s", initial);
 }
 
 void hn_workbench_say(hn_workbench *w, const char *format, ...) {
@@ -158,6 +165,8 @@ static void carry_over(hn_workbench *to, hn_workbench *from) {
     to->rows = from->rows;
     to->versions = from->versions;
     from->versions = NULL;
+    to->exercise = from->exercise;
+    from->exercise = NULL;
 }
 
 // what was open stays open when the change fails

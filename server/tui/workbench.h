@@ -8,6 +8,7 @@
 #include "session/model/envelope.h"
 #include "terminal/dots.h"
 #include "tui/child.h"
+#include "tui/exercise.h"
 #include "tui/joint_forces.h"
 #include "tui/pictures.h"
 #include "tui/recording.h"
@@ -17,9 +18,10 @@
 
 typedef enum hn_panel {
     HN_PANEL_MAIN,
-    HN_PANEL_LIST, ///< scenes, methods, parameters, actions to choose from
-    HN_PANEL_TEXT, ///< a text to scroll: equations, a lesson, an error budget
-    HN_PANEL_STUDY ///< the plot of a study, while it is computed
+    HN_PANEL_LIST,    ///< scenes, methods, parameters, actions to choose from
+    HN_PANEL_TEXT,    ///< a text to scroll: equations, a lesson, an error budget
+    HN_PANEL_STUDY,   ///< the plot of a study, while it is computed
+    HN_PANEL_EXERCISE ///< a text with a field for each part of an exercise
 } hn_panel;
 
 typedef enum hn_list_kind {
@@ -36,7 +38,8 @@ typedef enum hn_prompt_kind {
     HN_PROMPT_STEP,
     HN_PROMPT_METHOD,
     HN_PROMPT_PARAMETER,
-    HN_PROMPT_EXPORT
+    HN_PROMPT_EXPORT,
+    HN_PROMPT_ANSWER
 } hn_prompt_kind;
 typedef enum hn_tui_plot { HN_TUI_GAP, HN_TUI_ERROR, HN_TUI_ENERGY, HN_TUI_PLOTS } hn_tui_plot;
 
@@ -46,6 +49,7 @@ typedef struct hn_item {
     char name[HN_TUI_LINE], about[HN_TUI_LINE];
     char more[2 * HN_TUI_LINE]; ///< below the list in place of `about`; "": about itself
     double value, low, high;    ///< of a parameter
+    bool is_exercise;           ///< in the list of lessons
 } hn_item;
 
 /// A scene as it stands at its start, for the list of scenes.
@@ -115,7 +119,9 @@ typedef struct hn_workbench {
     char search[64];
     int n_search; ///< letters that are looked for in the list of scenes
     hn_strbuf text;
-    hn_child child; ///< the command whose text this is, while it runs
+    int marked;                ///< line of the text that is marked; -1: none
+    hn_tui_exercise *exercise; ///< the one that was opened last; owned, NULL: none
+    hn_child child;            ///< the command whose text this is, while it runs
     hn_preview preview;
     hn_tui_study *study; ///< of its panel; owned, NULL otherwise
     double present[2];   ///< alpha and beta of the method that a map is about
@@ -151,6 +157,8 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
 bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings);
 /// Where the present model comes from; borrowed.
 hn_model_source hn_workbench_source(const hn_workbench *w);
+/// Begins a line to type, with `initial` in it (prompt.h).
+void hn_workbench_ask(hn_workbench *w, hn_prompt_kind kind, const char *initial);
 void hn_workbench_say(hn_workbench *w, const char *format, ...) HN_PRINTF(2, 3);
 void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags);
 #endif

@@ -121,7 +121,7 @@ KEY_NAMES = {"HN_KEY_RIGHT": "<Right>", "HN_KEY_LEFT": "<Left>", "HN_KEY_SHIFT_R
 SEEN = {"PLAY": "running", "NEXT": r"t 0\.520 s", "BACK": r"t 0\.480 s", "NEXT_TEN": r"t 0\.700 s", "BACK_TEN": r"t 0\.300 s",
         "START": r"t 0\.000 s", "SLOWER": "×0.5", "FASTER": "×2", "UP": "why: index-1", "DOWN": "why: projection", "CYCLE": "why: projection",
         "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "REACTIONS": r"joint forces: Baumgarte .*\n.*multipliers lambda: determined", "STEP": r"dt \[s, or 20 ms\]:",
-        "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "01-closed-loops",
+        "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "Where do the links stand",
         "STUDY": "what accuracy costs: Esc goes back", "MAP": "stability over alpha and beta: arrows", "BUDGET": "their sum",
         "LINK": r"sent to the terminal's clipboard \(OSC 52\)[^#]+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",
         "REDO": "nothing to redo", "HELP": "play or pause", "QUIT": None}
@@ -366,10 +366,72 @@ class Keys(unittest.TestCase):
         self.assertEqual((status, err), (0, ""))
         self.assertRegex(out, r"alpha = [\d.]+, beta = [\d.]+; before, until 3\.50 s: worst gap [\d.]+ mm, energy\s+change \d+ mJ")
 
-    def test_an_exercise_is_shown_and_a_program_is_exported(self):
-        _, out, _ = once("--once", "--keys", "t<End><Enter>", "--size", "100x40")
-        self.assertRegex(out, r"holonom problem \w+")
-        self.assertIn("points; seed 1", out)
+    def exercise(self, name, keys, size="100x60"):
+        """The frame after these keys in an exercise, its answers, and what is said of the whole."""
+        listed = json.loads(subprocess.run([PROGRAM, "list", "problems", "--json"], capture_output=True, check=True).stdout)["problems"]
+        lessons = [one["id"] for one in json.loads(subprocess.run([PROGRAM, "list", "lessons", "--json"], capture_output=True, check=True).stdout)["lessons"]]
+        rows = [row for lesson in lessons for row in [lesson] + [one["id"] for one in listed if one["lesson"] == lesson]]
+        status, out, err = once("--once", "--size", size, "--keys", "t" + "<Down>" * rows.index(name) + "<Enter>" + keys)
+        self.assertEqual((status, err), (0, ""))
+        self.assertIn("exercise: Enter types an answer", out)
+        return out
+
+    def grade(self, name, submission):
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            json.dump(submission, file)
+            file.flush()
+            return json.loads(subprocess.run([PROGRAM, "grade", name, file.name, "--json"], capture_output=True, check=True).stdout)
+
+    def test_an_exercise_is_answered_by_the_grader_of_the_shell(self):
+        cases = {
+            # formulas, a number with its unit, a letter; one sign is wrong, which has a name
+            "closure": ("<Enter>-l1 sin(th1) u1 - l2 sin(th2) u2<Enter><Enter>l3 sin(th3) u3<Enter><Enter>1.2 rad/s<Enter><Enter>d<Enter>c",
+                        {"a": "-l1 sin(th1) u1 - l2 sin(th2) u2", "b": "l3 sin(th3) u3", "c": "1.2 rad/s", "d": "d"}, "the sign is wrong"),
+            # entries of a matrix, some left empty
+            "p3": ("<Enter>-l1 sin(th1)<Enter><Down><Enter>l3 * sin(th3)<Enter>c",
+                   {"J": [["-l1 sin(th1)", "", "l3 * sin(th3)", ""], ["", "", "", ""]]}, "nothing was handed in here"),
+            # only one part is answered
+            "ring": ("<Down><Enter>6<Enter>c", {"b": 6}, "nothing was handed in")}
+        for name, (keys, submission, said) in cases.items():
+            verdict, out = self.grade(name, submission), self.exercise(name, keys)
+            self.assertIn(f"{verdict['score']:g} of {verdict['max_score']:g} points: {verdict['summary']}"[:60], out, name)
+            self.assertIn(said, out, name)
+            self.assertGreater(verdict["max_score"], verdict["score"], name)
+
+    def test_a_choice_with_its_reason_is_two_letters_and_a_file_answers_too(self):
+        out = self.exercise("p1", "", "100x100")
+        self.assertIn("a letter, a blank, the letter of the reason", out)
+        part = re.findall(r"^│ (\w+)\) \[", out, re.M)[[i for i, text in enumerate(re.split(r"^│ \w+\) \[", out, flags=re.M)[1:]) if "reason" in text][0]]
+        down = "<Down>" * (re.findall(r"^│ (\w+)\) \[", out, re.M).index(part))
+        for choice in "abc":
+            verdict = self.grade("p1", {part: {"choice": choice, "reason": "b"}})
+            said = self.exercise("p1", f"{down}<Enter>{choice}, b<Enter>c", "100x100")
+            self.assertIn(f"{verdict['score']:g} of {verdict['max_score']:g} points", said, choice)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "b.json")
+            with open(path, "w") as file:
+                file.write("6")
+            self.assertEqual(self.exercise("ring", f"<Down><Enter>@{path}<Enter>c").split("b = @")[1].split("\n")[1].strip("│ "),
+                             self.exercise("ring", "<Down><Enter>6<Enter>c").split("b = 6")[1].split("\n")[1].strip("│ "))
+            self.assertIn("not checked:", self.exercise("ring", f"<Enter>@{path}x<Enter>c"))
+
+    def test_hints_come_one_by_one_and_answers_stay(self):
+        self.assertIn("h shows a hint (0 of 2 shown)", self.exercise("closure", ""))
+        one = self.exercise("closure", "h")
+        self.assertIn("hint 1 of 2:", one)
+        self.assertIn("Formulas: a*b or a b", one)
+        self.assertIn("h shows another hint (1 of 2 shown)", one)
+        self.assertNotIn("hint 2 of 2", one)
+        self.assertIn("there is no other hint", self.exercise("closure", "hhh"))
+        # a changed answer takes the verdict away; closed and opened again it has its answers
+        self.assertIn("right, 1 of 1 point", self.exercise("closure", "<Down><Down><Down><Enter>d<Enter>c"))
+        self.assertNotIn("of 6 points:", self.exercise("closure", "<Enter>2<Enter>c<Enter>3<Enter>"))
+        self.assertIn("a = 2", self.exercise("closure", "<Enter>2<Enter><Esc>t<Down><Down><Enter>"))
+        # the part that is chosen is in sight in a small window
+        for i, part in enumerate("abcd"):
+            self.assertRegex(self.exercise("closure", "<Down>" * i, "80x24"), rf"(?m)^│ > {part} = \.\.\. \(Enter types\)")
+
+    def test_a_program_is_exported(self):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([PROGRAM, "tui", "four-bar", "--once", "--keys", "x<Down><Enter><Enter>"], capture_output=True, timeout=60, cwd=folder,
                                   stdin=subprocess.DEVNULL, env={**os.environ, "LC_ALL": "C.UTF-8"})
@@ -500,7 +562,7 @@ class Keys(unittest.TestCase):
         self.assertIn("method: baumgarte:alpha=5.568857379998894,beta=7@rk4:h=0.01", out)
 
     def test_the_last_line_names_the_keys_of_what_is_open(self):
-        for keys, wanted in (("", "Space run"), ("s", "letters search"), ("m", "x remove"), ("p", "←→ change"), ("f", "PageDown"), ("t", "Enter read"),
+        for keys, wanted in (("", "Space run"), ("s", "letters search"), ("m", "x remove"), ("p", "←→ change"), ("f", "PageDown"), ("t", "Enter open"),
                              ("x", "name a file"), ("?", "Enter do it")):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", keys)
             self.assertIn(wanted, out.rstrip("\n").split("\n")[-1], keys)
