@@ -145,13 +145,40 @@ static void layout(const char *digits, int n, int precision, int exponent, char 
         memcpy(out, "0.000", (size_t)(1 - exponent));
         out += 1 - exponent;
     }
-    for (int i = 0; i < n || i <= exponent; i++) {
-        if (i == exponent + 1 && i > 0) {
+    const int before = exponent < 0 ? 0 : exponent + 1 < n ? exponent + 1 : n;
+    memcpy(out, digits, (size_t)before);
+    out += before;
+    for (int i = before; i <= exponent; i++) {
+        *out++ = '0';
+    }
+    if (before < n) {
+        if (exponent >= 0) {
             *out++ = '.';
         }
-        *out++ = i < n ? digits[i] : '0';
+        memcpy(out, digits + before, (size_t)(n - before));
+        out += n - before;
     }
     *out = '\0';
+}
+
+/// The first `n` digits of a number that has no more; returns how many are left without the zeros
+/// at the end.
+static int list_digits(uint64_t number, int n, char digits[MOST_DIGITS]) {
+    // halves of at most nine digits: their divisions do not wait for each other, and are short
+    const int low = n - 8;
+    uint32_t first = (uint32_t)(number / 100000000u), last = (uint32_t)(number % 100000000u);
+    for (int i = n - 1; i >= low; i--) {
+        digits[i] = (char)('0' + last % 10);
+        last /= 10;
+    }
+    for (int i = low - 1; i >= 0; i--) {
+        digits[i] = (char)('0' + first % 10);
+        first /= 10;
+    }
+    while (n > 1 && digits[n - 1] == '0') {
+        n--;
+    }
+    return n;
 }
 
 /// False where the number is too large, too small, or rounded up to one digit more.
@@ -173,17 +200,11 @@ static bool write_by_product(double value, char *text) {
         return false;
     }
 
-    // from the last digit to the first, without the zeros at the end
-    char digits[MOST_DIGITS];
-    int n = 0;
-    for (int i = precision - 1; i >= 0; i--) {
-        digits[i] = (char)('0' + number % 10);
-        number /= 10;
-        n = n == 0 && digits[i] != '0' ? i + 1 : n;
-    }
     if (signbit(value)) {
         *text++ = '-';
     }
+    char digits[MOST_DIGITS];
+    const int n = list_digits(number, precision, digits);
     layout(digits, n, precision, y.exponent, text);
     return true;
 }

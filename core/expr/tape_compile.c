@@ -497,7 +497,8 @@ static hn_status assemble(compiler *c, int n_inputs, hn_tape *tape) {
     tape->code = malloc(((size_t)c->n_drafts + 1) * sizeof *tape->code);
     tape->constants = calloc((size_t)c->n_constants + 1, sizeof *tape->constants);
     tape->outputs = calloc((size_t)c->ir.n_outputs + 1, sizeof *tape->outputs);
-    f.slot = malloc(((size_t)HN_TAPE_MAX_SLOTS + 1) * sizeof *f.slot);
+    const size_t most = c->ir.n < HN_TAPE_MAX_SLOTS ? (size_t)c->ir.n : HN_TAPE_MAX_SLOTS;
+    f.slot = malloc((most + 1) * sizeof *f.slot); // a value has one slot at a time
 
     // slots are given out in the order of the drafts
     if (!tape->code || !tape->constants || !tape->outputs || !f.slot) {

@@ -163,15 +163,15 @@ void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run) {
 
 void hn_run_rows_put(hn_run_rows *rows, const double *values, int n) {
     hn_strbuf text;
-    char number[HN_SHORTEST_TEXT];
+    char number[1 + HN_SHORTEST_TEXT] = ","; // with the comma before it
     hn_strbuf_init(&text);
     hn_strbuf_add(&text, rows->ndjson ? "[" : "");
     for (int c = 0; c < n && c < rows->n; c++) {
-        hn_strbuf_add(&text, c ? "," : "");
         if (isfinite(values[c])) {
-            hn_shortest_write(values[c], number);
-            hn_strbuf_add(&text, number);
+            hn_shortest_write(values[c], number + 1);
+            hn_strbuf_add(&text, c ? number : number + 1);
         } else {
+            hn_strbuf_add(&text, c ? "," : "");
             hn_strbuf_add(&text, rows->ndjson ? "null" : "");
         }
     }
