@@ -56,9 +56,10 @@ typedef struct hn_snapshot_opts {
     double view[4];
     int n_loads;
     const hn_snapshot_load *loads;
-    bool labels;     ///< points with a name show it
-    bool dimensions; ///< bars of the selected pose show their lengths
-    bool bare;       ///< the drawing and its scale bar alone: no words, legend or inset
+    double longest_load; ///< [unit] what the longest arrow stands for; 0: the largest of `loads`
+    bool labels;         ///< points with a name show it
+    bool dimensions;     ///< bars of the selected pose show their lengths
+    bool bare;           ///< the drawing and its scale bar alone: no words, legend or inset
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);

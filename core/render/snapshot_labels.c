@@ -116,6 +116,14 @@ static double seen_size(const hn_sheet *s, const hn_snapshot_load *load, double 
     return hypot(seen[0], seen[1]);
 }
 
+double hn_snapshot_longest_load(const hn_sheet *s, const hn_snapshot_opts *opts) {
+    double longest = opts->longest_load, seen[2];
+    for (int k = 0; k < opts->n_loads; k++) {
+        longest = fmax(longest, seen_size(s, &opts->loads[k], seen));
+    }
+    return longest;
+}
+
 /// Each arrow ends at its point, as long as its share of the largest, and no shorter than its head.
 /// One that would begin off the sheet begins at its point in place of ending there. False: it has
 /// no length in this view.
@@ -133,7 +141,8 @@ static bool lay_arrow(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_
 
     // from the tail to the tip
     const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
-    const double length = fmax(1.5 * s->font, LONGEST_LOAD * view * size / largest);
+    const double longest = hn_snapshot_longest_load(s, opts);
+    const double length = fmax(1.5 * s->font, LONGEST_LOAD * view * size / longest);
     const double by[2] = {length * seen[0] / size, -length * seen[1] / size};
     double at[2];
     hn_sheet_pixel(s, load->point < 0 ? load->place : pose->points + 3 * load->point, at);

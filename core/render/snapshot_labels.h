@@ -17,6 +17,9 @@ typedef struct hn_label_places {
 
 /// Keeps later texts off this one.
 void hn_label_remember(hn_label_places *placed, const double xy[2], double half);
+/// Returns the force that the longest arrow stands for, seen in this view [unit of the loads]; 0
+/// without loads.
+double hn_snapshot_longest_load(const hn_sheet *s, const hn_snapshot_opts *opts);
 /// Draws both for the selected pose, as opts says, off the texts placed before.
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,

@@ -2,6 +2,7 @@
 #include "render/snapshot_marks.h"
 
 #include "base/units.h"
+#include "render/snapshot_labels.h"
 
 #include <math.h>
 #include <string.h>
@@ -240,4 +241,5 @@ void hn_snapshot_primitives(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
+    hn_json_put_number(b, "longest_load", hn_snapshot_longest_load(s, opts));
 }

@@ -2,6 +2,7 @@
 """Snapshots from the command line: formats, several moments, marks, the built-in renderer."""
 
 import json
+import math
 import os
 import sys
 import tempfile
@@ -84,6 +85,20 @@ class Snapshot(Command):
             done = call("snapshot", "four-bar", "--trace", "Q", "-o", os.path.join(folder, "n.png"))
             self.assert_exit(done, INPUT)
             self.assertIn(b"there are: A B", done.stderr)
+
+    def test_the_pictures_of_a_strip_have_one_scale_of_forces(self):
+        def largest(picture):
+            return max(math.hypot(*load["force"]) for load in picture["loads"])
+
+        with tempfile.TemporaryDirectory() as folder:
+            strip = self.picture(folder, "s.png", "--at", "0.5,1", "--forces")[1]
+            first, last = strip["before"][0], strip["picture"]
+            self.assertGreater(largest(last), 2 * largest(first))
+            for picture in (first, last):
+                self.assertAlmostEqual(picture["longest_load"], largest(last), delta=1e-9 * largest(last))
+            # alone, its own largest force sets the scale
+            alone = self.picture(folder, "a.png", "--time", "0.5", "--forces")[1]["picture"]
+            self.assertAlmostEqual(alone["longest_load"], largest(alone), delta=1e-9 * largest(alone))
 
     def test_a_snapshot_may_be_vector_graphics(self):
         with tempfile.TemporaryDirectory() as folder:

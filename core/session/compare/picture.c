@@ -86,6 +86,18 @@ static int moment_of(const sheet *p, int k) {
     return p->request->ghosts ? p->n_moments - 1 : k;
 }
 
+/// One scale of forces for all moments: arrows of the same length are equal forces.
+static void choose_force_scale(sheet *p) {
+    double seen[2];
+    for (int i = 0; i < p->n_moments && p->n_canvases > 1; i++) {
+        const hn_picture_moment *m = &p->moments[i];
+        for (int k = 0; k < m->n_loads; k++) {
+            hn_view_project(&p->opts.look, m->loads[k].force, seen);
+            p->opts.longest_load = fmax(p->opts.longest_load, hypot(seen[0], seen[1]));
+        }
+    }
+}
+
 static hn_status draw(sheet *p, hn_diags *diags) {
     const hn_picture_request *r = p->request;
     const bool strip = p->n_canvases > 1 && r->form != HN_PICTURE_APNG;
@@ -93,6 +105,7 @@ static hn_status draw(sheet *p, hn_diags *diags) {
     hn_status status = HN_OK;
     p->width = r->width ? r->width : strip ? PANEL_WIDTH : DEFAULT_WIDTH;
     p->height = r->height ? r->height : strip ? PANEL_HEIGHT : DEFAULT_HEIGHT;
+    choose_force_scale(p);
     for (int k = 0; k < p->n_canvases && status == HN_OK; k++) {
         const int n = gather(p, moment_of(p, k));
         status = hn_canvas_create(p->width, p->height, r->theme, &p->canvas[k], &diag);
