@@ -40,7 +40,7 @@ ROOMS_dynamics     := compile: evaluate:compile assembly:compile,evaluate analys
 ROOMS_formulations := ground: chart:ground rows:ground,chart list:ground,chart,rows
 ROOMS_integrators  := step: explicit:step implicit:step constrained:step external:step \
                       list:step,explicit,implicit,constrained,external method:step,list
-ROOMS_study        := spectrum: stepping: incidents:stepping run:spectrum,stepping,incidents \
+ROOMS_study        := spectrum: stepping: ensemble:stepping incidents:stepping run:spectrum,stepping,incidents \
                       truth:stepping,incidents,run budget:stepping,incidents,run \
                       stability:spectrum,stepping,incidents,run cost:stepping,incidents,run,truth
 ROOMS_session      := style: verdict: store: model:store job:model compare:store,model references:store,model face:model export:model \

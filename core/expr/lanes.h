@@ -12,7 +12,11 @@
 #include "expr/lanes_sincos.h"
 #include "expr/tape.h"
 
+#include <stdint.h>
+
 enum { HN_LANES = 32 };
+/// One bit for each lane.
+typedef uint32_t hn_lane_bits;
 
 /// Doubles that a workspace needs, aligned to 64 bytes (hn_arena_doubles).
 size_t hn_lanes_work_size(const hn_tape *tape);

@@ -10,6 +10,7 @@
 #include "dynamics/compile/compile.h"
 #include "dynamics/evaluate/accel_lanes.h"
 #include "expr/native.h"
+#include "study/ensemble/ensemble.h"
 #include "study/run/run.h"
 
 #include <glob.h>
@@ -17,7 +18,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { BATCHES = 21, EVALS = 10000, STEPS = 500, LADDER = 40 };
+enum { BATCHES = 21, EVALS = 10000, STEPS = 500, LADDER = 40, SWEEP = 10000, SWEEP_STEPS = 50 };
 static const double H = 1e-4;   // [s] step; BATCHES * STEPS of them stay clear of any dead point
 static const double WHOLE = 10; // [s] whole runs
 static const double START[6] = {1, 0.498324904142577, 1.516841745037813, 2, -0.3, 0.9};
@@ -36,6 +37,7 @@ typedef struct subject {
     hn_accel *accel;
     hn_accel_lanes lanes;
     hn_run *run;
+    hn_ensemble *ensemble;
     hn_arena *arena;
     double *q, *v, *a, *lambda;
     int n, evals;
@@ -130,6 +132,29 @@ static double time_run(subject *s) {
     return (hn_clock_thread() - start) / STEPS;
 }
 
+/// A sweep of so many runs from starts of their own, in one thread; the time is that of a step.
+static double time_sweep(subject *s) {
+    static double q[SWEEP * 3], v[SWEEP * 3], q_end[SWEEP * 3], v_end[SWEEP * 3];
+    static hn_ensemble_start starts[SWEEP];
+    static hn_ensemble_end ends[SWEEP];
+    for (int k = 0; k < SWEEP; k++) {
+        for (int i = 0; i < 3; i++) {
+            q[3 * k + i] = START[i];
+            v[3 * k + i] = START[3 + i] * (1 + 1e-5 * k);
+        }
+        starts[k] = hn_ensemble_start_of(s->ensemble, q + 3 * (size_t)k, v + 3 * (size_t)k);
+    }
+    const double start = hn_clock_thread();
+    hn_ensemble_run(s->ensemble, SWEEP, starts, SWEEP_STEPS * H, q_end, v_end, ends);
+    const double each = (hn_clock_thread() - start) / (SWEEP * (double)SWEEP_STEPS);
+    for (int k = 0; k < SWEEP; k++) {
+        if (ends[k].status != HN_OK || ends[k].steps != SWEEP_STEPS || ends[k].in_doubt > 0) {
+            give_up(s->name, "a run of the sweep did not come to its end in lanes");
+        }
+    }
+    return each;
+}
+
 /// A whole run from the start, beginning included.
 static double time_whole(subject *s) {
     const double start = hn_clock_thread();
@@ -222,6 +247,17 @@ static void make_run(subject *s, const char *formulation, int native, int watche
     hn_run_watch(s->run, watched);
 }
 
+static void make_sweep(subject *s) {
+    hn_ensemble_opts opts = hn_ensemble_opts_default();
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    opts.threads = 1;
+    if (hn_method_parse("index1@rk4:h=1e-4", &spec, &diag) != HN_OK ||
+        hn_ensemble_create(s->sys, &spec, &opts, &s->ensemble, &diag) != HN_OK) {
+        give_up(s->name, diag.message);
+    }
+}
+
 // ---- the table ----
 
 static int ascending(const void *a, const void *b) {
@@ -279,20 +315,25 @@ static void bench_steps(hn_system *sys) {
     static const char *const formulations[] = {"index1", "projection", "reduced"};
     static const char *const codes[] = {"interpreter", "native", "interpreter watched",
                                         "native watched"};
-    enum { N = 1 + 3 * 4 };
+    enum { N_RUNS = 1 + 3 * 4, N = N_RUNS + 1 };
     subject s[N] = {{.name = "fb0 rk4 step", .code = "hand", .batch = time_hand_step}};
     double y[6];
     for (int i = 0; i < 6; i++) {
         y[i] = START[i];
     }
     s[0].q = y;
-    for (int i = 1; i < N; i++) {
+    for (int i = 1; i < N_RUNS; i++) {
         const int f = (i - 1) / 4, code = (i - 1) % 4;
-        static char names[N][64];
+        static char names[N_RUNS][64];
         snprintf(names[i], sizeof names[i], "fb0 %s@rk4 step", formulations[f]);
         s[i] = (subject){.name = names[i], .code = codes[code], .batch = time_run, .sys = sys};
         make_run(&s[i], formulations[f], code % 2, code / 2);
     }
+    s[N_RUNS] = (subject){.name = "fb0 index1@rk4 step",
+                          .code = "10000 runs in lanes",
+                          .batch = time_sweep,
+                          .sys = sys};
+    make_sweep(&s[N_RUNS]);
     measure(s, N);
     print(s, N, 0);
 }

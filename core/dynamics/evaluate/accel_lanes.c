@@ -101,13 +101,7 @@ HN_LANES_FORMS(judge, (const hn_accel_lanes *l, verdicts *out), (l, out))
 
 hn_lane_bits hn_accel_lanes_eval(hn_accel_lanes *l) {
     verdicts found;
-    hn_lane_bits bits = 0;
     hn_lanes_run(l->tape, l->set, l->work);
     judge_forms[l->set](l, &found);
-    const long long *below = (const long long *)found.below;
-    const double *zero = (const double *)found.zero;
-    for (int k = 0; k < HN_LANES; k++) {
-        bits |= (hn_lane_bits)((below[k] < 0) & (zero[k] == 0)) << k;
-    }
-    return bits;
+    return hn_lanes_bits((const long long *)found.below, (const double *)found.zero);
 }

@@ -8,11 +8,6 @@
 #include "dynamics/evaluate/accel.h"
 #include "expr/lanes.h"
 
-#include <stdint.h>
-
-/// One bit for each lane.
-typedef uint32_t hn_lane_bits;
-
 typedef struct hn_accel_lanes {
     hn_lanes_set set;
     int nq, nv;

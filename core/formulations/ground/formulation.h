@@ -58,6 +58,8 @@ typedef enum hn_trait {
     HN_TRAIT_COUNTER_EXAMPLE = 1 << 8     ///< wrong on purpose
 } hn_trait;
 
+struct hn_accel_opts;
+
 typedef struct hn_formulation {
     const char *name;       ///< as spelled: "baumgarte"
     const char *title;      ///< "Baumgarte stabilisation"
@@ -109,6 +111,10 @@ typedef struct hn_formulation {
     int (*state_is_local)(const void *self);
     /// Changes an option while running (sliders). NULL: not possible.
     hn_status (*set)(void *self, int option, double value);
+    /// Where y = (q, v), v' are the accelerations of the system and nothing is kept from one step
+    /// to the next, so that many runs can step side by side: the options of the solver, and alpha
+    /// and beta [1/s]. NULL, or false: not so.
+    bool (*lanes)(const double *options, struct hn_accel_opts *accel, double *alpha, double *beta);
     void (*add_cost)(const void *self, hn_cost *cost); ///< adds its counters
     /// Returns the counter of fallbacks alone, for whoever asks after every step; only of a
     /// formulation without charts. NULL: add_cost tells.

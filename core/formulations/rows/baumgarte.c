@@ -108,6 +108,13 @@ static hn_status set(void *self, int option, double value) {
     return HN_OK;
 }
 
+static bool lanes(const double *options, hn_accel_opts *accel, double *alpha, double *beta) {
+    *accel = (hn_accel_opts){.baumgarte = true, .solver = (hn_solver)options[HN_STABILISED_SOLVER]};
+    *alpha = options[HN_STABILISED_ALPHA];
+    *beta = options[HN_STABILISED_BETA];
+    return (int)options[HN_STABILISED_RULE] == HN_BAUMGARTE_GIVEN;
+}
+
 static const char *const rules[] = {[HN_BAUMGARTE_GIVEN] = "given", [HN_BAUMGARTE_AUTO] = "auto"};
 
 const hn_formulation hn_formulation_baumgarte = {
@@ -162,6 +169,7 @@ const hn_formulation hn_formulation_baumgarte = {
     .get_state = hn_state_ode_get_state,
     .after_step = after_step,
     .set = set,
+    .lanes = lanes,
     .add_cost = hn_accel_ode_add_cost,
     .fallbacks = hn_accel_ode_fallbacks,
     .why = hn_state_ode_why,

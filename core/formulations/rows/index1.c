@@ -15,6 +15,12 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     return hn_accel_ode_init(ode, sys, 0, (hn_solver)options[OPT_SOLVER], arena, diag);
 }
 
+static bool lanes(const double *options, hn_accel_opts *accel, double *alpha, double *beta) {
+    *accel = (hn_accel_opts){.solver = (hn_solver)options[OPT_SOLVER]};
+    *alpha = *beta = 0;
+    return true;
+}
+
 const hn_formulation hn_formulation_index1 = {
     .name = "index1",
     .title = "index-1, not stabilised",
@@ -41,6 +47,7 @@ const hn_formulation hn_formulation_index1 = {
     .set_state = hn_state_ode_set_state,
     .get_state = hn_state_ode_get_state,
     .after_step = hn_state_ode_after_step,
+    .lanes = lanes,
     .add_cost = hn_accel_ode_add_cost,
     .fallbacks = hn_accel_ode_fallbacks,
     .why = hn_state_ode_why,

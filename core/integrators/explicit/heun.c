@@ -16,6 +16,7 @@ const hn_stepper hn_stepper_heun = {
     .stages = 2,
     .real_limit = 2,
     .imag_limit = 0,
+    .tableau = &hn_tableau_heun,
     .n_options = HN_FIXED_STEP_OPTIONS,
     .options = {HN_OPTIONS_FIXED_STEP},
     .create = create,

@@ -16,6 +16,7 @@ const hn_stepper hn_stepper_rk4 = {
     .stages = 4,
     .real_limit = 2.785293563405282,
     .imag_limit = 2.8284271247461903,
+    .tableau = &hn_tableau_rk4,
     .n_options = HN_FIXED_STEP_OPTIONS,
     .options = {HN_OPTIONS_FIXED_STEP},
     .create = create,

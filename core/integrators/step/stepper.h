@@ -22,6 +22,9 @@ typedef struct hn_stepper {
     bool partitioned; ///< treats positions and velocities differently (symplectic Euler)
     /// Largest stable |h s| on the negative real and on the imaginary axis; HUGE_VAL: no limit.
     double real_limit, imag_limit;
+    /// The tableau of an explicit Runge-Kutta method whose steps share nothing with each other, so
+    /// that many runs can step side by side; NULL: not so.
+    const struct hn_tableau *tableau;
     int n_options;
     hn_option options[HN_MAX_OPTIONS];
 
