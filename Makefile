@@ -101,7 +101,7 @@ BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLES       := tests/library/example.c
 FUZZ_SOURCES   := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 FUZZ_SUPPORT   := tests/fuzz/fuzz.c
-TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c tests/tables/accuracy.c
+TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c tests/tables/accuracy.c tests/tables/tolerance.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
                   $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES) $(FUZZ_SOURCES) $(FUZZ_SUPPORT)
 
@@ -323,6 +323,7 @@ help:
 	@echo 'make mechanisms   mechanisms of textbooks against geometry and closed forms: tests/tables/mechanisms.txt'
 	@echo 'make reports      which reports are right, on all scenes and 200 random mechanisms: tests/tables/reports.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
+	@echo 'make tolerance    what rtol is worth by every adaptive integrator, over all scenes: tests/tables/tolerance.txt'
 	@echo 'make accuracy     error estimates of runs against their errors, over all scenes: tests/tables/accuracy.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
@@ -341,7 +342,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy
+.PHONY: test test-quick asan tsan fuzz load page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -517,6 +518,12 @@ accuracy: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(OUT)/tests/tables/accuracy
 	@$(OUT)/tests/tables/accuracy >build/accuracy.txt || { cat build/accuracy.txt; exit 1; }
 	@cp build/accuracy.txt tests/tables/accuracy.txt && cat tests/tables/accuracy.txt
+
+# some minutes; fails where a method keeps its tolerance ten times worse than dopri5
+tolerance: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(OUT)/tests/tables/tolerance
+	@$(OUT)/tests/tables/tolerance >build/tolerance.txt || { cat build/tolerance.txt; exit 1; }
+	@cp build/tolerance.txt tests/tables/tolerance.txt && cat tests/tables/tolerance.txt
 
 # HOLONOM tells the scripts which program to drive
 # a locale that writes a comma in its numbers, for the tests alone

@@ -277,13 +277,13 @@ class Run(Command):
         compared = call("compare", "four-bar", "--methods", "index1@rk4:h=1e-2", "projection@rk4:h=1e-3", "--time", "10", "--json")
         self.assertEqual([m["verdict"]["is"] for m in json.loads(compared.stdout)["methods"]], ["wrong", "right"])
         # a tolerance bounds the error of a step: what is more than ten times as much is said as a multiple
-        loose = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6", "--time", "5", "--at", "5", "--json")
+        loose = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6,safety=1", "--time", "5", "--at", "5", "--json")
         told = json.loads(loose.stdout)["error_estimate"]
         self.assertGreater(told["over_rtol"], 10)
         self.assertAlmostEqual(told["over_rtol"] / (told["q"] / 1e-6), 1, delta=1e-6)
-        said = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6", "--time", "5", "--at", "5").stderr.decode()
+        said = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6,safety=1", "--time", "5", "--at", "5").stderr.decode()
         self.assertIn(f"({told['over_rtol']:.0f} times rtol, which bounds the error of a step)", said)
-        table = call("compare", "four-bar", "--methods", "ggl@ida:rtol=1e-6", "projection@rk4:h=1e-3", "--time", "5", "--wide").stdout.decode()
+        table = call("compare", "four-bar", "--methods", "ggl@ida:rtol=1e-6,safety=1", "projection@rk4:h=1e-3", "--time", "5", "--wide").stdout.decode()
         self.assertRegex(table, r"ggl@ida.* \d+ rtol ")
         self.assertEqual(table.count(" rtol "), 1)
         self.assertIsNone(estimate["over_rtol"])

@@ -12,7 +12,7 @@
 // library's own first step, and atol = rtol / 10, with which the printed counts come out to the
 // step.
 
-#define LIBRARY ",h0=-1,jacobian=differences"
+#define LIBRARY ",h0=-1,jacobian=differences,safety=1"
 #define UNTESTED ",suppress=multipliers,loosen=1" LIBRARY
 #define TESTED ",suppress=none,loosen=1" LIBRARY
 #define LOOSE ",suppress=multipliers,loosen=1e6" LIBRARY

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-enum { HN_MAX_OPTIONS = 8 };
+enum { HN_MAX_OPTIONS = 9 };
 
 typedef struct hn_option {
     const char *key;

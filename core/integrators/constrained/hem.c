@@ -66,7 +66,9 @@ const hn_stepper hn_stepper_hem4_adaptive = {
     .about = "hem4 with its error watched by step doubling: each step is made whole and in halves, "
              "the halves are kept. A partitioned pair of order 5(4), PHEM56 (Murua 1997), would "
              "need fewer evaluations; it is not here, because its coefficients could not be had "
-             "from a source that can be checked.",
+             "from a source that can be checked. rtol bounds the error of a step, not of the "
+             "motion: over the shipped scenes, at rtol=1e-6, the middle error is 250 rtol, and one "
+             "in ten is above 9800 rtol.",
     .source = "Brasey & Hairer 1993; Hairer, Norsett & Wanner 1993, section II.4",
     .order = 4,
     .control_order = 5,

@@ -171,8 +171,8 @@ const hn_stepper hn_stepper_dop853 = {
     .about = "Chooses its own long steps from rtol and atol; order 8. Twelve right-hand sides for "
              "a trial and four more for an accepted step's dense output of order 7. For tight "
              "tolerances and references."
-             " A pole on a cart is off by about 10 rtol after 5 s; over the "
-             "shipped scenes the middle error is 12 rtol.",
+             " A pole on a cart is off by about 10 rtol after 5 s; over the shipped scenes, at "
+             "rtol=1e-6, the middle error is 12 rtol, and one in ten is above 480 rtol.",
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.5, II.6, II.10",
     .order = 8,
     .stages = STAGES,

@@ -12,8 +12,8 @@ const hn_stepper hn_stepper_dopri5 = {
     .about = "Chooses its own step from rtol and atol; order 5, dense output of order 4. On stiff "
              "undamped "
              "springs it takes smaller steps than rk4."
-             " A pole on a cart is off by about 5 rtol after 5 s; over the "
-             "shipped scenes the middle error is 50 rtol.",
+             " A pole on a cart is off by about 5 rtol after 5 s; over the shipped scenes, at "
+             "rtol=1e-6, the middle error is 46 rtol, and one in ten is above 2900 rtol.",
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.4-II.6",
     .order = 5,
     .stages = 6,

@@ -7,6 +7,7 @@
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -146,13 +147,32 @@ static hn_status slope(void *self, double t, const double *y, double *ydot) {
                          &info);
 }
 
+// [s] The velocity of a first step is a difference of positions over h. Below this step their
+// rounding alone is more than the tolerance of the velocity, and the error test turns down noise.
+static double least_first_step(const hn_ida_problem *p, const double *state, double rtol,
+                               double atol, const double *unit) {
+    static const double ROUNDING = 4 * DBL_EPSILON; // of two positions and of what is solved for
+    const double *v = state + p->nq;
+    double least = 0;
+    for (int i = 0; i < p->nv; i++) {
+        const int at = hn_system_position_of(p->sys, i);
+        if (at >= 0) {
+            const double tolerance = atol * unit[p->nq + i] + rtol * fabs(v[i]);
+            least = fmax(least, ROUNDING * fabs(state[at]) / tolerance);
+        }
+    }
+    return least;
+}
+
 hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state, double rtol,
                                     double atol, const double *unit, double hmax, double *h) {
     enum { ERROR_POWER = 2 }; // of h in the error of a step of order 1
     const size_t n = (size_t)(p->nq + p->nv);
     const hn_ode ode = {.n_pos = p->nq, .n_vel = p->nv, .self = p, .rhs = slope, .unit = unit};
-    return hn_first_step(&ode, t, state, ERROR_POWER, rtol, atol, hmax, p->slope, p->slope + n,
-                         p->slope + 2 * n, h);
+    HN_TRY(hn_first_step(&ode, t, state, ERROR_POWER, rtol, atol, hmax, p->slope, p->slope + n,
+                         p->slope + 2 * n, h));
+    *h = fmin(fmax(*h, least_first_step(p, state, rtol, atol, unit)), hmax);
+    return HN_OK;
 }
 
 // r -= J' x over the kept rows

@@ -54,9 +54,10 @@ int hn_ida_problem_room(const hn_ida_problem *p);
 HN_MUST_CHECK hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state,
                                              double *y, double *ydot);
 /// A first step h at which the formula of order 1 that IDA starts with errs by about the tolerance,
-/// from the slopes at a state and near it. The library's own choice, which makes the first step as
-/// small as rtol, loses the multipliers in rounding divided by h when they stand in constraints on
-/// speeds or positions. Fails like hn_accel_eval().
+/// from the slopes at a state and near it, or a longer one where the rounding of positions over h
+/// would exceed the tolerance of velocities. The library's own choice, which makes the first step
+/// as small as rtol, loses the multipliers in rounding divided by h when they stand in constraints
+/// on speeds or positions. Fails like hn_accel_eval().
 HN_MUST_CHECK hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state,
                                                   double rtol, double atol, const double *unit,
                                                   double hmax, double *h);

@@ -10,6 +10,7 @@
 #include "integrators/implicit/implicit_linear.h"
 #include "integrators/implicit/implicit_linear_solve.h"
 #include "integrators/implicit/stages.h"
+#include "integrators/implicit/turn.h"
 #include "linalg/dense.h"
 
 #include <float.h>
@@ -59,25 +60,11 @@ static bool wants_speed_gap(hn_dae_form form) {
     return form == HN_FORM_INDEX2 || form == HN_FORM_GGL;
 }
 
-// D(x) u of (1) for one ball: u + 1/2 x u + (1 - a/2 cot a/2) / a^2 x (x u), products of vectors, a
-// the angle
-static void turn_rate(const double *x, double *u) {
-    const double a = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-    // the series where the quotient cancels: its next term is a^4 / 30240
-    const double k = a < 1e-2 ? 1.0 / 12 + a * a / 720 : (1 - a / 2 / tan(a / 2)) / (a * a);
-    const double once[3] = {x[1] * u[2] - x[2] * u[1], x[2] * u[0] - x[0] * u[2],
-                            x[0] * u[1] - x[1] * u[0]};
-    const double twice[3] = {x[1] * once[2] - x[2] * once[1], x[2] * once[0] - x[0] * once[2],
-                             x[0] * once[1] - x[1] * once[0]};
-    for (int i = 0; i < 3; i++) {
-        u[i] += once[i] / 2 + k * twice[i];
-    }
-}
-
+// D(x) u of (1)
 static void apply_D(const implicit_dae *s, const double *x, double *u) {
     for (int i = 0; i < s->nv && s->nq > s->nv; i++) {
         if (hn_system_position_of(s->sys, i) < 0) {
-            turn_rate(x + i, u + i);
+            hn_turn_rate(x + i, u + i);
             i += 2;
         }
     }
@@ -382,20 +369,42 @@ static void filter_error(implicit_dae *s, const double *v, const double *force, 
     hn_implicit_linear_solve(&s->lin, (hn_parts){1, {r, NULL}});
 }
 
-// speeds of index 3 are what positions of index 2 are: their error enters the next step times h
-static double speed_factor(const implicit_dae *s, double h) {
+// Across the constraints, speeds of index 3 are what positions of index 2 are: their error enters
+// the next step times h. Along them they are integrated like those of any other form.
+static double factor_across(const implicit_dae *s, double h) {
     return s->form == HN_FORM_INDEX3 ? fmin(h, 1) : 1;
 }
 
+// The part of a change of speeds dv (nv) that the constraints allow, into `along`. Projection gives
+// it but for what the loops that move from outside ask for, which is taken off. All of dv where it
+// fails: the error is then not called smaller than it may be.
+static void take_along(implicit_dae *s, double t, const double *dv, double *along, double *moved) {
+    const size_t size = (size_t)s->nv * sizeof *dv;
+    memcpy(along, dv, size);
+    memset(moved, 0, size);
+    if (hn_project_velocity(s->projector, t, s->q0, along, NULL) != HN_OK ||
+        (s->is_driven && hn_project_velocity(s->projector, t, s->q0, moved, NULL) != HN_OK)) {
+        memcpy(along, dv, size);
+        return;
+    }
+    hn_axpy(s->nv, -1, moved, along);
+}
+
 // in terms of y
-static void put_error(implicit_dae *s, double h, double *err) {
-    const double *r = s->st.parts, factor_v = speed_factor(s, h);
+static void put_error(implicit_dae *s, double t, double h, double *err) {
+    const double *r = s->st.parts, *dv = r + s->nv, across = factor_across(s, h);
+    double *along = s->v;
     hn_system_kinematics(s->sys, s->q0, r, err);
     for (int i = 0; i < s->nq; i++) {
         err[i] *= s->weight;
     }
+    if (across < 1) {
+        take_along(s, t, dv, along, s->x);
+    } else {
+        memcpy(along, dv, (size_t)s->nv * sizeof *dv);
+    }
     for (int i = 0; i < s->nv; i++) {
-        err[s->nq + i] = s->weight * factor_v * r[s->nv + i];
+        err[s->nq + i] = s->weight * (along[i] + across * (dv[i] - along[i]));
     }
 }
 
@@ -408,7 +417,7 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     weigh_for_error(s, h, 0, ex);
     weigh_for_error(s, h, 1, ew);
     filter_error(s, s->v0, s->force, ex, ew);
-    put_error(s, h, err);
+    put_error(s, t, h, err);
     if (hn_error_norm(n, err, y, y_new, s->opts.rtol, s->opts.atol, s->unit) < 1) {
         return;
     }
@@ -418,7 +427,7 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
         s->x[i] = -s->R[i];
     }
     filter_error(s, s->v, s->x, ex, ew);
-    put_error(s, h, err);
+    put_error(s, t, h, err);
 }
 
 // The estimate is a motion that the loops allow. Where they are moved from outside it sees nothing
@@ -440,7 +449,7 @@ static void add_gap_between(implicit_dae *s, double t, double h, double *err) {
         err[i] = fmax(fabs(err[i]), s->weight * fabs(dq[i]));
     }
     for (int i = 0; i < nv; i++) {
-        const double speed = s->weight * speed_factor(s, h) * fabs(r[nv + i]);
+        const double speed = s->weight * factor_across(s, h) * fabs(r[nv + i]);
         err[s->nq + i] = fmax(fabs(err[s->nq + i]), speed);
     }
 }

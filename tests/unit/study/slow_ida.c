@@ -31,7 +31,7 @@ typedef struct row {
     double err, err_factor; // largest difference of an angle; within this factor; 0: any
 } row;
 
-#define LIBRARY ",h0=-1,jacobian=differences"
+#define LIBRARY ",h0=-1,jacobian=differences,safety=1"
 #define UNTESTED ",suppress=multipliers,loosen=1" LIBRARY
 #define TESTED ",suppress=none,loosen=1" LIBRARY
 #define LOOSE ",suppress=multipliers,loosen=1e6" LIBRARY
