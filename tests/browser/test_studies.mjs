@@ -313,7 +313,7 @@ test("a map over alpha and beta is asked for the methods that have them alone", 
   );
 });
 
-test("the map that opens first is the telling one that the scene has", () => {
+test("the server chooses the map unless one is chosen, and the menu has those that fit", () => {
   const stability = {
     ...STUDIES[1],
     presets: [
@@ -328,10 +328,23 @@ test("the map that opens first is the telling one that the scene has", () => {
       catalogue: CATALOGUE,
       methods: [{ spelling }],
       scene: { parameters: units.map((unit) => ({ unit })) },
-    }).map(({ name }) => name);
+    })
+      .map(({ name }) => name)
+      .sort();
   assert.deepEqual(names(["m"], "index1@rk4"), ["limits"]);
-  assert.deepEqual(names(["N/m", "kg"], "index1@rk4"), ["stiffness", "limits", "mass-ratio"]);
-  assert.equal(names(["N/m"], "baumgarte@rk4")[0], "baumgarte");
+  assert.deepEqual(names(["N/m", "kg"], "index1@rk4"), ["limits", "mass-ratio", "stiffness"]);
+  assert.ok(names(["N/m"], "baumgarte@rk4").includes("baumgarte"));
+
+  // nothing but the methods is sent, and no option that some map varies makes it another study
+  const methods = [{ spelling: "baumgarte:alpha=5,beta=5@rk4:h=1e-3" }];
+  const data = { scene: { id: "a" }, settings: {}, methods, catalogue: CATALOGUE };
+  const order = orderOf("stability", data, "");
+  assert.deepEqual(Object.keys(order).sort(), ["kind", "methods", "parameters", "scene"]);
+  const other = [{ spelling: "baumgarte:alpha=9,beta=2@rk4:h=1e-2" }];
+  assert.equal(
+    signatureOf(order),
+    signatureOf(orderOf("stability", { ...data, methods: other }, "")),
+  );
   readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
 });
 
@@ -430,6 +443,18 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   await soon(async () =>
     assert.ok((await page.locator(".maps .contour").count()) > 0, "at first as heat"),
   );
+  await soon(async () => {
+    const map = await read(page, ({ studies: { stability } }) => ({
+      preset: stability.document.preset,
+      steps: stability.document.steps.length,
+    }));
+    const menu = page.locator("#map-over option:checked");
+    assert.deepEqual([map.preset, await menu.getAttribute("value")], ["baumgarte", ""]);
+    assert.match(await menu.textContent(), /^the most telling map: alpha and beta/);
+    const lines = await page.locator(".steps li").allTextContents();
+    assert.equal(lines.length, map.steps, "the map of steps by which it was chosen");
+    assert.ok(lines.every((line) => /not stiff: at the predicted limit/.test(line)));
+  });
   await page.getByRole("button", { name: "outcome" }).click();
   await soon(async () => {
     const letters = await page.locator(".maps .cell .letter").allTextContents();

@@ -59,11 +59,12 @@ export const mostMethods = (kind) =>
 /**
  * Options that a study varies itself: a change of them makes no other study of it.
  * @param {string} kind
- * @param {string} preset of a stability map
+ * @param {string} preset of a stability map; "": one that the server chooses
  * @returns {string[]}
  */
 export function variedBy(kind, preset) {
   const study = studyOf(kind);
   const chosen = study?.presets.find(({ name }) => name === preset);
-  return chosen?.chooses ?? study?.chooses ?? [];
+  const any = (study?.presets ?? []).flatMap(({ chooses }) => chooses);
+  return chosen?.chooses ?? [...(study?.chooses ?? []), ...any];
 }

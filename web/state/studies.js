@@ -43,8 +43,7 @@ const hasOptions = (catalogue, spelling, { chooses, stabilised }) =>
 const OVER = { stiffness: ["N/m", "N*m/rad"], "mass-ratio": ["kg"] };
 
 /**
- * The maps that the methods and the scene have, the most telling one first: of a method's own
- * options, of a stiffness, of the step alone, of masses.
+ * The maps that the methods and the scene have.
  * @param {{
  *   catalogue: Catalogue, methods: {spelling: string}[], scene?: {parameters?: {unit: string}[]},
  * }} data
@@ -52,14 +51,10 @@ const OVER = { stiffness: ["N/m", "N*m/rad"], "mass-ratio": ["kg"] };
 export function presetsOf({ catalogue, methods, scene }) {
   const has = ({ name }) =>
     !OVER[name] || (scene?.parameters ?? []).some(({ unit }) => OVER[name].includes(unit));
-  const rank = ({ name, stabilised }) =>
-    stabilised ? 0 : name === "stiffness" ? 1 : OVER[name] ? 3 : 2;
-  return presets()
-    .filter(
-      (preset) =>
-        has(preset) && methods.some(({ spelling }) => hasOptions(catalogue, spelling, preset)),
-    )
-    .sort((a, b) => rank(a) - rank(b));
+  return presets().filter(
+    (preset) =>
+      has(preset) && methods.some(({ spelling }) => hasOptions(catalogue, spelling, preset)),
+  );
 }
 
 /**
@@ -92,16 +87,19 @@ function widerAxes(catalogue, spelling, keys) {
  *   settings: Record<string, number>, methods: {spelling: string}[],
  *   catalogue: Catalogue,
  * }} data
- * @param {string} preset of a map
+ * @param {string} preset of a map; "": the server chooses the most telling one
  */
 export function orderOf(kind, { scene, document, settings, methods, catalogue }, preset) {
   const all = methods.map(({ spelling }) => spelling);
   const common = { scene: document ?? scene.id, parameters: settings, kind };
+  if (kind === "stability" && !preset) {
+    return { ...common, methods: all.slice(0, mostMethods(kind)) };
+  }
   if (kind === "stability") {
     const chosen = presets().find(({ name }) => name === preset);
     const fitting = chosen
       ? all.filter((spelling) => hasOptions(catalogue, spelling, chosen))
-      : all;
+      : all; // of a name that the server does not know it says so
     const over = chosen?.stabilised ? widerAxes(catalogue, fitting[0] ?? "", chosen.chooses) : "";
     const axes = over ? { over } : { preset };
     return { ...common, methods: fitting.slice(0, mostMethods(kind)), ...axes, ...MAP_SIDE };
@@ -194,10 +192,10 @@ export function createStudyFeed(store) {
     }
   }
 
-  /** The map that is asked for, where this scene has it; else the most telling one. */
+  /** The map that is asked for, where this scene has it; else "": the server chooses one. */
   function preset() {
     const names = presetsOf(data).map(({ name }) => name);
-    return names.includes(data.view.map) ? data.view.map : (names[0] ?? "");
+    return names.includes(data.view.map) ? data.view.map : "";
   }
   const order = (kind) => orderOf(kind, data, preset());
 

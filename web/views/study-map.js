@@ -2,7 +2,7 @@
 // @ts-check
 // Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
 // was predicted. A cell can be pointed at, and clicked to set what its axes stand for.
-import { plain, prettyUnit, quantity } from "../state/format.js";
+import { plain, prettyUnit, quantity, withPowers } from "../state/format.js";
 import { HEATS, heatOf, heatSentences, heatWords } from "../state/heat.js";
 import { presetsOf } from "../state/studies.js";
 import { CLASSES } from "../state/study-documents.js";
@@ -45,6 +45,7 @@ export function createStudyMap(store, actions) {
   let heat = ""; // the quantity that colours the cells; "": their outcome
   let chosen = false; // the colour was chosen by hand
   const best = h("ul", { class: "answers" });
+  const steps = h("div", { class: "steps", hidden: true });
   const legend = h("ul", { class: "legend" });
   const told = h("p", { class: "told" });
   const fields = h("div", { class: "maps" });
@@ -62,6 +63,7 @@ export function createStudyMap(store, actions) {
     best,
     told,
     legend,
+    steps,
   );
 
   /**
@@ -153,6 +155,20 @@ export function createStudyMap(store, actions) {
       button.setAttribute(
         "aria-pressed",
         String(["", ...HEATS.map((one) => one.name)][k] === heat),
+      ),
+    );
+  }
+
+  /** What the map of steps has told, by which the server chose this one. */
+  function showSteps() {
+    const list = map()?.steps ?? [];
+    steps.hidden = list.length === 0;
+    steps.replaceChildren(
+      h("p", { class: "word" }, "The largest step of each method:"),
+      h(
+        "ul",
+        { class: "answers" },
+        ...list.map((one) => h("li", {}, `${labelOf(one)}: ${withPowers(one.agreement.text)}`)),
       ),
     );
   }
@@ -314,8 +330,13 @@ export function createStudyMap(store, actions) {
       heat = map()?.x?.name === "alpha" ? HEATS[0].name : "";
     }
     const presets = presetsOf(data);
-    menu.replaceChildren(...presets.map(({ name, about }) => h("option", { value: name }, about)));
+    const telling = presets.find(({ name }) => name === map()?.preset)?.about;
+    menu.replaceChildren(
+      h("option", { value: "" }, `the most telling map${telling ? `: ${telling}` : ""}`),
+      ...presets.map(({ name, about }) => h("option", { value: name }, about)),
+    );
     menu.value = actions.preset();
+    showSteps();
     fields.hidden = legend.hidden = told.hidden = !map();
     if (map()) {
       drawn = [];
