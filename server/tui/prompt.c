@@ -2,6 +2,7 @@
 #include "tui/prompt.h"
 
 #include "base/shortest.h"
+#include "session/precision/wanted.h"
 #include "tui/exercise_panel.h"
 #include "tui/keys.h"
 #include "tui/methods.h"
@@ -136,6 +137,18 @@ static void accept_export(hn_workbench *w) {
     hn_text_panel_run(w, "export: Esc goes back", words, 6);
 }
 
+/// The error for which the cheapest method is wanted; the study says which that is.
+static void accept_wanted(hn_workbench *w) {
+    hn_wanted read;
+    if (!hn_wanted_read(w->input, 1, &read)) {
+        hn_workbench_say(w, "'%.40s' is no error above 0; type one as 1 mm, 0.1 %%, 1 mrad or 1e-3",
+                         w->input);
+        return;
+    }
+    snprintf(w->wanted, sizeof w->wanted, "%.31s", w->input);
+    w->scroll = 0;
+}
+
 /// Cuts the line after its first n characters.
 static void cut_input(hn_workbench *w, int n) {
     w->n_input = n;
@@ -159,7 +172,8 @@ void hn_prompt_key(hn_workbench *w, int key) {
                                                      [HN_PROMPT_METHOD] = accept_method,
                                                      [HN_PROMPT_PARAMETER] = accept_parameter,
                                                      [HN_PROMPT_EXPORT] = accept_export,
-                                                     [HN_PROMPT_ANSWER] = hn_exercise_panel_accept};
+                                                     [HN_PROMPT_ANSWER] = hn_exercise_panel_accept,
+                                                     [HN_PROMPT_WANTED] = accept_wanted};
 
     // Escape forgets the line, Enter hands it over
     if (key == HN_KEY_ESCAPE) {

@@ -2,6 +2,7 @@
 #include "tui/study_job.h"
 
 #include "cli/shell/cache_folder.h"
+#include "session/precision/wanted.h"
 #include "session/stability/stability_column.h"
 #include "terminal/short_spelling.h"
 
@@ -22,10 +23,10 @@ struct hn_tui_study {
     char methods[HN_JOB_METHODS][HN_SPEC_MAX];
     char folder[FOLDER];
     hn_job_request request;
-    hn_job *job; ///< of the thread; NULL while it opens
+    hn_job *job; ///< owned; of the thread until `done`; NULL while it opens
     pthread_t thread;
     bool started;
-    atomic_bool stop, done;
+    atomic_bool stop, done, ranked; ///< ranked: its methods can be compared
     _Atomic double share;
     pthread_mutex_t lock; ///< guards what follows
     hn_cost_plot cost;
@@ -110,8 +111,7 @@ static void *compute(void *user) {
                          diags.n > 0 ? diags.item[0].hint : "");
         pthread_mutex_unlock(&s->lock);
     }
-    hn_job_free(s->job);
-    s->job = NULL;
+    atomic_store(&s->ranked, status == HN_OK && !end.stopped && s->kind == HN_TUI_COST);
     atomic_store(&s->done, true);
     return NULL;
 }
@@ -185,6 +185,7 @@ void hn_tui_study_free(hn_tui_study *s) {
         hn_tui_study_stop(s);
         pthread_join(s->thread, NULL);
     }
+    hn_job_free(s->job);
     hn_model_free(s->model);
     hn_strbuf_reset(&s->words);
     pthread_mutex_destroy(&s->lock);
@@ -213,6 +214,19 @@ void hn_tui_study_map(hn_tui_study *s, hn_map_plot *out) {
     pthread_mutex_lock(&s->lock);
     *out = s->map;
     pthread_mutex_unlock(&s->lock);
+}
+
+bool hn_tui_study_wanted(const hn_tui_study *s, const char *wanted, hn_strbuf *b,
+                         char spelling[HN_SPEC_MAX]) {
+    const double length = hn_system_length(hn_model_system(s->model));
+    hn_wanted read;
+    spelling[0] = '\0';
+    if (!atomic_load(&s->done) || !atomic_load(&s->ranked) ||
+        !hn_wanted_read(wanted, length, &read)) {
+        return false;
+    }
+    hn_wanted_text(b, hn_job_work(s->job), &read, spelling);
+    return true;
 }
 
 void hn_tui_study_words(hn_tui_study *s, hn_strbuf *b) {

@@ -35,6 +35,11 @@ hn_tui_study_kind hn_tui_study_get_kind(const hn_tui_study *s);
 /// Copies of the plot as it is now; of the kind that was started.
 void hn_tui_study_cost(hn_tui_study *s, hn_cost_plot *out);
 void hn_tui_study_map(hn_tui_study *s, hn_map_plot *out);
+/// Writes which method is the cheapest for an error as it is typed (session/precision/wanted.h),
+/// and its spelling; false: the study is no work-precision study that has come to its end, or the
+/// text is no error.
+bool hn_tui_study_wanted(const hn_tui_study *s, const char *wanted, hn_strbuf *b,
+                         char spelling[HN_SPEC_MAX]);
 /// What there is to read: classes and the cheapest methods, the agreement of a map, or the fault;
 /// "" before the end. Adds to b.
 void hn_tui_study_words(hn_tui_study *s, hn_strbuf *b);

@@ -98,6 +98,24 @@ static void take_cell(hn_workbench *w) {
                              four_digits(map.y.value[w->at.row]));
 }
 
+/// Enter on a work-precision study: the cheapest method for the wanted error joins the methods.
+static void take_cheapest(hn_workbench *w) {
+    char spelling[HN_SPEC_MAX], shown[HN_SPEC_MAX];
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    const bool known = hn_tui_study_wanted(w->study, w->wanted, &b, spelling);
+    hn_strbuf_reset(&b);
+    if (spelling[0]) {
+        hn_short_spelling(spelling, shown, sizeof shown);
+        w->panel = HN_PANEL_MAIN;
+        hn_methods_add(w, spelling);
+        hn_workbench_say(w, "%s runs beside the others", shown);
+    } else {
+        hn_workbench_say(w, known ? "no run of this study is so accurate"
+                                  : "the cheapest method is known when the study is done");
+    }
+}
+
 static void move_cursor(hn_workbench *w, int dx, int dy) {
     static hn_map_plot map;
     hn_tui_study_map(w->study, &map);
@@ -127,6 +145,10 @@ void hn_study_panel_key(hn_workbench *w, int key) {
         w->study = NULL;
     } else if (map && key == HN_KEY_ENTER) {
         take_cell(w);
+    } else if (!map && key == HN_KEY_ENTER) {
+        take_cheapest(w);
+    } else if (!map && key == 'e') {
+        hn_workbench_ask(w, HN_PROMPT_WANTED, w->wanted);
     } else if (map && (down || across)) {
         move_cursor(w, across, -down);
     } else if (down) {
@@ -139,6 +161,10 @@ void hn_study_panel_key(hn_workbench *w, int key) {
 static void draw_words(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_strbuf b;
     hn_strbuf_init(&b);
+    char spelling[HN_SPEC_MAX];
+    if (hn_tui_study_wanted(w->study, w->wanted, &b, spelling)) {
+        hn_strbuf_add(&b, "\n\n");
+    }
     hn_tui_study_words(w->study, &b);
     const char *text = hn_strbuf_text(&b);
     for (int line = 0; line < w->scroll && strchr(text, '\n'); line++) {

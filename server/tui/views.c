@@ -104,7 +104,7 @@ static const char *keys_line(const hn_workbench *w, int columns) {
     case HN_PANEL_STUDY:
         return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
                    ? "arrows choose a cell  Enter take its alpha and beta  Esc back"
-                   : "↑↓ scroll the words  Esc back";
+                   : "e error wanted  Enter add the cheapest  ↑↓ scroll  Esc back";
     default:
         if (w->why) {
             return hn_why_has_remedy(w)
@@ -123,11 +123,10 @@ static const char *keys_line(const hn_workbench *w, int columns) {
 
 /// The last line: what is typed, or the keys.
 static void draw_footer(hn_cells *c, const hn_workbench *w) {
-    static const char *const asks[] = {[HN_PROMPT_STEP] = "dt [s, or 20 ms]: ",
-                                       [HN_PROMPT_METHOD] = "method: ",
-                                       [HN_PROMPT_PARAMETER] = "value: ",
-                                       [HN_PROMPT_EXPORT] = "write to: ",
-                                       [HN_PROMPT_ANSWER] = "answer: "};
+    static const char *const asks[] = {
+        [HN_PROMPT_STEP] = "dt [s, or 20 ms]: ", [HN_PROMPT_METHOD] = "method: ",
+        [HN_PROMPT_PARAMETER] = "value: ",       [HN_PROMPT_EXPORT] = "write to: ",
+        [HN_PROMPT_ANSWER] = "answer: ",         [HN_PROMPT_WANTED] = "error wanted: "};
     const hn_area area = {1, c->rows - 1, c->columns - 2, 1};
     if (w->prompt != HN_PROMPT_NONE) {
         const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);

@@ -83,6 +83,7 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
     *w = (hn_workbench){.library = library,
                         .speed = 1,
                         .playing = true,
+                        .wanted = "1 mm",
                         .pictures = hn_pictures_start(HN_PIXELS_OFF, HN_THEME_DARK)};
     hn_strbuf_init(&w->text);
     hn_strbuf_init(&w->link);

@@ -39,7 +39,8 @@ typedef enum hn_prompt_kind {
     HN_PROMPT_METHOD,
     HN_PROMPT_PARAMETER,
     HN_PROMPT_EXPORT,
-    HN_PROMPT_ANSWER
+    HN_PROMPT_ANSWER,
+    HN_PROMPT_WANTED
 } hn_prompt_kind;
 typedef enum hn_tui_plot { HN_TUI_GAP, HN_TUI_ERROR, HN_TUI_ENERGY, HN_TUI_PLOTS } hn_tui_plot;
 
@@ -124,6 +125,7 @@ typedef struct hn_workbench {
     hn_child child;            ///< the command whose text this is, while it runs
     hn_preview preview;
     hn_tui_study *study; ///< of its panel; owned, NULL otherwise
+    char wanted[32];     ///< error that is wanted of a method, as it was typed
     double present[2];   ///< alpha and beta of the method that a map is about
     hn_map_place at;     ///< cursor of a map
 

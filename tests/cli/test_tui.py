@@ -484,6 +484,22 @@ class Keys(unittest.TestCase):
         card = " ".join("".join(line[67:149] for line in out.split("\n")[2:50]).split())
         self.assertNotRegex(card, r"(?<!\() try (?!\S+ \(tried to)")
 
+    def test_the_cheapest_method_for_an_error_keeps_that_error(self):
+        methods = ("--methods", "index1@rk4:h=0.02", "index1@euler:h=0.02")
+        with tempfile.TemporaryDirectory() as cache:
+            def study(keys):
+                return once("pendulum", "--once", "--t", "0.5", "--size", "150x40", *methods, "--keys", "w" + keys, HOLONOM_CACHE=cache)[1]
+            out = " ".join("".join(line[100:149] for line in study("").split("\n")[2:20]).split())
+            self.assertRegex(out, r"For 1 mm at the end of [\d.]+ m, an error of \S+ up to t = 2 s: index1@rk4 with h = \S+ s is the cheapest, (about|at most) \S+")
+            self.assertIn("is no error above 0; type one as 1 mm", study("e<CtrlU>0<Enter>"))
+            self.assertIn("no run of this study is so accurate", study("e<CtrlU>1e-15<Enter><Enter>"))
+            # what is added by Enter has the error that was asked for, in the study's 2 s; half of it at least, as its size is read off a line between two points
+            listed = study("e<CtrlU>1e-4<Enter><Enter>m")
+        method = re.search(r"│ (index1@rk4:h=(?!0\.02 )\S+)", listed).group(1)
+        run = json.loads(subprocess.run([PROGRAM, "run", "pendulum", "--method", method, "--time", "2", "--json"], capture_output=True, check=True).stdout)
+        self.assertLess(run["error_estimate"]["q"], 1.1e-4)
+        self.assertGreater(run["error_estimate"]["q"], 0.3e-4)
+
     def test_joint_forces_are_those_of_run(self):
         method, at = "projection@rk4:h=0.01", "1"
         done = subprocess.run([PROGRAM, "run", "four-bar", "--method", method, "--time", at, "--at", at, "--reactions", "--json"], capture_output=True, check=True)

@@ -44,8 +44,7 @@ hn_error_kind hn_wp_ranked_error(const hn_wp *wp) {
     return hn_wp_is_beyond_horizon(wp) ? HN_ERROR_ENERGY : HN_ERROR_Q;
 }
 
-/// Returns the error, or the bound that the accuracy of the reference sets.
-static double claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind error) {
+double hn_wp_claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind error) {
     return fmax(p->worst[error], HN_WP_ABOVE_REFERENCE * wp->ref->error[error]);
 }
 
@@ -62,9 +61,8 @@ static double between(double x, double x0, double y0, double x1, double y1) {
     return exp(log(y0) + share * (log(y1) - log(y0)));
 }
 
-/// Returns the point where a method reaches the accuracy at the least cost; level -1: nowhere.
-static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
-                         hn_cost_kind kind, int m, double accuracy) {
+hn_place hn_wp_reach(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
+                     hn_cost_kind kind, int m, double accuracy) {
     hn_place best = {m, -1, -1, 0};
     int before = -1;
     for (int k = 0; k < wp->n_levels; k++) {
@@ -73,16 +71,16 @@ static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind
             continue;
         }
 
-        const double e = claimed(wp, p, error);
+        const double e = hn_wp_claimed(wp, p, error);
         hn_place here = {m, k, -1, hn_wp_cost(p, kind)};
 
         // accurate enough: the cost of just reaching it lies between this point and the coarser one
         if (e <= accuracy) {
             const hn_wp_point *coarser = before >= 0 ? &wp->methods[m].point[before] : NULL;
-            if (coarser && e < accuracy && claimed(wp, coarser, error) > accuracy &&
+            if (coarser && e < accuracy && hn_wp_claimed(wp, coarser, error) > accuracy &&
                 hn_wp_cost(coarser, kind) < here.cost) {
                 here.from = before;
-                here.cost = between(accuracy, claimed(wp, coarser, error),
+                here.cost = between(accuracy, hn_wp_claimed(wp, coarser, error),
                                     hn_wp_cost(coarser, kind), e, here.cost);
             }
             if (best.level < 0 || here.cost < best.cost) {
@@ -153,14 +151,15 @@ static void judge(const hn_wp *wp, hn_cost_kind cost, hn_band *band) {
     band->ranking = band->unsteady.level >= 0 ? HN_RANKING_UNSTEADY : HN_RANKING_CLEAR;
 }
 
-static void fill_band(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
-                      hn_cost_kind cost, hn_band *band) {
+void hn_wp_band(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
+                double accuracy, hn_band *band) {
     hn_place place[HN_WP_METHODS];
+    *band = (hn_band){.accuracy = accuracy};
     band->best = band->next = (hn_place){-1, -1, -1, 0};
 
     // the cheapest method and the next one
     for (int m = 0; m < wp->n_methods; m++) {
-        place[m] = cheapest(wp, classes, error, cost, m, band->accuracy);
+        place[m] = hn_wp_reach(wp, classes, error, cost, m, band->accuracy);
         if (place[m].level < 0) {
             continue;
         }
@@ -207,13 +206,13 @@ void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
                        .clocks_differ = timed && !(wp->clocks_apart <= HN_PARETO_STEADY),
                        .beyond_horizon = error <= HN_ERROR_REACTION && hn_wp_is_beyond_horizon(wp)};
     for (int d = 1; d <= HN_PARETO_BANDS && !out->beyond_horizon; d++) {
-        hn_band band = {.accuracy = pow(10, -d)}, counted = band;
-        fill_band(wp, classes, error, cost, &band);
+        hn_band band, counted = {.accuracy = pow(10, -d)};
+        hn_wp_band(wp, classes, error, cost, pow(10, -d), &band);
         if (band.best.level < 0) {
             return;
         }
         if (timed) {
-            fill_band(wp, classes, error, HN_COST_OPS, &counted);
+            hn_wp_band(wp, classes, error, HN_COST_OPS, pow(10, -d), &counted);
         }
         out->counted[out->n_bands] = counted;
         out->band[out->n_bands++] = band;
@@ -231,9 +230,9 @@ int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error
             const hn_wp_point *other = &wp->methods[i].point[j];
             if (takes_part(wp, classes, error, cost, i, j) &&
                 hn_wp_cost(other, cost) <= hn_wp_cost(p, cost) &&
-                claimed(wp, other, error) <= claimed(wp, p, error) &&
+                hn_wp_claimed(wp, other, error) <= hn_wp_claimed(wp, p, error) &&
                 (hn_wp_cost(other, cost) < hn_wp_cost(p, cost) ||
-                 claimed(wp, other, error) < claimed(wp, p, error))) {
+                 hn_wp_claimed(wp, other, error) < hn_wp_claimed(wp, p, error))) {
                 return 0;
             }
         }
@@ -255,11 +254,11 @@ static double error_at(const hn_wp *wp, const hn_class *classes, hn_error_kind e
             continue;
         }
         if (p->cost.ops >= cost) {
-            return before ? between(cost, before->cost.ops, claimed(wp, before, error), p->cost.ops,
-                                    claimed(wp, p, error))
+            return before ? between(cost, before->cost.ops, hn_wp_claimed(wp, before, error),
+                                    p->cost.ops, hn_wp_claimed(wp, p, error))
                           : (double)NAN;
         }
-        smallest = fmin(smallest, claimed(wp, p, error));
+        smallest = fmin(smallest, hn_wp_claimed(wp, p, error));
         before = p;
     }
     *is_bound = before != NULL;

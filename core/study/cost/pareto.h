@@ -75,6 +75,14 @@ typedef struct hn_pareto {
 
 /// Returns the error that methods are ranked by: coordinates, or energy beyond the horizon.
 hn_error_kind hn_wp_ranked_error(const hn_wp *wp);
+/// Returns the error of a point, or the bound that the accuracy of the reference sets.
+double hn_wp_claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind error);
+/// Returns where a method reaches an accuracy at the least cost; level -1: nowhere.
+hn_place hn_wp_reach(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
+                     hn_cost_kind kind, int m, double accuracy);
+/// Finds who reaches an accuracy for the least.
+void hn_wp_band(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
+                double accuracy, hn_band *out);
 /// `classes` one per method. Errors below the reference's own count as HN_WP_ABOVE_REFERENCE times
 /// that.
 void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
