@@ -494,11 +494,12 @@ class Keys(unittest.TestCase):
             self.assertIn("is no error above 0; type one as 1 mm", study("e<CtrlU>0<Enter>"))
             self.assertIn("no run of this study is so accurate", study("e<CtrlU>1e-15<Enter><Enter>"))
             # what is added by Enter has the error that was asked for, in the study's 2 s; half of it at least, as its size is read off a line between two points
-            listed = study("e<CtrlU>1e-4<Enter><Enter>m")
-        method = re.search(r"│ (index1@rk4:h=(?!0\.02 )\S+)", listed).group(1)
+            methods = ("--methods", "index1@euler:h=0.02")
+            listed = study("e<CtrlU>1 %<Enter><Enter>m")
+        method = re.search(r"│ (index1@euler:h=(?!0\.02 )\S+)", listed).group(1)
         run = json.loads(subprocess.run([PROGRAM, "run", "pendulum", "--method", method, "--time", "2", "--json"], capture_output=True, check=True).stdout)
-        self.assertLess(run["error_estimate"]["q"], 1.1e-4)
-        self.assertGreater(run["error_estimate"]["q"], 0.3e-4)
+        self.assertLess(run["error_estimate"]["q"], 1.1e-2)
+        self.assertGreater(run["error_estimate"]["q"], 0.5e-2)
 
     def test_joint_forces_are_those_of_run(self):
         method, at = "projection@rk4:h=0.01", "1"
