@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "base/strbuf.h"
+#include "expr/lanes_sincos.h"
 #include "expr/native_emit.h"
 #include "expr/tape_interpret.h"
 
@@ -64,7 +65,7 @@ static struct {
     unsigned long uses;
 } known = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-static hn_native_call calls[HN_OP_COUNT];
+static hn_native_call calls[HN_NATIVE_SINCOS + 1];
 static _Thread_local int suspended;
 
 hn_native_opts hn_native_opts_default(const char *folder) {
@@ -282,6 +283,11 @@ static hn_status emit(const hn_tape *tape, hn_strbuf *text, hn_diag *diag) {
                              hn_status_text(status));
 }
 
+static void take_sincos(void) {
+    calls[HN_NATIVE_SINCOS] =
+        (hn_native_call)(void (*)(void))hn_lanes_sincos_get(hn_lanes_set_best());
+}
+
 static hn_status load_checked(const hn_tape *tape, const hn_strbuf *text, void **handle,
                               hn_native_code *code, hn_diag *diag) {
     const hn_status status = hn_native_load(&service.builder, text->text, text->n, handle, code);
@@ -289,6 +295,10 @@ static hn_status load_checked(const hn_tape *tape, const hn_strbuf *text, void *
         return hn_diag_set(diag, status, NULL, NULL,
                            "compiled code could not be loaded from %.200s", service.builder.folder);
     }
+
+    // not at the start of the program: the vector form is compared with the C library first
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, take_sincos);
     if (agrees(tape, *code)) {
         return HN_OK;
     }

@@ -4,6 +4,7 @@
 // The system's C compiler as a child process with limits, and the folder that keeps what it made.
 
 #include "base/diag.h"
+#include "expr/ops.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -12,7 +13,10 @@
 
 enum { HN_NATIVE_PATH = 512 };
 
-/// Compiled code: evaluates a tape on its workspace; `call` holds hn_op_info.value by operator.
+/// Where `call` of compiled code holds an hn_lanes_sincos; before it, hn_op_info.value by operator.
+enum { HN_NATIVE_SINCOS = HN_OP_COUNT };
+
+/// Compiled code: evaluates a tape on its workspace.
 typedef double (*hn_native_call)(const double *);
 typedef void (*hn_native_code)(double *work, const hn_native_call *call);
 

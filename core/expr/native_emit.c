@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "expr/native_emit.h"
 
+#include "expr/native_build.h"
 #include "expr/tape_interpret.h"
 
 #include <ctype.h>
@@ -13,9 +14,15 @@
 // of 30 for 25,000 instructions, at the same speed of the code.
 enum { WHOLE = 1500, PIECE = 500 };
 
+// From so many angles on, sines and cosines of inputs are found together before everything else, by
+// vector instructions: a vector of 8 takes about as long as six angles one by one.
+enum { TOGETHER = 6, VECTOR = 8 };
+
 typedef struct emitter {
     hn_strbuf *b;
     const hn_tape *tape;
+    int32_t *angle;      ///< by input: its place among the angles found together, or -1
+    int n_angles;        ///< 0: each where it is needed
     int32_t *definition; ///< by slot: 2 * instruction (+ 1: the cosine) in this piece, or -1
     uint8_t *live;       ///< by slot: read by a later piece, or an output
 } emitter;
@@ -51,12 +58,24 @@ static void put_expression(const emitter *e, const hn_tape_instruction *i, const
     }
 }
 
+/// Whether a sincos is among those of inputs that are found together.
+static bool is_found_before(const emitter *e, const hn_tape_instruction *i) {
+    return e->n_angles > 0 && i->v[1] < e->tape->info.n_inputs;
+}
+
 /// Adds instruction number k and notes where its results are.
 static void put_instruction(emitter *e, int32_t k) {
     const hn_tape_instruction *i = &e->tape->code[k];
     const int code = i->code;
 
-    // two results at once
+    // two results at once, found before or here
+    if (code == TAPE_SINCOS && is_found_before(e, i)) {
+        const int at = e->angle[i->v[1]];
+        hn_strbuf_printf(e->b, "const double v%d = sine[%d], c%d = cosine[%d];\n", k, at, k, at);
+        e->definition[i->v[0]] = 2 * k;
+        e->definition[i->v[2]] = 2 * k + 1;
+        return;
+    }
     if (code == TAPE_SINCOS) {
         hn_strbuf_printf(e->b, "double v%d, c%d; sincos(", k, k);
         put_operand(e, i->v[1]);
@@ -94,10 +113,12 @@ static void note_live(const emitter *e, int32_t k) {
 
 /// Adds a function for instructions first .. end - 1; afterwards `live` is that before `first`.
 static void put_piece(emitter *e, int32_t first, int32_t end) {
-    hn_strbuf_printf(e->b,
-                     "static __attribute__((noinline)) void piece%d(double *w, const hn_call *call)"
-                     " {\n(void)call;\n",
-                     first);
+    hn_strbuf_printf(
+        e->b,
+        "static __attribute__((noinline)) void piece%d(double *w, const hn_call *call, "
+        "const double *sine, const double *cosine) {\n(void)call, (void)sine, "
+        "(void)cosine;\n",
+        first);
     memset(e->definition, 0xff, (size_t)e->tape->info.slots * sizeof *e->definition);
     for (int32_t k = first; k < end; k++) {
         put_instruction(e, k);
@@ -115,12 +136,47 @@ static void put_piece(emitter *e, int32_t first, int32_t end) {
     }
 }
 
+/// Numbers the inputs whose sine and cosine are wanted; leaves n_angles 0 where they are few.
+static void number_angles(emitter *e) {
+    int n = 0;
+    for (int32_t k = 0; k < e->tape->info.instructions; k++) {
+        const hn_tape_instruction *i = &e->tape->code[k];
+        if (i->code == TAPE_SINCOS && i->v[1] < e->tape->info.n_inputs && e->angle[i->v[1]] < 0) {
+            e->angle[i->v[1]] = n++;
+        }
+    }
+    e->n_angles = n >= TOGETHER ? n : 0;
+}
+
+/// Adds what finds them: whole vectors, the last filled up with zeros.
+static void put_angles(const emitter *e) {
+    const int room = (e->n_angles + VECTOR - 1) / VECTOR * VECTOR;
+    if (e->n_angles == 0) {
+        hn_strbuf_add(e->b, "const double *const sine = w, *const cosine = w;\n");
+        return;
+    }
+    hn_strbuf_printf(e->b,
+                     "double angle[%d] __attribute__((aligned(64))), sine[%d] "
+                     "__attribute__((aligned(64))), cosine[%d] __attribute__((aligned(64)));\n"
+                     "for (int i = %d; i < %d; i++) {\nangle[i] = 0;\n}\n",
+                     room, room, room, e->n_angles, room);
+    for (int slot = 0; slot < e->tape->info.n_inputs; slot++) {
+        if (e->angle[slot] >= 0) {
+            hn_strbuf_printf(e->b, "angle[%d] = w[%d];\n", e->angle[slot], slot);
+        }
+    }
+    hn_strbuf_printf(e->b, "((hn_many)call[%d])(%d, angle, sine, cosine);\n", HN_NATIVE_SINCOS,
+                     room);
+}
+
 static void put_all(emitter *e) {
     const int32_t n = e->tape->info.instructions, piece = n <= WHOLE ? WHOLE : PIECE;
     for (int k = 0; k < e->tape->info.n_outputs; k++) {
         e->live[e->tape->outputs[k]] = 1;
     }
+    number_angles(e);
     hn_strbuf_add(e->b, "typedef double (*hn_call)(const double *);\n"
+                        "typedef void (*hn_many)(int, const double *, double *, double *);\n"
                         "extern double sin(double), cos(double), sqrt(double);\n"
                         "extern void sincos(double, double *, double *);\n");
 
@@ -131,10 +187,11 @@ static void put_all(emitter *e) {
         put_piece(e, p * piece, end < n ? end : n);
     }
     hn_strbuf_add(e->b, "void " HN_NATIVE_SYMBOL "(double *w, const hn_call *call) {\n");
+    put_angles(e);
     for (int32_t p = 0; p < pieces; p++) {
-        hn_strbuf_printf(e->b, "piece%d(w, call);\n", p * piece);
+        hn_strbuf_printf(e->b, "piece%d(w, call, sine, cosine);\n", p * piece);
     }
-    hn_strbuf_add(e->b, "(void)w;\n(void)call;\n}\n");
+    hn_strbuf_add(e->b, "(void)w, (void)call, (void)sine, (void)cosine;\n}\n");
 }
 
 hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape) {
@@ -146,12 +203,15 @@ hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape) {
     const size_t slots = (size_t)tape->info.slots + 1;
     emitter e = {.b = b,
                  .tape = tape,
+                 .angle = malloc(((size_t)tape->info.n_inputs + 1) * sizeof *e.angle),
                  .definition = malloc(slots * sizeof *e.definition),
                  .live = calloc(slots, 1)};
-    const bool fits = e.definition && e.live;
+    const bool fits = e.angle && e.definition && e.live;
     if (fits) {
+        memset(e.angle, 0xff, (size_t)tape->info.n_inputs * sizeof *e.angle);
         put_all(&e);
     }
+    free(e.angle);
     free(e.definition);
     free(e.live);
     return fits && !b->failed ? HN_OK : HN_ERR_MEMORY;

@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { N_IN = 3, STATES = 40 };
+enum { N_IN = 3, STATES = 40, MOST_ANGLES = 20 };
 static char folder[64], path[400];
 
 static int set_up(void **state) {
@@ -127,6 +127,29 @@ static hn_tape *tape_of_everything(void) {
         }
     }
     hn_tape *tape = compile(g, out, N);
+    hn_graph_free(g);
+    return tape;
+}
+
+/// Sine and cosine of n inputs, one of a sum, one without its cosine; 2 n + 3 outputs.
+static hn_tape *tape_of_angles(int n) {
+    int symbols[MOST_ANGLES];
+    hn_ex out[2 * MOST_ANGLES + 3];
+    hn_graph *g = hn_graph_create();
+    for (int i = 0; i < n; i++) {
+        char name[8];
+        snprintf(name, sizeof name, "x%d", i);
+        const hn_ex x = hn_symbol(g, name, NULL);
+        symbols[i] = hn_ex_symbol(g, x);
+        out[2 * i] = hn_sin(g, x);
+        out[2 * i + 1] = i == 1 ? x : hn_cos(g, x); // of the second the sine alone
+    }
+    const hn_ex sum = hn_add(g, hn_graph_symbol_expr(g, 0), hn_graph_symbol_expr(g, 2));
+    out[2 * n] = hn_sin(g, sum);
+    out[2 * n + 1] = hn_cos(g, sum);
+    out[2 * n + 2] = hn_mul(g, out[0], out[5]);
+    hn_tape *tape = NULL;
+    assert_int_equal(hn_tape_compile(g, out, 2 * n + 3, symbols, n, &tape), HN_OK);
     hn_graph_free(g);
     return tape;
 }
@@ -501,11 +524,56 @@ static void a_tape_may_be_freed_while_it_is_compiled(void **state) {
     assert_int_equal(hn_native_get_counts().failed, 0);
 }
 
+static void eval_angles(const hn_tape *tape, const double *in, double *out) {
+    double work[200];
+    assert_true(hn_tape_work_size(tape) <= 200);
+    hn_tape_prepare(tape, work);
+    hn_tape_eval(tape, in, out, work);
+}
+
+/// Few angles are found one by one, many together: in one vector, in one that is not full, in more.
+static void angles_found_together_have_the_bits_of_the_interpreter(void **state) {
+    (void)state;
+    static const int counts[] = {3, 5, 6, 8, 9, 16, 17, MOST_ANGLES};
+    static const double ends[] = {0, -0.0, 1e-300, 0.126, 0.855469, 2.426265, 1e8, 1e9, 1e300};
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        const int n = counts[k];
+        hn_tape *plain = tape_of_angles(n); // the service is not on yet
+        start(NULL);
+        hn_tape *tape = tape_of_angles(n);
+        double in[MOST_ANGLES] = {0}, out[2 * MOST_ANGLES + 3], wanted[2 * MOST_ANGLES + 3];
+        eval_angles(tape, in, out);
+        eval_angles(tape, in, out);
+        hn_native_wait();
+        assert_int_equal(hn_native_get_counts().ready, 1);
+
+        unsigned seed = 3;
+        for (int at = 0; at < 400; at++) {
+            for (int i = 0; i < n; i++) {
+                seed = seed * 1664525u + 1013904223u;
+                const double u = (double)seed * 0x1p-31 - 1; // -1 .. 1
+                in[i] = seed % 5 ? 12 * u : ends[seed / 5 % 9] * (seed & 64 ? 1 + 1e-7 * u : 1);
+            }
+            in[0] = at == 7 ? (double)INFINITY : in[0];
+            eval_angles(tape, in, out);
+            eval_angles(plain, in, wanted);
+            for (int i = 0; i < 2 * n + 3; i++) {
+                const bool both_nan = isnan(out[i]) && isnan(wanted[i]);
+                assert_true(both_nan || memcmp(&out[i], &wanted[i], sizeof *out) == 0);
+            }
+        }
+        hn_tape_free(tape);
+        hn_tape_free(plain);
+        hn_native_stop();
+    }
+}
+
 #define ROW(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         ROW(every_operator_gives_the_bits_of_the_interpreter),
+        ROW(angles_found_together_have_the_bits_of_the_interpreter),
         ROW(a_tape_in_pieces_gives_the_bits_of_the_interpreter),
         ROW(what_was_compiled_once_is_found_again),
         ROW(an_equal_tape_has_the_code_that_is_loaded_from_the_start),
