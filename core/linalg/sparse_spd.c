@@ -2,6 +2,7 @@
 #include "linalg/sparse_spd.h"
 
 #include "linalg/dense.h"
+#include "linalg/least_heap.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -26,46 +27,9 @@ typedef struct graph {
     int n;
     hn_arena *arena;
     int **list, *degree, *room; ///< degree[i] unknowns in list[i], room for room[i]
-    int *seen;                  ///< marks of the step under way
-    int *heap, *place, in_heap; ///< unknowns left, the one of least degree on top
+    int *seen;          ///< marks of the step under way
+    hn_least_heap left; ///< unknowns by degree
 } graph;
-
-// of two of the same degree the first one
-static bool goes_before(const graph *g, int i, int j) {
-    return g->degree[i] < g->degree[j] || (g->degree[i] == g->degree[j] && i < j);
-}
-
-static void put_in_heap(graph *g, int at, int i) {
-    g->heap[at] = i;
-    g->place[i] = at;
-}
-
-// moves unknown i, whose degree has changed, to where it belongs
-static void settle(graph *g, int i) {
-    int at = g->place[i];
-    while (at > 0 && goes_before(g, i, g->heap[(at - 1) / 2])) {
-        put_in_heap(g, at, g->heap[(at - 1) / 2]);
-        at = (at - 1) / 2;
-    }
-    for (int below = 2 * at + 1; below < g->in_heap; below = 2 * at + 1) {
-        below += below + 1 < g->in_heap && goes_before(g, g->heap[below + 1], g->heap[below]);
-        if (!goes_before(g, g->heap[below], i)) {
-            break;
-        }
-        put_in_heap(g, at, g->heap[below]);
-        at = below;
-    }
-    put_in_heap(g, at, i);
-}
-
-static int take_lowest(graph *g) {
-    const int lowest = g->heap[0], last = g->heap[--g->in_heap];
-    if (g->in_heap > 0) {
-        put_in_heap(g, 0, last);
-        settle(g, last);
-    }
-    return lowest;
-}
 
 // false when memory is out
 static bool join(graph *g, int i, int j) {
@@ -111,7 +75,7 @@ static bool take_out(graph *g, int i) {
                 return false;
             }
         }
-        settle(g, j);
+        hn_least_heap_set(&g->left, j, g->degree[j]);
     }
     return true;
 }
@@ -123,10 +87,8 @@ static bool graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const 
                  .list = hn_arena_get(scratch, ((size_t)n + 1) * sizeof *g->list),
                  .degree = hn_arena_ints(scratch, (size_t)n),
                  .room = hn_arena_ints(scratch, (size_t)n),
-                 .seen = hn_arena_ints(scratch, (size_t)n),
-                 .heap = hn_arena_ints(scratch, (size_t)n),
-                 .place = hn_arena_ints(scratch, (size_t)n)};
-    if (hn_arena_failed(scratch)) {
+                 .seen = hn_arena_ints(scratch, (size_t)n)};
+    if (!hn_least_heap_init(&g->left, scratch, n) || hn_arena_failed(scratch)) {
         return false;
     }
     for (int k = 0; k < n_entries; k++) {
@@ -135,8 +97,7 @@ static bool graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const 
         }
     }
     for (int i = 0; i < n; i++) {
-        put_in_heap(g, g->in_heap++, i);
-        settle(g, i);
+        hn_least_heap_set(&g->left, i, g->degree[i]);
     }
     return true;
 }
@@ -144,7 +105,8 @@ static bool graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const 
 // the order; what an unknown was joined to when it was taken out stays in its list: its column of L
 static bool choose_order(hn_sparse_spd *spd, graph *g) {
     for (int k = 0; k < spd->n; k++) {
-        const int i = take_lowest(g), count = g->degree[i];
+        const int i = hn_least_heap_top(&g->left), count = g->degree[i];
+        hn_least_heap_remove(&g->left, i);
         spd->order[k] = i;
         spd->at[i] = k;
         spd->nnz += count;

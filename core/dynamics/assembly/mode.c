@@ -2,6 +2,7 @@
 #include "dynamics/assembly/mode.h"
 
 #include "dynamics/compile/coordinates.h"
+#include "dynamics/compile/rate_tree.h"
 #include "dynamics/compile/system_impl.h"
 #include "expr/construct.h"
 #include "expr/tape.h"
@@ -37,22 +38,22 @@ typedef struct loop_parts {
 /// What finding the parts of all loops shares.
 typedef struct finder {
     const hn_system *sys;
-    int n_user, nv;
-    /// n_user x nv, row k: the rates that a unit rate of user coordinate k stands for
-    double *units;
+    int n_user;
+    hn_rate_tree rates;       ///< what velocities a unit rate of a user coordinate stands for
     int *start;               ///< per row of J, its first entry; nc + 1
     int *moves, *coordinates; ///< n_user each
+    int *tried;               ///< n_user: the last row that a coordinate was tried with, plus 1
     char *taken;              ///< nc: the row belongs to a loop already (formulas only)
 } finder;
 
 /// Row `row` of J times a unit rate of a user coordinate.
 static hn_ex row_times(const finder *f, int row, int user) {
-    const double *unit = f->units + (size_t)user * (size_t)f->nv;
     hn_ex sum = hn_num(0);
     for (int k = f->start[row]; k < f->start[row + 1]; k++) {
         const hn_entry *J = &f->sys->J.at[k];
-        if (unit[J->col] != 0) {
-            sum = hn_add(f->sys->g, sum, hn_scale(unit[J->col], J->e));
+        const double unit = hn_rate_tree_share(&f->rates, J->col, user);
+        if (unit != 0) {
+            sum = hn_add(f->sys->g, sum, hn_scale(unit, J->e));
         }
     }
     return sum;
@@ -142,23 +143,16 @@ static void sort_dependent(const hn_system *sys, int loop, loop_parts *parts) {
 
 static hn_status finder_init(finder *f, const hn_system *sys, hn_arena *arena) {
     const size_t n = (size_t)sys->nv, nc = (size_t)sys->nc;
-    *f = (finder){.sys = sys, .n_user = sys->nv, .nv = sys->nv};
-    double *user_rates = hn_arena_doubles(arena, n);
-    f->units = hn_arena_doubles(arena, n * n);
+    *f = (finder){.sys = sys, .n_user = sys->nv};
     f->moves = hn_arena_ints(arena, n);
+    f->tried = hn_arena_ints(arena, n);
     f->coordinates = hn_arena_ints(arena, n);
     f->start = hn_arena_ints(arena, nc + 1);
     f->taken = hn_arena_get(arena, nc + 1);
-    if (!user_rates || hn_arena_failed(arena)) {
+    if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
-
-    // what a unit rate of each user coordinate stands for
-    for (int k = 0; k < f->n_user; k++) {
-        user_rates[k] = 1;
-        hn_system_rates_from_user(sys, user_rates, f->units + (size_t)k * n);
-        user_rates[k] = 0;
-    }
+    HN_TRY(hn_rate_tree_init(&f->rates, sys, arena));
 
     // where each row of J starts
     for (int k = 0; k < sys->J.n; k++) {
@@ -184,6 +178,17 @@ static bool is_in_loop(const finder *f, int row, int loop) {
     return !f->taken[row];
 }
 
+/// f->moves[k] becomes 1 for each user coordinate that moves the row: of the velocities of its
+/// entries, and what they are counted from.
+static void mark_moving(finder *f, int row) {
+    for (int e = f->start[row]; e < f->start[row + 1]; e++) {
+        for (int k = f->sys->J.at[e].col; k >= 0 && f->tried[k] != row + 1; k = f->rates.base[k]) {
+            f->tried[k] = row + 1;
+            f->moves[k] |= row_moves_with(f, row, k);
+        }
+    }
+}
+
 /// Rows of the loop into parts; f->moves[k] becomes 1 for each user coordinate that moves one. 0
 /// when it has none, or too many.
 static bool find_rows(finder *f, int loop, loop_parts *parts) {
@@ -194,6 +199,7 @@ static bool find_rows(finder *f, int loop, loop_parts *parts) {
 
     // what moves the first row that is left (formulas only)
     for (int k = 0; k < f->n_user; k++) {
+        f->tried[k] = 0;
         f->moves[k] =
             f->sys->scene->is_lagrangian && left < f->sys->nc && row_moves_with(f, left, k);
     }
@@ -212,9 +218,7 @@ static bool find_rows(finder *f, int loop, loop_parts *parts) {
 
     // and all that moves them
     for (int r = 0; r < parts->n_rows; r++) {
-        for (int k = 0; k < f->n_user; k++) {
-            f->moves[k] |= row_moves_with(f, parts->rows[r], k);
-        }
+        mark_moving(f, parts->rows[r]);
     }
     return parts->n_rows > 0;
 }

@@ -5,6 +5,7 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/compile/symmat.h"
 #include "expr/construct.h"
+#include "linalg/least_heap.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -19,7 +20,8 @@ typedef struct work {
     char *massive; ///< coordinates whose own entry of W is not zero
     char *shared;  ///< coordinates that touch the rows of several loops: see SHARED_ROWS
     int *partner;  ///< per unknown: the other half of its pair, -1: alone
-    int *degree;   ///< live neighbours; -1: not eligible now
+    /// eligible unknowns by live neighbours; shared coordinates only when nothing else is left
+    hn_least_heap eligible;
     hn_ex *ref;    ///< per unknown: reference of its pivot
     int *live;     ///< scratch: live neighbours of a block
     char *marked;
@@ -50,9 +52,9 @@ static void fill(work *w, const hn_ldl_input *in) {
     for (int k = 0; k < in->J->n; k++) {
         hn_symmat_set(w->K, in->nv + in->J->at[k].row, in->J->at[k].col, in->J->at[k].e);
     }
-    for (int k = 0; k < in->J->n; k++) { // counted in `degree` before its proper use
+    for (int k = 0; k < in->J->n; k++) { // counted in `live` before its proper use
         w->shared[in->J->at[k].col] =
-            ++w->degree[in->J->at[k].col] >= SHARED_ROWS && in->nc >= 2 * SHARED_ROWS;
+            ++w->live[in->J->at[k].col] >= SHARED_ROWS && in->nc >= 2 * SHARED_ROWS;
     }
     for (int i = 0; i < in->nv; i++) {
         w->ref[i] = hn_symmat_get(w->K, i, i);
@@ -128,29 +130,14 @@ static void update_degree(work *w, int i) {
     int has_pivot = !hn_is_zero(hn_symmat_get(w->K, i, i)) &&
                     (partner < 0 || !hn_is_zero(hn_symmat_get(w->K, partner, partner)));
     int eligible = has_pivot && (i < w->out->nv || !blocked);
-    w->degree[i] = eligible ? n : -1;
-    if (partner >= 0) {
-        w->degree[partner] = -1; // the pair goes by its first half
-        if (partner < i) {
-            w->degree[partner] = w->degree[i];
-            w->degree[i] = -1;
-        }
-    }
-}
 
-/// Least degree; shared coordinates only when nothing else is left.
-static int choose(const work *w) {
-    int best = -1;
-    for (int i = 0; i < w->out->n; i++) {
-        if (w->gone[i] || w->degree[i] < 0) {
-            continue;
-        }
-        if (best < 0 || w->shared[i] < w->shared[best] ||
-            (w->shared[i] == w->shared[best] && w->degree[i] < w->degree[best])) {
-            best = i;
-        }
+    // a pair goes by its first half
+    const int first = partner >= 0 && partner < i ? partner : i;
+    if (eligible) {
+        hn_least_heap_set(&w->eligible, first, n + (w->shared[first] ? w->out->n : 0));
+    } else {
+        hn_least_heap_remove(&w->eligible, first);
     }
-    return best;
 }
 
 // ---- elimination ----
@@ -272,6 +259,7 @@ static void remove_unknowns(work *w, const int pair[2]) {
     for (int p = 0; p < 2 && pair[p] >= 0; p++) {
         out->unknown[at++] = pair[p];
         w->gone[pair[p]] = 1;
+        hn_least_heap_remove(&w->eligible, pair[p]);
         if (pair[p] >= out->nv) {
             out->row_ref[pair[p] - out->nv] = w->ref[pair[p]];
         }
@@ -357,12 +345,12 @@ static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
     w->shared = hn_arena_get(w->arena, n);
     w->marked = hn_arena_get(w->arena, n);
     w->partner = hn_arena_ints(w->arena, n);
-    w->degree = hn_arena_ints(w->arena, n);
+    const bool has_heap = hn_least_heap_init(&w->eligible, w->arena, nv + nc);
     w->live = hn_arena_ints(w->arena, n);
     w->ref = hn_arena_get(w->arena, n * sizeof *w->ref);
 
     // no unknown has a partner yet
-    if (hn_arena_failed(w->arena)) {
+    if (!has_heap || hn_arena_failed(w->arena)) {
         return HN_ERR_MEMORY;
     }
     for (size_t i = 0; i < n; i++) {
@@ -394,7 +382,7 @@ hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena, hn_
     // the next of least degree until all are gone, or none is eligible
     out->available = 1;
     while (status == HN_OK && out->available && out->block[out->n_blocks] < out->n) {
-        int next = choose(&w);
+        int next = hn_least_heap_top(&w.eligible);
         if (next < 0) {
             out->available = 0;
         } else {

@@ -8,16 +8,21 @@ hn_status hn_row_groups_init(const hn_system *sys, hn_arena *arena, hn_row_group
     *g = (hn_row_groups){.n = n,
                          .group = hn_arena_ints(arena, (size_t)n),
                          .largest = hn_arena_doubles(arena, (size_t)n)};
+    int loops = 0;
+    for (int i = 0; i < n; i++) {
+        const int loop = hn_system_row_loop(sys, i);
+        loops = loop >= loops ? loop + 1 : loops;
+    }
+    int *first = hn_arena_ints(arena, 2 * (size_t)loops + 1); // 1 + the row, 0: none yet
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // a group goes by its first row
     for (int i = 0; i < n; i++) {
-        int first = 0;
-        while (hn_system_row_loop(sys, first) != hn_system_row_loop(sys, i) ||
-               hn_system_row_is_length(sys, first) != hn_system_row_is_length(sys, i)) {
-            first++;
-        }
-        g->group[i] = first;
+        int *of = &first[2 * hn_system_row_loop(sys, i) + hn_system_row_is_length(sys, i)];
+        *of = *of ? *of : i + 1;
+        g->group[i] = *of - 1;
     }
     return HN_OK;
 }
