@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { ALIGNMENT = 64, DEFAULT_BLOCK = 4096 };
+enum { ALIGNMENT = 64, DEFAULT_BLOCK = 4096, LARGEST_DOUBLED = 16 << 20 };
 
 // Blocks form a list, newest first; only the newest is filled. `bytes` is aligned by hand because
 // malloc promises 16.
@@ -63,10 +63,11 @@ void hn_arena_free(hn_arena *arena) {
 }
 
 /// A new block of at least `size` bytes, twice the last one's, so that n requests take O(log n)
-/// blocks.
+/// blocks; beyond LARGEST_DOUBLED as large as that, so that a few large pieces do not ask for
+/// gigabytes.
 static bool grow(hn_arena *arena, size_t size) {
     const size_t last = arena->newest->size;
-    const size_t doubled = last <= SIZE_MAX / 4 ? 2 * last : last;
+    const size_t doubled = last <= LARGEST_DOUBLED / 2 ? 2 * last : LARGEST_DOUBLED;
     block *b = block_create(size > doubled ? size : doubled, arena->newest);
     if (b == NULL) {
         arena->failed = 1;

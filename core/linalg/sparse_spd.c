@@ -27,8 +27,8 @@ typedef struct graph {
     int n;
     hn_arena *arena;
     int **list, *degree, *room; ///< degree[i] unknowns in list[i], room for room[i]
-    int *seen;          ///< marks of the step under way
-    hn_least_heap left; ///< unknowns by degree
+    int *seen;                  ///< marks of the step under way
+    hn_least_heap left;         ///< unknowns by degree
 } graph;
 
 // false when memory is out

@@ -37,9 +37,9 @@ struct hn_singularity {
     int nq, nv, nc;
     hn_eval *rows, *gamma; // J and M; gamma
     hn_factor *factor;
-    int n_J;
-    const int *J_row, *J_col;
-    const double *J, *M; // values of `rows`
+    int n_J, n_M;
+    const int *J_row, *J_col, *M_row, *M_col;
+    const double *J, *M; // entries of `rows`
     double *d, *r;       // scales: nv, nc
     double *w, *top;     // nc: left vectors of the smallest and the largest singular value
     double *x, *y;       // nv, nc scratch
@@ -81,11 +81,12 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
     }
 
     // evaluators and the factor
-    hn_status status = hn_eval_create(sys, HN_TERM_J | HN_TERM_M, arena, &r->rows);
+    hn_status status = hn_eval_create_listed(sys, HN_TERM_J | HN_TERM_M, arena, &r->rows);
     if (status == HN_OK) {
         r->n_J = hn_eval_pattern(r->rows, HN_TERM_J, &r->J_row, &r->J_col);
-        r->J = hn_eval_get(r->rows, HN_TERM_J);
-        r->M = hn_eval_get(r->rows, HN_TERM_M);
+        r->n_M = hn_eval_pattern(r->rows, HN_TERM_M, &r->M_row, &r->M_col);
+        r->J = hn_eval_list(r->rows, HN_TERM_J);
+        r->M = hn_eval_list(r->rows, HN_TERM_M);
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &r->gamma);
     }
     HN_THEN(status, hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor));
@@ -130,14 +131,18 @@ void hn_singularity_reset(hn_singularity *r) {
 }
 
 static double entry(const hn_singularity *r, int k) {
-    return r->J[(size_t)r->J_row[k] * (size_t)r->nv + (size_t)r->J_col[k]];
+    return r->J[k];
 }
 
 /// D, and R as the reciprocal of the largest length that each row has had.
 static void scale(hn_singularity *r) {
     for (int j = 0; j < r->nv; j++) {
-        const double m = r->M[(size_t)j * (size_t)r->nv + (size_t)j];
-        r->d[j] = m > 0 ? 1 / sqrt(m) : 1;
+        r->d[j] = 1;
+    }
+    for (int k = 0; k < r->n_M; k++) {
+        if (r->M_row[k] == r->M_col[k]) {
+            r->d[r->M_row[k]] = r->M[k] > 0 ? 1 / sqrt(r->M[k]) : 1;
+        }
     }
     memset(r->y, 0, (size_t)r->nc * sizeof *r->y);
     for (int k = 0; k < r->n_J; k++) {

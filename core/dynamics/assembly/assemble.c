@@ -18,6 +18,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -101,7 +102,12 @@ static hn_status start(hn_assembler *s) {
     HN_TRY(check_orientations(s));
     HN_TRY(hn_rate_tree_init(&s->rates, s->sys, s->arena));
     unsigned terms = HN_TERM_M | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
-    return hn_eval_create(s->sys, terms, s->arena, &s->eval);
+    s->M = hn_arena_doubles(s->arena, n * n);
+    s->J = hn_arena_doubles(s->arena, nc * n);
+    if (hn_arena_failed(s->arena)) {
+        return HN_ERR_MEMORY;
+    }
+    return hn_eval_create_listed(s->sys, terms, s->arena, &s->eval);
 }
 
 // ---- pose ----
@@ -187,42 +193,60 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
 
 /// D = diag(M)^-1/2; massless velocities count as the heaviest.
 static void scale_by_mass(const hn_assembler *s, double *d) {
-    const double *M = hn_eval_get(s->eval, HN_TERM_M);
-    const size_t n = (size_t)s->n;
+    const double *M = hn_eval_list(s->eval, HN_TERM_M);
+    const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_M, &row, &col);
     double heaviest = 0;
-    for (size_t k = 0; k < n; k++) {
-        heaviest = fmax(heaviest, M[k * n + k]);
+    memset(d, 0, (size_t)s->n * sizeof *d);
+    for (int k = 0; k < n; k++) {
+        if (row[k] == col[k]) {
+            d[row[k]] = M[k];
+            heaviest = fmax(heaviest, M[k]);
+        }
     }
-    for (size_t k = 0; k < n; k++) {
-        const double m = M[k * n + k];
-        d[k] = 1 / sqrt(m > 1e-14 * heaviest ? m : (heaviest > 0 ? heaviest : 1));
+    for (int k = 0; k < s->n; k++) {
+        d[k] = 1 / sqrt(d[k] > 1e-14 * heaviest ? d[k] : (heaviest > 0 ? heaviest : 1));
+    }
+}
+
+/// Entries of J D, rows brought to length 1 or as they are.
+static void scale_entries(const hn_assembler *s, const double *d, bool unit_rows, double *entry) {
+    const double *J = hn_eval_list(s->eval, HN_TERM_J);
+    const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_J, &row, &col);
+    double *square = s->residual; // nc, not needed any more
+    memset(square, 0, (size_t)s->nc * sizeof *square);
+    for (int k = 0; k < n; k++) {
+        entry[k] = J[k] * d[col[k]];
+        square[row[k]] += entry[k] * entry[k];
+    }
+    for (int k = 0; k < n && unit_rows; k++) {
+        entry[k] = square[row[k]] > 0 ? entry[k] / sqrt(square[row[k]]) : 0;
     }
 }
 
 /// Of a large mechanism whose rows stand well apart, entry by entry. *found = 0: they may not.
 static hn_status find_sigma_sparse(const hn_assembler *s, const double *d, hn_assembly *report,
                                    int *found) {
-    const double *J = hn_eval_get(s->eval, HN_TERM_J);
     const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_J, &row, &col);
-    hn_row_check *check;
     hn_gram *gram;
     double *entry = hn_arena_doubles(s->arena, (size_t)n);
     *found = 0;
-
-    // whether every row counts
     if (!entry) {
         return HN_ERR_MEMORY;
     }
-    HN_TRY(hn_row_check_create(s->arena, s->nc, s->n, n, row, col, &check));
-    if (!check || !hn_row_check_run(check, J, d)) {
+    HN_TRY(hn_gram_create(s->arena, s->nc, s->n, n, row, col, &gram));
+    if (!gram) {
+        return HN_OK;
+    }
+
+    // whether every row counts
+    scale_entries(s, d, true, entry);
+    hn_gram_fill(gram, entry);
+    if (hn_gram_factor(gram, 0, HN_ROW_CHECK_DISTANCE * HN_ROW_CHECK_DISTANCE) != HN_OK) {
         return HN_OK;
     }
 
     // the singular values; squared, they lose what is below 1e-6 of the largest
-    HN_TRY(hn_gram_create(s->arena, s->nc, s->n, n, row, col, &gram));
-    for (int k = 0; k < n; k++) {
-        entry[k] = J[(size_t)row[k] * (size_t)s->n + (size_t)col[k]] * d[col[k]];
-    }
+    scale_entries(s, d, false, entry);
     hn_gram_fill(gram, entry);
     if (hn_gram_factor(gram, 0, 0) == HN_OK) {
         hn_gram_sigma(gram, &report->sigma_min, &report->sigma_max);
@@ -233,7 +257,7 @@ static hn_status find_sigma_sparse(const hn_assembler *s, const double *d, hn_as
 
 static hn_status find_sigma_dense(const hn_assembler *s, const double *d, hn_assembly *report,
                                   int *rank) {
-    const double *J = hn_eval_get(s->eval, HN_TERM_J);
+    const double *J = hn_assemble_dense(s, HN_TERM_J);
     const int n = s->n;
     hn_qr qr;
     if (!hn_qr_init(&qr, s->arena, n, s->nc)) {

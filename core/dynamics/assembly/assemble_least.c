@@ -22,19 +22,19 @@ struct hn_assemble_least {
     hn_newton_matrix *matrix;
 };
 
-static double entry_of(const hn_assembler *s, hn_term term, int row, int col) {
-    return hn_eval_get(s->eval, term)[(size_t)row * (size_t)s->n + (size_t)col];
-}
-
 /// Whether M is definite as it stands: then it is so on whatever J and P leave free.
 static bool mass_is_definite(const hn_assembler *s, hn_arena *arena) {
     const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_M, &row, &col);
+    const double *M = hn_eval_list(s->eval, HN_TERM_M);
     double *value = hn_arena_doubles(arena, (size_t)n);
-    hn_sparse_spd *spd = value ? hn_sparse_spd_create(arena, s->n, n, row, col) : NULL;
+    double *own = hn_arena_doubles(arena, (size_t)s->n); // diagonal
+    hn_sparse_spd *spd = value && own ? hn_sparse_spd_create(arena, s->n, n, row, col) : NULL;
     for (int k = 0; spd && k < n; k++) {
-        const double a = entry_of(s, HN_TERM_M, row[k], row[k]);
-        const double b = entry_of(s, HN_TERM_M, col[k], col[k]);
-        value[k] = a > 0 && b > 0 ? entry_of(s, HN_TERM_M, row[k], col[k]) / sqrt(a * b) : 0;
+        own[row[k]] = row[k] == col[k] ? M[k] : own[row[k]];
+    }
+    for (int k = 0; spd && k < n; k++) {
+        const double a = own[row[k]], b = own[col[k]];
+        value[k] = a > 0 && b > 0 ? M[k] / sqrt(a * b) : 0;
     }
     return spd && hn_sparse_spd_factor(spd, value, MASS_TOL * s->n) == HN_OK;
 }
@@ -59,13 +59,14 @@ static void put_pair(hn_newton_matrix *m, int row, int col, double value) {
 
 static void fill(hn_assemble_least *l) {
     const hn_assembler *s = l->s;
+    const double *M = hn_eval_list(s->eval, HN_TERM_M), *J = hn_eval_list(s->eval, HN_TERM_J);
     const int *row, *col;
     hn_newton_matrix_begin(l->matrix, s->n + s->nc + l->n_held);
     for (int k = 0, n = hn_eval_pattern(s->eval, HN_TERM_M, &row, &col); k < n; k++) {
-        put_pair(l->matrix, row[k], col[k], entry_of(s, HN_TERM_M, row[k], col[k]));
+        put_pair(l->matrix, row[k], col[k], M[k]);
     }
     for (int k = 0, n = hn_eval_pattern(s->eval, HN_TERM_J, &row, &col); k < n; k++) {
-        put_pair(l->matrix, s->n + row[k], col[k], entry_of(s, HN_TERM_J, row[k], col[k]));
+        put_pair(l->matrix, s->n + row[k], col[k], J[k]);
     }
     for (int k = 0; k < l->n_held; k++) {
         const int i = l->held[k], base = s->rates.base[i], at = s->n + s->nc + k;

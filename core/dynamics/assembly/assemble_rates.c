@@ -35,14 +35,15 @@ typedef struct rate_problem {
 
 /// gap = J v + phi_t, and whether it is more than rounding.
 static int velocity_gap(const hn_assembler *s, const double *v, double *gap) {
-    const double *J = hn_eval_get(s->eval, HN_TERM_J), *phi_t = hn_eval_get(s->eval, HN_TERM_PHI_T);
+    const double *J = hn_eval_list(s->eval, HN_TERM_J),
+                 *phi_t = hn_eval_get(s->eval, HN_TERM_PHI_T);
     const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_J, &row, &col);
     int open = 0;
     for (int i = 0, k = 0; i < s->nc; i++) {
         double size = fabs(phi_t[i]);
         gap[i] = phi_t[i];
         for (; k < n && row[k] == i; k++) {
-            double part = J[(size_t)i * s->n + col[k]] * v[col[k]];
+            double part = J[k] * v[col[k]];
             gap[i] += part;
             size += fabs(part);
         }
@@ -85,7 +86,7 @@ static hn_status read_map(const hn_assembler *s, rate_problem *p) {
 
 /// x' M y for two columns of T^-1, so that M in user rates costs only what is not zero.
 static double user_mass(const hn_assembler *s, const rate_problem *p, int k, int l) {
-    const double *M = hn_eval_get(s->eval, HN_TERM_M);
+    const double *M = s->M;
     double sum = 0;
     for (int e = p->map_start[k]; e < p->map_start[k + 1]; e++) {
         for (int d = p->map_start[l]; d < p->map_start[l + 1]; d++) {
@@ -121,6 +122,7 @@ static hn_status init_dense(rate_problem *p, hn_assembler *s) {
 /// decides nothing.
 static void fill_weight(const hn_assembler *s, rate_problem *p, int by_mass) {
     int n = p->n_free;
+    (void)hn_assemble_dense(s, HN_TERM_M);
     for (int k = 0; k < n; k++) {
         for (int l = 0; l <= k; l++) {
             double reach = s->reach[p->free[k]];

@@ -93,7 +93,7 @@ static hn_status list_nodes(lister *l) {
         if (at < 0) {
             return HN_ERR_MEMORY;
         }
-        l->nodes[at].source = row[k] * l->s->n + col[k];
+        l->nodes[at].source = k;
     }
     return HN_OK;
 }
@@ -152,7 +152,7 @@ hn_status hn_assemble_rows_create(const hn_assembler *s, int n_kept, const int *
 /// J in the user's rates: what a velocity moves, its base moves too.
 static void gather(hn_assemble_rows *r) {
     const hn_assembler *s = r->s;
-    const double *J = hn_eval_get(s->eval, HN_TERM_J);
+    const double *J = hn_eval_list(s->eval, HN_TERM_J);
     for (int k = 0; k < r->n_nodes; k++) {
         r->nodes[k].sum = r->nodes[k].source >= 0 ? J[r->nodes[k].source] : 0;
     }

@@ -45,8 +45,14 @@ double hn_assemble_moved(const hn_assembler *s, int i) {
     return hn_norm2(3, delta);
 }
 
+const double *hn_assemble_dense(const hn_assembler *s, hn_term term) {
+    double *dense = term == HN_TERM_M ? s->M : s->J;
+    hn_eval_spread(s->eval, term, dense);
+    return dense;
+}
+
 void hn_assemble_user_row(const hn_assembler *s, int row, double *out) {
-    const double *J = hn_eval_get(s->eval, HN_TERM_J) + (size_t)row * s->n;
+    const double *J = hn_assemble_dense(s, HN_TERM_J) + (size_t)row * s->n;
     memset(out, 0, (size_t)s->n * sizeof *out);
     for (int i = 0; i < s->n; i++) {
         for (int k = J[i] != 0 ? i : -1; k >= 0; k = s->rates.base[k]) {

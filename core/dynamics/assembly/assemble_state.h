@@ -21,7 +21,8 @@ typedef struct hn_assembler {
     int n, nq, nc; ///< user coordinates (= nv), system positions, constraint rows
     double length;
 
-    hn_eval *eval; ///< M, phi, phi_t, J, energy
+    hn_eval *eval; ///< M, phi, phi_t, J, energy; M and J as lists
+    double *M, *J; ///< the same dense, filled where they are used: hn_assemble_dense()
     /// user coordinates, their start, system coordinates, velocities of zero
     double *x, *guess, *q, *rest;
     int *turn;              ///< n: 0, 1, 2 for the entries of a rotation vector, else -1
@@ -44,6 +45,8 @@ void hn_assemble_move(const hn_assembler *s, double *x, const double *delta);
 /// How far user coordinate i is from its guess; of an orientation, the angle of the turn between
 /// them.
 double hn_assemble_moved(const hn_assembler *s, int i);
+/// M or J (n columns) where s->eval was last run.
+const double *hn_assemble_dense(const hn_assembler *s, hn_term term);
 /// Row i of J in user rates, out (n).
 void hn_assemble_user_row(const hn_assembler *s, int row, double *out);
 /// Euclidean norm of the unscaled phi, over all rows (loop < 0) or those of one loop.

@@ -2,6 +2,7 @@
 #include "dynamics/assembly/project.h"
 
 #include "dynamics/compile/coordinates.h"
+#include "dynamics/compile/system_impl.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "dynamics/evaluate/row_groups.h"
@@ -46,10 +47,10 @@ struct hn_projector {
     hn_tape *phi_tape, *gap_tape; // (q, v, t) -> phi; -> J v + phi_t
     double *in, *phi_work, *gap_work;
     hn_factor *factor;
-    hn_eval *terms; // M and J for the dense solve
+    hn_eval *terms; // entries of M and J for the dense solve
     hn_saddle_ws *saddle;
-    double *unit; // identity, Euclidean weight only
-    double *zero; // nv
+    double *W, *J; // of the dense solve, filled where it is used: M or the identity, and J
+    double *zero;  // nv
 
     int have_factor, dense, rank;
     double factor_t, *factor_q;
@@ -83,14 +84,12 @@ static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
     symbols[n_in - 1] = ex.t_symbol;
 
     // rows of J v + phi_t
-    for (int i = 0; i < p->nc; i++) {
+    for (int i = 0, at = 0; i < p->nc; i++) {
         int n = 0;
         terms[n++] = ex.phi_t[i];
-        for (int j = 0; j < p->nv; j++) {
-            hn_ex entry = ex.J[(size_t)i * p->nv + j];
-            if (!hn_is_zero(entry)) {
-                terms[n++] = hn_mul(g, entry, hn_graph_symbol_expr(g, ex.v_symbols[j]));
-            }
+        for (; at < p->sys->J.n && p->sys->J.at[at].row == i; at++) {
+            const hn_entry *J = &p->sys->J.at[at];
+            terms[n++] = hn_mul(g, J->e, hn_graph_symbol_expr(g, ex.v_symbols[J->col]));
         }
         rows[i] = hn_sum(g, terms, n);
     }
@@ -102,18 +101,12 @@ static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
 static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     int mass = p->weight == HN_WEIGHT_MASS;
     HN_TRY(hn_factor_create(p->sys, mass ? HN_FACTOR_MASS : HN_FACTOR_IDENTITY, arena, &p->factor));
-    HN_TRY(hn_eval_create(p->sys, mass ? HN_TERM_M | HN_TERM_J : HN_TERM_J, arena, &p->terms));
+    HN_TRY(
+        hn_eval_create_listed(p->sys, mass ? HN_TERM_M | HN_TERM_J : HN_TERM_J, arena, &p->terms));
+    p->J = hn_arena_doubles(arena, (size_t)p->nc * p->nv);
+    p->W = hn_arena_doubles(arena, (size_t)p->nv * p->nv);
     p->saddle = hn_saddle_ws_create(arena, p->nv, p->nc);
-    if (!p->saddle) {
-        return HN_ERR_MEMORY;
-    }
-    if (!mass) {
-        p->unit = hn_arena_doubles(arena, (size_t)p->nv * p->nv);
-        for (int i = 0; p->unit && i < p->nv; i++) {
-            p->unit[(size_t)i * p->nv + i] = 1;
-        }
-    }
-    return HN_OK;
+    return p->saddle && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
 /// How much a velocity of 1 can change a row, at most. Where all rows are lengths, an angular
@@ -228,10 +221,15 @@ static hn_status factor_dense(hn_projector *p, double t, const double *q) {
     opts.row_floor = row_lost ? 1 : PROJECTOR_ROW_FLOOR;
     opts.residual_tol = HUGE_VAL; // rows that cannot all be met are met as well as can be
     hn_eval_run(p->terms, t, q, p->zero);
-    const double *W = p->weight == HN_WEIGHT_MASS ? hn_eval_get(p->terms, HN_TERM_M) : p->unit;
+    hn_eval_spread(p->terms, HN_TERM_J, p->J);
+    if (p->weight == HN_WEIGHT_MASS) {
+        hn_eval_spread(p->terms, HN_TERM_M, p->W);
+    }
+    for (int i = 0; i < p->nv && p->weight != HN_WEIGHT_MASS; i++) {
+        p->W[(size_t)i * p->nv + i] = 1;
+    }
     hn_saddle_info info = {0};
-    hn_status status = hn_saddle_factor(p->nv, p->nc, W, hn_eval_get(p->terms, HN_TERM_J), &info,
-                                        &opts, p->saddle);
+    hn_status status = hn_saddle_factor(p->nv, p->nc, p->W, p->J, &info, &opts, p->saddle);
     p->ops += hn_eval_info(p->terms).ops + dense_factor_ops(p);
     p->fallbacks++;
     p->dense = 1;

@@ -36,6 +36,7 @@ struct hn_accel {
     hn_eval *terms;
     int n_M, n_J;
     const int *M_row, *M_col, *J_row, *J_col;
+    double *M, *J, *mass; ///< dense, filled where they are used, and the diagonal of M
     hn_kkt *kkt;
     double *gamma, *dense_a, *dense_lambda;
     double *row_unit;   ///< nc: the characteristic length for rows in metres, else 1
@@ -55,7 +56,11 @@ struct hn_accel {
 static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     const unsigned terms =
         HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | HN_TERM_PHI | HN_TERM_PHI_T;
+    const size_t nv = (size_t)s->nv, nc = (size_t)s->nc;
     s->kkt = hn_kkt_create(arena, s->nv, s->nc);
+    s->M = hn_arena_doubles(arena, nv * nv);
+    s->J = hn_arena_doubles(arena, nc * nv);
+    s->mass = hn_arena_doubles(arena, nv);
     s->rest = hn_arena_doubles(arena, (size_t)s->nv + (size_t)s->nc);
     s->step = hn_arena_doubles(arena, (size_t)s->nv + (size_t)s->nc);
     s->sum = hn_arena_get(arena, ((size_t)s->nv + (size_t)s->nc + 1) * sizeof *s->sum);
@@ -75,7 +80,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     for (int i = 0; i < s->nv; i++) {
         s->speed_unit[i] = hn_system_velocity_unit(sys, i);
     }
-    HN_TRY(hn_eval_create(sys, terms, arena, &s->terms));
+    HN_TRY(hn_eval_create_listed(sys, terms, arena, &s->terms));
     s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
     s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
 
@@ -145,7 +150,7 @@ static double stabilise(hn_accel *s, const double *v, double alpha, double beta)
     const hn_pivot_noise_terms at = {.n_J = s->n_J,
                                      .row = s->J_row,
                                      .col = s->J_col,
-                                     .J = hn_eval_get(s->terms, HN_TERM_J),
+                                     .list = hn_eval_list(s->terms, HN_TERM_J),
                                      .phi = hn_eval_get(s->terms, HN_TERM_PHI),
                                      .phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T)};
     const double *rate = s->rest, gap = hn_pivot_noise_gap(s->sys, &at, v, s->rest, s->step);
@@ -163,6 +168,12 @@ static double eval_terms(hn_accel *s, double t, const double *q, const double *v
     s->ops += hn_eval_info(s->terms).ops + 4.0 * s->n_J;
     s->pull = s->opts.baumgarte ? beta * beta : 0;
     memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
+    const double *M = hn_eval_list(s->terms, HN_TERM_M);
+    for (int k = 0; k < s->n_M; k++) {
+        if (s->M_row[k] == s->M_col[k]) {
+            s->mass[s->M_row[k]] = M[k];
+        }
+    }
     return stabilise(s, v, alpha, beta);
 }
 
@@ -174,9 +185,8 @@ static void subtract(hn_accel *s, int row, double entry, double x) {
 
 /// rest = [f; -gamma] - K [a; -lambda] in twice the working precision, entry by entry.
 static void find_rest(hn_accel *s, const double *a, const double *lambda) {
-    const double *M = hn_eval_get(s->terms, HN_TERM_M), *J = hn_eval_get(s->terms, HN_TERM_J);
+    const double *M = hn_eval_list(s->terms, HN_TERM_M), *J = hn_eval_list(s->terms, HN_TERM_J);
     const double *f = hn_eval_get(s->terms, HN_TERM_F);
-    const size_t nv = (size_t)s->nv;
 
     // the right-hand sides
     for (int i = 0; i < s->nv + s->nc; i++) {
@@ -186,19 +196,17 @@ static void find_rest(hn_accel *s, const double *a, const double *lambda) {
     // less M a
     for (int k = 0; k < s->n_M; k++) {
         const int i = s->M_row[k], j = s->M_col[k];
-        const double m = M[(size_t)i * nv + (size_t)j];
-        subtract(s, i, m, a[j]);
+        subtract(s, i, M[k], a[j]);
         if (i != j) {
-            subtract(s, j, m, a[i]);
+            subtract(s, j, M[k], a[i]);
         }
     }
 
     // plus J' lambda, less J a
     for (int k = 0; k < s->n_J; k++) {
         const int i = s->J_row[k], j = s->J_col[k];
-        const double e = J[(size_t)i * nv + (size_t)j];
-        subtract(s, j, -e, lambda[i]);
-        subtract(s, s->nv + i, e, a[j]);
+        subtract(s, j, -J[k], lambda[i]);
+        subtract(s, s->nv + i, J[k], a[j]);
     }
 
     for (int i = 0; i < s->nv + s->nc; i++) {
@@ -280,13 +288,12 @@ static const char *name_of_speed(const hn_accel *s, int i) {
 /// The first velocity that moves no mass by itself, -1: each moves some.
 static int find_massless(const hn_accel *s) {
     const double nothing = 1e-14; // of the largest mass, as in the dense solves
-    const double *M = hn_eval_get(s->terms, HN_TERM_M);
     double heaviest = 0;
     for (int i = 0; i < s->nv; i++) {
-        heaviest = fmax(heaviest, M[(size_t)i * s->nv + i]);
+        heaviest = fmax(heaviest, s->mass[i]);
     }
     for (int i = 0; i < s->nv; i++) {
-        if (M[(size_t)i * s->nv + i] <= nothing * heaviest) {
+        if (s->mass[i] <= nothing * heaviest) {
             return i;
         }
     }
@@ -333,10 +340,10 @@ static double dense_ops(const hn_accel *s) {
 /// A pull on the gap makes others: the gap is a difference of lengths, and the pull one of lengths
 /// times its squared rate, however small both are.
 static double accelerations_of_motion(const hn_accel *s) {
-    const double *M = hn_eval_get(s->terms, HN_TERM_M), *v = s->in.x + s->in.nq;
+    const double *v = s->in.x + s->in.nq;
     double momentum = 0, rate = 0, inertia = 0;
     for (int i = 0; i < s->nv; i++) {
-        const double root = sqrt(fmax(M[(size_t)i * s->nv + i], 0));
+        const double root = sqrt(fmax(s->mass[i], 0));
         momentum = fmax(momentum, root * fabs(v[i]));
         inertia = fmax(inertia, root * s->speed_unit[i]);
         rate = fmax(rate, fabs(v[i]) / s->speed_unit[i]);
@@ -363,14 +370,19 @@ static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, i
     return opts;
 }
 
+/// One of the dense ways, with the terms as they were last evaluated.
+static hn_status run_kkt(hn_accel *s, hn_kkt_way way, hn_kkt_info *info, const hn_kkt_opts *opts) {
+    hn_eval_spread(s->terms, HN_TERM_M, s->M);
+    hn_eval_spread(s->terms, HN_TERM_J, s->J);
+    return hn_kkt_solve(s->kkt, way, s->nv, s->nc, s->M, s->J, hn_eval_get(s->terms, HN_TERM_F),
+                        s->gamma, s->dense_a, s->dense_lambda, info, opts);
+}
+
 static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *a, double *lambda,
                              hn_accel_info *info) {
     const hn_kkt_opts opts = dense_opts(s, gap, info->row_ratio, 0);
     hn_kkt_info dense;
-    const hn_status status =
-        hn_kkt_solve(s->kkt, way_of(solver), s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
-                     hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
-                     s->dense_a, s->dense_lambda, &dense, &opts);
+    const hn_status status = run_kkt(s, way_of(solver), &dense, &opts);
 
     s->ops += dense_ops(s);
     info->massless = dense.massless;
@@ -483,10 +495,7 @@ hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const doubl
         row_ratio = find_row_ratio(s);
     }
     const hn_kkt_opts opts = dense_opts(s, eval_terms(s, t, q, v, 0, 0), row_ratio, 1);
-    const hn_status status =
-        hn_kkt_solve(s->kkt, HN_KKT_LEAST_NORM, s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
-                     hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
-                     s->dense_a, s->dense_lambda, &dense, &opts);
+    const hn_status status = run_kkt(s, HN_KKT_LEAST_NORM, &dense, &opts);
     *condition = status == HN_OK ? dense.cond : 0;
     return status;
 }

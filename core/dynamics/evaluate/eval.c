@@ -3,11 +3,14 @@
 
 #include "dynamics/evaluate/inputs.h"
 
+#include <stdbool.h>
 #include <string.h>
 
-/// One term: its dense values and where they come from.
+/// One term: its values, dense or as a list of entries, and where they come from.
 typedef struct term_values {
     double *values;
+    bool listed;
+    int n_cols;
     int n_entries; ///< not identically zero: hn_eval_pattern()
     int *rows, *cols;
 } term_values;
@@ -19,6 +22,7 @@ struct hn_eval {
     int *source;     ///< where in the tape's workspace each comes from
     int n_scatter;
     term_values terms[HN_TERM_COUNT];
+    bool lists; ///< M and J as lists
     long long count;
 };
 
@@ -39,18 +43,21 @@ static void put(builder *b, double *place, int output, hn_ex ex) {
     b->e->source[b->e->n_scatter++] = output;
 }
 
-static void add_entry(builder *b, term_values *term, int row, int col, int n_cols, hn_ex ex,
-                      int symmetric) {
+static double *place_of(const term_values *term, int row, int col) {
+    return &term->values[(size_t)row * (size_t)term->n_cols + (size_t)col];
+}
+
+static void add_entry(builder *b, term_values *term, int row, int col, hn_ex ex, int symmetric) {
     double value;
     if (hn_is_zero(ex)) {
         return;
     }
-    term->rows[term->n_entries] = row;
-    term->cols[term->n_entries++] = col;
-    int output = b->e->n_out;
-    put(b, &term->values[(size_t)row * (size_t)n_cols + (size_t)col], output, ex);
-    if (symmetric && row != col) {
-        put(b, &term->values[(size_t)col * (size_t)n_cols + (size_t)row], output, ex);
+    const int entry = term->n_entries++, output = b->e->n_out;
+    term->rows[entry] = row;
+    term->cols[entry] = col;
+    put(b, term->listed ? &term->values[entry] : place_of(term, row, col), output, ex);
+    if (symmetric && row != col && !term->listed) {
+        put(b, place_of(term, col, row), output, ex);
     }
     if (!hn_is_number(ex, &value)) {
         b->outputs[b->e->n_out++] = ex;
@@ -93,7 +100,9 @@ static hn_status add_term(builder *b, const hn_system *sys, int k, hn_arena *are
     term_values *term = &b->e->terms[k];
 
     size_t n = (size_t)count_entries(&s);
-    term->values = hn_arena_doubles(arena, (size_t)s.rows * (size_t)s.cols);
+    term->listed = b->e->lists && s.entries;
+    term->n_cols = s.cols;
+    term->values = hn_arena_doubles(arena, term->listed ? n : (size_t)s.rows * (size_t)s.cols);
     term->rows = hn_arena_ints(arena, n);
     term->cols = hn_arena_ints(arena, n);
     if (hn_arena_failed(arena)) {
@@ -104,9 +113,9 @@ static hn_status add_term(builder *b, const hn_system *sys, int k, hn_arena *are
     for (int i = 0; i < (int)n; i++) {
         if (s.entries) {
             const hn_entry *e = &s.entries->at[i];
-            add_entry(b, term, e->row, e->col, s.cols, e->e, s.symmetric);
+            add_entry(b, term, e->row, e->col, e->e, s.symmetric);
         } else {
-            add_entry(b, term, i, 0, 1, s.list[i], 0);
+            add_entry(b, term, i, 0, s.list[i], 0);
         }
     }
     return HN_OK;
@@ -143,13 +152,15 @@ static hn_status build(hn_eval *e, const hn_system *sys, unsigned terms, hn_aren
     return status;
 }
 
-hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_eval **out) {
+static hn_status create(const hn_system *sys, unsigned terms, bool lists, hn_arena *arena,
+                        hn_eval **out) {
     HN_ASSERT(sys && arena && out);
     hn_eval *e = hn_arena_get(arena, sizeof *e);
     *out = NULL;
     if (!e) {
         return HN_ERR_MEMORY;
     }
+    e->lists = lists;
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
     hn_status status = build(e, sys, terms, arena);
     if (status != HN_OK) {
@@ -158,6 +169,15 @@ hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, 
     }
     *out = e;
     return HN_OK;
+}
+
+hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_eval **out) {
+    return create(sys, terms, false, arena, out);
+}
+
+hn_status hn_eval_create_listed(const hn_system *sys, unsigned terms, hn_arena *arena,
+                                hn_eval **out) {
+    return create(sys, terms, true, arena, out);
 }
 
 void hn_eval_free(hn_eval *e) {
@@ -182,9 +202,28 @@ static int term_index(hn_term term) {
 }
 
 const double *hn_eval_get(const hn_eval *e, hn_term term) {
-    const double *values = e->terms[term_index(term)].values;
-    HN_ASSERT(values != NULL);
-    return values;
+    const term_values *t = &e->terms[term_index(term)];
+    HN_ASSERT(t->values != NULL && !t->listed);
+    return t->values;
+}
+
+const double *hn_eval_list(const hn_eval *e, hn_term term) {
+    const term_values *t = &e->terms[term_index(term)];
+    HN_ASSERT(t->values != NULL && t->listed);
+    return t->values;
+}
+
+void hn_eval_spread(const hn_eval *e, hn_term term, double *dense) {
+    const double *list = hn_eval_list(e, term);
+    const term_values *t = &e->terms[term_index(term)];
+    const size_t n = (size_t)t->n_cols;
+    for (int k = 0; k < t->n_entries; k++) {
+        const size_t i = (size_t)t->rows[k], j = (size_t)t->cols[k];
+        dense[i * n + j] = list[k];
+        if (term == HN_TERM_M) {
+            dense[j * n + i] = list[k];
+        }
+    }
 }
 
 int hn_eval_pattern(const hn_eval *e, hn_term term, const int **rows, const int **cols) {

@@ -25,12 +25,22 @@ typedef struct hn_eval hn_eval;
 /// evaluator (hn_eval_free). Adds nodes to the system's graph. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena,
                                        hn_eval **out);
+/// The same with M and J by their entries alone: for large scenes, where dense arrays would take
+/// more memory and time than everything else.
+HN_MUST_CHECK hn_status hn_eval_create_listed(const hn_system *sys, unsigned terms, hn_arena *arena,
+                                              hn_eval **out);
 void hn_eval_free(hn_eval *e); ///< frees the tape; NULL is legal
 /// Evaluates all its terms; allocates nothing. v may be NULL: zero.
 void hn_eval_run(hn_eval *e, double t, const double *q, const double *v);
 /// The values of one term as last evaluated (borrowed, the same place for life). Of M and J,
-/// entries that are identically zero are set once; a run writes the others.
+/// entries that are identically zero are set once; a run writes the others. Not for M and J of an
+/// evaluator that lists them.
 const double *hn_eval_get(const hn_eval *e, hn_term term);
+/// M or J of an evaluator that lists them: the values of the entries of hn_eval_pattern().
+const double *hn_eval_list(const hn_eval *e, hn_term term);
+/// Writes them to their places in a dense array, whose other entries are left alone; of M to both
+/// triangles.
+void hn_eval_spread(const hn_eval *e, hn_term term, double *dense);
 /// The entries of a term that are not identically zero: returns their number, and their rows and
 /// columns (borrowed). Of M the lower triangle; of vectors, column 0. For large scenes, where a
 /// walk through dense arrays would cost more than the evaluation.

@@ -22,8 +22,8 @@ typedef struct work {
     int *partner;  ///< per unknown: the other half of its pair, -1: alone
     /// eligible unknowns by live neighbours; shared coordinates only when nothing else is left
     hn_least_heap eligible;
-    hn_ex *ref;    ///< per unknown: reference of its pivot
-    int *live;     ///< scratch: live neighbours of a block
+    hn_ex *ref; ///< per unknown: reference of its pivot
+    int *live;  ///< scratch: live neighbours of a block
     char *marked;
     int cap_rows;
     long long updates; ///< entries changed by the eliminations so far

@@ -26,7 +26,8 @@ double hn_pivot_noise_gap(const hn_system *sys, const hn_pivot_noise_terms *at, 
     }
     for (int k = 0; k < at->n_J; k++) {
         const int i = at->row[k], j = at->col[k];
-        const double part = at->J[(size_t)i * (size_t)info.nv + (size_t)j] * v[j];
+        const double entry = at->J ? at->J[(size_t)i * (size_t)info.nv + (size_t)j] : at->list[k];
+        const double part = entry * v[j];
         rate[i] += part;
         size[i] = fmax(size[i], fabs(part));
     }

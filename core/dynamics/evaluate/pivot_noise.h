@@ -16,7 +16,8 @@
 typedef struct hn_pivot_noise_terms {
     int n_J;
     const int *row, *col;
-    const double *J;     ///< nc x nv row-major
+    const double *J;     ///< nc x nv row-major, or NULL: the entries stand in a list
+    const double *list;  ///< n_J values of the entries
     const double *phi;   ///< nc
     const double *phi_t; ///< nc
 } hn_pivot_noise_terms;

@@ -3,23 +3,25 @@
 
 #include <math.h>
 
-/// Puts column `col` in its place among those that row i has so far.
-static void insert(hn_closure_rows *rows, int i, int end, int col) {
+/// Puts entry `at` in column `col` in its place among those that row i has so far.
+static void insert(hn_closure_rows *rows, int i, int end, int col, int at) {
     int k = end;
     for (; k > rows->first[i] && rows->col[k - 1] > col; k--) {
         rows->col[k] = rows->col[k - 1];
+        rows->at[k] = rows->at[k - 1];
     }
     rows->col[k] = col;
+    rows->at[k] = at;
 }
 
-hn_status hn_closure_rows_create(const hn_eval *eval, int nc, int nv, hn_arena *arena,
+hn_status hn_closure_rows_create(const hn_eval *eval, int nc, hn_arena *arena,
                                  hn_closure_rows *rows) {
     const int *row, *col, n = hn_eval_pattern(eval, HN_TERM_J, &row, &col);
     *rows = (hn_closure_rows){.n = nc,
-                              .J = hn_eval_get(eval, HN_TERM_J),
+                              .J = hn_eval_list(eval, HN_TERM_J),
                               .first = hn_arena_ints(arena, (size_t)nc + 1),
                               .col = hn_arena_ints(arena, (size_t)n),
-                              .at = hn_arena_get(arena, ((size_t)n + 1) * sizeof *rows->at)};
+                              .at = hn_arena_ints(arena, (size_t)n)};
     int *filled = hn_arena_ints(arena, (size_t)nc + 1);
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
@@ -34,13 +36,7 @@ hn_status hn_closure_rows_create(const hn_eval *eval, int nc, int nv, hn_arena *
         filled[i] = rows->first[i];
     }
     for (int k = 0; k < n; k++) {
-        insert(rows, row[k], filled[row[k]]++, col[k]);
-    }
-
-    for (int i = 0; i < nc; i++) {
-        for (int k = rows->first[i]; k < rows->first[i + 1]; k++) {
-            rows->at[k] = (size_t)i * (size_t)nv + (size_t)rows->col[k];
-        }
+        insert(rows, row[k], filled[row[k]]++, col[k], k);
     }
     return HN_OK;
 }

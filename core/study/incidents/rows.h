@@ -9,15 +9,15 @@
 
 typedef struct hn_closure_rows {
     int n;           ///< rows
-    const double *J; ///< n x nv, of the evaluator; its values change with every state
+    const double *J; ///< entries of the evaluator; their values change with every state
     int *first;      ///< n + 1: entries first[i] .. first[i + 1] - 1 belong to row i
     int *col;        ///< of an entry, ascending in a row
-    size_t *at;      ///< of an entry in J
+    int *at;         ///< of an entry in J
 } hn_closure_rows;
 
-/// Finds the entries of HN_TERM_J of `eval`, whose values are borrowed. Memory from `arena`. Fails:
-/// HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_closure_rows_create(const hn_eval *eval, int nc, int nv, hn_arena *arena,
+/// Finds the entries of HN_TERM_J of `eval`, which lists them and whose values are borrowed. Memory
+/// from `arena`. Fails: HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_closure_rows_create(const hn_eval *eval, int nc, hn_arena *arena,
                                                hn_closure_rows *rows);
 /// out = J v: v (nv), out (nc).
 void hn_closure_rows_times(const hn_closure_rows *rows, const double *v, double *out);

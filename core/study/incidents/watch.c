@@ -46,11 +46,11 @@ static hn_status create_evaluators(hn_watch *w) {
     const unsigned terms = HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
     const hn_system *sys = w->run->sys;
     hn_arena *arena = w->run->arena;
-    HN_TRY(hn_eval_create(sys, terms, arena, &w->eval));
+    HN_TRY(hn_eval_create_listed(sys, terms, arena, &w->eval));
     w->phi = hn_eval_get(w->eval, HN_TERM_PHI);
     w->phi_t = hn_eval_get(w->eval, HN_TERM_PHI_T);
     w->energies = hn_eval_get(w->eval, HN_TERM_ENERGY);
-    HN_TRY(hn_closure_rows_create(w->eval, w->run->info.nc, w->run->info.nv, arena, &w->rows));
+    HN_TRY(hn_closure_rows_create(w->eval, w->run->info.nc, arena, &w->rows));
     HN_TRY(hn_limits_create(sys, arena, &w->limits));
     HN_TRY(hn_mode_watch_create(sys, arena, &w->mode));
     const size_t loops = (size_t)hn_mode_watch_count(w->mode);

@@ -24,12 +24,13 @@ static void compare_scene(const char *name, const char *setting) {
     hn_model_open_closed(&m, name, setting);
     const int nv = m.info.nv, nc = m.info.nc;
     assert_true(nv <= MOST && nc <= MOST && nc > 0);
-    assert_int_equal(hn_eval_create(m.sys, HN_TERM_J, m.arena, &eval), HN_OK);
-    assert_int_equal(hn_closure_rows_create(eval, nc, nv, m.arena, &rows), HN_OK);
+    assert_int_equal(hn_eval_create_listed(m.sys, HN_TERM_J, m.arena, &eval), HN_OK);
+    assert_int_equal(hn_closure_rows_create(eval, nc, m.arena, &rows), HN_OK);
 
     fill(nv, v);
     hn_eval_run(eval, 0, m.q, v);
-    const double *J = hn_eval_get(eval, HN_TERM_J);
+    double *J = hn_arena_doubles(m.arena, (size_t)nc * (size_t)nv);
+    hn_eval_spread(eval, HN_TERM_J, J);
     hn_closure_rows_times(&rows, v, sparse);
     hn_mat_vec(nc, nv, J, v, whole);
     for (int i = 0; i < nc; i++) {
