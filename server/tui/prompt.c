@@ -100,6 +100,7 @@ static void write_recording(hn_workbench *w) {
     fprintf(file, "\n");
 
     // one row a frame; what is not known stays empty
+    hn_recording_update(w->recording);
     const int n = hn_recording_frames(w->recording);
     for (int k = 0; k < n; k++) {
         write_number(file, "", hn_recording_time(w->recording, k));

@@ -3,17 +3,17 @@
 
 #include "base/clock.h"
 #include "study/run/ending.h"
-#include "session/references/references.h"
-#include "session/references/reference_doc.h"
-#include "session/references/reference_store.h"
 #include "study/incidents/kinds.h"
+#include "tui/true_motion.h"
 
-#include <cjson/cJSON.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double LONGEST_REFERENCE = 60; // CPU time of each means [s]
 
 enum { MOST_INCIDENTS = 64 * HN_COMPARISON_MAX_METHODS, MOST_FRAMES = 20000 };
 
@@ -34,11 +34,13 @@ struct hn_recording {
     int stride;                ///< frames of the page for each frame here
     hn_track tracks[HN_COMPARISON_MAX_METHODS];
     track_store stores[HN_COMPARISON_MAX_METHODS];
-    double *reference; ///< 3 n_points a frame, NaN where there is none
-    hn_recording_truth truth;
-    double own; ///< error of the reference itself [m]
-    atomic_int frames, wanted, reference_frames;
-    atomic_bool stop, asked; ///< asked: the reference is being fetched
+    _Atomic(hn_true_motion *) truth; ///< owned; NULL: none, or not yet
+    atomic_int frames, wanted;
+    atomic_bool stop, asked; ///< asked: the reference is being fetched or computed
+    int n_errors;            ///< frames whose errors are known; of the reader
+    hn_model *own_model;     ///< owned, of the thread that computes a reference; NULL: none
+    pthread_t truth_thread;
+    bool computing; ///< that thread was started
     _Atomic double frame_seconds;
     pthread_t thread;
     bool started;
@@ -47,79 +49,79 @@ struct hn_recording {
     hn_track_end ends[HN_COMPARISON_MAX_METHODS];
     told_incident *incidents;
     int n_incidents;
+    char why_unknown[HN_RECORDING_WHY]; ///< why there is no reference
 };
 
 // ---- the reference ----
 
-/// Copies the points of the reference motion to its frames; between its samples nothing is shown.
-static void take_motion(hn_recording *r, const cJSON *document, int stride) {
-    const cJSON *motion = cJSON_GetObjectItem(document, "motion"), *row, *number;
-
-    // a row of points for every stride-th frame
-    int frame = 0;
-    cJSON_ArrayForEach(row, cJSON_GetObjectItem(motion, "points")) {
-        int k = 0;
-        if (frame > r->last) {
-            break;
-        }
-        cJSON_ArrayForEach(number, row) {
-            if (k < 3 * r->n_points) {
-                r->reference[(size_t)frame * 3 * (size_t)r->n_points + (size_t)k++] =
-                    number->valuedouble;
-            }
-        }
-        frame += stride;
-    }
-    atomic_store(&r->reference_frames, frame - stride + 1);
+static int must_stop(void *user) {
+    return atomic_load(&((hn_recording *)user)->stop);
 }
 
-static double number_of(const cJSON *object, const char *name) {
-    const cJSON *item = cJSON_GetObjectItem(object, name);
-    return cJSON_IsNumber(item) ? item->valuedouble : 0;
+/// Fetches the reference motion for a model, and hands it to the reader.
+static hn_status fetch(hn_recording *r, const hn_model *model, bool compute, hn_diags *diags) {
+    const hn_true_motion_request request = {
+        model, r->frame_dt, r->last, compute, {LONGEST_REFERENCE, must_stop, r}};
+    hn_true_motion *found = NULL;
+    const hn_status status = hn_true_motion_get(&request, &found, diags);
+    atomic_store(&r->truth, found);
+    return status;
 }
 
-/// The stored reference of the scene with these parameters, if there is one; without it there is no
-/// error to show.
-static void fetch_reference(hn_recording *r) {
-    hn_ref_request request = hn_ref_request_default();
-    request.only_stored = 1;
-    hn_ref *ref = NULL;
-    hn_ref_source source;
+/// The thread that computes a reference, with a model of its own.
+static void *compute_truth(void *user) {
+    hn_recording *r = user;
     hn_diags diags = {0};
-    if (hn_reference_get(r->model, &request, &ref, &source, &diags) != HN_OK) {
-        return;
+    const hn_status status = fetch(r, r->own_model, true, &diags);
+    pthread_mutex_lock(&r->lock);
+    if (status != HN_OK) {
+        snprintf(r->why_unknown, sizeof r->why_unknown, "%.300s",
+                 diags.n > 0 ? diags.item[0].message : hn_status_text(status));
     }
-
-    // its motion at the frames of this recording
-    const int stride = 1 + r->last / 1000;
-    const hn_walk_limits limits = {0};
-    hn_strbuf text;
-    hn_strbuf_init(&text);
-    if (hn_reference_motion_json(&text, r->model, ref, source, stride * r->frame_dt, &limits,
-                                 &diags) == HN_OK) {
-        cJSON *document = cJSON_Parse(hn_strbuf_text(&text));
-        const cJSON *scales = cJSON_GetObjectItem(document, "scales");
-        r->own = number_of(cJSON_GetObjectItem(document, "motion"), "between") *
-                 number_of(scales, "length");
-        r->truth.digits = number_of(document, "digits");
-        r->truth.energy_scale = number_of(scales, "energy");
-        take_motion(r, document, stride);
-        cJSON_Delete(document);
-    }
-    hn_strbuf_reset(&text);
-    hn_ref_free(ref);
+    pthread_mutex_unlock(&r->lock);
+    atomic_store(&r->asked, false);
+    return NULL;
 }
 
-/// Largest distance of a drawn point from where the reference has it; NaN: not known.
-static double error_of(const hn_recording *r, const double *points, int frame) {
-    const double *at = hn_recording_reference(r, frame);
-    double most = at ? r->own : (double)NAN;
-    for (int p = 0; at && p < r->n_points; p++) {
-        const double d = hypot(hypot(points[3 * p] - at[3 * p], points[3 * p + 1] - at[3 * p + 1]),
-                               points[3 * p + 2] - at[3 * p + 2]);
-        most = d > most || isnan(d) ? d : most;
+bool hn_recording_needs_reference(const hn_recording *r) {
+    return !atomic_load(&r->asked) && !atomic_load(&r->truth) && !r->computing;
+}
+
+bool hn_recording_compute_reference(hn_recording *r, hn_model *model) {
+    HN_ASSERT(hn_recording_needs_reference(r));
+    r->own_model = model;
+    atomic_store(&r->asked, true);
+    r->computing = pthread_create(&r->truth_thread, NULL, compute_truth, r) == 0;
+    if (!r->computing) {
+        atomic_store(&r->asked, false);
     }
-    return most;
+    return r->computing;
+}
+
+bool hn_recording_is_asking(const hn_recording *r) {
+    return atomic_load(&r->asked);
+}
+
+void hn_recording_why_unknown(const hn_recording *r, char out[HN_RECORDING_WHY]) {
+    pthread_mutex_t *lock = (pthread_mutex_t *)&r->lock;
+    pthread_mutex_lock(lock);
+    snprintf(out, HN_RECORDING_WHY, "%s", r->why_unknown);
+    pthread_mutex_unlock(lock);
+}
+
+// errors belong to the reader, since the reference may come after the frames
+void hn_recording_update(hn_recording *r) {
+    const hn_true_motion *truth = atomic_load(&r->truth);
+    const int frames = atomic_load(&r->frames);
+    for (; truth && r->n_errors < frames; r->n_errors++) {
+        for (int m = 0; m < r->n_tracks; m++) {
+            const track_store *s = &r->stores[m];
+            const double *points = s->points + (size_t)r->n_errors * 3 * (size_t)r->n_points;
+            s->error[r->n_errors] = isnan(s->gap[r->n_errors])
+                                        ? (double)NAN
+                                        : hn_true_motion_error(truth, points, r->n_errors);
+        }
+    }
 }
 
 // ---- frames ----
@@ -134,14 +136,13 @@ static void keep_sample(hn_recording *r, int m, int frame, const hn_sample *samp
     to->gap[frame] = sample->gap;
     to->velocity_gap[frame] = sample->velocity_gap;
     to->energy[frame] = sample->energy_change;
-    to->error[frame] = error_of(r, points, frame);
 }
 
 /// A method that ended keeps its last configuration on the screen, but has no numbers any more.
 static void keep_end(hn_recording *r, int m, int frame) {
     track_store *to = &r->stores[m];
     const size_t n = 3 * (size_t)r->n_points;
-    to->gap[frame] = to->velocity_gap[frame] = to->energy[frame] = to->error[frame] = (double)NAN;
+    to->gap[frame] = to->velocity_gap[frame] = to->energy[frame] = (double)NAN;
     for (size_t k = 0; k < n; k++) {
         to->points[(size_t)frame * n + k] =
             frame > 0 ? to->points[(size_t)(frame - 1) * n + k] : (double)NAN;
@@ -200,9 +201,9 @@ static bool wait_for_work(hn_recording *r) {
 
 static void *record(void *user) {
     hn_recording *r = user;
-    if (r->reference) {
-        fetch_reference(r);
-    }
+    hn_diags diags = {0};
+    const hn_status stored = fetch(r, r->model, false, &diags);
+    (void)stored; // without one there is no error to show, until one is computed
     atomic_store(&r->asked, false);
     while (atomic_load(&r->frames) <= r->last && wait_for_work(r)) {
         const double start = hn_clock_wall();
@@ -224,6 +225,9 @@ static bool allocate_track(hn_recording *r, int m) {
     for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
         *columns[i] = calloc(frames, sizeof(double));
         good = good && *columns[i];
+    }
+    for (size_t k = 0; to->error && k < frames; k++) {
+        to->error[k] = (double)NAN;
     }
     to->points = calloc(frames * 3 * (size_t)r->n_points + 1, sizeof(double));
     to->q = calloc(frames * (size_t)r->n_user + 1, sizeof(double));
@@ -250,13 +254,8 @@ static void describe_track(hn_recording *r, int m) {
 }
 
 static bool allocate(hn_recording *r) {
-    const size_t numbers = ((size_t)r->last + 1) * 3 * (size_t)r->n_points;
     r->incidents = calloc(MOST_INCIDENTS, sizeof *r->incidents);
-    r->reference = malloc((numbers + 1) * sizeof(double));
-    for (size_t k = 0; r->reference && k < numbers; k++) {
-        r->reference[k] = (double)NAN;
-    }
-    bool good = r->incidents && r->reference;
+    bool good = r->incidents != NULL;
     for (int m = 0; m < r->n_tracks; m++) {
         describe_track(r, m);
         good = allocate_track(r, m) && good;
@@ -296,6 +295,7 @@ hn_status hn_recording_create(const hn_model *model, const char *const *methods,
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     r->model = model;
+    r->n_errors = 1; // all methods start where the reference does
     pthread_mutex_init(&r->lock, NULL);
     pthread_cond_init(&r->more, NULL);
 
@@ -326,9 +326,12 @@ void hn_recording_free(hn_recording *r) {
         return;
     }
 
-    // the thread ends after the frame that it is at
+    // the threads end: after the frame, and within the step of the reference that they are at
+    atomic_store(&r->stop, true);
+    if (r->computing) {
+        pthread_join(r->truth_thread, NULL);
+    }
     if (r->started) {
-        atomic_store(&r->stop, true);
         pthread_mutex_lock(&r->lock);
         pthread_cond_signal(&r->more);
         pthread_mutex_unlock(&r->lock);
@@ -348,7 +351,8 @@ void hn_recording_free(hn_recording *r) {
 
     // nobody reads any more
     hn_comparison_free(r->comparison);
-    free(r->reference);
+    hn_true_motion_free(atomic_load(&r->truth));
+    hn_model_free(r->own_model);
     free(r->incidents);
     pthread_cond_destroy(&r->more);
     pthread_mutex_destroy(&r->lock);
@@ -407,10 +411,7 @@ hn_track_end hn_recording_end(const hn_recording *r, int i) {
 }
 
 const double *hn_recording_reference(const hn_recording *r, int frame) {
-    const double *at = r->reference + (size_t)frame * 3 * (size_t)r->n_points;
-    const bool there =
-        r->n_points > 0 && frame < atomic_load(&r->reference_frames) && !isnan(at[0]);
-    return there ? at : NULL;
+    return hn_true_motion_at(atomic_load(&r->truth), frame);
 }
 
 int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method, int most) {
@@ -425,16 +426,11 @@ int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method,
     return n;
 }
 
-hn_recording_truth hn_recording_get_truth(const hn_recording *r) {
-    const hn_recording_truth none = {0};
-    return atomic_load(&r->reference_frames) > 0 ? r->truth : none;
-}
-
 hn_motion_verdict hn_recording_verdict(const hn_recording *r, int track, int frame) {
     const hn_system *sys = hn_model_system(r->model);
     const hn_track *t = &r->tracks[track];
     const hn_track_end end = hn_recording_end(r, track);
-    const hn_recording_truth truth = hn_recording_get_truth(r);
+    const hn_true_motion *truth = atomic_load(&r->truth);
     const hn_motion_history history = {.gap = t->gap,
                                        .off = t->error,
                                        .energy = t->energy,
@@ -443,8 +439,8 @@ hn_motion_verdict hn_recording_verdict(const hn_recording *r, int track, int fra
                                        .ended = end.failed ? end.t : (double)NAN,
                                        .cause = end.cause,
                                        .length = hn_system_length(sys),
-                                       .energy_scale = truth.energy_scale,
-                                       .digits = truth.digits,
+                                       .energy_scale = truth ? truth->energy_scale : 0,
+                                       .digits = truth ? truth->digits : 0,
                                        .loops = hn_system_get_info(sys).nc > 0,
                                        .asked = atomic_load(&r->asked)};
     return hn_motion_judge(&history);

@@ -4,7 +4,7 @@
 // A comparison that is recorded: a thread steps it ahead of the viewer, every frame is kept, and
 // nothing is computed twice.
 //
-//   worker thread:  reference motion -> frame 0, 1, 2 ... up to the wanted one -> waits
+//   worker thread:  stored reference -> frame 0, 1, 2 ... up to the wanted one -> waits
 //   viewer:         wants a frame; reads frames below hn_recording_frames(), which never change
 
 #include "session/compare/comparison.h"
@@ -14,8 +14,8 @@
 
 typedef struct hn_recording hn_recording;
 
-/// One method over all frames. Numbers at frames below hn_recording_frames() are final; NaN: the
-/// method had ended.
+/// One method over all frames. Numbers at frames below hn_recording_frames() are final, errors
+/// apart; NaN: the method had ended.
 typedef struct hn_track {
     char spelling[HN_SPEC_MAX];
     const char *name, *rule; ///< short name, sentence on its drift; static
@@ -24,7 +24,7 @@ typedef struct hn_track {
     const double *gap, *velocity_gap;
     const double *energy; ///< change since the start [J]
     /// largest distance of a drawn point from the reference [m]; NaN: no reference there, and at
-    /// frame 0
+    /// frame 0 (hn_recording_update)
     const double *error;
     const double *points;      ///< 3 n_points a frame
     const double *q, *v;       ///< n_user a frame: coordinates and rates as in the scene
@@ -61,12 +61,18 @@ int hn_recording_page_frame(const hn_recording *r, int frame);
 int hn_recording_n_tracks(const hn_recording *r);
 const hn_track *hn_recording_track(const hn_recording *r, int i);
 hn_track_end hn_recording_end(const hn_recording *r, int i);
-/// What the reference is good for; digits 0: none is stored for these parameters.
-typedef struct hn_recording_truth {
-    double digits;       ///< of the reference that are right [-]
-    double energy_scale; ///< scale of the energies of the reference [J]
-} hn_recording_truth;
-hn_recording_truth hn_recording_get_truth(const hn_recording *r);
+/// Takes the errors of the frames recorded since the last call, all of them when the reference has
+/// come. For the thread that reads; tracks show errors up to here.
+void hn_recording_update(hn_recording *r);
+/// Whether no reference is stored for these parameters, and none is being computed.
+bool hn_recording_needs_reference(const hn_recording *r);
+/// Starts computing the reference on a thread of its own; `model` is the same model once more, and
+/// is taken. false: the system gives no thread.
+bool hn_recording_compute_reference(hn_recording *r, hn_model *model);
+bool hn_recording_is_asking(const hn_recording *r); ///< a reference is fetched or computed
+enum { HN_RECORDING_WHY = 320 };
+/// Why no reference could be computed; "" where it is not known, or there is one.
+void hn_recording_why_unknown(const hn_recording *r, char out[HN_RECORDING_WHY]);
 /// Points of the reference motion at a frame (3 n_points); NULL: none.
 const double *hn_recording_reference(const hn_recording *r, int frame);
 /// Incidents of all methods so far, copied: at most `most`; method[i] is whose. Returns how many.

@@ -159,6 +159,7 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     }
     hn_strbuf_init(&v.sequence);
     w->form = form_of(opts);
+    w->computes = true;
     w->pictures = hn_pictures_start(opts->pictures, opts->theme);
     ask(hn_pictures_question(&w->pictures));
     double before = hn_clock_wall();
@@ -193,7 +194,7 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
 static void wait_for_frames(hn_workbench *w) {
     const int wanted = w->why ? hn_recording_last(w->recording) : (int)w->clock;
     hn_recording_want(w->recording, wanted);
-    while (hn_recording_frames(w->recording) <= wanted) {
+    while (hn_recording_frames(w->recording) <= wanted || hn_recording_is_asking(w->recording)) {
         poll(NULL, 0, 5);
     }
 }
@@ -227,6 +228,7 @@ void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts) {
     w->form = form_of(opts);
     go_to(w, opts->t);
     type_keys(w, opts);
+    hn_workbench_tick(w, 0);
     if (hn_cells_resize(&cells, w->columns, w->rows)) {
         hn_views_draw(&cells, w);
         hn_cells_text(b, &cells, opts->colours);

@@ -283,11 +283,36 @@ static void draw_table(hn_cells *c, const hn_workbench *w) {
 
 // ---- the plot ----
 
+/// Why there are no errors to draw; "" where there are.
+static void why_no_error(const hn_workbench *w, char *out, size_t size) {
+    char why[HN_RECORDING_WHY];
+    hn_recording_why_unknown(w->recording, why);
+    out[0] = '\0';
+    if (hn_recording_is_asking(w->recording)) {
+        snprintf(
+            out, size,
+            "The reference motion for these values is being computed; errors are known when it "
+            "is there.");
+    } else if (why[0]) {
+        snprintf(out, size, "Errors stay unknown: no reference motion could be computed; %s", why);
+    } else if (hn_recording_needs_reference(w->recording)) {
+        snprintf(out, size,
+                 "Errors are unknown: no reference motion is stored for these values. 'holonom "
+                 "reference', with the same --set, computes and keeps it.");
+    }
+}
+
 static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
     static const char *const titles[] = {"loop gap (constraint violation) [m]",
                                          "error against the reference [m]",
                                          "energy change, size [J]"};
     const hn_area inside = hn_cells_frame(c, area, titles[w->plot]);
+    char why[HN_TUI_MESSAGE];
+    why_no_error(w, why, sizeof why);
+    if (w->plot == HN_TUI_ERROR && why[0]) {
+        hn_cells_fold(c, inside, 0, HN_CELL_INK, why);
+        return;
+    }
     const double dt = hn_recording_frame_dt(w->recording);
     hn_plot plot = {.dt = dt,
                     .t_end = hn_recording_duration(w->recording),

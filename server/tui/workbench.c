@@ -160,6 +160,7 @@ static void carry_over(hn_workbench *to, hn_workbench *from) {
     to->form = from->form;
     to->pictures = from->pictures;
     to->plot = from->plot;
+    to->computes = from->computes;
     to->reactions = from->reactions;
     to->speed = from->speed;
     to->columns = from->columns;
@@ -220,6 +221,19 @@ static void open_forces(hn_workbench *w) {
     }
 }
 
+/// Has a reference computed where none is stored: every changed length asks for another one.
+static void compute_reference(hn_workbench *w) {
+    const hn_model_source source = hn_workbench_source(w);
+    hn_diags diags = {0};
+    hn_model *model = NULL;
+    w->computes = hn_model_load(w->library, &source, &model, &diags) == HN_OK &&
+                  hn_recording_compute_reference(w->recording, model);
+    if (w->computes && !w->message[0]) {
+        hn_workbench_say(w, "no reference is stored for these values: it is being computed, and "
+                            "errors are unknown until then");
+    }
+}
+
 void hn_workbench_tick(hn_workbench *w, double seconds) {
     const int last = hn_recording_last(w->recording);
     if (w->playing && w->panel == HN_PANEL_MAIN) {
@@ -232,6 +246,10 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
     }
     // the card of the reasons has remedies tried, which is done at the end of the motion
     hn_recording_want(w->recording, w->why ? last : (int)w->clock + AHEAD);
+    hn_recording_update(w->recording);
+    if (w->computes && hn_recording_needs_reference(w->recording)) {
+        compute_reference(w);
+    }
     if (w->reactions && !w->forces) {
         open_forces(w);
     }

@@ -89,6 +89,7 @@ typedef struct hn_workbench {
     hn_versions *versions; ///< owned: what can be undone (versions.h)
     hn_model *model;
     hn_recording *recording;
+    bool computes; ///< a reference is computed where none is stored
     hn_envelope envelope;
     char methods[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     int n_methods;

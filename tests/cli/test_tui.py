@@ -501,6 +501,23 @@ class Keys(unittest.TestCase):
         self.assertLess(run["error_estimate"]["q"], 1.1e-2)
         self.assertGreater(run["error_estimate"]["q"], 0.5e-2)
 
+    def test_after_a_change_of_length_the_error_is_unknown_until_its_reference_is_there(self):
+        words = ("four-bar", "--once", "--t", "2", "--set", "l1=0.57", "--methods", "projection@rk4:h=0.002", "--keys")
+        with tempfile.TemporaryDirectory() as cache:
+            # one frame computes none and says how one is had
+            out = once(*words, "g", HOLONOM_CACHE=cache)[1]
+            self.assertIn("closed, error unknown", out)
+            self.assertIn("no reference motion is", out)
+            subprocess.run([PROGRAM, "reference", "four-bar", "--set", "l1=0.57"], capture_output=True, check=True, env={**os.environ, "HOLONOM_CACHE": cache})
+            out = once(*words, "g", HOLONOM_CACHE=cache)[1]
+            self.assertRegex(out, r"projection .*right to \d digits")
+            self.assertIn("│  1e-", out)
+        # in a terminal it is computed beside the motion
+        with tempfile.TemporaryDirectory() as cache:
+            terminal = self.open("four-bar", "--methods", "projection@rk4:h=0.002", "--set", "l1=0.57", HOLONOM_CACHE=cache)
+            self.assertTrue(terminal.wait_for(rb"right to \d"))
+            self.assertTrue(any(name.startswith("reference-") for name in os.listdir(cache)))
+
     def test_joint_forces_are_those_of_run(self):
         method, at = "projection@rk4:h=0.01", "1"
         done = subprocess.run([PROGRAM, "run", "four-bar", "--method", method, "--time", at, "--at", at, "--reactions", "--json"], capture_output=True, check=True)
