@@ -63,6 +63,17 @@ hn_status hn_diag_set(hn_diag *d, hn_status status, const char *pointer, const c
     return status;
 }
 
+void hn_diags_name_file(hn_diags *d, int from, const char *file) {
+    for (int i = from; d != NULL && i < d->n; i++) {
+        hn_diag *item = &d->item[i];
+        const hn_diag old = *item;
+        if (strstr(old.message, file) == NULL) {
+            hn_diag_set(item, old.status, old.pointer, old.hint, "%.200s: %s", file, old.message);
+            item->column = old.column;
+        }
+    }
+}
+
 static int lower(char c) {
     return tolower((unsigned char)c);
 }

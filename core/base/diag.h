@@ -33,6 +33,10 @@ hn_status hn_diags_add(hn_diags *d, hn_status status, const char *pointer, const
 hn_status hn_diag_set(hn_diag *d, hn_status status, const char *pointer, const char *hint,
                       const char *format, ...) HN_PRINTF(5, 6);
 
+/// Puts the name of a file before each message from the one of index `from` on, unless the message
+/// has it: "wheel.json: ...". `d` may be NULL.
+void hn_diags_name_file(hn_diags *d, int from, const char *file);
+
 /// The candidate nearest to `word` by edit distance (transpositions count 1, case ignored), within
 /// max(1, strlen(word) / 3); failing that the first that has the word, of four letters or more, in
 /// it; else NULL. `names` holds n strings.

@@ -294,8 +294,10 @@ hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *d
     *out = NULL;
     hn_strbuf text;
     hn_strbuf_init(&text);
+    const int n_before = diags ? diags->n : 0;
     hn_status status = hn_file_load(path, HN_GRADE_MAX_BYTES, &text, diags);
     HN_THEN(status, hn_exercise_load_json(hn_strbuf_text(&text), text.n, out, diags));
+    hn_diags_name_file(diags, n_before, path);
     hn_strbuf_reset(&text);
     return status;
 }

@@ -195,6 +195,45 @@ class Malformed(driver.ServerCase):
         answer = self.server.ask("POST", "/api/v1/runs", body, {"Content-Type": "application/json"})
         self.assertIn("twice", self.assert_problem(answer, 422)["errors"][0]["detail"])
 
+    def test_a_name_written_twice_below_the_top_is_at_fault(self):
+        scene = open("lessons/01-closed-loops/scenes/pendulum.json").read()
+        for path, body, pointer in (
+                ("runs", '{"scene": "four-bar", "method": "index1@rk4", "parameters": {"l1": 0.5, "l2": 1, "l1": 0.6}}', "/parameters/l1"),
+                ("terms", '{"scene": "four-bar", "state": {"th1": 0.5, "th1": 0.6}}', "/state/th1"),
+                ("terms", '{"scene": "four-bar", "pull": {"point": 1, "to": [0, 1], "point": 2}}', "/pull/point"),
+                ("grade", '{"problem": "p3", "submission": {"J": [], "notes": [{"a": 1, "b": 2, "a": 3}]}}', "/submission/notes/0/a"),
+                ("assemble", '{"scene": ' + scene.replace('"mass": "m"', '"mass": "m", "mass": 2') + "}", "/scene/bodies/0/mass")):
+            with self.subTest(path=path, pointer=pointer):
+                answer = self.server.ask("POST", "/api/v1/" + path, body, {"Content-Type": "application/json"})
+                error = self.assert_problem(answer, 422)["errors"][0]
+                self.assertEqual(error["pointer"], pointer)
+                self.assertIn("twice", error["detail"])
+
+    def test_a_query_parameter_given_twice_is_refused_by_its_name(self):
+        run = self.server.ask("POST", "/api/v1/runs", but(RUN, time=0.1)).json()["id"]
+        for path, name in ((f"runs/{run}/samples?stride=2&stride=3", "stride"), (f"runs/{run}?wait=0&wait=0", "wait"),
+                           ("scenes/four-bar/reference?time=1&compute=false&time=2", "time")):
+            detail = self.assert_problem(self.server.ask("GET", "/api/v1/" + path), 400, "bad-request")["detail"]
+            self.assertIn(f"'{name}' is given twice", detail)
+        # set is the one that may come several times, each parameter once
+        self.assertEqual(self.server.ask("GET", "/api/v1/scenes/four-bar?set=l1:0.5&set=l2:1").status, 200)
+        document = self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar?set=l1:0.5&set=l1:0.6"), 422)
+        self.assertIn("'l1' is given twice", document["detail"])
+
+    def test_heads_that_say_two_things_are_refused(self):
+        post = b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        for head, word in ((b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n\r\n", b"Host"),
+                           (b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n", b"Host"),
+                           (post + b"Content-Length: 2\r\nContent-Length: 3\r\n\r\n{} ", b"Content-Length"),
+                           (post + b"Content-Length: 2\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n", b"exclude each other"),
+                           (post + b"Transfer-Encoding: gzip\r\n\r\n{}", b"'gzip'")):
+            with self.subTest(head=head):
+                reply = self.server.raw(head)
+                self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), reply[:200])
+                problem = json.loads(reply.partition(b"\r\n\r\n")[2])
+                self.assertEqual(problem["type"], "/api/v1/errors/bad-request")
+                self.assertIn(word.decode(), problem["detail"])
+
     def test_every_fault_of_a_body_is_told_at_once(self):
         document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", {"scen": 1, "time": "x", "every": -1}), 422)
         self.assertEqual({"/scen", "/time", "/every", "/scene"}, {e["pointer"] for e in document["errors"]})

@@ -260,7 +260,19 @@ class Kept(unittest.TestCase):
                 f.write(b"9")
             server = driver.Server("--runs", folder)
             # nothing has been asked for yet: the folder is listed
-            self.assertEqual(server.ask("GET", "/api/v1/runs").json()["runs"], sorted(a["id"] for a in answers))
+            for _ in range(2):  # the second time from what was seen the first time
+                listed = server.ask("GET", "/api/v1/runs").json()
+                self.assertEqual(listed, {"runs": sorted(a["id"] for a in answers if a["id"] != damaged), "spoilt": 1, "unchecked": 0})
+            # a file that is spoilt later is found out
+            other = os.path.join(folder, answers[5]["id"] + ".json")
+            with open(other, "rb") as f:
+                whole = f.read()
+            with open(other, "wb") as f:
+                f.write(whole[:-3])
+            self.assertEqual(server.ask("GET", "/api/v1/runs").json()["spoilt"], 2)
+            with open(other, "wb") as f:
+                f.write(whole)
+            self.assertEqual(server.ask("GET", "/api/v1/runs").json()["spoilt"], 1)
             for i, (question, answer) in enumerate(zip(questions, answers)):
                 again = server.ask("POST", "/api/v1/runs", question)
                 self.assertEqual(again.status, 201 if i == 7 else 200)

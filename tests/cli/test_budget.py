@@ -27,6 +27,15 @@ def call(*words):
 
 
 class Budget(unittest.TestCase):
+    def test_flows_that_cannot_be_followed_are_told_with_figures(self):
+        done = call("study", "bennett", "budget", "--time", "0.3", "--methods", "udwadia-kalaba@rk4:h=0.1", "--json")
+        row = strict(done.stdout)["methods"][0]
+        failure = row["failure"]
+        self.assertEqual((row["state"], failure["code"], failure["quantity"], failure["limit"]), ("refused", "no-convergence", "t", 0.3))
+        self.assertEqual(failure["value"], failure["t"])
+        self.assertTrue(0 <= failure["value"] < 0.3, failure)
+        self.assertEqual(failure["message"], row["reason"])
+
     def test_json_adds_up_and_says_what_cannot_be_told(self):
         done = call("study", "fb0", "budget", "--time", "1", "--methods", *METHODS, "--json")
         self.assertEqual(done.returncode, DONE, done.stderr)

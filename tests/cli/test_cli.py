@@ -223,6 +223,16 @@ class CommandLine(Command):
             (("snapshot", "four-bar", "-o", "-", "--theme", "drak"), "dark"),
             (("snapshot", "bennett", "-o", "-", "--view", "tob"), "top"),
             (("snapshot", "four-bar", "-o", "-", "--width", "3"), "16"),
+            (("snapshot", "four-bar", "-o", "-", "--width", "0"), "--width is 0; 16 to 4096 pixels are allowed"),
+            (("snapshot", "four-bar", "-o", "-", "--height", "1e9"), "--height is 1000000000; 16 to 4096"),
+            (("snapshot", "four-bar", "-o", "a.png", "--out", "b.png"), "--out is given twice"),
+            (("run", "four-bar", "--time", "1", "--time=2"), "--time is given twice; it takes one value"),
+            (("run", "four-bar", "--at", "1,2", "--at", "3"), "--at is given twice"),
+            (("run", "four-bar", "--method", RK4, "--method", RK4), "--method is given twice"),
+            (("run", "four-bar", "--set", "l1=0.5", "--set", "l1=0.6"), "--set gives 'l1' twice, 0.5 and 0.6"),
+            (("run", "four-bar", "--set", "l1=0.5,l1=0.6"), "--set gives 'l1' twice"),
+            (("study", "four-bar", "budget", "--time-limit", "1", "--time-limit", "2"), "--time-limit is given twice"),
+            (("serve", "--port", "0", "--port", "0"), "--port is given twice"),
             (("grade", "p33", "x.json"), "p3"),
             (("grade", "p3"), "needs"),
             (("grade", "p3", "x.json", "--format", "gradscope"), "gradescope"),
@@ -244,6 +254,41 @@ class CommandLine(Command):
                 text = done.stderr.decode()
                 self.assertTrue(text.startswith("holonom: "), text)
                 self.assertIn(word, text)
+
+    def test_a_file_at_fault_is_named_in_every_message(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def write(name, text):
+                path = os.path.join(folder, name)
+                with open(path, "w") as f:
+                    f.write(text)
+                return path
+
+            with open("lessons/01-closed-loops/scenes/four-bar.json") as f:
+                four_bar = f.read()
+            fields, syntax = write("a.json", '{"name": "x", "bodies": [{"nam": "a"}]}'), write("b.json", '{"name":')
+            far = write("far.json", four_bar.replace('"l1": {"value": 0.5,', '"l1": {"value": 50,'))
+            submission = write("s.json", json.dumps(SUBMISSION))
+            model = write("c.xml", "<mujoco><worldbody><body></worldbody></mujoco>")
+            for path in (fields, syntax, far):
+                for words in (("run", path), ("inspect", path), ("compare", path), ("terms", path), ("export", path), ("study", path, "budget"),
+                              ("snapshot", path, "-o", "-"), ("tui", path, "--once"), ("reference", path)):
+                    if path == far and words[0] in ("inspect", "export", "reference"):
+                        continue  # these take a loop that is open
+                    with self.subTest(words=words):
+                        text = call(*words).stderr.decode()
+                        faults = [line for line in text.splitlines() if line.startswith("holonom: ") and not line.startswith("holonom: and ")]
+                        self.assertTrue(faults, text)
+                        for line in faults:
+                            self.assertTrue(line.startswith(f"holonom: {path}: "), line)
+            for words, path in ((("import", model), model), (("problem", fields), fields), (("grade", syntax, submission), syntax),
+                                (("rubric", "check", syntax), syntax), (("grade", "p3", submission, "--rubric", syntax), syntax)):
+                with self.subTest(words=words):
+                    self.assertTrue(call(*words).stderr.decode().startswith(f"holonom: {path}: "), words)
+            # standard input has a name too, and --json says the same
+            done = subprocess.run([driver.PROGRAM, "run", "-"], input=b'{"name":', capture_output=True)
+            self.assertTrue(done.stderr.startswith(b"holonom: standard input: line 1"), done.stderr)
+            for error in strict(call("run", fields, "--json").stdout.decode())["errors"]:
+                self.assertTrue(error["detail"].startswith(fields + ": "), error)
 
     def test_faults_come_as_json_where_json_was_asked(self):
         done = call("run", "for-bar", "--json")

@@ -19,6 +19,12 @@ COUNTED = [*STUDY, "--samples", "0"]
 CLOCK = ("cpu", "elapsed")
 
 
+def other_value(words, option, value):
+    """The words with another value of one option."""
+    at = words.index(option) + 1
+    return [*words[:at], value, *words[at + 1 :]]
+
+
 def bytes_of(path):
     with open(path, "rb") as f:
         return f.read()
@@ -136,8 +142,8 @@ class Merge(unittest.TestCase):
     def test_parts_of_another_study_are_refused_by_the_field(self):
         one = self.parts(2)[0]
         for tag, study, field in (
-            ("t", [*COUNTED, "--time", "0.5"], "request/time"),
-            ("l", [*COUNTED, "--levels", "4"], "request/levels"),
+            ("t", other_value(COUNTED, "--time", "0.5"), "request/time"),
+            ("l", other_value(COUNTED, "--levels", "4"), "request/levels"),
             ("s", [*STUDY, "--samples", "1"], "request/samples"),
             ("m", [w for w in COUNTED if w != "ggl@radau5"], "request/methods"),
             ("g", [*COUNTED, "--set", "l1=1.01"], "scene/hash"),

@@ -141,7 +141,7 @@ class Study(unittest.TestCase):
         self.assertEqual(without_times(first), without_times(third))
 
     def test_a_study_killed_ten_times_ends_as_an_undisturbed_one(self):
-        words = [*SMALL[:-1], "2", "--levels", "6", "--time", "4", "--json"]
+        words = ["study", "fb0", "work-precision", "--methods", *METHODS, "--time", "4", "--levels", "6", "--samples", "2", "--json"]
         whole = tempfile.TemporaryDirectory()
         undisturbed = strict(call(words, whole.name).stdout)
         whole.cleanup()

@@ -59,9 +59,12 @@ void hn_budget_put(hn_strbuf *b, const hn_model *model, const hn_budget_row *row
     hn_json_put_string(b, "reason", row->reason);
     const bool refused = row->status != HN_OK && row->status != HN_ERR_STOPPED;
     const bool failed = row->status == HN_OK && row->budget.state == HN_RUN_FAILED;
-    const hn_ending ending =
-        failed ? row->budget.ending : hn_ending_named(refused ? hn_status_name(row->status) : "");
-    hn_ending_put_json(b, &ending, row->reason, row->status == HN_OK ? row->budget.t : (double)NAN);
+    const bool has_figures = row->status == HN_ERR_NO_CONVERGENCE;
+    const hn_ending ending = failed || has_figures
+                                 ? row->budget.ending
+                                 : hn_ending_named(refused ? hn_status_name(row->status) : "");
+    hn_ending_put_json(b, &ending, row->reason,
+                       row->status == HN_OK || has_figures ? row->budget.t : (double)NAN);
     if (row->status == HN_OK) {
         hn_json_put_number(b, "t", row->budget.t);
         hn_json_put_int(b, "steps", row->budget.steps);

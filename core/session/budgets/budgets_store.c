@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-enum { FORMAT = 2 }; // counts up when the meaning of a line changes
+enum { FORMAT = 3 }; // counts up when the meaning of a line changes
 
 /// Hashes everything that the budgets depend on.
 static uint64_t budgets_key(const hn_budgets *a) {
@@ -70,6 +70,10 @@ static int take_line(void *user, const cJSON *o) {
          !take_account(o, hn_system_get_info(hn_model_system(a->model)).n_user, &row.budget))) {
         return 0;
     }
+    if (status != HN_OK &&
+        (!hn_stored_number(o, "t", &row.budget.t) || !hn_ending_take_json(o, &row.budget.ending))) {
+        return 0;
+    }
     a->resumed += a->rows[i].status == HN_ERR_STOPPED;
     a->rows[i] = row;
     return 1;
@@ -106,6 +110,9 @@ void hn_budgets_keep(hn_budgets *a, int i) {
     hn_json_put_number(&b, "holds_until", row->holds_until);
     if (row->status == HN_OK) {
         put_budget(&b, &row->budget);
+    } else {
+        hn_json_put_number(&b, "t", row->budget.t);
+        hn_ending_put_json(&b, &row->budget.ending, row->reason, row->budget.t);
     }
     hn_journal_write(&a->journal, &b);
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_FIELDS = 24, MAX_MEMBERS = 5000 };
@@ -161,6 +162,56 @@ static hn_status check_range(const cJSON *value, const hn_field *f, const char *
                         f->name, x, f->min, max);
 }
 
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/// Reports a name that an object has twice.
+static hn_status check_names(const cJSON *object, const char *pointer, hn_diags *diags) {
+    const int n = cJSON_GetArraySize(object);
+    const char **names = calloc((size_t)n + 1, sizeof *names);
+    hn_status status = names ? HN_OK : HN_ERR_MEMORY;
+    int i = 0;
+    const cJSON *item;
+    cJSON_ArrayForEach(item, object) {
+        if (names) {
+            names[i++] = item->string;
+        }
+    }
+
+    // equal names are neighbours
+    if (i > 0) {
+        qsort(names, (size_t)i, sizeof *names, compare_names);
+    }
+    for (int k = 1; k < i && status == HN_OK; k++) {
+        if (strcmp(names[k], names[k - 1]) == 0) {
+            char place[HN_DIAG_POINTER];
+            member_pointer(place, pointer, names[k]);
+            status = hn_diags_add(diags, HN_ERR_INPUT, place, NULL, "'%.60s' is written twice",
+                                  names[k]);
+        }
+    }
+    free(names);
+    return status;
+}
+
+/// The same of every object in a value.
+static hn_status check_all_names(const cJSON *value, const char *pointer, hn_diags *diags) {
+    hn_status status = cJSON_IsObject(value) ? check_names(value, pointer, diags) : HN_OK;
+    int index = 0;
+    const cJSON *item;
+    cJSON_ArrayForEach(item, value) {
+        if (status == HN_OK && (cJSON_IsObject(item) || cJSON_IsArray(item))) {
+            char place[HN_DIAG_POINTER], number[16];
+            snprintf(number, sizeof number, "%d", index);
+            member_pointer(place, pointer, item->string ? item->string : number);
+            status = check_all_names(item, place, diags);
+        }
+        index++;
+    }
+    return status;
+}
+
 static hn_status check_member(const cJSON *value, const hn_field *f, const char *pointer,
                               bool served, hn_diags *diags) {
     if (!has_type(value, f)) {
@@ -177,6 +228,9 @@ static hn_status check_member(const cJSON *value, const hn_field *f, const char 
     }
     if (f->type == HN_FIELD_CHOICE) {
         return check_choice(value->valuestring, f, pointer, diags);
+    }
+    if (f->type == HN_FIELD_BY_NAME || f->type == HN_FIELD_ANY) {
+        return check_all_names(value, pointer, diags);
     }
     return f->type == HN_FIELD_RECORD ? hn_fields_check(value, f->record, pointer, served, diags)
                                       : HN_OK;

@@ -107,6 +107,7 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     }
 
     // scene, equations, consistent start
+    const int n_before = diags ? diags->n : 0;
     model->arena = arena;
     hn_status status = load_scene(lib, source, &model->scene, diags);
     HN_THEN(status, add_pulls(model->scene, source, diags));
@@ -121,6 +122,9 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
                      "the scene's equations hold more values at once than a tape can (65,000)");
     }
     if (status != HN_OK) {
+        if (source->path) {
+            hn_diags_name_file(diags, n_before, source->path);
+        }
         hn_model_free(model);
         return status;
     }

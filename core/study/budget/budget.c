@@ -209,6 +209,7 @@ static hn_status book_step(hn_budget_work *b, hn_diag *diag) {
         owned = 1;
     }
     if (status != HN_OK) {
+        b->stuck = t;
         return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
                            "the equations of motion could not be followed beside the step from t = "
                            "%.4g to %.4g s: %s",
@@ -332,6 +333,10 @@ static hn_status keep_books(hn_budget_work *b, double T, hn_diag *diag) {
     HN_THEN(status, hn_budget_work_look_back(b, out->t, diag));
     if (status == HN_ERR_NO_CONVERGENCE) {
         explain(b, diag);
+        out->ending = hn_ending_named(hn_status_name(status));
+        snprintf(out->ending.quantity, sizeof out->ending.quantity, "t");
+        out->ending.value = out->t = b->stuck;
+        out->ending.limit = T;
     }
     return status;
 }

@@ -69,8 +69,9 @@ const char *hn_energy_item_about(hn_energy_item item);
 typedef struct hn_budget {
     hn_run_state state; ///< of the run; a budget of a failed one goes to where it got
     char reason[256];
-    hn_ending ending; ///< of a run that ended early, as data
-    double t;         ///< reached [s]
+    /// of a run that ended early, as data; of HN_ERR_NO_CONVERGENCE: where the flows ended
+    hn_ending ending;
+    double t; ///< reached [s]
     long long steps;
     int coordinate; ///< user coordinate whose error is largest at the end; -1: the run ended early
     double error;   ///< of it, signed: the run's value less the reference's [rad or m]

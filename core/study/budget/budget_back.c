@@ -99,6 +99,7 @@ static hn_status settle_all(hn_budget_work *b, hn_diag *diag) {
         status = status == HN_OK && k > 0 ? carry_back(b, k) : status;
         y_end = hn_budget_work_record(b, k) + 2;
     }
+    b->stuck = at;
     return status == HN_OK ? HN_OK
                            : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
                                          "its parts could not be carried on from t = %.4g s: %s",
@@ -203,7 +204,7 @@ static void separate_rounding(hn_budget_work *b, double T) {
 
 /// User coordinates of the exact motion at the run's end. The caller's are for the end that was
 /// asked for, which fixed steps may miss.
-static hn_status find_exact(const hn_budget_work *b, double T, double *out, hn_diag *diag) {
+static hn_status find_exact(hn_budget_work *b, double T, double *out, hn_diag *diag) {
     hn_method_spec spec;
     if (b->opts->exact && fabs(T - b->asked) <= HN_BOOKS_ARRIVED * b->asked) {
         memcpy(out, b->opts->exact, (size_t)b->info.n_user * sizeof *out);
@@ -212,6 +213,7 @@ static hn_status find_exact(const hn_budget_work *b, double T, double *out, hn_d
     const hn_status status = hn_method_parse(REFERENCE, &spec, diag);
     double t;
     if (status == HN_OK && !end_of(b, &spec, T, out, &t)) {
+        b->stuck = t;
         return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
                            "the exact motion (%s) ended at t = %.4g s", REFERENCE, t);
     }

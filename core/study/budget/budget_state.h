@@ -30,6 +30,7 @@ typedef struct hn_budget_work {
     const hn_budget_opts *opts;
     hn_budget *out;
     double asked; ///< end [s]
+    double stuck; ///< where a flow, or the exact motion, could not be followed [s]
     hn_accel *accel;
     hn_eval *eval;     ///< energy, J, phi_t
     hn_linear *linear; ///< M, J, V

@@ -85,6 +85,7 @@ static hn_status read_source(const hn_args *args, hn_import **out, hn_diags *dia
                                    .read = folder ? read_included : NULL,
                                    .user = folder};
         status = hn_import_read(&source, out, diags);
+        hn_diags_name_file(diags, 0, folder ? path : "standard input");
         free(folder);
     }
     hn_strbuf_reset(&text);

@@ -52,12 +52,22 @@ static hn_status check_times(const hn_args *args, hn_diags *diags) {
     return HN_OK;
 }
 
+static hn_status read_size(const char *option, double given, int *size, hn_diags *diags) {
+    if (given < HN_CANVAS_MIN || given > HN_CANVAS_MAX) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, NULL,
+                            "%s is %.15g; %d to %d pixels are allowed", option, given,
+                            HN_CANVAS_MIN, HN_CANVAS_MAX);
+    }
+    *size = (int)given;
+    return HN_OK;
+}
+
 static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
     if (!isnan(args->width)) {
-        request->width = (int)fmin(fmax(1, args->width), 1e6);
+        HN_TRY(read_size("--width", args->width, &request->width, diags));
     }
     if (!isnan(args->height)) {
-        request->height = (int)fmin(fmax(1, args->height), 1e6);
+        HN_TRY(read_size("--height", args->height, &request->height, diags));
     }
     if (args->theme && strcmp(args->theme, "dark") == 0) {
         request->theme = HN_THEME_DARK;

@@ -332,6 +332,29 @@ static hn_status read_numbers(hn_numbers *numbers, const option *o, const char *
     }
 }
 
+/// Whether an option that takes one value has it already.
+static bool is_given(const hn_args *args, const option *o, const hn_field *field) {
+    const void *place = (const char *)args + o->place;
+    if (field) {
+        return o->kind != OPTION_FLAG &&
+               cJSON_GetObjectItemCaseSensitive(args->fields, field->name) != NULL;
+    }
+    switch (o->kind) {
+    case OPTION_TEXT:
+        return *(const char *const *)place != NULL;
+    case OPTION_NUMBER:
+    case OPTION_COUNT:
+        return !isnan(*(const double *)place);
+    case OPTION_NUMBERS:
+        return ((const hn_numbers *)place)->value != NULL;
+    case OPTION_FLAG:
+    case OPTION_WORD:
+    case OPTION_WORDS:
+        break;
+    }
+    return false;
+}
+
 static hn_status read_value(hn_args *args, const option *o, const char *text, hn_diag *diag) {
     void *place = (char *)args + o->place;
     double value;
@@ -403,6 +426,10 @@ static hn_status take_option(hn_args *args, const hn_command *command, int argc,
     }
     if (!o) {
         return report_unknown(command, word, diag);
+    }
+    if (is_given(args, o, field)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s is given twice; it takes one value",
+                           o->name);
     }
 
     // its value: none, behind '=', or the words that follow

@@ -37,6 +37,7 @@ hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_
 }
 
 typedef struct settings {
+    hn_diags *diags;
     int n;
     hn_setting item[HN_SCENE_MAX_PARAMS];
     char names[HN_SCENE_MAX_PARAMS][64];
@@ -46,6 +47,13 @@ static hn_status see_setting(void *user, const char *name, double value) {
     settings *s = user;
     if (s->n == HN_SCENE_MAX_PARAMS) {
         return HN_ERR_LIMIT;
+    }
+    for (int i = 0; i < s->n; i++) {
+        if (strcmp(s->names[i], name) == 0) {
+            return hn_diags_add(s->diags, HN_ERR_INPUT, NULL, NULL,
+                                "--set gives '%.60s' twice, %g and %g; it takes one value", name,
+                                s->item[i].value, value);
+        }
     }
     snprintf(s->names[s->n], sizeof s->names[s->n], "%s", name);
     s->item[s->n] = (hn_setting){.name = s->names[s->n], .value = value};
@@ -90,6 +98,9 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
     settings *s = calloc(1, sizeof *s);
     hn_strbuf text;
     hn_strbuf_init(&text);
+    if (s) {
+        s->diags = diags;
+    }
     hn_status status =
         s ? hn_assignments_read(&args->set, "--set", see_setting, s, diags) : HN_ERR_MEMORY;
     if (status == HN_OK) {
@@ -110,6 +121,9 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
             source.name = word;
         }
         HN_THEN(status, hn_model_load(lib, &source, out, diags));
+        if (status != HN_OK && source.text) {
+            hn_diags_name_file(diags, 0, "standard input");
+        }
     }
     if (status == HN_OK && !args->json) {
         tell_beyond(*out);

@@ -26,6 +26,7 @@ typedef struct hn_context {
     struct hn_comparisons *comparisons;
     struct hn_studies *studies;
     struct hn_runs *runs;
+    struct hn_run_list *run_list;
     hn_kept_text scenes;       ///< the list of shipped scenes, as JSON
     struct hn_shares *streams; ///< places of open streams
     struct hn_jobs *quick;     ///< threads of requests that take no time

@@ -39,8 +39,54 @@ static bool check_origin(hn_request *r, const char *host) {
     return false;
 }
 
+/// Headers that say what a request is: one that has two values means something else to a proxy.
+static const char *const ONCE[] = {"Host", "Content-Length", "Content-Type", "Authorization"};
+enum { N_ONCE = sizeof ONCE / sizeof *ONCE };
+
+static enum MHD_Result count_header(void *cls, enum MHD_ValueKind kind, const char *key,
+                                    const char *value) {
+    int *n = cls;
+    (void)kind;
+    (void)value;
+    for (int i = 0; i < N_ONCE; i++) {
+        n[i] += strcasecmp(key, ONCE[i]) == 0;
+    }
+    return MHD_YES;
+}
+
+static bool check_headers(hn_request *r) {
+    int n[N_ONCE] = {0};
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, count_header, n);
+    for (int i = 0; i < N_ONCE; i++) {
+        if (n[i] > 1) {
+            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                             "the header %s is given %d times; it may be given once", ONCE[i],
+                             n[i]);
+            return false;
+        }
+    }
+
+    // how long the body is may be said in one way, and in one that is known here
+    const char *encoding = hn_request_header(r, "Transfer-Encoding");
+    if (encoding && strcasecmp(encoding, "chunked") != 0) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "send a Content-Length",
+                         "the Transfer-Encoding is '%.40s'; chunked is the one that is read",
+                         encoding);
+        return false;
+    }
+    if (encoding && hn_request_header(r, "Content-Length")) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "send one of them",
+                         "the headers Content-Length and Transfer-Encoding exclude each other");
+        return false;
+    }
+    return true;
+}
+
 int hn_guard_host(hn_request *r, const hn_hosts *hosts) {
     const char *host = hn_request_header(r, "Host");
+    if (!check_headers(r)) {
+        return 0;
+    }
     if (!host || !*host) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL, "the Host header is missing");
         return 0;
@@ -124,7 +170,8 @@ int hn_guard_accept(hn_request *r) {
 typedef struct query_check {
     const hn_route *route;
     int takes_token;
-    char unknown[64];
+    char unknown[64], twice[64];
+    unsigned seen; ///< bit by row of the route's parameters
 } query_check;
 
 static enum MHD_Result check_query(void *cls, enum MHD_ValueKind kind, const char *key,
@@ -133,10 +180,20 @@ static enum MHD_Result check_query(void *cls, enum MHD_ValueKind kind, const cha
     const hn_route_query *q = check->route->query;
     (void)kind;
     (void)value;
+    unsigned bit = 1;
     while (q && q->name && strcmp(q->name, key) != 0) {
         q++;
+        bit <<= 1;
     }
-    if ((q && q->name) || (check->takes_token && strcmp(key, "token") == 0)) {
+    if (q && q->name) {
+        const bool is_twice = (check->seen & bit) && strcmp(q->type, "array") != 0;
+        check->seen |= bit;
+        if (is_twice) {
+            snprintf(check->twice, sizeof check->twice, "%s", key);
+        }
+        return is_twice ? MHD_NO : MHD_YES;
+    }
+    if (check->takes_token && strcmp(key, "token") == 0) {
         return MHD_YES;
     }
     snprintf(check->unknown, sizeof check->unknown, "%s", key);
@@ -146,6 +203,12 @@ static enum MHD_Result check_query(void *cls, enum MHD_ValueKind kind, const cha
 int hn_guard_query(hn_request *r) {
     query_check check = {.route = r->route, .takes_token = r->context->opts.token != NULL};
     MHD_get_connection_values(r->connection, MHD_GET_ARGUMENT_KIND, check_query, &check);
+    if (check.twice[0]) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                         "the query parameter '%s' is given twice; it takes one value",
+                         check.twice);
+        return 0;
+    }
     if (!check.unknown[0]) {
         return 1;
     }

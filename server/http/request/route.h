@@ -20,7 +20,8 @@ typedef enum hn_work {
 } hn_work;
 
 typedef struct hn_route_query {
-    const char *name, *type, *about; ///< type: JSON Schema type
+    const char *name, *type,
+        *about; ///< type: JSON Schema type; "array": it may be given several times
 } hn_route_query;
 
 typedef struct hn_route {

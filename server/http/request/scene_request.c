@@ -31,6 +31,12 @@ hn_status hn_scene_request_add(hn_scene_request *order, const char *name, size_t
         return hn_diags_add(diags, HN_ERR_LIMIT, "/parameters", NULL,
                             "more than %d parameters were given", HN_SCENE_MAX_PARAMS);
     }
+    for (int i = 0; i < order->n; i++) {
+        if (strlen(order->names[i]) == n_name && memcmp(order->names[i], name, n_name) == 0) {
+            return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
+                                "the parameter '%.60s' is given twice", order->names[i]);
+        }
+    }
     char *copy = strndup(name, n_name);
     if (!copy) {
         return HN_ERR_MEMORY;

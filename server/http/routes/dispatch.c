@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /// An unwanted body of this size is read before the answer. A longer one is answered at once, and
 /// read for DRAIN_SECONDS: a client that is cut off while it sends would not see the answer.
@@ -99,9 +100,13 @@ static void check_head(hn_request *r, const char *method) {
     }
 }
 
-/// Whether the rest of the body is not worth reading.
+/// Whether the rest of the body is not worth reading, or has an end that nobody knows.
 static bool is_too_long_to_drain(const hn_request *r) {
     long long length = 0;
+    const char *encoding = hn_request_header(r, "Transfer-Encoding");
+    if (encoding && strcasecmp(encoding, "chunked") != 0) {
+        return true;
+    }
     const char *text = hn_request_header(r, "Content-Length");
     return (text && sscanf(text, "%lld", &length) == 1 && length > MAX_DRAINED) ||
            r->body_dropped > MAX_DRAINED;

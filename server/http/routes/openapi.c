@@ -32,7 +32,11 @@ static const struct {
 } SCHEMAS[] = {
     {"Text", "{\"type\":\"string\"}"},
     {"RunList",
-     "{\"type\":\"object\",\"required\":[\"runs\"],\"properties\":{\"runs\":" TEXTS "}}"},
+     "{\"type\":\"object\",\"required\":[\"runs\",\"spoilt\",\"unchecked\"],\"properties\":{"
+     "\"runs\":" TEXTS
+     ",\"spoilt\":{\"type\":\"integer\",\"description\":\"files that are not whole\"},"
+     "\"unchecked\":{\"type\":\"integer\",\"description\":\"files that there was no time to "
+     "read\"}}}"},
     {"Samples",
      "{\"type\":\"object\",\"required\":[\"fields\",\"rows\",\"next_cursor\"],\"properties\":{"
      "\"fields\":" TEXTS
@@ -263,6 +267,12 @@ static void put_parameter(hn_strbuf *b, const char *name, size_t n_name, const c
     hn_json_key(b, "schema");
     hn_json_object(b);
     hn_json_put_string(b, "type", type);
+    if (strcmp(type, "array") == 0) {
+        hn_json_key(b, "items");
+        hn_json_object(b);
+        hn_json_put_string(b, "type", "string");
+        hn_json_end_object(b);
+    }
     hn_json_end_object(b);
     hn_json_end_object(b);
     hn_strbuf_reset(&copy);

@@ -305,17 +305,17 @@ static const hn_field STUDY_CHANGE[] = {{.name = "state",
                                          .about = "ends the computing; what was done is kept"},
                                         END_OF_FIELDS};
 
-static const hn_route_query SCENE_QUERY[] = {{"set", "string", "parameter:value, may be repeated"},
+static const hn_route_query SCENE_QUERY[] = {{"set", "array", "parameter:value, may be repeated"},
                                              {NULL, NULL, NULL}};
 static const hn_route_query REFERENCE_QUERY[] = {
-    {"set", "string", "parameter:value, may be repeated"},
+    {"set", "array", "parameter:value, may be repeated"},
     {"time", "number", "end [s]; that of the stored one when left out"},
     {"every", "number", "the motion between the stored times too, at this interval [s]"},
     {"compute", "boolean",
      "true: computed where none is stored, within run_cpu_s; else that is 404 with the reason"},
     {NULL, NULL, NULL}};
 static const hn_route_query EXPORT_QUERY[] = {
-    {"set", "string", "parameter:value, may be repeated"},
+    {"set", "array", "parameter:value, may be repeated"},
     {"language", "string", "python when left out; see /languages"},
     {"blanks", "boolean", "true: without mass, force, jacobian and bias, for students to fill in"},
     {"method", "string",
@@ -431,8 +431,8 @@ static const hn_route ROUTES[] = {
     {"POST", "/api/v1/equations", HN_WORK_HEAVY, hn_handle_equations, EQUATIONS, JSON, "200",
      "Equations", "The equations of motion with parameters as symbols", NULL,
      "{\"scene\":\"four-bar\",\"format\":\"latex\"}"},
-    {"GET", "/api/v1/runs", HN_WORK_QUICK, hn_handle_runs_list, NULL, JSON, "200", "RunList",
-     "Ids of the runs that are kept", NULL, NULL},
+    {"GET", "/api/v1/runs", HN_WORK_HEAVY, hn_handle_runs_list, NULL, JSON, "200", "RunList",
+     "Ids of the runs that are kept whole, and the number of spoilt files", NULL, NULL},
     {"POST", "/api/v1/runs", HN_WORK_QUICK_OWN, hn_handle_runs_create, RUN, JSON, "201 200 202",
      "Run",
      "Runs a scene by one method or several; the same question has the same id and is computed "

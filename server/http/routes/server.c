@@ -7,6 +7,7 @@
 #include "http/routes/dispatch.h"
 #include "http/routes/routes.h"
 #include "http/routes/static_files.h"
+#include "http/runs/run_list.h"
 #include "http/runs/run_store.h"
 #include "http/runs/runs.h"
 #include "http/studies/studies.h"
@@ -103,8 +104,9 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     c->comparisons = hn_comparisons_create(o, c->lib);
     c->studies = hn_studies_create(o, c->lib);
     c->runs = hn_runs_create(o, c->lib, hn_run_reply);
+    c->run_list = hn_run_list_create(o->runs_folder);
     if (!s->dispatch.heavy || !s->dispatch.quick || !s->dispatch.connections || !c->streams ||
-        !c->comparisons || !c->studies || !c->runs) {
+        !c->comparisons || !c->studies || !c->runs || !c->run_list) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");
     }
     return HN_OK;
@@ -188,6 +190,7 @@ void hn_server_stop(hn_server *s) {
     hn_comparisons_free(c->comparisons);
     hn_studies_free(c->studies);
     hn_runs_free(c->runs);
+    hn_run_list_free(c->run_list);
     hn_shares_free(c->streams);
     hn_static_files_free(c->files);
     pthread_mutex_destroy(&c->scenes.lock);

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char ENDING[] = ".json";
@@ -100,6 +101,19 @@ hn_kept_run *hn_run_folder_read(const char *folder, const char *id) {
     }
     hn_strbuf_reset(&text);
     return run;
+}
+
+bool hn_run_folder_stamp(const char *folder, const char *id, hn_run_stamp *out) {
+    char path[1024];
+    struct stat st;
+    if (!file_path(folder, id, path) || lstat(path, &st) != 0) {
+        return false;
+    }
+    *out = (hn_run_stamp){.size = st.st_size,
+                          .seconds = st.st_mtim.tv_sec,
+                          .ns = st.st_mtim.tv_nsec,
+                          .inode = st.st_ino};
+    return true;
 }
 
 void hn_run_folder_each(const char *folder, void (*see)(void *user, const char *id), void *user) {

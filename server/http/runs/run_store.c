@@ -494,65 +494,10 @@ int hn_runs_wait(hn_runs *all) {
     return hn_jobs_wait(all->jobs);
 }
 
-// ---- the list ----
-
-/// Ids of runs; `failed` when memory is out.
-typedef struct id_list {
-    char (*id)[HN_RUN_ID];
-    size_t n, cap;
-    bool failed;
-} id_list;
-
-static void add_id(void *user, const char *id) {
-    id_list *list = user;
-    if (list->n == list->cap) {
-        const size_t cap = 2 * list->cap + 64;
-        void *larger = realloc(list->id, cap * sizeof *list->id);
-        if (!larger) {
-            list->failed = true;
-            return;
-        }
-        list->id = larger;
-        list->cap = cap;
-    }
-    memcpy(list->id[list->n++], id, HN_RUN_ID);
-}
-
-static int compare_ids(const void *a, const void *b) {
-    return strcmp(a, b);
-}
-
-/// The runs in memory and in the folder, each once, by their ids.
-static id_list list_all(hn_runs *all) {
-    id_list list = {0};
+void hn_runs_each(hn_runs *all, void (*see)(void *user, const char *id), void *user) {
     pthread_mutex_lock(&all->lock);
     for (const hn_kept_run *run = all->first; run; run = run->next) {
-        add_id(&list, run->id);
+        see(user, run->id);
     }
     pthread_mutex_unlock(&all->lock);
-    hn_run_folder_each(all->opts->runs_folder, add_id, &list);
-
-    // one that is in both places comes once
-    size_t n = 0;
-    if (list.n > 0) {
-        qsort(list.id, list.n, sizeof *list.id, compare_ids);
-    }
-    for (size_t i = 0; i < list.n; i++) {
-        if (n == 0 || strcmp(list.id[n - 1], list.id[i]) != 0) {
-            memmove(list.id[n++], list.id[i], HN_RUN_ID);
-        }
-    }
-    list.n = n;
-    return list;
-}
-
-void hn_runs_list_json(hn_strbuf *b, hn_runs *all) {
-    id_list list = list_all(all);
-    hn_json_array(b);
-    for (size_t i = 0; i < list.n; i++) {
-        hn_json_string(b, list.id[i]);
-    }
-    hn_json_end_array(b);
-    b->failed |= list.failed;
-    free(list.id);
 }

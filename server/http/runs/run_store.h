@@ -56,7 +56,6 @@ void hn_runs_remove_reader(hn_runs *all, hn_run_reader *reader);
 bool hn_runs_suspend_reader(hn_runs *all, hn_run_reader *reader, double seconds);
 /// Seconds after which a refused question may be asked again.
 int hn_runs_wait(hn_runs *all);
-/// Ids of the runs in memory and in the folder, each once and sorted, as a JSON array. Reads the
-/// folder: not for a connection's thread.
-void hn_runs_list_json(hn_strbuf *b, hn_runs *all);
+/// Calls `see` with the id of each run in memory, with the lock of the store held.
+void hn_runs_each(hn_runs *all, void (*see)(void *user, const char *id), void *user);
 #endif

@@ -5,6 +5,7 @@
 #include "http/request/guard.h"
 #include "http/request/request.h"
 #include "http/runs/json_scan.h"
+#include "http/runs/run_list.h"
 #include "http/runs/run_samples.h"
 #include "http/runs/run_store.h"
 
@@ -184,8 +185,7 @@ void hn_handle_runs_list(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
-    hn_json_key(&b, "runs");
-    hn_runs_list_json(&b, r->context->runs);
+    hn_run_list_put(&b, r->context->run_list, r->context->runs, hn_request_interrupt(r));
     hn_json_end_object(&b);
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }
