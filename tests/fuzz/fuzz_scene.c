@@ -3,7 +3,7 @@
 // chooses one of these, so that an input costs little; a large mechanism is only loaded.
 #include "fuzz/fuzz.h"
 
-#include "session/compare/comparison.h"
+#include "session/compare/comparison_doc.h"
 #include "session/model/drag_json.h"
 #include "session/model/inspect_json.h"
 #include "session/model/model_json.h"

@@ -23,41 +23,7 @@ static const char *const coarse[] = {
     "projection@rk4:h=0.01",       "baumgarte@rk4:h=0.005", "ggl@radau5:rtol=1e-4",
     "nullspace@dopri5:rtol=1e-4",  "ggl@radau5:rtol=1e-6",  "projection@dopri5:rtol=1e-6",
     "projection@dop853:rtol=1e-6", "ggl@ida:rtol=1e-6",     "index3@radau5:rtol=1e-6"};
-enum { N_COARSE = sizeof coarse / sizeof *coarse, MOST_SCENES = 64 };
-
-/// Errors of the coordinates over rtol, of every scene that a method came to the end of.
-typedef struct tally {
-    int n;
-    double ratio[MOST_SCENES];
-} tally;
-static tally tallies[N_COARSE];
-
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void note_tolerance(int method, const hn_method_spec *spec, double error) {
-    const double rtol = hn_method_option(spec, "rtol", 0);
-    tally *t = &tallies[method];
-    if (rtol > 0 && t->n < MOST_SCENES) {
-        t->ratio[t->n++] = error / rtol;
-    }
-}
-
-static void put_tallies(void) {
-    printf(
-        "\nWhat a tolerance is worth: the error of the coordinates over rtol, at the end or where "
-        "the reference ends\nmethod                            scenes   median  nine of ten\n");
-    for (int i = 0; i < N_COARSE; i++) {
-        tally *t = &tallies[i];
-        qsort(t->ratio, (size_t)t->n, sizeof *t->ratio, compare_doubles);
-        if (t->n > 0) {
-            printf("%-34s %5d  %7.3g      %7.3g\n", coarse[i], t->n, t->ratio[t->n / 2],
-                   t->ratio[9 * t->n / 10]);
-        }
-    }
-}
+enum { N_COARSE = sizeof coarse / sizeof *coarse };
 
 static void count(counter *c, double ratio) {
     c->lowest = c->n ? fmin(c->lowest, ratio) : ratio;
@@ -68,9 +34,8 @@ static void count(counter *c, double ratio) {
 
 /// Runs one method along the times of the reference, the watch beside it; fills the true errors up
 /// to the time to which the estimate holds.
-static bool run_method(const hn_model *model, const hn_ref *ref, const char *text, int coarse_one,
+static bool run_method(const hn_model *model, const hn_ref *ref, const char *text,
                        hn_estimate *estimate, double truth[HN_ERROR_COUNT]) {
-    double last = 0;
     const hn_system *sys = hn_model_system(model);
     hn_method_spec spec;
     hn_diag diag = {0};
@@ -95,10 +60,6 @@ static bool run_method(const hn_model *model, const hn_ref *ref, const char *tex
         double error[HN_ERROR_COUNT];
         const hn_state_seen at = {s.t, s.q, s.v, s.lambda, s.energy, s.gap, s.velocity_gap};
         hn_errors_calc(errors, &at, &exact, &ref->scales, error);
-        last = fmax(last, error[HN_ERROR_Q]);
-        if (k == ref->n && coarse_one >= 0) {
-            note_tolerance(coarse_one, &spec, last);
-        }
         if (!hn_accuracy_reach(a, s.t, hn_run_get_summary(run).cost.ops)) {
             continue; // where the watch is late it claims nothing
         }
@@ -151,7 +112,7 @@ static void do_scene(hn_library *lib, int scene, counter *q) {
         const char *method = i < s->n_methods ? s->methods[i] : coarse[i - s->n_methods];
         hn_estimate e = {0};
         double truth[HN_ERROR_COUNT];
-        if (run_method(model, ref, method, i - s->n_methods, &e, truth)) {
+        if (run_method(model, ref, method, &e, truth)) {
             put_row(source.name, method, &e, truth, q);
         } else {
             printf("%-22s %-42s %s\n", source.name, method, e.reason);
@@ -180,7 +141,6 @@ int main(void) {
     }
     printf("\n%d ratios, %d of them between 1/%d and %d; %.2f to %.2f\n", q.n, q.within, LATE, LATE,
            q.lowest, q.highest);
-    put_tallies();
     hn_library_free(lib);
     return q.within < q.n; // an estimate that is off by more than the factor is a fault
 }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
-#include "session/compare/estimate.h"
-#include "session/compare/failure.h"
-#include "session/compare/incident_json.h"
 #include "study/run/diagnosis.h"
 #include "formulations/list/formulation_list.h"
 
@@ -211,8 +208,38 @@ int hn_comparison_slot(const hn_comparison *c, int method) {
     return c->entries[method].slot;
 }
 
+const char *hn_comparison_warning(const hn_comparison *c, int method) {
+    return c->entries[method].warning;
+}
+
+double hn_comparison_cpu_limit(const hn_comparison *c) {
+    return c->cpu_limit;
+}
+
+double hn_comparison_slowness(const hn_comparison *c, int method) {
+    return c->entries[method].over_limit ? c->entries[method].slowness : 0;
+}
+
+const hn_model *hn_comparison_model(const hn_comparison *c) {
+    return c->model;
+}
+
+const hn_hand *hn_comparison_hand(const hn_comparison *c) {
+    return &c->hand;
+}
+
+const hn_accuracy *hn_comparison_accuracy(const hn_comparison *c, const hn_accuracy_track **track,
+                                          int method) {
+    *track = &c->entries[method].track;
+    return c->accuracy;
+}
+
 static bool is_live(const entry *e) {
     return !e->over_limit && hn_run_get_summary(e->run).state != HN_RUN_FAILED;
+}
+
+bool hn_comparison_is_live(const hn_comparison *c, int method) {
+    return is_live(&c->entries[method]);
 }
 
 bool hn_comparison_finished(const hn_comparison *c) {
@@ -456,227 +483,4 @@ bool hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out) {
         *out = (hn_sample){0};
     }
     return false;
-}
-
-/// Returns the present state of the method: "running", "finished" or "failed".
-static const char *state_name(const hn_comparison *c, const entry *e) {
-    return !is_live(e) ? "failed" : hn_comparison_finished(c) ? "finished" : "running";
-}
-
-static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
-                       const hn_run_summary *s) {
-    if (e->over_limit) {
-        char text[200];
-        snprintf(text, sizeof text,
-                 "one frame of %.3g s took more than %g s of computing: %.3g times slower than the "
-                 "clock; take a larger step",
-                 c->frame_dt, c->cpu_limit, e->slowness);
-        hn_json_put_string(b, "status", hn_status_name(HN_ERR_STOPPED));
-        hn_json_put_string(b, "reason", text);
-        hn_failure_put_json(b, e->run, HN_ERR_STOPPED, text, s->t);
-    } else {
-        hn_json_put_string(b, "status", hn_status_name(s->status));
-        hn_json_put_string(b, "reason", s->reason);
-        hn_failure_put_json(b, e->run, s->status, s->reason, s->t);
-    }
-}
-
-static void put_warning(hn_strbuf *b, const entry *e) {
-    if (e->warning[0]) {
-        hn_json_put_string(b, "warning", e->warning);
-    }
-}
-
-static void put_step_cost(hn_strbuf *b, const hn_comparison *c, int method) {
-    const hn_step_cost cost = hn_comparison_step_cost(c, method);
-    hn_json_key(b, "step_cpu");
-    hn_json_object(b);
-    hn_json_put_number(b, "median", cost.median);
-    hn_json_put_number(b, "low", cost.low);
-    hn_json_put_number(b, "high", cost.high);
-    hn_json_put_int(b, "frames", cost.frames);
-    hn_json_end_object(b);
-}
-
-static void put_cost(hn_strbuf *b, const hn_run_summary *s) {
-    hn_json_put_int(b, "steps", s->steps);
-    hn_json_put_int(b, "rejected", s->rejected);
-    hn_json_put_int(b, "evals", s->cost.evals);
-    hn_json_put_number(b, "ops", s->cost.ops);
-    hn_json_put_number(b, "cpu", s->cpu_seconds);
-    hn_json_put_number(b, "worst_gap", s->worst_gap);
-    hn_json_put_number(b, "worst_velocity_gap", s->worst_velocity_gap);
-    hn_json_put_number(b, "worst_energy_change", s->worst_energy_change);
-}
-
-static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sample) {
-    hn_system_info info = hn_system_get_info(hn_model_system(c->model));
-    hn_json_put_number(b, "t", sample->t);
-    if (!sample->q) {
-        return;
-    }
-    hn_json_put_numbers(b, "q", sample->q, (size_t)info.n_user);
-    hn_json_put_numbers(b, "v", sample->v, (size_t)info.n_user);
-    hn_json_put_numbers(b, "points", sample->points, 3 * (size_t)info.n_points);
-    hn_json_put_number(b, "gap", sample->gap);
-    hn_json_put_number(b, "velocity_gap", sample->velocity_gap);
-    hn_json_put_number(b, "energy", sample->energy);
-    hn_json_put_number(b, "work", sample->work);
-    hn_json_put_number(b, "energy_change", sample->energy_change);
-    hn_json_put_number(b, "pivot_ratio", sample->pivot_ratio);
-    hn_json_put_int(b, "rank", sample->rank);
-}
-
-/// The force of the hand on this state [N].
-static void put_pull_force(hn_strbuf *b, const hn_comparison *c, const hn_sample *sample) {
-    double force[3];
-    if (c->hand.force && sample->q) {
-        hn_pull_force_run(c->hand.force, sample->t, sample->q, sample->v, force);
-        hn_json_put_numbers(b, "pull_force", force, 3);
-    }
-}
-
-static void put_incidents(hn_strbuf *b, const hn_comparison *c) {
-    hn_json_key(b, "incidents");
-    hn_json_array(b);
-    for (int i = 0; i < c->n; i++) {
-        hn_incidents_json(b, i, c->entries[i].run);
-    }
-    hn_json_end_array(b);
-}
-
-void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
-    hn_json_object(b);
-    hn_json_put_int(b, "frame", c->frame);
-    hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
-    hn_json_put_bool(b, "finished", hn_comparison_finished(c));
-    if (c->hand.force) {
-        hn_hand_put_json(b, &c->hand, (double)c->frame * c->frame_dt);
-    }
-
-    // state, sample and cost of every method at this frame
-    hn_json_key(b, "methods");
-    hn_json_array(b);
-    for (int i = 0; i < c->n; i++) {
-        hn_sample sample = {0};
-        hn_comparison_sample(c, i, &sample);
-        hn_run_summary s = hn_run_get_summary(c->entries[i].run);
-        hn_json_object(b);
-        hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
-        put_reason(b, c, &c->entries[i], &s);
-        put_sample(b, c, &sample);
-        put_pull_force(b, c, &sample);
-        put_cost(b, &s);
-        put_step_cost(b, c, i);
-        hn_estimate_put_json(b, c->accuracy, hn_run_spec(c->entries[i].run), &c->entries[i].track,
-                             s.t);
-        hn_json_end_object(b);
-    }
-    hn_json_end_array(b);
-    hn_json_end_object(b);
-}
-
-const char *hn_frame_extra_name(hn_frame_extra extra) {
-    static const char *const names[HN_FRAME_EXTRAS] = {[HN_FRAME_SIGMA_MIN] = "sigma_min",
-                                                       [HN_FRAME_LAMBDA] = "lambda",
-                                                       [HN_FRAME_CONDITION] = "condition"};
-    return names[extra];
-}
-
-void hn_comparison_extra_json(hn_strbuf *b, const hn_comparison *c, hn_frame_extra extra) {
-    const hn_system_info info = hn_system_get_info(hn_model_system(c->model));
-    hn_json_array(b);
-    for (int i = 0; i < c->n; i++) {
-        if (extra == HN_FRAME_SIGMA_MIN) {
-            hn_json_number(b, hn_run_sigma_min(c->entries[i].run));
-            continue;
-        }
-        if (extra == HN_FRAME_CONDITION) {
-            hn_json_number(b, hn_run_condition(c->entries[i].run));
-            continue;
-        }
-
-        // none where the last good state could not be sampled
-        hn_sample sample = {0};
-        hn_comparison_sample(c, i, &sample);
-        hn_json_array(b);
-        for (int k = 0; sample.lambda && k < info.nc; k++) {
-            hn_json_number(b, sample.lambda[k]);
-        }
-        hn_json_end_array(b);
-    }
-    hn_json_end_array(b);
-}
-
-void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
-    hn_json_object(b);
-    hn_json_put_number(b, "frame_dt", c->frame_dt);
-    hn_json_put_number(b, "duration", c->duration);
-
-    // properties of the methods that no frame changes
-    hn_json_key(b, "methods");
-    hn_json_array(b);
-    for (int i = 0; i < c->n; i++) {
-        // legend: colour, names, one-sentence rule
-        const hn_method_spec *spec = hn_run_spec(c->entries[i].run);
-        hn_json_object(b);
-        hn_json_put_int(b, "slot", c->entries[i].slot);
-        hn_json_put_string(b, "short", spec->formulation->short_name);
-        hn_json_put_string(b, "rule", spec->formulation->rule);
-        hn_json_put_string(b, "drift", spec->formulation->drift);
-
-        // theory: errors of the model, drift, order
-        hn_json_put_bool(b, "model_error", spec->formulation->model_error);
-        hn_json_put_bool(b, "keeps_gap",
-                         (spec->formulation->traits & HN_TRAIT_CLOSES_POSITION) != 0);
-        hn_json_put_int(b, "order", spec->stepper->order);
-        put_warning(b, &c->entries[i]);
-        hn_json_key(b, "method");
-        hn_method_json(b, spec);
-        hn_json_end_object(b);
-    }
-    hn_json_end_array(b);
-    hn_json_end_object(b);
-}
-
-void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
-    hn_json_object(b);
-    hn_json_put_string(b, "scene", hn_model_scene(c->model)->id);
-    hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
-
-    // one entry per method
-    hn_json_key(b, "methods");
-    hn_json_array(b);
-    for (int i = 0; i < c->n; i++) {
-        hn_run_summary s = hn_run_get_summary(c->entries[i].run);
-        char spelling[HN_SPEC_MAX];
-        hn_method_format(hn_run_spec(c->entries[i].run), spelling);
-
-        // name and state
-        hn_json_object(b);
-        hn_json_put_string(b, "method", spelling);
-        hn_json_put_string(b, "short", hn_run_spec(c->entries[i].run)->formulation->short_name);
-        hn_json_put_int(b, "slot", c->entries[i].slot);
-        hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
-        put_warning(b, &c->entries[i]);
-        put_reason(b, c, &c->entries[i], &s);
-        // a step may end beyond the clock or short of it; its sample is that of the clock's time
-        const double clock = (double)c->frame * c->frame_dt;
-        hn_json_put_number(b, "t_reached", is_live(&c->entries[i]) ? clock : fmin(s.t, clock));
-
-        // cost and error totals
-        put_cost(b, &s);
-        put_step_cost(b, c, i);
-        hn_estimate_put_json(b, c->accuracy, hn_run_spec(c->entries[i].run), &c->entries[i].track,
-                             fmin(s.t, (double)c->frame * c->frame_dt));
-        hn_estimate_put_verdict(b, c->accuracy, &c->entries[i].track,
-                                fmin(s.t, (double)c->frame * c->frame_dt));
-        hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
-        hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
-        hn_json_put_int(b, "chart_changes", s.cost.chart_changes);
-        hn_json_end_object(b);
-    }
-    hn_json_end_array(b);
-    put_incidents(b, c);
-    hn_json_end_object(b);
 }

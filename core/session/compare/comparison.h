@@ -10,6 +10,7 @@
 #include "session/compare/hand.h"
 #include "session/model/model.h"
 #include "study/run/run.h"
+#include "study/truth/accuracy.h"
 
 #include <stdbool.h>
 
@@ -79,53 +80,16 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method);
 /// *out is then its last good state.
 bool hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
-/// Writes the present frame: {"frame","t","finished","methods":[{"state","t","points":[...],"gap",
-/// "velocity_gap","energy","work","energy_change","steps","evals","ops","cpu","step_cpu":{"median",
-/// "low","high","frames"},"worst_gap",...}]}; step_cpu as hn_step_cost
-void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
-/// What a frame may say beside: an array with an entry for each method.
-typedef enum hn_frame_extra {
-    HN_FRAME_SIGMA_MIN, ///< hn_run_sigma_min() at the last step that was checked
-    HN_FRAME_LAMBDA,    ///< multipliers of the sample, an array
-    HN_FRAME_CONDITION, ///< hn_run_condition() at the last step that was checked
-    HN_FRAME_EXTRAS
-} hn_frame_extra;
-const char *hn_frame_extra_name(hn_frame_extra extra); ///< "sigma_min"
-void hn_comparison_extra_json(hn_strbuf *b, const hn_comparison *c, hn_frame_extra extra);
-/// Writes the properties of the methods (spelling, short name, colour slot, rule, order), frame_dt
-/// and duration.
-void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
-/// Writes the final table: status, reason, time reached, largest violations, largest change of
-/// energy, steps, rejected steps, evaluations, operations and CPU time per method; then the
-/// incidents.
-void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c);
-
-// one run with output, for `holonom run` and POST /runs ----
-typedef struct hn_run_request {
-    const char *method;
-    double time;      ///< end [s]
-    const double *at; ///< output times, ascending; NULL: `every`
-    int n_at;
-    double every;          ///< 0: 200 samples
-    long long max_samples; ///< bound
-    long long max_numbers; ///< in the tables of the answer; 0: 2^25
-    long long max_steps;
-    /// 1: adds a column "raw_lambda" where the integrator computes multipliers of its own
-    int raw_lambda;
-    /// 1: adds columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names:
-    /// "efforts")
-    int reactions;
-    /// called every few milliseconds with the share done; returns 0 to stop. May be NULL.
-    int (*progress)(void *user, double share);
-    /// Called with each sample when it is made; NULL: not wanted. `values` are t, q, v, lambda,
-    /// raw_lambda, lambda_mark, reaction_force, reaction_moment, effort, points, gap, velocity_gap,
-    /// energy, work, energy_change, those that the document of the run has. `names` is that
-    /// document with this sample alone, at the first call, and NULL at all others. The document at
-    /// the end then has "lambda_mark" alone of its samples.
-    void (*row)(void *user, const hn_strbuf *names, const double *values, int n);
-    void *row_user;
-    const char *stop_reason; ///< reason if `progress` stops the run; NULL: "stopped on request"
-    void *user;
-} hn_run_request;
+// What writers of documents need besides (session/compare/comparison_doc.h).
+const hn_model *hn_comparison_model(const hn_comparison *c);           ///< borrowed
+const char *hn_comparison_warning(const hn_comparison *c, int method); ///< of the spelling, or ""
+bool hn_comparison_is_live(const hn_comparison *c, int method); ///< neither failed nor stopped
+double hn_comparison_cpu_limit(const hn_comparison *c);         ///< [s] of one frame
+/// Computing time over simulated time in the frame that took too long; 0 where none did.
+double hn_comparison_slowness(const hn_comparison *c, int method);
+const hn_hand *hn_comparison_hand(const hn_comparison *c); ///< borrowed
+/// Returns the accuracy watch, borrowed, and in *track what it has seen of the method.
+const hn_accuracy *hn_comparison_accuracy(const hn_comparison *c, const hn_accuracy_track **track,
+                                          int method);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "render/canvas_svg.h"
 #include "render/png_file.h"
+#include "session/compare/comparison_doc.h"
 #include "session/compare/picture_moment.h"
 #include "session/model/caption.h"
 #include "session/model/envelope.h"

@@ -9,7 +9,7 @@
 #include "cli/shell/print.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
-#include "session/compare/comparison.h"
+#include "session/compare/comparison_doc.h"
 #include "session/compare/estimate.h"
 #include "study/truth/accuracy.h"
 #include "terminal/motion_plot.h"

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "http/live/pulls.h"
+#include "session/compare/comparison_doc.h"
 #include "session/compare/incident_json.h"
 #include "session/model/model_json.h"
 

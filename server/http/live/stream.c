@@ -6,6 +6,7 @@
 #include "build.h"
 #include "http/live/session_state.h"
 #include "http/request/context.h"
+#include "session/compare/comparison_doc.h"
 
 #include <poll.h>
 #include <stdbool.h>

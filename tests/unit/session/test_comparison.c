@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/near.h"
 
-#include "session/compare/comparison.h"
+#include "session/compare/comparison_doc.h"
 #include "session/compare/run_doc.h"
 
 #include <cjson/cJSON.h>

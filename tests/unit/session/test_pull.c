@@ -2,7 +2,7 @@
 // A hand that pulls a mechanism while a comparison runs.
 #include "support/near.h"
 
-#include "session/compare/comparison.h"
+#include "session/compare/comparison_doc.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
