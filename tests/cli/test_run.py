@@ -209,6 +209,27 @@ class Run(Command):
         self.assertEqual(told.count("try ggl@radau5"), 1)
         self.assertIn("the run ended early: after t = 0.9 s the state stopped being finite", told)
 
+    def test_an_end_is_told_once_and_with_one_time(self):
+        run = call("run", "four-bar", "--method", "projection@rk4:h=0.3", "--time", "10").stderr.decode()
+        compared = call("compare", "four-bar", "--methods", "projection@rk4:h=0.3", "index1@rk4:h=0.3", "nullspace@rk4:h=0.1", "--time", "10")
+        compared = (compared.stdout + compared.stderr).decode()
+        for told in (run, compared):
+            self.assertEqual(told.count("the state stopped being finite"), 1, told)
+            self.assertNotRegex(told, r"t = (\S+) s: (after|at) t = \1 s")
+        self.assertIn("projection@rk4:h=0.3 ended early: after t = 0.9 s the state", compared)
+        self.assertIn("nullspace@rk4:h=0.1 ended early at t = 1 s: th3 = 0.808177 at t = 1.1 s", compared)
+        for method in ("projection@rk4:h=0.3", "index1@rk4:h=0.3", "nullspace@rk4:h=0.1"):
+            times = [float(t) for t in re.findall(rf"(?m)^! {re.escape(method)}: t = ([\d.]+) s: ", compared)]
+            self.assertGreater(len(times), 1, method)
+            self.assertEqual(times, sorted(times), method)
+
+    def test_a_loop_that_cannot_be_closed_names_what_was_changed(self):
+        for command in (["run"], ["compare"], ["study", "four-bar", "budget"]):
+            words = [*command, *([] if len(command) > 1 else ["four-bar"]), "--set", "l1=50", "--set", "l2=1.2"]
+            done = call(*words)
+            self.assert_exit(done, INPUT)
+            self.assertIn("changed: l1 = 50 m, before 0.5 (at", done.stderr.decode())
+
     def test_compare_keeps_a_method_that_failed_and_says_which(self):
         done = call("compare", "four-bar", "--methods", "index1@euler:h=0.05", "projection@rk4:h=1e-3", "--time", "60")
         text = self.assert_exit(done, ENDED)

@@ -62,6 +62,22 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
                               source->n_settings, scene, diags);
 }
 
+/// Writes what was changed of the scene: "; changed: l1 = 50 m, before 0.4 m", or "" where nothing
+/// was. The reason of a loop that stands open names bodies and starts; the cause is often here.
+static void put_changes(const hn_scene *scene, char *out, size_t size) {
+    size_t used = 0;
+    out[0] = '\0';
+    for (int i = 0; i < scene->n_params; i++) {
+        const hn_param *p = &scene->params[i];
+        if (p->value != p->initial && used < size) {
+            const char *space = p->unit[0] ? " " : "";
+            used += (size_t)snprintf(out + used, size - used, "%s%.40s = %.6g%s%s, before %.6g",
+                                     used ? "; " : "; changed: ", p->name, p->value, space, p->unit,
+                                     p->initial);
+        }
+    }
+}
+
 /// Computes consistent starting values. An open loop is an error unless allow_open is set.
 static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(model->system);
@@ -74,6 +90,11 @@ static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
     hn_status status =
         hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, &why);
     int open = status == HN_ERR_UNREACHABLE || status == HN_ERR_INCONSISTENT;
+    if (open) {
+        hn_diag *first = &why.item[0];
+        const size_t used = strlen(first->message);
+        put_changes(model->scene, first->message + used, sizeof first->message - used);
+    }
     if (open && allow_open) {
         model->open = why.item[0];
         return HN_OK;

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "cli/shell/commands.h"
 #include "cli/commands/error_advice.h"
+#include "cli/commands/incident_list.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/notes.h"
@@ -167,13 +168,30 @@ static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i)
                      hn_error_advice(m, hn_document_get(summary, "incidents"), i));
 }
 
-/// What a spelling deserves to be told, and the first few incidents of each method; all of them are
-/// in the JSON.
-static void put_incidents(hn_strbuf *b, const cJSON *summary) {
-    const cJSON *incident, *m;
+/// The first incidents of one method, in order of time; the rest are counted.
+static void put_incidents(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
+    const char *name = hn_document_text(m, "method");
+    hn_incident_list list;
+    hn_incident_list_take(&list, hn_document_get(summary, "incidents"), i,
+                          hn_document_text(m, "reason"));
+    for (int k = 0; k < list.n && k < MAX_INCIDENTS; k++) {
+        char line[HN_INCIDENT_LINE];
+        hn_incident_line(list.item[k], line, sizeof line);
+        hn_strbuf_printf(b, "! %s: %s\n", name, line);
+    }
+    if (list.n > MAX_INCIDENTS) {
+        const int more = list.n - MAX_INCIDENTS;
+        hn_strbuf_printf(b, "! %s: %d incident%s more (--json lists them all)\n", name, more,
+                         more > 1 ? "s" : "");
+    }
+}
+
+/// What is to be told of each method: of its spelling, its motion and its incidents. Why it ended
+/// is said after the table.
+static void put_remarks(hn_strbuf *b, const cJSON *summary) {
+    const cJSON *m;
     int i = 0;
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
-        int n = 0;
         if (hn_document_text(m, "warning")[0]) {
             hn_strbuf_printf(b, "! %s: %s\n", hn_document_text(m, "method"),
                              hn_document_text(m, "warning"));
@@ -181,20 +199,7 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
         if (!has_failed(m) && is_wrong(m)) {
             put_wrong(b, summary, m, i);
         }
-
-        // its first incidents; the rest are counted
-        cJSON_ArrayForEach(incident, hn_document_get(summary, "incidents")) {
-            if ((int)hn_document_number(incident, "method") == i && n++ < MAX_INCIDENTS) {
-                hn_strbuf_printf(b, "! %s at t = %.4g s: %s\n", hn_document_text(m, "method"),
-                                 hn_document_number(incident, "t"),
-                                 hn_document_text(incident, "message"));
-            }
-        }
-        if (n > MAX_INCIDENTS) {
-            const int more = n - MAX_INCIDENTS;
-            hn_strbuf_printf(b, "! %s: %d incident%s more (--json lists them all)\n",
-                             hn_document_text(m, "method"), more, more > 1 ? "s" : "");
-        }
+        put_incidents(b, summary, m, i);
         i++;
     }
 }
@@ -235,23 +240,28 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary)
     hn_strbuf_printf(b, "%s to t = %g s\n", scene->title ? scene->title : scene->id,
                      hn_document_number(summary, "t"));
     hn_table_write(b, &t);
-    put_incidents(b, summary);
+    put_remarks(b, summary);
     hn_table_reset(&t);
 }
 
 /// Says which methods ended early and why; 1 if any did.
 static int tell_failures(const cJSON *summary, int aloud) {
-    int failed = 0;
+    int failed = 0, i = 0;
     const cJSON *m;
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
         if (has_failed(m)) {
             failed = 1;
-            if (aloud) {
-                hn_cli_note("holonom: %s ended early at t = %.6g s: %s\n",
-                            hn_document_text(m, "method"), hn_document_number(m, "t_reached"),
-                            hn_document_text(m, "reason"));
-            }
         }
+        if (has_failed(m) && aloud) {
+            hn_incident_list list;
+            char ending[HN_INCIDENT_LINE];
+            const char *reason = hn_document_text(m, "reason");
+            hn_incident_list_take(&list, hn_document_get(summary, "incidents"), i, reason);
+            hn_incident_ending(&list, hn_document_number(m, "t_reached"), reason, ending,
+                               sizeof ending);
+            hn_cli_note("holonom: %s ended early%s\n", hn_document_text(m, "method"), ending);
+        }
+        i++;
     }
     return failed;
 }

@@ -2,6 +2,7 @@
 // holonom run: one method, its samples as CSV, NDJSON or JSON.
 #include "cli/shell/commands.h"
 #include "cli/commands/error_advice.h"
+#include "cli/commands/incident_list.h"
 #include "cli/commands/run_rows.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
@@ -64,91 +65,42 @@ static void tell_marks(const cJSON *run) {
 
 enum { MOST = 5 }; // incidents that are told one by one
 
-/// The first remedy of an incident, where it was tried; NULL otherwise.
-static const char *first_remedy(const cJSON *incident) {
-    const cJSON *remedy = incident ? hn_document_get(incident, "remedies")->child : NULL;
-    const cJSON *tried = incident ? hn_document_get(incident, "tried")->child : NULL;
-    return remedy && tried && tried->valuestring[0] ? remedy->valuestring : NULL;
+/// Says what an incident's first remedy does, where it was tried.
+static void tell_remedy(const cJSON *incident) {
+    const char *remedy = hn_incident_remedy(incident);
+    if (remedy) {
+        hn_cli_note("holonom:     try %s (%s)\n", remedy,
+                    hn_document_get(incident, "tried")->child->valuestring);
+    }
 }
 
-static void put_remedy(const cJSON *incident, char *out, size_t size) {
-    snprintf(out, size, "holonom:     try %s (%s)\n", first_remedy(incident),
-             hn_document_get(incident, "tried")->child->valuestring);
-}
-
-/// Whether the first remedy of list[k] is that of a later one of the n incidents too.
-static bool is_repeated(const cJSON *const *list, int n, int k) {
-    const char *own = first_remedy(list[k]);
-    for (int j = k + 1; j < n; j++) {
-        const char *other = first_remedy(list[j]);
-        if (own && other && strcmp(own, other) == 0) {
+/// Whether the remedy of item k is told later too: of another of the first n, or of the end.
+static bool is_repeated(const hn_incident_list *list, int n, int k) {
+    const char *own = hn_incident_remedy(list->item[k]);
+    for (int j = k + 1; own && j <= n; j++) {
+        const char *other = hn_incident_remedy(j < n ? list->item[j] : list->end);
+        if (other && strcmp(own, other) == 0) {
             return true;
         }
     }
     return false;
 }
 
-/// Sorts incidents by time; those of one time keep their order. A sample inside a step may find an
-/// incident later than the end of the run, and is taken before it.
-static void sort_by_time(const cJSON **list, int n) {
-    for (int i = 1; i < n; i++) {
-        const cJSON *moved = list[i];
-        const double t = hn_document_number(moved, "t");
-        int j = i;
-        for (; j > 0 && hn_document_number(list[j - 1], "t") > t; j--) {
-            list[j] = list[j - 1];
-        }
-        list[j] = moved;
-    }
-}
-
-/// Takes the run's incidents in order of time; returns their number.
-static int collect_incidents(const cJSON *run, const cJSON *list[HN_RUN_MAX_INCIDENTS]) {
-    const cJSON *incident;
-    int n = 0;
-    cJSON_ArrayForEach(incident, hn_document_get(run, "incidents")) {
-        if (n < HN_RUN_MAX_INCIDENTS) {
-            list[n++] = incident;
-        }
-    }
-    sort_by_time(list, n);
-    return n;
-}
-
-/// What removes the end of a run, where no incident that is told has this remedy: "" otherwise.
-static void end_remedy(const cJSON *run, char *out, size_t size) {
-    const cJSON *list[HN_RUN_MAX_INCIDENTS], *incidents = hn_document_get(run, "incidents");
-    const int n = collect_incidents(run, list);
-    const cJSON *last = n > MOST ? cJSON_GetArrayItem(incidents, n - 1) : NULL;
-    out[0] = '\0';
-    if (first_remedy(last)) {
-        put_remedy(last, out, size);
-    }
-    for (int k = 0; k < MOST && out[0]; k++) {
-        const char *told = first_remedy(list[k]);
-        if (told && strcmp(told, first_remedy(last)) == 0) {
-            out[0] = '\0';
-        }
-    }
-}
-
 /// Says what was noticed on the way, in order of time; samples alone would hide it. A remedy of
 /// several incidents is said once, after the last of them.
-static void tell_incidents(const cJSON *run) {
-    const cJSON *list[HN_RUN_MAX_INCIDENTS];
-    const int n = collect_incidents(run, list), told = n < MOST ? n : MOST;
+static void tell_incidents(const hn_incident_list *list) {
+    const int told = list->n < MOST ? list->n : MOST, more = list->n - told;
     for (int k = 0; k < told; k++) {
-        hn_cli_note("holonom: t = %.4g s: %s\n", hn_document_number(list[k], "t"),
-                    hn_document_text(list[k], "message"));
-        if (first_remedy(list[k]) && !is_repeated(list, told, k)) {
-            char text[240];
-            put_remedy(list[k], text, sizeof text);
-            hn_cli_note("%s", text);
+        char line[HN_INCIDENT_LINE];
+        hn_incident_line(list->item[k], line, sizeof line);
+        hn_cli_note("holonom: %s\n", line);
+        if (!is_repeated(list, told, k)) {
+            tell_remedy(list->item[k]);
         }
     }
-    if (n > MOST) {
-        hn_cli_note("holonom: %d incident%s more (--json lists them all)\n", n - MOST,
-                    n - MOST > 1 ? "s" : "");
+    if (more > 0) {
+        hn_cli_note("holonom: %d incident%s more (--json lists them all)\n", more,
+                    more > 1 ? "s" : "");
     }
 }
 
@@ -270,14 +222,13 @@ static const char *choose_format(const hn_args *args, hn_diags *diags) {
     return NULL;
 }
 
-/// " at t = 1.43 s: REASON"; a reason that begins with its own time is given no other.
-static void put_ending(const cJSON *run, char *out, size_t size) {
-    const char *reason = hn_document_text(run, "reason");
-    char when[40] = "";
-    if (strncmp(reason, "after t = ", 10) != 0) {
-        snprintf(when, sizeof when, " at t = %.6g s", hn_document_number(run, "t_reached"));
-    }
-    snprintf(out, size, "%s: %.480s", when, reason);
+/// Says why a run ended early, and what goes past that.
+static void tell_ending(const cJSON *run, const hn_incident_list *incidents) {
+    char ending[HN_INCIDENT_LINE];
+    hn_incident_ending(incidents, hn_document_number(run, "t_reached"),
+                       hn_document_text(run, "reason"), ending, sizeof ending);
+    hn_cli_note("holonom: the run ended early%s\n", ending);
+    tell_remedy(incidents->end);
 }
 
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
@@ -297,16 +248,16 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
 
     // people get a table or a plot, and what was noticed
     cJSON *run = NULL;
-    char reason[560] = "", remedy[240] = "";
+    hn_incident_list incidents = {0};
     if (strcmp(format, "json") != 0) {
         run = hn_document_parse(&b);
-        put_ending(run, reason, sizeof reason);
+        hn_incident_list_take(&incidents, hn_document_get(run, "incidents"), -1,
+                              hn_document_text(run, "reason"));
         if (streams && !rows.begun) {
             hn_run_rows_begin(&rows, run); // no sample was made
         }
-        end_remedy(run, remedy, sizeof remedy);
         tell_marks(run);
-        tell_incidents(run);
+        tell_incidents(&incidents);
         tell_estimate(run);
         if (args->plot) {
             put_plot(&b, run);
@@ -317,7 +268,6 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         if (hn_document_text(run, "warning")[0]) {
             hn_cli_note("holonom: %s\n", hn_document_text(run, "warning"));
         }
-        cJSON_Delete(run);
     }
 
     // a run that ended early has an exit status of its own
@@ -326,8 +276,9 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         hn_cli_note("holonom: %s\n", strerror(rows.error));
         result = HN_EXIT_PROGRAM;
     }
-    if (ended != HN_OK && reason[0]) {
-        hn_cli_note("holonom: the run ended early%s\n%s", reason, remedy);
+    if (ended != HN_OK && run) {
+        tell_ending(run, &incidents);
     }
+    cJSON_Delete(run);
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }
