@@ -3,6 +3,7 @@
 
 import base64
 import csv
+import glob
 import json
 import os
 import re
@@ -53,6 +54,34 @@ def checks():
     expect("its mistakes were tried", report["mistakes"] >= 100 and report["right_answers"] == 40, done.stdout)
     bad = run("problem", "p4", "--seeds", "9..1", "--check")
     expect("a range that is none is refused", bad.returncode == 2 and "9..1" in bad.stderr, bad.stderr)
+
+
+def choices(folder):
+    """No choice is a guess: each has a reason, and neither is found by the length of its words."""
+    parts = []
+    for path in glob.glob(os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "*", "problems", "*.json")):
+        with open(path, encoding="utf-8") as f:
+            parts += [p for p in json.load(f).get("parts", []) if p["kind"] == "choice"]
+    expect("there are choices", len(parts) > 80, str(len(parts)))
+    expect("every choice has a reason, among three at least",
+           all(len(p.get(key, [])) >= (4 if key == "options" else 3) for p in parts for key in ("options", "reasons")))  # fmt: skip
+    longest = {key: [next(o for o in p[key] if o.get("right")) is max(p[key], key=lambda o: len(o["text"])) for p in parts] for key in ("options", "reasons")}
+    both = sum(a and b for a, b in zip(longest["options"], longest["reasons"]))
+    # by chance it would be a quarter of the options
+    expect("the longest option is seldom the right one", sum(longest["options"]) < 0.4 * len(parts), f"{sum(longest['options'])} of {len(parts)}")
+    expect("the longest option with the longest reason earns little", both < len(parts) / 4, f"{both} of {len(parts)}")
+
+    # the letters of a seed: what is right is found by trying
+    def entries(choice, reason):
+        answer = write(folder, "choice.json", {"s1": {"choice": choice, "reason": reason}})
+        verdict = json.loads(run("grade", "slips-2", answer, "--seed", "3", "--format", "json").stdout)
+        return {e["name"]: e for e in verdict["entries"] if e["name"].startswith("s1.")}
+
+    right = next(c for c in "abcd" if entries(c, "a")["s1.choice"]["right"])
+    reason = next(c for c in "abcd" if entries(right, c)["s1.reason"]["right"])
+    wrong = entries(next(c for c in "abcd" if c != right), reason)
+    expect("a reason counts beside the right choice", entries(right, reason)["s1.reason"]["points"] == 0.5)
+    expect("and beside no other", wrong["s1.reason"]["points"] == 0 and wrong["s1.reason"]["mistake"] == "unsupported", str(wrong))
 
 
 def statuses(folder):
@@ -474,6 +503,7 @@ def main():
     variants()
     checks()
     with tempfile.TemporaryDirectory() as folder:
+        choices(folder)
         statuses(folder)
         own_variant(folder)
         forms(folder)

@@ -145,6 +145,24 @@ def matrix_exercise(exercise, folder, seeds):
     return bad + tried - accepted
 
 
+def guesses():
+    """What a guess earns in the parts with options."""
+    parts = []
+    for path in glob.glob("lessons/*/problems/*.json"):
+        with open(path, encoding="utf-8") as f:
+            parts += [p for p in json.load(f).get("parts", []) if p["kind"] == "choice"]
+
+    def is_longest(part, key):
+        return max(part[key], key=lambda o: len(o["text"])).get("right", False)
+
+    both = sum(1 / len(p["options"]) / len(p["reasons"]) for p in parts)
+    half = sum(0.5 / len(p["options"]) for p in parts) + 0.5 * both
+    print(f"\n{len(parts)} parts with options, each with reasons: letters drawn at random earn full marks in {both:.1f} of them, and {100 * half / len(parts):.0f} % "
+          "of their points;")  # fmt: skip
+    print(f"the longest option is the right one in {sum(is_longest(p, 'options') for p in parts)}, with the longest reason in "
+          f"{sum(is_longest(p, 'options') and is_longest(p, 'reasons') for p in parts)}")  # fmt: skip
+
+
 def speed(folder):
     """Formula submissions a second of one core, without pictures: right ones, and ones whose mistakes have to be found."""
     random.seed(1)
@@ -188,6 +206,7 @@ def main():
                   f"{report['mistakes']:8} {report['bad']:4} {f'{accepted} of {tried}' if tried else '':>16}")  # fmt: skip
             if report["first_fault"]:
                 print(f"  {report['first_fault']}")
+        guesses()
         bad += speed(folder)
     print(f"all of it took {time.time() - start:.0f} s")
     return 1 if bad else 0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A choice among options, and the reason for it among reasons. The letters are dealt out anew for
-// every seed. Half of the points are for the choice, half for the reason.
+// every seed. Half of the points are for the choice, half for the reason, which counts only beside
+// the right choice: whoever guesses both gets full marks once in sixteen times.
 #include "grade/parts/part_list.h"
 
 #include <ctype.h>
@@ -54,7 +55,9 @@ static int has_reasons(const hn_part *p) {
 }
 
 static void ask(hn_strbuf *b, const hn_part *p) {
-    hn_strbuf_add(b, has_reasons(p) ? "{\"choice\": \"a\", \"reason\": \"b\"}" : "a letter: \"a\"");
+    hn_strbuf_add(b, has_reasons(p) ? "{\"choice\": \"a\", \"reason\": \"b\"}; the reason counts "
+                                      "beside the right choice"
+                                    : "a letter: \"a\"");
     put_options(b, p, "options");
     if (has_reasons(p)) {
         hn_strbuf_add(b, "\n  because");
@@ -119,9 +122,16 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *res
         cJSON_IsObject(given) ? cJSON_GetObjectItemCaseSensitive(given, "choice") : given;
     *n = has_reasons(p) ? 2 : 1;
     HN_TRY(grade_list(p, "options", choice, &results[0], diag));
-    return *n == 2 ? grade_list(p, "reasons", cJSON_GetObjectItemCaseSensitive(given, "reason"),
-                                &results[1], diag)
-                   : HN_OK;
+    if (*n == 1) {
+        return HN_OK;
+    }
+    const cJSON *reason = cJSON_GetObjectItemCaseSensitive(given, "reason");
+    HN_TRY(grade_list(p, "reasons", reason, &results[1], diag));
+    if (results[1].right && !results[0].right) {
+        hn_part_wrong(&results[1], "unsupported", 0,
+                      "this is true, and speaks for another choice than the one made");
+    }
+    return HN_OK;
 }
 
 static cJSON *write_letters(const hn_part *p, int choice, int reason) {
