@@ -51,6 +51,8 @@ typedef struct hn_ball {
 /// What of a scene coordinate has an expression: nothing, position and rate, the rate alone.
 enum { HN_KNOWN_NOTHING, HN_KNOWN_BOTH, HN_KNOWN_RATE };
 
+enum { HN_SYSTEM_LDLS = 3 }; ///< one for each hn_factor_weight
+
 struct hn_system {
     const hn_scene *scene;
     hn_system_opts opts;
@@ -91,7 +93,8 @@ struct hn_system {
     int n_pulls;                ///< loads of kind HN_LOAD_PULL
     hn_ex *pull_inputs;         ///< HN_PULL_INPUTS symbols for each, in the order of pull.h
     hn_pull_log *pulls;         ///< owned; NULL where nothing can be pulled
-    hn_entries efforts;         ///< row, scene coordinate: d phi / dx of gears and formulas
+    struct hn_ldl **ldls; ///< HN_SYSTEM_LDLS factorisations, NULL until asked for (ldl_kept.h)
+    hn_entries efforts;   ///< row, scene coordinate: d phi / dx of gears and formulas
 };
 
 #endif

@@ -2,7 +2,7 @@
 #include "dynamics/evaluate/accel_tape.h"
 
 #include "dynamics/evaluate/accel.h"
-#include "dynamics/evaluate/ldl.h"
+#include "dynamics/evaluate/ldl_kept.h"
 #include "expr/construct.h"
 
 #include <float.h>
@@ -65,15 +65,14 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
     if (!scratch) {
         return HN_ERR_MEMORY;
     }
-    const hn_ldl_input in = {sys->nv, sys->nc, &sys->M, &sys->J, HN_ACCEL_PAIRS};
 
     // the order of elimination; without one there is no tape
-    hn_ldl ldl;
+    const hn_ldl *ldl = NULL;
     hn_ex *x = NULL, *outputs = NULL;
-    hn_status status = hn_ldl_build(sys->g, &in, scratch, &ldl);
-    tape->available = status == HN_OK && ldl.available;
+    hn_status status = hn_ldl_kept_get(sys, HN_FACTOR_MASS, &ldl);
+    tape->available = status == HN_OK && ldl->available;
     if (tape->available) {
-        x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);
+        x = hn_arena_get(scratch, ((size_t)ldl->n + 1) * sizeof *x);
         status = x ? HN_OK : HN_ERR_MEMORY;
     }
 
@@ -81,8 +80,8 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
     if (status == HN_OK && tape->available) {
         memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
         closure_rhs(sys, baumgarte, x + sys->nv);
-        status = hn_ldl_solve(sys->g, &ldl, x, x);
-        outputs = status == HN_OK ? list_outputs(tape, sys, &ldl, x, want_lambda) : NULL;
+        status = hn_ldl_solve(sys->g, ldl, x, x);
+        outputs = status == HN_OK ? list_outputs(tape, sys, ldl, x, want_lambda) : NULL;
         status =
             outputs ? hn_inputs_compile(sys, outputs, tape->n_out, arena, inputs) : HN_ERR_MEMORY;
     }

@@ -4,7 +4,7 @@
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/inputs.h"
-#include "dynamics/evaluate/ldl.h"
+#include "dynamics/evaluate/ldl_kept.h"
 #include "dynamics/evaluate/row_groups.h"
 #include "expr/construct.h"
 
@@ -15,8 +15,8 @@
 
 struct hn_factor {
     hn_inputs in;
-    hn_ldl ldl;     ///< the pattern; its expressions are not read any more
-    double (*L)[2]; ///< values
+    const hn_ldl *ldl; ///< the pattern; borrowed from the system
+    double (*L)[2];    ///< values
     double (*Dinv)[3];
     double **target;     ///< where tape output k goes
     int n_values, n_out; ///< outputs that are values; then pivot and reference of each guard
@@ -37,7 +37,7 @@ static void put(hn_factor *f, hn_ex *outputs, double *place, hn_ex e) {
 }
 
 static void list_values(hn_factor *f, hn_ex *outputs) {
-    const hn_ldl *ldl = &f->ldl;
+    const hn_ldl *ldl = f->ldl;
 
     // values: the inverse pivots and the columns of L
     for (int b = 0; b < ldl->n_blocks; b++) {
@@ -63,41 +63,16 @@ static void list_values(hn_factor *f, hn_ex *outputs) {
     memcpy(outputs + f->n_out, ldl->row_ref, (size_t)ldl->nc * sizeof *outputs);
 }
 
-static void take_diagonal(const hn_system *sys, hn_entries *W) {
-    for (int i = 0; i < sys->nv; i++) {
-        hn_ex mass = hn_num(1);
-        for (int k = 0; k < sys->M.n; k++) {
-            const hn_entry *m = &sys->M.at[k];
-            mass = m->row == i && m->col == i ? m->e : mass;
-        }
-        hn_entries_add(W, i, i, mass);
-    }
-}
-
-static hn_status build_ldl(hn_factor *f, const hn_system *sys, hn_factor_weight weight,
-                           hn_arena *arena) {
-    hn_entries diagonal = {0};
-    const hn_entries *W = weight == HN_FACTOR_MASS ? &sys->M : NULL;
-    if (weight == HN_FACTOR_DIAGONAL) {
-        take_diagonal(sys, &diagonal);
-        W = &diagonal;
-    }
-    const hn_ldl_input in = {sys->nv, sys->nc, W, &sys->J, HN_ACCEL_PAIRS};
-    hn_status status = diagonal.failed ? HN_ERR_MEMORY : hn_ldl_build(sys->g, &in, arena, &f->ldl);
-    hn_entries_reset(&diagonal);
-    return status;
-}
-
 static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weight,
                        hn_arena *arena) {
-    hn_status status = build_ldl(f, sys, weight, arena);
-    f->info.available = f->ldl.available;
-    if (status != HN_OK || !f->ldl.available) {
-        return status;
+    HN_TRY(hn_ldl_kept_get(sys, weight, &f->ldl));
+    f->info.available = f->ldl->available;
+    if (!f->ldl->available) {
+        return HN_OK;
     }
 
     // room for the values
-    const hn_ldl *ldl = &f->ldl;
+    const hn_ldl *ldl = f->ldl;
     size_t n_cap = 2 * (size_t)ldl->nnz + 3 * (size_t)ldl->n_blocks;
     f->info.n_blocks = ldl->n_blocks;
     f->info.nnz = ldl->nnz;
@@ -114,7 +89,7 @@ static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weig
         return HN_ERR_MEMORY;
     }
     list_values(f, outputs);
-    status = hn_inputs_compile(sys, outputs, f->n_out + ldl->nc, arena, &f->in);
+    hn_status status = hn_inputs_compile(sys, outputs, f->n_out + ldl->nc, arena, &f->in);
     free(outputs);
 
     HN_THEN(status, hn_row_groups_init(sys, arena, &f->rows));
@@ -227,7 +202,7 @@ double hn_factor_row_ratio(hn_factor *f) {
 }
 
 static void forward(const hn_factor *f, double *x) {
-    const hn_ldl *ldl = &f->ldl;
+    const hn_ldl *ldl = f->ldl;
     for (int b = 0; b < ldl->n_blocks; b++) {
         const int *at = &ldl->unknown[ldl->block[b]];
         int two = ldl->block[b + 1] - ldl->block[b] == 2;
@@ -239,7 +214,7 @@ static void forward(const hn_factor *f, double *x) {
 }
 
 static void back(const hn_factor *f, double *x) {
-    const hn_ldl *ldl = &f->ldl;
+    const hn_ldl *ldl = f->ldl;
     for (int b = ldl->n_blocks - 1; b >= 0; b--) {
         const int *at = &ldl->unknown[ldl->block[b]];
         const double *D = f->Dinv[b];
@@ -259,7 +234,7 @@ static void back(const hn_factor *f, double *x) {
 
 void hn_factor_solve(hn_factor *f, const double *r1, const double *r2, double *x, double *y) {
     HN_ASSERT(f->ready);
-    size_t nv = (size_t)f->ldl.nv, nc = (size_t)f->ldl.nc;
+    size_t nv = (size_t)f->ldl->nv, nc = (size_t)f->ldl->nc;
     memset(f->x, 0, (nv + nc) * sizeof *f->x);
     if (r1) {
         memcpy(f->x, r1, nv * sizeof *r1);

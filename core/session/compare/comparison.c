@@ -321,7 +321,7 @@ static void watch_accuracy(hn_comparison *c) {
     const double t = (double)c->frame * c->frame_dt;
     double ops = 0;
     for (int i = 0; i < c->n; i++) {
-        ops += hn_run_get_summary(c->entries[i].run).cost.ops;
+        ops += hn_run_ops(c->entries[i].run);
     }
     if (!hn_accuracy_reach(c->accuracy, t, ops)) {
         return;

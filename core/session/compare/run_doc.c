@@ -150,7 +150,7 @@ static void add_points(table *tab, const hn_sample *s, size_t k) {
 
 /// Shows the accuracy watch a sample, where it wants one.
 static void watch_accuracy(table *tab, const hn_sample *s, const hn_run *run) {
-    if (hn_accuracy_reach(tab->accuracy, s->t, hn_run_get_summary(run).cost.ops)) {
+    if (hn_accuracy_reach(tab->accuracy, s->t, hn_run_ops(run))) {
         hn_accuracy_see(tab->accuracy, s, &tab->track);
     }
 }

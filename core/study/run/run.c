@@ -283,6 +283,14 @@ double hn_run_time(const hn_run *run) {
     return run->stepping.now.t;
 }
 
+hn_run_state hn_run_get_state(const hn_run *run) {
+    return run->state;
+}
+
+double hn_run_ops(const hn_run *run) {
+    return run->clock.cost.ops;
+}
+
 hn_run_summary hn_run_get_summary(const hn_run *run) {
     const hn_stepping *s = &run->stepping;
     hn_run_summary out = {.state = run->state,

@@ -67,6 +67,9 @@ hn_status hn_run_step(hn_run *run);
 /// shorter step from its start, which leaves the run as it was.
 hn_status hn_run_step_towards(hn_run *run, double t_sample);
 double hn_run_time(const hn_run *run);
+hn_run_state hn_run_get_state(const hn_run *run);
+/// Operations so far, as in the summary, without its reading of a clock.
+double hn_run_ops(const hn_run *run);
 /// Computes the sample at time t: the present time, a time within the last step, or, with fixed
 /// steps, less than one step ahead. Within a step it uses the integrator's dense output. Where
 /// there is none, ahead of the present time, and for raw multipliers it makes a step of the same

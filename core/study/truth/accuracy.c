@@ -121,9 +121,7 @@ void hn_accuracy_loads_changed(hn_accuracy *a, double t) {
 }
 
 double hn_accuracy_ops(const hn_accuracy *a) {
-    return is_there(a) ? hn_run_get_summary(a->run[PILOT]).cost.ops +
-                             hn_run_get_summary(a->run[ROUGH]).cost.ops
-                       : 0;
+    return is_there(a) ? hn_run_ops(a->run[PILOT]) + hn_run_ops(a->run[ROUGH]) : 0;
 }
 
 // ---- pilot and rough run ----
@@ -184,8 +182,8 @@ static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
 
 /// Whether the pilot cannot serve any more; one that is only late can catch up.
 static bool has_ended(const hn_accuracy *a) {
-    return a->lost || hn_run_get_summary(a->run[PILOT]).state == HN_RUN_FAILED ||
-           hn_run_get_summary(a->run[ROUGH]).state == HN_RUN_FAILED;
+    return a->lost || hn_run_get_state(a->run[PILOT]) == HN_RUN_FAILED ||
+           hn_run_get_state(a->run[ROUGH]) == HN_RUN_FAILED;
 }
 
 bool hn_accuracy_is_due(const hn_accuracy *a, double t) {
