@@ -294,9 +294,16 @@ export function createMethods(el, store, actions, openDialog) {
     }
   }
 
-  const stop = listen(store, { methods: rebuild, view: showView, reference: paint });
+  // whatever makes the sentences below ask for a beat makes the rows ask for the same one
+  const soon = () => paintSoon(paint);
+  const stop = listen(store, {
+    methods: () => (rebuild(), soon()),
+    view: () => (showView(), soon()),
+    state: soon,
+    reference: soon,
+  });
   return {
-    update: () => paintSoon(paint),
+    update: soon,
     dispose() {
       stop();
       paintNoMore(paint);
