@@ -187,6 +187,11 @@ class Studies(driver.ServerCase):
         self.assertEqual((x["name"], x["kind"], y["kind"]), ("g", "parameter", "step"))
         errors = [cell["error"] for cell in done["document"]["methods"][0]["rows"][0]]
         self.assertEqual(len(set(errors)), 4, "each column is another motion")
+        # the values of the map are stronger than a parameter of the request
+        done = wait(self.server, start(self.server, {**body, "parameters": {"g": 5}}))
+        self.assertEqual(done["state"], "finished", done["reason"])
+        again = [cell["error"] for cell in done["document"]["methods"][0]["rows"][0]]
+        self.assertEqual(len(set(again)), 4)
 
     def test_faults_of_a_map_are_told_before_it_starts(self):
         for changes, pointer in (({"over": "h=1e-3..1e-1"}, "/over"), ({"preset": None, "over": "nonsense=1..2"}, None),

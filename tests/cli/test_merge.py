@@ -263,7 +263,8 @@ class Merge(unittest.TestCase):
         self.assertGreater(bands, 0)
 
     def test_a_part_killed_ten_times_ends_as_an_undisturbed_one(self):
-        words = [*COUNTED[:-2], "--time", "8", "--levels", "6", "--samples", "1", "--time-limit", "0", "--shard"]
+        study = other_value(other_value(STUDY, "--time", "8"), "--levels", "6")
+        words = [*study, "--samples", "1", "--time-limit", "0", "--shard"]
         undisturbed = [self.path(f"calm-{i}.json") for i in (1, 2)]
         for i in (1, 2):
             self.assertEqual(self.call([*words, f"{i}/2", "--out", undisturbed[i - 1]]).returncode, DONE)

@@ -38,6 +38,7 @@ hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_
 
 typedef struct settings {
     hn_diags *diags;
+    bool overrides; ///< a value stands in place of one that is there
     int n;
     hn_setting item[HN_SCENE_MAX_PARAMS];
     char names[HN_SCENE_MAX_PARAMS][64];
@@ -45,15 +46,19 @@ typedef struct settings {
 
 static hn_status see_setting(void *user, const char *name, double value) {
     settings *s = user;
-    if (s->n == HN_SCENE_MAX_PARAMS) {
-        return HN_ERR_LIMIT;
-    }
     for (int i = 0; i < s->n; i++) {
+        if (strcmp(s->names[i], name) == 0 && s->overrides) {
+            s->item[i].value = value;
+            return HN_OK;
+        }
         if (strcmp(s->names[i], name) == 0) {
             return hn_diags_add(s->diags, HN_ERR_INPUT, NULL, NULL,
                                 "--set gives '%.60s' twice, %g and %g; it takes one value", name,
                                 s->item[i].value, value);
         }
+    }
+    if (s->n == HN_SCENE_MAX_PARAMS) {
+        return HN_ERR_LIMIT;
     }
     snprintf(s->names[s->n], sizeof s->names[s->n], "%s", name);
     s->item[s->n] = (hn_setting){.name = s->names[s->n], .value = value};
@@ -103,6 +108,10 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
     }
     hn_status status =
         s ? hn_assignments_read(&args->set, "--set", see_setting, s, diags) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        s->overrides = true;
+        status = hn_assignments_read(&args->set_over_set, "--set", see_setting, s, diags);
+    }
     if (status == HN_OK) {
         hn_model_source source = {
             .settings = s->item, .n_settings = s->n, .allow_open = allow_open};

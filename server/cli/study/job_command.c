@@ -103,9 +103,9 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
     *args = *c->args;
 
     // add the parameters of this map cell to those of --set
-    for (int i = 0; i < n && args->set.n < HN_CLI_MAX_WORDS; i++) {
+    for (int i = 0; i < n; i++) {
         snprintf(text[i], sizeof text[i], "%s=%.17g", parameters[i].name, parameters[i].value);
-        args->set.word[args->set.n++] = text[i];
+        args->set_over_set.word[args->set_over_set.n++] = text[i];
     }
 
     const hn_status status = hn_args_load_model(c->lib, args, word, 0, out, diags);

@@ -47,6 +47,17 @@ hn_status hn_scene_request_add(hn_scene_request *order, const char *name, size_t
     return HN_OK;
 }
 
+hn_status hn_scene_request_set(hn_scene_request *order, const hn_setting *setting,
+                               hn_diags *diags) {
+    for (int i = 0; i < order->n; i++) {
+        if (strcmp(order->names[i], setting->name) == 0) {
+            order->settings[i].value = setting->value;
+            return HN_OK;
+        }
+    }
+    return hn_scene_request_add(order, setting->name, strlen(setting->name), setting->value, diags);
+}
+
 hn_status hn_scene_request_read_settings(hn_scene_request *order, const cJSON *settings,
                                          hn_diags *diags) {
     forget_settings(order);

@@ -32,11 +32,16 @@ HN_MUST_CHECK hn_status hn_scene_request_read(hn_scene_request *order, const cJS
 /// The settings alone; those that were there are forgotten.
 HN_MUST_CHECK hn_status hn_scene_request_read_settings(hn_scene_request *order,
                                                        const cJSON *settings, hn_diags *diags);
+/// Adds a parameter. Fails: HN_ERR_INPUT (not finite, or it is there already), HN_ERR_LIMIT,
+/// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_scene_request_add(hn_scene_request *order, const char *name,
                                              size_t n_name, double value, hn_diags *diags);
 /// Lets a hand pull a point too; one that it may pull already changes nothing.
 HN_MUST_CHECK hn_status hn_scene_request_add_pull(hn_scene_request *order, int point,
                                                   hn_diags *diags);
+/// Gives a parameter this value, whether it is there already or not. Fails as above.
+HN_MUST_CHECK hn_status hn_scene_request_set(hn_scene_request *order, const hn_setting *setting,
+                                             hn_diags *diags);
 HN_MUST_CHECK hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from);
 void hn_scene_request_reset(hn_scene_request *order);
 /// Loads; pointers of faults inside a scene object begin with "/scene". `interrupt` ends the work

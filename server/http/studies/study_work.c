@@ -36,8 +36,7 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
     hn_scene_request scene = {0};
     hn_status status = hn_scene_request_copy(&scene, &w->scene);
     for (int i = 0; i < n && status == HN_OK; i++) {
-        status = hn_scene_request_add(&scene, parameters[i].name, strlen(parameters[i].name),
-                                      parameters[i].value, diags);
+        status = hn_scene_request_set(&scene, &parameters[i], diags);
     }
     HN_THEN(status, hn_scene_request_load(&scene, w->lib, 0, interrupt_of(w), out, diags));
     hn_scene_request_reset(&scene);
