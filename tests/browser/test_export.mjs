@@ -43,7 +43,30 @@ test("the recording becomes one file that plays without a server", async (t) => 
   await alone.waitForFunction(() => Number(document.querySelector("input[type=range]").value) > 3);
   await soon(async () => assert.notEqual(await drawn(), first));
   assert.equal(await alone.locator("li").count(), 5);
-  assert.match(await alone.textContent("li"), /index-1: /);
+
+  // beside each method its state at the time shown, and its dashes as on the page
+  const saysAt = async (i) => {
+    await alone.locator("input[type=range]").fill(String(i));
+    return alone.locator("li").allTextContents();
+  };
+  await alone.getByRole("button", { name: /Pause|Play/ }).evaluate((button) => {
+    if (button.textContent === "Pause") {
+      button.click();
+    }
+  });
+  const last = await alone.locator("input[type=range]").getAttribute("max");
+  assert.match((await saysAt(0))[0], /^index-1: starts closed /);
+  assert.doesNotMatch((await saysAt(last))[0], /starts closed/);
+  const dashes = await alone.evaluate(() =>
+    [...document.querySelectorAll("li path")].map((line) => line.getAttribute("stroke-dasharray")),
+  );
+  assert.deepEqual(
+    dashes,
+    await page.evaluate(() => {
+      const { methods, look } = globalThis.holonom.data;
+      return methods.map(({ slot }) => look.slots[slot].dash.join(" "));
+    }),
+  );
   await screenshot(alone, "replay", { seen: true });
   assert.deepEqual(faults, []);
 });

@@ -549,6 +549,17 @@ test("an error that is not the sum of its parts has no bar, and the time until w
       /the errors are too large to be split, the parts add up to .*; they agree until/,
     ),
   );
+
+  // of a coordinate that is chosen
+  const largest = methods.map(({ error }) => error?.coordinate);
+  const other = ["th1", "a2", "th3"].find((name) => !largest.includes(name));
+  await page.locator("#budget-of").selectOption(other);
+  await until(
+    page,
+    `({ studies: { budget } }) => budget.state === "finished" &&
+      budget.document.methods.every(({ error }) => error.coordinate === "${other}")`,
+    LONG,
+  );
 });
 
 test("what a study chooses itself makes no other study of it", () => {

@@ -86,6 +86,17 @@ class Budget(unittest.TestCase):
             with open(path, encoding="utf-8") as f:
                 self.assertEqual(json.load(f)["methods"][0]["method"], "index1@rk4:h=0.01")
 
+    def test_the_error_of_a_chosen_coordinate_is_split(self):
+        methods = ["projection@rk4:h=1e-2", "nullspace@rk4:h=1e-2"]
+        words = ["study", "fb0", "budget", "--time", "0.5", "--methods", *methods, "--json"]
+        largest = strict(call(*words).stdout)["methods"]
+        self.assertNotEqual({m["error"]["coordinate"] for m in largest}, {"th1"})
+        chosen = strict(call(*words, "--coordinate", "th1").stdout)["methods"]
+        for free, of in zip(largest, chosen):
+            self.assertEqual(of["error"]["coordinate"], "th1")
+            self.assertNotEqual(of["error"]["value"], free["error"]["value"])
+            self.assertLess(of["error"]["mismatch"], 0.1, "the parts add up to the error of this one")
+
     def test_csv_and_page_tell_what_json_tells(self):
         words = ["study", "fb0", "budget", "--time", "0.5", "--methods", *METHODS]
         document = strict(call(*words, "--json").stdout)
@@ -142,6 +153,7 @@ class Budget(unittest.TestCase):
             (["--json", "--csv"], "JSON and CSV at once"),
             (["--methods", "projecton@rk4"], "projection"),
             (["--time", "-1"], "are allowed"),
+            (["--coordinate", "th9"], "one of th1, a2, th3"),
         ):
             done = call("study", "fb0", "budget", *words)
             self.assertEqual(done.returncode, INPUT, words)

@@ -37,6 +37,9 @@ def variants():
     expect("the same seed gives the same text", a == b and a != c)
     s, t = (run("problem", "p1", "--student", n).stdout for n in ("s1001", "s1002"))
     expect("every student has a variant", s != t and s == run("problem", "p1", "--student", "s1001").stdout)
+    formula = next(line for line in run("problem", "loops").stdout.splitlines() if line.startswith('  answer "e"'))
+    expect("a formula may use the numbers that are given, by their names",
+           formula.endswith("names: th2 th3 w1 w2 w3; with numbers given: b j l1 l2 l3 d th1"), formula)
     hints = run("problem", "p1", "--hint", "1").stdout
     expect("a hint is printed when asked for", hints.startswith("hint 1 of 3:") and hints.count("hint") == 1, hints)
     written = {name: run("problem", name).stdout for name in ("closure", "p1", "slips-1")}

@@ -16,6 +16,13 @@ export function pickFrames(count, most) {
   return Array.from({ length: n }, (_, i) => Math.round((i * (count - 1)) / Math.max(1, n - 1)));
 }
 
+/**
+ * Where words change: [index, words] of the first and of every one that differs from that before.
+ * @param {string[]} words @returns {[number, string][]}
+ */
+export const changesOf = (words) =>
+  words.flatMap((text, i) => (text === words[i - 1] ? [] : [[i, text]]));
+
 /** Runs in the file. It stands alone: nothing of the page is there. */
 const PLAYER = `
 const svg = document.querySelector("svg.drawing"), NS = "http://www.w3.org/2000/svg";
@@ -38,11 +45,9 @@ const groups = film.methods.map((method, m) => {
   const g = make("g", svg, { opacity: m ? 0.6 : 1 });
   const nodes = film.shapes.map((shape) => {
     const solid = shape.kind === "bar" || shape.kind === "polygon" || shape.kind === "slider";
-    const look = shape.kind === "bar"
-      ? { "stroke-width": 2 * shape.r, "stroke-opacity": 0.45, "stroke-linecap": "round" }
-      : shape.kind === "pivot" || shape.kind === "ground"
-        ? { fill: "Canvas", "stroke-width": 1.6 }
-        : { "stroke-width": 2, "fill-opacity": solid ? 0.3 : 0, fill: method.colour };
+    const look = shape.kind === "pivot" || shape.kind === "ground"
+      ? { fill: "Canvas", "stroke-width": 1.6 }
+      : { "stroke-width": 2, "fill-opacity": solid && !m ? 0.3 : 0, fill: method.colour, "stroke-dasharray": m ? method.dash : "" };
     return make("path", g, { stroke: method.colour, fill: "none", "stroke-linejoin": "round", ...look });
   });
   svg.prepend(g);
@@ -60,6 +65,12 @@ const outline = (shape, row) => {
     const w = 1.5 * r + 6, h = r + 4;
     return "M" + [[-w, -h], [w, -h], [w, h], [-w, h]]
       .map(([x, y]) => [a[0] + x * c - y * s, a[1] + x * s + y * c]).join("L") + "Z";
+  }
+  if (shape.kind === "bar") {
+    const t = Math.atan2(b[1] - a[1], b[0] - a[0]), x = r * Math.sin(t), y = -r * Math.cos(t);
+    const round = "A" + r + " " + r + " 0 0 1 ";
+    return "M" + [a[0] + x, a[1] + y] + "L" + [b[0] + x, b[1] + y] + round + [b[0] - x, b[1] - y] +
+      "L" + [a[0] - x, a[1] - y] + round + [a[0] + x, a[1] + y] + "Z";
   }
   if (shape.kind === "pivot" || shape.kind === "ground") {
     const k = Math.max(2.5, 0.55 * r);
@@ -81,6 +92,7 @@ film.gap.forEach((row, m) => {
   make("path", plot, { d, fill: "none", stroke: film.methods[m].colour, "stroke-width": 1.8, "stroke-dasharray": film.methods[m].dash });
 });
 const cursor = make("path", plot, { stroke: "currentColor" });
+const words = document.querySelectorAll(".said");
 const slider = document.querySelector("input[type=range]"), clock = document.querySelector("output");
 slider.max = film.t.length - 1;
 let now = 0, playing = false, began = 0, from = 0;
@@ -89,6 +101,10 @@ const draw = (i) => {
   slider.value = i;
   clock.textContent = "t = " + film.t[i].toFixed(2) + " s";
   groups.forEach(({ nodes }, m) => nodes.forEach((node, k) => node.setAttribute("d", outline(film.shapes[k], film.points[m][i]))));
+  film.methods.forEach(({ said }, m) => {
+    const last = said.filter(([from]) => from <= i).pop();
+    words[m].textContent = last ? last[1] : "";
+  });
   cursor.setAttribute("d", "M" + px(film.t[i]) + " 8V" + (H - 20));
 };
 const button = document.querySelector("button");
@@ -124,7 +140,7 @@ h1{font-size:20px;margin:0 0 4px}p{margin:0 0 8px}
 svg{display:block;width:100%;height:auto}.drawing{max-height:56vh}
 .row{display:flex;gap:12px;align-items:center;margin:8px 0}.row input[type=range]{flex:1}
 button{min-width:88px;min-height:36px;font:inherit}ul{list-style:none;margin:8px 0;padding:0}
-li{display:flex;gap:8px;align-items:center}li i{width:28px;border-top:3px solid}
+li{display:flex;gap:8px;align-items:center}li .line{flex:none;width:36px;height:4px}
 output{min-width:90px;font-variant-numeric:tabular-nums}.fixed path{fill:none;stroke:GrayText;stroke-width:1.4}`;
 
 /**
@@ -132,10 +148,11 @@ output{min-width:90px;font-variant-numeric:tabular-nums}.fixed path{fill:none;st
  * @param {{
  *   size: {width: number, height: number},
  *   point: (points: ArrayLike<number>, i: number) => [number, number],
- *   radius: (shape: import("./types.js").Shape) => number, fixed: string[], verdicts: string[],
- * }} drawing fixed: outlines of what never moves
+ *   radius: (shape: import("./types.js").Shape) => number, fixed: string[],
+ *   verdictAt: (m: number, i: number) => string,
+ * }} drawing fixed: outlines of what never moves; verdictAt: of a method at a kept frame
  */
-export function toReplay(data, { size, point, radius, fixed, verdicts }) {
+export function toReplay(data, { size, point, radius, fixed, verdictAt }) {
   const { scene, history, methods, look, view } = data;
   const order = methods
     .map((_, m) => m)
@@ -158,6 +175,7 @@ export function toReplay(data, { size, point, radius, fixed, verdicts }) {
       label: methods[m].label,
       colour: look.slots[methods[m].slot].light,
       dash: look.slots[methods[m].slot].dash.join(" "),
+      said: changesOf(frames.map((i) => verdictAt(m, i))),
     })),
     points: order.map((m) =>
       frames.map((i) => {
@@ -177,8 +195,8 @@ export function toReplay(data, { size, point, radius, fixed, verdicts }) {
   const script = JSON.stringify(film).replaceAll("<", "\\u003c");
   const rows = order.map(
     (m, k) =>
-      `<li><input type="checkbox" id="m${k}" checked><i style="border-color:${film.methods[k].colour}"></i>` +
-      `<label for="m${k}">${escaped(`${methods[m].label}: ${verdicts[m]}`)} <code>${escaped(methods[m].spelling)}</code></label></li>`,
+      `<li><input type="checkbox" id="m${k}" checked><svg class="line" viewBox="0 0 36 4" aria-hidden="true"><path d="M0 2H36" stroke="${film.methods[k].colour}" stroke-width="3" stroke-dasharray="${film.methods[k].dash}"/></svg>` +
+      `<label for="m${k}">${escaped(methods[m].label)}: <span class="said"></span> <code>${escaped(methods[m].spelling)}</code></label></li>`,
   );
   const settings = Object.entries(data.settings).map(([name, value]) => `${name} = ${value}`);
   const every =
@@ -191,7 +209,7 @@ export function toReplay(data, { size, point, radius, fixed, verdicts }) {
 <svg class="drawing" viewBox="0 0 ${size.width} ${size.height}" role="img" aria-label="${escaped(scene.title).replaceAll('"', "&quot;")}"><g class="fixed">${fixed.map((d) => `<path d="${d}"/>`).join("")}</g></svg>
 <div class="row"><button type="button">Play</button><input type="range" min="0" value="0" aria-label="Time"><output></output></div>
 <ul>${rows.join("")}</ul>
-<p>Loop gap over time, m</p>
+<p>Loop gap over time, m. Beside each method: its state at the time shown.</p>
 <svg class="gap" viewBox="0 0 640 180" role="img" aria-label="Loop gap over time, logarithmic"></svg>
 <p><small>Recorded by holonom ${escaped(data.build)}${every}. This file needs no server.</small></p>
 <script>const film = ${script};${PLAYER}</script></body></html>

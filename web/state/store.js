@@ -58,6 +58,7 @@ function initialView() {
     look: /** @type {{right: number[], up: number[]} | null} */ (null),
     /** the study that is open, or "" */ study: "",
     /** axes of the stability map; "": the ones that fit the methods */ map: "",
+    /** the coordinate whose error the budget splits; "": of each method the largest */ judged: "",
     letters: true,
     stepped: false,
     /** the recording plays */ replaying: false,

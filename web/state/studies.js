@@ -88,8 +88,14 @@ function widerAxes(catalogue, spelling, keys) {
  *   catalogue: Catalogue,
  * }} data
  * @param {string} preset of a map; "": the server chooses the most telling one
+ * @param {string} [coordinate] whose error a budget splits
  */
-export function orderOf(kind, { scene, document, settings, methods, catalogue }, preset) {
+export function orderOf(
+  kind,
+  { scene, document, settings, methods, catalogue },
+  preset,
+  coordinate = "",
+) {
   const all = methods.map(({ spelling }) => spelling);
   const common = { scene: document ?? scene.id, parameters: settings, kind };
   if (kind === "stability" && !preset) {
@@ -103,6 +109,9 @@ export function orderOf(kind, { scene, document, settings, methods, catalogue },
     const over = chosen?.stabilised ? widerAxes(catalogue, fitting[0] ?? "", chosen.chooses) : "";
     const axes = over ? { over } : { preset };
     return { ...common, methods: fitting.slice(0, mostMethods(kind)), ...axes, ...MAP_SIDE };
+  }
+  if (kind === "budget" && coordinate) {
+    return { ...common, methods: all, coordinate };
   }
   return kind === "work-precision"
     ? { ...common, methods: all, samples: SAMPLES, levels: LEVELS }
@@ -197,10 +206,14 @@ export function createStudyFeed(store) {
     const names = presetsOf(data).map(({ name }) => name);
     return names.includes(data.view.map) ? data.view.map : "";
   }
-  const order = (kind) => orderOf(kind, data, preset());
+  /** The coordinate that is asked for, where this scene has it. */
+  const judged = () =>
+    data.scene?.coordinates.some(({ name }) => name === data.view.judged) ? data.view.judged : "";
+  const order = (kind) => orderOf(kind, data, preset(), judged());
 
   return {
     preset,
+    judged,
     /** Does the document tell of what is on the page now? @param {string} kind */
     isPresent: (kind) => data.studies[kind].asked === signatureOf(order(kind)),
     /** @param {string} kind */

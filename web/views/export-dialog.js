@@ -61,8 +61,7 @@ export function createExportDialog(el, store, actions, mechanism) {
 
   function replay() {
     const { stage } = mechanism;
-    const { scene, methods } = data;
-    const now = shownIndex(data);
+    const { scene } = data;
     const { solid, marks } = baseOf(scene);
     return toReplay(data, {
       size: stage.size,
@@ -72,7 +71,7 @@ export function createExportDialog(el, store, actions, mechanism) {
         ...marks.map((shape) => stage.pen.mark(shape, scene.points)),
         ...solid.map((shape) => stage.pen.outline(shape, scene.points)),
       ],
-      verdicts: methods.map((_, m) => verdictAt(data, m, now).words),
+      verdictAt: (m, i) => verdictAt(data, m, i).words,
     });
   }
 

@@ -61,8 +61,15 @@ export function createStudies(el, store, actions) {
         }
       }, words),
   });
+  const budget = createStudyBudget(store, {
+    judged: studies.judged,
+    judge(coordinate) {
+      actions.setView({ judged: coordinate });
+      studies.start("budget");
+    },
+  });
   /** @type {Record<string, {el: HTMLElement, paint: () => void}>} */
-  const drawn = { "work-precision": cost, stability: map, budget: createStudyBudget(store) };
+  const drawn = { "work-precision": cost, stability: map, budget };
   const kinds = studyKinds();
   const KINDS = kinds.map(({ name }) => name);
   const views = Object.fromEntries(KINDS.map((kind) => [kind, drawn[kind] ?? createPlain()]));

@@ -22,9 +22,19 @@ const numberOf = (value, unit) =>
       ? `${scientific(value)} ${unit}`
       : quantity(value, unit);
 
-/** @param {import("../state/store.js").Store} store */
-export function createStudyBudget(store) {
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {{judged: () => string, judge: (coordinate: string) => void}} actions
+ */
+export function createStudyBudget(store, actions) {
   const data = store.data;
+  const menu = h("select", { id: "budget-of", onchange: () => actions.judge(menu.value) });
+  const choice = h(
+    "span",
+    { class: "choices" },
+    h("label", { for: "budget-of", class: "word" }, "of"),
+    menu,
+  );
   let shown = BUDGETS[0];
   const choices = BUDGETS.map((budget) =>
     h(
@@ -52,7 +62,7 @@ export function createStudyBudget(store) {
   const el = h(
     "div",
     {},
-    h("div", { class: "study-bar" }, h("div", { class: "choices" }, ...choices)),
+    h("div", { class: "study-bar" }, h("div", { class: "choices" }, ...choices), choice),
     about,
     list,
     legend,
@@ -189,8 +199,20 @@ export function createStudyBudget(store) {
     );
   }
 
+  /** Cut joints carry no coordinate of their own. */
+  function fillMenu() {
+    const names = (data.scene?.coordinates ?? []).map(({ name }) => name);
+    menu.replaceChildren(
+      h("option", { value: "" }, "the coordinate with the largest error"),
+      ...names.map((name) => h("option", { value: name }, name)),
+    );
+    menu.value = actions.judged();
+    choice.hidden = shown.name !== "error" || names.length < 2;
+  }
+
   function paint() {
     choices.forEach((node, i) => node.setAttribute("aria-pressed", String(BUDGETS[i] === shown)));
+    fillMenu();
     if (!study()) {
       return;
     }
@@ -199,7 +221,7 @@ export function createStudyBudget(store) {
         ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. An error too large to be the sum of its parts has no bar; a shorter time or a smaller step has one."
         : "Each bar shows the parts that added energy (right) and removed energy (left) as shares. Their sum is the energy change.";
     const judged = [...new Set(study().methods.flatMap(({ error }) => error?.coordinate ?? []))];
-    if (shown.name === "error" && judged.length) {
+    if (shown.name === "error" && judged.length && !actions.judged()) {
       about.append(
         ` Judged is the coordinate whose error is largest at the end: ${judged.join(", ")}.`,
         judged.length > 1

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // rows ----
 
@@ -71,6 +72,27 @@ void hn_budget_note(const hn_model *model, const hn_budget_row *row, char out[HN
 
 // ---- life ----
 
+/// The coordinate that the request names, among those that the system has.
+static hn_status find_coordinate(hn_budgets *a, hn_diags *diags) {
+    const hn_system *sys = hn_model_system(a->model);
+    const hn_scene *scene = hn_model_scene(a->model);
+    const char *name = hn_job_text(&a->request, "coordinate");
+    const int n = hn_system_get_info(sys).n_user;
+    char names[HN_DIAG_HINT] = "one of ";
+    for (int i = 0; name && i < n; i++) {
+        const char *own = scene->coordinates[hn_system_user_coordinate(sys, i)].name;
+        if (strcmp(own, name) == 0) {
+            a->coordinate = i + 1;
+            return HN_OK;
+        }
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", own);
+    }
+    return name ? hn_diags_add(diags, HN_ERR_INPUT, "/coordinate", names,
+                               "the scene has no coordinate '%.60s' to judge by", name)
+                : HN_OK;
+}
+
 static hn_status set_up(hn_budgets *a, hn_diags *diags) {
     hn_job_request *r = &a->request;
     if (r->n_methods == 0) {
@@ -79,6 +101,7 @@ static hn_status set_up(hn_budgets *a, hn_diags *diags) {
         HN_TRY(hn_job_request_set_methods(r, methods, n, diags));
     }
     HN_TRY(hn_job_complete(r, 0, HN_BUDGETS_METHODS, a->specs, diags));
+    HN_TRY(find_coordinate(a, diags));
     a->n = r->n_methods;
     for (int i = 0; i < a->n; i++) {
         hn_budget_row *row = &a->rows[i];
@@ -131,7 +154,7 @@ static void report_progress(void *user, double part) {
 /// Together these budgets take no longer than the first.
 static void find_horizon(hn_budgets *a, hn_budget_row *row) {
     enum { MOST_HALVINGS = 5 };
-    const hn_budget_opts opts = {.stop = ask_stop, .user = a};
+    const hn_budget_opts opts = {.coordinate = a->coordinate, .stop = ask_stop, .user = a};
     hn_budget_row shorter = *row;
     double T = row->budget.t;
     for (int k = 0; k < MOST_HALVINGS && !hn_budget_holds(&shorter); k++) {
@@ -149,7 +172,10 @@ static void find_horizon(hn_budgets *a, hn_budget_row *row) {
 
 /// Computes the budget of one method. Returns 0 when it was stopped.
 static bool make_row(hn_budgets *a, hn_budget_row *row) {
-    const hn_budget_opts opts = {.stop = ask_stop, .progress = report_progress, .user = a};
+    const hn_budget_opts opts = {.coordinate = a->coordinate,
+                                 .stop = ask_stop,
+                                 .progress = report_progress,
+                                 .user = a};
     hn_diag diag = {0};
     row->status = hn_budget_make(hn_model_system(a->model), &a->specs[a->at], hn_model_q(a->model),
                                  hn_model_v(a->model), a->request.time, &opts, &row->budget, &diag);

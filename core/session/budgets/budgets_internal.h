@@ -17,6 +17,7 @@ struct hn_budgets {
     int resumed, stopped, out_of_time;
     double deadline; ///< wall clock [s]; infinite: none
     int at;          ///< the present one
+    int coordinate;  ///< 1 + the user coordinate whose error is split; 0: the largest
 };
 
 #endif

@@ -19,6 +19,7 @@ static uint64_t budgets_key(const hn_budgets *a) {
     hash = hn_hash_double(hash, FORMAT);
     hash = hn_hash_double(hash, scene->step); // of methods that name none
     hash = hn_hash_double(hash, a->request.time);
+    hash = hn_hash_double(hash, a->coordinate);
     for (int i = 0; i < a->n; i++) {
         hash = hn_hash_text(hash, a->rows[i].spelling);
     }

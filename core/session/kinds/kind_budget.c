@@ -9,6 +9,11 @@ static const hn_field FIELDS[] = {
     HN_JOB_METHODS_FIELD(HN_BUDGETS_METHODS, 12),
     HN_JOB_TIME_FIELD,
     HN_JOB_TIME_LIMIT_FIELD("none when left out"),
+    {.name = "coordinate",
+     .type = HN_FIELD_TEXT,
+     .argument = "NAME",
+     .about = "whose error is split; when left out, of each method the coordinate whose error is "
+              "largest at the end"},
     HN_JOB_END_OF_FIELDS,
 };
 

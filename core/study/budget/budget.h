@@ -73,7 +73,9 @@ typedef struct hn_budget {
     hn_ending ending;
     double t; ///< reached [s]
     long long steps;
-    int coordinate; ///< user coordinate whose error is largest at the end; -1: the run ended early
+    /// user coordinate whose error it is: the one asked for, or the one whose error is largest at
+    /// the end; -1: the run ended early
+    int coordinate;
     double error;   ///< of it, signed: the run's value less the reference's [rad or m]
     double part[HN_CAUSE_COUNT]; ///< signed, same unit; NaN: not known for this method
     double sum;                  ///< of the parts: equals `error` as far as first order holds
@@ -93,6 +95,8 @@ typedef struct hn_budget_opts {
     /// n_user: the exact motion at T, in user coordinates; NULL: found here, by a run at tight
     /// tolerance
     const double *exact;
+    /// whose error is split: 1 + a user coordinate; 0: the one whose error is largest at the end
+    int coordinate;
     int (*stop)(void *user); ///< asked now and then; NULL: never
     void (*progress)(void *user, double share);
     void *user;

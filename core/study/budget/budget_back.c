@@ -7,6 +7,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define TRANSPORT_TOL 1e-9 // of flows whose derivative carries parts to the end
@@ -130,8 +131,8 @@ static int end_of(const hn_budget_work *b, const hn_method_spec *spec, double T,
     return arrived;
 }
 
-/// Error of every user coordinate at the end, its largest as the budget's; w begins as that
-/// coordinate's derivative.
+/// Error of every user coordinate at the end, of them the one asked for or the largest as the
+/// budget's; w begins as that coordinate's derivative.
 static hn_status choose_coordinate(hn_budget_work *b, const double *reference, hn_diag *diag) {
     const int n = b->info.n_user, nv = b->info.nv;
     double *q = b->up, *delta = b->split, *user = b->column;
@@ -146,7 +147,8 @@ static hn_status choose_coordinate(hn_budget_work *b, const double *reference, h
         const int length =
             scene->coordinates[hn_system_user_coordinate(b->sys, i)].kind == HN_LENGTH;
         const double size = fabs(user[i]) / (length ? hn_system_length(b->sys) : 1);
-        if (size > worst) {
+        const bool allowed = b->opts->coordinate <= 0 || b->opts->coordinate == i + 1;
+        if (allowed && size > worst) {
             worst = size;
             b->out->coordinate = i;
             b->out->error = user[i];

@@ -231,6 +231,27 @@ static void put_tolerance(hn_strbuf *b, const hn_part *p) {
     }
 }
 
+/// The names that a formula may use: the part's own, then those of the numbers that the exercise
+/// gives. What follows from other names is left out: it may be what is asked for.
+static void put_names(hn_strbuf *b, const hn_part *p) {
+    const cJSON *states = cJSON_GetObjectItemCaseSensitive(p->node, "states"), *m;
+    if (!states) {
+        return;
+    }
+    hn_strbuf_add(b, "; names:");
+    cJSON_ArrayForEach(m, states) {
+        hn_strbuf_printf(b, " %s", m->string);
+    }
+    const char *before = "; with numbers given:";
+    for (int i = 0; p->draw && i < p->draw->n_names; i++) {
+        const bool own = cJSON_GetObjectItemCaseSensitive(states, p->draw->name[i]) != NULL;
+        if (p->draw->origin[i] != HN_DRAW_DERIVED && !own) {
+            hn_strbuf_printf(b, "%s %s", before, p->draw->name[i]);
+            before = "";
+        }
+    }
+}
+
 static void ask(hn_strbuf *b, const hn_part *p) {
     const cJSON *answer = cJSON_GetObjectItemCaseSensitive(p->node, "answer");
     const int n = cJSON_IsArray(answer) ? cJSON_GetArraySize(answer) : 0;
@@ -256,12 +277,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
         put_tolerance(b, p);
     }
 
-    // the names that a formula may use
-    const cJSON *states = cJSON_GetObjectItemCaseSensitive(p->node, "states"), *m;
-    hn_strbuf_add(b, states ? "; names:" : "");
-    cJSON_ArrayForEach(m, states) {
-        hn_strbuf_printf(b, " %s", m->string);
-    }
+    put_names(b, p);
 }
 
 const hn_part_kind hn_part_values = {
