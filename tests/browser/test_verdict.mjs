@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { createHistory, thin } from "../../web/state/history.js";
+import { findJump } from "../../web/state/jump.js";
 import { limits, readIndex } from "../../web/state/catalogue.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
@@ -352,4 +353,12 @@ test("one event has one time: a step that failed is named by its end, a repeated
   );
   assert.equal(stopReason("at t = 0.9 s the loops stand open", 0.9, 10), "the loops stand open");
   assert.equal(stopReason("the mass matrix is singular", 0.9, 10), "the mass matrix is singular");
+});
+
+test("a jump of the error is the largest growth within a window, beyond rounding", () => {
+  const t = [0, 1, 2, 3, 4, 5, 6];
+  const worst = [0, 1e-9, 1e-5, 2e-5, 2e-3, 3e-3, 1e-2];
+  assert.deepEqual(findJump(t, worst, 6, 1, 1), { from: 3, to: 4, times: 100 });
+  assert.equal(findJump(t, worst, 3, 1, 1), null, "not yet");
+  assert.equal(findJump(t, worst, 6, 1, 1e3), null, "too small to matter");
 });

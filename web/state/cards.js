@@ -4,6 +4,7 @@
 import { niceBelow, quantity, scientific, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 import { errorsOf } from "./errors.js";
+import { jumpWords } from "./jump.js";
 import { listed, trendOf, verdictAt } from "./verdict.js";
 import { stopReason } from "./words.js";
 
@@ -156,7 +157,7 @@ export function estimateWords(data, m) {
     Number.isFinite(reaction ?? NaN) ? `${scientific(Number(reaction))} of the largest force` : "",
   ];
   const ended = reason ? ` It ended there: ${reason}.` : "";
-  return `Estimated error until ${seconds(Number(t), data.duration)}, against a pilot run: ${listed(sizes.filter(Boolean))}.${ended}`;
+  return `Largest error until ${seconds(Number(t), data.duration)}, estimated by a pilot run at tight tolerance: ${listed(sizes.filter(Boolean))}.${ended}`;
 }
 
 /** What happened to a method until the frame shown, with numbers. */
@@ -177,7 +178,9 @@ function happenedWords(data, m, shown) {
     data.scene?.m > 0
       ? `the loop gap is ${quantity(history.columns[m].gap[shown], "m")} (${trend.word})`
       : "",
-    Number.isNaN(off[at]) ? "" : `the error of position is ${quantity(off[at], "m")}`,
+    Number.isNaN(off[at])
+      ? ""
+      : `the point farthest from the reference solution is ${quantity(off[at], "m")} off now`,
     `the energy has changed by ${quantity(history.columns[m].energy_change[shown], "J")}`,
   ];
   const now = `After ${seconds(history.t[shown], data.duration)} ${listed(parts.filter(Boolean))}.`;
@@ -212,7 +215,9 @@ export function cardOfMethod(data, m, shown) {
     title: method.title,
     label: method.label,
     verdict: verdictAt(data, m, shown),
-    happened: [happenedWords(data, m, shown), estimateWords(data, m)].filter(Boolean).join(" "),
+    happened: [happenedWords(data, m, shown), jumpWords(data, m, shown), estimateWords(data, m)]
+      .filter(Boolean)
+      .join(" "),
     groups: groupIncidents(incidents),
     rule: withPowers(method.rule),
     drift: withPowers(method.drift ?? ""),

@@ -71,6 +71,7 @@ export function createWhyCard(el, store, actions) {
         "aria-label": `Why: ${card.title}`,
       },
       h("div", { class: "card-head" }, h("h3", {}, `${card.label}: why?`), closeButton),
+      h("p", { class: "sentence verdict", "data-tone": card.verdict.tone }, card.verdict.words),
       h("p", { class: "happened" }, ...explained(card.happened)),
       ...incidentLines(card.groups),
       h("p", { class: "rule" }, ...explained(`${card.rule}${drift}`)),

@@ -172,10 +172,8 @@ static void find_horizon(hn_budgets *a, hn_budget_row *row) {
 
 /// Computes the budget of one method. Returns 0 when it was stopped.
 static bool make_row(hn_budgets *a, hn_budget_row *row) {
-    const hn_budget_opts opts = {.coordinate = a->coordinate,
-                                 .stop = ask_stop,
-                                 .progress = report_progress,
-                                 .user = a};
+    const hn_budget_opts opts = {
+        .coordinate = a->coordinate, .stop = ask_stop, .progress = report_progress, .user = a};
     hn_diag diag = {0};
     row->status = hn_budget_make(hn_model_system(a->model), &a->specs[a->at], hn_model_q(a->model),
                                  hn_model_v(a->model), a->request.time, &opts, &row->budget, &diag);

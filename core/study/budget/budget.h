@@ -76,7 +76,7 @@ typedef struct hn_budget {
     /// user coordinate whose error it is: the one asked for, or the one whose error is largest at
     /// the end; -1: the run ended early
     int coordinate;
-    double error;   ///< of it, signed: the run's value less the reference's [rad or m]
+    double error;                ///< of it, signed: the run's value less the reference's [rad or m]
     double part[HN_CAUSE_COUNT]; ///< signed, same unit; NaN: not known for this method
     double sum;                  ///< of the parts: equals `error` as far as first order holds
     /// 0: the integrator takes the constraints as they are: formulation and truncation are one
