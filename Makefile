@@ -228,6 +228,8 @@ TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-sci
 # for make languages alone: some 700 MB
 LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base libeigen3-dev libejml-java python3-petsc4py \
                      python3-matplotlib libmujoco-dev
+# for make notebook alone: Jupyter and its kernel, 27 MB
+NOTEBOOK_PACKAGES := $(RUN_PACKAGES) jupyter-nbconvert python3-ipykernel python3-matplotlib
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile
@@ -236,6 +238,8 @@ build/.packages-test: Makefile
 	@tests/tools/packages.sh $@ $(TEST_PACKAGES)
 build/.packages-languages: Makefile
 	@tests/tools/packages.sh $@ $(LANGUAGE_PACKAGES)
+build/.packages-notebook: Makefile
+	@tests/tools/packages.sh $@ $(NOTEBOOK_PACKAGES)
 build/.packages-check: Makefile
 	@tests/tools/packages.sh $@ $(CHECK_PACKAGES)
 
@@ -332,6 +336,7 @@ help:
 	@echo 'make classes      1,000 formulas and 200 programs graded through kills, and every hostile program: tests/tables/classes.txt'
 	@echo 'make skeletons    the slips of the usual lesson beside the exported programs: tests/tables/skeletons.txt'
 	@echo 'make languages    every scene as a program in every language that Debian has: tests/tables/languages.txt'
+	@echo 'make notebook     the Python notebook executed by Jupyter: build/notebook/executed.html'
 	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
@@ -342,7 +347,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
+.PHONY: test test-quick asan tsan fuzz load page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages notebook skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -454,6 +459,15 @@ languages: build/.packages-languages
 	@python3 tests/cli/test_export.py --all >build/languages.txt; status=$$?; \
 	cp build/languages.txt tests/tables/languages.txt && cat tests/tables/languages.txt; exit $$status
 	@HOLONOM=$(PROGRAM) python3 tests/cli/test_mujoco.py
+
+# the notebook executed by Jupyter itself, in a folder of its own; fails where a cell fails or nothing is drawn
+notebook: all build/.packages-notebook
+	@rm -rf build/notebook && mkdir -p build/notebook
+	@cp server/python/four_bar.ipynb build/notebook/
+	@cd build/notebook && PATH=/usr/bin:/bin HOLONOM='$(CURDIR)/build/holonom' PYTHONPATH='$(CURDIR)/server/python' \
+	    jupyter-nbconvert --to html --execute --output executed four_bar.ipynb
+	@grep -q 'reduced@rk4:h=0.01 *gap' build/notebook/executed.html && test -s build/notebook/four_bar.svg
+	@echo 'notebook: build/notebook/executed.html'
 
 # some minutes on one processor; fails where a variant is bad
 exercises: all
