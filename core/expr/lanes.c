@@ -100,3 +100,30 @@ HN_LANES_FORMS(run, (const hn_tape *tape, hn_lanes_sincos sincos, double *work),
 void hn_lanes_run(const hn_tape *tape, hn_lanes_set set, double *work) {
     run_forms[set](tape, hn_lanes_sincos_get(set), work);
 }
+
+// ---- one bit for each lane ----
+
+/// Whether all lanes are good, as they mostly are.
+static bool are_all_good(const hn_lane_half_bits *below, const hn_lane_half *zero) {
+    hn_lane_half_bits negative = below[0];
+    hn_lane_half sum = zero[0];
+    for (int k = 1; k < 2 * VECTORS; k++) {
+        negative &= below[k];
+        sum += zero[k];
+    }
+    return (negative[0] & negative[1] & negative[2] & negative[3]) < 0 &&
+           sum[0] + sum[1] + sum[2] + sum[3] == 0;
+}
+
+hn_lane_bits hn_lanes_bits(const hn_lane_half_bits *below, const hn_lane_half *zero) {
+    if (are_all_good(below, zero)) {
+        return (hn_lane_bits)-1;
+    }
+    const long long *sign = (const long long *)(const void *)below;
+    const double *none = (const double *)(const void *)zero;
+    hn_lane_bits bits = 0;
+    for (int k = 0; k < HN_LANES; k++) {
+        bits |= (hn_lane_bits)((sign[k] < 0) & (none[k] == 0)) << k;
+    }
+    return bits;
+}

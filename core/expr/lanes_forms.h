@@ -16,15 +16,9 @@ enum { HN_LANE_WIDTH = 8 };
 typedef double hn_lane_half __attribute__((vector_size(32)));
 typedef long long hn_lane_half_bits __attribute__((vector_size(32)));
 
-/// Lanes whose entry of `below` is negative and whose entry of `zero` is 0, HN_LANES of each; both
-/// are what sums over the slots leave, and a number that is not finite leaves NaN in `zero`.
-static inline hn_lane_bits hn_lanes_bits(const long long *below, const double *zero) {
-    hn_lane_bits bits = 0;
-    for (int k = 0; k < HN_LANES; k++) {
-        bits |= (hn_lane_bits)((below[k] < 0) & (zero[k] == 0)) << k;
-    }
-    return bits;
-}
+/// Lanes whose entry of `below` is negative and whose entry of `zero` is 0; both are what sums over
+/// the slots leave, and a number that is not finite leaves NaN in `zero`.
+hn_lane_bits hn_lanes_bits(const hn_lane_half_bits *below, const hn_lane_half *zero);
 
 #define HN_LANES_BODY static inline __attribute__((always_inline)) void
 

@@ -213,6 +213,11 @@ const char *hn_lanes_set_name(hn_lanes_set set) {
     return names[set];
 }
 
+int hn_lanes_set_width(hn_lanes_set set) {
+    static const int widths[HN_LANES_SETS] = {2, 4, 8};
+    return widths[set];
+}
+
 /// Angles of every size that a form treats in its own way, and of both signs: check k of them.
 static double angle_of_check(uint64_t *x, int k) {
     static const double largest[8] = {0.126, 0.86, 2.43, 10, 1e3, 1e6, 1.05e8, 1e300};

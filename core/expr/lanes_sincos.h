@@ -26,8 +26,11 @@ hn_lanes_set hn_lanes_set_best(void);
 /// "plain", "avx2", "avx512".
 const char *hn_lanes_set_name(hn_lanes_set set);
 
-/// Sine and cosine of n angles [rad]; n is a multiple of 8, the three arrays are aligned to 64
-/// bytes and `sine` and `cosine` may be `angle`.
+/// Doubles in a vector of this set.
+int hn_lanes_set_width(hn_lanes_set set);
+
+/// Sine and cosine of n angles [rad]; n is a multiple of the set's width, the three arrays are
+/// aligned to a vector, and `sine` and `cosine` may be `angle`.
 typedef void (*hn_lanes_sincos)(int n, const double *angle, double *sine, double *cosine);
 
 /// The function for a set that the processor has; compares with the C library as said above. Safe

@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/strbuf.h"
 #include "expr/lanes_sincos.h"
+#include "expr/native_check.h"
 #include "expr/native_emit.h"
 #include "expr/tape_interpret.h"
 
@@ -18,7 +19,8 @@
 // An interpreted instruction and a call of a tape take about so long [s]; only to decide when the
 // queue is asked.
 static const double PER_INSTRUCTION = 1.5e-9, PER_CALL = 20e-9;
-enum { CHECKS = 8, MOST_INSTRUCTIONS = 400000 };
+static const double LANES_SHARE = 4; // of the time of one state, for all lanes
+enum { MOST_INSTRUCTIONS = 400000 };
 
 /// One tape in the queue, with a copy of it: the tape itself may be freed meanwhile.
 typedef struct job {
@@ -49,6 +51,7 @@ static struct {
 /// Compiled code, shared by all tapes that are equal.
 struct hn_native_loaded {
     hn_tape *tape; ///< a copy of what was compiled
+    hn_native_form form;
     uint64_t hash;
     void *handle;
     hn_native_code code;
@@ -65,7 +68,7 @@ static struct {
     unsigned long uses;
 } known = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-static hn_native_call calls[HN_NATIVE_SINCOS + 1];
+static hn_native_call calls[HN_NATIVE_CALLS];
 static _Thread_local int suspended;
 
 hn_native_opts hn_native_opts_default(const char *folder) {
@@ -87,12 +90,6 @@ static void free_copy(hn_tape *t) {
         free(t->outputs);
         free(t);
     }
-}
-
-/// Constants in their places, everything else zero.
-static void prepare(const hn_tape *t, double *work) {
-    memset(work, 0, (size_t)t->info.slots * sizeof *work);
-    memcpy(work + t->info.n_inputs, t->constants, (size_t)t->n_constants * sizeof *work);
 }
 
 static hn_tape *copy_tape(const hn_tape *tape) {
@@ -137,13 +134,13 @@ static void release_loaded(hn_native_loaded *l) {
     }
 }
 
-static hn_native_loaded *find_loaded(const hn_tape *tape) {
+static hn_native_loaded *find_loaded(const hn_tape *tape, hn_native_form form) {
     const uint64_t hash = hash_of(tape);
     hn_native_loaded *found = NULL;
     pthread_mutex_lock(&known.lock);
     for (int i = 0; i < known.n && !found; i++) {
         hn_native_loaded *l = known.item[i];
-        if (l->hash == hash && same_tape(l->tape, tape)) {
+        if (l->hash == hash && l->form == form && same_tape(l->tape, tape)) {
             found = l;
             l->refs++;
             l->used = ++known.uses;
@@ -154,7 +151,8 @@ static hn_native_loaded *find_loaded(const hn_tape *tape) {
 }
 
 /// Takes over `tape`; the table lets go of what was used longest ago where it is full.
-static hn_native_loaded *keep_loaded(hn_tape *tape, void *handle, hn_native_code code) {
+static hn_native_loaded *keep_loaded(hn_tape *tape, hn_native_form form, void *handle,
+                                     hn_native_code code) {
     hn_native_loaded *l = calloc(1, sizeof *l);
     if (!l) {
         return NULL;
@@ -163,6 +161,7 @@ static hn_native_loaded *keep_loaded(hn_tape *tape, void *handle, hn_native_code
     // two references: the table and the caller
     pthread_mutex_lock(&known.lock);
     *l = (hn_native_loaded){.tape = tape,
+                            .form = form,
                             .hash = hash_of(tape),
                             .handle = handle,
                             .code = code,
@@ -196,23 +195,26 @@ static void forget_loaded(void) {
 
 // ---- states ----
 
-static int runs_in(double seconds, const hn_tape *tape) {
-    return (int)fmin(1e9, ceil(seconds / (PER_CALL + PER_INSTRUCTION * tape->info.instructions)));
+static int runs_in(double seconds, const hn_tape *tape, hn_native_form form) {
+    const double states = form == HN_NATIVE_SINGLE ? 1 : LANES_SHARE;
+    const double each = PER_CALL + states * PER_INSTRUCTION * tape->info.instructions;
+    return (int)fmin(1e9, ceil(seconds / each));
 }
 
-hn_native_state *hn_native_state_create(const hn_tape *tape) {
+hn_native_state *hn_native_state_create(const hn_tape *tape, hn_native_form form) {
     if (!service.started || suspended > 0 || tape->info.instructions > MOST_INSTRUCTIONS) {
         return NULL;
     }
     hn_native_state *s = calloc(1, sizeof *s);
     if (s) {
-        s->look_at = runs_in(service.opts.look_after, tape);
-        s->build_at = runs_in(service.opts.build_after, tape);
+        s->form = form;
+        s->look_at = runs_in(service.opts.look_after, tape, form);
+        s->build_at = runs_in(service.opts.build_after, tape, form);
         s->look_at = s->look_at > 1 ? s->look_at : 1;
         s->build_at = s->build_at > s->look_at ? s->build_at : s->look_at + 1;
         atomic_init(&s->refs, 1);
         s->calls = calls;
-        s->loaded = find_loaded(tape);
+        s->loaded = find_loaded(tape, form);
         atomic_init(&s->code, s->loaded ? s->loaded->code : NULL);
     }
     return s;
@@ -238,45 +240,10 @@ void hn_native_resume(void) {
     suspended--;
 }
 
-// ---- checking compiled code ----
-
-static bool same_bits(double a, double b) {
-    return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
-}
-
-/// Inputs for check number k: 0, 1, then numbers of -4 .. 4 by a congruential generator.
-static void fill_inputs(double *work, int n, int k) {
-    uint64_t x = 88172645463325252ull + (uint64_t)k;
-    for (int i = 0; i < n; i++) {
-        x = x * 6364136223846793005ull + 1442695040888963407ull;
-        work[i] = k < 2 ? k : (double)(x >> 11) * 0x1p-53 * 8 - 4;
-    }
-}
-
-/// Whether compiled code gives the interpreter's bits at CHECKS states.
-static bool agrees(const hn_tape *tape, hn_native_code code) {
-    const size_t n = (size_t)tape->info.slots + 1;
-    double *w = malloc(2 * n * sizeof *w);
-    bool same = w != NULL;
-    for (int k = 0; k < CHECKS && same; k++) {
-        double *x = w, *y = w + n;
-        prepare(tape, x);
-        fill_inputs(x, tape->info.n_inputs, k);
-        memcpy(y, x, n * sizeof *y);
-        hn_tape_interpret(tape, x);
-        code(y, calls);
-        for (int i = 0; i < tape->info.n_outputs && same; i++) {
-            same = same_bits(x[tape->outputs[i]], y[tape->outputs[i]]);
-        }
-    }
-    free(w);
-    return same;
-}
-
 // ---- the work ----
 
-static hn_status emit(const hn_tape *tape, hn_strbuf *text, hn_diag *diag) {
-    const hn_status status = hn_native_emit(text, tape);
+static hn_status emit(const hn_tape *tape, hn_native_form form, hn_strbuf *text, hn_diag *diag) {
+    const hn_status status = hn_native_emit(text, tape, form);
     return status == HN_OK
                ? HN_OK
                : hn_diag_set(diag, status, NULL, NULL, "the tape cannot be written as C: %s",
@@ -284,12 +251,14 @@ static hn_status emit(const hn_tape *tape, hn_strbuf *text, hn_diag *diag) {
 }
 
 static void take_sincos(void) {
-    calls[HN_NATIVE_SINCOS] =
-        (hn_native_call)(void (*)(void))hn_lanes_sincos_get(hn_lanes_set_best());
+    for (int set = 0; set <= (int)hn_lanes_set_best(); set++) {
+        calls[HN_NATIVE_SINCOS + set] =
+            (hn_native_call)(void (*)(void))hn_lanes_sincos_get((hn_lanes_set)set);
+    }
 }
 
-static hn_status load_checked(const hn_tape *tape, const hn_strbuf *text, void **handle,
-                              hn_native_code *code, hn_diag *diag) {
+static hn_status load_checked(const hn_tape *tape, hn_native_form form, const hn_strbuf *text,
+                              void **handle, hn_native_code *code, hn_diag *diag) {
     const hn_status status = hn_native_load(&service.builder, text->text, text->n, handle, code);
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL,
@@ -299,7 +268,7 @@ static hn_status load_checked(const hn_tape *tape, const hn_strbuf *text, void *
     // not at the start of the program: the vector form is compared with the C library first
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, take_sincos);
-    if (agrees(tape, *code)) {
+    if (hn_native_agrees(tape, form, *code, calls)) {
         return HN_OK;
     }
     dlclose(*handle);
@@ -308,19 +277,19 @@ static hn_status load_checked(const hn_tape *tape, const hn_strbuf *text, void *
 }
 
 /// From the folder, or by the compiler where `build` allows it. *cached: it was in the folder.
-static hn_status obtain(const hn_tape *tape, bool build, void **handle, hn_native_code *code,
-                        bool *cached, hn_diag *diag) {
+static hn_status obtain(const hn_tape *tape, hn_native_form form, bool build, void **handle,
+                        hn_native_code *code, bool *cached, hn_diag *diag) {
     double seconds;
     hn_strbuf text;
     hn_strbuf_init(&text);
-    hn_status status = emit(tape, &text, diag);
+    hn_status status = emit(tape, form, &text, diag);
     if (status == HN_OK) {
-        status = load_checked(tape, &text, handle, code, diag);
+        status = load_checked(tape, form, &text, handle, code, diag);
         *cached = status == HN_OK;
     }
     if (status != HN_OK && build && text.n > 0) {
         status = hn_native_build(&service.builder, text.text, text.n, &seconds, diag);
-        HN_THEN(status, load_checked(tape, &text, handle, code, diag));
+        HN_THEN(status, load_checked(tape, form, &text, handle, code, diag));
     }
     hn_strbuf_reset(&text);
     return status;
@@ -328,7 +297,7 @@ static hn_status obtain(const hn_tape *tape, bool build, void **handle, hn_nativ
 
 /// The code serves the tape of the job from now on; the job's copy of it goes to the table.
 static hn_status take_code(job *j, void *handle, hn_native_code code) {
-    hn_native_loaded *l = keep_loaded(j->copy, handle, code);
+    hn_native_loaded *l = keep_loaded(j->copy, j->state->form, handle, code);
     if (!l) {
         dlclose(handle);
         return HN_ERR_MEMORY;
@@ -347,7 +316,7 @@ static void do_job(job *j) {
         return; // the look before the build found it
     }
     void *handle = NULL;
-    hn_status status = obtain(j->copy, j->build, &handle, &code, &cached, &diag);
+    hn_status status = obtain(j->copy, j->state->form, j->build, &handle, &code, &cached, &diag);
     HN_THEN(status, take_code(j, handle, code));
     pthread_mutex_lock(&service.lock);
     if (status == HN_OK) {
@@ -441,14 +410,14 @@ static bool open_service(void) {
     return service.is_open;
 }
 
-void hn_native_ask(const hn_tape *tape, bool build) {
+static void ask(const hn_tape *tape, hn_native_state *state, bool build) {
     job *j = calloc(1, sizeof *j);
     hn_tape *copy = j ? copy_tape(tape) : NULL;
     if (!copy) {
         free(j);
         return;
     }
-    *j = (job){.copy = copy, .state = tape->native, .build = build};
+    *j = (job){.copy = copy, .state = state, .build = build};
     atomic_fetch_add(&j->state->refs, 1);
     pthread_mutex_lock(&service.lock);
     const bool takes = service.started && open_service();
@@ -460,6 +429,19 @@ void hn_native_ask(const hn_tape *tape, bool build) {
     pthread_mutex_unlock(&service.lock);
     if (!takes) {
         free_job(j);
+    }
+}
+
+void hn_native_count(const hn_tape *tape, hn_native_state *s) {
+    // a load and a store in place of an atomic increment: threads that share a tape may lose some
+    // runs, which only delays it
+    const int runs = 1 + atomic_load_explicit(&s->runs, memory_order_relaxed);
+    if (runs > s->build_at) {
+        return;
+    }
+    atomic_store_explicit(&s->runs, runs, memory_order_relaxed);
+    if (runs == s->look_at || runs == s->build_at) {
+        ask(tape, s, runs == s->build_at);
     }
 }
 
@@ -512,7 +494,7 @@ static const double BATCH = 2e-4; // [s] of one batch: a hundred times the clock
 /// Smallest time of one evaluation over BATCHES batches [s]; code NULL: the interpreter.
 static double time_of(const hn_tape *tape, hn_native_code code, double *w) {
     double best = (double)INFINITY;
-    const int n = 1 + runs_in(BATCH, tape);
+    const int n = 1 + runs_in(BATCH, tape, HN_NATIVE_SINGLE);
     for (int k = 0; k < BATCHES; k++) {
         const double start = hn_clock_thread();
         for (int i = 0; i < n; i++) {
@@ -531,12 +513,12 @@ static hn_status compile_measured(const hn_tape *tape, const hn_strbuf *text,
                                   hn_native_costs *costs, void **handle, hn_native_code *code,
                                   hn_diag *diag) {
     double start = hn_clock_wall();
-    hn_status status = load_checked(tape, text, handle, code, diag);
+    hn_status status = load_checked(tape, HN_NATIVE_SINGLE, text, handle, code, diag);
     if (status != HN_OK) {
         HN_TRY(
             hn_native_build(&service.builder, text->text, text->n, &costs->compile_seconds, diag));
         start = hn_clock_wall();
-        status = load_checked(tape, text, handle, code, diag);
+        status = load_checked(tape, HN_NATIVE_SINGLE, text, handle, code, diag);
     }
     costs->load_seconds = hn_clock_wall() - start;
     return status;
@@ -560,14 +542,15 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     hn_tape *copy = copy_tape(tape);
     double *w = malloc(((size_t)tape->info.slots + 1) * sizeof *w);
     double start = hn_clock_wall();
-    hn_status status = copy && w ? emit(copy, &text, diag) : HN_ERR_MEMORY;
+    hn_status status = copy && w ? emit(copy, HN_NATIVE_SINGLE, &text, diag) : HN_ERR_MEMORY;
     costs->emit_seconds = hn_clock_wall() - start;
     HN_THEN(status, compile_measured(copy, &text, costs, &handle, &code, diag));
 
     // times of both, and the run length from which compiling pays
     if (status == HN_OK) {
-        prepare(copy, w); // a state of no round numbers, so that no function takes a short cut
-        fill_inputs(w, copy->info.n_inputs, 2);
+        hn_native_prepare(copy,
+                          w); // a state of no round numbers, so that no function takes a short cut
+        hn_native_fill(w, copy->info.n_inputs, 2);
         costs->interpreter_ns = 1e9 * time_of(copy, NULL, w);
         costs->native_ns = 1e9 * time_of(copy, code, w);
         const double saved = 1e-9 * (costs->interpreter_ns - costs->native_ns),

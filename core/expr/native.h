@@ -13,6 +13,7 @@
 
 #include "base/diag.h"
 #include "expr/native_build.h"
+#include "expr/native_emit.h"
 
 #include <stdatomic.h>
 
@@ -70,12 +71,14 @@ typedef struct hn_native_costs {
 HN_MUST_CHECK hn_status hn_native_measure(const struct hn_tape *tape, hn_native_costs *costs,
                                           hn_diag *diag);
 
-// ---- for tape.c and tape_compile.c ----
+// ---- for tape.c, tape_compile.c and lanes.c ----
 
 typedef struct hn_native_loaded hn_native_loaded;
 
-/// What a tape has of the service. Shared by the tape and the queue.
+/// What a tape has of the service, for single states or for lanes. Shared by its owner and the
+/// queue.
 typedef struct hn_native_state {
+    hn_native_form form;
     _Atomic(hn_native_code) code; ///< NULL: the interpreter serves
     const hn_native_call *calls;  ///< the functions of the operator table, as the code takes them
     atomic_int runs;              ///< interpreted so far; loses some where threads share the tape
@@ -85,8 +88,9 @@ typedef struct hn_native_state {
 } hn_native_state;
 
 /// Returns the state of a new tape, or NULL while the service is off or memory is out.
-hn_native_state *hn_native_state_create(const struct hn_tape *tape);
+hn_native_state *hn_native_state_create(const struct hn_tape *tape, hn_native_form form);
 void hn_native_state_release(hn_native_state *s); ///< NULL is legal
-/// Queues the tape (a copy of what is needed); nothing happens where memory is out.
-void hn_native_ask(const struct hn_tape *tape, bool build);
+/// Counts a run of the interpreter; at two numbers of runs the tape is queued (a copy of what is
+/// needed). Nothing happens where memory is out.
+void hn_native_count(const struct hn_tape *tape, hn_native_state *s);
 #endif

@@ -4,6 +4,7 @@
 // The system's C compiler as a child process with limits, and the folder that keeps what it made.
 
 #include "base/diag.h"
+#include "expr/lanes_sincos.h"
 #include "expr/ops.h"
 
 #include <stdatomic.h>
@@ -13,8 +14,9 @@
 
 enum { HN_NATIVE_PATH = 512 };
 
-/// Where `call` of compiled code holds an hn_lanes_sincos; before it, hn_op_info.value by operator.
-enum { HN_NATIVE_SINCOS = HN_OP_COUNT };
+/// Where `call` of compiled code holds an hn_lanes_sincos for each instruction set; before them,
+/// hn_op_info.value by operator.
+enum { HN_NATIVE_SINCOS = HN_OP_COUNT, HN_NATIVE_CALLS = HN_NATIVE_SINCOS + HN_LANES_SETS };
 
 /// Compiled code: evaluates a tape on its workspace.
 typedef double (*hn_native_call)(const double *);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "expr/native_emit.h"
 
+#include "expr/lanes.h"
 #include "expr/native_build.h"
 #include "expr/tape_interpret.h"
 
@@ -21,11 +22,20 @@ enum { TOGETHER = 6, VECTOR = 8 };
 typedef struct emitter {
     hn_strbuf *b;
     const hn_tape *tape;
+    hn_lanes_set set;
+    int width;           ///< doubles in a vector; 0: single states
     int32_t *angle;      ///< by input: its place among the angles found together, or -1
     int n_angles;        ///< 0: each where it is needed
     int32_t *definition; ///< by slot: 2 * instruction (+ 1: the cosine) in this piece, or -1
     uint8_t *live;       ///< by slot: read by a later piece, or an output
+    int32_t *starts;     ///< of the pieces, the last one first
+    int32_t n_pieces;
 } emitter;
+
+/// Adds the place of a slot in the workspace: in lanes, of the present vector of its block.
+static void put_place(const emitter *e, int slot) {
+    hn_strbuf_printf(e->b, "w[%d]", e->width ? slot * (HN_LANES / e->width) : slot);
+}
 
 /// Adds what stands for a slot: an input or a value of an earlier piece, a constant, a name.
 static void put_operand(const emitter *e, int slot) {
@@ -34,13 +44,14 @@ static void put_operand(const emitter *e, int slot) {
         const int32_t at = e->definition[slot];
         hn_strbuf_printf(e->b, "%c%d", at & 1 ? 'c' : 'v', at / 2);
     } else if (constant < 0 || constant >= e->tape->n_constants) {
-        hn_strbuf_printf(e->b, "w[%d]", slot);
+        put_place(e, slot);
     } else {
         const double value = e->tape->constants[constant];
+        const char *all = e->width ? "ALL" : "";
         if (isinf(value)) {
-            hn_strbuf_add(e->b, value > 0 ? "(1.0 / 0.0)" : "(-1.0 / 0.0)");
+            hn_strbuf_printf(e->b, "%s(%s1.0 / 0.0)", all, value > 0 ? "" : "-");
         } else {
-            hn_strbuf_printf(e->b, "(%a)", value);
+            hn_strbuf_printf(e->b, "%s(%a)", all, value);
         }
     }
 }
@@ -58,13 +69,33 @@ static void put_expression(const emitter *e, const hn_tape_instruction *i, const
     }
 }
 
+/// Adds a function of single numbers lane by lane.
+static void put_function_of_lanes(const emitter *e, int32_t k) {
+    const hn_tape_instruction *i = &e->tape->code[k];
+    const int code = i->code;
+    hn_strbuf_printf(e->b, "lanes v%d; { const lanes x = ", k);
+    put_operand(e, i->v[1]);
+    if (code == TAPE_CALL2) {
+        hn_strbuf_add(e->b, ", y = ");
+        put_operand(e, i->v[2]);
+    }
+    hn_strbuf_printf(e->b, "; for (int i = 0; i < %d; i++) v%d[i] = ", e->width, k);
+    if (code == TAPE_SIN || code == TAPE_COS) {
+        hn_strbuf_add(e->b, code == TAPE_SIN ? "sin(x[i])" : "cos(x[i])");
+    } else {
+        hn_strbuf_printf(e->b, "call[%d]((const double[]){x[i]%s})", i->v[6],
+                         code == TAPE_CALL2 ? ", y[i]" : "");
+    }
+    hn_strbuf_add(e->b, "; }\n");
+}
+
 /// Whether a sincos is among those of inputs that are found together.
 static bool is_found_before(const emitter *e, const hn_tape_instruction *i) {
     return e->n_angles > 0 && i->v[1] < e->tape->info.n_inputs;
 }
 
-/// Adds instruction number k and notes where its results are.
-static void put_instruction(emitter *e, int32_t k) {
+/// Adds a function of one or two numbers.
+static void put_function(const emitter *e, int32_t k) {
     const hn_tape_instruction *i = &e->tape->code[k];
     const int code = i->code;
 
@@ -72,31 +103,42 @@ static void put_instruction(emitter *e, int32_t k) {
     if (code == TAPE_SINCOS && is_found_before(e, i)) {
         const int at = e->angle[i->v[1]];
         hn_strbuf_printf(e->b, "const double v%d = sine[%d], c%d = cosine[%d];\n", k, at, k, at);
-        e->definition[i->v[0]] = 2 * k;
-        e->definition[i->v[2]] = 2 * k + 1;
         return;
     }
     if (code == TAPE_SINCOS) {
         hn_strbuf_printf(e->b, "double v%d, c%d; sincos(", k, k);
         put_operand(e, i->v[1]);
         hn_strbuf_printf(e->b, ", &v%d, &c%d);\n", k, k);
-        e->definition[i->v[0]] = 2 * k;
-        e->definition[i->v[2]] = 2 * k + 1;
         return;
     }
 
     // one result
     hn_strbuf_printf(e->b, "const double v%d = ", k);
-    if (code < TAPE_SINCOS) {
-        put_expression(e, i, hn_tape_get_code_info(code).text);
-    } else if (code == TAPE_SIN || code == TAPE_COS) {
+    if (code == TAPE_SIN || code == TAPE_COS) {
         put_expression(e, i, code == TAPE_SIN ? "sin(a)" : "cos(a)");
     } else {
         hn_strbuf_printf(e->b, "call[%d]((const double[]){", i->v[6]);
         put_expression(e, i, code == TAPE_CALL1 ? "a})" : "a, b})");
     }
     hn_strbuf_add(e->b, ";\n");
+}
+
+/// Adds instruction number k and notes where its results are.
+static void put_instruction(emitter *e, int32_t k) {
+    const hn_tape_instruction *i = &e->tape->code[k];
+    if (i->code < TAPE_SINCOS) {
+        hn_strbuf_printf(e->b, "const %s v%d = ", e->width ? "lanes" : "double", k);
+        put_expression(e, i, hn_tape_get_code_info(i->code).text);
+        hn_strbuf_add(e->b, ";\n");
+    } else if (e->width) {
+        put_function_of_lanes(e, k);
+    } else {
+        put_function(e, k);
+    }
     e->definition[i->v[0]] = 2 * k;
+    if (i->code == TAPE_SINCOS) {
+        e->definition[i->v[2]] = 2 * k + 1;
+    }
 }
 
 /// Steps over instruction k backwards: its results are needed no more, its operands are.
@@ -113,27 +155,53 @@ static void note_live(const emitter *e, int32_t k) {
 
 /// Adds a function for instructions first .. end - 1; afterwards `live` is that before `first`.
 static void put_piece(emitter *e, int32_t first, int32_t end) {
-    hn_strbuf_printf(
-        e->b,
-        "static __attribute__((noinline)) void piece%d(double *w, const hn_call *call, "
-        "const double *sine, const double *cosine) {\n(void)call, (void)sine, "
-        "(void)cosine;\n",
-        first);
+    hn_strbuf_printf(e->b,
+                     "static __attribute__((noinline)) TARGET void piece%d(lanes *all, const "
+                     "hn_call *call, const double *sine, const double *cosine) {\n(void)call, "
+                     "(void)sine, (void)cosine;\nfor (int k = 0; k < %d; k++) {\n"
+                     "lanes *const w = all + k;\n",
+                     first, e->width ? HN_LANES / e->width : 1);
     memset(e->definition, 0xff, (size_t)e->tape->info.slots * sizeof *e->definition);
     for (int32_t k = first; k < end; k++) {
         put_instruction(e, k);
     }
     for (int slot = 0; slot < e->tape->info.slots; slot++) {
         if (e->definition[slot] >= 0 && e->live[slot]) {
-            hn_strbuf_printf(e->b, "w[%d] = ", slot);
+            put_place(e, slot);
+            hn_strbuf_add(e->b, " = ");
             put_operand(e, slot);
             hn_strbuf_add(e->b, ";\n");
         }
     }
-    hn_strbuf_add(e->b, "}\n");
-    for (int32_t k = end - 1; k >= first; k--) {
-        note_live(e, k);
+    hn_strbuf_add(e->b, "}\n}\n");
+}
+
+/// Adds what the pieces are written in: numbers, or vectors of them.
+static void put_head(const emitter *e) {
+    static const char *const targets[HN_LANES_SETS] = {
+        "", "__attribute__((target(\"avx2\")))",
+        "__attribute__((target(\"avx512f,avx512dq,avx512vl\")))"};
+    hn_strbuf_add(e->b, "typedef double (*hn_call)(const double *);\n"
+                        "typedef void (*hn_many)(int, const double *, double *, double *);\n"
+                        "extern double sin(double), cos(double);\n");
+    if (!e->width) {
+        hn_strbuf_add(e->b, "extern double sqrt(double);\n"
+                            "extern void sincos(double, double *, double *);\n"
+                            "typedef double lanes;\n"
+                            "#define TARGET\n");
+        return;
     }
+    hn_strbuf_printf(e->b,
+                     "typedef double lanes __attribute__((vector_size(%d)));\n"
+                     "#define TARGET %s\n"
+                     "#define sqrt(a) ({ lanes r = (a); for (int i = 0; i < %d; i++) "
+                     "r[i] = __builtin_sqrt(r[i]); r; })\n"
+                     "#define ALL(a) ((lanes){",
+                     e->width * (int)sizeof(double), targets[e->set], e->width);
+    for (int i = 0; i < e->width; i++) {
+        hn_strbuf_add(e->b, i ? ", a" : "a");
+    }
+    hn_strbuf_add(e->b, "})\n");
 }
 
 /// Numbers the inputs whose sine and cosine are wanted; leaves n_angles 0 where they are few.
@@ -145,14 +213,14 @@ static void number_angles(emitter *e) {
             e->angle[i->v[1]] = n++;
         }
     }
-    e->n_angles = n >= TOGETHER ? n : 0;
+    e->n_angles = n >= TOGETHER && !e->width ? n : 0; // in lanes each is a vector by itself
 }
 
 /// Adds what finds them: whole vectors, the last filled up with zeros.
 static void put_angles(const emitter *e) {
     const int room = (e->n_angles + VECTOR - 1) / VECTOR * VECTOR;
     if (e->n_angles == 0) {
-        hn_strbuf_add(e->b, "const double *const sine = w, *const cosine = w;\n");
+        hn_strbuf_add(e->b, "const double *const sine = work, *const cosine = work;\n");
         return;
     }
     hn_strbuf_printf(e->b,
@@ -162,51 +230,85 @@ static void put_angles(const emitter *e) {
                      room, room, room, e->n_angles, room);
     for (int slot = 0; slot < e->tape->info.n_inputs; slot++) {
         if (e->angle[slot] >= 0) {
-            hn_strbuf_printf(e->b, "angle[%d] = w[%d];\n", e->angle[slot], slot);
+            hn_strbuf_printf(e->b, "angle[%d] = work[%d];\n", e->angle[slot], slot);
         }
     }
-    hn_strbuf_printf(e->b, "((hn_many)call[%d])(%d, angle, sine, cosine);\n", HN_NATIVE_SINCOS,
-                     room);
+    hn_strbuf_printf(e->b, "((hn_many)call[%d])(%d, angle, sine, cosine);\n",
+                     HN_NATIVE_SINCOS + (int)e->set, room);
+}
+
+/// Whether an instruction is a piece by itself: sine and cosine of whole blocks.
+static bool stands_alone(const emitter *e, int32_t k) {
+    return e->width && e->tape->code[k].code == TAPE_SINCOS;
+}
+
+/// Where the piece begins that ends before instruction `end`.
+static int32_t start_of(const emitter *e, int32_t end) {
+    const int32_t longest = e->tape->info.instructions <= WHOLE ? WHOLE : PIECE;
+    int32_t first = end - 1;
+    while (!stands_alone(e, end - 1) && first % longest != 0 && !stands_alone(e, first - 1)) {
+        first--;
+    }
+    return first;
+}
+
+/// Adds the function that calls the pieces.
+static void put_whole(const emitter *e) {
+    hn_strbuf_add(e->b, "TARGET void " HN_NATIVE_SYMBOL "(double *work, const hn_call *call) {\n");
+    put_angles(e);
+    for (int32_t p = e->n_pieces - 1; p >= 0; p--) {
+        const hn_tape_instruction *i = &e->tape->code[e->starts[p]];
+        if (stands_alone(e, e->starts[p])) {
+            hn_strbuf_printf(e->b, "((hn_many)call[%d])(%d, work + %d, work + %d, work + %d);\n",
+                             HN_NATIVE_SINCOS + (int)e->set, HN_LANES, HN_LANES * i->v[1],
+                             HN_LANES * i->v[0], HN_LANES * i->v[2]);
+        } else {
+            hn_strbuf_printf(e->b, "piece%d((lanes *)work, call, sine, cosine);\n", e->starts[p]);
+        }
+    }
+    hn_strbuf_add(e->b, "(void)work, (void)call, (void)sine, (void)cosine;\n}\n");
 }
 
 static void put_all(emitter *e) {
-    const int32_t n = e->tape->info.instructions, piece = n <= WHOLE ? WHOLE : PIECE;
     for (int k = 0; k < e->tape->info.n_outputs; k++) {
         e->live[e->tape->outputs[k]] = 1;
     }
     number_angles(e);
-    hn_strbuf_add(e->b, "typedef double (*hn_call)(const double *);\n"
-                        "typedef void (*hn_many)(int, const double *, double *, double *);\n"
-                        "extern double sin(double), cos(double), sqrt(double);\n"
-                        "extern void sincos(double, double *, double *);\n");
+    put_head(e);
 
     // the last piece first: what crosses a cut is known only from behind
-    const int32_t pieces = (n + piece - 1) / piece;
-    for (int32_t p = pieces - 1; p >= 0; p--) {
-        const int32_t end = (p + 1) * piece;
-        put_piece(e, p * piece, end < n ? end : n);
+    for (int32_t end = e->tape->info.instructions, first; end > 0; end = first) {
+        first = start_of(e, end);
+        e->starts[e->n_pieces++] = first;
+        if (!stands_alone(e, first)) {
+            put_piece(e, first, end);
+        }
+        for (int32_t k = end - 1; k >= first; k--) {
+            note_live(e, k);
+        }
     }
-    hn_strbuf_add(e->b, "void " HN_NATIVE_SYMBOL "(double *w, const hn_call *call) {\n");
-    put_angles(e);
-    for (int32_t p = 0; p < pieces; p++) {
-        hn_strbuf_printf(e->b, "piece%d(w, call, sine, cosine);\n", p * piece);
-    }
-    hn_strbuf_add(e->b, "(void)w, (void)call, (void)sine, (void)cosine;\n}\n");
+    put_whole(e);
 }
 
-hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape) {
+hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape, hn_native_form form) {
     for (int32_t i = 0; i < tape->n_constants; i++) {
         if (isnan(tape->constants[i])) {
             return HN_ERR_UNSUPPORTED; // which NaN it is could not be written
         }
     }
     const size_t slots = (size_t)tape->info.slots + 1;
+    const hn_lanes_set set = form == HN_NATIVE_SINGLE
+                                 ? hn_lanes_set_best() // for the angles found together
+                                 : (hn_lanes_set)(form - HN_NATIVE_LANES);
     emitter e = {.b = b,
                  .tape = tape,
+                 .set = set,
+                 .width = form == HN_NATIVE_SINGLE ? 0 : hn_lanes_set_width(set),
                  .angle = malloc(((size_t)tape->info.n_inputs + 1) * sizeof *e.angle),
                  .definition = malloc(slots * sizeof *e.definition),
-                 .live = calloc(slots, 1)};
-    const bool fits = e.angle && e.definition && e.live;
+                 .live = calloc(slots, 1),
+                 .starts = malloc(((size_t)tape->info.instructions + 1) * sizeof *e.starts)};
+    const bool fits = e.angle && e.definition && e.live && e.starts;
     if (fits) {
         memset(e.angle, 0xff, (size_t)tape->info.n_inputs * sizeof *e.angle);
         put_all(&e);
@@ -214,5 +316,6 @@ hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape) {
     free(e.angle);
     free(e.definition);
     free(e.live);
+    free(e.starts);
     return fits && !b->failed ? HN_OK : HN_ERR_MEMORY;
 }

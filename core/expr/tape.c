@@ -48,20 +48,6 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
     }
 }
 
-/// Counts a run of the interpreter; the queue is asked at two numbers of runs. A load and a store
-/// in place of an atomic increment: threads that share a tape may lose some, which only delays it.
-static void count_run(const hn_tape *tape) {
-    hn_native_state *s = tape->native;
-    const int runs = 1 + atomic_load_explicit(&s->runs, memory_order_relaxed);
-    if (runs > s->build_at) {
-        return;
-    }
-    atomic_store_explicit(&s->runs, runs, memory_order_relaxed);
-    if (runs == s->look_at || runs == s->build_at) {
-        hn_native_ask(tape, runs == s->build_at);
-    }
-}
-
 void hn_tape_run(const hn_tape *tape, double *work) {
     if (tape->native) {
         const hn_native_code code = atomic_load_explicit(&tape->native->code, memory_order_acquire);
@@ -69,7 +55,7 @@ void hn_tape_run(const hn_tape *tape, double *work) {
             code(work, tape->native->calls);
             return;
         }
-        count_run(tape);
+        hn_native_count(tape, tape->native);
     }
     hn_tape_interpret(tape, work);
 }

@@ -590,7 +590,7 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
     if (!tape) {
         HN_TRY(compile_and_keep(g, &key, &tape));
     }
-    tape->native = hn_native_state_create(tape);
+    tape->native = hn_native_state_create(tape, HN_NATIVE_SINGLE);
     *out = tape;
     return HN_OK;
 }

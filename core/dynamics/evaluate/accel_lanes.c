@@ -35,11 +35,9 @@ hn_status hn_accel_lanes_create(const hn_accel *s, hn_lanes_set set, hn_arena *a
         }
     }
     double *const t = work + HN_LANES * (size_t)(in->nq + in->nv);
-    *out = (hn_accel_lanes){.set = set,
-                            .layout = tape,
+    *out = (hn_accel_lanes){.layout = tape,
                             .nq = in->nq,
                             .nv = in->nv,
-                            .tape = in->tape,
                             .slots = in->slots,
                             .work = work,
                             .q = work,
@@ -47,7 +45,12 @@ hn_status hn_accel_lanes_create(const hn_accel *s, hn_lanes_set set, hn_arena *a
                             .t = t,
                             .alpha = t + HN_LANES,
                             .beta = t + 2 * HN_LANES};
+    hn_lanes_tape_init(&out->code, in->tape, set);
     return HN_OK;
+}
+
+void hn_accel_lanes_free(hn_accel_lanes *l) {
+    hn_lanes_tape_reset(&l->code);
 }
 
 /// What a judgement leaves of each lane: `below` has the sign of a sum that is negative where every
@@ -101,7 +104,7 @@ HN_LANES_FORMS(judge, (const hn_accel_lanes *l, verdicts *out), (l, out))
 
 hn_lane_bits hn_accel_lanes_eval(hn_accel_lanes *l) {
     verdicts found;
-    hn_lanes_run(l->tape, l->set, l->work);
-    judge_forms[l->set](l, &found);
-    return hn_lanes_bits((const long long *)found.below, (const double *)found.zero);
+    hn_lanes_tape_run(&l->code, l->work);
+    judge_forms[l->code.set](l, &found);
+    return hn_lanes_bits(found.below, found.zero);
 }

@@ -6,13 +6,12 @@
 // at pivots in doubt or states that are not finite, are left to it.
 
 #include "dynamics/evaluate/accel.h"
-#include "expr/lanes.h"
+#include "expr/lanes_tape.h"
 
 typedef struct hn_accel_lanes {
-    hn_lanes_set set;
+    hn_lanes_tape code;
     int nq, nv;
-    const struct hn_accel_tape *layout; ///< of the outputs; like the next two of the hn_accel
-    const hn_tape *tape;
+    const struct hn_accel_tape *layout; ///< of the outputs; like the slots of the hn_accel
     const uint16_t *slots;
     double *work; ///< blocks of HN_LANES doubles: the inputs, then whatever the tape keeps
     /// Inputs, to be written before each evaluation: q (nq blocks), v (nv blocks), and one block
@@ -26,6 +25,8 @@ bool hn_accel_has_lanes(const hn_accel *s);
 /// HN_ERR_UNSUPPORTED (see hn_accel_has_lanes).
 HN_MUST_CHECK hn_status hn_accel_lanes_create(const hn_accel *s, hn_lanes_set set, hn_arena *arena,
                                               hn_accel_lanes *out);
+/// Frees what is not from the arena.
+void hn_accel_lanes_free(hn_accel_lanes *l);
 /// Evaluates all lanes; returns those whose answer is sure. Allocates nothing.
 hn_lane_bits hn_accel_lanes_eval(hn_accel_lanes *l);
 /// The block of acceleration i after that.

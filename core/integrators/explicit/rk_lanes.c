@@ -29,6 +29,10 @@ hn_status hn_rk_lanes_create(const hn_tableau *tab, const hn_accel *accel, hn_la
     return hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
+void hn_rk_lanes_free(hn_rk_lanes *rk) {
+    hn_accel_lanes_free(&rk->accel);
+}
+
 /// out = base + h sum_i w_i k_i, or where `base` is NULL 0 + h sum_i w_i k_i; eq. (1) of tableau.h.
 HN_LANES_BODY combine_body(const hn_rk_lanes *rk, const double *weight, int stages,
                            const double *base, double *out) {
@@ -96,8 +100,8 @@ HN_LANES_FORMS(add,
 static hn_lane_bits add_increment(hn_rk_lanes *rk, double bound) {
     hn_lane_half_bits below[HALVES];
     hn_lane_half zero[HALVES];
-    add_forms[rk->accel.set](rk, bound, below, zero);
-    return hn_lanes_bits((const long long *)below, (const double *)zero);
+    add_forms[rk->accel.code.set](rk, bound, below, zero);
+    return hn_lanes_bits(below, zero);
 }
 
 hn_lane_bits hn_rk_lanes_step(hn_rk_lanes *rk, double bound) {
@@ -106,11 +110,11 @@ hn_lane_bits hn_rk_lanes_step(hn_rk_lanes *rk, double bound) {
     memcpy(rk->accel.q, rk->y, (size_t)rk->n * HN_LANES * sizeof *rk->y);
     sure = eval_stage(rk, 0);
     for (int i = 1; i < tab->stages; i++) {
-        combine_forms[rk->accel.set](rk, tab->A + (size_t)i * (size_t)tab->stages, i, rk->y,
-                                     rk->accel.q);
+        combine_forms[rk->accel.code.set](rk, tab->A + (size_t)i * (size_t)tab->stages, i, rk->y,
+                                          rk->accel.q);
         sure &= eval_stage(rk, i);
     }
-    combine_forms[rk->accel.set](rk, tab->b, tab->stages, NULL, rk->increment);
+    combine_forms[rk->accel.code.set](rk, tab->b, tab->stages, NULL, rk->increment);
     return sure & add_increment(rk, bound);
 }
 

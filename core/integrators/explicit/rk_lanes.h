@@ -25,6 +25,7 @@ typedef struct hn_rk_lanes {
 /// where the solver has no tape or positions are not integrals of the speeds (quaternions).
 HN_MUST_CHECK hn_status hn_rk_lanes_create(const hn_tableau *tab, const hn_accel *accel,
                                            hn_lanes_set set, hn_arena *arena, hn_rk_lanes *out);
+void hn_rk_lanes_free(hn_rk_lanes *rk); ///< what is not from the arena
 /// Steps all lanes from (t, y) to y_new. Returns those whose slopes were all sure and whose new
 /// state is below `bound` in every entry; of the others y_new means nothing. Allocates nothing.
 hn_lane_bits hn_rk_lanes_step(hn_rk_lanes *rk, double bound);

@@ -158,6 +158,7 @@ void hn_ensemble_free(hn_ensemble *e) {
         return;
     }
     for (int i = 0; i < e->n_workers; i++) {
+        hn_rk_lanes_free(&e->workers[i].rk);
         hn_stepping_free(&e->workers[i].single);
         hn_arena_free(e->workers[i].arena);
     }

@@ -82,6 +82,7 @@ static void check_scene(const char *name, hn_lanes_set set, bool baumgarte) {
         }
     }
     assert_true(2 * sure > BLOCKS * HN_LANES); // most states are ordinary ones
+    hn_accel_lanes_free(&lanes);
     hn_accel_free(accel);
     hn_model_close(&m);
 }
@@ -120,6 +121,7 @@ static void lanes_in_doubt_are_left_out(void **state) {
     assert_int_equal(hn_accel_eval(accel, 0, q, v, 0, 0, a, NULL, &info), HN_OK);
     assert_true(info.fallback || info.refinements > 0);
     assert_int_equal(hn_accel_lanes_eval(&lanes), 0xaaaaaaaau);
+    hn_accel_lanes_free(&lanes);
     hn_accel_free(accel);
     hn_model_close(&m);
 }

@@ -4,12 +4,16 @@
 
 #include "base/arena.h"
 #include "expr/construct.h"
-#include "expr/lanes.h"
+#include "expr/lanes_tape.h"
+#include "expr/native.h"
 #include "expr/parse.h"
 
+#include <dirent.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { N_IN = 3, N_OUT = 12, BLOCKS = 40 };
 
@@ -62,6 +66,32 @@ static hn_tape *make_tape(void) {
     return tape;
 }
 
+/// Hundreds of instructions with values, sines among them, that are needed far behind.
+static hn_tape *make_long_tape(void) {
+    hn_graph *g = hn_graph_create();
+    hn_ex in[N_IN], out[N_OUT];
+    int symbols[N_IN];
+    hn_tape *tape = NULL;
+    for (int i = 0; i < N_IN; i++) {
+        in[i] = hn_symbol(g, (const char *[]){"x", "y", "z"}[i], NULL);
+        symbols[i] = hn_ex_symbol(g, in[i]);
+    }
+    hn_ex x = in[0], y = in[1], z = in[2];
+    const hn_ex early = hn_sin(g, hn_mul(g, x, y)), beside = hn_cos(g, hn_mul(g, x, y));
+    for (int i = 0; i < 60; i++) {
+        const hn_ex angle = hn_add(g, x, hn_scale(0.3, y));
+        const hn_ex s =
+            i % 3 == 0 ? hn_sin(g, angle) : hn_mul(g, hn_sin(g, angle), hn_cos(g, angle));
+        y = hn_add(g, hn_mul(g, z, s), hn_scale(0.5, y));
+        z = hn_sub(g, hn_mul(g, s, hn_num(0.25 + i)), hn_scale(0.9, z));
+        x = hn_add(g, s, hn_scale(1e-3, i % 2 ? early : beside));
+        out[i % N_OUT] = hn_sum(g, (hn_ex[]){x, y, z}, 3);
+    }
+    assert_int_equal(hn_tape_compile(g, out, N_OUT, symbols, N_IN, &tape), HN_OK);
+    hn_graph_free(g);
+    return tape;
+}
+
 /// Inputs of one lane: ordinary numbers, large ones, and what functions treat apart.
 static void fill_lane(int lane, int block, uint64_t *x, double in[N_IN]) {
     static const double odd[] = {0, -0.0, HUGE_VAL, -HUGE_VAL, (double)NAN, 1e300, -5e-324, 1e9};
@@ -88,29 +118,86 @@ static int count_differences(const hn_tape *tape, const double *work, double in[
     return differences;
 }
 
-static void each_lane_has_the_bits_of_the_interpreter(void **state) {
-    (void)state;
-    hn_tape *tape = make_tape();
+/// Blocks of random states by this set: each lane as the interpreter evaluates it.
+static void check_blocks(const hn_tape *tape, const hn_lanes_tape *lanes) {
     hn_arena *arena = hn_arena_create(0);
     double *scalar = hn_arena_doubles(arena, hn_tape_work_size(tape)),
            *work = hn_arena_doubles(arena, hn_lanes_work_size(tape)), in[HN_LANES][N_IN];
+    uint64_t x = 17;
     hn_tape_prepare(tape, scalar);
-    for (int set = 0; set <= (int)hn_lanes_set_best(); set++) {
-        uint64_t x = 17;
-        hn_lanes_prepare(tape, work);
-        for (int block = 0; block < BLOCKS; block++) {
-            for (int k = 0; k < HN_LANES; k++) {
-                fill_lane(k, block, &x, in[k]);
-                for (int i = 0; i < N_IN; i++) {
-                    work[HN_LANES * i + k] = in[k][i];
-                }
+    hn_lanes_prepare(tape, work);
+    for (int block = 0; block < BLOCKS; block++) {
+        for (int k = 0; k < HN_LANES; k++) {
+            fill_lane(k, block, &x, in[k]);
+            for (int i = 0; i < N_IN; i++) {
+                work[HN_LANES * i + k] = in[k][i];
             }
-            hn_lanes_run(tape, (hn_lanes_set)set, work);
-            assert_int_equal(count_differences(tape, work, in, scalar), 0);
         }
+        hn_lanes_tape_run(lanes, work);
+        assert_int_equal(count_differences(tape, work, in, scalar), 0);
     }
     hn_arena_free(arena);
-    hn_tape_free(tape);
+}
+
+static void each_lane_has_the_bits_of_the_interpreter(void **state) {
+    (void)state;
+    hn_tape *tapes[] = {make_tape(), make_long_tape()};
+    for (int set = 0; set <= (int)hn_lanes_set_best(); set++) {
+        for (int i = 0; i < 2; i++) {
+            hn_lanes_tape lanes;
+            hn_lanes_tape_init(&lanes, tapes[i], (hn_lanes_set)set);
+            assert_null(lanes.native); // the service is off
+            check_blocks(tapes[i], &lanes);
+            hn_lanes_tape_reset(&lanes);
+        }
+    }
+    hn_tape_free(tapes[0]);
+    hn_tape_free(tapes[1]);
+}
+
+/// Removes a folder and the files in it.
+static void remove_folder(const char *folder) {
+    char path[400];
+    DIR *d = opendir(folder);
+    for (struct dirent *e; (e = readdir(d)) != NULL;) {
+        snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
+        unlink(path);
+    }
+    closedir(d);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static void compiled_lanes_have_the_bits_of_the_interpreter(void **state) {
+    (void)state;
+    char folder[] = "/tmp/holonom-lanes-XXXXXX", why[HN_DIAG_MESSAGE];
+    hn_tape *tapes[] = {make_tape(), make_long_tape()}; // single states stay interpreted
+    hn_native_opts opts = hn_native_opts_default(mkdtemp(folder));
+    opts.look_after = opts.build_after = 0;
+    hn_native_start(&opts);
+    for (int set = 0; set <= (int)hn_lanes_set_best(); set++) {
+        for (int i = 0; i < 2; i++) {
+            hn_lanes_tape lanes, again;
+            hn_lanes_tape_init(&lanes, tapes[i], (hn_lanes_set)set);
+            assert_non_null(lanes.native);
+            check_blocks(tapes[i], &lanes); // asks for the code
+            hn_native_wait();
+            hn_native_reason(why);
+            assert_string_equal(why, "");
+            assert_non_null(atomic_load(&lanes.native->code));
+            check_blocks(tapes[i], &lanes);
+
+            // the next user of the tape has the code at once, and of this set
+            hn_lanes_tape_init(&again, tapes[i], (hn_lanes_set)set);
+            assert_true(atomic_load(&again.native->code) == atomic_load(&lanes.native->code));
+            hn_lanes_tape_reset(&again);
+            hn_lanes_tape_reset(&lanes);
+        }
+    }
+    assert_int_equal(hn_native_get_counts().ready, 2 * (1 + (int)hn_lanes_set_best()));
+    hn_native_stop();
+    remove_folder(folder);
+    hn_tape_free(tapes[0]);
+    hn_tape_free(tapes[1]);
 }
 
 /// Angles where a form changes its way, their neighbours, and every multiple of pi/4.
@@ -168,6 +255,7 @@ static void vector_sines_serve_with_the_gnu_library(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_lane_has_the_bits_of_the_interpreter),
+        cmocka_unit_test(compiled_lanes_have_the_bits_of_the_interpreter),
         cmocka_unit_test(sines_of_lanes_have_the_bits_of_the_c_library),
         cmocka_unit_test(vector_sines_serve_with_the_gnu_library),
     };

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_EXPR_NATIVE_CHECK_H
+#define HN_EXPR_NATIVE_CHECK_H
+// Compiled code is run beside the interpreter at several states before it is taken.
+
+#include "expr/native_build.h"
+#include "expr/native_emit.h"
+
+/// Constants in their places, everything else zero, in a workspace of single states.
+void hn_native_prepare(const hn_tape *tape, double *work);
+/// Inputs for check number k: 0, 1, then numbers of -4 .. 4 by a congruential generator.
+void hn_native_fill(double *inputs, int n, int k);
+/// Whether compiled code gives the interpreter's bits at several states: the tape's interpreter, or
+/// that of lanes. `calls` is the table that the code takes (HN_NATIVE_CALLS). false: memory is out.
+bool hn_native_agrees(const hn_tape *tape, hn_native_form form, hn_native_code code,
+                      const hn_native_call *calls);
+#endif
