@@ -38,11 +38,10 @@ hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int n_entries, co
     return HN_OK;
 }
 
-static void take_unit_rows(hn_row_check *c, const double *J, const double *unit) {
+/// The entries in c->entry, row by row to length 1.
+static bool check_entries(hn_row_check *c) {
     memset(c->size, 0, (size_t)c->nc * sizeof *c->size);
     for (int k = 0; k < c->n_entries; k++) {
-        c->entry[k] =
-            J[(size_t)c->row[k] * (size_t)c->nv + (size_t)c->col[k]] * (unit ? unit[c->col[k]] : 1);
         c->size[c->row[k]] += c->entry[k] * c->entry[k];
     }
     for (int i = 0; i < c->nc; i++) {
@@ -51,13 +50,24 @@ static void take_unit_rows(hn_row_check *c, const double *J, const double *unit)
     for (int k = 0; k < c->n_entries; k++) {
         c->entry[k] *= c->size[c->row[k]];
     }
-}
-
-bool hn_row_check_run(hn_row_check *c, const double *J, const double *unit) {
-    take_unit_rows(c, J, unit);
     hn_gram_fill(c->gram, c->entry);
     c->ops += 3.0 * c->n_entries + 2.0 * c->nc + hn_gram_factor_ops(c->gram);
     return hn_gram_factor(c->gram, 0, HN_ROW_CHECK_DISTANCE * HN_ROW_CHECK_DISTANCE) == HN_OK;
+}
+
+bool hn_row_check_run(hn_row_check *c, const double *J, const double *unit) {
+    for (int k = 0; k < c->n_entries; k++) {
+        c->entry[k] =
+            J[(size_t)c->row[k] * (size_t)c->nv + (size_t)c->col[k]] * (unit ? unit[c->col[k]] : 1);
+    }
+    return check_entries(c);
+}
+
+bool hn_row_check_run_list(hn_row_check *c, const double *list, const double *unit) {
+    for (int k = 0; k < c->n_entries; k++) {
+        c->entry[k] = list[k] * (unit ? unit[c->col[k]] : 1);
+    }
+    return check_entries(c);
 }
 
 double hn_row_check_ops(const hn_row_check *c) {

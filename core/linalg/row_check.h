@@ -22,6 +22,8 @@ HN_MUST_CHECK hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int
 /// Whether every row of J (nc x nv, row-major) is that far from the others, column j in units of
 /// unit[j] (nv; NULL: 1). Allocates nothing.
 bool hn_row_check_run(hn_row_check *c, const double *J, const double *unit);
+/// The same with the n_entries values of J alone, in the sequence of their places.
+bool hn_row_check_run_list(hn_row_check *c, const double *list, const double *unit);
 double hn_row_check_ops(const hn_row_check *c); ///< arithmetic operations so far
 
 #endif

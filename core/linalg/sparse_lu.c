@@ -2,6 +2,7 @@
 #include "linalg/sparse_lu.h"
 
 #include "linalg/dense.h"
+#include "linalg/least_heap.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -21,9 +22,12 @@ struct hn_sparse_lu {
     double *l, *u, *diag;
     double *work;
     // while an order is chosen
-    double *full;
+    double *full; // n x n, zero between two choices, as is what says where it is in use
     char *filled;
     int *row_count, *col_count;
+    int *row_head, *col_head; // first node of each row and column, -1: none
+    int *node_next, *node_at, n_nodes;
+    hn_least_heap columns; // not eliminated yet, by their entries
     int sign;
     double refactor_ops, last_ops;
 };
@@ -37,8 +41,9 @@ hn_sparse_lu *hn_sparse_lu_create(hn_arena *arena, int n_max, int entries_max) {
     // full storage of the factors' pattern: the pattern is not known yet
     const size_t n = (size_t)n_max, m = (size_t)entries_max, half = n * (n + 1) / 2;
     *lu = (hn_sparse_lu){.n_max = n_max, .entries_max = entries_max};
-    int **of_n[] = {&lu->a_start, &lu->p,       &lu->q,         &lu->row_at,   &lu->col_at,
-                    &lu->l_start, &lu->u_start, &lu->row_count, &lu->col_count};
+    int **of_n[] = {&lu->a_start,   &lu->p,        &lu->q,       &lu->row_at,
+                    &lu->col_at,    &lu->l_start,  &lu->u_start, &lu->row_count,
+                    &lu->col_count, &lu->row_head, &lu->col_head};
     for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++) {
         *of_n[i] = hn_arena_ints(arena, n + 1);
     }
@@ -54,7 +59,10 @@ hn_sparse_lu *hn_sparse_lu_create(hn_arena *arena, int n_max, int entries_max) {
     lu->work = hn_arena_doubles(arena, n);
     lu->full = hn_arena_doubles(arena, n * n);
     lu->filled = hn_arena_get(arena, n * n + 1);
-    return hn_arena_failed(arena) ? NULL : lu;
+    lu->node_next = hn_arena_ints(arena, 2 * n * n);
+    lu->node_at = hn_arena_ints(arena, 2 * n * n);
+    const bool has_heap = hn_least_heap_init(&lu->columns, arena, n_max);
+    return has_heap && !hn_arena_failed(arena) ? lu : NULL;
 }
 
 void hn_sparse_lu_set_pattern(hn_sparse_lu *lu, int n, int n_entries, const int *row,
@@ -69,56 +77,76 @@ void hn_sparse_lu_set_pattern(hn_sparse_lu *lu, int n, int n_entries, const int 
 
 // ---- choosing the order ----
 
+static void join(hn_sparse_lu *lu, int *head, int at) {
+    const int node = lu->n_nodes++;
+    lu->node_next[node] = *head;
+    lu->node_at[node] = at;
+    *head = node;
+}
+
+// entry (i, j) is in use from now on
+static void use_entry(hn_sparse_lu *lu, int i, int j) {
+    lu->filled[(size_t)i * (size_t)lu->n + (size_t)j] = 1;
+    join(lu, &lu->row_head[i], j);
+    join(lu, &lu->col_head[j], i);
+    lu->row_count[i]++;
+    lu->col_count[j]++;
+}
+
+// the matrix, its entries also as lists of rows and of columns
 static void spread(hn_sparse_lu *lu, const double *values) {
     const size_t n = (size_t)lu->n;
-    memset(lu->full, 0, n * n * sizeof *lu->full);
-    memset(lu->filled, 0, n * n);
     memset(lu->row_count, 0, n * sizeof *lu->row_count);
     memset(lu->col_count, 0, n * sizeof *lu->col_count);
-    for (int k = 0; k < lu->n_entries; k++) {
-        const size_t at = (size_t)lu->row[k] * n + (size_t)lu->col[k];
-        lu->full[at] = values[k];
-        lu->filled[at] = 1;
-        lu->row_count[lu->row[k]]++;
-        lu->col_count[lu->col[k]]++;
-    }
+    lu->n_nodes = 0;
     for (int i = 0; i < lu->n; i++) {
         lu->row_at[i] = lu->col_at[i] = -1; // not eliminated yet
+        lu->row_head[i] = lu->col_head[i] = -1;
+    }
+    for (int k = 0; k < lu->n_entries; k++) {
+        lu->full[(size_t)lu->row[k] * n + (size_t)lu->col[k]] = values[k];
+        use_entry(lu, lu->row[k], lu->col[k]);
+    }
+    for (int j = 0; j < lu->n; j++) {
+        hn_least_heap_set(&lu->columns, j, lu->col_count[j]);
+    }
+}
+
+// zero again for the next time
+static void clear(hn_sparse_lu *lu) {
+    for (int i = 0; i < lu->n; i++) {
+        for (int e = lu->row_head[i]; e >= 0; e = lu->node_next[e]) {
+            const size_t at = (size_t)i * (size_t)lu->n + (size_t)lu->node_at[e];
+            lu->full[at] = 0;
+            lu->filled[at] = 0;
+        }
+        hn_least_heap_remove(&lu->columns, i);
     }
 }
 
 // the row of column j that may be its pivot and fills least; -1 when the column has vanished
 static int choose_row(const hn_sparse_lu *lu, int j) {
-    const int n = lu->n;
-    double largest = 0;
+    const size_t n = (size_t)lu->n, col = (size_t)j;
+    double largest = 0, best_size = 0;
     int best = -1;
-    for (int i = 0; i < n; i++) {
+    for (int e = lu->col_head[j]; e >= 0; e = lu->node_next[e]) {
+        const int i = lu->node_at[e];
         if (lu->row_at[i] < 0) {
-            largest = fmax(largest, fabs(lu->full[(size_t)i * n + j]));
+            largest = fmax(largest, fabs(lu->full[(size_t)i * n + col]));
         }
     }
 
-    // of those not much smaller, the sparsest row
-    for (int i = 0; i < n && largest > 0; i++) {
-        const double size = fabs(lu->full[(size_t)i * n + j]);
+    // of those not much smaller the sparsest row, of these the largest, of these the first
+    for (int e = lu->col_head[j]; e >= 0 && largest > 0; e = lu->node_next[e]) {
+        const int i = lu->node_at[e];
+        const double size = fabs(lu->full[(size_t)i * n + col]);
         if (lu->row_at[i] >= 0 || size < THRESHOLD * largest) {
             continue;
         }
-        const int fewer = best < 0 || lu->row_count[i] < lu->row_count[best];
-        const int larger = best >= 0 && lu->row_count[i] == lu->row_count[best] &&
-                           size > fabs(lu->full[(size_t)best * n + j]);
-        if (fewer || larger) {
+        const int fewer = best < 0 ? -1 : lu->row_count[i] - lu->row_count[best];
+        if (fewer < 0 || (fewer == 0 && (size > best_size || (!(size < best_size) && i < best)))) {
             best = i;
-        }
-    }
-    return best;
-}
-
-static int choose_column(const hn_sparse_lu *lu) {
-    int best = -1;
-    for (int j = 0; j < lu->n; j++) {
-        if (lu->col_at[j] < 0 && (best < 0 || lu->col_count[j] < lu->col_count[best])) {
-            best = j;
+            best_size = size;
         }
     }
     return best;
@@ -126,28 +154,25 @@ static int choose_column(const hn_sparse_lu *lu) {
 
 // subtracts the pivot's part from row i, which gains the entries it did not have
 static void eliminate_row(hn_sparse_lu *lu, int i, int p, int q) {
-    const int n = lu->n;
+    const size_t n = (size_t)lu->n;
     double *row = lu->full + (size_t)i * n;
     const double *pivot_row = lu->full + (size_t)p * n;
-    char *filled = lu->filled + (size_t)i * n;
-    const char *pivot_filled = lu->filled + (size_t)p * n;
     const double factor = row[q] / pivot_row[q];
-    for (int j = 0; j < n; j++) {
-        if (!pivot_filled[j] || lu->col_at[j] >= 0) {
+    for (int e = lu->row_head[p]; e >= 0; e = lu->node_next[e]) {
+        const int j = lu->node_at[e];
+        if (lu->col_at[j] >= 0) {
             continue;
         }
         row[j] -= factor * pivot_row[j];
-        if (!filled[j]) {
-            filled[j] = 1;
-            lu->row_count[i]++;
-            lu->col_count[j]++;
+        if (!lu->filled[(size_t)i * n + (size_t)j]) {
+            use_entry(lu, i, j);
         }
     }
     lu->row_count[i]--; // its entry in the pivot's column
 }
 
 static bool eliminate(hn_sparse_lu *lu, int k) {
-    const int n = lu->n, q = choose_column(lu), p = choose_row(lu, q);
+    const int q = hn_least_heap_top(&lu->columns), p = choose_row(lu, q);
     if (p < 0) {
         return false;
     }
@@ -155,42 +180,61 @@ static bool eliminate(hn_sparse_lu *lu, int k) {
     lu->q[k] = q;
     lu->row_at[p] = k;
     lu->col_at[q] = k;
-    for (int j = 0; j < n; j++) {
-        lu->col_count[j] -= lu->col_at[j] < 0 && lu->filled[(size_t)p * n + j];
+    hn_least_heap_remove(&lu->columns, q);
+    for (int e = lu->row_head[p]; e >= 0; e = lu->node_next[e]) {
+        lu->col_count[lu->node_at[e]]--;
     }
-    for (int i = 0; i < n; i++) {
-        if (lu->row_at[i] < 0 && lu->filled[(size_t)i * n + q]) {
-            eliminate_row(lu, i, p, q);
+    for (int e = lu->col_head[q]; e >= 0; e = lu->node_next[e]) {
+        if (lu->row_at[lu->node_at[e]] < 0) {
+            eliminate_row(lu, lu->node_at[e], p, q);
+        }
+    }
+    for (int e = lu->row_head[p]; e >= 0; e = lu->node_next[e]) {
+        const int j = lu->node_at[e];
+        if (lu->col_at[j] < 0) {
+            hn_least_heap_set(&lu->columns, j, lu->col_count[j]);
         }
     }
     return true;
 }
 
-static void list_pattern(hn_sparse_lu *lu) {
+// room for the rows of L and U, which stand one after the other
+static void count_pattern(hn_sparse_lu *lu) {
     const int n = lu->n;
     int n_l = 0, n_u = 0;
-
-    // left of the pivot L, right of it U
     for (int k = 0; k < n; k++) {
-        const char *filled = lu->filled + (size_t)lu->p[k] * n;
         lu->l_start[k] = n_l;
         lu->u_start[k] = n_u;
-        for (int m = 0; m < k; m++) {
-            if (filled[lu->q[m]]) {
-                lu->l_col[n_l++] = m;
-            }
-        }
-        for (int m = k + 1; m < n; m++) {
-            if (filled[lu->q[m]]) {
-                lu->u_col[n_u++] = m;
-            }
+        for (int e = lu->row_head[lu->p[k]]; e >= 0; e = lu->node_next[e]) {
+            const int m = lu->col_at[lu->node_at[e]];
+            n_l += m < k;
+            n_u += m > k;
         }
     }
     lu->l_start[n] = n_l;
     lu->u_start[n] = n_u;
+}
+
+// left of the pivot L, right of it U: column after column, so that the columns of each row rise
+static void list_pattern(hn_sparse_lu *lu) {
+    const int n = lu->n;
+    int *next_l = lu->row_count, *next_u = lu->col_count; // free by now
+    count_pattern(lu);
+    memcpy(next_l, lu->l_start, (size_t)n * sizeof *next_l);
+    memcpy(next_u, lu->u_start, (size_t)n * sizeof *next_u);
+    for (int m = 0; m < n; m++) {
+        for (int e = lu->col_head[lu->q[m]]; e >= 0; e = lu->node_next[e]) {
+            const int k = lu->row_at[lu->node_at[e]];
+            if (m < k) {
+                lu->l_col[next_l[k]++] = m;
+            } else if (m > k) {
+                lu->u_col[next_u[k]++] = m;
+            }
+        }
+    }
 
     lu->refactor_ops = 0;
-    for (int i = 0; i < n_l; i++) {
+    for (int i = 0; i < lu->l_start[n]; i++) {
         const int m = lu->l_col[i];
         lu->refactor_ops += 1 + 2.0 * (lu->u_start[m + 1] - lu->u_start[m]);
     }
@@ -227,14 +271,19 @@ static int parity(int n, const int *perm, int *seen) {
 }
 
 static bool choose_order(hn_sparse_lu *lu, const double *values) {
+    bool regular = true;
     lu->ordered = 0;
     spread(lu, values);
-    for (int k = 0; k < lu->n; k++) {
-        if (!eliminate(lu, k)) {
-            return false;
-        }
+    for (int k = 0; k < lu->n && regular; k++) {
+        regular = eliminate(lu, k);
     }
-    list_pattern(lu);
+    if (regular) {
+        list_pattern(lu);
+    }
+    clear(lu);
+    if (!regular) {
+        return false;
+    }
     list_entries(lu);
     lu->sign = parity(lu->n, lu->p, lu->col_count) * parity(lu->n, lu->q, lu->col_count);
     lu->ordered = 1;

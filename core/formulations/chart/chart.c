@@ -65,6 +65,24 @@ static bool init_memory(hn_chart *chart, hn_arena *arena) {
     return ok && !hn_arena_failed(arena);
 }
 
+/// The choice of columns of a large mechanism, where a dense one would be cubic in its loops.
+static hn_status init_sparse_choice(hn_chart *chart, hn_arena *arena) {
+    const int nv = chart->nv, nc = chart->nc, n = chart->n_J;
+    chart->entry = hn_arena_doubles(arena, (size_t)n);
+    if (!chart->entry) {
+        return HN_ERR_MEMORY;
+    }
+    if (nv < HN_CHART_LARGE) {
+        return HN_OK;
+    }
+    HN_TRY(hn_row_check_create(arena, nc, nv, n, chart->J_row, chart->J_col, &chart->check));
+    if (!chart->check) {
+        return HN_OK;
+    }
+    chart->choice = hn_column_choice_create(arena, nc, nv, n, chart->J_row, chart->J_col);
+    return chart->choice ? HN_OK : HN_ERR_MEMORY;
+}
+
 hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate, hn_arena *arena,
                         hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
@@ -79,7 +97,7 @@ hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate, h
 
     // evaluators
     hn_status status =
-        hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &chart->loop);
+        hn_eval_create_listed(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &chart->loop);
     HN_THEN(status, hn_eval_create(sys, HN_TERM_M | HN_TERM_F | (with_rate ? HN_TERM_GAMMA : 0),
                                    arena, &chart->full));
 
@@ -87,7 +105,7 @@ hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate, h
     if (status == HN_OK) {
         chart->n_J = hn_eval_pattern(chart->loop, HN_TERM_J, &chart->J_row, &chart->J_col);
         chart->n_M = hn_eval_pattern(chart->full, HN_TERM_M, &chart->M_row, &chart->M_col);
-        status = init_memory(chart, arena) ? HN_OK : HN_ERR_MEMORY;
+        status = init_memory(chart, arena) ? init_sparse_choice(chart, arena) : HN_ERR_MEMORY;
     }
 
     for (int i = 0; status == HN_OK && i < chart->nv; i++) {

@@ -28,12 +28,12 @@
     1e-3 // residual of a column, relative to its length, that still counts as a new direction
 
 static void fill_scaled(hn_chart *chart) {
-    const double *J = hn_eval_get(chart->loop, HN_TERM_J);
+    const double *J = hn_eval_list(chart->loop, HN_TERM_J);
     const size_t nv = (size_t)chart->nv, nc = (size_t)chart->nc;
     memset(chart->columns, 0, nv * nc * sizeof *chart->columns);
     for (int e = 0; e < chart->n_J; e++) {
         const size_t i = (size_t)chart->J_row[e], j = (size_t)chart->J_col[e];
-        chart->columns[j * nc + i] = J[i * nv + j] * chart->scale[j];
+        chart->columns[j * nc + i] = J[e] * chart->scale[j];
     }
 }
 
@@ -242,10 +242,11 @@ bool hn_chart_has_full_rank(hn_chart *chart, double t, const double *q) {
 // The first choice of an instance is made from all of J, densely; later ones begin with the same
 // columns and exchange some where those have become poor. So a choice depends on the first state
 // and on the present one, not on what was between.
-static hn_status choose_again(hn_chart *chart, double t, const double *q, int first) {
+static hn_status choose_from(hn_chart *chart, const int *dep, double t, const double *q,
+                             int first) {
     int k, j;
     const double limit = first >= 0 ? 1 / DEAD_POINT : 1 / HN_CHART_TAU;
-    memcpy(chart->dep, chart->first_dep, (size_t)chart->rank * sizeof *chart->dep);
+    memcpy(chart->dep, dep, (size_t)chart->rank * sizeof *chart->dep);
     begin(chart);
     chart->pivot_start = 0;
     if (hn_chart_factor(chart, &chart->here)) {
@@ -262,9 +263,47 @@ static hn_status choose_again(hn_chart *chart, double t, const double *q, int fi
     return improve(chart, t, q);
 }
 
+/// The first choice of a large mechanism whose rows stand well apart: by preference, and then
+/// exchanges while that one is poor. *found = false: the dense choice decides.
+static hn_status choose_sparsely(hn_chart *chart, double t, const double *q, int first,
+                                 bool *found) {
+    *found =
+        chart->choice && (chart->rank < 0 || chart->rank == chart->nc) &&
+        hn_row_check_run_list(chart->check, hn_eval_list(chart->loop, HN_TERM_J), chart->scale);
+    if (!*found) {
+        return HN_OK;
+    }
+
+    // the preferred columns
+    for (int e = 0; e < chart->n_J; e++) {
+        chart->entry[e] = hn_eval_list(chart->loop, HN_TERM_J)[e] * chart->scale[chart->J_col[e]];
+    }
+    order_columns(chart, first);
+    const int n = hn_column_choice_run(chart->choice, chart->entry, chart->order,
+                                       chart->nv - (first >= 0), INDEPENDENT_TOL, chart->new_dep);
+    *found = n == chart->nc;
+    if (!*found) {
+        return HN_OK;
+    }
+
+    // better ones where these are poor
+    chart->rank = chart->nc;
+    chart->r = chart->nv - chart->nc;
+    HN_TRY(choose_from(chart, chart->new_dep, t, q, first));
+    if (first == HN_CHART_BEST) {
+        HN_TRY(improve(chart, t, q));
+    }
+    return serves(chart) ? HN_OK : refuse_ball(chart, t);
+}
+
 static hn_status choose_first(hn_chart *chart, double t, const double *q, int first) {
     double best = 0;
+    bool found;
     const int rank_before = chart->rank;
+    const hn_status status = choose_sparsely(chart, t, q, first, &found);
+    if (found) {
+        return status;
+    }
 
     // the rank, and the best choice by pivoting
     fill_scaled(chart);
@@ -311,7 +350,8 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
         }
         return status;
     }
-    return first == HN_CHART_BEST ? improve(chart, t, q) : choose_again(chart, t, q, first);
+    return first == HN_CHART_BEST ? improve(chart, t, q)
+                                  : choose_from(chart, chart->first_dep, t, q, first);
 }
 
 // the column of a ball that would have been a much better independent coordinate at `base` than

@@ -114,11 +114,7 @@ static bool has_regular_order(hn_chart *chart, hn_chart_point *p) {
 }
 
 bool hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
-    const double *J = hn_eval_get(chart->loop, HN_TERM_J);
-    const size_t nv = (size_t)chart->nv;
-    for (int e = 0; e < chart->n_J; e++) {
-        p->J[e] = J[(size_t)chart->J_row[e] * nv + (size_t)chart->J_col[e]];
-    }
+    memcpy(p->J, hn_eval_list(chart->loop, HN_TERM_J), (size_t)chart->n_J * sizeof *p->J);
     chart->cost.factorisations++;
     if (!(is_square(chart) ? factor_sparse(chart, p) : factor_dense(chart, p))) {
         return false;

@@ -5,13 +5,17 @@
 
 #include "dynamics/analyse/dyads.h"
 #include "dynamics/evaluate/eval.h"
+#include "linalg/column_choice.h"
 #include "linalg/qr.h"
+#include "linalg/row_check.h"
 #include "linalg/sparse_lu.h"
 #include "formulations/ground/formulation.h"
 
 #include <stdbool.h>
 
 enum { HN_CHART_TEXT = 240 };
+/// From so many speeds on columns are chosen sparsely.
+enum { HN_CHART_LARGE = 100 };
 
 /// Everything that belongs to one configuration on the chart.
 typedef struct hn_chart_point {
@@ -49,6 +53,10 @@ typedef struct hn_chart {
     hn_chart_point here, probe; ///< where the right-hand side is, and one for looking elsewhere
     hn_chart_point base;        ///< the last accepted state: q, N, s, t and sign alone
     hn_qr all;                  ///< pivoted factor of all of J, for choosing
+    /// of a large mechanism: the same sparsely; NULL: not large, or its rows meet too often
+    hn_column_choice *choice;
+    hn_row_check *check;
+    double *entry;                       ///< n_J: entries of J, columns scaled
     double *c, *Mx, *A, *z, *dq, *delta; ///< scratch
     double *follow_q, *follow_ind;       ///< nq, nv: scratch of chart_follow.h
     double *basis, *columns;             ///< scratch of the choice
