@@ -27,8 +27,8 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --format --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
-     "julia, wolfram or modelica; latex: its equations to read; or as a model: --format mjcf or "
-     "urdf",
+     "julia, wolfram or modelica (of the last three the equations are tested, no program was run); "
+     "latex: its equations to read; or as a model: --format mjcf or urdf",
      MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o", 1, 1,
      hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java|julia",
@@ -82,7 +82,8 @@ static const hn_command COMMANDS[] = {
      "FILE.svg writes the plot that is to be read",
      "--seed --student --hint --seeds --check --wide --out -o", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...|FOLDER",
-     "verdicts as --format text, json, gradescope, prairielearn, autolab, coderunner, lti-score, "
+     "verdicts (SUBMISSION - is standard input) as --format text, json, gradescope, prairielearn, "
+     "autolab, coderunner, lti-score, "
      "junit, csv or html; into --out DIR. A folder is a class: a folder, file or zip for each "
      "student, whose name chooses the variant unless --seed does; --out FILE.ndjson or .csv. ID is "
      "an exercise, or a scene whose program (export --blanks) was filled in",
