@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/pictures.h"
 
+#include "render/look.h"
+
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SIXEL = 4, FIRST_OF_VT220 = 60, SMALLEST_CELL = 3, LARGEST_CELL = 200 };
 
 static const char WINDOW[] = "\033[14t";
 static const char WINDOW_AND_NAME[] = "\033[14t\033[c";
-static const char KITTY_AND_NAME[] = "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c";
+#define KITTY "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c"
+static const char KITTY_AND_NAME[] = KITTY;
+static const char BACKGROUND_KITTY_AND_NAME[] = "\033]11;?\a" KITTY;
 
 hn_pictures hn_pictures_start(hn_pixels wanted, int theme) {
     return (hn_pictures){.wanted = wanted,
                          .kitty = wanted == HN_PIXELS_KITTY,
                          .sixel = wanted == HN_PIXELS_SIXEL,
-                         .theme = theme};
+                         .asks_background = theme < 0,
+                         .theme = theme < 0 ? HN_THEME_DARK : theme};
 }
 
 bool hn_pixels_parse(const char *word, hn_pixels *out) {
@@ -57,10 +63,29 @@ static void take_window(hn_pictures *p, int width, int height) {
     p->cell_height = sound ? down : 0;
 }
 
+/// "rgb:ffff/ffff/ffff", each channel of one to four digits.
+static void take_background(hn_pictures *p, const char *text) {
+    static const double weight[] = {0.2126, 0.7152, 0.0722}; // of luminance, ITU-R BT.709
+    char channels[3][5];
+    double light = 0;
+    if (!p->asks_background || sscanf(text, "rgb:%4[0-9a-fA-F]/%4[0-9a-fA-F]/%4[0-9a-fA-F]",
+                                      channels[0], channels[1], channels[2]) != 3) {
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        const int bits = 4 * (int)strlen(channels[i]);
+        light += weight[i] * (double)strtol(channels[i], NULL, 16) / (double)((1 << bits) - 1);
+    }
+    p->theme = light > 0.5 ? HN_THEME_LIGHT : HN_THEME_DARK;
+}
+
 const char *hn_pictures_answer(hn_pictures *p, const char *answer) {
     static const char window[] = "\033[4;", name[] = "\033[?", kitty[] = "\033_Gi=31;OK";
+    static const char background[] = "\033]11;";
     int width, height;
-    if (strncmp(answer, kitty, sizeof kitty - 1) == 0) {
+    if (strncmp(answer, background, sizeof background - 1) == 0) {
+        take_background(p, answer + sizeof background - 1);
+    } else if (strncmp(answer, kitty, sizeof kitty - 1) == 0) {
         p->kitty = true;
     } else if (strncmp(answer, window, sizeof window - 1) == 0) {
         if (sscanf(answer + sizeof window - 1, "%d;%dt", &height, &width) == 2) {
@@ -70,7 +95,7 @@ const char *hn_pictures_answer(hn_pictures *p, const char *answer) {
         const int first = read_name(answer + sizeof name - 1, &p->sixel);
         if (first >= FIRST_OF_VT220 && !p->asked_kitty) {
             p->asked_kitty = true;
-            return KITTY_AND_NAME;
+            return p->asks_background ? BACKGROUND_KITTY_AND_NAME : KITTY_AND_NAME;
         }
         p->known = true;
     }

@@ -7,10 +7,11 @@
 //   ESC [ c             who are you?                ESC [ ? 62 ; 4 c    4: it shows sixels
 //   ESC _ G ... ESC \   do you know kitty's         ESC _ G i=31;OK ESC \  (then ESC [ c again)
 //                       graphics protocol?
+//   ESC ] 11 ; ? BEL    which background?           ESC ] 11 ; rgb:ffff/ffff/ffff ESC or BEL
 //
-// The third question goes only to terminals of a VT220 or above (first number of "who are you" from
-// 60 on): others, tmux among them, do not skip such a string in silence. A terminal that answers
-// nothing gets no picture.
+// The last two questions go only to terminals of a VT220 or above (first number of "who are you"
+// from 60 on): others, tmux among them, do not skip such strings in silence. A terminal that
+// answers nothing gets no picture.
 
 #include "terminal/cells.h"
 
@@ -27,10 +28,12 @@ typedef struct hn_pictures {
     bool asked_kitty, known;     ///< the third question is out; all answers are in
     int columns, rows;           ///< of the window
     int cell_width, cell_height; ///< [px]; 0: not known
-    int theme;                   ///< hn_theme
+    int theme;                   ///< hn_theme; that of the background where it is asked for
+    bool asks_background;        ///< no theme was given
 } hn_pictures;
 
-/// Nothing is known of the terminal; it is taken at the user's word where that names a kind.
+/// Nothing is known of the terminal; theme -1: dark, until the terminal says what its background
+/// is. It is taken at the user's word where that names a kind.
 hn_pictures hn_pictures_start(hn_pixels wanted, int theme);
 /// "auto", "kitty", "sixel", "off"; false: another word.
 bool hn_pixels_parse(const char *word, hn_pixels *out);

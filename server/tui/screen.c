@@ -24,8 +24,10 @@ enum { MOST_EVENTS = 16, SUSPEND = 26 /* Ctrl-Z */ };
 static const char QUESTION[] = "\033[5n", ANSWER[] = "\033[0n";
 /// Beginnings of answers about pictures, and keys that stand for them.
 static const char NAME[] = "\033[?", PIXELS[] = "\033[4;", GRAPHICS[] = "\033_G";
-enum { KEY_ANSWER = KEY_MAX + 1, KEY_NAME, KEY_PIXELS, KEY_GRAPHICS };
-enum { ESCAPE_MS = 25, ANSWER_MS = 300 }; // between the bytes of a key, and of an answer
+static const char BACKGROUND[] = "\033]11;";
+enum { KEY_ANSWER = KEY_MAX + 1, KEY_NAME, KEY_PIXELS, KEY_GRAPHICS, KEY_BACKGROUND };
+/// Between the bytes of a key, of an answer, and of one that has a string.
+enum { ESCAPE_MS = 25, ANSWER_MS = 300, STRING_MS = 1000 };
 
 static const double UNKNOWN = 3.0;  // [s] a terminal that is silent so long does not answer at all
 static const double SPARSE = 0.5;   // [s] between two pictures until that is known
@@ -127,17 +129,19 @@ double hn_screen_delay(void) {
 
 // ---- questions about pictures ----
 
-/// The rest of an answer that began with a key of ours, up to its end: a letter, or ESC \.
+/// The rest of an answer that began with a key of ours, up to its end: a letter, or of a string
+/// ESC \ or BEL.
 static void read_answer(const char *begin, bool string) {
     size_t n = (size_t)snprintf(screen.answer, sizeof screen.answer, "%s", begin);
     bool ended = false;
     while (!ended) {
-        timeout(ANSWER_MS);
+        timeout(string ? STRING_MS : ANSWER_MS);
         const int key = getch();
         if (key == ERR || key > 0xff) {
             break;
         }
-        ended = string ? key == '\\' && screen.answer[n - 1] == '\033' : key >= 0x40 && key <= 0x7e;
+        const bool closed = key == '\a' || (key == '\\' && screen.answer[n - 1] == '\033');
+        ended = string ? closed : key >= 0x40 && key <= 0x7e;
         if (n + 1 < sizeof screen.answer) {
             screen.answer[n++] = (char)key;
             screen.answer[n] = '\0';
@@ -154,9 +158,12 @@ static bool take_picture_answer(int key) {
         read_answer(PIXELS, false);
     } else if (key == KEY_GRAPHICS) {
         read_answer(GRAPHICS, true);
+    } else if (key == KEY_BACKGROUND) {
+        read_answer(BACKGROUND, true);
     } else {
         return false;
     }
+    screen.questioned_at = hn_clock_wall(); // it answers, however slowly
     return true;
 }
 
@@ -235,6 +242,7 @@ static void prepare_asking(void) {
     define_key(NAME, KEY_NAME);
     define_key(PIXELS, KEY_PIXELS);
     define_key(GRAPHICS, KEY_GRAPHICS);
+    define_key(BACKGROUND, KEY_BACKGROUND);
 
     // the terminal sends Ctrl-Z as a character
     struct termios modes;
@@ -261,9 +269,13 @@ void hn_screen_close(void) {
 
 // ---- colours ----
 
-/// The nearest of eight colours, where a terminal has no more.
+/// The nearest of eight colours, where a terminal has no more; its own for a grey, which would be
+/// white and unseen on white.
 static int of_eight(int colour_256) {
     const int i = colour_256 - 16, red = i / 36, green = i / 6 % 6, blue = i % 6;
+    if (red == green && green == blue) {
+        return -1;
+    }
     const int most = red > green ? (red > blue ? red : blue) : (green > blue ? green : blue);
     return (2 * red > most ? 1 : 0) | (2 * green > most ? 2 : 0) | (2 * blue > most ? 4 : 0);
 }
@@ -275,6 +287,13 @@ static void make_colours(int theme) {
         const int colour = hn_cell_colour_256(i, theme);
         init_pair((short)(i + 1), (short)(colour < 0 || COLORS >= 256 ? colour : of_eight(colour)),
                   -1);
+    }
+}
+
+void hn_screen_set_theme(int theme) {
+    if (screen.colours) {
+        make_colours(theme);
+        clearok(curscr, TRUE);
     }
 }
 

@@ -24,6 +24,8 @@ enum { HN_KEY_NONE = -1, HN_KEY_MOUSE = 0x110100, HN_KEY_RESIZE, HN_KEY_ANSWER }
 /// every signal that ends the program.
 bool hn_screen_open(int theme, bool colours);
 void hn_screen_close(void);
+/// Colours for another background from the next picture on.
+void hn_screen_set_theme(int theme);
 /// Nobody is there any more: the program that started this one has ended, or the terminal is
 /// closed.
 bool hn_screen_gone(void);

@@ -2,6 +2,7 @@
 #include "tui/tui.h"
 
 #include "base/clock.h"
+#include "render/look.h"
 #include "tui/controls.h"
 #include "tui/drag.h"
 #include "terminal/kitty_image.h"
@@ -88,7 +89,11 @@ static void obey(hn_workbench *w, view *v, int key, hn_mouse mouse) {
     if (key == HN_KEY_MOUSE) {
         point_at(w, &v->cells, mouse);
     } else if (key == HN_KEY_ANSWER) {
+        const int theme = w->pictures.theme;
         ask(hn_pictures_answer(&w->pictures, hn_screen_answer()));
+        if (w->pictures.theme != theme) {
+            hn_screen_set_theme(w->pictures.theme);
+        }
     } else if (key == HN_KEY_RESIZE) {
         v->wiped = true;
     } else if (key != HN_KEY_NONE) {
@@ -154,7 +159,7 @@ static bool show(hn_workbench *w, view *v, const hn_tui_opts *opts) {
 bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     view v = {.picture = {.form = HN_PIXELS_OFF}};
     choose_characters();
-    if (!hn_screen_open(opts->theme, opts->colours)) {
+    if (!hn_screen_open(opts->theme < 0 ? HN_THEME_DARK : opts->theme, opts->colours)) {
         return false;
     }
     hn_strbuf_init(&v.sequence);

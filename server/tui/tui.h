@@ -8,7 +8,7 @@
 typedef struct hn_tui_opts {
     bool ascii, blocks; ///< dots in ASCII or quadrants; neither: braille
     bool colours;
-    int theme;         ///< hn_theme of the terminal's background
+    int theme;         ///< hn_theme of the terminal's background; -1: as the terminal says
     int columns, rows; ///< of hn_tui_frame(); 0: 80 x 24
     double t;          ///< [s] of hn_tui_frame()
     const char

@@ -24,10 +24,10 @@ GRAPHICS = re.compile(rb"\033_G([^;\033]*)(?:;([^\033]*))?\033\\")
 SIXELS = re.compile(rb"\0337\033\[(\d+);(\d+)H\033P0;1q([^\033]*)\033\\\0338")
 
 
-def surface(name):
-    """A colour of the dark theme, from the table of colours: (red, green, blue)."""
+def surface(name, theme="DARK"):
+    """A colour of a theme, from the table of colours: (red, green, blue)."""
     with open(os.path.join(ROOT, "core", "render", "look.c"), encoding="utf-8") as file:
-        values = re.search(r"\[HN_THEME_DARK\] = \{([^}]*)\}", file.read()).group(1).split(",")
+        values = re.search(r"\[HN_THEME_%s\] = \{([^}]*)\}" % theme, file.read()).group(1).split(",")
     value = int(values[("paper", "raised", "ink", "muted", "hairline", "tear").index(name)], 16)
     return value >> 16, value >> 8 & 255, value & 255
 
@@ -79,9 +79,10 @@ def decode_pixels(width, height, data):
 
 class Shown(Terminal):
     """A terminal that answers what it is asked. name: its answer to 'who are you', None: none; kitty: it knows the graphics protocol; pixels: its
-    line says how large it is, else it says so when it is asked; late: [s] until it has read a picture; piecemeal: answers come byte by byte."""
+    line says how large it is, else it says so when it is asked; late: [s] until it has read a picture; background: its answer to 'which background', None: none; piecemeal: answers come byte by byte."""
 
-    def __init__(self, *words, name=None, kitty=False, pixels=True, late=0.0, piecemeal=False, **more):
+    def __init__(self, *words, name=None, kitty=False, pixels=True, late=0.0, background=None, piecemeal=False, **more):
+        self.background = background
         self.name, self.kitty, self.late, self.piecemeal = name, kitty, late, piecemeal
         self.images = {}  # of kitty: number -> (keys, rows of pixels)
         self.pieces = b""
@@ -101,7 +102,7 @@ class Shown(Terminal):
 
     def read(self, seconds=0.05):
         super().read(seconds)
-        question = re.compile(rb"\033\[14t|\033\[c|\033\[5n|\033_G[^\033]*\033\\|\033P[^\033]*\033\\")
+        question = re.compile(rb"\033\[14t|\033\]11;\?\a|\033\[c|\033\[5n|\033_G[^\033]*\033\\|\033P[^\033]*\033\\")
         for found in question.finditer(self.seen, self.done):
             self.done = found.end()
             self.obey(found.group())
@@ -109,6 +110,8 @@ class Shown(Terminal):
     def obey(self, question):
         if question == b"\033[14t" and not self.pixels and self.name:
             self.answer(b"\033[4;%d;%dt" % (self.rows * CELL[1], self.columns * CELL[0]))
+        elif question == b"\033]11;?\a":
+            self.answer(self.background or b"")
         elif question == b"\033[c" and self.name:
             self.answer(self.name)
         elif question == b"\033[5n" and self.name:
@@ -234,6 +237,32 @@ class Pictures(unittest.TestCase):
         terminal.type("q")
         self.assertEqual(terminal.ended(), 0)
         self.assertNotRegex(terminal.seen, rb"\033\[c|\033\[14t|\033_|\033P")
+
+    def test_colours_are_those_of_the_background_that_the_terminal_says(self):
+        def muted(theme):
+            # of 6 x 6 x 6 colours, as terminals have them
+            red, green, blue = (0 if v < 48 else 1 if v < 115 else (v - 35) // 40 for v in surface("muted", theme))
+            return b"38;5;%dm" % (16 + 36 * red + 6 * green + blue)
+        self.assertNotEqual(muted("LIGHT"), muted("DARK"))
+        for answer, theme in ((b"\033]11;rgb:ffff/ffff/ffff\033\\", "LIGHT"), (b"\033]11;rgb:fd/f6/e3\a", "LIGHT"), (b"\033]11;rgb:0000/2b2b/3636\a", "DARK"),
+                              (b"\033]11;nonsense\a", "DARK"), (None, "DARK")):
+            for piecemeal in (False, True) if answer and answer.endswith(b"e3\a") else (False,):
+                terminal = self.open("four-bar", name=b"\033[?62;c", background=answer, piecemeal=piecemeal)
+                self.assertTrue(terminal.until(lambda: b"\033]11;?\a" in terminal.seen and b"\033_G" in terminal.seen))
+                terminal.clear()
+                terminal.type("?")  # the menu draws everything anew
+                self.assertTrue(terminal.wait_for(rb"play or pause"), (answer, piecemeal, terminal.seen[-300:]))
+                self.assertTrue(terminal.until(lambda: muted(theme) in terminal.seen), (answer, piecemeal))
+        # a theme that is given is not asked for
+        terminal = self.open("four-bar", "--theme", "light", name=b"\033[?62;c", background=b"\033]11;rgb:0000/0000/0000\a")
+        self.assertTrue(terminal.until(lambda: b"\033_G" in terminal.seen and muted("LIGHT") in terminal.seen))
+        self.assertNotIn(b"\033]11", terminal.seen)
+
+    def test_a_picture_has_the_background_of_the_terminal(self):
+        for answer, theme in ((b"\033]11;rgb:ffff/ffff/ffff\a", "LIGHT"), (b"\033]11;rgb:1111/1111/1111\a", "DARK")):
+            terminal = self.open("four-bar", background=answer, **KITTY)
+            self.assertTrue(terminal.until(lambda: any(near(tuple(data[:3]), surface("paper", theme)) or near(tuple(data[:3]), surface("raised", theme))
+                                                       for _, data in terminal.images.values())), theme)
 
     def test_answers_are_no_keys_however_slowly_they_come(self):
         terminal = self.open("four-bar", *METHODS, piecemeal=True, **SIXEL)

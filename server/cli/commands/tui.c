@@ -130,8 +130,9 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     const char *methods[HN_COMPARISON_MAX_METHODS];
     hn_diags diags = {0};
     hn_workbench w;
-    hn_tui_opts opts = {.theme = args->theme && strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT
-                                                                                  : HN_THEME_DARK,
+    hn_tui_opts opts = {.theme = !args->theme                        ? -1
+                                 : strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT
+                                                                     : HN_THEME_DARK,
                         .frames = isnan(args->frames) ? 0 : (int)args->frames,
                         .keys = args->keys,
                         .blocks = args->blocks};
