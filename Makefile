@@ -309,6 +309,7 @@ help:
 	@echo 'make asan         the unit tests and the tests of the server under the address and undefined-behaviour sanitisers'
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
+	@echo 'make attacks      what a hostile client does, healthz beside it: tests/tables/attacks.txt'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
 	@echo 'make page-speed   frames a second, first paint and bytes of the page, on a machine that does nothing else: tests/tables/page_speed.txt'
 	@echo 'make compilers    the numbers of gcc and clang on every shipped scene, none may differ: tests/tables/compilers.txt'
@@ -347,7 +348,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages notebook skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
+.PHONY: test test-quick asan tsan fuzz load attacks page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages notebook skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -371,6 +372,11 @@ fuzz: build/.packages-check
 # a class of 300 readers, 30 browsers, 10,000 questions asked twice with kill -9 between: four minutes, nothing else should run
 load: all
 	@python3 tests/load/load.py $(PROGRAM)
+
+# each attack on a server of its own, healthz beside it: four minutes
+attacks: all
+	@python3 tests/load/attacks.py $(PROGRAM) >build/attacks.txt || { cat build/attacks.txt; exit 1; }
+	@cp build/attacks.txt tests/tables/attacks.txt && cat tests/tables/attacks.txt
 
 page-speed: all $(WEB_READY) $(BROWSER_READY)
 	@mkdir -p build
