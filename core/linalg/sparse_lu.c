@@ -30,6 +30,9 @@ struct hn_sparse_lu {
     hn_least_heap columns; // not eliminated yet, by their entries
     int sign;
     double refactor_ops, last_ops;
+    // a full matrix of two rows, that of one loop in a plane: its entries in pivot order
+    bool is_pair;
+    int pair[4];
 };
 
 hn_sparse_lu *hn_sparse_lu_create(hn_arena *arena, int n_max, int entries_max) {
@@ -71,6 +74,7 @@ void hn_sparse_lu_set_pattern(hn_sparse_lu *lu, int n, int n_entries, const int 
     lu->n = n;
     lu->n_entries = n_entries;
     lu->ordered = 0;
+    lu->is_pair = false;
     memcpy(lu->row, row, (size_t)n_entries * sizeof *row);
     memcpy(lu->col, col, (size_t)n_entries * sizeof *col);
 }
@@ -257,6 +261,14 @@ static void list_entries(hn_sparse_lu *lu) {
     }
 }
 
+// takes the places of the four entries of a full matrix of two rows
+static void find_pair(hn_sparse_lu *lu) {
+    lu->is_pair = lu->n == 2 && lu->n_entries == 4; // no place is given twice
+    for (int e = 0; e < 4 && lu->is_pair; e++) {
+        lu->pair[2 * lu->row_at[lu->row[e]] + lu->col_at[lu->col[e]]] = e;
+    }
+}
+
 // parity of a permutation, from the lengths of its cycles; `seen` is scratch
 static int parity(int n, const int *perm, int *seen) {
     int sign = 1;
@@ -285,6 +297,7 @@ static bool choose_order(hn_sparse_lu *lu, const double *values) {
         return false;
     }
     list_entries(lu);
+    find_pair(lu);
     lu->sign = parity(lu->n, lu->p, lu->col_count) * parity(lu->n, lu->q, lu->col_count);
     lu->ordered = 1;
     return true;
@@ -327,12 +340,38 @@ static double factor_row(hn_sparse_lu *lu, int k, const double *values) {
     return growth;
 }
 
+static bool may_be_pivot(double value) {
+    return value != 0 && isfinite(value);
+}
+
+// the same operations as row by row, without looking for their places
+static bool factor_pair(hn_sparse_lu *lu, const double *values) {
+    const double first = values[lu->pair[0]], right = values[lu->pair[1]];
+    const double factor = values[lu->pair[2]] / first;
+    const double second = values[lu->pair[3]] - factor * right;
+    lu->diag[0] = first;
+    lu->diag[1] = second;
+    lu->l[0] = factor;
+    lu->u[0] = right;
+    return may_be_pivot(first) && may_be_pivot(second) && fabs(factor) <= HN_SPARSE_LU_GROWTH;
+}
+
+static void solve_pair(const hn_sparse_lu *lu, const double *b, double *x) {
+    const double y = b[lu->p[0]], rest = b[lu->p[1]] - lu->l[0] * y;
+    const double second = rest / lu->diag[1];
+    x[lu->q[0]] = (y - lu->u[0] * second) / lu->diag[0];
+    x[lu->q[1]] = second;
+}
+
 // 0 when the order does not serve these values
 static bool factor_in_order(hn_sparse_lu *lu, const double *values) {
     lu->last_ops += lu->refactor_ops;
+    if (lu->is_pair) {
+        return factor_pair(lu, values);
+    }
     for (int k = 0; k < lu->n; k++) {
         const double growth = factor_row(lu, k, values);
-        if (!(growth <= HN_SPARSE_LU_GROWTH) || lu->diag[k] == 0 || !isfinite(lu->diag[k])) {
+        if (!(growth <= HN_SPARSE_LU_GROWTH) || !may_be_pivot(lu->diag[k])) {
             return false;
         }
     }
@@ -356,6 +395,10 @@ hn_status hn_sparse_lu_factor(hn_sparse_lu *lu, const double *values) {
 
 void hn_sparse_lu_solve(const hn_sparse_lu *lu, const double *b, double *x) {
     double *y = lu->work;
+    if (lu->is_pair) {
+        solve_pair(lu, b, x);
+        return;
+    }
     for (int k = 0; k < lu->n; k++) {
         double sum = b[lu->p[k]];
         for (int i = lu->l_start[k]; i < lu->l_start[k + 1]; i++) {

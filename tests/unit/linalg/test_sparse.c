@@ -117,6 +117,50 @@ static void an_order_that_became_bad_is_chosen_anew(void **state) {
     hn_arena_free(arena);
 }
 
+/// The matrix of one loop in a plane has a form of its own: in every order, as its pivots change.
+static void two_rows_are_solved_in_either_order_and_refused_without_a_pivot(void **state) {
+    (void)state;
+    static const int places[][4] = {{0, 1, 2, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}, {1, 0, 3, 2}};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    hn_arena *arena = hn_arena_create(0);
+    hn_sparse_lu *lu = hn_sparse_lu_create(arena, 2, 4);
+    for (int k = 0; k < 400; k++) {
+        int row[4], col[4];
+        double a[4], value[4];
+        for (int i = 0; i < 4; i++) {
+            // now and then an entry all but vanishes: the order that was chosen does not serve
+            a[i] = (gsl_rng_uniform(rng) < 0.2 ? 1e-7 : 1) * uniform(rng);
+        }
+        for (int i = 0; i < 4; i++) {
+            row[i] = places[k / 100][i] / 2;
+            col[i] = places[k / 100][i] % 2;
+            value[i] = a[places[k / 100][i]];
+        }
+        if (k % 100 == 0) {
+            hn_sparse_lu_set_pattern(lu, 2, 4, row, col);
+        }
+        const double det = a[0] * a[3] - a[1] * a[2];
+        double x[2] = {a[0] * 0.3 + a[1] * 0.7, a[2] * 0.3 + a[3] * 0.7};
+        if (fabs(det) < 1e-9) { // as large as its products' rounding would not be told from nothing
+            continue;
+        }
+        assert_int_equal(hn_sparse_lu_factor(lu, value), HN_OK);
+        assert_int_equal(hn_sparse_lu_sign(lu), det > 0 ? 1 : -1);
+        assert_near(hn_sparse_lu_log_volume(lu), log(fabs(det)), 1e-6);
+        hn_sparse_lu_solve(lu, x, x);
+        // cancellation in det costs 1e-16 / det; pivots may have grown by 10 (THRESHOLD)
+        assert_near(x[0], 0.3, 1e-14 / fabs(det));
+        assert_near(x[1], 0.7, 1e-14 / fabs(det));
+    }
+
+    // no pivot in any order
+    const double flat[4] = {1, 2, 2, 4};
+    hn_sparse_lu_set_pattern(lu, 2, 4, (const int[]){0, 0, 1, 1}, (const int[]){0, 1, 0, 1});
+    assert_int_equal(hn_sparse_lu_factor(lu, flat), HN_ERR_SINGULAR);
+    hn_arena_free(arena);
+    gsl_rng_free(rng);
+}
+
 static void a_singular_matrix_is_refused_and_so_is_one_that_is_not_finite(void **state) {
     (void)state;
     static const int row[] = {0, 0, 1, 1}, col[] = {0, 1, 0, 1};
@@ -211,6 +255,7 @@ int main(void) {
         cmocka_unit_test(a_random_system_gives_back_the_solution_it_was_made_from),
         cmocka_unit_test(the_determinant_of_a_permutation_is_its_sign),
         cmocka_unit_test(an_order_that_became_bad_is_chosen_anew),
+        cmocka_unit_test(two_rows_are_solved_in_either_order_and_refused_without_a_pivot),
         cmocka_unit_test(a_singular_matrix_is_refused_and_so_is_one_that_is_not_finite),
         cmocka_unit_test(a_chain_of_spd_blocks_costs_the_same_for_each_block),
         cmocka_unit_test(an_arrow_fills_in_nothing),
