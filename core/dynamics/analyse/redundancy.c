@@ -4,8 +4,11 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/compile/system_impl.h"
 #include "linalg/dense.h"
+#include "linalg/row_check.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 /// What is left of a row below this part of it is rounding: rows are known to about 1e-14, a
 /// combination of tens of them to 1e-12.
@@ -13,6 +16,9 @@ static const double FOLLOWS = 1e-9;
 /// A row is part of a combination when it brings more than this of its length; also well above
 /// rounding.
 static const double TAKES_PART = 1e-7;
+
+/// From so many velocities on a sparse check comes first.
+enum { LARGE = 100 };
 
 typedef struct basis {
     int n, nc;
@@ -101,35 +107,46 @@ static void put_follower(hn_strbuf *b, const hn_system *sys, basis *s, int row) 
 }
 
 /// diag(M)^-1/2, velocities without mass as the heaviest, as in the rank that assembly reports.
-static void weigh(const double *M, int n, double *d) {
+static void weigh(const hn_eval *eval, int n, double *d) {
+    const double *M = hn_eval_list(eval, HN_TERM_M);
+    const int *row, *col, n_M = hn_eval_pattern(eval, HN_TERM_M, &row, &col);
     double heaviest = 0;
-    for (int k = 0; k < n; k++) {
-        heaviest = fmax(heaviest, M[(size_t)k * n + k]);
+    for (int k = 0; k < n_M; k++) {
+        if (row[k] == col[k]) {
+            d[row[k]] = M[k];
+            heaviest = fmax(heaviest, M[k]);
+        }
     }
     for (int k = 0; k < n; k++) {
-        const double m = M[(size_t)k * n + k];
-        d[k] = 1 / sqrt(m > 1e-14 * heaviest ? m : (heaviest > 0 ? heaviest : 1));
+        d[k] = 1 / sqrt(d[k] > 1e-14 * heaviest ? d[k] : (heaviest > 0 ? heaviest : 1));
     }
 }
 
-static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, const double *q,
-                               hn_arena *arena) {
+/// Whether every row of a large mechanism stands well apart from the others, so that none follows.
+static hn_status rows_stand_apart(const hn_system *sys, const hn_eval *eval, const double *d,
+                                  hn_arena *arena, bool *yes) {
+    const int *row, *col, n = hn_eval_pattern(eval, HN_TERM_J, &row, &col);
+    hn_row_check *check = NULL;
+    *yes = false;
+    if (sys->nv >= LARGE) {
+        HN_TRY(hn_row_check_create(arena, sys->nc, sys->nv, n, row, col, &check));
+    }
+    *yes = check && hn_row_check_run_list(check, hn_eval_list(eval, HN_TERM_J), d);
+    return HN_OK;
+}
+
+/// Row by row: what is left of it beside the rows kept before.
+static hn_status split_rows(hn_strbuf *b, const hn_system *sys, const hn_eval *eval,
+                            const double *d, hn_arena *arena) {
     basis s;
-    hn_eval *eval = NULL;
-    double *d = hn_arena_doubles(arena, (size_t)sys->nv);
-    HN_TRY(basis_init(&s, sys, arena));
-    HN_TRY(hn_eval_create(sys, HN_TERM_M | HN_TERM_J, arena, &eval));
-
-    // rows measured by diag(M)^-1/2
-    hn_eval_run(eval, t, q, NULL);
-    const double *J = hn_eval_get(eval, HN_TERM_J);
-    weigh(hn_eval_get(eval, HN_TERM_M), s.n, d);
-
-    // row by row: what is left of it beside the rows kept before
+    const double *J = hn_eval_list(eval, HN_TERM_J);
+    const int *row, *col, n = hn_eval_pattern(eval, HN_TERM_J, &row, &col);
     double longest = 0;
-    for (int i = 0; i < s.nc; i++) {
-        for (int k = 0; k < s.n; k++) {
-            s.row[k] = J[(size_t)i * s.n + k] * d[k];
+    HN_TRY(basis_init(&s, sys, arena));
+    for (int i = 0, k = 0; i < s.nc; i++) {
+        memset(s.row, 0, (size_t)s.n * sizeof *s.row);
+        for (; k < n && row[k] == i; k++) {
+            s.row[col[k]] = J[k] * d[col[k]];
         }
         s.length[i] = hn_norm2(s.n, s.row);
         longest = fmax(longest, s.length[i]);
@@ -147,8 +164,28 @@ static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, con
             put_follower(b, sys, &s, i);
         }
     }
-    hn_eval_free(eval);
     return HN_OK;
+}
+
+static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, const double *q,
+                               hn_arena *arena) {
+    hn_eval *eval = NULL;
+    bool apart;
+    double *d = hn_arena_doubles(arena, (size_t)sys->nv);
+    if (!d) {
+        return HN_ERR_MEMORY;
+    }
+    HN_TRY(hn_eval_create_listed(sys, HN_TERM_M | HN_TERM_J, arena, &eval));
+
+    // rows measured by diag(M)^-1/2
+    hn_eval_run(eval, t, q, NULL);
+    weigh(eval, sys->nv, d);
+    hn_status status = rows_stand_apart(sys, eval, d, arena, &apart);
+    if (status == HN_OK && !apart) {
+        status = split_rows(b, sys, eval, d, arena);
+    }
+    hn_eval_free(eval);
+    return status;
 }
 
 hn_status hn_system_redundancy_put(hn_strbuf *b, const hn_system *sys, double t, const double *q) {

@@ -3,6 +3,8 @@
 // parallelograms against their closed form, with rows that depend on each other, and pins that
 // contradict each other.
 
+#include "base/strbuf.h"
+#include "dynamics/analyse/redundancy.h"
 #include "dynamics/assembly/assemble_rows.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/svd.h"
@@ -143,12 +145,37 @@ static void pinned_rates_that_contradict_each_other_are_named(void **state) {
     hn_model_close(&m);
 }
 
+static int count_followers(const hn_model *m) {
+    hn_strbuf text;
+    int n = 0;
+    hn_strbuf_init(&text);
+    assert_int_equal(hn_system_redundancy_put(&text, m->sys, 0, m->q), HN_OK);
+    for (const char *at = strstr(hn_strbuf_text(&text), "\"row\""); at;
+         at = strstr(at + 1, "\"row\"")) {
+        n++;
+    }
+    hn_strbuf_reset(&text);
+    return n;
+}
+
+static void inspect_names_the_rows_that_follow_from_others(void **state) {
+    (void)state;
+    hn_model m;
+    open_ladder(&m, BRACED, true, "pi/2 - 0.3", "\"th0\": -1");
+    assert_int_equal(count_followers(&m), BRACED);
+    hn_model_close(&m);
+    open_ladder(&m, LOOPS, false, "pi/2 - 0.3", "\"th0\": -1");
+    assert_int_equal(count_followers(&m), 0);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ladder_closes_from_a_guess_that_stands_apart_from_its_pin),
         cmocka_unit_test(rates_that_are_free_change_least_by_mass),
         cmocka_unit_test(singular_values_are_those_of_the_dense_rows),
         cmocka_unit_test(rows_that_depend_on_each_other_are_counted_and_closed),
+        cmocka_unit_test(inspect_names_the_rows_that_follow_from_others),
         cmocka_unit_test(pinned_rates_that_contradict_each_other_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
