@@ -3,7 +3,7 @@
 // parallelograms against their closed form, with rows that depend on each other, and pins that
 // contradict each other.
 
-#include "base/strbuf.h"
+#include "base/json.h"
 #include "dynamics/analyse/redundancy.h"
 #include "dynamics/assembly/assemble_rows.h"
 #include "dynamics/evaluate/eval.h"
@@ -149,6 +149,7 @@ static int count_followers(const hn_model *m) {
     hn_strbuf text;
     int n = 0;
     hn_strbuf_init(&text);
+    hn_json_object(&text);
     assert_int_equal(hn_system_redundancy_put(&text, m->sys, 0, m->q), HN_OK);
     for (const char *at = strstr(hn_strbuf_text(&text), "\"row\""); at;
          at = strstr(at + 1, "\"row\"")) {
