@@ -3,7 +3,7 @@
 // parallelograms against their closed form, with rows that depend on each other, and pins that
 // contradict each other.
 
-#include "base/json.h"
+#include "base/strbuf.h"
 #include "dynamics/analyse/redundancy.h"
 #include "dynamics/assembly/assemble_rows.h"
 #include "dynamics/evaluate/eval.h"
