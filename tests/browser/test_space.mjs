@@ -71,6 +71,15 @@ async function countColour(page, colour) {
 test("a scene in space is drawn with solids, with names where the joints are", async (t) => {
   const page = await open(t, { hash: "#bennett", viewport: { width: 1366, height: 768 } });
   await isSolid(page);
+  // this browser draws by software: smooth edges would cost twice as much as they show
+  assert.equal(
+    await page.evaluate(
+      () =>
+        document.querySelector(".space canvas").getContext("webgl2").getContextAttributes()
+          .antialias,
+    ),
+    false,
+  );
   await until(page, (data) => data.reference?.state === "ready");
   await playTo(page, 0.3);
   await soon(async () => {

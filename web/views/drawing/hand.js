@@ -9,6 +9,7 @@ import * as shapes from "../../widgets/shapes.js";
 
 const LONGEST = 70; // [px] of the arrow
 const STEP = 0.1; // of the scale bar: what an arrow key moves the hand by
+const MOST_POINTS = 24; // of a scene without names
 const FAR = 5; // steps at once with Shift
 const ROOM = 14; // [px] between the hand and its words
 const EDGE = 24; // [px] half the width of its words
@@ -87,9 +88,14 @@ export function createHand(layer, data, stage, actions) {
       return;
     }
     madeFor = data.run;
-    const { labels } = data.scene.drawing;
+    const { labels, shapes: drawn } = data.scene.drawing;
     const still = new Set(data.scene.ground_points);
-    const list = labels.flatMap((name, i) => (name && !still.has(i) ? [{ name, i }] : []));
+    const ends = new Set(drawn.flatMap(({ p, q }) => [p, q]));
+    const named = labels.flatMap((name, i) => (name && !still.has(i) ? [{ name, i }] : []));
+    const others = labels.flatMap((_, i) =>
+      ends.has(i) && !still.has(i) ? [{ name: `point ${i}`, i }] : [],
+    );
+    const list = named.length > 0 ? named : others.slice(0, MOST_POINTS);
     const chosen = points.value;
     points.replaceChildren(...list.map(({ name, i }) => h("option", { value: String(i) }, name)));
     if (list.some(({ i }) => String(i) === chosen)) {

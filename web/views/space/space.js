@@ -18,9 +18,22 @@ const SETTLED = 300; // [ms] after a movement of the view
 const NEAR = 0.02; // of the distance
 const FAR = 12;
 
-function makeRenderer() {
-  const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
-  renderer.shadowMap.enabled = true;
+/** Names under which browsers draw without a graphics card. */
+const BY_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** Is everything drawn by the processor? Then smooth edges and shadows cost more than they show. */
+function drawsBySoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = info && gl ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return BY_SOFTWARE.test(String(name));
+}
+
+/** @param {boolean} coarse without smooth edges and shadows */
+function makeRenderer(coarse) {
+  const renderer = new THREE.WebGLRenderer({ antialias: !coarse, alpha: true });
+  renderer.shadowMap.enabled = !coarse;
   renderer.shadowMap.type = THREE.PCFShadowMap;
   return renderer;
 }
@@ -52,7 +65,8 @@ function boxOf(scene) {
  */
 export function createSpace(frame, store, actions, drawing) {
   const data = store.data;
-  const renderer = makeRenderer();
+  const coarse = drawsBySoftware();
+  const renderer = makeRenderer(coarse);
   const rig = createRig(data, drawing.size);
   const world = new THREE.Scene();
   const cameras = {
@@ -72,7 +86,7 @@ export function createSpace(frame, store, actions, drawing) {
   let told = null;
   let seen = data.view.look;
   let lost = false;
-  let pace = { last: 0, slow: 0, coarse: false };
+  let pace = { last: 0, slow: 0, coarse };
   const tools = createTools(frame, rig, data, actions, {
     refit: moved,
     frames: () => frames,
