@@ -13,6 +13,7 @@ enum { HN_JOB_METHODS = 24, HN_JOB_SCENES = 12, HN_JOB_VALUES = 8 };
 /// The limits of a job, the folder for unfinished work, and the callbacks for stop and progress.
 typedef struct hn_job_limits {
     double time_limit;       ///< wall time [s]; NaN: the kind's own default; 0: none
+    int threads;             ///< that may work at once, where a kind can use them; 0: one
     const char *folder;      ///< for references and unfinished work; NULL: nothing is kept
     int (*stop)(void *user); ///< asked now and then; 1: stop, what is done is kept; NULL: never
     /// The share of the whole that is done, 0 to 1. `part`: what is worked at, as a scene's id; ""

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/map_grid.h"
+#include "session/stability/map_team.h"
 #include "session/stability/stability_internal.h"
 #include "session/stability/stability_axes.h"
 #include "session/stability/stability_column.h"
@@ -106,24 +107,53 @@ static int count_pending(const hn_map *map) {
     return n;
 }
 
-// Tries the cells on the grid of this stride that have no outcome yet. Returns 0 when the map must
-// end.
-static bool try_round(hn_map *map, int stride) {
+static void report_cells(hn_map *map) {
     const double all = (double)map->n_methods * map->x.n * map->y.n;
+    report(map, 0.85 * (1 - count_pending(map) / all));
+}
+
+// Lists the cells on the grid of this stride that have no outcome yet; returns their number.
+static int list_pending(const hn_map *map, int stride, int *cells) {
+    int n = 0;
     for (int row = 0; row < map->y.n; row += stride) {
         for (int column = 0; column < map->x.n; column += stride) {
             for (int m = 0; m < map->n_methods; m++) {
-                if (hn_map_cell_at(map, m, column, row)->trial.kind != HN_STABILITY_PENDING) {
-                    continue;
+                const hn_map_cell *cell = hn_map_cell_at(map, m, column, row);
+                if (cell->trial.kind == HN_STABILITY_PENDING) {
+                    cells[n++] = (int)(cell - map->cells);
                 }
-                if (hn_map_must_end(map) || !try_cell(map, m, column, row)) {
-                    return false;
-                }
-                report(map, 0.85 * (1 - count_pending(map) / all));
             }
         }
     }
+    return n;
+}
+
+// Tries these cells, by the team if there is one. Returns 0 when the map must end.
+static bool try_cells(hn_map *map, hn_map_team *team, const int *cells, int n) {
+    if (team) {
+        return hn_map_team_try(team, cells, n, report_cells);
+    }
+    for (int k = 0; k < n; k++) {
+        const int column = cells[k] % map->x.n, row = cells[k] / map->x.n % map->y.n;
+        if (hn_map_must_end(map) || !try_cell(map, cells[k] / map->x.n / map->y.n, column, row)) {
+            return false;
+        }
+        report_cells(map);
+    }
     return true;
+}
+
+// Tries all cells, on coarse grids first. Returns 0 when the map must end.
+static bool try_rounds(hn_map *map) {
+    int *cells = malloc(((size_t)count_pending(map) + 1) * sizeof *cells);
+    hn_map_team *team = cells ? hn_map_team_create(map) : NULL;
+    bool going = cells != NULL;
+    for (int stride = COARSEST_STRIDE; stride >= 1 && going; stride /= 2) {
+        going = try_cells(map, team, cells, list_pending(map, stride, cells));
+    }
+    hn_map_team_free(team);
+    free(cells);
+    return going;
 }
 
 static bool observe(hn_map *map) {
@@ -142,11 +172,7 @@ static bool observe(hn_map *map) {
 static bool run_one(hn_map *map) {
     map->started = hn_clock_wall();
     map->stopped = map->out_of_time = 0;
-    int going = 1;
-    for (int stride = COARSEST_STRIDE; stride >= 1 && going; stride /= 2) {
-        going = try_round(map, stride);
-    }
-    const int finished = going && observe(map);
+    const int finished = try_rounds(map) && observe(map);
     for (int m = 0; m < map->n_methods; m++) {
         for (int i = 0; i < map->x.n; i++) {
             hn_map_predict_column(map, m, i);

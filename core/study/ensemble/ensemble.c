@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/ensemble/ensemble.h"
 
+#include "base/processors.h"
 #include "integrators/explicit/rk_lanes.h"
 #include "integrators/step/compensated.h"
 #include "study/stepping/stepping.h"
@@ -10,7 +11,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { NOBODY = -1, MOST_THREADS = 256 };
 
@@ -137,9 +137,8 @@ hn_status hn_ensemble_create(const hn_system *sys, const hn_method_spec *spec,
     // as many threads as asked for, or as there are processors
     *e = (hn_ensemble){
         .sys = sys, .spec = *spec, .info = hn_system_get_info(sys), .opts = *opts, .arena = arena};
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    const long threads = opts->threads > 0 ? opts->threads : processors;
-    e->opts.threads = threads < 1 ? 1 : threads > MOST_THREADS ? MOST_THREADS : (int)threads;
+    const int threads = opts->threads > 0 ? opts->threads : hn_processors();
+    e->opts.threads = threads > MOST_THREADS ? MOST_THREADS : threads;
     e->workers = hn_arena_get(arena, (size_t)e->opts.threads * sizeof *e->workers);
 
     hn_diag why = {0};

@@ -20,6 +20,8 @@
 #include "cli/study/study_part.h"
 #include "cli/study/work_precision_text.h"
 
+#include "base/processors.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -185,6 +187,7 @@ static hn_status prepare(command *c, hn_diags *diags) {
     c->request.build = hn_build_name();
     c->request.limits.folder = hn_cache_folder(c->args, c->folder);
     c->request.limits.stop = hn_is_interrupted;
+    c->request.limits.threads = hn_processors();
     c->request.limits.progress = show_progress;
     c->request.limits.user = c;
     return HN_OK;

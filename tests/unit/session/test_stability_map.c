@@ -94,12 +94,13 @@ static int stop_later(void *user) {
     return (*left)-- <= 0;
 }
 
-static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **state) {
-    (void)state;
+/// Stops a map after so many questions, and more each time, until it is finished.
+static void interrupt(const char *over, const char *const *methods, int threads, int questions,
+                      int more) {
     char folder[] = "/tmp/holonom-map-XXXXXX";
     assert_non_null(mkdtemp(folder));
     hn_model *model = open_model();
-    hn_job_request r = request_for(model, OVER, METHODS, 1);
+    hn_job_request r = request_for(model, over, methods, 1);
     hn_strbuf whole, pieces;
     hn_map *map = open_map(&r);
     assert_int_equal(hn_map_run(map), 1);
@@ -107,12 +108,13 @@ static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **
     hn_map_free(map);
 
     int left = 0, finished = 0, rounds = 0, resumed = 0;
+    r.limits.threads = threads;
     r.limits.folder = folder;
     r.limits.stop = stop_later;
     r.limits.user = &left;
     while (!finished) {
         assert_true(++rounds < 200);
-        left = 150 + 50 * rounds;
+        left = questions + more * rounds;
         map = open_map(&r);
         resumed += hn_map_resumed(map) > 0;
         finished = hn_map_run(map);
@@ -128,6 +130,42 @@ static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **
     assert_int_equal(rmdir(folder), 0); // nothing is left of a finished map
     hn_strbuf_reset(&whole);
     hn_strbuf_reset(&pieces);
+    hn_model_free(model);
+}
+
+static const char *const FEEDBACK[] = {"baumgarte@rk4:h=2e-3"};
+static const char OVER_FEEDBACK[] = "alpha=1..1e3,beta=1..1e3";
+
+static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **state) {
+    (void)state;
+    interrupt(OVER, METHODS, 1, 150, 50);
+    interrupt(OVER_FEEDBACK, FEEDBACK, 3, 0, 1);
+}
+
+/// The same map by several threads: every cell and column the same bytes, whoever tried it.
+static void a_team_finds_what_one_thread_finds(void **state) {
+    (void)state;
+    static const char *const heun[] = {"index1@heun"};
+    hn_model *model = open_model();
+    hn_job_request r = request_for(model, OVER_FEEDBACK, FEEDBACK, 1);
+    hn_job_request steps = request_for(model, "h=1e-4..2e-1", heun, 1);
+    const hn_job_request *requests[] = {&r, &steps};
+    for (int i = 0; i < 2; i++) {
+        hn_strbuf alone, together;
+        hn_job_request request = *requests[i];
+        hn_map *one = open_map(&request);
+        request.limits.threads = 3;
+        hn_map *team = open_map(&request);
+        assert_int_equal(hn_map_run(one), 1);
+        assert_int_equal(hn_map_run(team), 1);
+        text_of(one, &alone);
+        text_of(team, &together);
+        assert_string_equal(hn_strbuf_text(&alone), hn_strbuf_text(&together));
+        hn_strbuf_reset(&alone);
+        hn_strbuf_reset(&together);
+        hn_map_free(one);
+        hn_map_free(team);
+    }
     hn_model_free(model);
 }
 
@@ -188,6 +226,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_observed_boundary_is_the_predicted_one_over_four_decades_of_stiffness),
         cmocka_unit_test(a_map_interrupted_again_and_again_ends_as_an_undisturbed_one),
+        cmocka_unit_test(a_team_finds_what_one_thread_finds),
         cmocka_unit_test(documents_hold_every_cell_and_no_number_that_is_none),
         cmocka_unit_test(requests_at_fault_are_told_by_field),
     };
