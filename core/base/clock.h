@@ -9,9 +9,9 @@ double hn_clock_wall(void);
 
 /// Returns the CPU time of the calling thread [s]. Compare readings of one thread only.
 double hn_clock_thread(void);
-/// A counter of the processor that runs on evenly, for shares of a time: its unit is nobody's. It
-/// is read in a third of the time that a clock takes; where there is none, the wall clock serves,
-/// in nanoseconds.
+/// Returns a counter of the processor that increases at a constant, unknown rate: for ratios of
+/// times. Reading it takes a third of the time of reading a clock. On processors without one it is
+/// the wall clock in nanoseconds.
 double hn_clock_ticks(void);
 
 #endif

@@ -43,8 +43,8 @@ typedef enum hn_status {
             return hn_try_status;               \
     } while (0)
 
-/// Makes a call unless one before it has failed, and keeps its status: where something has to be
-/// released, or reported, after the last of them. Elsewhere HN_TRY.
+/// Makes the call and assigns its result to `status`, unless `status` is a failure already. For
+/// sequences after which memory has to be released or a fault reported; elsewhere use HN_TRY.
 #define HN_THEN(status, ...)          \
     do {                              \
         if ((status) == HN_OK)        \
@@ -54,7 +54,7 @@ typedef enum hn_status {
 #define HN_MUST_CHECK __attribute__((warn_unused_result))
 #define HN_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 
-/// A programmer's error (NULL, wrong size, wrong order of calls): active in every build.
+/// Aborts on a programmer's error (NULL, wrong size, wrong order of calls), in every build.
 #define HN_ASSERT(cond) ((cond) ? (void)0 : hn_assert_failed(#cond, __FILE__, __LINE__))
 
 /// Prints the condition and its place to standard error and aborts. Called by HN_ASSERT() alone.

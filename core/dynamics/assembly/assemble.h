@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_H
 #define HN_DYNAMICS_ASSEMBLE_H
-// Consistent starting values: position, then velocity, then acceleration and multipliers.
-// Levenberg-Marquardt from the guess with pinned entries held, minimum-norm Newton near the end,
-// homotopy and multi-start as fall-backs; an unreachable closure is explained, never accepted.
+// Computes consistent initial values: positions first, then velocities, then accelerations and
+// multipliers.
+//
+// Positions are found by Levenberg-Marquardt from the guess, with the pinned coordinates held, and
+// by minimum-norm Newton near the end. Homotopy and multi-start follow where that fails. Loops that
+// cannot be closed are an error, with the reason; they are never left open.
 // Source: Wehage & Haug 1982; Nocedal & Wright 2006, ch. 10.
 
 #include "base/diag.h"
@@ -16,7 +19,7 @@ typedef struct hn_assembly {
     double velocity_gap_before, velocity_gap; ///< ||J v + phi_t||
     int rank;                                 ///< rank of J at the assembled pose
     int freedoms;                             ///< degrees of freedom: nv - rank
-    int redundant;                            ///< nc - rank
+    int redundant;                            ///< constraint equations that follow from the others
     /// singular values of J D, D = diag(M)^-1/2: the smallest of those that count for the rank, and
     /// the largest
     double sigma_min, sigma_max;
@@ -35,9 +38,9 @@ typedef struct hn_assembly {
 ///
 /// q (nq), v (nv), a (nv), lambda (nc) are in system coordinates. `a`, `lambda`, `report` and
 /// `diags` may be NULL. Pinned coordinates and rates (q0_pinned, v0_pinned) keep their values; free
-/// rates change as little as possible, weighted by mass. When the guess leads to another assembly
-/// mode than the scene asks for, loops in the wrong mode are closed again from other places, pins
-/// held; a mode with fewer signs than loops leaves the other loops free.
+/// rates change as little as possible, weighted by mass. Where the guess leads to another assembly
+/// mode than the scene asks for, the loops in the wrong mode are closed again from other starting
+/// points, with the pins held. Loops for which the scene gives no mode may have either.
 ///
 /// Fails, with q and v as far as they were reached (else 0), a and lambda untouched:
 ///   HN_ERR_UNREACHABLE   a loop cannot be closed: `diags` name it, the gap, the pins, and the

@@ -31,7 +31,7 @@ void hn_system_move(const hn_system *sys, double *q, const double *delta);
 /// Writes the `delta` (nv) that moves `from` to `to`; of two ways round the shorter.
 void hn_system_difference(const hn_system *sys, const double *from, const double *to,
                           double *delta);
-/// Brings quaternions back to length 1: a step of an integrator leaves it by its local error.
+/// Scales quaternions to length 1, from which a step of an integrator deviates by its local error.
 /// Returns whether q changed.
 bool hn_system_normalise(const hn_system *sys, double *q);
 

@@ -75,7 +75,8 @@ bool hn_system_joint_is_cut(const hn_system *sys, int joint);
 
 /// The entry of q whose rate entry i of v is; -1 for the angular velocity of a ball.
 int hn_system_position_of(const hn_system *sys, int i);
-/// What a hand does to it while it runs; NULL in a system whose scene has no load for that.
+/// Returns the log of the forces with which a user pulls at the mechanism while it runs; NULL where
+/// the scene has no such load.
 hn_pull_log *hn_system_pulls(const hn_system *sys);
 /// The first time after t at which a load given as a table, or a pull, has a corner (an integrator
 /// restarts there), HUGE_VAL: none.

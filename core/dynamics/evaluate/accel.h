@@ -17,10 +17,12 @@
 
 #include <stdbool.h>
 
-/// The solvers of K. "auto" is the tape, corrected by iterative refinement with the sparse factor
-/// where pivots have lost digits (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where
-/// a pivot is lost altogether, or a row of J has all but vanished. The others solve alone and
-/// refuse what they cannot solve (linalg/kkt.h).
+/// The solvers of K.
+///
+/// "auto" evaluates the tape. Where a pivot is below HN_PIVOT_DOUBT, iterative refinement with the
+/// sparse factor corrects the answer. Where a pivot is below HN_PIVOT_GUARD, or a row of J has
+/// nearly vanished, the least-norm solve replaces it. Each of the other solvers works alone and
+/// fails on a matrix that it cannot solve (linalg/kkt.h).
 #define HN_SOLVER_LIST(X)                   \
     X(HN_SOLVER_AUTO, "auto")               \
     X(HN_SOLVER_LDL, "ldl")                 \
@@ -40,8 +42,8 @@ extern const char *const hn_solver_names[HN_SOLVER_COUNT];
 typedef struct hn_accel hn_accel;
 
 typedef struct hn_accel_opts {
-    bool baumgarte;   ///< phi and J v enter, alpha and beta are inputs
-    bool want_lambda; ///< else everything that only multipliers need is left out
+    bool baumgarte;   ///< (1) with alpha and beta as inputs; else both are 0
+    bool want_lambda; ///< the multipliers are computed too; else what only they need is left out
     hn_solver solver; ///< 0: automatic
 } hn_accel_opts;
 
@@ -58,8 +60,8 @@ typedef struct hn_accel_info {
     double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
-/// Answers with smaller pivots are refined. Above it, an answer is good to 1e-13 as it is, and a
-/// correction costs more than the tape.
+/// An answer with a smaller pivot is refined. With larger pivots the answer is right to 1e-13
+/// without that, and a refinement would cost more than the tape.
 #define HN_PIVOT_DOUBT 1e-3
 
 /// Compiles the terms that the options ask for into one tape. Returns in *out, which lives in the

@@ -70,7 +70,7 @@ typedef struct hn_formulation {
     const char *needs; ///< terms of the system that it evaluates: "M f J gamma"
     /// orders of q, v and lambda where they differ from the integrator's, or NULL
     const char *order_note;
-    const char *limits; ///< what it cannot serve, or NULL
+    const char *limits; ///< mechanisms that it refuses, or NULL
     hn_dae_form form;
     /// The form for integrators that do not serve `form` (index1: as ODE, or with lambda);
     /// HN_FORM_ODE: none.

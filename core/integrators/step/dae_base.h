@@ -82,25 +82,28 @@ void hn_dae_spread_rows(const hn_dae_base *b, const double *x, double *out);
 /// Consistent a (nv) and lambda (nc, may be NULL) at a state; a failure is told in `why`.
 HN_MUST_CHECK hn_status hn_dae_accelerate(hn_dae_base *b, double t, const double *q,
                                           const double *v, double *a, double *lambda);
-/// Size of a displacement `delta` (nv) in the mass norm at the terms last evaluated, relative to
-/// the largest of the step's whole displacement `moved` (nv), the coordinates themselves and the
-/// displacement that opens a loop by the mechanism's length [-]: the same in any units, and not
-/// below what rounding of the coordinates allows.
+/// Returns the relative size of a displacement `delta` (nv), for the stopping test of Newton [-].
+///
+/// The size is taken in the mass norm, with the mass matrix last evaluated. It is divided by the
+/// largest of three displacements: that of the whole step, `moved` (nv); the coordinates
+/// themselves; and the one that opens a loop by the mechanism's length. The result is therefore the
+/// same in any units, and rounding of the coordinates cannot keep it above a tolerance.
 double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *moved,
                           const double *q);
-/// Notes `what` failed at time t and returns `status`.
+/// Records that `what` failed at time t, for the reason of the run, and returns `status`.
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);
 
 /// Why a step of the ggl form has no answer at an M (nv x nv) that has no inverse: names the first
 /// coordinate without mass.
 void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char *why, size_t size);
 
-/// When integrators on index 2 close the position at the end of a step: every so many steps, or one
-/// of these.
+/// After how many steps integrators of the index-2 form project the position onto the constraints:
+/// a number of steps, or one of these.
 enum { HN_CLOSE_NEVER = -1, HN_CLOSE_DEPENDENT = 0 };
 /// The setting "close" of index 2; of the other forms HN_CLOSE_NEVER.
 int hn_dae_close_option(hn_dae_form form, const double *form_options);
-/// 1 when index 3 asks for speeds that are projected at the end of each step.
+/// Returns 1 where the options of the index-3 form ask for velocities that are projected at the end
+/// of each step.
 int hn_dae_projects_speeds(hn_dae_form form, const double *form_options);
 /// The refusal of an integrator that does not do that; HN_OK where it is not asked for.
 HN_MUST_CHECK hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,

@@ -20,7 +20,7 @@ typedef struct hn_job_form {
         writer(b, (const type *)work);                       \
     }
 
-/// How a run of a job ended.
+/// How the run of a job ended; all false: complete.
 typedef struct hn_job_end {
     bool stopped;     ///< on request
     bool out_of_time; ///< the time limit left something out
@@ -28,7 +28,7 @@ typedef struct hn_job_end {
     bool lost;        ///< what is done could not be written into the journal: it is not kept
 } hn_job_end;
 
-/// What the words of the command line are to a kind.
+/// What the words after the command name, on the command line.
 typedef enum hn_job_words {
     HN_JOB_WORDS_SCENES, ///< scenes; none: those of the standard report
     HN_JOB_WORDS_SCENE,  ///< one scene, and the kind's name

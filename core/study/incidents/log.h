@@ -19,16 +19,14 @@ typedef struct hn_incident_log {
 void hn_incident_log_clear(hn_incident_log *log);
 /// Says whether the condition has been reported and still holds.
 bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code);
-/// The condition has ceased: the next time it begins it is reported again.
+/// Records that the condition no longer holds: it is reported again when it next begins.
 void hn_incident_over(hn_incident_log *log, hn_incident_code code);
-/// Says whether a report of this kind would be taken: its condition does not hold already, and
-/// there is room.
+/// Returns whether a report of this kind would be kept: its condition is new, and there is room.
 bool hn_incident_is_taken(const hn_incident_log *log, hn_incident_code code);
 /// Adds a report without remedies. Returns NULL where the condition is known already or no room is
 /// left.
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report);
-/// Makes room for a report of this kind whatever has been reported before: the end of a run is
-/// always reported.
+/// Makes room for one report of this kind, for the end of a run, which is always reported.
 void hn_incident_make_room(hn_incident_log *log, hn_incident_code code);
 /// Appends to a message; the report counts as new from then on.
 void hn_incident_append(hn_incident_log *log, hn_incident *i, const char *format, ...)

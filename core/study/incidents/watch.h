@@ -14,9 +14,9 @@
 #include "study/stepping/stepping.h"
 
 #define HN_RUN_WARN_GAP 1e-3 ///< gap / characteristic length that is reported
-/// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so
-/// with pins half of it apart they point up to 30 degrees away from where they should; what is
-/// computed with them is no motion of this mechanism.
+/// Gap / characteristic length that ends a run. The rows of J are lever arms of about that length.
+/// With the pins of a joint half a length apart, the rows point up to 30 degrees in the wrong
+/// direction, and the computed motion is no motion of this mechanism.
 #define HN_RUN_LOST_GAP 0.5
 #define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is reported as near-singular
 /// Energy change in one step / (T + range of V), conservative scenes only.
@@ -29,12 +29,13 @@
 #define HN_RUN_WARN_MULTIPLIERS 1e3
 /// [rad] between the direction of motion and its smooth continuation.
 #define HN_RUN_WARN_TURN 0.5
-/// Share of a step's motion that its velocities do not explain.
+/// Share of the displacement of a step that velocity times time does not account for.
 #define HN_RUN_WARN_JUMP 0.5
-/// Velocities reversed within one step: reported where they are reversed this closely, and the
-/// accelerations explain less than this share of the change.
+/// A reversal of the velocities within one step is reported where the new direction is opposite to
+/// the old one to within this, and the accelerations account for less than this share of the
+/// change.
 #define HN_RUN_WARN_BACK 0.3
-/// Change of the assembly-mode value that a jump to the other branch makes at least.
+/// Least change of the assembly-mode value that counts as a jump to the other branch.
 #define HN_RUN_WARN_MODE 0.1
 
 /// What was measured of one state.
@@ -61,8 +62,8 @@ typedef struct hn_heading {
     double *e;
 } hn_heading;
 
-/// Directions of motion on the way, and where the run entered a configuration with J all but rank
-/// deficient.
+/// The directions of motion so far, and where the run entered a configuration in which J is nearly
+/// rank deficient.
 typedef struct hn_heading_record {
     hn_heading older, last, now; ///< the first two away from singular configurations
     int n;
@@ -76,7 +77,7 @@ typedef struct hn_heading_record {
     int inside;      ///< it does: 1, 2 once that has been reported
 } hn_heading_record;
 
-/// Singular configurations on the way.
+/// Singular configurations that the run has met or is predicted to meet.
 typedef struct hn_singular_record {
     hn_singularity *monitor;
     hn_singularity_info info; ///< at the last check
@@ -105,7 +106,7 @@ struct hn_watch {
     /// Of each report that may be tried: a state shortly before it, and the steps made by then.
     hn_state_at *before;  ///< HN_RUN_MAX_INCIDENTS
     long long *before_at; ///< HN_RUN_MAX_INCIDENTS
-    int diagnosed;        ///< reports whose cause and remedies have been looked into
+    int diagnosed;        ///< reports whose cause was looked for and whose remedies were tried
     bool at_start;        ///< the start is being checked, no step has been made
 
     // of the state measured last
@@ -153,18 +154,18 @@ HN_MUST_CHECK hn_status hn_watch_create(const hn_stepping *run, const hn_cost *c
 void hn_watch_free(hn_watch *w);
 /// Forgets the past and checks the start.
 void hn_watch_start(hn_watch *w);
-/// Counts an accepted step: what is known without measuring its end.
+/// Counts an accepted step; measures nothing.
 void hn_watch_step(hn_watch *w);
 /// Whether every accepted step is measured: hn_watch_measure_step().
 bool hn_watch_measures_steps(const hn_watch *w);
-/// Measures what must not leave out a step: the work done in it.
+/// Adds the work done in the last step, which has to be summed over every step.
 void hn_watch_measure_step(hn_watch *w);
 /// The change of energy since the start less the work done since, of a state within the last step
 /// or less than a step ahead, and that work [J]. NaN where the work is not known.
 double hn_watch_energy_change(hn_watch *w, const hn_state_at *at, const hn_measure *m,
                               double *work);
-/// Checks the state that the run has reached. Fails with HN_ERR_DIVERGED and the reason in `why`
-/// when that is no state of the mechanism any more (HN_RUN_LOST_GAP).
+/// Checks the present state of the run against the table of incidents. Fails with HN_ERR_DIVERGED
+/// and the reason in `why` where the loops are open by HN_RUN_LOST_GAP or more.
 HN_MUST_CHECK hn_status hn_watch_check(hn_watch *w, char why[256]);
 /// Measures any state.
 hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_DIAGNOSIS_H
 #define HN_STUDY_DIAGNOSIS_H
-// What is found out about a run after something went wrong: the cause, from the spectrum at a state
-// before the event, and what the remedies that are offered really give, by pilot runs from that
-// state.
+// The diagnosis of a run that went wrong. The cause comes from the spectrum of the equations at a
+// state before the event; the remedies are tried in short runs from that state.
 
 #include "study/run/run.h"
 

@@ -90,26 +90,27 @@ double hn_run_sigma_min(const hn_run *run);
 /// The condition number of the constraint rows there: largest over smallest singular value. NaN
 /// without rows, HUGE_VAL where the smallest is 0.
 double hn_run_condition(const hn_run *run);
-/// 1 where the run has passed a singular configuration, or near one: *t the first time [s].
+/// Returns 1 where the run has passed through a singular configuration or near one; *t is the first
+/// time [s].
 int hn_run_passed_singular(const hn_run *run, double *t);
 /// Sets the run back to the start; counters and incidents are forgotten.
 hn_status hn_run_reset(hn_run *run);
-/// A check (gap, energy, ...) costs an extra evaluation that is not counted as the method's cost; 0
-/// switches checks off, n: every n-th step.
+/// Sets how often the state is checked against the table of incidents: after every n-th step, or
+/// never (0). A check costs one more evaluation, which is not counted as the method's cost.
 void hn_run_watch(hn_run *run, int every);
 /// Changes an option of the formulation ("alpha") while running, kept over a reset. Fails with the
 /// reason in diag: HN_ERR_INPUT: unknown key or bad value; HN_ERR_UNSUPPORTED: fixed once the run
 /// is made (an integrator's option, a basis).
 hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag);
-/// The log of pulls of its system has a new entry at time t [s], not before the present time, or a
-/// new stop at t = HUGE_VAL.
+/// Tells the run that the log of pulls of its system has a new entry at time t [s], no earlier than
+/// the present time, or that the time where steps stop for it was moved (t = HUGE_VAL).
 void hn_run_loads_changed(hn_run *run, double t);
 const hn_method_spec *hn_run_spec(const hn_run *run);
-/// The inside of a run, for a study that follows its steps: the stepping half and the engine of the
-/// samples.
+/// Returns the parts of a run, for studies that read the state after each step: the one that makes
+/// steps, and the engine that computes samples between steps.
 hn_stepping *hn_run_stepping(hn_run *run);
 hn_engine *hn_run_side_engine(hn_run *run);
-/// The watching half, and the words why the run ended: for the diagnosis.
+/// Returns the part that checks the states; sets the reason why the run ended. For the diagnosis.
 hn_watch *hn_run_watching(hn_run *run);
 void hn_run_set_reason(hn_run *run, const char *reason);
 bool hn_run_is_conservative(const hn_run *run);

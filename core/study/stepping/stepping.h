@@ -13,13 +13,13 @@
 #include "study/stepping/engine.h"
 #include "study/stepping/headway.h"
 
-/// A grid point this near to the end asked for counts as the end: share of a step.
+/// Share of a step: a grid point that is closer than this to the requested end counts as the end.
 #define HN_STEPPING_LANDING 1e-9
 #define HN_STEPPING_KEPT 100 ///< steps between states that are kept for trials of remedies
-/// A coordinate or velocity beyond this has left every mechanism.
+/// A larger coordinate or velocity ends the run: no mechanism has such a state.
 #define HN_STEPPING_BOUND 1e9
 
-/// What a method that chooses its steps goes by.
+/// The tolerances by which an adaptive method chooses its steps.
 typedef struct hn_step_tolerances {
     double rtol, atol, largest; ///< [-], [-], [s]
     int order;                  ///< that the control reckons with

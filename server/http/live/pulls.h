@@ -10,7 +10,7 @@
 /// left out of the spring is -1: chosen later.
 hn_pull hn_pull_read(const cJSON *object);
 
-/// A list of what the hand does, owned.
+/// The list of the user's pulls, in order of time; owned.
 typedef struct hn_pull_list {
     hn_pull_event *at;
     int n;

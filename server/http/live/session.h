@@ -61,7 +61,7 @@ void hn_session_patch(hn_session *session, struct hn_request *r);
 /// The thread ends and streams are closed, with the event `end` when it was `deleted` (rather than
 /// the server stopping).
 void hn_session_end(hn_session *session, int deleted);
-/// Now and then: wakes streams for their keep-alive; 1 when nobody has touched it for so long that
-/// it should go.
+/// Wakes the streams for their keep-alive; to be called every second or so. Returns 1 where nobody
+/// has used the session for so long that it should be ended.
 int hn_session_tick(hn_session *session);
 #endif

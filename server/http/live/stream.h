@@ -12,6 +12,7 @@ typedef struct hn_stream hn_stream;
 /// server's until it is closed.
 void hn_stream_open(hn_session *session, struct hn_request *r);
 
-/// Wakes it when its reader should hear a comment line, or has gone. With the session's lock held.
+/// Wakes the stream where a keep-alive line is due or its reader has left. With the session's lock
+/// held.
 void hn_stream_tick(hn_reader *reader, double now);
 #endif

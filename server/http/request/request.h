@@ -85,7 +85,8 @@ HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *n
                                               hn_status (*see)(void *user, const char *value),
                                               void *user);
 
-/// Whether the client of a suspended request has closed its connection, which nobody else looks at.
+/// Returns whether the client of a suspended request has closed its connection. The HTTP library
+/// does not check the connection of a suspended request.
 bool hn_request_is_left(const hn_request *r);
 
 /// Adds a header to the reply; the value is printed as by printf().
@@ -103,7 +104,7 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 
-/// Gives the thread that works on the request so much more computing time: `run_cpu_s` each time.
+/// Extends the computing time of the thread that works on the request by `run_cpu_s`.
 void hn_request_add_time(hn_request *r);
 /// The question of the work on this request: whether the computing time is used up, or the server
 /// ends. The reply to what was ended early is then a problem that says which.
