@@ -80,25 +80,21 @@ static bool grow_table(hn_graph *g) {
 
 // ---- keys ----
 
-static uint64_t hash_word(uint64_t h, uint64_t word) {
-    return (h ^ word) * 0x9e3779b97f4a7c15ull + (h >> 29);
-}
-
 static uint64_t hash_args(hn_op op, const hn_ex *args, int n) {
-    uint64_t h = hash_word(HN_HASH_START, (uint64_t)op);
+    uint64_t h = hn_hash_word(HN_HASH_START, (uint64_t)op);
     for (int i = 0; i < n; i++) {
         const double c = args[i].c + 0.0; // -0 becomes 0
         uint64_t bits;
         memcpy(&bits, &c, sizeof bits);
-        h = hash_word(hash_word(h, bits), (uint64_t)(uint32_t)args[i].n);
+        h = hn_hash_word(hn_hash_word(h, bits), (uint64_t)(uint32_t)args[i].n);
     }
     return hn_hash_mix(h);
 }
 
 static uint64_t hash_product(const hn_factor *f, int n) {
-    uint64_t h = hash_word(HN_HASH_START, HN_OP_MUL);
+    uint64_t h = hn_hash_word(HN_HASH_START, HN_OP_MUL);
     for (int i = 0; i < n; i++) {
-        h = hash_word(h, (uint64_t)(uint32_t)f[i].node << 32 | (uint32_t)f[i].power);
+        h = hn_hash_word(h, (uint64_t)(uint32_t)f[i].node << 32 | (uint32_t)f[i].power);
     }
     return hn_hash_mix(h);
 }

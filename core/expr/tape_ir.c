@@ -39,13 +39,20 @@ static bool grow(hn_ir *ir, int32_t more_args) {
     return true;
 }
 
+static uint64_t word_of(int32_t high, int32_t low) {
+    return (uint64_t)(uint32_t)high << 32 | (uint32_t)low;
+}
+
 static uint64_t hash_node(const hn_ir_node *node, const hn_ir_arg *args) {
-    const int32_t head[4] = {node->kind, node->op, node->n_args, node->input};
-    uint64_t h = hn_hash_bytes(HN_HASH_START, head, sizeof head);
+    uint64_t h = hn_hash_word(HN_HASH_START, word_of(node->kind, node->op));
+    h = hn_hash_word(h, word_of(node->n_args, node->input));
     if (node->kind == HN_IR_CONST) {
         h = hn_hash_double(h, node->value);
     }
-    return hn_hash_mix(hn_hash_bytes(h, args, (size_t)node->n_args * sizeof *args));
+    for (int i = 0; i < node->n_args; i++) {
+        h = hn_hash_word(h, word_of(args[i].node, args[i].sign));
+    }
+    return hn_hash_mix(h);
 }
 
 static bool same_node(const hn_ir *ir, const hn_ir_node *a, const hn_ir_node *b,
