@@ -357,10 +357,12 @@ test-quick: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory run-unit
 
 asan: build/.packages-test
+	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=asan run-unit
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=asan run-server
 
 tsan: build/.packages-test
+	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=tsan run-server
 
 # what comes from outside, with random bytes: MINUTES for each harness, HARNESS for some of them
