@@ -5,8 +5,10 @@
 #include "dynamics/evaluate/accel.h"
 #include "integrators/method/method_spec.h"
 #include "session/model/model.h"
+#include "study/ensemble/ensemble.h"
 #include "study/run/run.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -441,4 +443,74 @@ holonom_status holonom_compare(const holonom_mechanism *m, const char *const *me
         holonom_run_free(run);
     }
     return HOLONOM_OK;
+}
+
+// ---- many runs ----
+
+/// Starts and ends of many runs, in the system's own coordinates.
+typedef struct many {
+    hn_arena *arena;
+    hn_ensemble *ensemble;
+    double *q, *v, *q_end, *v_end; ///< n rows each
+    hn_ensemble_start *starts;
+    hn_ensemble_end *ends;
+} many;
+
+static hn_status make_many(const hn_system *sys, const char *method, int n, many *all,
+                           hn_diag *diag) {
+    const hn_system_info info = hn_system_get_info(sys);
+    const hn_ensemble_opts opts = hn_ensemble_opts_default();
+    const size_t rows = (size_t)n;
+    hn_method_spec spec;
+    HN_TRY(hn_method_parse(method, &spec, diag));
+    HN_TRY(hn_ensemble_create(sys, &spec, &opts, &all->ensemble, diag));
+    all->arena = hn_arena_create(0);
+    if (!all->arena) {
+        return HN_ERR_MEMORY;
+    }
+    all->q = hn_arena_doubles(all->arena, rows * (size_t)info.nq);
+    all->v = hn_arena_doubles(all->arena, rows * (size_t)info.nv);
+    all->q_end = hn_arena_doubles(all->arena, rows * (size_t)info.nq);
+    all->v_end = hn_arena_doubles(all->arena, rows * (size_t)info.nv);
+    all->starts = hn_arena_get(all->arena, (rows + 1) * sizeof *all->starts);
+    all->ends = hn_arena_get(all->arena, (rows + 1) * sizeof *all->ends);
+    return hn_arena_failed(all->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+/// Runs from rows of the caller's coordinates and writes the ends over them.
+static void run_rows(const hn_system *sys, many *all, int n, double time, double *q, double *v,
+                     holonom_ending *endings) {
+    const hn_system_info info = hn_system_get_info(sys);
+    const size_t user = (size_t)info.n_user, nq = (size_t)info.nq, nv = (size_t)info.nv;
+    for (size_t k = 0; k < (size_t)n; k++) {
+        hn_system_from_user(sys, q + k * user, all->q + k * nq);
+        hn_system_rates_from_user(sys, v + k * user, all->v + k * nv);
+        all->starts[k] = hn_ensemble_start_of(all->ensemble, all->q + k * nq, all->v + k * nv);
+    }
+    hn_ensemble_run(all->ensemble, n, all->starts, time, all->q_end, all->v_end, all->ends);
+    for (size_t k = 0; k < (size_t)n; k++) {
+        const hn_ensemble_end *end = &all->ends[k];
+        hn_system_to_user(sys, all->q_end + k * nq, q + k * user);
+        hn_system_rates_to_user(sys, all->v_end + k * nv, v + k * user);
+        endings[k] =
+            (holonom_ending){.status = status_of(end->status), .t = end->t, .steps = end->steps};
+    }
+}
+
+holonom_status holonom_run_many(const holonom_mechanism *m, const char *method, int n, double time,
+                                double *q, double *v, holonom_ending *endings,
+                                holonom_fault *fault) {
+    HN_ASSERT(m && method && n >= 0 && (n == 0 || (q && v && endings)));
+    const hn_system *sys = system_of(m);
+    many all = {0};
+    hn_diag diag = {0};
+    hn_status status = isfinite(time) ? make_many(sys, method, n, &all, &diag)
+                                      : hn_diag_set(&diag, HN_ERR_INPUT, NULL, NULL,
+                                                    "the end of the runs is not a finite time");
+    if (status == HN_OK) {
+        run_rows(sys, &all, n, time, q, v, endings);
+    }
+    hn_ensemble_free(all.ensemble);
+    hn_arena_free(all.arena);
+    return status == HN_OK ? HOLONOM_OK : fail(fault, status, &diag);
 }

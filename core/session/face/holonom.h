@@ -133,6 +133,26 @@ void holonom_run_free(holonom_run *run);
 holonom_status holonom_compare(const holonom_mechanism *m, const char *const *methods, int n,
                                double time, holonom_result *results, holonom_fault *fault);
 
+/// How one of many runs ended.
+typedef struct holonom_ending {
+    holonom_status status; ///< HOLONOM_INPUT: the start is not finite; HOLONOM_ENDED: ended early
+    double t;              ///< reached [s]
+    long long steps;
+} holonom_ending;
+
+/// Runs one method from n starts, side by side: by the vector instructions and on all processors
+/// that there are. Each ends bit for bit as it would by itself, in a fraction of the time.
+///
+/// method   in      index1 or baumgarte with alpha and beta, by euler, heun or rk4
+/// time     in      end of every run [s], from 0: the first whole step that reaches it
+/// q, v     in out  n rows, one entry a coordinate: the starts, then the last good states
+/// endings  out     n
+/// Fails: HOLONOM_INPUT where runs of this method or mechanism cannot step side by side; the fault
+/// says why, and nothing has been run. Not to be called by two threads for one mechanism.
+holonom_status holonom_run_many(const holonom_mechanism *m, const char *method, int n, double time,
+                                double *q, double *v, holonom_ending *endings,
+                                holonom_fault *fault);
+
 #ifdef __cplusplus
 }
 #endif

@@ -90,6 +90,57 @@ static void a_run_keeps_its_mechanism(void **state) {
     holonom_run_free(run);
 }
 
+static void many_runs_end_as_runs_alone_and_keep_their_energy(void **state) {
+    (void)state;
+    enum { N = 100 };
+    holonom_mechanism *m = pendulum();
+    holonom_run *run = NULL;
+    holonom_sample s;
+    holonom_ending end[N];
+    double q[N], v[N];
+    for (int k = 0; k < N; k++) {
+        q[k] = 0.5 + 0.01 * k;
+        v[k] = 0.02 * k;
+    }
+    v[8] = (double)NAN;
+    assert_int_equal(holonom_run_many(m, "index1@rk4:h=1e-3", N, 1, q, v, end, NULL), HOLONOM_OK);
+
+    // the first starts where a run does
+    assert_int_equal(holonom_run_create(m, "index1@rk4:h=1e-3", &run, NULL), HOLONOM_OK);
+    assert_int_equal(holonom_run_to(run, 1, &s, NULL), HOLONOM_OK);
+    assert_memory_equal(&s.q[0], &q[0], sizeof q[0]);
+    assert_memory_equal(&s.v[0], &v[0], sizeof v[0]);
+    holonom_run_free(run);
+
+    // w^2 / 2 - (g / l) cos th stays; the step's error is of the order of h^4
+    for (int k = 0; k < N; k++) {
+        if (k == 8) {
+            assert_int_equal(end[k].status, HOLONOM_INPUT);
+            continue;
+        }
+        const double th = 0.5 + 0.01 * k, w = 0.02 * k, rate = 9.81 / 2;
+        assert_int_equal(end[k].status, HOLONOM_OK);
+        assert_int_equal(end[k].steps, 1000);
+        assert_near(v[k] * v[k] / 2 - rate * cos(q[k]), w * w / 2 - rate * cos(th), 1e-11);
+    }
+    holonom_free(m);
+}
+
+static void many_runs_of_a_method_that_remembers_are_refused(void **state) {
+    (void)state;
+    holonom_mechanism *m = pendulum();
+    holonom_fault fault;
+    holonom_ending end;
+    double q = 0.5, v = 0;
+    assert_int_equal(holonom_run_many(m, "projection@rk4:h=1e-3", 1, 1, &q, &v, &end, &fault),
+                     HOLONOM_INPUT);
+    assert_non_null(strstr(fault.message, "cannot step side by side"));
+    assert_int_equal(holonom_run_many(m, "index1@rk4:h=1e-3", 1, HUGE_VAL, &q, &v, &end, &fault),
+                     HOLONOM_INPUT);
+    assert_near(q, 0.5, 0);
+    holonom_free(m);
+}
+
 static void faults_say_where_and_what(void **state) {
     (void)state;
     holonom_mechanism *m = NULL;
@@ -121,6 +172,8 @@ int main(void) {
         cmocka_unit_test(a_pendulum_has_one_coordinate_and_its_names),
         cmocka_unit_test(a_parameter_changes_the_equations_and_a_bad_one_changes_nothing),
         cmocka_unit_test(a_run_keeps_its_mechanism),
+        cmocka_unit_test(many_runs_end_as_runs_alone_and_keep_their_energy),
+        cmocka_unit_test(many_runs_of_a_method_that_remembers_are_refused),
         cmocka_unit_test(faults_say_where_and_what),
         cmocka_unit_test(nothing_may_be_freed),
     };
