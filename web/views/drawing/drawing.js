@@ -65,15 +65,9 @@ export function createDrawing(el, store, actions) {
     "describe",
   );
   const caption = h("p", { class: "caption" });
-  const tools = h("div", { class: "undo-tools" }, lengths.button);
+  const tools = h("div", { class: "undo-tools" }, lengths.button, ...hand.tools);
   const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note, tools);
-  const choices = h(
-    "div",
-    { class: "choices" },
-    ...Object.values(toggles),
-    describe,
-    ...hand.tools,
-  );
+  const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
   const demonstrations = h(
     "div",
     { class: "demonstrations" },

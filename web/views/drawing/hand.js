@@ -175,7 +175,7 @@ export function createHand(layer, data, stage, actions) {
     },
     say() {
       const held = data.hand;
-      say(hand, held ? "hand holds: Escape lets go" : "hand: ← → ↑ ↓");
+      say(hand, held ? "Escape lets go" : "hand: ← → ↑ ↓");
     },
   };
 }
