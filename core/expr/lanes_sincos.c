@@ -208,11 +208,6 @@ hn_lanes_set hn_lanes_set_best(void) {
     return HN_LANES_PLAIN;
 }
 
-const char *hn_lanes_set_name(hn_lanes_set set) {
-    static const char *const names[HN_LANES_SETS] = {"plain", "avx2", "avx512"};
-    return names[set];
-}
-
 int hn_lanes_set_width(hn_lanes_set set) {
     static const int widths[HN_LANES_SETS] = {2, 4, 8};
     return widths[set];

@@ -23,8 +23,6 @@ typedef enum hn_lanes_set {
 
 /// The best set that this processor has.
 hn_lanes_set hn_lanes_set_best(void);
-/// "plain", "avx2", "avx512".
-const char *hn_lanes_set_name(hn_lanes_set set);
 
 /// Doubles in a vector of this set.
 int hn_lanes_set_width(hn_lanes_set set);

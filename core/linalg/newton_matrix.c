@@ -108,10 +108,6 @@ void hn_newton_matrix_free(hn_newton_matrix *m) {
     }
 }
 
-bool hn_newton_matrix_is_sparse(const hn_newton_matrix *m) {
-    return m->sparse;
-}
-
 // ---- filling ----
 
 void hn_newton_matrix_begin(hn_newton_matrix *m, int n) {

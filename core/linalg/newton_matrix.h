@@ -30,7 +30,6 @@ typedef enum hn_number_field { HN_REAL, HN_COMPLEX } hn_number_field;
 HN_MUST_CHECK hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field,
                                                         bool sparse, int n_max, int entries_max);
 void hn_newton_matrix_free(hn_newton_matrix *m); ///< NULL is legal
-bool hn_newton_matrix_is_sparse(const hn_newton_matrix *m);
 
 /// Begins a matrix of size n, all zero.
 void hn_newton_matrix_begin(hn_newton_matrix *m, int n);

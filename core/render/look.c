@@ -48,11 +48,6 @@ const hn_surface *hn_surface_get(hn_theme theme) {
     return &surfaces[theme];
 }
 
-const char *hn_theme_name(hn_theme theme) {
-    HN_ASSERT((int)theme >= 0 && theme < HN_THEME_COUNT);
-    return theme_names[theme];
-}
-
 static void put_colour(hn_strbuf *b, const char *key, uint32_t rgb) {
     hn_json_key(b, key);
     hn_strbuf text;

@@ -56,7 +56,6 @@ typedef struct hn_surface {
     uint32_t tear;     ///< the gap at a cut joint
 } hn_surface;
 const hn_surface *hn_surface_get(hn_theme theme);
-const char *hn_theme_name(hn_theme theme); ///< "light", "dark"
 
 /// Writes the table: {"surfaces":{"light":{"paper":"#FCFCFA",...},"dark":{...}},
 /// "slots":[{"slot":0,"name","light","dark","dash":[...],"marker","glyph"}, ... 7 methods],

@@ -429,14 +429,6 @@ static void put_tidy(hn_strbuf *b, const hn_strbuf *text) {
     b->failed |= text->failed;
 }
 
-void hn_lesson_nodes_text(hn_strbuf *b, const cJSON *nodes, int columns) {
-    hn_strbuf all;
-    hn_strbuf_init(&all);
-    put_blocks(&all, nodes, 0, columns);
-    put_tidy(b, &all);
-    hn_strbuf_reset(&all);
-}
-
 void hn_lesson_spell_out(cJSON *lesson) {
     if (is_kind(lesson, "math")) {
         hn_strbuf b;

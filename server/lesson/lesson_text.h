@@ -17,6 +17,4 @@ void hn_lesson_text(hn_strbuf *b, const cJSON *lesson, int columns);
 /// Gives every formula of a lesson a spelling in ASCII, which hn_lesson_text() then prints: for
 /// terminals without UTF-8.
 void hn_lesson_spell_out(cJSON *lesson);
-/// Appends nodes of a line, or blocks, without a lesson around them.
-void hn_lesson_nodes_text(hn_strbuf *b, const cJSON *nodes, int columns);
 #endif

@@ -19,10 +19,6 @@ static const struct {
              {"phi", HN_TERM_PHI}, {"phi_t", HN_TERM_PHI_T}, {"gamma", HN_TERM_GAMMA}};
 enum { N_TERMS = sizeof TERMS / sizeof *TERMS };
 
-const char *hn_program_service_name(hn_program_service service) {
-    return SERVICES[service];
-}
-
 // ---- failures ----
 
 /// The first failure is the one that counts; the process is not asked again.

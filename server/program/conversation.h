@@ -28,8 +28,6 @@ typedef enum hn_program_service {
     HN_PROGRAM_SOLVE,
     HN_PROGRAM_SERVICES
 } hn_program_service;
-/// "accelerations", "step", "solve"
-const char *hn_program_service_name(hn_program_service service);
 
 enum { HN_CONVERSATION_AHEAD = 64 }; ///< times of one question to a program that solves
 

@@ -134,10 +134,6 @@ int hn_tui_exercise_n_fields(const hn_tui_exercise *x) {
     return x->n_fields;
 }
 
-const char *hn_tui_exercise_field(const hn_tui_exercise *x, int i) {
-    return x->fields[i].name;
-}
-
 const char *hn_tui_exercise_answer(const hn_tui_exercise *x, int i) {
     return x->fields[i].answer;
 }

@@ -18,7 +18,6 @@ void hn_tui_exercise_free(hn_tui_exercise *x); ///< NULL is legal
 const char *hn_tui_exercise_id(const hn_tui_exercise *x);
 /// A field is a part, or an entry of the matrix that is asked for.
 int hn_tui_exercise_n_fields(const hn_tui_exercise *x);
-const char *hn_tui_exercise_field(const hn_tui_exercise *x, int i); ///< its name: "a", "J12"
 const char *hn_tui_exercise_answer(const hn_tui_exercise *x, int i);
 /// Keeps what was typed for a field; what was checked before it no longer holds.
 void hn_tui_exercise_set_answer(hn_tui_exercise *x, int i, const char *text);

@@ -394,10 +394,6 @@ double hn_recording_duration(const hn_recording *r) {
     return r->duration;
 }
 
-int hn_recording_n_tracks(const hn_recording *r) {
-    return r->n_tracks;
-}
-
 const hn_track *hn_recording_track(const hn_recording *r, int i) {
     return &r->tracks[i];
 }

@@ -58,7 +58,6 @@ double hn_recording_duration(const hn_recording *r); ///< [s]
 double hn_recording_time(const hn_recording *r, int frame);
 /// The number that the page gives to the same moment.
 int hn_recording_page_frame(const hn_recording *r, int frame);
-int hn_recording_n_tracks(const hn_recording *r);
 const hn_track *hn_recording_track(const hn_recording *r, int i);
 hn_track_end hn_recording_end(const hn_recording *r, int i);
 /// Takes the errors of the frames recorded since the last call, all of them when the reference has

@@ -60,7 +60,7 @@ struct hn_projector {
     double *gap, *step, *multiplier; // nc, nv, nc
     double *best, *impulse, *closed; // nv; nc: sums over a velocity projection
 
-    long long evals, factorisations, fallbacks, solves;
+    long long evals, factorisations, fallbacks;
     double ops;
 };
 
@@ -270,7 +270,6 @@ static hn_status make_factor(hn_projector *p, double t, const double *q, bool fo
 
 /// step and multiplier such that J step = -gap.
 static hn_status solve(hn_projector *p) {
-    p->solves++;
     if (!p->dense) {
         for (int i = 0; i < p->nc; i++) {
             p->gap[i] = -p->gap[i];
@@ -511,8 +510,4 @@ long long hn_projector_factorisations(const hn_projector *p) {
 
 long long hn_projector_fallbacks(const hn_projector *p) {
     return p->fallbacks;
-}
-
-long long hn_projector_solves(const hn_projector *p) {
-    return p->solves;
 }

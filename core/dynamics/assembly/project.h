@@ -54,5 +54,4 @@ double hn_projector_ops(const hn_projector *p);
 /// Factorisations so far, of which by the dense solve, and solves.
 long long hn_projector_factorisations(const hn_projector *p);
 long long hn_projector_fallbacks(const hn_projector *p);
-long long hn_projector_solves(const hn_projector *p);
 #endif

@@ -14,10 +14,6 @@ hn_vec3 hn_vec3_num(const double v[3]) {
     return (hn_vec3){{hn_num(v[0]), hn_num(v[1]), hn_num(v[2])}};
 }
 
-bool hn_vec3_is_zero(hn_vec3 a) {
-    return hn_is_zero(a.x[0]) && hn_is_zero(a.x[1]) && hn_is_zero(a.x[2]);
-}
-
 static hn_ex add(hn_graph *g, hn_ex a, hn_ex b) {
     if (hn_is_zero(a)) {
         return b;

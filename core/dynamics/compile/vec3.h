@@ -25,7 +25,6 @@ typedef struct hn_sym3 {
 /// Vectors: of zeros, of numbers; whether all components are zero; sums, multiples and products.
 hn_vec3 hn_vec3_zero(void);
 hn_vec3 hn_vec3_num(const double v[3]);
-bool hn_vec3_is_zero(hn_vec3 a);
 hn_vec3 hn_vec3_add(hn_graph *g, hn_vec3 a, hn_vec3 b);
 hn_vec3 hn_vec3_sub(hn_graph *g, hn_vec3 a, hn_vec3 b);
 hn_vec3 hn_vec3_scale(hn_graph *g, hn_ex k, hn_vec3 a);

@@ -394,10 +394,6 @@ hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, const double *q, 
                : HN_ERR_DIVERGED;
 }
 
-const double *hn_accel_jacobian_accelerations(const hn_accel_jacobian *j) {
-    return j->a;
-}
-
 // ---- derivatives ----
 
 void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const double *dv, double *da) {

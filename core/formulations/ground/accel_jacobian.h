@@ -59,8 +59,6 @@ void hn_accel_jacobian_back(hn_accel_jacobian *j, const double *w, double *out);
 void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, double *rows);
 /// d(q', v')/d(q, v), (nq + nv) square, row-major. Fails as hn_accel_jacobian_prepare().
 HN_MUST_CHECK hn_status hn_accel_jacobian_fill(hn_accel_jacobian *j, double *jac);
-/// a (nv) at the state of the last hn_accel_jacobian_at().
-const double *hn_accel_jacobian_accelerations(const hn_accel_jacobian *j);
 long long hn_accel_jacobian_evals(const hn_accel_jacobian *j); ///< accelerations found on the way
 double hn_accel_jacobian_ops(const hn_accel_jacobian *j);      ///< arithmetic operations so far
 

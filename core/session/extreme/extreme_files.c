@@ -49,18 +49,6 @@ static hn_status add_case(hn_extreme *x, const char *file, const char *text, siz
     return r.status;
 }
 
-hn_status hn_extreme_load_text(const hn_library *lib, const char *text, size_t n, hn_extreme **out,
-                               hn_diags *diags) {
-    hn_extreme *x = make(lib);
-    const hn_status status = x ? add_case(x, "case", text, n, diags) : HN_ERR_MEMORY;
-    if (status != HN_OK) {
-        hn_extreme_free(x);
-        return status;
-    }
-    *out = x;
-    return HN_OK;
-}
-
 /// "x04-stiff-spring.json" is case x4.
 static int number_of(const char *file) {
     int number = 0, used = 0;

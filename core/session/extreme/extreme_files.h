@@ -10,8 +10,5 @@
 /// and a JSON pointer. Fails: HN_ERR_INPUT, HN_ERR_IO, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_ids,
                                         hn_extreme **out, hn_diags *diags);
-/// Reads one case from JSON text; it may refer to the library's scenes.
-HN_MUST_CHECK hn_status hn_extreme_load_text(const hn_library *lib, const char *text, size_t n,
-                                             hn_extreme **out, hn_diags *diags);
 void hn_extreme_free(hn_extreme *x); ///< NULL is legal
 #endif

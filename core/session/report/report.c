@@ -309,10 +309,6 @@ const hn_report_scene *hn_report_scene_at(const hn_report *r, int i) {
     return &r->scenes[i];
 }
 
-double hn_report_elapsed(const hn_report *r) {
-    return r->elapsed;
-}
-
 bool hn_report_stopped(const hn_report *r) {
     return r->stopped;
 }

@@ -62,8 +62,7 @@ typedef struct hn_report_scene {
 /// Scenes of the report, and scene i.
 int hn_report_n_scenes(const hn_report *report);
 const hn_report_scene *hn_report_scene_at(const hn_report *report, int i);
-double hn_report_elapsed(const hn_report *report); ///< wall time [s]
-bool hn_report_stopped(const hn_report *report);   ///< on request
+bool hn_report_stopped(const hn_report *report); ///< on request
 /// Sizes that a method survived, of strip->n.
 int hn_strip_survived(const hn_strip *strip);
 

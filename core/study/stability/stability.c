@@ -36,7 +36,6 @@ struct hn_stability_path {
     double *energy;                         ///< looks + 1
     double highest, highest_kinetic, scale; ///< [J]
     double rate;                            ///< see hn_stability_path_rate()
-    const char *means;
     int n_values[HN_STABILITY_LOOKS + 1];
     hn_eigenvalue *values; ///< (looks + 1) x 2 nv
     double *q;             ///< nq: scratch while it is made
@@ -110,7 +109,6 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
     }
 
     // start anew: an earlier method may have failed on the way
-    p->means = means;
     p->highest_kinetic = p->rate = 0;
     p->highest = -HUGE_VAL;
     m->v_min = HUGE_VAL;
@@ -212,10 +210,6 @@ void hn_stability_path_free(hn_stability_path *p) {
 
 double hn_stability_path_rate(const hn_stability_path *p) {
     return p->rate;
-}
-
-const char *hn_stability_path_means(const hn_stability_path *p) {
-    return p->means;
 }
 
 int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out) {

@@ -68,8 +68,7 @@ HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const dou
                                                  hn_stability_path **out, hn_diag *diag);
 /// The largest rate of a coordinate along the motion, lengths over the characteristic length [1/s].
 double hn_stability_path_rate(const hn_stability_path *p);
-void hn_stability_path_free(hn_stability_path *p);               ///< NULL is legal
-const char *hn_stability_path_means(const hn_stability_path *p); ///< the method that computed it
+void hn_stability_path_free(hn_stability_path *p); ///< NULL is legal
 /// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
 /// does not exist (a singular configuration).
 int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out);

@@ -304,10 +304,6 @@ void hn_static_files_free(hn_static_files *s) {
     }
 }
 
-int hn_static_files_count(const hn_static_files *s) {
-    return s->n;
-}
-
 const char *hn_static_files_policy(const hn_static_files *s) {
     return hn_strbuf_text(&s->policy);
 }

@@ -13,7 +13,6 @@ typedef struct hn_static_files hn_static_files;
 HN_MUST_CHECK hn_status hn_static_files_create(const char *folder, hn_static_files **out,
                                                hn_diag *diag);
 void hn_static_files_free(hn_static_files *files); ///< NULL is legal
-int hn_static_files_count(const hn_static_files *files);
 /// The content security policy of the page: nothing inline but the import maps that the page holds.
 const char *hn_static_files_policy(const hn_static_files *files);
 /// Answers with the file of that address ("/" is index.html): 200, 304, or 0 when there is none (no
