@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MAX_NAME = 64, MAX_NESTING = 50 };
+enum { MAX_NAME = 64, MAX_NESTING = 100 };
 
 // ---- characters beyond ASCII ----
 
@@ -245,7 +245,9 @@ static void write_fraction(rewriter *w) {
     w->below = 0;
     hn_strbuf_add(w->out, "(");
     for (int part = 0; part < 2; part++) {
+        w->nesting++;
         write_fraction_part(w);
+        w->nesting--;
         w->operand = NOTHING;
         w->below = 0;
         hn_strbuf_add(w->out, part == 0 ? "/" : ")");
@@ -308,7 +310,9 @@ static void write_function(rewriter *w, const char *function) {
         w->at += 5;
     }
     const bool bare = *w->at == '\\' || isalpha((unsigned char)*w->at);
+    w->nesting++; // sin sin sin ... nests without a bracket
     write_argument(w);
+    w->nesting--;
     const char sum = w->at[strspn(w->at, " \t\r\n")];
     if (bare && !w->bare && (sum == '+' || sum == '-')) {
         w->bare = w->word;

@@ -24,7 +24,8 @@ static hn_status read_quantity(hn_value_sheet *s, const char *text, hn_ex *e, hn
     char head[MAX_CHARS];
     *unit = s->unit;
     hn_status status = hn_draw_parse_answer(s->draw, text, e, diag);
-    for (size_t i = 1; status != HN_OK && text[i]; i++) {
+    const size_t n = strlen(text);
+    for (size_t i = 1; status != HN_OK && i < n && n < MAX_CHARS; i++) {
         if (may_begin_unit(text, i)) {
             snprintf(head, sizeof head, "%.*s", (int)i, text);
             if (hn_unit_parse(text + i, unit) && text[i + strspn(text + i, " ")] &&

@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 // one part of each kind of number and formula, small enough to see through
 static const char VALUES[] =
@@ -91,6 +92,25 @@ static void numbers_are_read_with_their_units(void **state) {
     expect(e, "a", "[1, 2]", "shape");
     expect(e, "a", "null", "blank");
     expect(e, "a", "true", "unreadable");
+}
+
+static void a_number_without_an_end_is_refused_at_once(void **state) {
+    enum { TERMS = 150000 };
+    hn_strbuf b;
+    static hn_verdict v;
+    hn_strbuf_init(&b);
+    hn_strbuf_add(&b, "{\"a\": \"");
+    for (int i = 0; i < TERMS; i++) {
+        hn_strbuf_add(&b, "1+");
+    }
+    hn_strbuf_add(&b, "\"}");
+
+    // a unit is not looked for behind each digit: that would take 10 s of computing and more
+    const clock_t start = clock();
+    assert_int_equal(hn_grade_json(*state, hn_strbuf_text(&b), b.n, 7, &v), HN_OK);
+    assert_true((double)(clock() - start) / CLOCKS_PER_SEC < 5);
+    assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+    hn_strbuf_reset(&b);
 }
 
 static void no_digit_of_a_number_is_taken_for_a_unit(void **state) {
@@ -548,6 +568,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_mistake_that_chance_explains_is_called_likely, setup,
                                         teardown),
         cmocka_unit_test(two_mistakes_that_explain_a_number_are_both_named),
+        cmocka_unit_test_setup_teardown(a_number_without_an_end_is_refused_at_once, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(two_mistakes_in_formulas_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(mistakes_in_formulas_are_named, setup, teardown),
         cmocka_unit_test_setup_teardown(vectors_are_graded_entry_by_entry, setup, teardown),

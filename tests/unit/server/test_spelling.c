@@ -131,6 +131,31 @@ static void what_reads_in_two_ways_is_refused_at_its_column(void **state) {
     }
 }
 
+/// A text that repeats a word, rewritten: the stack must hold it, however long it is.
+static void check_repeated(const char *word) {
+    enum { TIMES = 100000 };
+    hn_strbuf text, out;
+    hn_strbuf_init(&text);
+    hn_strbuf_init(&out);
+    for (int i = 0; i < TIMES; i++) {
+        hn_strbuf_add(&text, word);
+    }
+    const hn_status status = hn_spelling_normalise(&out, hn_strbuf_text(&text), NULL);
+    assert_true(status == HN_OK || status == HN_ERR_INPUT);
+    assert_true(out.n < 12 * text.n);
+    hn_strbuf_reset(&text);
+    hn_strbuf_reset(&out);
+}
+
+static void words_without_end_do_not_exhaust_the_stack(void **state) {
+    static const char *const words[] = {"sin ", "\\sin",  "\\frac", "\\frac{",
+                                        "sin(", "\\sqrt", "((",     "\\frac\\sin"};
+    (void)state;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        check_repeated(words[i]);
+    }
+}
+
 static void a_function_before_a_sum_is_remarked(void **state) {
     static const char *const quiet[] = {"cos(th1)-th2",  "cos(th1-th2)",
                                         "cos th1",       "cos th1*th2",
@@ -218,6 +243,7 @@ int main(void) {
         cmocka_unit_test(latex_is_read),
         cmocka_unit_test(factors_side_by_side_are_multiplied),
         cmocka_unit_test(what_reads_in_two_ways_is_refused_at_its_column),
+        cmocka_unit_test(words_without_end_do_not_exhaust_the_stack),
         cmocka_unit_test(a_function_before_a_sum_is_remarked),
         cmocka_unit_test(a_name_stands_for_shorter_ones),
         cmocka_unit_test(any_bytes_end_and_grow_by_a_factor_alone),
