@@ -51,25 +51,13 @@ static bool depends_on_time(const hn_system *sys) {
 }
 
 static hn_status finish(hn_system *sys) {
-    size_t n = (size_t)sys->nv, m = (size_t)sys->nc;
-    sys->M_dense = hn_system_get_zeros(sys, n * n);
-    sys->J_dense = hn_system_get_zeros(sys, m * n);
     HN_TRY(hn_graph_status(sys->g));
     if (hn_arena_failed(sys->arena) || sys->M.failed || sys->J.failed || sys->efforts.failed) {
         return HN_ERR_MEMORY;
     }
 
-    // dense copies of the sorted entries, for printing and grading
     hn_entries_sort(&sys->M);
     hn_entries_sort(&sys->J);
-    for (int k = 0; k < sys->M.n; k++) {
-        const hn_entry *e = &sys->M.at[k];
-        sys->M_dense[(size_t)e->row * n + (size_t)e->col] = e->e;
-        sys->M_dense[(size_t)e->col * n + (size_t)e->row] = e->e;
-    }
-    for (int k = 0; k < sys->J.n; k++) {
-        sys->J_dense[(size_t)sys->J.at[k].row * n + (size_t)sys->J.at[k].col] = sys->J.at[k].e;
-    }
 
     // the sizes that callers ask for
     sys->info.nq = sys->nq;
@@ -84,32 +72,69 @@ static const hn_quantity *place_on(const hn_joint *joint, int body) {
     return joint->parent == body ? joint->parent_at : joint->child == body ? joint->child_at : NULL;
 }
 
-/// Largest distance between two joints of one body, of the ground only if `grounds`.
-static double largest_arm(const hn_scene *scene, int grounds) {
-    double largest = 0;
+/// Joints of each body, one body after the other: list[start[body]] .. list[start[body + 1] - 1];
+/// the ground comes last.
+typedef struct joints_of {
+    int *start, *list;
+} joints_of;
+
+static int place_in_list(const hn_scene *scene, int body) {
+    return body == HN_GROUND ? scene->n_bodies : body;
+}
+
+static hn_status list_joints(const hn_scene *scene, hn_arena *arena, joints_of *out) {
+    const size_t n = (size_t)scene->n_bodies + 1;
+    out->start = hn_arena_ints(arena, n + 2);
+    out->list = hn_arena_ints(arena, 2 * (size_t)scene->n_joints);
+    if (hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+
+    // counted, then listed
     for (int a = 0; a < scene->n_joints; a++) {
-        int bodies[2] = {scene->joints[a].parent, scene->joints[a].child};
-        for (int e = 0; e < 2; e++) {
-            for (int b = 0; b < a && (bodies[e] == HN_GROUND) == grounds; b++) {
-                const hn_quantity *p = place_on(&scene->joints[a], bodies[e]);
-                const hn_quantity *q = place_on(&scene->joints[b], bodies[e]);
-                double d[3] = {0, 0, 0};
-                for (int i = 0; q && i < 3; i++) {
-                    d[i] = p[i].value - q[i].value;
-                }
-                largest = fmax(largest, sqrt(hn_num3_dot(d, d)));
+        out->start[place_in_list(scene, scene->joints[a].parent) + 2]++;
+        out->start[place_in_list(scene, scene->joints[a].child) + 2]++;
+    }
+    for (size_t k = 0; k < n; k++) {
+        out->start[k + 1] += out->start[k];
+    }
+    for (int a = 0; a < scene->n_joints; a++) {
+        out->list[out->start[place_in_list(scene, scene->joints[a].parent) + 1]++] = a;
+        out->list[out->start[place_in_list(scene, scene->joints[a].child) + 1]++] = a;
+    }
+    return HN_OK;
+}
+
+/// Largest distance between two joints of a body.
+static double arm_of(const hn_scene *scene, const joints_of *joints, int body) {
+    const int at = place_in_list(scene, body);
+    double largest = 0;
+    for (int a = joints->start[at]; a < joints->start[at + 1]; a++) {
+        for (int b = joints->start[at]; b < a; b++) {
+            const hn_quantity *p = place_on(&scene->joints[joints->list[a]], body);
+            const hn_quantity *q = place_on(&scene->joints[joints->list[b]], body);
+            double d[3];
+            for (int i = 0; i < 3; i++) {
+                d[i] = p[i].value - q[i].value;
             }
+            largest = fmax(largest, sqrt(hn_num3_dot(d, d)));
         }
     }
     return largest;
 }
 
-static double characteristic_length(const hn_scene *scene) {
-    double length = largest_arm(scene, 0);
-    if (length <= 0) {
-        length = largest_arm(scene, 1);
+/// The largest arm of a body; where no body has one, that of the ground.
+static hn_status find_length(hn_system *sys) {
+    const hn_scene *scene = sys->scene;
+    joints_of joints;
+    double length = 0;
+    HN_TRY(list_joints(scene, sys->arena, &joints));
+    for (int body = 0; body < scene->n_bodies; body++) {
+        length = fmax(length, arm_of(scene, &joints, body));
     }
-    return length > 0 ? length : 1;
+    length = length > 0 ? length : arm_of(scene, &joints, HN_GROUND);
+    sys->length = length > 0 ? length : 1;
+    return HN_OK;
 }
 
 hn_system_opts hn_system_opts_default(void) {
@@ -123,7 +148,7 @@ static hn_status compile(hn_system *sys) {
         return HN_ERR_MEMORY;
     }
     hn_graph_set_interrupt(sys->g, sys->opts.interrupt);
-    sys->length = characteristic_length(sys->scene);
+    HN_TRY(find_length(sys));
     sys->kinetic = sys->potential = hn_num(0);
     const hn_status status =
         sys->scene->is_lagrangian ? hn_lagrangian_compile(sys) : hn_bodies_compile(sys);

@@ -74,11 +74,9 @@ hn_graph *hn_system_graph(const hn_system *sys) {
 }
 
 hn_system_exprs hn_system_get_exprs(const hn_system *sys) {
-    return (hn_system_exprs){.M = sys->M_dense,
-                             .f = sys->f,
+    return (hn_system_exprs){.f = sys->f,
                              .phi = sys->phi,
                              .phi_t = sys->phi_t,
-                             .J = sys->J_dense,
                              .gamma = sys->gamma,
                              .points = sys->points,
                              .kinetic = sys->kinetic,
@@ -86,6 +84,29 @@ hn_system_exprs hn_system_get_exprs(const hn_system *sys) {
                              .q_symbols = sys->q_symbols,
                              .v_symbols = sys->v_symbols,
                              .t_symbol = sys->t_symbol};
+}
+
+static hn_ex *spread(const hn_entries *list, int rows, int cols, hn_arena *arena) {
+    const size_t n = (size_t)cols;
+    hn_ex *dense = hn_arena_get(arena, ((size_t)rows * n + 1) * sizeof *dense);
+    for (int k = 0; dense && k < list->n; k++) {
+        dense[(size_t)list->at[k].row * n + (size_t)list->at[k].col] = list->at[k].e;
+    }
+    return dense;
+}
+
+const hn_ex *hn_system_dense_mass(const hn_system *sys, hn_arena *arena) {
+    const size_t n = (size_t)sys->nv;
+    hn_ex *dense = spread(&sys->M, sys->nv, sys->nv, arena);
+    for (int k = 0; dense && k < sys->M.n; k++) {
+        const hn_entry *e = &sys->M.at[k];
+        dense[(size_t)e->col * n + (size_t)e->row] = e->e;
+    }
+    return dense;
+}
+
+const hn_ex *hn_system_dense_jacobian(const hn_system *sys, hn_arena *arena) {
+    return spread(&sys->J, sys->nc, sys->nv, arena);
 }
 
 int hn_system_position_of(const hn_system *sys, int i) {

@@ -85,11 +85,9 @@ double hn_system_next_corner(const hn_system *sys, double t);
 // ---- expressions, for printing, exporting and grading; borrowed arrays in the system's graph ----
 hn_graph *hn_system_graph(const hn_system *sys);
 typedef struct hn_system_exprs {
-    const hn_ex *M;      ///< nv x nv row-major
     const hn_ex *f;      ///< nv
     const hn_ex *phi;    ///< nc
     const hn_ex *phi_t;  ///< nc
-    const hn_ex *J;      ///< nc x nv row-major
     const hn_ex *gamma;  ///< nc
     const hn_ex *points; ///< 3 n_points, world [m]
     hn_ex kinetic, potential;
@@ -97,5 +95,8 @@ typedef struct hn_system_exprs {
     int t_symbol;
 } hn_system_exprs;
 hn_system_exprs hn_system_get_exprs(const hn_system *sys);
+/// M (nv x nv) and J (nc x nv), row-major, in memory from `arena`; NULL when that is out.
+HN_MUST_CHECK const hn_ex *hn_system_dense_mass(const hn_system *sys, hn_arena *arena);
+HN_MUST_CHECK const hn_ex *hn_system_dense_jacobian(const hn_system *sys, hn_arena *arena);
 
 #endif

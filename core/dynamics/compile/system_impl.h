@@ -80,7 +80,6 @@ struct hn_system {
     hn_entries J;
     hn_ex *f, *phi, *phi_t, *gamma, *points;
     hn_ex kinetic, potential;
-    hn_ex *M_dense, *J_dense;
 
     hn_row *rows;
     const char **dropped; ///< names of the info.rows_dropped rows that vanish identically

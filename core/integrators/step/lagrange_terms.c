@@ -36,6 +36,7 @@ typedef struct source {
     const hn_system *sys;
     hn_graph *g;
     hn_system_exprs ex;
+    const hn_ex *M; // n x n
     int nq, n;
     int *symbols;              // q, v, t
     hn_ex *of_q;               // nq: derivatives by the entries of q, or their rates G v
@@ -51,7 +52,7 @@ static void build_momentum(source *s) {
         hn_ex sum = hn_num(0);
         for (int j = 0; j < n; j++) {
             const hn_ex v = hn_graph_symbol_expr(s->g, s->ex.v_symbols[j]);
-            sum = hn_add(s->g, sum, hn_mul(s->g, s->ex.M[(size_t)i * n + j], v));
+            sum = hn_add(s->g, sum, hn_mul(s->g, s->M[(size_t)i * n + j], v));
         }
         s->momentum[i] = sum;
     }
@@ -164,7 +165,7 @@ static void pick_entries(hn_lagrange *l, source *s) {
 
 static hn_status compile_matrices(hn_lagrange *l, source *s, hn_arena *arena) {
     const size_t n = (size_t)s->n;
-    memcpy(s->list, s->ex.M, n * n * sizeof *s->list);
+    memcpy(s->list, s->M, n * n * sizeof *s->list);
     for (size_t i = 0; i < n; i++) {
         hn_diff(s->g, s->momentum[i], s->ex.q_symbols, s->nq, s->of_q);
         go_along_speeds(s, s->list + n * n + i * n);
@@ -223,7 +224,7 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
     // a mass matrix of numbers alone is constant
     l->constant = 1;
     for (int i = 0; i < n * n; i++) {
-        l->constant &= hn_is_number(s->ex.M[i], NULL);
+        l->constant &= hn_is_number(s->M[i], NULL);
     }
     return status;
 }
@@ -246,6 +247,7 @@ hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena, hn_lagrange 
     s.still = hn_arena_get(arena, n * sizeof *s.still);
     s.zero = hn_arena_get(arena, n * sizeof *s.zero);
     s.list = hn_arena_get(arena, (2 * n * n + 2 * n) * sizeof *s.list);
+    s.M = hn_system_dense_mass(sys, arena);
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }

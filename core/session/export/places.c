@@ -33,8 +33,8 @@ static void put_constant(hn_strbuf *b, const hn_exporter *e, int indent, const c
 static bool is_read(const hn_exporter *e, int symbol) {
     const hn_graph *g = hn_system_graph(e->sys);
     const int nv = e->info.nv, nc = e->info.nc;
-    const hn_ex *const lists[] = {e->x.M, e->x.f,     e->x.phi,      e->x.phi_t,
-                                  e->x.J, e->x.gamma, &e->x.kinetic, &e->x.potential};
+    const hn_ex *const lists[] = {e->M, e->x.f,     e->x.phi,      e->x.phi_t,
+                                  e->J, e->x.gamma, &e->x.kinetic, &e->x.potential};
     const int sizes[] = {nv * nv, nv, nc, nc, nc * nv, nc, 1, 1};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         for (int i = 0; i < sizes[k]; i++) {
@@ -166,9 +166,9 @@ static hn_status put_terms(hn_strbuf *b, const hn_exporter *e, int indent) {
     if (e->blanks) {
         put_blanks(b, e, indent);
     } else {
-        n = add_entries(list, n, "mass", e->x.M, nv, nv);
+        n = add_entries(list, n, "mass", e->M, nv, nv);
         n = add_entries(list, n, "force", e->x.f, nv, 0);
-        n = add_entries(list, n, "jacobian", e->x.J, nc, nv);
+        n = add_entries(list, n, "jacobian", e->J, nc, nv);
         n = add_entries(list, n, "bias", e->x.gamma, nc, 0);
     }
     n = add_entries(list, n, "closure", e->x.phi, nc, 0);

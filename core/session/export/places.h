@@ -23,6 +23,7 @@ typedef struct hn_exporter {
     hn_system *sys; ///< with parameters as symbols, where that can be compiled
     hn_system_info info;
     hn_system_exprs x;
+    const hn_ex *M, *J; ///< dense
     const hn_language *language;
     const hn_language_solver *solver; ///< NULL: the language has one way only
     double alpha, beta;               ///< Baumgarte's [1/s]

@@ -132,7 +132,9 @@ static hn_status compile(hn_exporter *e, hn_diags *diags) {
     }
     e->info = hn_system_get_info(e->sys);
     e->x = hn_system_get_exprs(e->sys);
-    return HN_OK;
+    e->M = hn_system_dense_mass(e->sys, e->arena);
+    e->J = hn_system_dense_jacobian(e->sys, e->arena);
+    return e->M && e->J ? HN_OK : HN_ERR_MEMORY;
 }
 
 hn_status hn_export_states_find(hn_exporter *e, hn_diags *diags) {

@@ -24,17 +24,22 @@ typedef struct term {
 
 enum { N_TERMS = 5 };
 
-static void list_terms(const hn_system *sys, term out[N_TERMS]) {
+static hn_status list_terms(const hn_system *sys, hn_arena *arena, term out[N_TERMS]) {
+    const hn_ex *M = hn_system_dense_mass(sys, arena), *J = hn_system_dense_jacobian(sys, arena);
+    if (!M || !J) {
+        return HN_ERR_MEMORY;
+    }
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
     const term list[N_TERMS] = {
-        {"M", "M", "mass matrix", x.M, info.nv, info.nv, 1},
+        {"M", "M", "mass matrix", M, info.nv, info.nv, 1},
         {"f", "f", "applied, gravity and velocity forces, Q - h", x.f, info.nv, 0, 0},
         {"phi", "\\varphi", "loop closure", x.phi, info.nc, 0, 0},
-        {"J", "J", "closure Jacobian", x.J, info.nc, info.nv, 0},
+        {"J", "J", "closure Jacobian", J, info.nc, info.nv, 0},
         {"gamma", "\\gamma", "closure acceleration at a = 0", x.gamma, info.nc, 0, 0},
     };
     memcpy(out, list, sizeof list);
+    return HN_OK;
 }
 
 static const char *symbol_name(const hn_system *sys, int symbol) {
@@ -297,16 +302,16 @@ hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_fo
     double *image =
         position.arena ? hn_arena_doubles(position.arena, (size_t)info.n_user + 1) : NULL;
     term terms[N_TERMS];
-    list_terms(sys, terms);
+    if (status == HN_OK) {
+        status = unit && image ? list_terms(sys, position.arena, terms) : HN_ERR_MEMORY;
+    }
 
     // write in the form asked for
-    if (status != HN_OK || !unit || !image) {
-        status = status != HN_OK ? status : HN_ERR_MEMORY;
-    } else if (form == HN_EQUATIONS_TEXT) {
+    if (status == HN_OK && form == HN_EQUATIONS_TEXT) {
         put_text(b, sys, terms, unit, image, &position);
-    } else if (form == HN_EQUATIONS_LATEX) {
+    } else if (status == HN_OK && form == HN_EQUATIONS_LATEX) {
         put_latex(b, sys, terms, &position);
-    } else {
+    } else if (status == HN_OK) {
         put_json(b, sys, terms, unit, image, &position);
     }
 

@@ -91,14 +91,19 @@ static hn_status create_parts(hn_precise_model *m, hn_arena *arena) {
     const hn_system_exprs ex = hn_system_get_exprs(m->sys);
     const size_t nv = (size_t)m->nv, nc = (size_t)m->nc;
     const size_t most = 2 * nv * nv + nc * nv + nv + 3 * nc + 2;
+    const hn_ex *M = hn_system_dense_mass(m->sys, arena);
+    const hn_ex *J = hn_system_dense_jacobian(m->sys, arena);
     gathering b;
+    if (!M || !J) {
+        return HN_ERR_MEMORY;
+    }
 
     // for accelerations: M, f, J, gamma
     hn_status status = begin(&b, &m->dynamics, most, arena);
     if (status == HN_OK) {
-        put_mass(&b, m, ex.M);
+        put_mass(&b, m, M);
         put_list(&b, ex.f, m->nv, m->f);
-        put_list(&b, ex.J, m->nc * m->nv, m->J);
+        put_list(&b, J, m->nc * m->nv, m->J);
         put_list(&b, ex.gamma, m->nc, m->gamma);
         status = compile(&b, m, arena);
     }
@@ -110,8 +115,8 @@ static hn_status create_parts(hn_precise_model *m, hn_arena *arena) {
     // for projections: M, J, phi, phi_t
     status = begin(&b, &m->closure, most, arena);
     if (status == HN_OK) {
-        put_mass(&b, m, ex.M);
-        put_list(&b, ex.J, m->nc * m->nv, m->J);
+        put_mass(&b, m, M);
+        put_list(&b, J, m->nc * m->nv, m->J);
         put_list(&b, ex.phi, m->nc, m->phi);
         put_list(&b, ex.phi_t, m->nc, m->phi_t);
         status = compile(&b, m, arena);
