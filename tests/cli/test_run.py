@@ -293,6 +293,11 @@ class Run(Command):
             if estimate["q"] is not None:
                 self.assertIn(f"off by up to {estimate['q']:.1e} (rad", done["verdict"]["text"])
         self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
+        # a step longer than the run: its output is judged all the same
+        long = ("four-bar", "--time", "1")
+        alone = json.loads(call("run", *long, "--method", "projection@rk4:h=2", "--at", "1", "--json").stdout)
+        among = json.loads(call("compare", *long, "--methods", "projection@rk4:h=2", "--json").stdout)["methods"][0]
+        self.assertEqual([(d["t_reached"], d["verdict"]["is"]) for d in (alone, among)], [(1, "wrong")] * 2)
         stuck = json.loads(call("run", "four-bar", "--method", "index3@genalpha:h=5", "--time", "1", "--at", "1", "--json").stdout)
         self.assertEqual((stuck["t_reached"], stuck["verdict"]["is"]), (0, "unknown"))
         compared = call("compare", "four-bar", "--methods", "index1@rk4:h=1e-2", "projection@rk4:h=1e-3", "--time", "10", "--json")

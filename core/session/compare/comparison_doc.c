@@ -233,12 +233,13 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         put_reason(b, c, i, &s);
         // a step may end beyond the clock or short of it; its sample is that of the clock's time
         const double clock = clock_of(c);
-        hn_json_put_number(b, "t_reached", hn_comparison_is_live(c, i) ? clock : fmin(s.t, clock));
+        const double reached = hn_comparison_is_live(c, i) ? clock : fmin(s.t, clock);
+        hn_json_put_number(b, "t_reached", reached);
 
         // cost and error totals
         put_cost(b, &s);
         put_step_cost(b, c, i);
-        put_estimate(b, c, i, fmin(s.t, clock), true);
+        put_estimate(b, c, i, reached, true);
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
         hn_json_put_int(b, "chart_changes", s.cost.chart_changes);

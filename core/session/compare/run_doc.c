@@ -508,7 +508,8 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     // an adaptive step may end beyond the time asked for, a fixed one short of it: the sample at
     // that time is given all the same
     const double last = tab->n > 0 ? tab->t[tab->n - 1] : 0;
-    hn_json_put_number(b, "t_reached", fmax(fmin(s.t, request->time), last));
+    const double reached = fmax(fmin(s.t, request->time), last);
+    hn_json_put_number(b, "t_reached", reached);
     put_names(b, model);
     if (tab->reactions) {
         hn_reaction_writer_names(b, tab->reactions);
@@ -521,8 +522,8 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     hn_json_put_number(b, "worst_gap", s.worst_gap);
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
     hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
-    hn_estimate_put_json(b, tab->accuracy, hn_run_spec(run), &tab->track, fmin(s.t, request->time));
-    hn_estimate_put_verdict(b, tab->accuracy, &tab->track, fmin(s.t, request->time));
+    hn_estimate_put_json(b, tab->accuracy, hn_run_spec(run), &tab->track, reached);
+    hn_estimate_put_verdict(b, tab->accuracy, &tab->track, reached);
     put_run_incidents(b, run);
     put_run_cost(b, &s);
     hn_json_end_object(b);
