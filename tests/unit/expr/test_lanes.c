@@ -173,6 +173,7 @@ static void compiled_lanes_have_the_bits_of_the_interpreter(void **state) {
     hn_tape *tapes[] = {make_tape(), make_long_tape()}; // single states stay interpreted
     hn_native_opts opts = hn_native_opts_default(mkdtemp(folder));
     opts.look_after = opts.build_after = 0;
+    opts.time_limit = 600; // a compiler may have to wait for a busy machine
     hn_native_start(&opts);
     for (int set = 0; set <= (int)hn_lanes_set_best(); set++) {
         for (int i = 0; i < 2; i++) {
