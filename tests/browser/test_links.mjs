@@ -47,6 +47,11 @@ test("a link says the same after it was read and written again", () => {
       speed: [0, 1, 0.05, 10][k % 4],
       panel: ["", "lessons", "editor"][k % 3],
       lesson: ["", "02-holding-loops"][k % 2],
+      pulls: pick([
+        [30, 2, 1.25, -0.5, 0, 300.125, 30.5],
+        [31, 2, 1.5, -0.5, 0, 300.125, 30.5],
+        [40, 1, 0, 0, 0, 0, 0],
+      ]),
       note: pick(["why?", "a=b&c", "ü\n2 %", "#"]).join(" "),
       build: "0.1.0 gcc 12.2.0",
     });

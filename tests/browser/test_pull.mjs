@@ -79,6 +79,16 @@ test("a hand pulls while it runs, its force is told, and the log done again give
   );
   assert.ok(again.latest.methods.every(({ work }) => Math.abs(work) > 0));
 
+  // a link does it again as well, to the same frame
+  await page.keyboard.press("l");
+  await until(page, (data) => /link copied|address line/.test(data.notice));
+  const { hash } = new URL(page.url());
+  assert.match(hash, /pulls=/);
+  const other = await bench.open(t, { hash });
+  await until(other, `(data) => data.latest?.frame === ${live.frame}`);
+  assert.deepEqual((await read(other, last)).q, live.q);
+  assert.deepEqual(await read(other, (data) => data.pulls), pulls);
+
   // the stored reference is of another motion; without the hand it is back
   await until(page, (data) => data.reference?.state === "none");
   await page.getByRole("button", { name: "forget the pulls" }).click();

@@ -116,6 +116,7 @@ export function createExchange(store, notice) {
     data.refused = refused;
     data.document = typeof body.scene === "object" ? body.scene : null;
     adopt(description);
+    data.pulls = body.pulls ?? [];
     if (old) {
       api
         .deleteComparison(old)

@@ -5,6 +5,7 @@
 import { api, sentenceOf } from "../api/client.js";
 
 const ENTRY = 7; // numbers of an entry of the log
+const DIGITS = 5; // of a place: a pointer knows no more, and a link is shorter
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -54,8 +55,12 @@ export function createPullActions(store, exchange, notice) {
   }
 
   return {
-    /** Holds a drawn point from a place of the world. @param {number} point @param {number[]} to */
-    pull(point, to) {
+    /**
+     * Holds a drawn point from a place of the world [m].
+     * @param {number} point @param {number[]} place
+     */
+    pull(point, place) {
+      const to = place.map((x) => Number(x.toPrecision(DIGITS)));
       wish = { point, to };
       put({ point, to });
       return follow();

@@ -129,6 +129,7 @@ export function createSceneActions(store, exchange, notice) {
       settings: { ...link.settings },
       methods: [...link.methods],
       speed: link.speed,
+      pulls: link.pulls,
     };
     if (Object.keys(left.settings).length > 0) {
       faults.push(...dropUnknown(left, (await api.scene(id)).parameters));
@@ -161,6 +162,7 @@ export function createSceneActions(store, exchange, notice) {
       selected: view.selected,
       hidden: [...view.hidden],
       ...shownOf(data),
+      pulls: data.pulls,
       note: data.note,
       build: data.build,
     });
@@ -271,8 +273,8 @@ export function createSceneActions(store, exchange, notice) {
     },
     /**
      * @param {string} id
-     * @param {{settings: Record<string, number>, methods: string[], speed?: number}} [link]
-     *   in place of what the scene suggests
+     * @param {{settings: Record<string, number>, methods: string[], speed?: number,
+     *   pulls?: number[][]}} [link] in place of what the scene suggests
      */
     async loadScene(id, link) {
       data.view.lengths = false;
@@ -285,7 +287,9 @@ export function createSceneActions(store, exchange, notice) {
         : await suggested();
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
       const speed = link?.speed || firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
-      await exchange.create({ scene: id, methods, speed, parameters: link?.settings ?? {} });
+      const pulled = link?.pulls?.length ? { pulls: link.pulls } : {};
+      const parameters = link?.settings ?? {};
+      await exchange.create({ scene: id, methods, speed, parameters, ...pulled });
     },
     /**
      * Opens a scene that is none of the shipped ones. The one that runs goes on when the server

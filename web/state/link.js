@@ -18,11 +18,13 @@ const FARTHEST = 1e12;
  * `look`: azimuth and elevation [rad], or empty; `camera`: half the height that is
  * seen and the middle of it [m], or empty; `upper` and `lower`: a quantity and words on how it is drawn, or empty; `zoom` [s] of the
  * plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0 where none is said;
- * `study`, `map`, `panel`, `lesson`: what is open, or ""; `note`: what its author wrote.
+ * `study`, `map`, `panel`, `lesson`: what is open, or ""; `note`: what its author wrote; `pulls`:
+ * what a hand did, as the server's log has it.
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
  *   selected: number, hidden: number[], show: string[], look: number[], camera: number[],
  *   upper: string[], lower: string[], zoom: number[], why: number, speed: number, study: string,
- *   map: string, panel: string, lesson: string, note: string, build: string}} Linked
+ *   map: string, panel: string, lesson: string, note: string, build: string,
+ *   pulls: number[][]}} Linked
  */
 
 /** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
@@ -49,7 +51,37 @@ const EMPTY = () => ({
   lesson: "",
   note: "",
   build: "",
+  pulls: /** @type {number[][]} */ ([]),
 });
+
+const ENTRY = 7; // numbers of a pull: frame, point, place, stiffness and damping of the hand
+const PLACE = 5; // of them without the spring, which is then that of the entry before
+
+/** @param {number[][]} pulls @returns {string} */
+const pullsText = (pulls) =>
+  pulls
+    .map((entry, i) => {
+      const before = pulls[i - 1];
+      const same = before && entry.slice(PLACE).every((x, k) => x === before[PLACE + k]);
+      return (same ? entry.slice(0, PLACE) : entry).join(",");
+    })
+    .join("/");
+
+/** @param {string} text @returns {number[][] | null} null: it is no list of pulls */
+function readPulls(text) {
+  /** @type {number[][]} */
+  const pulls = [];
+  for (const part of text.split("/")) {
+    const entry = part.split(",").map((one) => (NUMBER.test(one) ? Number(one) : NaN));
+    const spring = entry.length === PLACE ? (pulls.at(-1) ?? []).slice(PLACE) : [];
+    const whole = [...entry, ...spring];
+    if (whole.length !== ENTRY || !whole.every(Number.isFinite)) {
+      return null;
+    }
+    pulls.push(whole);
+  }
+  return pulls;
+}
 
 /** What is left out where it is as the page has it by itself, and how it is written. */
 const OPTIONAL = /** @type {const} */ ([
@@ -82,6 +114,7 @@ export function encodeLink(what) {
     ...OPTIONAL.map((name) => [name, String(link[name])]).filter(
       ([name, text]) => text !== String(empty[name]),
     ),
+    ...(link.pulls.length ? [["pulls", pullsText(link.pulls)]] : []),
     ["build", link.build],
   ];
   return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
@@ -172,6 +205,11 @@ const FIELDS = {
     return value.length > LONGEST_NOTE
       ? `has ${value.length} characters; ${LONGEST_NOTE} are kept`
       : "";
+  },
+  pulls: (out, value) => {
+    const pulls = readPulls(value);
+    out.pulls = pulls ?? [];
+    return pulls ? "" : "is no list of pulls: frame,point,x,y,z,stiffness,damping/...";
   },
   build: (out, value) => {
     out.build = value;
