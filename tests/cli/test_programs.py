@@ -185,7 +185,7 @@ class Services(OneFile):
         self.assertEqual(done.returncode, ENDED)
         self.assertRegex(done.stdout, r"(?m)^program:\S+ +ENDED EARLY +0 ")
         self.assertRegex(done.stdout, r"(?m)^baumgarte@rk4\S* +right")
-        self.assertIn("it ended with exit status 3 instead of an answer", " ".join(done.stdout.split()))
+        self.assertIn("it ended with exit status 3 instead of an answer", " ".join(done.stderr.split()))
 
     def test_operations_that_nobody_counts_are_no_zeros(self):
         done = self.run_program(STEP)
