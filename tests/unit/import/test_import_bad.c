@@ -110,7 +110,7 @@ static void loop_files_are_checked_too(void **state) {
 
 static void nesting_and_size_are_bounded(void **state) {
     (void)state;
-    enum { DEEP = 200, MANY = HN_SCENE_MAX_BODIES + 1, ROOM = 1 << 18 };
+    enum { DEEP = 200, MANY = HN_SCENE_MAX_BODIES + 1, ROOM = 1 << 19 };
     static const char body[] = "<body><joint/><geom size='1' contype='0' conaffinity='0'/>";
     char *text = malloc(ROOM);
     hn_status status;
@@ -134,7 +134,7 @@ static void nesting_and_size_are_bounded(void **state) {
     (void)snprintf(text + n, (size_t)(ROOM - n), "</worldbody></mujoco>");
     message = imported_fault(text, NULL, &status);
     assert_int_equal(status, HN_ERR_INPUT);
-    assert_non_null(strstr(message, "more than 2000 bodies"));
+    assert_non_null(strstr(message, "more than 4000 bodies"));
     free(text);
 }
 
