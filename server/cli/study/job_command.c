@@ -39,6 +39,9 @@ HN_JOB_FORM(report, hn_report, hn_report_text)
 HN_JOB_FORM(extreme, hn_extreme, hn_extreme_text)
 HN_JOB_FORM(reference, hn_reference_work, hn_reference_text)
 
+/// The terminal's part of a kind's row. It stands here because core prints nothing and knows no
+/// terminal; the kinds themselves are listed in session/kinds/job.c alone, and one without an entry
+/// here prints its JSON.
 static const struct {
     const char *kind;
     void (*put)(hn_strbuf *b, const void *work);
