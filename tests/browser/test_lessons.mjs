@@ -179,7 +179,9 @@ for (const [theme, width] of [
     await second.getByRole("button", { name: "a hint" }).click();
     await second.getByRole("button", { name: /another hint/ }).click();
     await page.waitForFunction(() => document.querySelectorAll(".hints li").length === 2);
-    await second.getByRole("radio", { name: /J has full row rank, and M is positive/ }).check();
+    await second
+      .getByRole("radio", { name: /M is positive definite on the null space of J/ })
+      .check();
     await second.getByRole("button", { name: "Check" }).click();
     await page.waitForFunction(() =>
       document.querySelectorAll(".verdict-list")[1].textContent.includes("of 9 points"),
