@@ -149,7 +149,7 @@ class NobodyWaitsForAnother(Timed):
         ring = {"scene": "ring", "parameters": {"n": 60}}
         for method, path, body in (("GET", "scenes/ring?set=n:60", None), ("POST", "inspect", ring), ("POST", "terms", ring),
                                    ("POST", "comparisons", {**ring, "methods": ["projection@rk4:h=1e-2"]}),
-                                   ("POST", "runs", {**ring, "method": "ggl@radau5:rtol=1e-6", "time": 100})):
+                                   ("POST", "runs?wait=60", {**ring, "method": "ggl@radau5:rtol=1e-6", "time": 100})):
             before = server.cpu()
             answer = server.ask(method, "/api/v1/" + path, body, timeout=120)
             self.assertEqual(answer.status, 422, path)
