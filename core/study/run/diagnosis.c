@@ -16,7 +16,7 @@ enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, PILOT_LOOKS = 100, FINER = 4, MOST_S
 
 /// How the results of remedies begin.
 #define TRIED "tried "
-#define IN_VAIN "; tried in vain:"
+#define IN_VAIN "; tried in vain"
 
 /// A pilot run goes past the event by this share of the time to it: a remedy that only postpones
 /// the event is found out.
@@ -301,7 +301,13 @@ static void try_remedies(hn_run *run, hn_incident *i) {
         i->remedy[kept][0] = i->tried[kept][0] = '\0';
     }
     if (n > 0 && kept == 0) {
-        hn_incident_append(&w->log, i, IN_VAIN " %s%s%s%s%s", texts[0], n > 1 ? ", " : "",
+        // from the start of the run on the same remedy may do better
+        const hn_state_at *from = pilot_start(w, (int)(i - w->log.list));
+        char begun[40] = "";
+        if (from != &w->run->start) {
+            snprintf(begun, sizeof begun, " from t = %.4g s on", from->t);
+        }
+        hn_incident_append(&w->log, i, IN_VAIN "%s: %s%s%s%s%s", begun, texts[0], n > 1 ? ", " : "",
                            n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
     }
 }

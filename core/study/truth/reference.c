@@ -202,9 +202,14 @@ static void compare(hn_ref *ref, const hn_ref *other, hn_errors *errors) {
     }
 }
 
+/// Adds why a means gave none; one that does not fit whole is left out.
 static void note_refusal(char refused[320], const char *means, const hn_diag *diag) {
     const size_t used = strlen(refused);
-    snprintf(refused + used, 320 - used, "%s%s %.110s", used ? "; " : "", means, diag->message);
+    const int n =
+        snprintf(refused + used, 320 - used, "%s%s %.110s", used ? "; " : "", means, diag->message);
+    if (n < 0 || (size_t)n >= 320 - used) {
+        refused[used] = '\0';
+    }
 }
 
 /// The first two computations that come to the end, kept[0] and kept[1].

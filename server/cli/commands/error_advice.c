@@ -27,7 +27,7 @@ static bool removed_by_finer(const cJSON *incident) {
 
 /// Whether a finer step was tried against the incident and did not remove it.
 static bool kept_by_finer(const cJSON *incident) {
-    const char *vain = strstr(hn_document_text(incident, "message"), "tried in vain:");
+    const char *vain = strstr(hn_document_text(incident, "message"), "tried in vain");
     return vain && (strstr(vain, " h=") || strstr(vain, " rtol="));
 }
 

@@ -128,8 +128,10 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *res
     const cJSON *reason = cJSON_GetObjectItemCaseSensitive(given, "reason");
     HN_TRY(grade_list(p, "reasons", reason, &results[1], diag));
     if (results[1].right && !results[0].right) {
+        const bool chose = !results[0].unreadable && results[0].given[0];
         hn_part_wrong(&results[1], "unsupported", 0,
-                      "this is true, and speaks for another choice than the one made");
+                      chose ? "this is true, and speaks for another choice than the one made"
+                            : "this is true; it counts beside the right choice, and none was read");
     }
     return HN_OK;
 }

@@ -73,10 +73,11 @@ static void qualify(hn_part_result *results, int n) {
         for (int j = 0; j < n; j++) {
             shown += strcmp(results[j].mistake, r->mistake) == 0;
         }
-        if (r->likely && shown < 2) {
+        static const char says[] = "this looks like";
+        if (r->likely && shown < 2 && strncmp(r->explanation, says, strlen(says)) != 0) {
             char text[HN_PART_TEXT];
             memcpy(text, r->explanation, sizeof text);
-            snprintf(r->explanation, sizeof r->explanation, "this looks like: %.380s", text);
+            snprintf(r->explanation, sizeof r->explanation, "%s: %.380s", says, text);
         }
     }
 }
@@ -231,6 +232,20 @@ static void put_tolerance(hn_strbuf *b, const hn_part *p) {
     }
 }
 
+/// Whether a given rate is read as the part's own rate of that index (draw.h): w1 as u1.
+static bool is_read_as_own(const hn_part *p, int i, const cJSON *states) {
+    char other[64];
+    if (strcmp(p->draw->unit[i], "rad/s") != 0) {
+        return false;
+    }
+    for (int k = 0; hn_spelling_alias(p->draw->name[i], k, other, sizeof other); k++) {
+        if (cJSON_GetObjectItemCaseSensitive(states, other)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// The names that a formula may use: the part's own, then those of the numbers that the exercise
 /// gives. What follows from other names is left out: it may be what is asked for.
 static void put_names(hn_strbuf *b, const hn_part *p) {
@@ -245,7 +260,7 @@ static void put_names(hn_strbuf *b, const hn_part *p) {
     const char *before = "; with numbers given:";
     for (int i = 0; p->draw && i < p->draw->n_names; i++) {
         const bool own = cJSON_GetObjectItemCaseSensitive(states, p->draw->name[i]) != NULL;
-        if (p->draw->origin[i] != HN_DRAW_DERIVED && !own) {
+        if (p->draw->origin[i] != HN_DRAW_DERIVED && !own && !is_read_as_own(p, i, states)) {
             hn_strbuf_printf(b, "%s %s", before, p->draw->name[i]);
             before = "";
         }
