@@ -108,8 +108,8 @@ static const char *keys_line(const hn_workbench *w, int columns) {
     default:
         if (w->why) {
             return hn_why_has_remedy(w)
-                       ? "Enter try a remedy  ↑↓ another method  i close  Space run  ? menu  q"
-                       : "↑↓ another method  i close  Space run  ? menu  q";
+                       ? "Enter try a remedy  ↑↓ another method  PageDown more  i close  ? menu  q"
+                       : "↑↓ another method  PageDown more  i close  Space run  ? menu  q";
         }
         if (w->reactions) {
             return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";

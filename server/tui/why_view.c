@@ -34,6 +34,28 @@ bool hn_why_has_remedy(const hn_workbench *w) {
     return false;
 }
 
+/// Whether incident i is one more of the cause of the one before it.
+static bool is_again(const hn_incident *list, const int *whose, int i) {
+    return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
+}
+
+static int first_shown(const hn_workbench *w) {
+    return w->why_of == w->selected ? w->why_first : 0;
+}
+
+void hn_why_scroll(hn_workbench *w, int by) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    int entries = 0;
+    for (int i = 0; i < n; i++) {
+        entries += whose[i] == w->selected && !is_again(list, whose, i);
+    }
+    const int last = entries > 0 ? entries - 1 : 0, to = first_shown(w) + by;
+    w->why_first = to < 0 ? 0 : to > last ? last : to;
+    w->why_of = w->selected;
+}
+
 /// One incident with what to try; returns the row below.
 static int draw_incident(hn_cells *c, hn_area in, int y, const hn_workbench *w,
                          const hn_incident *incident) {
@@ -63,16 +85,22 @@ void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
         y = hn_cells_fold(c, in, y, HN_CELL_ALARM, end.reason);
     }
 
-    // incidents of one cause are one entry with a count
-    int same = 0;
-    for (int i = 0; i < n && y < in.rows; i++) {
-        const bool again = i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
-        same += whose[i] == w->selected && again;
-        if (whose[i] == w->selected && !again) {
-            y = draw_incident(c, in, y + 1, w, &list[i]);
+    // incidents of one cause are one entry with a count; the last row is kept for those that follow
+    const int before = first_shown(w);
+    const hn_area above = {in.x, in.y, in.columns, in.rows - 1};
+    int same = 0, entry = 0, below = 0;
+    for (int i = 0; i < n; i++) {
+        const bool own = whose[i] == w->selected, again = is_again(list, whose, i);
+        same += own && again;
+        if (!own || again || entry++ < before) {
+            continue;
         }
+        below += y + 1 >= above.rows;
+        y = below ? y : draw_incident(c, above, y + 1, w, &list[i]);
     }
-    if (same > 0 && y + 1 < in.rows) {
+    if (below > 0) {
+        hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more", below);
+    } else if (same > 0 && y + 1 < in.rows) {
         hn_cells_printf(c, in, 0, y + 1, HN_CELL_MUTED, 0, "and %d more of the same causes", same);
     }
 }

@@ -15,5 +15,7 @@ void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,
                    char out[HN_WHY_WORDS]);
 /// Whether an incident of the selected method has a remedy.
 bool hn_why_has_remedy(const hn_workbench *w);
+/// Goes `by` incidents of the selected method on, or back.
+void hn_why_scroll(hn_workbench *w, int by);
 void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w);
 #endif

@@ -100,6 +100,7 @@ typedef struct hn_workbench {
     int selected;
     bool hidden[HN_COMPARISON_MAX_METHODS];
     bool why, reactions;     ///< in place of the plot, one of them at most
+    int why_first, why_of;   ///< of `why`: the first incident shown, while this method is selected
     hn_joint_forces *forces; ///< of `reactions`; owned, NULL while not needed
     hn_tui_plot plot;
     hn_dot_form form;

@@ -474,6 +474,14 @@ class Keys(unittest.TestCase):
         self.assertEqual(card("--t", "4", *METHODS[:2]).strip(), "why: index-1 (Enter tries, i closes)")
         self.assertEqual(card("--t", "0.1", "--methods", "projection@rk4:h=0.001").strip(), "why: projection (i closes)")
 
+    def test_incidents_without_room_are_counted_and_paged_to(self):
+        def card(keys):
+            return once("parallelogram", "--once", "--size", "100x30", "--keys", keys)[1]
+        before, after = card("1i"), card("1i<PageDown>")
+        self.assertEqual(int(re.search(r"PageDown: (\d+) more", before).group(1)) - 1, int(re.search(r"PageDown: (\d+) more", after).group(1)))
+        self.assertNotIn("PageDown: ", card("1i" + 40 * "<PageDown>").split("methods")[0])
+        self.assertEqual(card("1i<PageDown><PageUp>"), before)
+
     def test_the_card_says_which_remedies_were_tried_and_which_not(self):
         # a loop that opens is tried against; a restart of the integrator or a long step is not
         _, out, _ = once("four-bar", "--once", "--t", "4", "--size", "150x40", *METHODS[:2], "--keys", "i")
