@@ -228,7 +228,7 @@ class Run(Command):
             words = [*command, *([] if len(command) > 1 else ["four-bar"]), "--set", "l1=50", "--set", "l2=1.2"]
             done = call(*words)
             self.assert_exit(done, INPUT)
-            self.assertIn("changed: l1 = 50 m, before 0.5 (at", done.stderr.decode())
+            self.assertIn("changed: l1 = 50 m, in the scene 0.5 (at", done.stderr.decode())
 
     def test_compare_keeps_a_method_that_failed_and_says_which(self):
         done = call("compare", "four-bar", "--methods", "index1@euler:h=0.05", "projection@rk4:h=1e-3", "--time", "60")
@@ -332,7 +332,7 @@ class Run(Command):
             self.assertRegex(said[2], r"^holonom: t = 0\.3\d* s: J loses rank in .* at t = 0\.67\d* s")
 
     def test_progress_is_shown_to_a_terminal_and_to_nobody_else(self):
-        words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=4e-5", "--time", "60", "--at", "60"]
+        words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=4e-5", "--time", "200", "--at", "200"]
         piped = subprocess.run(words, capture_output=True, timeout=300 * driver.SLOW)
         self.assertEqual((piped.returncode, piped.stderr), (DONE, b""))
         terminal, end = pty.openpty()

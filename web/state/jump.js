@@ -37,15 +37,17 @@ export function findJump(t, worst, shown, window, length) {
   return found;
 }
 
-/** The greatest angular velocity from one frame to another [rad/s]; 0 without angles. */
+/** The greatest angular velocity from one frame to another [rad/s], 0 without angles, and its frame. */
 function fastest({ history, scene }, m, from, to) {
   const angles = scene.coordinates.flatMap(({ kind }, k) => (kind === "angle" ? [k] : []));
-  let most = 0;
+  let speed = 0;
+  let at = from;
   for (let i = from; i <= to; i++) {
     const { v } = history.stateAt(m, i);
-    angles.forEach((k) => (most = Math.max(most, Math.abs(v[k]))));
+    const most = Math.max(0, ...angles.map((k) => Math.abs(v[k])));
+    [speed, at] = most > speed ? [most, i] : [speed, at];
   }
-  return most;
+  return { speed, at };
 }
 
 /**
@@ -59,12 +61,12 @@ export function jumpWords(data, m, shown) {
   if (!jump) {
     return "";
   }
-  const speed = fastest(data, m, jump.from, jump.to);
+  const { speed, at } = fastest(data, m, jump.from, jump.to);
   const h = Number(settingOf(catalogue, methods[m].spelling, "h")?.value ?? NaN);
-  if (!(speed > 0) || speed < FASTEST * fastest(data, m, 0, shown) || !(h > 0)) {
+  if (!(speed > 0) || speed < FASTEST * fastest(data, m, 0, shown).speed || !(h > 0)) {
     return "";
   }
-  const when = seconds(history.t[jump.to], duration);
+  const when = seconds(history.t[at], duration);
   const turn = `${(h * speed).toPrecision(2)} rad`;
   return (
     `Near ${when} the error grew ${Number(jump.times.toPrecision(1))}-fold: the mechanism is fastest ` +

@@ -62,8 +62,9 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
                               source->n_settings, scene, diags);
 }
 
-/// Writes what was changed of the scene: "; changed: l1 = 50 m, before 0.4 m", or "" where nothing
-/// was. The reason of a loop that stands open names bodies and starts; the cause is often here.
+/// Writes what was changed of the scene: "; changed: l1 = 50 m, in the scene 0.4", or "" where
+/// nothing was. The reason of a loop that stands open names bodies and starts; the cause is often
+/// here.
 static void put_changes(const hn_scene *scene, char *out, size_t size) {
     size_t used = 0;
     out[0] = '\0';
@@ -71,9 +72,9 @@ static void put_changes(const hn_scene *scene, char *out, size_t size) {
         const hn_param *p = &scene->params[i];
         if (p->value != p->initial && used < size) {
             const char *space = p->unit[0] ? " " : "";
-            used += (size_t)snprintf(out + used, size - used, "%s%.40s = %.6g%s%s, before %.6g",
-                                     used ? "; " : "; changed: ", p->name, p->value, space, p->unit,
-                                     p->initial);
+            used += (size_t)snprintf(
+                out + used, size - used, "%s%.40s = %.6g%s%s, in the scene %.6g",
+                used ? "; " : "; changed: ", p->name, p->value, space, p->unit, p->initial);
         }
     }
 }
