@@ -144,7 +144,7 @@ class NobodyWaitsForAnother(Timed):
 
     def test_equations_count_against_the_limit(self):
         # the scene that a comparison goes on with has its equations within it, a sanitised program's too
-        limit = 0.2 if driver.SLOW == 1 else 3
+        limit = 0.07 if driver.SLOW == 1 else 1
         server = driver.Server("--run-cpu", str(limit))
         ring = {"scene": "ring", "parameters": {"n": 60}}
         for method, path, body in (("GET", "scenes/ring?set=n:60", None), ("POST", "inspect", ring), ("POST", "terms", ring),
