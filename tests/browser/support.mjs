@@ -269,6 +269,25 @@ export function drawn(page) {
   );
 }
 
+/** Where a joint is on the screen: the pin nearest to its name. */
+export async function jointAt(page, name) {
+  await drawn(page);
+  return page.evaluate((wanted) => {
+    const svg = document.querySelector(".picture").getBoundingClientRect();
+    const texts = [...document.querySelectorAll(".picture .labels text")];
+    const label = texts.find(({ textContent }) => textContent === wanted);
+    const near = [Number(label.getAttribute("x")), Number(label.getAttribute("y"))];
+    const pins = document.querySelector(".ghosts .ghost.selected .pins").getAttribute("d");
+    const places = [...pins.matchAll(/M([-\d.]+) ([-\d.]+)a([\d.]+)/g)].map(([, x, y, r]) => [
+      Number(x) + Number(r),
+      Number(y),
+    ]);
+    const distance = ([x, y]) => Math.hypot(x - near[0], y - near[1]);
+    const [x, y] = places.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+    return { x: svg.left + x, y: svg.top + y };
+  }, name);
+}
+
 /**
  * Waits until the runs stand, and the last frame that the server made is here and drawn: frames may
  * come after the answer.

@@ -3,28 +3,9 @@
 // with a reason, and every change can be undone.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, drawn, playTo, read, soon, until } from "./support.mjs";
+import { createBench, drawn, jointAt, playTo, read, soon, until } from "./support.mjs";
 
 const { open } = createBench();
-
-/** Where a joint is on the screen: the pin nearest to its name. */
-async function jointAt(page, name) {
-  await drawn(page);
-  return page.evaluate((wanted) => {
-    const svg = document.querySelector(".picture").getBoundingClientRect();
-    const texts = [...document.querySelectorAll(".picture .labels text")];
-    const label = texts.find(({ textContent }) => textContent === wanted);
-    const near = [Number(label.getAttribute("x")), Number(label.getAttribute("y"))];
-    const pins = document.querySelector(".ghosts .ghost.selected .pins").getAttribute("d");
-    const places = [...pins.matchAll(/M([-\d.]+) ([-\d.]+)a([\d.]+)/g)].map(([, x, y, r]) => [
-      Number(x) + Number(r),
-      Number(y),
-    ]);
-    const distance = ([x, y]) => Math.hypot(x - near[0], y - near[1]);
-    const [x, y] = places.reduce((a, b) => (distance(b) < distance(a) ? b : a));
-    return { x: svg.left + x, y: svg.top + y };
-  }, name);
-}
 
 /** Takes hold of a joint and moves it by so many pixels, step by step. */
 async function drag(page, name, dx, dy) {

@@ -2,27 +2,9 @@
 // A hand that pulls the mechanism while it runs: with the mouse, by keys, and again from its log.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { createBench, drawn, read, soon, stood, until } from "./support.mjs";
+import { createBench, drawn, jointAt, read, soon, stood, until } from "./support.mjs";
 
 const bench = createBench();
-
-/** Where a joint is on the screen: the pin nearest to its name. */
-function jointAt(page, name) {
-  return page.evaluate((wanted) => {
-    const svg = document.querySelector(".picture").getBoundingClientRect();
-    const texts = [...document.querySelectorAll(".picture .labels text")];
-    const label = texts.find(({ textContent }) => textContent === wanted);
-    const near = [Number(label.getAttribute("x")), Number(label.getAttribute("y"))];
-    const pins = document.querySelector(".ghosts .ghost.selected .pins").getAttribute("d");
-    const places = [...pins.matchAll(/M([-\d.]+) ([-\d.]+)a([\d.]+)/g)].map(([, x, y, r]) => [
-      Number(x) + Number(r),
-      Number(y),
-    ]);
-    const distance = ([x, y]) => Math.hypot(x - near[0], y - near[1]);
-    const [x, y] = places.reduce((a, b) => (distance(b) < distance(a) ? b : a));
-    return { x: svg.left + x, y: svg.top + y };
-  }, name);
-}
 
 const last = (data) => ({
   t: data.latest?.t,

@@ -19,7 +19,8 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
-from test_attacks import RING, RK4, ManySockets, many_members  # noqa: E402
+from beside import RING, RK4, many_members  # noqa: E402
+from test_sockets import ManySockets  # noqa: E402
 
 BOUND = 0.2  # [s]
 LONG = {**RING, "method": "projection@rk4:h=1e-5"}

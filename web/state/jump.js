@@ -37,7 +37,7 @@ export function findJump(t, worst, shown, window, length) {
   return found;
 }
 
-/** The greatest angular velocity from one frame to another [rad/s], 0 without angles, and its frame. */
+/** The greatest angular velocity between two frames [rad/s], 0 without angles, and its frame. */
 function fastest({ history, scene }, m, from, to) {
   const angles = scene.coordinates.flatMap(({ kind }, k) => (kind === "angle" ? [k] : []));
   let speed = 0;

@@ -6,34 +6,23 @@
 #include "linalg/svd.h"
 #include "support/alloc.h"
 #include "support/near.h"
+#include "support/sparse_rows.h"
 
 #include <gsl/gsl_rng.h>
 
-enum { ROWS = 30, COLS = 45, MOST = ROWS * COLS };
+enum { ROWS = 30, COLS = 45 };
 static const double TOL = 1e-3;
 
-typedef struct matrix {
-    int n, row[MOST], col[MOST];
-    double value[MOST], dense[MOST];
-} matrix;
-
-static void put(matrix *m, int row, int col, double value) {
-    m->row[m->n] = row;
-    m->col[m->n] = col;
-    m->value[m->n++] = value;
-    m->dense[row * COLS + col] = value;
-}
-
-static hn_column_choice *create(hn_arena *arena, const matrix *m) {
+static hn_column_choice *create(hn_arena *arena, const sparse_rows *m) {
     hn_column_choice *c = hn_column_choice_create(arena, ROWS, COLS, m->n, m->row, m->col);
     assert_non_null(c);
     return c;
 }
 
 /// A chain: each row has entries in five columns, of which the next row shares three or four.
-static void fill_chain(matrix *m) {
+static void fill_chain(sparse_rows *m) {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    *m = (matrix){0};
+    *m = (sparse_rows){.columns = COLS};
     for (int i = 0; i < ROWS; i++) {
         for (int j = i * (COLS - 5) / (ROWS - 1), k = 0; k < 5; k++) {
             put(m, i, j + k, 2 * gsl_rng_uniform(rng) - 1);
@@ -44,7 +33,7 @@ static void fill_chain(matrix *m) {
 
 static void the_columns_taken_are_regular_whatever_the_order(void **state) {
     (void)state;
-    static matrix m;
+    static sparse_rows m;
     fill_chain(&m);
     hn_arena *arena = hn_arena_create(0);
     hn_column_choice *c = create(arena, &m);
@@ -69,8 +58,8 @@ static void the_columns_taken_are_regular_whatever_the_order(void **state) {
 
 static void a_column_that_follows_from_those_before_is_left_out(void **state) {
     (void)state;
-    static matrix m;
-    m = (matrix){0};
+    static sparse_rows m;
+    m = (sparse_rows){.columns = COLS};
     for (int i = 0; i < ROWS; i++) {
         put(&m, i, i, 1 + i);
         if (i < 2) {
@@ -101,7 +90,7 @@ static void a_column_that_follows_from_those_before_is_left_out(void **state) {
 
 static void choosing_does_not_allocate(void **state) {
     (void)state;
-    static matrix m;
+    static sparse_rows m;
     fill_chain(&m);
     hn_arena *arena = hn_arena_create(0);
     hn_column_choice *c = create(arena, &m);

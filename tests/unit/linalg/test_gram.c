@@ -7,28 +7,17 @@
 #include "linalg/svd.h"
 #include "support/alloc.h"
 #include "support/near.h"
+#include "support/sparse_rows.h"
 
 #include <gsl/gsl_rng.h>
 #include <string.h>
 
-enum { ROWS = 24, COLS = 30, MOST = ROWS * COLS };
-
-typedef struct matrix {
-    int n, row[MOST], col[MOST];
-    double value[MOST], dense[MOST];
-} matrix;
-
-static void put(matrix *m, int row, int col, double value) {
-    m->row[m->n] = row;
-    m->col[m->n] = col;
-    m->value[m->n++] = value;
-    m->dense[row * COLS + col] = value;
-}
+enum { ROWS = 24, COLS = 30 };
 
 /// Each row meets its neighbours in two of its four columns.
-static void fill_chain(matrix *m) {
+static void fill_chain(sparse_rows *m) {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    memset(m, 0, sizeof *m);
+    *m = (sparse_rows){.columns = COLS};
     for (int i = 0; i < ROWS; i++) {
         for (int j = i; j < i + 4; j++) {
             put(m, i, j, (j == i ? 2 : 0) + gsl_rng_uniform(rng));
@@ -37,7 +26,7 @@ static void fill_chain(matrix *m) {
     gsl_rng_free(rng);
 }
 
-static hn_gram *create(hn_arena *arena, const matrix *m) {
+static hn_gram *create(hn_arena *arena, const sparse_rows *m) {
     hn_gram *g;
     assert_int_equal(hn_gram_create(arena, ROWS, COLS, m->n, m->row, m->col, &g), HN_OK);
     assert_non_null(g);
@@ -47,7 +36,7 @@ static hn_gram *create(hn_arena *arena, const matrix *m) {
 
 static void solutions_are_those_of_the_dense_products(void **state) {
     (void)state;
-    static matrix m;
+    static sparse_rows m;
     fill_chain(&m);
     hn_arena *arena = hn_arena_create(0);
     hn_gram *g = create(arena, &m);
@@ -84,7 +73,7 @@ static void solutions_are_those_of_the_dense_products(void **state) {
 
 static void singular_values_are_those_of_the_dense_matrix(void **state) {
     (void)state;
-    static matrix m;
+    static sparse_rows m;
     fill_chain(&m);
     hn_arena *arena = hn_arena_create(0);
     hn_gram *g = create(arena, &m);
@@ -100,8 +89,8 @@ static void singular_values_are_those_of_the_dense_matrix(void **state) {
 
 static void a_row_that_is_the_sum_of_two_is_refused_and_damping_serves_it(void **state) {
     (void)state;
-    static matrix m;
-    memset(&m, 0, sizeof m);
+    static sparse_rows m;
+    m = (sparse_rows){.columns = COLS};
     for (int i = 0; i < ROWS; i++) {
         for (int j = 0; j < COLS; j++) {
             if (i < ROWS - 1 && (j == i || j == i + 1)) {
@@ -136,7 +125,7 @@ static void columns_that_are_full_are_left_to_a_dense_way(void **state) {
 
 static void filling_factoring_and_solving_do_not_allocate(void **state) {
     (void)state;
-    static matrix m;
+    static sparse_rows m;
     fill_chain(&m);
     hn_arena *arena = hn_arena_create(0);
     hn_gram *g = create(arena, &m);

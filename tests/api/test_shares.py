@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Places and queues are shared out among clients: none takes another's."""
+
+import http.client
+import json
+import socket
+import threading
+import time
+
+import driver
+from beside import From, RING, RK4, Timed, is_closed
+
+
+class FairShares(Timed):
+    MAKE = ("POST", "/api/v1/comparisons", {"scene": "four-bar", "methods": [RK4]})
+    AT_ONCE = ("POST", "/api/v1/comparisons?wait=0", MAKE[2])
+
+    def test_one_client_takes_its_share_of_comparisons_and_no_more(self):
+        server = driver.Server("--max-comparisons", "4")
+        greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
+        self.assertEqual([greedy.ask(*self.AT_ONCE).status for _ in range(3)], [201, 201, 429])
+        self.assertEqual([modest.ask(*self.AT_ONCE).status for _ in range(3)], [201, 201, 429])
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_request_waits_for_a_place(self):
+        server = driver.Server("--max-comparisons", "1")
+        first = server.compare()
+        events, answers = driver.Events(server, first["id"]), []
+        events.take(1)
+
+        def ask(wait):
+            answers.append(server.ask("POST", f"/api/v1/comparisons?wait={wait}", self.MAKE[2], timeout=90))
+
+        def begin(wait):
+            threads.append(threading.Thread(target=ask, args=(wait,)))
+            threads[-1].start()
+            time.sleep(0.5)
+
+        # the first of three waits for longest, the second too short a time, the third goes away
+        threads = []
+        begin(50)
+        begin(2)
+        left = socket.create_connection(("127.0.0.1", server.port))
+        body = json.dumps(self.MAKE[2]).encode()
+        left.sendall(b"POST /api/v1/comparisons HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+                     + f"Content-Length: {len(body)}\r\n\r\n".encode() + body)
+        time.sleep(0.5)
+        busy = server.ask("POST", "/api/v1/comparisons?wait=0", self.MAKE[2])
+        self.assertEqual(busy.status, 429)
+        self.assertRegex(busy.json()["detail"], r"\b[23] requests wait for a place before this one")
+        left.close()
+        threads[1].join()
+        self.assertEqual((answers[0].status, answers[0].headers["retry-after"]), (429, "5"))
+        self.assertIn("1 requests wait", answers[0].json()["detail"])
+
+        # a place that is given up goes to who waits, and nobody made one for who had gone
+        self.assertEqual(server.ask("DELETE", "/api/v1/comparisons/" + first["id"]).status, 204)
+        threads[0].join()
+        self.assertEqual(answers[1].status, 201)
+        self.assertEqual(server.ask("GET", "/api/v1/comparisons").json()["comparisons"], [answers[1].json()["id"]])
+        events.close()
+        self.assertEqual(server.stop(), 0)
+
+    def test_who_waits_for_a_place_is_told_when_the_server_ends(self):
+        server = driver.Server("--max-comparisons", "1")
+        events, answers = driver.Events(server, server.compare()["id"]), []
+        events.take(1)
+        thread = threading.Thread(target=lambda: answers.append(server.ask(*self.MAKE, timeout=90)))
+        thread.start()
+        time.sleep(0.5)
+        self.assertEqual(server.stop(), 0)
+        thread.join()
+        self.assertEqual(answers[0].status, 503)
+
+    def test_one_client_takes_no_place_from_another_by_waiting(self):
+        """A client with its share is not given the place that another client has left."""
+        server = driver.Server("--max-comparisons", "4")
+        greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
+        theirs = modest.ask(*self.MAKE).json()["id"]
+        time.sleep(6)
+        own = [greedy.ask(*self.MAKE).json()["id"] for _ in range(2)]
+        readers = [driver.Events(server, c) for c in own]  # they are not left alone
+        self.assertEqual(greedy.ask(*self.AT_ONCE).status, 429)
+        self.assertIn(theirs, server.ask("GET", "/api/v1/comparisons").json()["comparisons"])
+        for reader in readers:
+            reader.close()
+        self.assertEqual(server.stop(), 0)
+
+    def test_one_that_was_left_makes_room(self):
+        server = driver.Server("--max-comparisons", "1")
+        first = server.compare()
+        events = driver.Events(server, first["id"])
+        events.take(1)
+        busy = server.ask(*self.AT_ONCE)
+        self.assertEqual(busy.status, 429)
+        events.close()
+        # after the time that it was told, and on a busy machine a little later; 60 s when nobody needs the place
+        time.sleep(int(busy.headers["retry-after"]))
+        self.assertTrue(driver.until(lambda: server.ask(*self.AT_ONCE).status == 201, 10))
+        self.assertEqual(server.ask("GET", "/api/v1/comparisons/" + first["id"]).status, 404)
+        self.assertEqual(server.stop(), 0)
+
+    def test_connections_are_shared_out(self):
+        server = driver.Server("--max-connections", "80")
+        request = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+
+        def connect(request=request):
+            """A connection of 127.0.0.2 that stays open, None where the server does not take it."""
+            s = socket.socket()
+            s.settimeout(20 * driver.SLOW)
+            s.bind(("127.0.0.2", 0))
+            s.connect(("127.0.0.1", server.port))
+            try:
+                s.sendall(request)
+                if s.recv(100).startswith(b"HTTP/1.1 200"):
+                    return s
+            except OSError:
+                pass
+            s.close()
+            return None
+
+        # beyond its share a client's new connections take the places of its oldest
+        held = [connect() for _ in range(50)]
+        self.assertEqual([s is not None for s in held], [True] * 50)
+        for s in held:
+            s.setblocking(False)
+        # some ten of the oldest: answers that were sent at one time are done with in any order
+        self.assertTrue(driver.until(lambda: sum(is_closed(s) for s in held) == 10))
+        self.assertFalse(any(is_closed(s) for s in held[30:]))
+        # the others have their places
+        self.assertEqual(From(server, "127.0.0.3").ask("GET", "/healthz").status, 200)
+        self.assertEqual(server.ask("GET", "/healthz").status, 200)
+        for s in held:
+            s.close()
+        # one that has its share in streams gets no more
+        c = server.compare()
+        stream = f"GET /api/v1/comparisons/{c['id']}/events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode()
+        streams = [connect(stream) for _ in range(50)]
+        self.assertEqual([s is not None for s in streams], [True] * 40 + [False] * 10)
+        self.assertEqual(server.ask("GET", "/healthz").status, 200)
+        for s in streams[:40]:
+            s.close()
+        self.assertEqual(server.stop(), 0)
+
+    def test_streams_are_shared_out(self):
+        server = driver.Server("--max-streams", "4")
+        c = server.compare()
+        streams, statuses = [], []
+        for _ in range(3):
+            s = socket.socket()
+            s.bind(("127.0.0.2", 0))
+            s.connect(("127.0.0.1", server.port))
+            s.sendall(f"GET /api/v1/comparisons/{c['id']}/events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
+            statuses.append(s.recv(15)[9:12])
+            streams.append(s)
+        self.assertEqual(statuses, [b"200", b"200", b"429"])
+        self.assertEqual(driver.Events(server, c["id"]).status, 200)
+        for s in streams:
+            s.close()
+        self.assertEqual(server.stop(), 0)
+
+    def test_one_program_of_this_machine_fills_no_queue_alone(self):
+        server = driver.Server()
+        limits = server.ask("GET", "/api/v1/").json()["limits"]
+        share = int(limits["long_requests_waiting"] * limits["share_of_one_client"])
+
+        def as_program(name):
+            return lambda method, path, body: server.ask(method, path, body, {"User-Agent": name})
+
+        run = {**RING, "method": "projection@rk4:h=1e-4"}
+        statuses = [as_program("script/1")("POST", "/api/v1/runs?wait=0", {**run, "time": 1000 + i}).status
+                    for i in range(limits["long_requests_waiting"] + limits["long_requests_at_once"] + 5)]
+        taken = statuses.count(202)
+        # at most its share waits, besides those that have begun
+        begun = limits["long_requests_at_once"] + limits["long_requests_set_aside"]
+        self.assertTrue(share <= taken <= share + begun, statuses)
+        self.assertEqual(statuses.count(429), len(statuses) - taken)
+        # another program has its share, and its turn comes before the rest of the first
+        other = as_program("Mozilla/5.0")("POST", "/api/v1/runs?wait=0", {"scene": "four-bar", "method": RK4, "time": 1})
+        self.assertEqual(other.status, 202)
+        self.assertEqual(server.stop(), 0)
+
+    LONG = {**RING, "method": "projection@rk4:h=1e-5"}
+    SHORT = {"scene": "four-bar", "method": RK4, "time": 0.02}
+
+    def test_a_long_run_makes_way_for_another_client(self):
+        """20 long runs of one client held every worker: a run of 20 ms of another client waited 25 s for its turn."""
+        server = driver.Server()
+        greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
+        allowed = 2 * driver.SLOW  # a slice of 0.2 s of each of three workers, on a busy machine
+        statuses = [greedy.ask("POST", "/api/v1/runs?wait=0", {**self.LONG, "time": 1000 + i}).status for i in range(20)]
+        self.assertGreaterEqual(statuses.count(202), 16)
+        tried = []
+
+        def attempt():
+            tried.append(0)
+            start = time.monotonic()
+            answer = modest.ask("POST", "/api/v1/runs", {**self.SHORT, "every": 0.01 / len(tried)})
+            self.assertEqual(answer.status, 201)
+            return time.monotonic() - start, allowed
+
+        self.assert_within(attempt)
+        # likewise where the answer is waited for
+        threads = [threading.Thread(target=greedy.ask, args=("POST", "/api/v1/snapshots", {**RING, "methods": [self.LONG["method"]], "time": 1000 + i}))
+                   for i in range(6)]
+        for t in threads:
+            t.start()
+        time.sleep(0.5)
+
+        def ask_for_terms():
+            start = time.monotonic()
+            self.assertEqual(modest.ask("POST", "/api/v1/terms", {"scene": "four-bar"}).status, 200)
+            return time.monotonic() - start, allowed
+
+        self.assert_within(ask_for_terms)
+        self.assertEqual(server.stop(), 0)
+        for t in threads:
+            t.join()
+
+    def test_a_run_that_was_set_aside_has_the_same_samples(self):
+        question = {**RING, "methods": ["projection@rk4:h=1e-3", "ggl@radau5:rtol=1e-6"], "time": 0.5}
+        alone = driver.Server()
+        want = driver.run_to_end(alone, question).json()
+        self.assertEqual(alone.stop(), 0)
+        server = driver.Server()
+        for i in range(6):
+            for address in ("127.0.0.2", "127.0.0.3"):
+                self.assertEqual(From(server, address).ask("POST", "/api/v1/runs?wait=0", {**self.LONG, "time": 1000 + i + float(address[-1]) / 10}).status, 202)
+        got = driver.run_to_end(server, question).json()
+        self.assertEqual([r["samples"] for r in got["runs"]], [r["samples"] for r in want["runs"]])
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_proxy_names_its_clients(self):
+        server = driver.Server("--max-comparisons", "4")
+
+        def ask(forwarded):
+            return server.ask(*self.AT_ONCE, {"X-Forwarded-For": forwarded}).status
+
+        self.assertEqual([ask("10.0.0.1") for _ in range(3)], [201, 201, 429])
+        self.assertEqual([ask("10.0.0.1, 10.0.0.2") for _ in range(3)], [201, 201, 429])  # the last is the proxy's own word
+        self.assertEqual(server.stop(), 0)
+        # who is not on this machine names nobody
+        server = driver.Server("--max-comparisons", "4")
+        other = From(server, "127.0.0.2")
+        statuses = []
+        for name in ("10.0.0.1", "10.0.0.2", "10.0.0.3"):
+            c = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30 * driver.SLOW, source_address=(other.address, 0))
+            c.request("POST", self.AT_ONCE[1], json.dumps(self.MAKE[2]), {"Content-Type": "application/json", "X-Forwarded-For": name})
+            statuses.append(driver.Answer(c.getresponse()).status)
+            c.close()
+        self.assertEqual(statuses, [201, 201, 429])
+        self.assertEqual(server.stop(), 0)
+
+    def test_what_costs_nothing_has_a_queue_of_its_own(self):
+        server = driver.Server("--run-cpu", "3")
+        paths = ("/api/v1/scenes/four-bar", "/api/v1/scenes", "/")
+        allowed = {path: max(2 * driver.SLOW, 10 * server.idle(path)) for path in paths}
+        run = {**RING, "method": "projection@rk4:h=1e-4"}
+        threads = [threading.Thread(target=server.ask, args=("POST", "/api/v1/runs", {**run, "time": 1000 + i})) for i in range(12)]
+        for t in threads:
+            t.start()
+        time.sleep(0.5)
+
+        def attempt(*request):
+            answer, took = server.timed(*request)
+            self.assertIn(answer.status, (200, 201), request)
+            return took, allowed.get(request[1], 2 * driver.SLOW)
+
+        for path in paths:
+            self.assert_within(lambda: attempt("GET", path))
+        self.assert_within(lambda: attempt(*self.MAKE))
+        self.assertEqual(server.stop(), 0)
+        for t in threads:
+            t.join()
+
+
+if __name__ == "__main__":
+    driver.main()

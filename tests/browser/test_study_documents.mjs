@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page reads from the documents of studies, and what it asks for.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { read } from "./support.mjs";
+import {
+  barsOf,
+  boundaryOf,
+  dotsOf,
+  floorOf,
+  frameOf,
+  labelsIn,
+  leftOutOf,
+  meaningOf,
+  missingIn,
+  sentencesOf,
+} from "../../web/state/study-documents.js";
+import { readIndex } from "../../web/state/catalogue.js";
+import {
+  baumgarteLimit,
+  contourOf,
+  heatRange,
+  heatSentences,
+  HEATS,
+  placeOnAxis,
+  valueOnAxis,
+} from "../../web/state/heat.js";
+import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
+import { cheapestFor, sizeToRun, wantedError } from "../../web/state/wanted.js";
+import { decodeLink, encodeLink } from "../../web/state/link.js";
+
+const point = (size, state, more = {}) => ({
+  method: `a@rk4:h=${size}`,
+  size,
+  state,
+  reason: state === "done" ? "" : "it fell apart",
+  operations: state === "done" ? 100 / size : undefined,
+  evaluations: 4 / size,
+  worst: { q: size ** 4 },
+  bounds: [],
+  cpu: { median: null },
+  ...more,
+});
+const STUDY = {
+  reference: { error: { q: 1e-13, gap: 0 } },
+  methods: [
+    {
+      size: "h",
+      points: [point(1, "failed"), point(0.1, "done"), point(0.01, "done", { bounds: ["q"] })],
+    },
+  ],
+  pareto: [],
+};
+
+test("a point that failed stands on the upper edge, at what it would have cost", () => {
+  const [dots] = dotsOf(STUDY, "q", "operations");
+  assert.deepEqual(
+    dots.map(({ error, bound }) => [error, bound]),
+    [
+      [Infinity, false],
+      [0.1 ** 4, false],
+      [0.01 ** 4, true],
+    ],
+  );
+  assert.ok(Math.abs(dots[0].cost - 100) < 1e-9, "a tenth of what a tenth of the step costs");
+  assert.equal(dots[0].reason, "it fell apart");
+  assert.equal(
+    dotsOf(STUDY, "q", "time")[0].length,
+    1,
+    "what was not measured is not drawn, the failure is",
+  );
+});
+
+test("an accuracy is read as a length, an angle, a share or the number of the axis", () => {
+  const value = (text, error = "q") => wantedError(text, error, 2)?.value;
+  assert.equal(value("1 mm"), 0.5e-3);
+  assert.equal(value("2 mrad"), 2e-3);
+  assert.equal(value("0.1 %", "energy"), 1e-3);
+  assert.equal(value("1e-3", "v"), 1e-3);
+  assert.equal(value("1 mm", "v"), undefined, "a velocity is no length");
+  assert.equal(value("0"), undefined);
+  assert.equal(value("-1 mm"), undefined);
+  assert.equal(value("much"), undefined);
+});
+
+test("the cheapest method for an accuracy lies between its measured points", () => {
+  const dot = (m, size, error, cost) => ({ m, k: 0, size, error, cost, sizeName: "h" });
+  const steep = [dot(0, 1, Infinity, 1), dot(0, 0.1, 1e-2, 10), dot(0, 0.01, 1e-6, 100)];
+  const lucky = [dot(1, 1, 1e-5, 2), dot(1, 0.1, 1e-1, 20), dot(1, 0.01, 1e-3, 200)];
+  const [first, ...others] = cheapestFor([steep, lucky], 1e-4);
+  assert.equal(first.m, 0);
+  assert.ok(Math.abs(first.cost - Math.sqrt(1000)) < 1e-9, "half-way in decades");
+  assert.ok(Math.abs(first.size - Math.sqrt(1e-3)) < 1e-9);
+  assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
+  const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
+  assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
+});
+
+test("a method of a document keeps its name where the page has others before it", () => {
+  const page = [
+    { spelling: "index1@rk4:h=0.01", label: "index-1" },
+    { spelling: "baumgarte:alpha=5,beta=5@rk4:h=0.01", label: "Baumgarte" },
+  ];
+  const of = (method) => labelsIn({ methods: [{ method }] }, page)(0);
+  assert.equal(of("baumgarte:alpha=7,beta=5@rk4:h=0.02"), "Baumgarte");
+  assert.equal(of("index1@rk4:h=0.02"), "index-1");
+  assert.equal(of("penalty@rk4:h=0.01"), "penalty@rk4:h=0.01", "it is no longer on the page");
+});
+
+test("the step that runs has two digits and is not larger than what was found", () => {
+  const of = (size, atMost) => sizeToRun({ m: 0, cost: 1, size, dot: null, atMost });
+  assert.equal(of(2.86e-3, false), 2.8e-3);
+  assert.equal(of(0.0625, true), 0.0625, "a measured step is run as it is");
+});
+
+test("a study that was cut short names what it left out", () => {
+  const study = {
+    methods: [
+      {
+        size: "h",
+        points: [
+          { state: "done", size: 1 },
+          { state: "skipped", size: 1e-3 },
+        ],
+      },
+      { size: "h", points: [{ state: "done", size: 1 }] },
+    ],
+  };
+  const label = (m) => ["index-1", "reduced"][m];
+  assert.match(
+    leftOutOf(study, label),
+    /^1 of 3 points was not run: .* Left out: index-1 at h = 1/,
+  );
+  assert.equal(missingIn(study, label), "index-1 1 point");
+  const map = { methods: [{ rows: [[{ class: "stable" }, { class: "skipped" }]] }] };
+  assert.equal(missingIn(map, label), "index-1 1 cell");
+  assert.equal(missingIn({ methods: [{ state: "pending" }, { state: "done" }] }, label), "index-1");
+});
+
+test("the frame holds every finite error in whole decades, and the band of the reference where it is near", () => {
+  const box = frameOf(dotsOf(STUDY, "q", "operations"), floorOf(STUDY, "q"));
+  assert.deepEqual([box.y0, box.y1], [-8, -4]);
+  assert.ok(box.x0 < 2 && box.x1 > 4);
+  assert.equal(frameOf(dotsOf(STUDY, "q", "operations"), 1e-9).y0, -9);
+  assert.equal(frameOf([[]], 0), null);
+});
+
+test("bars add up: what is negative goes to the left, what is positive to the right", () => {
+  const bars = barsOf(
+    { a: 3, b: -1, c: 0, d: null, e: 1 },
+    [..."abcde"].map((name) => ({ name })),
+  );
+  assert.deepEqual(
+    bars.map(({ name, from, to }) => [name, from, to]),
+    [
+      ["a", 0, 0.75],
+      ["b", -0.25, 0],
+      ["e", 0.75, 1],
+    ],
+  );
+});
+
+test("the predicted boundary lies between cells on either side of the limit, or at the step itself", () => {
+  const cells = {
+    rows: [
+      [0.5, 2],
+      [2, 2],
+    ].map((row) => row.map((margin) => ({ margin }))),
+    columns: [],
+  };
+  const grid = { x: { values: [1, 2] }, y: { values: [1, 2], scale: "lin", kind: "setting" } };
+  assert.deepEqual(boundaryOf(grid, cells), [
+    [
+      [1, 0],
+      [1, 1],
+    ],
+    [
+      [0, 1],
+      [1, 1],
+    ],
+  ]);
+  const steps = { x: null, y: { values: [1e-3, 1e-1], scale: "log", kind: "step" } };
+  const [line] = boundaryOf(steps, { rows: [], columns: [{ predicted: [1e-2] }] });
+  assert.ok(Math.abs(line[0][1] - 1) < 1e-12, "half-way between the middles of two cells");
+});
+
+/** The part of the server's index that tells of studies. */
+const STUDIES = [
+  { name: "work-precision", chooses: ["h", "rtol"], presets: [], fields: [] },
+  {
+    name: "stability",
+    chooses: ["h"],
+    fields: [{ name: "methods", max: 4 }],
+    presets: [
+      { name: "limits", about: "the step", chooses: ["h"], stabilised: false },
+      { name: "baumgarte", about: "α and β", chooses: ["alpha", "beta"], stabilised: true },
+    ],
+  },
+  { name: "budget", chooses: [], presets: [], fields: [] },
+];
+const CATALOGUE = {
+  formulations: [
+    { name: "index1", options: [] },
+    {
+      name: "baumgarte",
+      options: [
+        { key: "alpha", default: 5 },
+        { key: "beta", default: 5 },
+      ],
+    },
+  ],
+  integrators: [{ name: "rk4", options: [{ key: "h", default: 1e-3 }] }],
+};
+readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
+
+test("the present α and β are inside the axes of their map, whatever the step", () => {
+  const order = (spelling) =>
+    orderOf(
+      "stability",
+      { scene: { id: "a" }, settings: {}, methods: [{ spelling }], catalogue: CATALOGUE },
+      "baumgarte",
+    );
+  assert.equal(order("baumgarte:alpha=5,beta=5@rk4:h=0.02").preset, "baumgarte");
+  const { over, preset } = order("baumgarte:alpha=5,beta=9@rk4:h=1e-3");
+  assert.equal(preset, undefined);
+  assert.equal(over, "alpha=2.5..5000,beta=2.5..5000");
+});
+
+test("the heat of a map is that of the cells that ran, and its least is found in words", () => {
+  const cell = (gap, state = "inaccurate") => ({ class: state, gap, error: gap, energy: 1 / gap });
+  const rows = [
+    [cell(1e-3), cell(1e-4)],
+    [cell(1e-5), cell(1e-9, "grew")],
+  ];
+  const { low, high, best } = heatRange(HEATS[0], rows, 2);
+  assert.deepEqual([best.i, best.j], [0, 1]);
+  assert.ok(Math.abs(low - Math.log10(2e-5)) < 1e-12 && Math.abs(high - Math.log10(2e-3)) < 1e-12);
+  const map = { x: { values: [1, 2] }, y: { values: [3, 4] } };
+  const said = heatSentences(map, { rows }, 2, (_, value) => String(value));
+  assert.equal(said[0], "smallest worst loop gap: 20 µm at 1, 4");
+});
+
+test("counts are said in words, and an error of a position as a length", () => {
+  const sentences = "Errors of 1e-03: projection@rk4, 606 kop to 1.1 Mop; 817 op before.";
+  const study = { pareto: [{ error: "q", cost: "operations", sentences }] };
+  assert.deepEqual(sentencesOf(study, "q", "operations"), [
+    "Errors of 10⁻³: projection@rk4, 606 thousand operations to 1.1 million operations; 817 operations before.",
+  ]);
+  assert.deepEqual(sentencesOf(study, "v", "operations"), []);
+  assert.match(meaningOf("q", 1.2), /10⁻³ is 1 mrad of an angle: 1\.2 mm at the end of 1\.2 m/);
+  assert.equal(meaningOf("v", 1.2), "");
+});
+
+test("a place on an axis and its value agree; contours lie between the values they part", () => {
+  const axis = { scale: "log", values: [1, 10, 100] };
+  assert.ok(Math.abs(placeOnAxis(axis, 10) - 1.5) < 1e-12);
+  assert.equal(valueOnAxis(axis, placeOnAxis(axis, 31.6)), 31.6);
+  assert.equal(valueOnAxis(axis, -4), valueOnAxis(axis, 0), "never beyond the axis");
+  const rows = [
+    [0, 2],
+    [0, 2],
+  ];
+  assert.deepEqual(contourOf(rows, 1), [
+    [
+      [1, 0.5],
+      [1, 1.5],
+    ],
+  ]);
+  assert.deepEqual(
+    contourOf(
+      [
+        [0, NaN],
+        [0, 2],
+      ],
+      1,
+    ),
+    [],
+  );
+  const map = { x: { name: "alpha", values: [40] }, y: { name: "beta", values: [24] } };
+  const method = { rows: [[{ margin: (0.02 * 72) / 2.785 }]] };
+  assert.ok(Math.abs(baumgarteLimit(map, method, 0.02) - 2.785) < 1e-12);
+});
+
+test("a map over alpha and beta is asked for the methods that have them alone", () => {
+  const data = {
+    scene: { id: "four-bar" },
+    settings: {},
+    methods: [{ spelling: "index1@rk4" }, { spelling: "baumgarte:alpha=5,beta=5@rk4" }],
+    catalogue: CATALOGUE,
+  };
+  assert.deepEqual(orderOf("stability", data, "baumgarte").methods, [
+    "baumgarte:alpha=5,beta=5@rk4",
+  ]);
+  assert.equal(orderOf("stability", data, "limits").methods.length, 2);
+  assert.ok(presetsOf(data).some(({ name }) => name === "baumgarte"));
+  assert.ok(
+    !presetsOf({ ...data, methods: data.methods.slice(0, 1) }).some(
+      ({ name }) => name === "baumgarte",
+    ),
+  );
+});
+
+test("the server chooses the map unless one is chosen, and the menu has those that fit", () => {
+  const stability = {
+    ...STUDIES[1],
+    presets: [
+      { name: "stiffness", about: "", chooses: ["h"], stabilised: false },
+      { name: "mass-ratio", about: "", chooses: ["h"], stabilised: false },
+      ...STUDIES[1].presets,
+    ],
+  };
+  readIndex({ limits: { methods: 8 }, incidents: [], studies: [stability] });
+  const names = (units, spelling) =>
+    presetsOf({
+      catalogue: CATALOGUE,
+      methods: [{ spelling }],
+      scene: { parameters: units.map((unit) => ({ unit })) },
+    })
+      .map(({ name }) => name)
+      .sort();
+  assert.deepEqual(names(["m"], "index1@rk4"), ["limits"]);
+  assert.deepEqual(names(["N/m", "kg"], "index1@rk4"), ["limits", "mass-ratio", "stiffness"]);
+  assert.ok(names(["N/m"], "baumgarte@rk4").includes("baumgarte"));
+
+  // nothing but the methods is sent, and no option that some map varies makes it another study
+  const methods = [{ spelling: "baumgarte:alpha=5,beta=5@rk4:h=1e-3" }];
+  const data = { scene: { id: "a" }, settings: {}, methods, catalogue: CATALOGUE };
+  const order = orderOf("stability", data, "");
+  assert.deepEqual(Object.keys(order).sort(), ["kind", "methods", "parameters", "scene"]);
+  const other = [{ spelling: "baumgarte:alpha=9,beta=2@rk4:h=1e-2" }];
+  assert.equal(
+    signatureOf(order),
+    signatureOf(orderOf("stability", { ...data, methods: other }, "")),
+  );
+  readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
+});
+
+test("a link names the study that is open, and no other word", () => {
+  const link = { ...decodeLink("scene=a&method=b@c").link, study: "budget" };
+  assert.equal(decodeLink(encodeLink(link)).link.study, "budget");
+  const { link: other, faults } = decodeLink("scene=a&study=everything");
+  assert.equal(other.study, "");
+  assert.match(faults[0], /study is 'everything'/);
+});
+
+test("what a study chooses itself makes no other study of it", () => {
+  const of = (kind, method, preset) => signatureOf({ kind, methods: [method], preset });
+  const same = (kind, a, b, preset) => of(kind, a, preset) === of(kind, b, preset);
+  assert.ok(same("work-precision", "index1@rk4:h=1e-3", "index1@rk4:h=1e-2"));
+  assert.ok(!same("budget", "index1@rk4:h=1e-3", "index1@rk4:h=1e-2"));
+  const [low, high] = [
+    "baumgarte:alpha=5,beta=5@rk4:h=1e-3",
+    "baumgarte:alpha=9,beta=7@rk4:h=1e-3",
+  ];
+  assert.ok(same("stability", low, high, "baumgarte"));
+  assert.ok(!same("stability", low, high, "limits"));
+  assert.ok(!same("stability", low, low.replace("1e-3", "1e-2"), "baumgarte"));
+});
