@@ -210,6 +210,11 @@ test("the first minute goes on by its own buttons, can be closed, and stays clos
   const guide = page.locator(".guide");
   await guide.getByRole("button", { name: "Play" }).click();
   await until(page, (data) => data.state === "running");
+  // the focus is on the button still: Space pauses, as everywhere
+  await guide.getByRole("button", { name: "Pause" }).waitFor();
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state !== "running");
+  await guide.getByRole("button", { name: "Play" }).waitFor();
   await guide.getByRole("button", { name: "next" }).click();
   await soon(async () => assert.match(await guide.textContent(), /falls apart/));
   await guide.getByRole("button", { name: "next" }).click();

@@ -38,7 +38,7 @@ export function createGuide(store, actions, open) {
 
   /** @type {Record<string, () => any>} */
   const DOES = {
-    toggle: () => actions.play(),
+    toggle: () => actions.toggle(),
     fallApart: () => actions.fallApart(),
     askWhy: () =>
       actions.setView({
@@ -69,10 +69,9 @@ export function createGuide(store, actions, open) {
   }
 
   function show() {
-    const { title: heading, text: words, button } = present();
+    const { title: heading, text: words } = present();
     say(title, heading);
     say(text, words);
-    say(act, button);
     say(count, isElsewhere() ? "" : `${step + 1}/${STEPS.length}`);
     say(next, step === STEPS.length - 1 ? "done" : "next");
     next.hidden = isElsewhere();
@@ -80,8 +79,11 @@ export function createGuide(store, actions, open) {
     check();
   }
 
-  /** A step that was carried out says so; going on is left to the reader. */
+  /** A step that was carried out says so, and what plays can be paused; the reader goes on. */
   function check() {
+    const { does, button } = present();
+    const plays = data.state === "running" || data.view.replaying;
+    say(act, does === "toggle" && plays ? "Pause" : button);
     next.classList.toggle("primary", !card.hidden && present().done(data));
   }
 
@@ -91,7 +93,7 @@ export function createGuide(store, actions, open) {
     document.getElementById("play")?.focus({ preventScroll: true });
   }
 
-  listen(store, { frame: check, view: check, methods: check, scene: show });
+  listen(store, { frame: check, state: check, view: check, methods: check, scene: show });
   return {
     /** Puts the card where it belongs; it opens by itself only the first time. */
     begin(/** @type {HTMLElement} */ el) {
