@@ -3,6 +3,7 @@
 
 #include "expr/ops.h"
 #include "linalg/small3.h"
+#include "scene/joint_freedoms.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -262,25 +263,12 @@ int hn_im_add_body(hn_build *b, const xmlNode *node, const char *source, const h
 }
 
 static void name_coordinates(hn_build *b, hn_im_joint *j) {
-    static const struct {
-        int n;
-        const char *suffix[6];
-    } parts[HN_JOINT_TYPE_COUNT] = {
-        [HN_JOINT_REVOLUTE] = {1, {""}},
-        [HN_JOINT_PRISMATIC] = {1, {""}},
-        [HN_JOINT_CYLINDRICAL] = {2, {"_angle", "_way"}},
-        [HN_JOINT_UNIVERSAL] = {2, {"_1", "_2"}},
-        [HN_JOINT_SPHERICAL] = {3, {"_rx", "_ry", "_rz"}},
-        [HN_JOINT_PLANAR] = {3, {"_x", "_y", "_angle"}},
-        [HN_JOINT_FIXED] = {0, {""}},
-        [HN_JOINT_FREE] = {6, {"_x", "_y", "_z", "_rx", "_ry", "_rz"}},
-    };
+    const hn_freedom *freedoms = hn_joint_freedoms(j->type, &j->n);
 
     // each name is made unique
     char wanted[MAX_NAME + 16];
-    j->n = parts[j->type].n;
     for (int k = 0; k < j->n; k++) {
-        (void)snprintf(wanted, sizeof wanted, "%.40s%s", j->name, parts[j->type].suffix[k]);
+        (void)snprintf(wanted, sizeof wanted, "%.40s%s", j->name, freedoms[k].suffix);
         j->coordinate[k] = identifier(b, wanted);
         j->rate[k] = j->coordinate[k] ? hn_im_text(b, "d_%s", j->coordinate[k]) : NULL;
     }

@@ -2,43 +2,12 @@
 // The coordinates of a joint: how many its type has, how they are called, which are driven, how far
 // they may go.
 
+#include "scene/joint_freedoms.h"
 #include "scene/reader.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { MAX_FREEDOMS = 6 };
-
-/// One degree of freedom: the suffix of its coordinate's name behind that of the joint, its unit,
-/// its entry of a rotation vector.
-typedef struct freedom {
-    const char *suffix;
-    hn_unit_kind kind;
-    int turn;
-} freedom;
-
-/// In the order of the joint's coordinates.
-static const struct {
-    int n;
-    freedom of[MAX_FREEDOMS];
-} FREEDOMS[HN_JOINT_TYPE_COUNT] = {
-    [HN_JOINT_REVOLUTE] = {1, {{"", HN_ANGLE, -1}}},
-    [HN_JOINT_PRISMATIC] = {1, {{"", HN_LENGTH, -1}}},
-    [HN_JOINT_CYLINDRICAL] = {2, {{"_angle", HN_ANGLE, -1}, {"_way", HN_LENGTH, -1}}},
-    [HN_JOINT_UNIVERSAL] = {2, {{"_1", HN_ANGLE, -1}, {"_2", HN_ANGLE, -1}}},
-    [HN_JOINT_SPHERICAL] = {3, {{"_rx", HN_ANGLE, 0}, {"_ry", HN_ANGLE, 1}, {"_rz", HN_ANGLE, 2}}},
-    [HN_JOINT_PLANAR] = {3,
-                         {{"_x", HN_LENGTH, -1}, {"_y", HN_LENGTH, -1}, {"_angle", HN_ANGLE, -1}}},
-    [HN_JOINT_FIXED] = {0, {{NULL, HN_OTHER, -1}}},
-    [HN_JOINT_FREE] = {6,
-                       {{"_x", HN_LENGTH, -1},
-                        {"_y", HN_LENGTH, -1},
-                        {"_z", HN_LENGTH, -1},
-                        {"_rx", HN_ANGLE, 0},
-                        {"_ry", HN_ANGLE, 1},
-                        {"_rz", HN_ANGLE, 2}}},
-};
 
 int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_unit_kind kind,
                          int joint, int actuated) {
@@ -92,7 +61,7 @@ static const char *listed_name(hn_reader *r, const cJSON *node) {
 /// The names under `many` (a list, one for each degree of freedom), or for a single one under
 /// `one`. Those left out stay NULL.
 static bool read_names(hn_reader *r, const cJSON *node, const char *one, const char *many, int n,
-                       const char *names[MAX_FREEDOMS]) {
+                       const char *names[HN_JOINT_FREEDOMS]) {
     const cJSON *list = hn_rd_get(node, many), *single = hn_rd_get(node, one);
     if (list && single) {
         return hn_rd_fault(r, "leave one of them out", "both '%s' and '%s' are given", one, many);
@@ -139,7 +108,7 @@ static const char *default_name(hn_reader *r, const char *joint, const char *suf
 
 /// The joint's own coordinate of that name, or -1 after a fault.
 static int own_coordinate(hn_reader *r, const hn_joint *j, const char *name) {
-    const char *names[MAX_FREEDOMS];
+    const char *names[HN_JOINT_FREEDOMS];
     for (int i = 0; i < j->n_coordinates; i++) {
         names[i] = r->scene->coordinates[j->coordinate + i].name;
         if (strcmp(names[i], name) == 0) {
@@ -249,8 +218,9 @@ static void read_limits(hn_reader *r, const cJSON *node, const hn_joint *j) {
 // ---- a joint's ----
 
 void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j) {
-    const char *names[MAX_FREEDOMS] = {NULL}, *rates[MAX_FREEDOMS] = {NULL};
-    int n = FREEDOMS[j->type].n, first = r->scene->n_coordinates;
+    const char *names[HN_JOINT_FREEDOMS] = {NULL}, *rates[HN_JOINT_FREEDOMS] = {NULL};
+    int n, first = r->scene->n_coordinates;
+    const hn_freedom *freedoms = hn_joint_freedoms(j->type, &n);
     j->coordinate = -1;
     j->n_coordinates = 0;
 
@@ -267,7 +237,7 @@ void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j) {
     size_t mark = hn_rd_enter(r, at);
     bool ok = 1;
     for (int i = 0; i < n && ok; i++) {
-        const freedom *f = &FREEDOMS[j->type].of[i];
+        const hn_freedom *f = &freedoms[i];
         const char *name = names[i] ? names[i] : default_name(r, j->name, f->suffix);
         int k = hn_rd_add_coordinate(r, name, rates[i], f->kind, r->scene->n_joints, 0);
         ok = k >= 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/assembly/assemble_pose.h"
 
+#include "dynamics/compile/loops.h"
 #include "dynamics/compile/quaternion.h"
 #include "dynamics/compile/tree.h"
 #include "linalg/dense.h"
@@ -151,17 +152,17 @@ static void world_direction(const hn_assembler *s, int body, const double v[3], 
     hn_num3_apply(at.R, v, out);
 }
 
-/// Whether directions of the two halves that should agree are opposed. Joints that leave an
-/// orientation free have none.
-static int is_opposed(const hn_assembler *s, const hn_joint *joint) {
+/// Whether directions of the two halves that should agree are opposed.
+static bool is_opposed(const hn_assembler *s, const hn_joint *joint) {
+    const hn_joint_ties ties = hn_joint_ties_of(joint->type);
     double a[3], b[3];
-    if (joint->type == HN_JOINT_SPHERICAL || joint->type == HN_JOINT_UNIVERSAL) {
-        return 0;
+    bool opposed = false;
+    if (ties.axes) {
+        world_direction(s, joint->parent, joint->parent_axis, a);
+        world_direction(s, joint->child, joint->child_axis, b);
+        opposed |= hn_dot(3, a, b) < 0;
     }
-    world_direction(s, joint->parent, joint->parent_axis, a);
-    world_direction(s, joint->child, joint->child_axis, b);
-    int opposed = hn_dot(3, a, b) < 0;
-    if (joint->type == HN_JOINT_PRISMATIC || joint->type == HN_JOINT_FIXED) {
+    if (ties.refs) {
         world_direction(s, joint->parent, joint->parent_ref, a);
         world_direction(s, joint->child, joint->child_ref, b);
         opposed |= hn_dot(3, a, b) < 0;

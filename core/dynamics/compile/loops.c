@@ -62,6 +62,11 @@ static const closing CLOSINGS[HN_JOINT_TYPE_COUNT] = {
     [HN_JOINT_FIXED] = {1, 0, TURN | TILT_1 | TILT_2},
 };
 
+hn_joint_ties hn_joint_ties_of(hn_joint_type type) {
+    const int turns = CLOSINGS[type].turns, tilts = TILT_1 | TILT_2;
+    return (hn_joint_ties){.axes = (turns & tilts) == tilts, .refs = (turns & TURN) != 0};
+}
+
 /// Axes of the joint on both sides: x, y, z in their bodies.
 static void joint_axes(loop *l, hn_direction parent[3], hn_direction child[3]) {
     const hn_joint *joint = l->joint;

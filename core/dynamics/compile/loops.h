@@ -12,6 +12,12 @@ HN_MUST_CHECK hn_status hn_mech_trace_loops(hn_mech *m);
 /// Writes the scene coordinates of cut joints as expressions, where they have one.
 HN_MUST_CHECK hn_status hn_mech_cut_coordinates(hn_mech *m);
 
+/// Which directions of its two halves a cut joint keeps parallel and pointing the same way.
+typedef struct hn_joint_ties {
+    bool axes, refs;
+} hn_joint_ties;
+hn_joint_ties hn_joint_ties_of(hn_joint_type type);
+
 /// The angle of link b against link a about an axis of a, as a difference of two absolute angles.
 typedef struct hn_turn {
     double sign;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/mjcf_writer.h"
 
+#include "base/shortest.h"
 #include "linalg/small3.h"
 #include "session/export/xml_attribute.h"
 
@@ -18,7 +19,9 @@ static const double ALONG = 0.5;
 
 static void put_values(hn_strbuf *b, const double *x, int n) {
     for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(b, "%s%.17g", i || b->n ? " " : "", x[i] + 0.0);
+        char text[HN_SHORTEST_TEXT];
+        hn_shortest_write(x[i] + 0.0, text);
+        hn_strbuf_printf(b, "%s%s", i || b->n ? " " : "", text);
     }
 }
 

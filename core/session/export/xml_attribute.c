@@ -2,6 +2,7 @@
 #include "session/export/xml_attribute.h"
 
 #include "base/markup.h"
+#include "base/shortest.h"
 
 void hn_xml_put_text(hn_strbuf *b, const char *key, const char *text, const char *suffix) {
     hn_strbuf_printf(b, " %s=\"", key);
@@ -12,7 +13,9 @@ void hn_xml_put_text(hn_strbuf *b, const char *key, const char *text, const char
 void hn_xml_put_numbers(hn_strbuf *b, const char *key, const double *x, int n) {
     hn_strbuf_printf(b, " %s=\"", key);
     for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(b, "%s%.17g", i ? " " : "", x[i] + 0.0);
+        char text[HN_SHORTEST_TEXT];
+        hn_shortest_write(x[i] + 0.0, text);
+        hn_strbuf_printf(b, "%s%s", i ? " " : "", text);
     }
     hn_strbuf_add(b, "\"");
 }
