@@ -79,9 +79,28 @@ static void derive_command(cJSON *node) {
     hn_strbuf_reset(&b);
 }
 
+enum { N_EXHIBIT_KEYS = 6 };
+
+/// Refuses a line of an exhibit, with the nearest key or all of them.
+static hn_status refuse_line(const char *line, const char *const keys[N_EXHIBIT_KEYS],
+                             hn_diags *diags) {
+    const char *near = hn_nearest_name(line, keys, N_EXHIBIT_KEYS);
+    char hint[HN_DIAG_HINT];
+    int n = snprintf(hint, sizeof hint, "write 'key: text' with a key of ");
+    for (int i = 0; i < N_EXHIBIT_KEYS; i++) {
+        n += snprintf(hint + n, sizeof hint - (size_t)n, "%s%s", i ? ", " : "", keys[i]);
+    }
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s:'?", near);
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, "/exhibit", hint,
+                        "the line '%.60s' of an exhibit cannot be read", line);
+}
+
 /// Lines "key: value"; an empty line, then what to see.
 static hn_status read_exhibit(cJSON *node, const char *text, hn_diags *diags) {
-    static const char *const keys[] = {"command", "scene", "methods", "set", "time", "look"};
+    static const char *const keys[N_EXHIBIT_KEYS] = {"command", "scene", "methods",
+                                                     "set",     "time",  "look"};
     char line[MAX_LINE];
     while (next_line(&text, line) && *skip_blanks(line)) {
         // key and value
@@ -91,14 +110,12 @@ static hn_status read_exhibit(cJSON *node, const char *text, hn_diags *diags) {
             *colon = 0;
         }
 
-        // an unknown key is refused, with the nearest one
         int k = 0;
-        while (k < 6 && strcmp(keys[k], line) != 0) {
+        while (k < N_EXHIBIT_KEYS && strcmp(keys[k], line) != 0) {
             k++;
         }
-        if (!colon || k == 6) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/exhibit", hn_nearest_name(line, keys, 6),
-                                "an exhibit has no line '%.60s'", line);
+        if (!colon || k == N_EXHIBIT_KEYS) {
+            return refuse_line(line, keys, diags);
         }
 
         // lists, the time in seconds, and texts

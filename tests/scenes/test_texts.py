@@ -37,6 +37,16 @@ def document(command):
     return _documents[command]
 
 
+def unreadable(texts):
+    """Lessons that the program cannot read, with what it says of them."""
+    faults = []
+    for text in texts:
+        lesson = document(f"lesson {text.split('/')[1]} --json")
+        if not lesson.get("blocks"):
+            faults.append(f"{text}: {lesson.get('errors') or lesson}")
+    return faults
+
+
 def pick(value, path):
     """'methods.0.worst_gap', 'integrators.name=rk4.real_limit'; 'a|b': the first that is there."""
     for way in path.split("|"):
@@ -252,7 +262,7 @@ def exhibits(texts):
     """Commands of exhibits that do not run. A method that ends early, and says so (status 4), may be the point of an exhibit."""
     faults = []
     for t in texts:
-        for block in document(f"lesson {t.split('/')[1]} --json")["blocks"]:
+        for block in document(f"lesson {t.split('/')[1]} --json").get("blocks", []):
             # study has a time limit in the text; here a second tells whether its options are right
             command = re.sub(r"--time-limit \d+", "--time-limit 1", block["command"]) if block["kind"] == "exhibit" else ""
             if command and f"{command} --json" not in _documents:
@@ -313,7 +323,7 @@ def main():
     results.append(("what the table of slips names runs, and shows what is seen", shown_slips(all_facts["lessons/README.md"])))
     results.append(("a terminal without UTF-8 shows every text and formula", unreadable_in_ascii(texts)))
     results.append(("every kind of answer has an exercise to copy from", kinds()))
-    results.append(("every text can be read", [t for t in texts if not document(f"lesson {t.split('/')[1]} --json")["blocks"]]))
+    results.append(("every text can be read", unreadable(texts)))
     results.append(("every exhibit runs", exhibits(texts)))
     results.append(("every figure has a title and is shown, and the commands in its boxes run", charts()))
     results.append(("the programs of the texts run", programs(texts)))

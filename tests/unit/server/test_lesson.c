@@ -117,7 +117,7 @@ static void a_prediction_has_its_right_choice(void **state) {
 static void faults_of_a_text_are_named(void **state) {
     (void)state;
     static const char *const texts[][2] = {
-        {"```exhibit\nscne: four-bar\n```\n", "an exhibit has no line 'scne'"},
+        {"```exhibit\nscne: four-bar\n```\n", "the line 'scne' of an exhibit cannot be read"},
         {"```predict\nHow?\n- a\n- b\n```\n", "one of them with '+'"},
     };
     for (int i = 0; i < 2; i++) {
