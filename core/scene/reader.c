@@ -166,6 +166,37 @@ bool hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char 
     return true;
 }
 
+int hn_rd_one_kind(hn_reader *r, const cJSON *node, const char *what, const char *const *kinds,
+                   int n) {
+    const char *fields[HN_RD_MAX_KINDS + 2] = {"name", "for"};
+    char a_what[HN_RD_MAX_NAME], allowed[HN_DIAG_HINT];
+    HN_ASSERT(n <= HN_RD_MAX_KINDS);
+
+    // the member that names the kind, and how many there are
+    int kind = -1, found = 0;
+    size_t used = (size_t)snprintf(allowed, sizeof allowed, "allowed: ");
+    for (int k = 0; k < n; k++) {
+        fields[k + 2] = kinds[k];
+        used += (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s", k ? ", " : "",
+                                 kinds[k]);
+        if (hn_rd_get(node, kinds[k])) {
+            kind = k;
+            found++;
+        }
+    }
+
+    // what else there is, then no kind or two at once
+    const int faults = r->n_faults;
+    snprintf(a_what, sizeof a_what, "a %s", what);
+    if (!hn_rd_object(r, node, a_what, fields, n + 2)) {
+        return -1;
+    }
+    if (found != 1 && r->n_faults == faults) {
+        hn_rd_fault(r, allowed, "expected one kind of %s, found %d", what, found);
+    }
+    return found == 1 ? kind : -1;
+}
+
 bool hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what) {
     return !node || cJSON_IsArray(node) ||
            hn_rd_fault(r, NULL, "expected a list of %s, found %s", what, hn_rd_kind(node));

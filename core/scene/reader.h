@@ -21,6 +21,7 @@ enum {
     HN_RD_MAX_NAME = 60,      ///< characters of a name
     HN_RD_MAX_TEXT = 4 << 20, ///< characters of all formulas, repetitions counted
     HN_RD_MAX_FAULTS = 64,    ///< then reading stops
+    HN_RD_MAX_KINDS = 16,     ///< of loads, of constraints
     HN_RD_MAX_DEPTH = 24      ///< levels of JSON
 };
 
@@ -107,6 +108,10 @@ const char *hn_rd_pointer(hn_reader *r); ///< the present path, kept
 /// only when it is no object.
 bool hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
                   int n_fields);
+/// Checks an object of one of several kinds: one member among the n `kinds` names its kind, beside
+/// "name" and "for". Returns the index of the kind, -1 after a fault. `what` is "load".
+int hn_rd_one_kind(hn_reader *r, const cJSON *node, const char *what, const char *const *kinds,
+                   int n);
 typedef void (*hn_rd_item)(hn_reader *r, const cJSON *item, const char *key);
 /// Calls `item` for each entry of a list, or each member of an object (key: its name), repeated
 /// where it says "for".

@@ -225,29 +225,14 @@ void hn_rd_formula_constraint(hn_reader *r, const char *name, const hn_quantity 
 }
 
 static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
-    const char *fields[N_KINDS + 2] = {"name", "for"};
+    const char *kinds[N_KINDS];
     (void)key;
-
-    // the member that names the kind, and how many there are
-    int kind = -1, n = 0;
     for (int k = 0; k < N_KINDS; k++) {
-        fields[k + 2] = KINDS[k].name;
-        if (hn_rd_get(node, KINDS[k].name)) {
-            kind = k;
-            n++;
-        }
+        kinds[k] = KINDS[k].name;
     }
-    int faults = r->n_faults;
-    if (!hn_rd_object(r, node, "a constraint", fields, N_KINDS + 2)) {
-        return;
-    }
-
-    // no kind, or two at once
-    if (n != 1) {
-        if (r->n_faults == faults) {
-            hn_rd_fault(r, "allowed: distance, line, plane, gear, rolling, formula, motion",
-                        "expected one kind of constraint, found %d", n);
-        }
+    const int faults = r->n_faults;
+    const int kind = hn_rd_one_kind(r, node, "constraint", kinds, N_KINDS);
+    if (kind < 0) {
         return;
     }
 

@@ -227,29 +227,13 @@ static const struct {
 enum { N_KINDS = sizeof KINDS / sizeof KINDS[0] };
 
 static void read_load(hn_reader *r, const cJSON *node, const char *key) {
-    const char *fields[N_KINDS + 2] = {"name", "for"};
+    const char *kinds[N_KINDS];
     (void)key;
-
-    // the member that names the kind, and how many there are
-    int kind = -1, n = 0;
     for (int k = 0; k < N_KINDS; k++) {
-        fields[k + 2] = KINDS[k].name;
-        if (hn_rd_get(node, KINDS[k].name)) {
-            kind = k;
-            n++;
-        }
+        kinds[k] = KINDS[k].name;
     }
-    int faults = r->n_faults;
-    if (!hn_rd_object(r, node, "a load", fields, N_KINDS + 2)) {
-        return;
-    }
-
-    // no kind, or two at once
-    if (n != 1) {
-        if (r->n_faults == faults) {
-            hn_rd_fault(r, "allowed: spring, joint_spring, torque, force, moment, follow, table",
-                        "expected one kind of load, found %d", n);
-        }
+    const int kind = hn_rd_one_kind(r, node, "load", kinds, N_KINDS);
+    if (kind < 0) {
         return;
     }
 

@@ -102,3 +102,25 @@ hn_survival_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion,
 double hn_ladder_step(int k, int n) {
     return 0.0022 + (0.02 - 0.0022) * k / (n - 1);
 }
+
+static double cost_per_loop(int n_loops, const char *method, double time, long long evals) {
+    char setting[16];
+    hn_model m;
+    snprintf(setting, sizeof setting, "N=%d", n_loops);
+    hn_model_open_closed(&m, "n-four-bar", setting);
+    const hn_run_summary s = hn_motion_summary(&m, method, time);
+    if (evals > 0) {
+        assert_int_equal(s.cost.evals, evals);
+    }
+    assert_int_equal(s.cost.fallbacks, 0);
+    hn_model_close(&m);
+    return s.cost.ops / n_loops;
+}
+
+void hn_ladder_check_cost(const char *method, double time, long long evals) {
+    const double few = cost_per_loop(10, method, time, evals);
+    const double many = cost_per_loop(200, method, time, evals);
+    if (!(many < 1.5 * few && many > few / 1.5)) {
+        fail_msg("%s: %g operations a loop with 10 loops, %g with 200", method, few, many);
+    }
+}

@@ -28,6 +28,10 @@ double hn_ladder_motion_angle(const hn_ladder_motion *motion, double t);
 /// more [m], until the run stopped.
 hn_survival_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
                               double *worst);
+/// Whether `method` costs the same operations for each loop over `time` [s] with 10 loops and with
+/// 200, within a factor 1.5; stops the test where it does not, where a step fell back to the dense
+/// solver, or where there were not `evals` right-hand sides (0: any number).
+void hn_ladder_check_cost(const char *method, double time, long long evals);
 /// The k-th of n steps from 0.0022 s to 0.02 s.
 double hn_ladder_step(int k, int n);
 

@@ -4,6 +4,8 @@
 #include "support/near.h"
 #include "dynamics/compile/compile.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static void compile_and_assemble(hn_trial *trial, const char *what, hn_diags *diags) {
@@ -43,4 +45,38 @@ void hn_trial_open_text(hn_trial *trial, const char *json) {
 void hn_trial_close(hn_trial *trial) {
     hn_system_free(trial->sys);
     hn_scene_free(trial->scene);
+}
+
+enum { RANDOM_CORNERS = 40, MOST_PARAMETERS = 20 };
+
+/// Settings of trial number k: the first ones draw an end for every parameter, the others take one
+/// parameter to one of its ends. Returns how many.
+static int settings_of_trial(const hn_scene *scene, int trial, unsigned *seed,
+                             hn_setting settings[MOST_PARAMETERS]) {
+    int n = 0;
+    assert_true(scene->n_params <= MOST_PARAMETERS);
+    for (int k = 0; k < scene->n_params; k++) {
+        const hn_param *p = &scene->params[k];
+        *seed = *seed * 1664525u + 1013904223u;
+        const bool drawn = trial < RANDOM_CORNERS;
+        const int end = drawn ? (int)(*seed >> 30 & 1) : trial & 1;
+        if (p->max < HUGE_VAL && (drawn || k == (trial - RANDOM_CORNERS) / 2)) {
+            settings[n++] = (hn_setting){p->name, end ? p->max : p->min};
+        }
+    }
+    return n;
+}
+
+void hn_trial_try_ranges(const char *path) {
+    unsigned seed = 7;
+    hn_trial plain;
+    hn_trial_open(&plain, path);
+    for (int k = 0; k < RANDOM_CORNERS + 2 * plain.scene->n_params; k++) {
+        hn_setting settings[MOST_PARAMETERS];
+        const int n = settings_of_trial(plain.scene, k, &seed, settings);
+        hn_trial corner;
+        hn_trial_open_with(&corner, path, settings, n);
+        hn_trial_close(&corner);
+    }
+    hn_trial_close(&plain);
 }

@@ -22,6 +22,9 @@ void hn_trial_open_with(hn_trial *trial, const char *path, const hn_setting *set
 /// From JSON text.
 void hn_trial_open_text(hn_trial *trial, const char *json);
 void hn_trial_close(hn_trial *trial);
+/// Opens the scene with its parameters at corners and edges of their ranges: each at its ends, and
+/// ends drawn at random for all of them.
+void hn_trial_try_ranges(const char *path);
 /// The spec of a spelling that has to be right.
 hn_method_spec hn_trial_spec(const char *spelling);
 /// A fresh run from the assembled state.

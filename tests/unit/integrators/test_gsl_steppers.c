@@ -3,6 +3,7 @@
 #include "integrators/list/stepper_list.h"
 #include "support/near.h"
 #include "support/odes.h"
+#include "support/test_arena.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,23 +14,9 @@
 static const char *const names[] = {"gsl-rk8pd", "gsl-msadams", "gsl-msbdf", "gsl-bsimp"};
 enum { N_NAMES = sizeof names / sizeof *names };
 
-static hn_arena *arena;
-
-static int setup(void **state) {
-    (void)state;
-    arena = hn_arena_create(0);
-    return arena ? 0 : -1;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    hn_arena_free(arena);
-    return 0;
-}
-
 static void *create(const hn_stepper *s, int n_pos, int n_vel, double rtol, double hmax) {
     const double options[4] = {rtol, 0, 0, hmax};
-    void *self = s->create(n_pos, n_vel, arena);
+    void *self = s->create(n_pos, n_vel, hn_test_arena);
     assert_non_null(self);
     s->configure(self, options);
     return self;
@@ -226,17 +213,22 @@ static void a_state_without_entries_is_passed_through(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(an_orbit_is_followed_to_the_tolerance, setup, teardown),
-        cmocka_unit_test_setup_teardown(the_largest_step_is_kept, setup, teardown),
-        cmocka_unit_test_setup_teardown(the_two_for_stiff_motion_need_no_small_steps, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(an_orbit_is_followed_to_the_tolerance, hn_test_arena_open,
+                                        hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(the_largest_step_is_kept, hn_test_arena_open,
+                                        hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(the_two_for_stiff_motion_need_no_small_steps,
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(a_jacobian_that_is_there_is_used_in_place_of_differences,
-                                        setup, teardown),
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(a_refusal_of_the_right_hand_side_is_reached_and_handed_on,
-                                        setup, teardown),
-        cmocka_unit_test_setup_teardown(a_changed_state_is_gone_on_from, setup, teardown),
-        cmocka_unit_test_setup_teardown(our_own_code_allocates_nothing_in_a_step, setup, teardown),
-        cmocka_unit_test_setup_teardown(a_state_without_entries_is_passed_through, setup, teardown),
+                                        hn_test_arena_open, hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(a_changed_state_is_gone_on_from, hn_test_arena_open,
+                                        hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(our_own_code_allocates_nothing_in_a_step,
+                                        hn_test_arena_open, hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(a_state_without_entries_is_passed_through,
+                                        hn_test_arena_open, hn_test_arena_close),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,32 +2,19 @@
 #include "support/near.h"
 #include "integrators/list/stepper_list.h"
 #include "support/odes.h"
+#include "support/test_arena.h"
 
 #include <math.h>
 #include <string.h>
 
 // The limits on the cards, tried: growth just beyond, decay or no growth just below.
 
-static hn_arena *arena;
-
-static int setup(void **state) {
-    (void)state;
-    arena = hn_arena_create(0);
-    return arena ? 0 : -1;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    hn_arena_free(arena);
-    return 0;
-}
-
 // size of (x, x') of x'' + 2 a x' + b^2 x = 0 after n steps of length 1 from (1, 0), at most 1e100
 static double size_after(const hn_stepper *s, double a, double b, int n) {
     hn_test_oscillator o = {a, b, 0};
     const hn_ode ode = hn_test_oscillator_ode(&o);
     double y[2] = {1, 0}, next[2], err[2], size = 1;
-    void *self = s->create(1, 1, arena);
+    void *self = s->create(1, 1, hn_test_arena);
     for (int i = 0; i < n && size < 1e100; i++) {
         assert_int_equal(s->step(self, &ode, 0, 1, y, next, err), HN_OK);
         s->on_accepted(self, 0);
@@ -133,7 +120,8 @@ static void explicit_euler_grows_by_the_exact_factor(void **state) {
     hn_test_oscillator o = {0, w, 0};
     const hn_ode ode = hn_test_oscillator_ode(&o);
     double y[2] = {1, 0};
-    assert_int_equal(hn_test_integrate(hn_stepper_find("euler"), &ode, n, n, y, arena), HN_OK);
+    assert_int_equal(hn_test_integrate(hn_stepper_find("euler"), &ode, n, n, y, hn_test_arena),
+                     HN_OK);
     // amplitude grows by sqrt(1 + h^2 w^2) a step
     assert_rel(hypot(y[0], y[1] / w), pow(1 + w * w, n / 2.0), 1e-10);
 }
@@ -142,13 +130,16 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cards_carry_the_limits_of_the_stability_polynomials),
         cmocka_unit_test_setup_teardown(
-            a_critically_damped_gap_decays_below_the_real_limit_and_grows_beyond, setup, teardown),
+            a_critically_damped_gap_decays_below_the_real_limit_and_grows_beyond,
+            hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(
-            an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond, setup,
-            teardown),
+            an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond,
+            hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(
-            methods_without_a_limit_damp_a_stiff_oscillation_or_let_it_ring, setup, teardown),
-        cmocka_unit_test_setup_teardown(explicit_euler_grows_by_the_exact_factor, setup, teardown),
+            methods_without_a_limit_damp_a_stiff_oscillation_or_let_it_ring, hn_test_arena_open,
+            hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(explicit_euler_grows_by_the_exact_factor,
+                                        hn_test_arena_open, hn_test_arena_close),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

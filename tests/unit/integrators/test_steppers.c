@@ -3,25 +3,12 @@
 #include "integrators/list/stepper_list.h"
 #include "support/near.h"
 #include "support/odes.h"
+#include "support/test_arena.h"
 
 #include <math.h>
 #include <string.h>
 
 #define ORDER_TOL 0.2
-
-static hn_arena *arena;
-
-static int setup(void **state) {
-    (void)state;
-    arena = hn_arena_create(0);
-    return arena ? 0 : -1;
-}
-
-static int teardown(void **state) {
-    (void)state;
-    hn_arena_free(arena);
-    return 0;
-}
 
 // the others choose their steps themselves, or take the differential-algebraic system
 static int is_stepped_by_the_caller(const hn_stepper *s) {
@@ -33,7 +20,7 @@ static double kepler_error(const hn_stepper *stepper, double e, double T, int n)
     double y[4], exact[4], worst = 0;
     hn_test_kepler_exact(e, 0, y);
     hn_test_kepler_exact(e, T, exact);
-    assert_int_equal(hn_test_integrate(stepper, &ode, T, n, y, arena), HN_OK);
+    assert_int_equal(hn_test_integrate(stepper, &ode, T, n, y, hn_test_arena), HN_OK);
     for (int i = 0; i < 4; i++) {
         worst = fmax(worst, fabs(y[i] - exact[i]));
     }
@@ -80,7 +67,7 @@ static void observed_order_on_an_oscillation_is_the_stated_one(void **state) {
             const int n = base << i;
             const double T = 2.3, w = 1.7;
             h[i] = T / n;
-            assert_int_equal(hn_test_integrate(s, &ode, T, n, y, arena), HN_OK);
+            assert_int_equal(hn_test_integrate(s, &ode, T, n, y, hn_test_arena), HN_OK);
             const double x = cos(w * T) + 0.5 / w * sin(w * T);
             const double v = -w * sin(w * T) + 0.5 * cos(w * T);
             err[i] = hypot(y[0] - x, y[1] - v);
@@ -93,7 +80,7 @@ static void observed_order_on_an_oscillation_is_the_stated_one(void **state) {
 static double dense_error(const hn_stepper *s, double h) {
     const hn_ode ode = hn_test_kepler_ode();
     double y[4], next[4], err[4], inner[4], exact[4], worst = 0;
-    void *self = s->create(2, 2, arena);
+    void *self = s->create(2, 2, hn_test_arena);
     assert_non_null(self);
     hn_test_kepler_exact(0.3, 0.5, y);
     assert_int_equal(s->step(self, &ode, 0.5, h, y, next, err), HN_OK);
@@ -144,7 +131,7 @@ static double error_estimate_order(const hn_stepper *s, double largest) {
     double h[4], size[4];
     for (int i = 0; i < 4; i++) {
         double y[4], next[4], err[4];
-        void *self = s->create(2, 2, arena);
+        void *self = s->create(2, 2, hn_test_arena);
         hn_test_kepler_exact(0.3, 0.5, y);
         h[i] = largest / (1 << i);
         assert_int_equal(s->step(self, &ode, 0, h[i], y, next, err), HN_OK);
@@ -166,7 +153,7 @@ static void dense_stages_of_dop853_are_paid_once_and_serve_the_next_step(void **
     hn_test_oscillator o = {0, 1, 0};
     const hn_ode ode = hn_test_oscillator_ode(&o);
     double y[2] = {1, 0}, next[2], err[2];
-    void *self = s->create(1, 1, arena);
+    void *self = s->create(1, 1, hn_test_arena);
     assert_int_equal(s->step(self, &ode, 0, 0.1, y, next, err), HN_OK);
     assert_int_equal(o.evals, 12);
     // a rejected trial costs its stages only
@@ -189,7 +176,7 @@ static void fsal_saves_a_stage_unless_the_state_was_changed(void **state) {
     hn_test_oscillator o = {0, 1, 0};
     const hn_ode ode = hn_test_oscillator_ode(&o);
     double y[2] = {1, 0}, next[2], err[2];
-    void *self = s->create(1, 1, arena);
+    void *self = s->create(1, 1, hn_test_arena);
     assert_int_equal(s->step(self, &ode, 0, 0.1, y, next, err), HN_OK);
     assert_int_equal(o.evals, 7);
     // rejected: the same point again needs no new first slope
@@ -211,7 +198,7 @@ static void a_kept_slope_gives_the_same_bits_as_a_fresh_one(void **state) {
     double a[2][4];
     for (int changed = 0; changed <= 1; changed++) {
         double y[4], next[4], err[4];
-        void *self = s->create(2, 2, arena);
+        void *self = s->create(2, 2, hn_test_arena);
         hn_test_kepler_exact(0.3, 0, y);
         for (int i = 0; i < 20; i++) {
             assert_int_equal(s->step(self, &ode, i * 0.05, 0.05, y, next, err), HN_OK);
@@ -232,7 +219,7 @@ static void a_step_does_not_allocate(void **state) {
             continue; // the others have tests of their own
         }
         double y[4], next[4], err[4];
-        void *self = s->create(2, 2, arena);
+        void *self = s->create(2, 2, hn_test_arena);
         hn_test_kepler_exact(0.3, 0, y);
         const long before = hn_alloc_count();
         for (int i = 0; i < 10; i++) {
@@ -265,7 +252,7 @@ static void failure_of_the_right_hand_side_is_handed_on(void **state) {
         }
         const hn_ode ode = {.n_pos = 1, .n_vel = 1, .rhs = refuse, .kinematics = refuse};
         double y[2] = {0, 0}, next[2], err[2];
-        void *self = s->create(1, 1, arena);
+        void *self = s->create(1, 1, hn_test_arena);
         assert_int_equal(s->step(self, &ode, 0.05, 0.1, y, next, err), HN_ERR_CHART);
     }
 }
@@ -277,7 +264,7 @@ static void symplectic_euler_keeps_the_energy_of_an_oscillation_bounded(void **s
     const hn_ode ode = hn_test_oscillator_ode(&o);
     const double h = 0.1;
     double y[2] = {1, 0};
-    void *self = s->create(1, 1, arena);
+    void *self = s->create(1, 1, hn_test_arena);
     // x^2 + v^2 - h x v is exactly conserved by the map (1) of symplectic_euler.c
     for (int i = 0; i < 100000; i++) {
         double next[2];
@@ -294,7 +281,7 @@ static void verlet_keeps_its_own_energy_of_an_oscillation_exactly(void **state) 
     const hn_ode ode = hn_test_oscillator_ode(&o);
     const double h = 0.5;
     double y[2] = {1, 0};
-    void *self = s->create(1, 1, arena);
+    void *self = s->create(1, 1, hn_test_arena);
     // v^2 + (1 - h^2/4) x^2 is exactly conserved by the map (1) of verlet.c
     for (int i = 0; i < 100000; i++) {
         double next[2];
@@ -313,8 +300,9 @@ static void verlet_has_order_two_where_the_force_depends_on_speed(void **state) 
         double y[2] = {1, 0.5};
         const double T = 2.3, w = sqrt(1.7 * 1.7 - 0.36), c = (0.5 + 0.6) / w;
         h[i] = T / (50 << i);
-        assert_int_equal(hn_test_integrate(hn_stepper_find("verlet"), &ode, T, 50 << i, y, arena),
-                         HN_OK);
+        assert_int_equal(
+            hn_test_integrate(hn_stepper_find("verlet"), &ode, T, 50 << i, y, hn_test_arena),
+            HN_OK);
         const double x = exp(-0.6 * T) * (cos(w * T) + c * sin(w * T));
         const double v = -0.6 * x + exp(-0.6 * T) * w * (-sin(w * T) + c * cos(w * T));
         err[i] = hypot(y[0] - x, y[1] - v);
@@ -324,29 +312,31 @@ static void verlet_has_order_two_where_the_force_depends_on_speed(void **state) 
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(observed_order_on_an_orbit_is_the_stated_one, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(observed_order_on_an_oscillation_is_the_stated_one, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(observed_order_on_an_orbit_is_the_stated_one,
+                                        hn_test_arena_open, hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(observed_order_on_an_oscillation_is_the_stated_one,
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(dense_output_has_the_stated_order_and_meets_both_ends,
-                                        setup, teardown),
-        cmocka_unit_test_setup_teardown(error_estimate_falls_like_the_order_of_the_method, setup,
-                                        teardown),
+                                        hn_test_arena_open, hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(error_estimate_falls_like_the_order_of_the_method,
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(
-            dense_stages_of_dop853_are_paid_once_and_serve_the_next_step, setup, teardown),
-        cmocka_unit_test_setup_teardown(fsal_saves_a_stage_unless_the_state_was_changed, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(a_kept_slope_gives_the_same_bits_as_a_fresh_one, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(a_step_does_not_allocate, setup, teardown),
-        cmocka_unit_test_setup_teardown(failure_of_the_right_hand_side_is_handed_on, setup,
-                                        teardown),
+            dense_stages_of_dop853_are_paid_once_and_serve_the_next_step, hn_test_arena_open,
+            hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(fsal_saves_a_stage_unless_the_state_was_changed,
+                                        hn_test_arena_open, hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(a_kept_slope_gives_the_same_bits_as_a_fresh_one,
+                                        hn_test_arena_open, hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(a_step_does_not_allocate, hn_test_arena_open,
+                                        hn_test_arena_close),
+        cmocka_unit_test_setup_teardown(failure_of_the_right_hand_side_is_handed_on,
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(verlet_keeps_its_own_energy_of_an_oscillation_exactly,
-                                        setup, teardown),
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(verlet_has_order_two_where_the_force_depends_on_speed,
-                                        setup, teardown),
+                                        hn_test_arena_open, hn_test_arena_close),
         cmocka_unit_test_setup_teardown(symplectic_euler_keeps_the_energy_of_an_oscillation_bounded,
-                                        setup, teardown),
+                                        hn_test_arena_open, hn_test_arena_close),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

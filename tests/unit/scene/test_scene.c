@@ -6,6 +6,7 @@
 #include "scene/scene.h"
 
 #include "support/near.h"
+#include "support/scene_text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,24 +27,6 @@ static hn_scene *load_set(const char *path, const hn_setting *set, int n) {
                  diags.item[0].hint);
     }
     return scene;
-}
-
-static hn_scene *load_text(const char *text) {
-    hn_scene *scene = NULL;
-    hn_diags diags = {0};
-    if (hn_scene_load_json(text, strlen(text), NULL, NULL, 0, &scene, &diags) != HN_OK) {
-        fail_msg("%s: %s: %s (%s)", text, diags.item[0].pointer, diags.item[0].message,
-                 diags.item[0].hint);
-    }
-    return scene;
-}
-
-static int count_shapes(const hn_scene *s, hn_shape_kind kind) {
-    int n = 0;
-    for (int i = 0; i < s->n_shapes; i++) {
-        n += s->shapes[i].kind == kind;
-    }
-    return n;
 }
 
 // ---- the shipped scenes ----
@@ -124,8 +107,8 @@ static void the_ladder_grows_with_its_parameter(void **state) {
         hn_scene *s = load_set(LESSON "n-four-bar.json", &set, 1);
         assert_int_equal(s->n_bodies, 2 * n + 1);
         assert_int_equal(s->n_joints, 3 * n + 1);
-        assert_int_equal(count_shapes(s, HN_SHAPE_BAR), 2 * n + 1);
-        assert_int_equal(count_shapes(s, HN_SHAPE_GROUND), n + 1);
+        assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_BAR), 2 * n + 1);
+        assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_GROUND), n + 1);
         const hn_param *p = &s->params[hn_scene_find_param(s, "N")];
         assert_true(p->structural && p->integer && p->value == n && p->initial == 2);
         assert_false(s->params[hn_scene_find_param(s, "L")].structural);
@@ -175,10 +158,10 @@ static void the_hash_is_of_what_moves_not_of_words_or_white_space(void **state) 
     assert_true(a->hash != c->hash);
     assert_near(c->bodies[0].com[0].value, 0.625, 0);
     assert_near(c->params[0].initial, 1, 0);
-    hn_scene *d = load_text(HEAD ONE_BODY ONE_JOINT "}"),
-             *e = load_text(HEAD "\n\t" ONE_BODY "\n" ONE_JOINT "\n}\n");
-    hn_scene *f = load_text(HEAD "\"title\":\"y\", \"duration\": 3, " ONE_BODY ONE_JOINT "}");
-    hn_scene *g = load_text(HEAD ONE_BODY ONE_JOINT ", \"gravity\": [0, -1, 0]}");
+    hn_scene *d = hn_test_scene(HEAD ONE_BODY ONE_JOINT "}"),
+             *e = hn_test_scene(HEAD "\n\t" ONE_BODY "\n" ONE_JOINT "\n}\n");
+    hn_scene *f = hn_test_scene(HEAD "\"title\":\"y\", \"duration\": 3, " ONE_BODY ONE_JOINT "}");
+    hn_scene *g = hn_test_scene(HEAD ONE_BODY ONE_JOINT ", \"gravity\": [0, -1, 0]}");
     assert_true(d->hash == e->hash);
     assert_true(d->hash == f->hash);
     assert_true(d->hash != g->hash);
@@ -286,7 +269,7 @@ static void parameters_may_be_formulas_of_each_other_in_any_order(void **state) 
 }
 
 static void parameters_that_bounds_of_repetitions_need_are_structural(void **state) {
-    hn_scene *s = load_text(
+    hn_scene *s = hn_test_scene(
         HEAD "\"parameters\":{\"k\":2, \"n\":\"k + 1\", \"m\":1}, "
              "\"bodies\":[{\"for\":{\"i\":[1,\"n\"]},\"name\":\"b{i}\",\"mass\":\"m*i\"}],"
              "\"joints\":[{\"for\":{\"i\":[1,\"n\"]},\"name\":\"j{i}\",\"type\":\"revolute\","
@@ -318,7 +301,7 @@ static void axes_are_made_unit_and_missing_references_are_the_least_aligned_axis
                  HEAD ONE_BODY "\"joints\":[{\"name\":\"j\",\"type\":\"prismatic\",\"axis\":%s,"
                                "\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"b\"}}]}",
                  rows[i].axis);
-        hn_scene *s = load_text(text);
+        hn_scene *s = hn_test_scene(text);
         assert_all_near(s->joints[0].parent_axis, rows[i].unit, 3, 1e-15);
         assert_all_near(s->joints[0].parent_ref, rows[i].ref, 3, 1e-15);
         assert_all_near(s->joints[0].child_axis, rows[i].unit, 3, 1e-15);
@@ -329,7 +312,7 @@ static void axes_are_made_unit_and_missing_references_are_the_least_aligned_axis
 }
 
 static void a_childs_own_axis_and_reference_are_kept(void **state) {
-    hn_scene *s = load_text(
+    hn_scene *s = hn_test_scene(
         HEAD ONE_BODY
         "\"joints\":[{\"name\":\"j\",\"type\":\"revolute\",\"parent\":{\"body\":\"ground\"},"
         "\"child\":{\"body\":\"b\",\"axis\":[0,2,0],\"ref\":[0,0,-3]}}]}");
@@ -351,13 +334,13 @@ static void inertia_of_a_real_body_is_accepted_however_its_axes_stand(void **sta
              HEAD "\"bodies\":[{\"name\":\"b\",\"mass\":1,\"inertia\":{\"xx\":%.17g,\"yy\":%.17g,"
                   "\"zz\":0.07,\"xy\":%.17g}}], " ONE_JOINT "}",
              a * c * c + b * sn * sn, a * sn * sn + b * c * c, (a - b) * c * sn);
-    hn_scene *s = load_text(text);
+    hn_scene *s = hn_test_scene(text);
     assert_near(s->bodies[0].inertia[3].value, (a - b) * c * sn, 1e-17);
     hn_scene_free(s);
 }
 
 static void loads_keep_formulas_that_vary_apart_from_numbers(void **state) {
-    hn_scene *s = load_text(
+    hn_scene *s = hn_test_scene(
         HEAD "\"parameters\":{\"k\":50}, " ONE_BODY
              "\"joints\":[{\"name\":\"j\",\"type\":\"revolute\",\"coordinate\":\"q\",\"rate\":"
              "\"w\",\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"b\"}}],"
@@ -382,30 +365,30 @@ static void loads_keep_formulas_that_vary_apart_from_numbers(void **state) {
     assert_int_equal(s->loads[3].coordinate, 0);
     assert_int_equal(s->loads[4].p, s->loads[0].q); // the same place is the same point
     assert_true(s->loads[4].value[1].varies && !s->loads[4].value[0].varies);
-    assert_int_equal(count_shapes(s, HN_SHAPE_SPRING), 1);
-    assert_int_equal(count_shapes(s, HN_SHAPE_DAMPER), 1);
-    assert_int_equal(count_shapes(s, HN_SHAPE_ARROW), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_SPRING), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_DAMPER), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_ARROW), 1);
     hn_scene_free(s);
 }
 
 static void what_is_left_undrawn_is_made_from_the_joints(void **state) {
     hn_scene *s = load_set(LESSON "slider-crank.json", NULL, 0);
     (void)state;
-    assert_int_equal(count_shapes(s, HN_SHAPE_BAR),
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_BAR),
                      2); // crank and rod; the slider's joints share one place
-    assert_int_equal(count_shapes(s, HN_SHAPE_GROUND), 1);
-    assert_int_equal(count_shapes(s, HN_SHAPE_PIVOT), 2);
-    assert_int_equal(count_shapes(s, HN_SHAPE_SLIDER), 1);
-    assert_int_equal(count_shapes(s, HN_SHAPE_GUIDE), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_GROUND), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_PIVOT), 2);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_SLIDER), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_GUIDE), 1);
     hn_scene_free(s);
 }
 
 static void polygons_keep_their_points_in_a_row(void **state) {
-    hn_scene *s =
-        load_text(HEAD "\"bodies\":[{\"name\":\"b\",\"mass\":1,\"draw\":[{\"bar\":[[0,0],[1,0]]},{"
-                       "\"polygon\":[[0,0],[1,0],[1,1],[0,1]],\"width\":0.1}]}], " ONE_JOINT "}");
+    hn_scene *s = hn_test_scene(
+        HEAD "\"bodies\":[{\"name\":\"b\",\"mass\":1,\"draw\":[{\"bar\":[[0,0],[1,0]]},{"
+             "\"polygon\":[[0,0],[1,0],[1,1],[0,1]],\"width\":0.1}]}], " ONE_JOINT "}");
     (void)state;
-    assert_int_equal(count_shapes(s, HN_SHAPE_POLYGON), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_POLYGON), 1);
     const hn_shape *p = &s->shapes[1];
     assert_int_equal(p->n, 4);
     assert_int_equal(p->body, 0);
@@ -427,7 +410,7 @@ static void a_lagrangian_keeps_its_formulas_forces_and_tears(void **state) {
     assert_string_equal(s->points[s->tears[0][1]].name, "B'");
     assert_true(s->points[s->tears[0][1]].at[0].varies);
     hn_scene_free(s);
-    s = load_text(
+    s = hn_test_scene(
         HEAD "\"lagrangian\":{\"coordinates\":[{\"for\":{\"i\":[1,2]},\"name\":\"q{i}\",\"rate\":"
              "\"v{i}\",\"unit\":\"m\"}],"
              "\"kinetic\":\"v1^2 + "
@@ -456,7 +439,7 @@ static void a_setting_of_the_start_replaces_what_the_scene_says(void **state) {
     assert_true(moved->hash != plain->hash);
 
     // its text alone is the same scene
-    hn_scene *again = load_text(moved->text);
+    hn_scene *again = hn_test_scene(moved->text);
     assert_true(again->hash == moved->hash);
     assert_near(again->coordinates[0].q0, 1.3, 0);
 

@@ -4,6 +4,7 @@
 #include "scene/scene.h"
 
 #include "support/near.h"
+#include "support/scene_text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,24 +21,6 @@
         "ground",                                               \
         "a") "},"                                               \
              "{\"name\":\"B\",\"type\":\"revolute\"," SIDES("a", "b") ",\"coordinate\":\"th\"}], "
-
-static hn_scene *load(const char *text) {
-    hn_scene *scene = NULL;
-    hn_diags diags = {0};
-    if (hn_scene_load_json(text, strlen(text), NULL, NULL, 0, &scene, &diags) != HN_OK) {
-        fail_msg("%s: %s: %s (%s)", text, diags.item[0].pointer, diags.item[0].message,
-                 diags.item[0].hint);
-    }
-    return scene;
-}
-
-static int count_shapes(const hn_scene *s, hn_shape_kind kind) {
-    int n = 0;
-    for (int i = 0; i < s->n_shapes; i++) {
-        n += s->shapes[i].kind == kind;
-    }
-    return n;
-}
 
 static void every_type_has_its_freedoms_names_and_units(void **state) {
     static const struct {
@@ -82,7 +65,7 @@ static void every_type_has_its_freedoms_names_and_units(void **state) {
                  HEAD BODIES "\"joints\":[{\"name\":\"R\",\"type\":\"revolute\"," SIDES(
                      "a", "b") "},{\"name\":\"J\",\"type\":\"%s\"%s," ON_GROUND "}]}",
                  rows[k].type, rows[k].extra);
-        hn_scene *s = load(text);
+        hn_scene *s = hn_test_scene(text);
         const hn_joint *j = &s->joints[1];
         assert_string_equal(hn_joint_type_name(j->type), rows[k].type);
         assert_int_equal(j->n_coordinates, rows[k].n);
@@ -104,7 +87,7 @@ static void every_type_has_its_freedoms_names_and_units(void **state) {
 }
 
 static void names_actuators_and_limits_of_a_joint_are_kept(void **state) {
-    hn_scene *s = load(
+    hn_scene *s = hn_test_scene(
         HEAD "\"parameters\":{\"far\":3}," BODIES
              "\"joints\":[{\"name\":\"P\",\"type\":\"planar\"," ON_GROUND
              ",\"coordinates\":[\"x\",\"y\",\"phi\"],\"rates\":[\"vx\",\"vy\",\"om\"],"
@@ -125,12 +108,12 @@ static void names_actuators_and_limits_of_a_joint_are_kept(void **state) {
 }
 
 static void a_universal_joint_keeps_its_second_axis_as_reference(void **state) {
-    hn_scene *s =
-        load(HEAD BODIES
-             "\"joints\":[{\"name\":\"U\",\"type\":\"universal\",\"axis\":[2,0,0],"
-             "\"axis2\":[0,0,-3],\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"a\","
-             "\"axis\":[0,1,0],\"axis2\":[1,0,0]}},{\"name\":\"R\",\"type\":\"fixed\"," SIDES(
-                 "a", "b") "}]}");
+    hn_scene *s = hn_test_scene(
+        HEAD BODIES
+        "\"joints\":[{\"name\":\"U\",\"type\":\"universal\",\"axis\":[2,0,0],"
+        "\"axis2\":[0,0,-3],\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"a\","
+        "\"axis\":[0,1,0],\"axis2\":[1,0,0]}},{\"name\":\"R\",\"type\":\"fixed\"," SIDES(
+            "a", "b") "}]}");
     (void)state;
     const hn_joint *j = &s->joints[0];
     static const double expected[4][3] = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
@@ -144,7 +127,7 @@ static void a_universal_joint_keeps_its_second_axis_as_reference(void **state) {
 }
 
 static void every_kind_of_constraint_is_kept(void **state) {
-    hn_scene *s = load(
+    hn_scene *s = hn_test_scene(
         HEAD
         "\"parameters\":{\"w\":3,\"l\":2}," BODIES TWO_REVOLUTES "\"constraints\":["
         "{\"distance\":{\"from\":{\"body\":\"b\",\"at\":[1,0]},\"to\":[3,0],\"length\":\"l\"}},"
@@ -182,13 +165,13 @@ static void every_kind_of_constraint_is_kept(void **state) {
 }
 
 static void moments_followers_and_tables_are_kept(void **state) {
-    hn_scene *s =
-        load(HEAD "\"parameters\":{\"k\":100}," BODIES TWO_REVOLUTES "\"loads\":["
-                  "{\"moment\":{\"body\":\"b\",\"value\":[0,\"d_th\",\"k\"]}},"
-                  "{\"follow\":{\"joint\":\"A\",\"stiffness\":\"k\",\"damping\":2,"
-                  "\"target\":\"sin(t)\",\"limit\":7}},"
-                  "{\"table\":{\"coordinate\":\"th\",\"t\":[0,1,\"2*1.5\"],\"value\":[1,2,\"k\"],"
-                  "\"steps\":true}}]}");
+    hn_scene *s = hn_test_scene(
+        HEAD "\"parameters\":{\"k\":100}," BODIES TWO_REVOLUTES "\"loads\":["
+             "{\"moment\":{\"body\":\"b\",\"value\":[0,\"d_th\",\"k\"]}},"
+             "{\"follow\":{\"joint\":\"A\",\"stiffness\":\"k\",\"damping\":2,"
+             "\"target\":\"sin(t)\",\"limit\":7}},"
+             "{\"table\":{\"coordinate\":\"th\",\"t\":[0,1,\"2*1.5\"],\"value\":[1,2,\"k\"],"
+             "\"steps\":true}}]}");
     (void)state;
     const hn_load *l = s->loads;
     assert_int_equal(s->n_loads, 3);
@@ -206,7 +189,7 @@ static void moments_followers_and_tables_are_kept(void **state) {
 }
 
 static void rates_of_a_spherical_joint_may_be_used_where_its_rotation_vector_may_not(void **state) {
-    hn_scene *s = load(
+    hn_scene *s = hn_test_scene(
         HEAD BODIES
         "\"joints\":[{\"name\":\"S\",\"type\":\"spherical\"," ON_GROUND "},"
         "{\"name\":\"R\",\"type\":\"revolute\"," SIDES(
@@ -234,7 +217,7 @@ static void the_hash_sees_joints_constraints_and_mode(void **state) {
                  HEAD BODIES "\"joints\":[{\"name\":\"A\",\"type\":\"revolute\"," ON_GROUND
                              "},{\"name\":\"B\",\"type\":\"fixed\"," SIDES("a", "b") "}]%s",
                  ends[k]);
-        hn_scene *s = load(text);
+        hn_scene *s = hn_test_scene(text);
         hash[k] = s->hash;
         hn_scene_free(s);
         for (int i = 0; i < k; i++) {
@@ -246,13 +229,13 @@ static void the_hash_sees_joints_constraints_and_mode(void **state) {
 // edges of the block with m = 2, moments 3, 4, 5: a^2 = 6 (yy + zz - xx) / m = 18, b^2 = 12, c^2 =
 // 6
 static void a_free_body_is_drawn_with_the_extents_of_its_inertia(void **state) {
-    hn_scene *s =
-        load(HEAD BODIES "\"joints\":[{\"name\":\"F\",\"type\":\"free\"," ON_GROUND
-                         "},{\"name\":\"G\",\"type\":\"free\"," SIDES("ground", "b") "}]}");
+    hn_scene *s = hn_test_scene(HEAD BODIES
+                                "\"joints\":[{\"name\":\"F\",\"type\":\"free\"," ON_GROUND
+                                "},{\"name\":\"G\",\"type\":\"free\"," SIDES("ground", "b") "}]}");
     static const double expected[3] = {18, 12, 6};
     (void)state;
-    assert_int_equal(count_shapes(s, HN_SHAPE_BAR), 3);
-    assert_int_equal(count_shapes(s, HN_SHAPE_PIVOT), 1); // the point mass
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_BAR), 3);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_PIVOT), 1); // the point mass
     for (int i = 0; i < 3; i++) {
         const hn_quantity *p = s->points[s->shapes[i].p].at, *q = s->points[s->shapes[i].q].at;
         double edge = q[i].value - p[i].value;
@@ -263,22 +246,22 @@ static void a_free_body_is_drawn_with_the_extents_of_its_inertia(void **state) {
 }
 
 static void constraints_are_drawn_as_rods_guides_and_wheels(void **state) {
-    hn_scene *s =
-        load(HEAD BODIES
-             "\"joints\":[{\"name\":\"A\",\"type\":\"planar\"," ON_GROUND "},"
-             "{\"name\":\"B\",\"type\":\"free\"," SIDES(
-                 "ground",
-                 "b") "}],"
-                      "\"constraints\":["
-                      "{\"distance\":{\"from\":{\"body\":\"b\",\"at\":[1,0]},\"to\":[3,0],"
-                      "\"length\":2}},"
-                      "{\"plane\":{\"point\":{\"body\":\"b\",\"at\":[1,0]},\"through\":[0,0],"
-                      "\"direction\":[0,2,0],\"offset\":0.5}},"
-                      "{\"rolling\":{\"centre\":{\"body\":\"a\",\"at\":[0,0]},\"through\":[0,-1],"
-                      "\"direction\":[1,0],\"up\":[0,2],\"radius\":0.75}}]}");
+    hn_scene *s = hn_test_scene(
+        HEAD BODIES
+        "\"joints\":[{\"name\":\"A\",\"type\":\"planar\"," ON_GROUND "},"
+        "{\"name\":\"B\",\"type\":\"free\"," SIDES(
+            "ground",
+            "b") "}],"
+                 "\"constraints\":["
+                 "{\"distance\":{\"from\":{\"body\":\"b\",\"at\":[1,0]},\"to\":[3,0],"
+                 "\"length\":2}},"
+                 "{\"plane\":{\"point\":{\"body\":\"b\",\"at\":[1,0]},\"through\":[0,0],"
+                 "\"direction\":[0,2,0],\"offset\":0.5}},"
+                 "{\"rolling\":{\"centre\":{\"body\":\"a\",\"at\":[0,0]},\"through\":[0,-1],"
+                 "\"direction\":[1,0],\"up\":[0,2],\"radius\":0.75}}]}");
     (void)state;
-    assert_int_equal(count_shapes(s, HN_SHAPE_GUIDE), 1);
-    assert_int_equal(count_shapes(s, HN_SHAPE_POLYGON), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_GUIDE), 1);
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_POLYGON), 1);
     int roads = 0;
     for (int i = 0; i < s->n_shapes; i++) {
         const hn_shape *shape = &s->shapes[i];

@@ -5,29 +5,16 @@
 #include "session/model/model.h"
 #include "study/run/run.h"
 #include "support/near.h"
+#include "support/shipped_library.h"
 #include "support/shipped.h"
 
 #include <math.h>
 #include <stdio.h>
 
-static hn_library *lib;
-
-static int open_library(void **state) {
-    (void)state;
-    hn_diag diag = {0};
-    return hn_library_open(".", &lib, &diag) != HN_OK;
-}
-
-static int close_library(void **state) {
-    (void)state;
-    hn_library_free(lib);
-    return 0;
-}
-
 static void every_shipped_scene_obeys_mechanics_at_twenty_states(void **state) {
     (void)state;
-    for (int scene = 0; scene < hn_library_n_scenes(lib); scene++) {
-        shipped_obeys_mechanics(lib, scene, 20);
+    for (int scene = 0; scene < hn_library_n_scenes(hn_test_library); scene++) {
+        shipped_obeys_mechanics(hn_test_library, scene, 20);
     }
 }
 
@@ -57,11 +44,11 @@ static double energy_change(const hn_model *model, const char *id, double h) {
 static void energy_is_kept_to_the_order_of_the_method(void **state) {
     (void)state;
     int seen = 0;
-    for (int scene = 0; scene < hn_library_n_scenes(lib); scene++) {
+    for (int scene = 0; scene < hn_library_n_scenes(hn_test_library); scene++) {
         hn_model *model = NULL;
         hn_diags diags = {0};
-        const hn_model_source source = {.name = hn_library_scene_id(lib, scene)};
-        assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_OK);
+        const hn_model_source source = {.name = hn_library_scene_id(hn_test_library, scene)};
+        assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_OK);
         const hn_scene *s = hn_model_scene(model);
         const double coarse = energy_change(model, source.name, 4 * s->step);
         const double fine = energy_change(model, source.name, 2 * s->step);
@@ -80,5 +67,5 @@ int main(void) {
         cmocka_unit_test(every_shipped_scene_obeys_mechanics_at_twenty_states),
         cmocka_unit_test(energy_is_kept_to_the_order_of_the_method),
     };
-    return cmocka_run_group_tests(tests, open_library, close_library);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/near.h"
+#include "support/shipped_library.h"
 
 #include "session/compare/comparison_doc.h"
 #include "session/compare/run_doc.h"
@@ -9,18 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static hn_library *open_library(void) {
-    hn_library *lib = NULL;
-    hn_diag diag = {0};
-    assert_int_equal(hn_library_open(".", &lib, &diag), HN_OK);
-    return lib;
-}
-
-static hn_model *load(const hn_library *lib, const char *name) {
+static hn_model *load(const char *name) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     const hn_model_source source = {.name = name};
-    if (hn_model_load(lib, &source, &model, &diags) != HN_OK) {
+    if (hn_model_load(hn_test_library, &source, &model, &diags) != HN_OK) {
         fail_msg("%s: %s %s", name, diags.item[0].pointer, diags.item[0].message);
     }
     return model;
@@ -58,8 +52,7 @@ static const char *const FIVE[] = {"index1@rk4:h=0.01", "baumgarte:alpha=5,beta=
 
 static void the_cost_of_a_step_is_a_median_over_warm_frames(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_comparison *c = compare(model, FIVE, 5, NULL);
     for (int frame = 0; frame < 40; frame++) {
         // too few frames, and the first ones, say nothing
@@ -77,19 +70,17 @@ static void the_cost_of_a_step_is_a_median_over_warm_frames(void **state) {
     assert_true(isnan(hn_comparison_step_cost(c, 0).median));
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void a_scene_without_methods_gets_some(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar"), *plain = NULL;
+    hn_model *model = load("four-bar"), *plain = NULL;
     hn_diags diags = {0};
     cJSON *scene = cJSON_Parse(hn_model_scene(model)->text);
     cJSON_DeleteItemFromObjectCaseSensitive(scene, "methods");
     char *text = cJSON_PrintUnformatted(scene);
     const hn_model_source source = {.text = text, .n_text = strlen(text)};
-    assert_int_equal(hn_model_load(lib, &source, &plain, &diags), HN_OK);
+    assert_int_equal(hn_model_load(hn_test_library, &source, &plain, &diags), HN_OK);
     int n = 0;
     const char *const *methods = hn_model_methods(plain, &n);
     assert_int_equal(n, 3);
@@ -102,13 +93,11 @@ static void a_scene_without_methods_gets_some(void **state) {
     cJSON_Delete(scene);
     hn_model_free(plain);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void all_methods_share_one_clock_and_one_start(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_comparison *c = compare(model, FIVE, 5, NULL);
     assert_near(hn_comparison_frame_dt(c), 0.02, 1e-15); // two steps of 0.01 s are above 1/60 s
     hn_sample first = {0}, other = {0};
@@ -129,14 +118,12 @@ static void all_methods_share_one_clock_and_one_start(void **state) {
     }
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 // 0.03 s in frames of 1/60 s would be over before anything could be seen
 static void a_short_run_has_hundreds_of_frames(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "seven-body-squeezer");
+    hn_model *model = load("seven-body-squeezer");
     hn_comparison *c = compare(model, (const char *const[]){"projection@rk4:h=2e-5"}, 1, NULL);
     // whole steps, at least 0.03 s / 240, and whole frames up to the end
     assert_near(hn_comparison_frame_dt(c), 2e-4, 1e-15);
@@ -145,14 +132,12 @@ static void a_short_run_has_hundreds_of_frames(void **state) {
     assert_near(hn_comparison_frame_dt(c), 0.03 / 240, 1e-15);
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 // 17 steps of 1 ms are the least above 1/60 s; frames of 17 ms would pass 5 s by 15 ms
 static void the_last_frame_is_at_the_end(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "slider-crank");
+    hn_model *model = load("slider-crank");
     hn_comparison *c = compare(model, (const char *const[]){"projection@rk4:h=1e-3"}, 1, NULL);
     assert_near(hn_comparison_frame_dt(c), 0.02, 1e-15);
     const double frames = hn_comparison_duration(c) / hn_comparison_frame_dt(c);
@@ -166,13 +151,11 @@ static void the_last_frame_is_at_the_end(void **state) {
     assert_near(hn_comparison_frame_dt(c), 0.017, 1e-15);
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void a_second_comparison_and_a_reset_give_the_same_bits(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_comparison *c[2] = {compare(model, FIVE, 5, NULL), compare(model, FIVE, 5, NULL)};
     hn_comparison_next(c[0]);
     hn_comparison_reset(c[0]);
@@ -191,15 +174,13 @@ static void a_second_comparison_and_a_reset_give_the_same_bits(void **state) {
     hn_comparison_free(c[0]);
     hn_comparison_free(c[1]);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 // a step of 0.4 s on a crank that turns at 4 rad/s cannot hold: the loop opens and the state blows
 // up
 static void a_failed_method_stays_with_its_last_state_and_its_reason(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     const char *const methods[] = {"baumgarte:alpha=200,beta=200@rk4:h=0.1",
                                    "projection@rk4:h=0.01"};
     hn_comparison *c = compare(model, methods, 2, &(hn_comparison_opts){.duration = 4});
@@ -229,13 +210,11 @@ static void a_failed_method_stays_with_its_last_state_and_its_reason(void **stat
     free(text);
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void bad_methods_are_named_by_their_place(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_comparison *c = NULL;
     hn_diags diags = {0};
     const char *const methods[] = {"index1@rk4:h=0.01", "baumgart@rk4:h=0.01"};
@@ -246,14 +225,12 @@ static void bad_methods_are_named_by_their_place(void **state) {
     assert_int_equal(hn_comparison_create(model, methods, 0, NULL, &c, &diags), HN_ERR_INPUT);
     assert_string_equal(diags.item[0].pointer, "/methods");
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 // negative damping opens the loop on purpose: allowed, and said
 static void a_spelling_that_deserves_a_word_gets_one(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     const char *const methods[] = {"baumgarte:alpha=-5@rk4:h=0.01", "baumgarte@rk4:h=0.01"};
     hn_comparison *c = compare(model, methods, 2, NULL);
     hn_strbuf b;
@@ -269,13 +246,11 @@ static void a_spelling_that_deserves_a_word_gets_one(void **state) {
     hn_strbuf_reset(&b);
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void two_methods_of_one_formulation_get_two_colours(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     const char *const methods[] = {"index1@rk4:h=0.01", "index1@rk4:h=0.02",
                                    "baumgarte@rk4:h=0.01"};
     hn_comparison *c = compare(model, methods, 3, NULL);
@@ -293,7 +268,6 @@ static void two_methods_of_one_formulation_get_two_colours(void **state) {
     hn_strbuf_reset(&b);
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static cJSON *run_document(const hn_model *model, const hn_run_request *request, hn_status *ended) {
@@ -311,8 +285,7 @@ static cJSON *run_document(const hn_model *model, const hn_run_request *request,
 
 static void the_columns_of_a_run_have_one_length(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_status ended = HN_ERR_INTERNAL;
     const hn_run_request request = {
         .method = "projection@dopri5:rtol=1e-8", .time = 1, .every = 0.3};
@@ -328,15 +301,13 @@ static void the_columns_of_a_run_have_one_length(void **state) {
     assert_near(cJSON_GetArrayItem(t, 4)->valuedouble, 1, 0);
     cJSON_Delete(doc);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 // 0.0137 is no multiple of the step: the sample comes from a side step, and the run goes on as if
 // nobody had looked
 static void looking_between_steps_does_not_change_a_run(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_status ended = HN_ERR_INTERNAL;
     const double at[] = {0.0137, 0.5}, end[] = {0.5};
     const hn_run_request often = {.method = "index1@rk4:h=0.01", .time = 0.5, .at = at, .n_at = 2};
@@ -350,7 +321,6 @@ static void looking_between_steps_does_not_change_a_run(void **state) {
     cJSON_Delete(a);
     cJSON_Delete(b);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static int stop_at_once(void *user, double share) {
@@ -360,8 +330,7 @@ static int stop_at_once(void *user, double share) {
 
 static void a_run_stops_when_it_is_told_to(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     hn_status ended = HN_OK;
     int asked = 0;
     const hn_run_request request = {.method = "index1@rk4:h=1e-6",
@@ -374,13 +343,11 @@ static void a_run_stops_when_it_is_told_to(void **state) {
     assert_true(number(doc, "t_reached") < 1);
     cJSON_Delete(doc);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void bad_requests_name_their_field(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, "four-bar");
+    hn_model *model = load("four-bar");
     const double back[] = {1, 0.5}, late[] = {2};
     const struct {
         hn_run_request request;
@@ -407,7 +374,6 @@ static void bad_requests_name_their_field(void **state) {
         hn_strbuf_reset(&b);
     }
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 int main(void) {
@@ -427,5 +393,5 @@ int main(void) {
         cmocka_unit_test(a_run_stops_when_it_is_told_to),
         cmocka_unit_test(bad_requests_name_their_field),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

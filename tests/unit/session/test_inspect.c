@@ -5,18 +5,19 @@
 #include "session/model/inspect_json.h"
 
 #include "support/near.h"
+#include "support/shipped_library.h"
 
 #include <cjson/cJSON.h>
 #include <string.h>
 
-static cJSON *inspect_with(const hn_library *lib, const char *scene, const hn_setting *setting) {
+static cJSON *inspect_with(const char *scene, const hn_setting *setting) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     hn_strbuf b;
     hn_strbuf_init(&b);
     const hn_model_source source = {
         .name = scene, .settings = setting, .n_settings = setting ? 1 : 0};
-    assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_OK);
+    assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_OK);
     assert_int_equal(hn_model_inspect_json(&b, model, &diags), HN_OK);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
     assert_non_null(document);
@@ -25,8 +26,8 @@ static cJSON *inspect_with(const hn_library *lib, const char *scene, const hn_se
     return document;
 }
 
-static cJSON *inspect(const hn_library *lib, const char *scene) {
-    return inspect_with(lib, scene, NULL);
+static cJSON *inspect(const char *scene) {
+    return inspect_with(scene, NULL);
 }
 
 static double number(const cJSON *object, const char *key) {
@@ -49,18 +50,10 @@ static const cJSON *find(const cJSON *document, const char *list, const char *ke
     return NULL;
 }
 
-static hn_library *open_library(void) {
-    hn_library *lib = NULL;
-    hn_diag diag = {0};
-    assert_int_equal(hn_library_open(".", &lib, &diag), HN_OK);
-    return lib;
-}
-
 // three moving bodies on three tree joints; the fourth joint of the plane leaves 2 of its rows
 static void four_bar_has_three_speeds_two_rows_one_freedom(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    cJSON *d = inspect(lib, "four-bar");
+    cJSON *d = inspect("four-bar");
     const cJSON *sizes = cJSON_GetObjectItemCaseSensitive(d, "sizes");
     assert_true(number(sizes, "speeds") == 3);
     assert_true(number(sizes, "rows") == 2);
@@ -80,13 +73,11 @@ static void four_bar_has_three_speeds_two_rows_one_freedom(void **state) {
     assert_true(number(nonzeros, "M_of") == 9);
     assert_true(number(find(d, "left_out", "what", "entries of M"), "count") == 4);
     cJSON_Delete(d);
-    hn_library_free(lib);
 }
 
 static void a_pendulum_has_no_rows_and_a_constant_mass_matrix(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    cJSON *d = inspect(lib, "pendulum");
+    cJSON *d = inspect("pendulum");
     assert_true(number(cJSON_GetObjectItemCaseSensitive(d, "sizes"), "rows") == 0);
     const cJSON *operations = cJSON_GetObjectItemCaseSensitive(d, "operations");
     assert_true(number(operations, "M") == 0);
@@ -94,7 +85,6 @@ static void a_pendulum_has_no_rows_and_a_constant_mass_matrix(void **state) {
     // no loop: stabilising it costs nothing
     assert_true(number(operations, "solve") == number(operations, "solve_baumgarte"));
     cJSON_Delete(d);
-    hn_library_free(lib);
 }
 
 static void list_is(const cJSON *object, const char *key, int n, const char *const *names) {
@@ -111,8 +101,7 @@ static void rows_that_a_plane_leaves_out_are_named(void **state) {
     static const char *const oblique[] = {"B: 3rd axis", "B: tilt 1", "B: tilt 2"},
                              *const upright[] = {"B: z", "B: tilt 1", "B: tilt 2"};
     (void)state;
-    hn_library *lib = open_library();
-    cJSON *d = inspect(lib, "oblique-four-bar"), *p = inspect(lib, "parallelogram");
+    cJSON *d = inspect("oblique-four-bar"), *p = inspect("parallelogram");
     const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
     list_is(rows, "vanish", 3, oblique);
     list_is(rows, "follow", 0, NULL);
@@ -121,7 +110,6 @@ static void rows_that_a_plane_leaves_out_are_named(void **state) {
     list_is(rows, "follow", 0, NULL);
     cJSON_Delete(p);
     cJSON_Delete(d);
-    hn_library_free(lib);
 }
 
 // teeth of sun, planet and ring fix each planet and the carrier: the second and third planet's ring
@@ -133,15 +121,13 @@ static void the_teeth_of_further_planets_follow_from_the_first(void **state) {
     static const char *const third[] = {"sun and planet 1", "sun and planet 3",
                                         "ring and planet 1"};
     (void)state;
-    hn_library *lib = open_library();
-    cJSON *d = inspect(lib, "planetary-gear");
+    cJSON *d = inspect("planetary-gear");
     const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
     list_is(rows, "vanish", 0, NULL);
     list_is(find(rows, "follow", "row", "ring and planet 2"), "from", 3, second);
     list_is(find(rows, "follow", "row", "ring and planet 3"), "from", 3, third);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(rows, "follow")), 2);
     cJSON_Delete(d);
-    hn_library_free(lib);
 }
 
 // two shafts that are parallel, five closure rows of which a spatial loop of one freedom has room
@@ -151,8 +137,7 @@ static void dependent_rows_of_shaft_and_bennett_are_named(void **state) {
     static const char *const two[] = {"J3: 1st axis", "J3: 2nd axis"};
     static const char *const more[] = {"J3: 3rd axis", "J3: tilt 1", "J3: tilt 2"};
     (void)state;
-    hn_library *lib = open_library();
-    cJSON *d = inspect(lib, "cardan-shaft"), *b = inspect(lib, "bennett");
+    cJSON *d = inspect("cardan-shaft"), *b = inspect("bennett");
     const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
     list_is(find(rows, "follow", "row", "U2: 3rd axis"), "from", 1, first);
     rows = cJSON_GetObjectItemCaseSensitive(b, "redundant_rows");
@@ -161,33 +146,29 @@ static void dependent_rows_of_shaft_and_bennett_are_named(void **state) {
     }
     cJSON_Delete(b);
     cJSON_Delete(d);
-    hn_library_free(lib);
 }
 
 // elimination in the order of the rows and pivoted QR count alike, in every scene
 static void as_many_rows_follow_as_assembly_counts(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
-        cJSON *d = inspect(lib, hn_library_scene_id(lib, i));
+    for (int i = 0; i < hn_library_n_scenes(hn_test_library); i++) {
+        cJSON *d = inspect(hn_library_scene_id(hn_test_library, i));
         const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
         const cJSON *start = cJSON_GetObjectItemCaseSensitive(d, "start");
         const int n = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(rows, "follow"));
         assert_int_equal(n, (int)number(start, "redundant"));
         cJSON_Delete(d);
     }
-    hn_library_free(lib);
 }
 
 // the nine unknowns of two four-bars are dense, forty-one of ten are few against the square of
 // their number
 static void who_factors_newton_matrices_is_told(void **state) {
     (void)state;
-    hn_library *lib = open_library();
     static const hn_setting settings[] = {{.name = "N", .value = 2}, {.name = "N", .value = 10}};
     static const char *const words[] = {"dense", "sparse"};
     for (int k = 0; k < 2; k++) {
-        cJSON *d = inspect_with(lib, "n-four-bar", &settings[k]);
+        cJSON *d = inspect_with("n-four-bar", &settings[k]);
         const cJSON *solver = cJSON_GetObjectItemCaseSensitive(d, "solver");
         const cJSON *who = cJSON_GetObjectItemCaseSensitive(solver, "newton");
         assert_true(cJSON_IsString(who));
@@ -195,15 +176,13 @@ static void who_factors_newton_matrices_is_told(void **state) {
         assert_true(number(solver, "newton_size") == (k ? 41 : 9));
         cJSON_Delete(d);
     }
-    hn_library_free(lib);
 }
 
 static void sharing_and_leaving_out_never_cost(void **state) {
     static const char *const terms[] = {"M", "f", "phi", "J", "gamma"};
     (void)state;
-    hn_library *lib = open_library();
-    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
-        cJSON *d = inspect(lib, hn_library_scene_id(lib, i));
+    for (int i = 0; i < hn_library_n_scenes(hn_test_library); i++) {
+        cJSON *d = inspect(hn_library_scene_id(hn_test_library, i));
         const cJSON *operations = cJSON_GetObjectItemCaseSensitive(d, "operations"), *row;
         double separate = 0;
         for (size_t k = 0; k < sizeof terms / sizeof *terms; k++) {
@@ -216,15 +195,13 @@ static void sharing_and_leaving_out_never_cost(void **state) {
         }
         cJSON_Delete(d);
     }
-    hn_library_free(lib);
 }
 
 static void every_scene_and_problem_belongs_to_one_lesson(void **state) {
     (void)state;
-    hn_library *lib = open_library();
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_lessons_json(&b, lib);
+    hn_lessons_json(&b, hn_test_library);
     cJSON *d = cJSON_Parse(hn_strbuf_text(&b));
     int scenes = 0, problems = 0;
     const cJSON *lesson;
@@ -233,11 +210,10 @@ static void every_scene_and_problem_belongs_to_one_lesson(void **state) {
         problems += cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(lesson, "problems"));
         assert_true(strlen(cJSON_GetObjectItemCaseSensitive(lesson, "title")->valuestring) > 0);
     }
-    assert_int_equal(scenes, hn_library_n_scenes(lib));
-    assert_int_equal(problems, hn_library_n_problems(lib));
+    assert_int_equal(scenes, hn_library_n_scenes(hn_test_library));
+    assert_int_equal(problems, hn_library_n_problems(hn_test_library));
     cJSON_Delete(d);
     hn_strbuf_reset(&b);
-    hn_library_free(lib);
 }
 
 int main(void) {
@@ -252,5 +228,5 @@ int main(void) {
         cmocka_unit_test(sharing_and_leaving_out_never_cost),
         cmocka_unit_test(every_scene_and_problem_belongs_to_one_lesson),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

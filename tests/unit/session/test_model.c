@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/near.h"
+#include "support/shipped_library.h"
 
 #include "dynamics/compile/drawing.h"
 #include "session/model/caption.h"
@@ -15,24 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static hn_library *lib;
-
-static int open_library(void **state) {
-    (void)state;
-    hn_diag diag = {0};
-    return hn_library_open(".", &lib, &diag) != HN_OK;
-}
-
-static int close_library(void **state) {
-    (void)state;
-    hn_library_free(lib);
-    return 0;
-}
-
 static hn_model *load(const hn_model_source *source) {
     hn_model *model = NULL;
     hn_diags diags = {0};
-    if (hn_model_load(lib, source, &model, &diags) != HN_OK) {
+    if (hn_model_load(hn_test_library, source, &model, &diags) != HN_OK) {
         fail_msg("%s %s", diags.item[0].pointer, diags.item[0].message);
     }
     return model;
@@ -72,7 +59,7 @@ static void an_unknown_scene_gets_the_nearest_name(void **state) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     const hn_model_source source = {.name = "fuor-bar"};
-    assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_ERR_INPUT);
+    assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_ERR_INPUT);
     assert_non_null(strstr(diags.item[0].hint, "four-bar"));
 }
 
@@ -89,10 +76,10 @@ static void every_shipped_scene_loads_and_describes_itself(void **state) {
     (void)state;
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_scenes_json(&b, lib);
+    hn_scenes_json(&b, hn_test_library);
     cJSON *doc = parse_and_reset(&b);
     const cJSON *scenes = cJSON_GetObjectItem(doc, "scenes");
-    assert_int_equal(cJSON_GetArraySize(scenes), hn_library_n_scenes(lib));
+    assert_int_equal(cJSON_GetArraySize(scenes), hn_library_n_scenes(hn_test_library));
     assert_true(cJSON_GetArraySize(scenes) >= 8);
     const cJSON *scene;
     cJSON_ArrayForEach(scene, scenes) {
@@ -185,7 +172,7 @@ static void reactions_of_joints_and_efforts_of_formulas_are_listed(void **state)
         hn_strbuf b;
         hn_strbuf_init(&b);
         const hn_model_source source = {.name = rows[k].scene};
-        assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_OK);
+        assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_OK);
         assert_int_equal(hn_model_terms_json_with_reactions(&b, model, 0, NULL, 0, &diags), HN_OK);
         assert_non_null(strstr(hn_strbuf_text(&b), rows[k].told));
         hn_strbuf_reset(&b);
@@ -292,7 +279,7 @@ static void a_parameter_changes_the_mechanism(void **state) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     const hn_model_source source = {.name = "four-bar", .settings = &triple, .n_settings = 1};
-    assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_OK);
+    assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_OK);
     char caption[160];
     hn_model_caption(model, caption, sizeof caption);
     assert_string_equal(caption, "triple-rocker, 1 degree of freedom (3 \xe2\x88\x92 2)");
@@ -344,5 +331,5 @@ int main(void) {
         cmocka_unit_test(what_stands_on_the_ground_is_told_from_what_moves),
         cmocka_unit_test(a_parameter_changes_the_mechanism),
     };
-    return cmocka_run_group_tests(tests, open_library, close_library);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

@@ -14,23 +14,10 @@
 #include "formulations/ground/formulation.h"
 #include "session/model/model.h"
 #include "support/near.h"
+#include "support/shipped_library.h"
 
 #include <math.h>
 #include <string.h>
-
-static hn_library *lib;
-
-static int open_library(void **state) {
-    (void)state;
-    hn_diag diag = {0};
-    return hn_library_open(".", &lib, &diag) != HN_OK;
-}
-
-static int close_library(void **state) {
-    (void)state;
-    hn_library_free(lib);
-    return 0;
-}
 
 enum { STATES = 2 };
 static const double STEP = 2e-5;
@@ -63,9 +50,10 @@ static double noise(bench *b) {
 
 static void open_bench(bench *b, int scene) {
     hn_diags diags = {0};
-    *b = (bench){.id = hn_library_scene_id(lib, scene), .seed = 7u + (unsigned)scene, .t = 0.1};
+    *b = (bench){
+        .id = hn_library_scene_id(hn_test_library, scene), .seed = 7u + (unsigned)scene, .t = 0.1};
     const hn_model_source source = {.name = b->id};
-    assert_int_equal(hn_model_load(lib, &source, &b->model, &diags), HN_OK);
+    assert_int_equal(hn_model_load(hn_test_library, &source, &b->model, &diags), HN_OK);
     b->sys = hn_model_system(b->model);
     b->info = hn_system_get_info(b->sys);
     b->arena = hn_arena_create(0);
@@ -269,7 +257,7 @@ static void check(bench *b, const char *name, int seen[2]) {
 static void derivatives_of_every_formulation_are_exact_on_every_scene(void **state) {
     (void)state;
     int seen[2] = {0, 0};
-    for (int scene = 0; scene < hn_library_n_scenes(lib); scene++) {
+    for (int scene = 0; scene < hn_library_n_scenes(hn_test_library); scene++) {
         bench b;
         open_bench(&b, scene);
         for (int k = 0; k < STATES; k++) {
@@ -280,15 +268,15 @@ static void derivatives_of_every_formulation_are_exact_on_every_scene(void **sta
         }
         close_bench(&b);
     }
-    assert_true(seen[0] > STATES * hn_library_n_scenes(lib) * N_FORMULATIONS * 9 / 10);
-    assert_true(seen[1] > STATES * hn_library_n_scenes(lib) * N_FORMULATIONS / 2);
+    assert_true(seen[0] > STATES * hn_library_n_scenes(hn_test_library) * N_FORMULATIONS * 9 / 10);
+    assert_true(seen[1] > STATES * hn_library_n_scenes(hn_test_library) * N_FORMULATIONS / 2);
 }
 
 static int scene_number(const char *id) {
     int i = 0;
-    while (strcmp(hn_library_scene_id(lib, i), id) != 0) {
+    while (strcmp(hn_library_scene_id(hn_test_library, i), id) != 0) {
         i++;
-        assert_true(i < hn_library_n_scenes(lib));
+        assert_true(i < hn_library_n_scenes(hn_test_library));
     }
     return i;
 }
@@ -346,5 +334,5 @@ int main(void) {
         cmocka_unit_test(exact_derivatives_need_no_more_iterations_and_fewer_evaluations),
         cmocka_unit_test(derivatives_of_every_formulation_are_exact_on_every_scene),
     };
-    return cmocka_run_group_tests(tests, open_library, close_library);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A hand that pulls a mechanism while a comparison runs.
 #include "support/near.h"
+#include "support/shipped_library.h"
 
 #include "session/compare/comparison_doc.h"
 
@@ -19,18 +20,11 @@ static const char *const SIX[METHODS] = {"index1@rk4:h=0.01",
                                          "baumgarte:alpha=5,beta=5@dop853:rtol=1e-8",
                                          "reduced@gsl-msadams:rtol=1e-8"};
 
-static hn_library *open_library(void) {
-    hn_library *lib = NULL;
-    hn_diag diag = {0};
-    assert_int_equal(hn_library_open(".", &lib, &diag), HN_OK);
-    return lib;
-}
-
-static hn_model *load(const hn_library *lib, const int *points, int n) {
+static hn_model *load(const int *points, int n) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     const hn_model_source source = {.name = "four-bar", .pulls = points, .n_pulls = n};
-    if (hn_model_load(lib, &source, &model, &diags) != HN_OK) {
+    if (hn_model_load(hn_test_library, &source, &model, &diags) != HN_OK) {
         fail_msg("%s %s", diags.item[0].pointer, diags.item[0].message);
     }
     return model;
@@ -102,8 +96,7 @@ static int numbers_of(const hn_comparison *c, double *out) {
 static void the_log_done_again_gives_the_same_bits(void **state) {
     (void)state;
     const int point = POINT;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, &point, 1), *other = load(lib, &point, 1);
+    hn_model *model = load(&point, 1), *other = load(&point, 1);
     hn_comparison *c = compare(model), *again = compare(other);
     double live[7 * METHODS], replay[7 * METHODS];
 
@@ -130,14 +123,12 @@ static void the_log_done_again_gives_the_same_bits(void **state) {
     hn_comparison_free(again);
     hn_model_free(model);
     hn_model_free(other);
-    hn_library_free(lib);
 }
 
 static void the_energy_changes_by_the_work_of_the_hand(void **state) {
     (void)state;
     const int point = POINT;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, &point, 1);
+    hn_model *model = load(&point, 1);
     hn_comparison *c = compare(model);
     run_with_hand(c, FRAMES);
     for (int i = 0; i < METHODS; i++) {
@@ -154,14 +145,12 @@ static void the_energy_changes_by_the_work_of_the_hand(void **state) {
     }
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void every_method_feels_the_same_hand(void **state) {
     (void)state;
     const int point = POINT;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, &point, 1);
+    hn_model *model = load(&point, 1);
     hn_comparison *c = compare(model);
     run_with_hand(c, 100);
     hn_sample first, s;
@@ -177,14 +166,12 @@ static void every_method_feels_the_same_hand(void **state) {
     }
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void the_force_is_that_of_the_spring(void **state) {
     (void)state;
     const int point = POINT;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, &point, 1);
+    hn_model *model = load(&point, 1);
     hn_comparison *c = compare(model);
     hn_pull pull = {.point = POINT, .to = {1.5, 1, 0}, .stiffness = 40, .damping = 0};
     hn_diag diag = {0};
@@ -214,13 +201,11 @@ static void the_force_is_that_of_the_spring(void **state) {
     cJSON_Delete(frame);
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 static void a_point_without_a_load_is_refused(void **state) {
     (void)state;
-    hn_library *lib = open_library();
-    hn_model *model = load(lib, NULL, 0);
+    hn_model *model = load(NULL, 0);
     hn_comparison *c = compare(model);
     hn_pull pull = {.point = POINT, .stiffness = -1, .damping = -1};
     hn_diag diag = {0};
@@ -228,7 +213,6 @@ static void a_point_without_a_load_is_refused(void **state) {
     assert_string_equal(diag.pointer, "/pull/point");
     hn_comparison_free(c);
     hn_model_free(model);
-    hn_library_free(lib);
 }
 
 int main(void) {
@@ -239,5 +223,5 @@ int main(void) {
         cmocka_unit_test(the_force_is_that_of_the_spring),
         cmocka_unit_test(a_point_without_a_load_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

@@ -5,29 +5,16 @@
 #include "session/model/model.h"
 #include "study/run/run.h"
 #include "support/near.h"
+#include "support/shipped_library.h"
 #include "support/shipped.h"
 
 #include <math.h>
 #include <stdio.h>
 
-static hn_library *lib;
-
-static int open_library(void **state) {
-    (void)state;
-    hn_diag diag = {0};
-    return hn_library_open(".", &lib, &diag) != HN_OK;
-}
-
-static int close_library(void **state) {
-    (void)state;
-    hn_library_free(lib);
-    return 0;
-}
-
 static void every_shipped_scene_obeys_mechanics_near_its_start(void **state) {
     (void)state;
-    for (int scene = 0; scene < hn_library_n_scenes(lib); scene++) {
-        shipped_obeys_mechanics(lib, scene, 4);
+    for (int scene = 0; scene < hn_library_n_scenes(hn_test_library); scene++) {
+        shipped_obeys_mechanics(hn_test_library, scene, 4);
     }
 }
 
@@ -35,12 +22,12 @@ static void every_shipped_scene_obeys_mechanics_near_its_start(void **state) {
 static void every_shipped_scene_runs_two_seconds_by_two_methods(void **state) {
     (void)state;
     static const char *const methods[] = {"index1@rk4:h=%.3g", "projection@rk4:h=%.3g"};
-    for (int scene = 0; scene < hn_library_n_scenes(lib); scene++) {
+    for (int scene = 0; scene < hn_library_n_scenes(hn_test_library); scene++) {
         for (int k = 0; k < 2; k++) {
             hn_model *model = NULL;
             hn_diags diags = {0};
-            const hn_model_source source = {.name = hn_library_scene_id(lib, scene)};
-            assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_OK);
+            const hn_model_source source = {.name = hn_library_scene_id(hn_test_library, scene)};
+            assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_OK);
             hn_method_spec spec = {0};
             hn_diag diag = {0};
             hn_run *run = NULL;
@@ -68,5 +55,5 @@ int main(void) {
         cmocka_unit_test(every_shipped_scene_obeys_mechanics_near_its_start),
         cmocka_unit_test(every_shipped_scene_runs_two_seconds_by_two_methods),
     };
-    return cmocka_run_group_tests(tests, open_library, close_library);
+    return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }

@@ -496,8 +496,6 @@ static void a_wheel_rolls_without_slip_and_starts_with_the_acceleration_of_theor
     hn_trial_close(&trial);
 }
 
-/// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of
-/// them.
 static void every_setting_in_the_ranges_closes_the_loops(void **state) {
     (void)state;
     static const char *const scenes[] = {
@@ -505,27 +503,10 @@ static void every_setting_in_the_ranges_closes_the_loops(void **state) {
         "oblique-four-bar", "car-axis",    "seven-body-squeezer",  "stewart-6-6",
         "stewart-6-3",      "delta-robot", "driven-crank",         "planetary-gear",
         "rolling-wheel",    "rssr"};
-    unsigned seed = 7;
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        hn_trial plain;
-        open_scene(&plain, scenes[i], NULL, 0);
-        const hn_scene *scene = plain.scene;
-        for (int trial_number = 0; trial_number < 40 + 2 * scene->n_params; trial_number++) {
-            hn_setting settings[20];
-            int n = 0;
-            for (int k = 0; k < scene->n_params; k++) {
-                const hn_param *p = &scene->params[k];
-                seed = seed * 1664525u + 1013904223u;
-                int end = trial_number < 40 ? (int)(seed >> 30 & 1) : trial_number & 1;
-                if (p->max < HUGE_VAL && (trial_number < 40 || k == (trial_number - 40) / 2)) {
-                    settings[n++] = (hn_setting){p->name, end ? p->max : p->min};
-                }
-            }
-            hn_trial corner;
-            open_scene(&corner, scenes[i], settings, n);
-            hn_trial_close(&corner);
-        }
-        hn_trial_close(&plain);
+        char path[128];
+        snprintf(path, sizeof path, SCENE("%s"), scenes[i]);
+        hn_trial_try_ranges(path);
     }
 }
 
