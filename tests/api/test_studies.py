@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Studies as resources: the documents of the command line, progress while they last, bounds, stopping, and what is left of them."""
 
+import concurrent.futures
 import json
 import os
 import subprocess
@@ -67,15 +68,15 @@ def look(server, study):
     return server.ask("GET", study["links"]["self"]).json()
 
 
-def wait(server, study, seconds=60):
-    """The study when it has ended; its progress never falls."""
+def wait(server, study, seconds=60, again=False):
+    """The study when it has ended; its progress never falls. `again`: it was stopped before, and has a document from then."""
     end, before = time.monotonic() + seconds * driver.SLOW, 0
     while True:
         now = look(server, study)
         if now["state"] != "running":
             return now
         assert before <= now["progress"] <= 1, (before, now["progress"])
-        assert now["document"] is None
+        assert (now["document"] is None) == (not again)
         before = now["progress"]
         assert time.monotonic() < end, now
         time.sleep(0.05)
@@ -235,7 +236,8 @@ class Studies(driver.ServerCase):
                 if pointer is not None:
                     self.assertEqual(fault["pointer"], pointer)
                 self.assertIn(word, fault["detail"] + fault.get("hint", ""))
-        self.assert_problem(self.server.ask("PATCH", f"{AT}/0", {"state": "running"}), 422)
+        self.assert_problem(self.server.ask("PATCH", f"{AT}/0", {"state": "paused"}), 422)
+        self.assert_problem(self.server.ask("PATCH", f"{AT}/0", {"state": "running"}), 404)
 
     def test_the_index_tells_the_bounds_that_hold(self):
         index = self.server.ask("GET", "/api/v1/").json()
@@ -298,9 +300,12 @@ class Studies(driver.ServerCase):
         self.assertIn("done", states)
         self.assertEqual(self.server.ask("DELETE", study["links"]["self"]).status, 204)
 
-    def test_a_study_that_is_over_may_be_stopped_and_stays_as_it_is(self):
+    def test_a_study_that_is_over_stays_as_it_is_whatever_it_is_told(self):
         done = wait(self.server, start(self.server, QUICK))
-        self.server.ask("PATCH", done["links"]["self"], {"state": "stopped"})
+        for state in ("stopped", "running", "running"):
+            answer = self.server.ask("PATCH", done["links"]["self"], {"state": state})
+            self.assertEqual(answer.status, 200)
+            self.assertEqual({**answer.json(), "elapsed_s": None}, {**done, "elapsed_s": None})
         self.assertEqual(look(self.server, done)["document"], done["document"])
 
     def test_finished_ones_make_room_for_others(self):
@@ -311,6 +316,101 @@ class Studies(driver.ServerCase):
                              self.server.ask("GET", "/api/v1/").json()["limits"]["studies_kept"])
         self.assert_problem(self.server.ask("GET", first["links"]["self"]), 404)
         self.assertEqual(look(self.server, last)["state"], "finished")
+
+
+class GoingOn(driver.ServerCase):
+    """PATCH {"state": "running"}: a study that was stopped goes on, and computes nothing twice."""
+
+    # some seconds of work, of which this limit leaves most out
+    CUT = but(MAP, columns=12, rows=12, time=2, time_limit=0.02)
+
+    def tearDown(self):
+        """All places are free again: a study that is seen to have ended has given its own back."""
+        for study in self.running():
+            self.server.ask("PATCH", f"{AT}/{study['id']}", {"state": "stopped"})
+        self.assertTrue(driver.until(lambda: not self.running()))
+
+    def running(self):
+        return [s for s in self.server.ask("GET", AT).json()["studies"] if s["state"] == "running"]
+
+    def go_on(self, study, **more):
+        return self.server.ask("PATCH", study["links"]["self"], {"state": "running", **more})
+
+    def stop_with_a_point(self, body):
+        """The study, stopped when a part of it was done."""
+        study = start(self.server, body)
+        self.assertTrue(driver.until(lambda: look(self.server, study)["progress"] > 0.02))
+        self.assertEqual(self.server.ask("PATCH", study["links"]["self"], {"state": "stopped"}).status, 200)
+        return wait(self.server, study)
+
+    def test_what_the_time_limit_left_out_is_computed_later_and_nothing_twice(self):
+        study = wait(self.server, start(self.server, self.CUT))
+        self.assertEqual(study["state"], "stopped", study["reason"])
+        self.assertIn("time limit of 0.02 s", study["reason"])
+        runs, cells, elapsed = 1, [], study["elapsed_s"]
+        while study["state"] == "stopped":
+            cells.append([c for m in study["document"]["methods"] for row in m["rows"] for c in row])
+            answer = self.go_on(study, time_limit=min(20, 0.02 * 2 ** runs))  # a slow machine gets there too
+            self.assertEqual((answer.status, answer.json()["id"]), (200, study["id"]))
+            self.assertIsNotNone(answer.json()["document"], "what was done is shown while the study goes on")
+            study = wait(self.server, study, again=True)
+            self.assertGreater(study["elapsed_s"], elapsed)
+            elapsed, runs = study["elapsed_s"], runs + 1
+        self.assertEqual((study["state"], study["reason"], study["progress"]), ("finished", "", 1))
+        self.assertGreater(runs, 2)
+        # a cell that had an outcome keeps it
+        last = [c for m in study["document"]["methods"] for row in m["rows"] for c in row]
+        for before in cells:
+            for one, other in zip(before, last):
+                if one["class"] != "pending":
+                    self.assertEqual(one["class"], other["class"])
+        whole = wait(self.server, start(self.server, but(self.CUT, time_limit=None)))
+        for document in (whole["document"], study["document"]):
+            document.pop("elapsed")
+        self.assertEqual(study["document"], whole["document"])
+        self.assertIn(b"<svg", self.server.ask("GET", study["links"]["report"]).body)
+
+    def test_the_time_limit_of_going_on_has_the_bounds_of_a_study(self):
+        study = wait(self.server, start(self.server, self.CUT))
+        for wrong in (0, -1, 21, "1"):
+            document = self.assert_problem(self.go_on(study, time_limit=wrong), 422)
+            self.assertEqual(document["errors"][0]["pointer"], "/time_limit")
+        self.assertEqual(self.go_on(study, time_limit=20).json()["time_limit_s"], 20)
+
+    def test_a_study_that_failed_cannot_go_on(self):
+        # another gravity has no stored reference, and a millisecond is too short to compute one
+        study = wait(self.server, start(self.server, but(LONG, parameters={"g": 5}, time_limit=1e-3)))
+        self.assertEqual(study["state"], "failed")
+        problem = self.assert_problem(self.go_on(study), 409, "conflict")
+        self.assertIn("failed", problem["detail"])
+        self.assertEqual(look(self.server, study)["state"], "failed")
+
+    def test_of_two_that_ask_at_once_one_starts_it(self):
+        study = self.stop_with_a_point(LONG)
+        before = self.server.ask("GET", AT).json()["studies"]
+        with concurrent.futures.ThreadPoolExecutor(8) as hands:
+            answers = list(hands.map(lambda _: self.go_on(study), range(8)))
+        self.assertEqual({a.status for a in answers}, {200})
+        self.assertEqual([s["id"] for s in self.server.ask("GET", AT).json()["studies"]], [s["id"] for s in before])
+        # the other place is free: had it been started twice there would be none
+        other = start(self.server, LONG)
+        self.assert_problem(self.server.ask("POST", AT, LONG), 503, "studies-busy")
+        # stopping frees the place, and going on needs one
+        self.assertEqual(self.server.ask("PATCH", study["links"]["self"], {"state": "stopped"}).status, 200)
+        stopped = wait(self.server, study, again=True)
+        third = start(self.server, LONG)
+        self.assert_problem(self.go_on(stopped), 503, "studies-busy")
+        self.assertEqual(self.server.ask("DELETE", stopped["links"]["self"]).status, 204)
+        self.assert_problem(self.go_on(stopped), 404)
+        self.assertEqual({s["id"] for s in self.running()}, {other["id"], third["id"]})
+
+    def test_the_methods_of_a_budget_that_were_left_out_follow(self):
+        study = self.stop_with_a_point(but(BUDGET, time=2, methods=["projection@rk4:h=1e-3", "index1@rk4:h=2e-3", "nullspace@rk4:h=1e-3"]))
+        while study["state"] == "stopped":
+            self.assertEqual(self.go_on(study).status, 200)
+            study = wait(self.server, study, again=True)
+        self.assertEqual((study["state"], study["progress"]), ("finished", 1))
+        self.assertEqual([m["state"] for m in study["document"]["methods"]], ["done"] * 3)
 
 
 class Bounded(unittest.TestCase):

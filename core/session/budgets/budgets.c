@@ -187,16 +187,24 @@ static bool make_row(hn_budgets *a, hn_budget_row *row) {
 
 bool hn_budgets_run(hn_budgets *a) {
     const double limit = a->request.limits.time_limit;
-    int going = 1;
+    bool going = true;
     a->deadline = limit > 0 ? hn_clock_wall() + limit : HUGE_VAL;
+    a->stopped = a->out_of_time = 0;
     for (a->at = 0; a->at < a->n && going; a->at++) {
-        hn_budget_row *row = &a->rows[a->at];
-        if (row->status == HN_ERR_STOPPED && (going = make_row(a, row)) != 0) {
+        if (a->whole[a->at]) {
+            continue;
+        }
+        going = a->whole[a->at] = make_row(a, &a->rows[a->at]);
+        if (going) {
             hn_budgets_keep(a, a->at);
         }
     }
     hn_journal_end(&a->journal, going);
     return going;
+}
+
+void hn_budgets_set_time_limit(hn_budgets *a, double time_limit) {
+    a->request.limits.time_limit = time_limit;
 }
 
 // reading ----

@@ -51,8 +51,11 @@ HN_MUST_CHECK hn_status hn_budgets_open(const hn_job_request *request, hn_budget
                                         hn_diags *diags);
 void hn_budgets_free(hn_budgets *budgets); ///< NULL is legal
 /// Computes the missing budgets. Returns whether all are complete; false when it was stopped or out
-/// of time. The row of a method without a budget gives the reason.
+/// of time. The row of a method without a budget gives the reason. May be called again: it goes on
+/// with what is missing, and has its whole time limit again.
 bool hn_budgets_run(hn_budgets *budgets);
+/// Sets the wall time that each later run has [s]; 0: no limit.
+void hn_budgets_set_time_limit(hn_budgets *budgets, double time_limit);
 bool hn_budgets_stopped(const hn_budgets *budgets),
     hn_budgets_out_of_time(const hn_budgets *budgets);
 

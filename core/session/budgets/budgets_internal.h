@@ -13,6 +13,7 @@ struct hn_budgets {
     int n;
     hn_method_spec specs[HN_BUDGETS_METHODS];
     hn_budget_row rows[HN_BUDGETS_METHODS]; ///< HN_ERR_STOPPED until there is one
+    bool whole[HN_BUDGETS_METHODS];         ///< the row needs no more work
     hn_journal journal;
     int resumed, stopped, out_of_time;
     double deadline; ///< wall clock [s]; infinite: none

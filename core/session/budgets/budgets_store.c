@@ -75,8 +75,9 @@ static int take_line(void *user, const cJSON *o) {
         (!hn_stored_number(o, "t", &row.budget.t) || !hn_ending_take_json(o, &row.budget.ending))) {
         return 0;
     }
-    a->resumed += a->rows[i].status == HN_ERR_STOPPED;
+    a->resumed += !a->whole[i];
     a->rows[i] = row;
+    a->whole[i] = true;
     return 1;
 }
 

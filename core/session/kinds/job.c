@@ -85,6 +85,12 @@ hn_status hn_job_run(hn_job *job, hn_job_end *end, hn_diags *diags) {
     return job->kind->run(job->work, &job->request, end, diags);
 }
 
+void hn_job_set_time_limit(hn_job *job, double time_limit) {
+    HN_ASSERT(job->kind->set_time_limit);
+    job->request.limits.time_limit = time_limit;
+    job->kind->set_time_limit(job->work, time_limit);
+}
+
 bool hn_job_write(hn_strbuf *b, const hn_job *job, const char *suffix) {
     for (int i = 0; i < HN_JOB_FORMS && job->kind->forms[i].suffix; i++) {
         if (strcmp(job->kind->forms[i].suffix, suffix) == 0) {

@@ -53,6 +53,9 @@ typedef struct hn_job_kind {
     int (*resumed)(const void *work); ///< pieces taken up; NULL: none ever
     /// Computes the remaining pieces. Fails: reported in diags; there is then no document.
     hn_status (*run)(void *work, const hn_job_request *request, hn_job_end *end, hn_diags *diags);
+    /// Sets the wall time of each later run [s]. A kind that has it may be run again and goes on.
+    /// NULL: a run is the only one.
+    void (*set_time_limit)(void *work, double time_limit);
     void (*release)(void *work);
     /// Writes the file that --out names, whatever its ending. Fails: HN_ERR_IO, reported in diag.
     /// NULL: its ending chooses a form.
@@ -75,7 +78,11 @@ typedef struct hn_job hn_job;
 HN_MUST_CHECK hn_status hn_job_open(const hn_job_kind *kind, const hn_job_request *request,
                                     hn_job **out, hn_diags *diags);
 int hn_job_resumed(const hn_job *job);
+/// Computes what is left. Where the kind has set_time_limit() it may be called again after an end
+/// that left something out: then it goes on, with the whole time limit. Fails: as the kind's run().
 HN_MUST_CHECK hn_status hn_job_run(hn_job *job, hn_job_end *end, hn_diags *diags);
+/// Sets the wall time of each later run [s]. The kind must have set_time_limit().
+void hn_job_set_time_limit(hn_job *job, double time_limit);
 /// Writes the form of this suffix (".json"). Returns false when the kind has none.
 bool hn_job_write(hn_strbuf *b, const hn_job *job, const char *suffix);
 const void *hn_job_work(const hn_job *job); ///< what the kind's forms write

@@ -34,6 +34,10 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     return HN_OK;
 }
 
+static void set_time_limit(void *work, double time_limit) {
+    hn_budgets_set_time_limit(work, time_limit);
+}
+
 static void release(void *work) {
     hn_budgets_free(work);
 }
@@ -55,5 +59,6 @@ const hn_job_kind hn_kind_budget = {
     .open = open_budgets,
     .resumed = resumed,
     .run = run,
+    .set_time_limit = set_time_limit,
     .release = release,
 };

@@ -61,6 +61,10 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     return HN_OK;
 }
 
+static void set_time_limit(void *work, double time_limit) {
+    hn_map_set_time_limit(work, time_limit);
+}
+
 static void release(void *work) {
     hn_map_free(work);
 }
@@ -94,5 +98,6 @@ const hn_job_kind hn_kind_stability = {
     .open = open_map,
     .resumed = resumed,
     .run = run,
+    .set_time_limit = set_time_limit,
     .release = release,
 };

@@ -36,6 +36,10 @@ static hn_status run(void *work, const hn_job_request *request, hn_job_end *end,
     return HN_OK;
 }
 
+static void set_time_limit(void *work, double time_limit) {
+    hn_study_set_time_limit(work, time_limit);
+}
+
 static void release(void *work) {
     hn_study_free(work);
 }
@@ -58,5 +62,6 @@ const hn_job_kind hn_kind_work_precision = {
     .open = open_study,
     .resumed = resumed,
     .run = run,
+    .set_time_limit = set_time_limit,
     .release = release,
 };

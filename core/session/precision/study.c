@@ -171,6 +171,11 @@ bool hn_study_run(hn_study *s) {
     return finished;
 }
 
+void hn_study_set_time_limit(hn_study *s, double time_limit) {
+    s->request.limits.time_limit = time_limit;
+    s->wp->opts.time_limit = time_limit;
+}
+
 void hn_study_forget(hn_study *s) {
     hn_journal_end(&s->journal, 1);
 }

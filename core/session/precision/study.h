@@ -29,8 +29,11 @@ HN_MUST_CHECK hn_status hn_study_open(const hn_job_request *request, hn_study **
                                       hn_diags *diags);
 void hn_study_free(hn_study *study); ///< NULL is legal; the journal of an unfinished study stays
 /// Runs the remaining points. Returns whether the study is finished; its journal is then deleted,
-/// the reference stays. Returns false when it was stopped or the time limit was reached.
+/// the reference stays. Returns false when it was stopped or the time limit was reached. May be
+/// called again: it goes on with the points that are left, and has its whole time limit again.
 bool hn_study_run(hn_study *study);
+/// Sets the wall time that each later run has [s]; 0: no limit.
+void hn_study_set_time_limit(hn_study *study, double time_limit);
 void hn_study_forget(hn_study *study); ///< after a run: deletes its journal; the reference stays
 
 // parts

@@ -179,7 +179,7 @@ static bool run_one(hn_map *map) {
             hn_map_judge_column(map, m, i);
         }
     }
-    map->elapsed = hn_clock_wall() - map->started;
+    map->elapsed += hn_clock_wall() - map->started;
     hn_journal_end(&map->journal, finished);
     return finished;
 }
@@ -194,12 +194,19 @@ static hn_map *open_telling(const hn_map *map, const char *preset) {
         return NULL;
     }
     if (r.limits.time_limit > 0) {
-        r.limits.time_limit = fmax(r.limits.time_limit - map->elapsed, LEAST_LEFT);
+        const double used = hn_clock_wall() - map->started;
+        r.limits.time_limit = fmax(r.limits.time_limit - used, LEAST_LEFT);
     }
     return hn_map_open(&r, &telling, &ignored) == HN_OK ? telling : NULL;
 }
 
 bool hn_map_run(hn_map *map) {
+    // a telling map that goes on has all of the time, not what the map of steps had left
+    if (map->steps) {
+        map->request.limits.time_limit = map->steps->request.limits.time_limit;
+    }
+
+    // the map itself, which may choose another one
     const bool finished = run_one(map);
     const char *preset = finished && map->open_question ? hn_map_telling(map) : NULL;
     hn_map *telling = preset ? open_telling(map, preset) : NULL;
@@ -217,6 +224,11 @@ bool hn_map_run(hn_map *map) {
     const bool done = run_one(map);
     map->elapsed += map->steps->elapsed;
     return done;
+}
+
+void hn_map_set_time_limit(hn_map *map, double time_limit) {
+    hn_map *const first = map->steps ? map->steps : map; // see hn_map_run()
+    first->request.limits.time_limit = time_limit;
 }
 
 // reading ----

@@ -97,7 +97,12 @@ void hn_map_free(hn_map *map); ///< NULL is legal
 /// telling for it, hn_map_telling(), and the map of steps stays in hn_map_steps(). Methods that the
 /// request names are taken where they have the options of that preset; where none has them, the map
 /// of steps is the answer.
+///
+/// May be called again: it goes on with the cells that are left, and has its whole time limit
+/// again.
 bool hn_map_run(hn_map *map);
+/// Sets the wall time that each later run has [s]; 0: no limit.
+void hn_map_set_time_limit(hn_map *map, double time_limit);
 
 /// Borrowed: what the map was computed for, its axes, and how many methods it has.
 const hn_model *hn_map_model(const hn_map *map);
@@ -127,7 +132,7 @@ double hn_map_time(const hn_map *map);
 bool hn_map_lost(const hn_map *map); ///< the journal could not be written
 int hn_map_resumed(const hn_map *map);
 bool hn_map_stopped(const hn_map *map), hn_map_out_of_time(const hn_map *map);
-double hn_map_elapsed(const hn_map *map); ///< [s]
+double hn_map_elapsed(const hn_map *map); ///< wall time of all runs [s]
 
 // documents
 #endif

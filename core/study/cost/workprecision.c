@@ -594,6 +594,6 @@ int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
     hn_native_resume();
     hn_wp_compare_ends(wp);
     wp->stopped = is_stopped(h);
-    wp->elapsed = hn_clock_wall() - started;
+    wp->elapsed += hn_clock_wall() - started;
     return going && !wp->out_of_time;
 }

@@ -107,7 +107,7 @@ typedef struct hn_wp {
     double horizon;
     bool out_of_time; ///< the time limit left something out
     bool stopped;     ///< stopped on request
-    double elapsed;   ///< wall time of hn_wp_run() [s]
+    double elapsed;   ///< wall time of all hn_wp_run() [s]
 } hn_wp;
 
 /// A study of n methods to the end of the reference. Sizes in the specs are replaced by the ladder.
@@ -118,7 +118,8 @@ HN_MUST_CHECK hn_status hn_wp_create(const hn_system *sys, const double *q, cons
                                      const hn_wp_opts *opts, hn_wp **out, hn_diag *diag);
 void hn_wp_free(hn_wp *wp); ///< NULL is legal
 /// Runs what is pending: points that are done, failed or timed already (as read from a file) are
-/// left as they are. Returns 1 when nothing is left, 0 when stopped or out of time.
+/// left as they are. Returns 1 when nothing is left, 0 when stopped or out of time. Each call has
+/// the whole of opts.time_limit.
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks);
 /// Whether the point is run here: of the whole, or of this part.
 bool hn_wp_is_mine(const hn_wp *wp, int m, int k);

@@ -23,8 +23,9 @@
       "The Allow header lists the verbs that it takes.")                                           \
     X(HN_PROBLEM_NOT_ACCEPTABLE, 406, "not-acceptable", "The answer has another media type",       \
       "The Accept header rules out what this address offers; the detail names what it offers.")    \
-    X(HN_PROBLEM_CONFLICT, 409, "conflict", "The comparison is in another state",                  \
-      "What was asked does not fit the state that the comparison is in; nothing was changed.")     \
+    X(HN_PROBLEM_CONFLICT, 409, "conflict", "Its present state does not allow that",               \
+      "What was asked does not fit the state of the comparison, run or study; nothing was "        \
+      "changed.")                                                                                  \
     X(HN_PROBLEM_TOO_LARGE, 413, "too-large", "The body is too large",                             \
       "The index lists the largest body that is read.")                                            \
     X(HN_PROBLEM_ADDRESS, 414, "address-too-long", "The address is too long",                      \

@@ -173,8 +173,9 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"studies\"],\"properties\":{\"studies\":" OBJECTS "}}"},
     {"Study",
      "{\"type\":\"object\",\"description\":\"document is that of the command line's --json, null "
-     "until "
-     "there is one\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
+     "until there is one; while a stopped study goes on it is that of what was done before. "
+     "progress and time_left_s are of the present run, elapsed_s is of "
+     "all\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
      "\"time_left_s\",\"time_limit_s\",\"scene\",\"parameters\",\"methods\",\"document\",\"links\"]"
      ","
      "\"properties\":{\"id\":" TEXT ",\"kind\":" TEXT
@@ -319,6 +320,12 @@ static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) 
     hn_json_end_object(b);
 }
 
+/// Whether this route starts a study, or changes one.
+static bool takes_study(const hn_route *route) {
+    static const char STUDIES[] = "/api/v1/studies";
+    return strncmp(route->path, STUDIES, sizeof STUDIES - 1) == 0 && route->fields;
+}
+
 /// 1 when a request to this route may be answered so.
 static bool may_answer(const hn_route *route, hn_http_problem kind) {
     switch (kind) {
@@ -336,11 +343,12 @@ static bool may_answer(const hn_route *route, hn_http_problem kind) {
 
     // places that are taken, and who may ask
     case HN_PROBLEM_CONFLICT:
-        return route->work == HN_WORK_OWN || strstr(route->path, "/samples") != NULL;
+        return route->work == HN_WORK_OWN || strstr(route->path, "/samples") != NULL ||
+               (takes_study(route) && strchr(route->path, '{'));
     case HN_PROBLEM_BUSY:
         return route->work != HN_WORK_LIGHT || strstr(route->path, "/events") != NULL;
     case HN_PROBLEM_STUDIES_BUSY:
-        return strcmp(route->path, "/api/v1/studies") == 0 && route->fields;
+        return takes_study(route);
     case HN_PROBLEM_TOKEN:
         return strcmp(route->path, "/healthz") != 0;
     case HN_PROBLEM_METHOD:

@@ -297,14 +297,6 @@ static const hn_field CHANGE[] = {
     PULLS_FIELD,
     END_OF_FIELDS};
 
-static const char *const STOPPED[] = {"stopped", NULL};
-static const hn_field STUDY_CHANGE[] = {{.name = "state",
-                                         .type = HN_FIELD_CHOICE,
-                                         .required = 1,
-                                         .choices = STOPPED,
-                                         .about = "ends the computing; what was done is kept"},
-                                        END_OF_FIELDS};
-
 static const hn_route_query SCENE_QUERY[] = {{"set", "array", "parameter:value, may be repeated"},
                                              {NULL, NULL, NULL}};
 static const hn_route_query REFERENCE_QUERY[] = {
@@ -490,8 +482,10 @@ static const hn_route ROUTES[] = {
      "State, progress, time left, and the document when it is done", NULL, NULL},
     {"GET", "/api/v1/studies/{id}/report", HN_WORK_LIGHT, hn_handle_study_report, NULL, "text/html",
      "200", "Report", "The study as one HTML file that needs no network", NULL, NULL},
-    {"PATCH", "/api/v1/studies/{id}", HN_WORK_QUICK, hn_handle_study_patch, STUDY_CHANGE, JSON,
-     "200", "Study", "Stops a study and keeps what was done", NULL, "{\"state\":\"stopped\"}"},
+    {"PATCH", "/api/v1/studies/{id}", HN_WORK_QUICK, hn_handle_study_patch, hn_study_change, JSON,
+     "200", "Study",
+     "Stops a study and keeps what was done, or lets a stopped one go on from there", NULL,
+     "{\"state\":\"stopped\"}"},
     {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",
      NULL, "Stops a study and forgets it", NULL, NULL},
 };

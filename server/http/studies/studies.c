@@ -6,8 +6,6 @@
 #include "http/request/request.h"
 #include "http/studies/study_fields.h"
 #include "http/studies/study_work.h"
-#include "study/run/pace.h"
-#include "base/clock.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -22,8 +20,10 @@ static const double TELLING = 0.03;
 
 typedef struct study {
     char id[17];
-    int refs; ///< under the lock of all, as is everything down to `work`
-    double started, ended, touched;
+    int refs;       ///< under the lock of all, as is everything down to `work`
+    double started; ///< the present run, or the last one [s, wall clock]
+    double ended, touched;
+    double before; ///< wall time of earlier runs [s]
     int done;
     hn_study_result result;
     hn_study_work work;
@@ -36,15 +36,21 @@ struct hn_studies {
     const hn_http_opts *opts;
     const hn_library *lib;
     study *list[HN_STUDIES_KEPT];
-    int n, n_threads, stopping;
+    int n, stopping;
+    int n_places;  ///< taken by studies that are being read or computed
+    int n_threads; ///< that are at work, or on their way out
 };
 
 // ---- one study ----
 
+static void reset_result(hn_study_result *result) {
+    hn_strbuf_reset(&result->document);
+    hn_strbuf_reset(&result->report);
+}
+
 static void free_study(study *s) {
     if (s) {
-        hn_strbuf_reset(&s->result.document);
-        hn_strbuf_reset(&s->result.report);
+        reset_result(&s->result);
         hn_study_work_reset(&s->work);
         free(s);
     }
@@ -74,15 +80,16 @@ static void *work(void *arg) {
         snprintf(result.reason, sizeof result.reason, "%s", hn_status_text(HN_ERR_MEMORY));
     }
     if (result.state == HN_STUDY_FAILED) {
-        hn_strbuf_reset(&result.document);
-        hn_strbuf_reset(&result.report);
+        reset_result(&result);
     }
 
-    // the result, with the lock held
+    // the result, in place of that of an earlier run, with the lock held
     pthread_mutex_lock(&all->lock);
+    reset_result(&s->result);
     s->result = result;
     s->done = 1;
     s->ended = s->touched = hn_clock_wall();
+    all->n_places--; // whoever sees the end finds the place free
     pthread_mutex_unlock(&all->lock);
 
     // one thread less
@@ -118,7 +125,7 @@ static void put_progress(hn_strbuf *b, const study *s) {
                              ? 1
                              : fmin(1, fmax(0, atomic_load(&s->work.share)));
     hn_json_put_number(b, "progress", share);
-    hn_json_put_number(b, "elapsed_s", elapsed);
+    hn_json_put_number(b, "elapsed_s", s->before + elapsed);
     hn_json_put_number(b, "time_left_s", time_left(s, share, elapsed));
 }
 
@@ -265,47 +272,72 @@ static void name_study(study *s) {
     snprintf(s->id, sizeof s->id, "%016llx", (unsigned long long)name);
 }
 
-/// A thread's place; 0 with a problem as reply. A study that was deleted holds its place until its
-/// thread has ended.
-static bool reserve(hn_studies *all, hn_request *r) {
-    pthread_mutex_lock(&all->lock);
-    const int stopping = all->stopping, full = all->n_threads >= all->opts->max_studies;
-    all->n_threads += !stopping && !full;
-    pthread_mutex_unlock(&all->lock);
-    if (stopping) {
+typedef enum place { PLACE_FREE, PLACES_TAKEN, PLACES_CLOSED } place;
+
+/// Whether one more thread may start. A study that was deleted holds its place until its thread has
+/// ended. With the lock held.
+static place find_place(const hn_studies *all) {
+    return all->stopping                             ? PLACES_CLOSED
+           : all->n_places >= all->opts->max_studies ? PLACES_TAKEN
+                                                     : PLACE_FREE;
+}
+
+/// The problem of a request that found no place.
+static void reply_no_place(hn_request *r, place p) {
+    if (p == PLACES_CLOSED) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
-    } else if (full) {
+    } else {
         hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
-                         "%d studies are running, and no more at once", all->opts->max_studies);
+                         "%d studies are running, and no more at once",
+                         r->context->studies->opts->max_studies);
         hn_reply_header_add(r, "Retry-After", "%d", RETRY_AFTER);
     }
-    return !stopping && !full;
+}
+
+/// Takes a thread's place. Returns false with a problem as reply.
+static bool reserve(hn_studies *all, hn_request *r) {
+    pthread_mutex_lock(&all->lock);
+    const place p = find_place(all);
+    all->n_places += p == PLACE_FREE;
+    all->n_threads += p == PLACE_FREE;
+    pthread_mutex_unlock(&all->lock);
+    if (p != PLACE_FREE) {
+        reply_no_place(r, p);
+    }
+    return p == PLACE_FREE;
 }
 
 static void give_back(hn_studies *all) {
     pthread_mutex_lock(&all->lock);
+    all->n_places--;
     all->n_threads--;
     pthread_cond_broadcast(&all->changed);
     pthread_mutex_unlock(&all->lock);
 }
 
-/// Puts it among the others and starts its thread, which has a reference of its own; the caller
-/// keeps one too.
+/// Starts a thread that works on the study, with a reference of its own. With the lock held.
+static hn_status start_thread(study *s) {
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, work, s) != 0) {
+        return HN_ERR_MEMORY;
+    }
+    pthread_detach(thread);
+    s->refs++;
+    s->started = s->touched = hn_clock_wall();
+    return HN_OK;
+}
+
+/// Puts it among the others and starts its thread; the caller keeps a reference too.
 static hn_status start(hn_studies *all, study *s) {
     study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
-    pthread_t thread;
     pthread_mutex_lock(&all->lock);
     expire(all, dead, &n_dead);
     make_room(all, dead, &n_dead);
     hn_status status = all->n < HN_STUDIES_KEPT && !all->stopping ? HN_OK : HN_ERR_LIMIT;
-    s->started = s->touched = hn_clock_wall();
-    s->refs = 3;
-    if (status == HN_OK && pthread_create(&thread, NULL, work, s) != 0) {
-        status = HN_ERR_MEMORY;
-    }
+    s->refs = 2; // of the list and of the caller
+    HN_THEN(status, start_thread(s));
     if (status == HN_OK) {
-        pthread_detach(thread);
         all->list[all->n++] = s;
     }
     pthread_mutex_unlock(&all->lock);
@@ -437,13 +469,81 @@ void hn_handle_study_report(hn_request *r) {
     release(s);
 }
 
+/// With the lock held.
+static bool is_listed(const study *s) {
+    for (int i = 0; i < s->all->n; i++) {
+        if (s->all->list[i] == s) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Whether a study runs, or is finished: going on changes nothing. With the lock held.
+static bool has_no_need(const study *s) {
+    return s->done ? s->result.state == HN_STUDY_FINISHED : !atomic_load(&s->work.stop);
+}
+
+/// Why a study cannot go on; NULL: it can. With the lock held.
+static const char *hindrance(const study *s) {
+    return !s->done                             ? "it is still ending; ask again"
+           : s->result.state == HN_STUDY_FAILED ? "it failed and kept nothing"
+           : !is_listed(s)                      ? "it was deleted"
+                                                : NULL;
+}
+
+/// Lets a stopped study go on, with the time limit of the body or else with its own. The document
+/// of what is done stays until there is a new one. With the lock held.
+static hn_status go_on(study *s, const cJSON *body) {
+    const cJSON *limit = cJSON_GetObjectItemCaseSensitive(body, "time_limit");
+    const double before = s->before + s->ended - s->started;
+    hn_study_work_again(&s->work, limit ? limit->valuedouble : s->work.request.limits.time_limit);
+    HN_TRY(start_thread(s));
+    s->all->n_places++;
+    s->all->n_threads++;
+    s->before = before;
+    s->done = 0;
+    s->result.reason[0] = s->result.hint[0] = 0;
+    return HN_OK;
+}
+
+/// Answers a request that a study go on.
+static void resume(hn_request *r, study *s) {
+    hn_studies *all = s->all;
+    const char *why = NULL;
+    place p = PLACE_FREE;
+    hn_status status = HN_OK;
+
+    // one look, so that of two such requests one starts it
+    pthread_mutex_lock(&all->lock);
+    if (!has_no_need(s) && (why = hindrance(s)) == NULL && (p = find_place(all)) == PLACE_FREE) {
+        status = go_on(s, r->json);
+    }
+    pthread_mutex_unlock(&all->lock);
+
+    if (why) {
+        hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the study cannot go on: %s", why);
+    } else if (p != PLACE_FREE) {
+        reply_no_place(r, p);
+    } else if (status != HN_OK) {
+        hn_reply_diags(r, status, &(hn_diags){0});
+    } else {
+        reply_study(r, MHD_HTTP_OK, s);
+    }
+}
+
 void hn_handle_study_patch(hn_request *r) {
     study *s = find_study(r);
-    if (s) {
+    if (!s) {
+        return;
+    }
+    if (strcmp(hn_fields_text(r->json, "state"), "running") == 0) {
+        resume(r, s);
+    } else {
         atomic_store(&s->work.stop, 1);
         reply_study(r, MHD_HTTP_OK, s);
-        release(s);
     }
+    release(s);
 }
 
 void hn_handle_study_delete(hn_request *r) {

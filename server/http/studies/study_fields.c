@@ -10,6 +10,20 @@ static const double LEAST_SECONDS = 1e-3;
 
 hn_field hn_study_fields[HN_STUDY_FIELDS];
 
+static const char *const STATES[] = {"stopped", "running", NULL};
+hn_field hn_study_change[3] = {
+    {.name = "state",
+     .type = HN_FIELD_CHOICE,
+     .required = 1,
+     .choices = STATES,
+     .about = "stopped: ends the computing, what was done is kept; running: a study that was "
+              "stopped, by its time limit too, goes on with what is left"},
+    {.name = "time_limit",
+     .type = HN_FIELD_NUMBER,
+     .about = "wall time of going on [s]; that of the study when left out"},
+    {.name = NULL},
+};
+
 static const char TIME_LIMIT[] = "time_limit";
 static char about_time_limit[80];
 
@@ -56,6 +70,10 @@ static void bound_time_limit(double most_seconds) {
     snprintf(about_time_limit, sizeof about_time_limit,
              "wall time of the computation [s]; %g when left out", most_seconds);
     f->about = about_time_limit;
+
+    // going on has the same bounds
+    hn_study_change[1].min = f->min;
+    hn_study_change[1].max = f->max;
 }
 
 void hn_study_fields_fill(double most_seconds) {

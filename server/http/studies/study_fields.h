@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_STUDY_FIELDS_H
 #define HN_HTTP_STUDY_FIELDS_H
-// The fields of POST /studies: the scene, the kind, and the fields of all kinds that are served.
+// The fields of POST /studies: the scene, the kind, and the fields of all kinds that are served;
+// and those of PATCH /studies/{id}.
 
 #include "session/job/field.h"
 
@@ -10,7 +11,9 @@ enum { HN_STUDY_FIELDS = 24 };
 /// Ends with a row without a name. Filled by hn_study_fields_fill() before the server answers
 /// anything.
 extern hn_field hn_study_fields[HN_STUDY_FIELDS];
-/// Fills the table from the registry of jobs (session/kinds/job.h). A study computes for at most
+/// The fields of a change, filled at the same time.
+extern hn_field hn_study_change[3];
+/// Fills the tables from the registry of jobs (session/kinds/job.h). A study computes for at most
 /// `most_seconds`, and for as long where its body says nothing.
 void hn_study_fields_fill(double most_seconds);
 /// The field of the time limit, in the table.

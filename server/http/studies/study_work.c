@@ -170,6 +170,15 @@ static void report_failure(const hn_study_work *w, hn_status status, const hn_di
     snprintf(out->hint, sizeof out->hint, "%s", diags->n > 0 ? diags->item[0].hint : "");
 }
 
+void hn_study_work_again(hn_study_work *w, double time_limit) {
+    w->cpu_used_up = 0;
+    w->out_of_time = false;
+    atomic_store(&w->stop, 0);
+    atomic_store(&w->share, 0); // the work tells its share as soon as it goes on
+    w->request.limits.time_limit = time_limit;
+    hn_job_set_time_limit(w->job, time_limit);
+}
+
 void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out) {
     hn_diags diags = {0};
     hn_job_end end = {0};

@@ -52,7 +52,11 @@ typedef struct hn_study_result {
 HN_MUST_CHECK hn_status hn_study_work_read(hn_study_work *w, const cJSON *body,
                                            const hn_http_opts *opts, hn_diags *diags);
 /// Computes until the end, the time limit, `cpu_seconds` of this thread, or w->stop. The document
-/// is complete JSON whatever the end, but not when the study failed.
+/// is complete JSON whatever the end, but not when the study failed. A study that was stopped may
+/// be run again, by another thread too: it goes on with what is left, once
+/// hn_study_work_again() was called.
 void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out);
+/// Makes a stopped study ready to go on, each run with this time limit [s].
+void hn_study_work_again(hn_study_work *w, double time_limit);
 void hn_study_work_reset(hn_study_work *w);
 #endif
