@@ -9,6 +9,7 @@
 #include "grade/mistakes.h"
 #include "grade/other_variant.h"
 #include "grade/parts/spelling.h"
+#include "grade/repeated_member.h"
 #include "grade/rubric.h"
 #include "grade/submission.h"
 #include "grade/submission_text.h"
@@ -432,6 +433,21 @@ static void refuse_text(hn_verdict *v, const char *json, const hn_diag *diag) {
     hn_submission_refuse(v, hint, "the submission is not JSON%s", begins);
 }
 
+/// Drops members that repeat another one, with a remark; refuses objects too large to compare them.
+static bool check_members(hn_verdict *v, cJSON *root) {
+    const int most = hn_repeated_member_count(root);
+    if (most > HN_REPEATED_MEMBER_MOST) {
+        return hn_submission_refuse(v, "a submission has a member for each part",
+                                    "an object has %d members; at most %d are read", most,
+                                    HN_REPEATED_MEMBER_MOST);
+    }
+    const int dropped = hn_repeated_member_drop(root);
+    if (dropped > 0) {
+        hn_submission_remark(v, "fields that repeat another one with the same value: %d", dropped);
+    }
+    return true;
+}
+
 /// Grades text in UTF-8 after its slips of JSON are put right, with a remark.
 static hn_status grade_text(hn_verdict *v, const char *text, size_t n, bool chosen) {
     hn_strbuf mended;
@@ -455,7 +471,10 @@ static hn_status grade_text(hn_verdict *v, const char *text, size_t n, bool chos
         refuse_text(v, json, &diag);
     } else if (status == HN_OK) {
         cJSON *root = cJSON_ParseWithLength(json, mended.n);
-        status = root ? grade_tree(v, root, chosen) : HN_ERR_MEMORY;
+        status = root ? HN_OK : HN_ERR_MEMORY;
+        if (root && check_members(v, root)) {
+            status = grade_tree(v, root, chosen);
+        }
         cJSON_Delete(root);
     }
     hn_strbuf_reset(&mended);

@@ -185,8 +185,16 @@ static const struct {
     {"factor", "right but for a factor", make_factor},
 };
 
+/// Not in the table, for no formula shows it: the right one with a rounded number in it.
+static const hn_grade_mistake ROUNDED = {
+    .id = "rounded",
+    .text = "nearly right: a number in it was rounded; write it with seven digits or more, pi by "
+            "its name"};
+static const double NEARLY = 5e-3; // relative to the entry's size: numbers of three digits
+
 bool hn_grade_is_mistake(const char *id) {
-    int known = strcmp(id, "transposed") == 0; // of the whole matrix, found by its shape
+    // two that are no rows of the table; transposed: of the whole matrix, found by its shape
+    bool known = strcmp(id, "transposed") == 0 || strcmp(id, ROUNDED.id) == 0;
     for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
         known |= strcmp(id, MISTAKES[k].id) == 0;
     }
@@ -264,6 +272,18 @@ static hn_grade_mistake find_pair(const place *at, const double *value) {
         .text = "no known mistake gives this: differentiate the row once more, term by term"};
 }
 
+/// Whether the values differ from the right ones by no more than a rounded number makes them.
+static bool is_nearly_right(const place *at, const double *value) {
+    const int index = at->row * at->exam->problem->n_columns + at->column;
+    for (int s = 0; s < at->exam->n_states; s++) {
+        const double difference = fabs(value[s] - at->exam->expected[index][s]);
+        if (!(difference <= NEARLY * at->exam->size[index])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
                                        const double *value) {
     place at = {.exam = exam, .row = row, .column = column, .given = given};
@@ -281,5 +301,5 @@ hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex
             }
         }
     }
-    return find_pair(&at, value);
+    return is_nearly_right(&at, value) ? ROUNDED : find_pair(&at, value);
 }

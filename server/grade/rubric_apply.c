@@ -28,7 +28,7 @@ static const char *const GENERAL[] = {
     "unit",          "not-null",     "rank",        "power-of-ten", "other-place",  "other-axis",
     "inexact",       "other-branch", "half-turn",   "absolute",     "relative",     "swapped",
     "not-assembled", "stuck",        "some-points", "change-point", "out-of-range", "no-scene",
-    "inaccurate",    "costly",       "ended-early", "zero",         "constant"};
+    "inaccurate",    "costly",       "ended-early", "zero",         "constant",     "rounded"};
 enum { N_GENERAL = sizeof GENERAL / sizeof *GENERAL };
 
 /// Calls for every mistake that a part names by itself: its faults, its tests, its wrong options.
@@ -230,8 +230,8 @@ void hn_rubric_text(hn_strbuf *b, const hn_exercise *e) {
         hn_strbuf_add(b, "\n");
     }
     if (!e->n_parts) {
-        hn_strbuf_printf(b, "  %-8s %5g points for each of %d entries  ", e->answer, e->points,
-                         e->n_rows * e->n_columns);
+        hn_strbuf_printf(b, "  %-8s %5g point%s for each of %d entries  ", e->answer, e->points,
+                         e->points == 1 ? "" : "s", e->n_rows * e->n_columns);
         put_meaning(b, e->relative, e->absolute, true);
         hn_strbuf_add(b, "\n");
     }

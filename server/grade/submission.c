@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/submission.h"
 
+#include "grade/repeated_member.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,20 +37,51 @@ static const char *kind_of(const cJSON *node) {
                                   : "true or false";
 }
 
-/// Notes fields that are not read; refuses the file of another exercise.
-static int check_fields(hn_verdict *v, const cJSON *root) {
-    const hn_exercise *p = v->problem;
-    const char *fields[] = {p->answer, "problem", "student", "seed", "comment"};
-    bool noted = false;
+void hn_submission_remark_unread(hn_verdict *v, const cJSON *root, const char *const *fields,
+                                 int n) {
+    char names[160] = "";
+    size_t used = 0;
+    int count = 0;
     for (const cJSON *m = root->child; m; m = m->next) {
-        int known = 0;
-        for (int i = 0; i < 5; i++) {
+        bool known = false;
+        for (int i = 0; i < n; i++) {
             known |= strcmp(m->string, fields[i]) == 0;
         }
-        if (!known && !noted) {
-            hn_submission_remark(v, "the field '%.60s' was not read", m->string);
-            noted = true;
+        count += !known;
+
+        // as many names as fit
+        if (!known && used < sizeof names - 60) {
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s'%.50s'",
+                                     count > 1 ? ", " : "", m->string);
+        } else if (!known && used < sizeof names - 5) {
+            used += (size_t)snprintf(names + used, sizeof names - used, ", ...");
         }
+    }
+    if (count > 0) {
+        hn_submission_remark(v, "the field%s %s %s not read", count == 1 ? "" : "s", names,
+                             count == 1 ? "was" : "were");
+    }
+}
+
+int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const *fields) {
+    for (; *fields; fields++) {
+        if (hn_repeated_member_is(root, *fields)) {
+            return hn_submission_refuse(v, "keep the one that counts",
+                                        "the field '%s' is there more than once, with different "
+                                        "values",
+                                        *fields);
+        }
+    }
+    return 1;
+}
+
+/// Remarks on fields that are not read; refuses the file of another exercise.
+static int check_fields(hn_verdict *v, const cJSON *root) {
+    const hn_exercise *p = v->problem;
+    const char *fields[] = {p->answer, "problem", "student", "seed", "comment", NULL};
+    hn_submission_remark_unread(v, root, fields, 5);
+    if (!hn_submission_check_once(v, root, fields)) {
+        return 0;
     }
 
     // a file may say which exercise it answers

@@ -11,6 +11,12 @@
 int hn_submission_refuse(hn_verdict *v, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
 /// Adds a remark to the verdict's note.
 void hn_submission_remark(hn_verdict *v, const char *format, ...) HN_PRINTF(2, 3);
+/// Remarks on all members that are not read. `fields`: the names of those that are.
+void hn_submission_remark_unread(hn_verdict *v, const cJSON *root, const char *const *fields,
+                                 int n);
+/// Refuses a field that says which variant or exercise is answered, or what it cost, and is there
+/// twice with different values. `fields`: names of such fields, up to NULL.
+int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const *fields);
 /// Checks fields and shape. `answer` receives the list of rows, `transposed` whether its shape is
 /// that of the transposed matrix.
 int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, int *transposed);

@@ -2,6 +2,7 @@
 #include "grade/variant.h"
 
 #include "base/hash.h"
+#include "grade/repeated_member.h"
 #include "grade/rubric.h"
 #include "grade/submission.h"
 
@@ -118,8 +119,8 @@ void hn_variant_notation(hn_strbuf *b, const hn_variant *x) {
     } NOTATIONS[] = {
         {{"formula", "formulas", "basis"},
          "Formulas: a*b or a b, a^2, a/b, sin(th1), sqrt(x), pi; angles in radians; theta_1 is "
-         "th1, "
-         "in Greek letters too.\n"},
+         "th1, in Greek letters too.\n"
+         "Write numbers by their names, or with 7 digits: a rounded one earns half.\n"},
         {{"matrix", "blocks"},
          "Formulas of matrices: M J or M*J is the product, J' or J^T the transpose, inv(M) the "
          "inverse.\n"},
@@ -281,15 +282,6 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
     }
 }
 
-static int has_part(const hn_variant *x, const char *id) {
-    for (int i = 0; i < x->n_parts; i++) {
-        if (strcmp(x->part[i].id, id) == 0) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /// Refuses a submission that says it answers another variant.
 static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
     const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
@@ -341,25 +333,20 @@ static int check_hints(const hn_variant *x, const cJSON *submission, hn_verdict 
 
 /// Fields that no part asks for; the file of another exercise or another seed.
 static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
-    static const char *const others[] = {"problem", "exercise", "student",
-                                         "seed",    "comment",  "hints"};
+    static const char *const others[] = {"problem", "exercise", "student", "seed",
+                                         "comment", "hints",    NULL};
+    const char *fields[HN_GRADE_MAX_PARTS + 6];
+    int answers = 0;
 
     // each field is a part, or one that every submission may have
-    const cJSON *m;
-    int answers = 0;
-    bool noted = false;
-    cJSON_ArrayForEach(m, submission) {
-        int known = has_part(x, m->string);
-        answers += known;
-        for (int i = 0; i < 6 && !known; i++) {
-            known = strcmp(m->string, others[i]) == 0;
-        }
-
-        // the note names the first of the others
-        if (!known && !noted) {
-            hn_submission_remark(v, "the field '%.60s' was not read", m->string);
-            noted = true;
-        }
+    for (int i = 0; i < x->n_parts; i++) {
+        fields[i] = x->part[i].id;
+        answers += cJSON_GetObjectItemCaseSensitive(submission, x->part[i].id) != NULL;
+    }
+    memcpy(fields + x->n_parts, others, 6 * sizeof *others);
+    hn_submission_remark_unread(v, submission, fields, x->n_parts + 6);
+    if (!hn_submission_check_once(v, submission, others)) {
+        return 0;
     }
 
     // it must be meant for this exercise
@@ -418,7 +405,8 @@ static void charge_hints(const hn_variant *x, const cJSON *submission, hn_verdic
     const double cost = fmin(hn_rubric_hints_cost(x->exercise->rubric, n), v->score);
     if (cost > 0) {
         v->score -= cost;
-        hn_submission_remark(v, "%d hint%s cost %g points", n, n == 1 ? "" : "s", cost);
+        hn_submission_remark(v, "%d hint%s cost %g point%s", n, n == 1 ? "" : "s", cost,
+                             cost == 1 ? "" : "s");
     }
 }
 
@@ -437,6 +425,22 @@ static void show_answer(const hn_variant *x, const cJSON *submission, hn_verdict
     }
 }
 
+/// Grades the answer to one part. One that is there twice, or has a member twice, with different
+/// values is not read: which of them was meant cannot be told.
+static hn_status grade_part(const hn_part *p, const cJSON *submission,
+                            hn_part_result results[HN_PART_RESULTS], int *n, hn_diag *diag) {
+    const cJSON *given = cJSON_GetObjectItemCaseSensitive(submission, p->id);
+    const bool twice = hn_repeated_member_is(submission, p->id);
+    const char *name = twice ? p->id : hn_repeated_member_find(given);
+    HN_TRY(p->kind->grade(p, name ? NULL : given, results, n, diag));
+    for (int i = 0; name && i < *n; i++) {
+        hn_part_unreadable(
+            &results[i], "'%.60s' is there more than once, with different values: keep one", name);
+        hn_part_keep_given(&results[i], given);
+    }
+    return HN_OK;
+}
+
 hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v, hn_diag *diag) {
     if (!cJSON_IsObject(submission)) {
         hn_submission_refuse(v, "as in {\"a\": 1.2, \"b\": \"...\"}",
@@ -449,10 +453,8 @@ hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v
     for (int i = 0; i < x->n_parts; i++) {
         hn_part_result results[HN_PART_RESULTS];
         int n = 0;
-        const hn_part *p = &x->part[i];
-        HN_TRY(p->kind->grade(p, cJSON_GetObjectItemCaseSensitive(submission, p->id), results, &n,
-                              diag));
-        add_results(v, p, results, n);
+        HN_TRY(grade_part(&x->part[i], submission, results, &n, diag));
+        add_results(v, &x->part[i], results, n);
     }
     show_answer(x, submission, v);
     charge_hints(x, submission, v);

@@ -82,3 +82,14 @@ hn_status hn_verdict_form_find(const char *name, const hn_verdict_form **out, hn
                               "lti-score, junit, csv or html",
                        "'%.40s' is not a form of verdicts", name);
 }
+
+const hn_verdict_form *hn_verdict_form_of_file(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    for (int i = 0; dot && i < N_FORMS; i++) {
+        if (strcmp(dot + 1, FORMS[i].ending) == 0) {
+            return &FORMS[i];
+        }
+    }
+    return NULL;
+}

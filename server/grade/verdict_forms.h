@@ -22,4 +22,6 @@ typedef struct hn_verdict_form {
 /// The form of a name. Fails: HN_ERR_INPUT, with a suggestion.
 HN_MUST_CHECK hn_status hn_verdict_form_find(const char *name, const hn_verdict_form **out,
                                              hn_diag *diag);
+/// The first form whose files end as `path` does; NULL: none.
+const hn_verdict_form *hn_verdict_form_of_file(const char *path);
 #endif

@@ -502,6 +502,78 @@ def readings(folder):
            told == {"right": "", "coarse": "inexact", "time": "other-axis", "metres": "power-of-ten"}, str(told))  # fmt: skip
 
 
+def read(path):
+    with open(path, "rb") as f:
+        return f.read()
+
+
+def refusals(folder):
+    """An option that would say nothing, and an output that would replace something, are refused with words."""
+    right = write(folder, "right.json", {"c": 1})
+    classes = os.path.join(folder, "class")
+    os.makedirs(classes)
+    write(classes, "ann.json", {"c": 1})
+    for words, said in ((("problem", "closure", "--hint", "9"), "closure has 2 hints; --hint is 9"), (("problem", "p3", "--hint", "1"), "p3 has 0 hints"),
+                        (("problem", "closure", "--hint", "0"), "--hint is 0"), (("problem", "closure", "--seeds", "1..3"), "--seeds is for --check"),
+                        (("problem", "closure", "--check", "--seed", "3"), "a range of variants"), (("problem", "closure", "--check", "--student", "s"), "a range of variants"),
+                        (("problem", "closure", "--student", ""), "--student has no name"), (("grade", "closure", right, "--student", " "), "--student has no name"),
+                        (("problem", "p3", "-o", "p.svg"), "asks about a plot"), (("problem", "gap-plot", "-o", "p.svg", "--json"), "it has no JSON"),
+                        (("grade", "closure", right, "--json", "--format", "html"), "choose different forms"), (("grade", "closure", right, "--plot", "--json"), "--plot draws bars"),
+                        (("grade", "closure", right, "--jobs", "2"), "--jobs is for a folder"), (("grade", "closure", classes, "--show-expected"), "not for a class"),
+                        (("grade", "closure", right, "--format", "json", "--out", os.path.join(folder, "v.html")), "ends in .html; the form json"),
+                        (("grade", "closure", right, right, "--out", os.path.join(folder, "v.html")), "is the name of one file"),
+                        (("grade", "closure", classes, "--out", os.path.join(folder, "s.html")), "says no form of scores"),
+                        (("grade", "closure", classes, "--out", os.path.join(classes, "s.csv")), "lies among the submissions")):
+        done = run(*words)
+        expect(f"{' '.join(words[:1] + words[2:])} is refused", done.returncode == 2 and said in " ".join(done.stderr.split()) + done.stdout, done.stderr + done.stdout)
+    expect("and nothing is written", sorted(os.listdir(classes)) == ["ann.json"] and not os.path.exists(os.path.join(folder, "v.html")))
+
+
+def outputs(folder):
+    """The ending of --out chooses the form; what was there before is kept, or not replaced."""
+    wrong = write(folder, "wrong.json", {"J": [["l1*sin(th1)"] + ["1"] * 3, ["1"] * 4]})
+    html, mine = os.path.join(folder, "v.html"), os.path.join(folder, "v.png")
+    write(folder, "v.png", "my own picture")
+    done = run("grade", "p3", wrong, "--out", html)
+    expect("the ending chooses the form", done.returncode == 0 and read(html).startswith(b"<!DOCTYPE html>"), done.stderr)
+    expect("a page holds its picture: none is written beside it", read(mine) == b"my own picture")
+    done = run("grade", "p3", wrong, "--out", os.path.join(folder, "v.json"))
+    expect("a picture of the user's is kept", read(mine + ".1") == b"my own picture" and read(mine).startswith(b"\x89PNG") and "v.png.1" in done.stderr, done.stderr)
+    again = run("grade", "p3", wrong, "--out", os.path.join(folder, "v.json"))
+    expect("the same verdict replaces nothing", again.stderr == "" and not os.path.exists(mine + ".2"), again.stderr)
+
+    # a teacher's rubric
+    rubric = os.path.join(folder, "r.json")
+    written = [run("rubric", "write", "closure", "-o", rubric).returncode for _ in (1, 2)]
+    with open(rubric, "a", encoding="utf-8") as f:
+        f.write("\n")
+    refused, kept = run("rubric", "write", "closure", "-o", rubric), read(rubric)
+    expect("a rubric that was changed is not replaced", written == [0, 0] and refused.returncode == 2 and "is there already" in refused.stderr and kept.endswith(b"\n\n"), refused.stderr)
+    expect("unless --force says so", run("rubric", "write", "closure", "-o", rubric, "--force").returncode == 0 and read(rubric) != kept)
+
+    # as little of the paths as tells them apart
+    for name in ("s1", "s2"):
+        os.makedirs(os.path.join(folder, "deep", name, "sub"))
+        write(os.path.join(folder, "deep", name, "sub"), "p3.json", read(wrong).decode())
+    verdicts = os.path.join(folder, "verdicts")
+    run("grade", "p3", *(os.path.join(folder, "deep", name, "sub", "p3.json") for name in ("s1", "s2")), "--out", verdicts)
+    expect("verdicts keep the folders that tell them apart", all(os.path.exists(os.path.join(verdicts, name, "sub", "p3.txt")) for name in ("s1", "s2")), str(os.listdir(verdicts)))
+
+
+def other_maximum(folder):
+    """Graded again with other points: both scores stand beside their own maximum."""
+    rubric = os.path.join(folder, "double.json")
+    with open(rubric, "w", encoding="utf-8") as f:
+        json.dump({"rubric": 1, "exercise": "closure", "points": {"a": 4, "b": 2, "c": 4, "d": 2}, "hints": [1, 1]}, f)
+    answer = write(folder, "answer.json", {"b": "-l3*sin(th3)*u3", "hints": 1})
+    kept = write(folder, "kept.json", run("grade", "closure", answer, "--json").stdout)
+    done = run("regrade", kept, "--rubric", rubric)
+    expect("each score has its own maximum", "ANOTHER SCORE: 1 of 6 before, 1 of 12 now" in done.stdout, done.stdout)
+    expect("one hint costs one point", "1 hint cost 1 point\n" in done.stdout, done.stdout)
+    report = json.loads(run("regrade", kept, "--rubric", rubric, "--json").stdout)
+    expect("and in JSON", (report["same"], report["max_score_before"], report["max_score"]) == (False, 6, 12), str(report))
+
+
 def main():
     variants()
     checks()
@@ -525,6 +597,9 @@ def main():
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)
+    for test in (refusals, outputs, other_maximum):
+        with tempfile.TemporaryDirectory() as folder:
+            test(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):
         if not good:
             print("# " + said.replace("\n", "\n# "))

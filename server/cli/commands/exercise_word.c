@@ -27,6 +27,13 @@ bool hn_cli_is_exercise(const hn_library *lib, const char *word) {
     return is_path(word) ? access(word, F_OK) == 0 : hn_library_problem_path(lib, word) != NULL;
 }
 
+hn_status hn_cli_check_student(const hn_args *args, hn_diags *diags) {
+    return args->student && !args->student[strspn(args->student, " \t\r\n")]
+               ? hn_diags_add(diags, HN_ERR_INPUT, "/student", "--student s1001",
+                              "--student has no name")
+               : HN_OK;
+}
+
 uint64_t hn_cli_variant_seed(const hn_args *args, const hn_exercise *exercise) {
     const uint64_t seed = isnan(args->seed) ? 0 : (uint64_t)args->seed;
     if (args->student && seed) {

@@ -16,6 +16,8 @@ HN_MUST_CHECK hn_status hn_cli_load_exercise(const hn_library *lib, const char *
 /// Whether the word names a file that is there, or a shipped exercise: what is wrong is then wrong
 /// in the exercise, not on the command line.
 bool hn_cli_is_exercise(const hn_library *lib, const char *word);
+/// Refuses a --student without a name: HN_ERR_INPUT.
+HN_MUST_CHECK hn_status hn_cli_check_student(const hn_args *args, hn_diags *diags);
 /// The seed that --student or --seed chooses; 0: neither does. A student's name goes before a seed,
 /// and a note says so.
 uint64_t hn_cli_variant_seed(const hn_args *args, const hn_exercise *exercise);

@@ -71,16 +71,22 @@ static hn_exit draw_picture(const task *t, const hn_verdict *v, hn_strbuf *png) 
     return HN_EXIT_DONE;
 }
 
-/// The verdict and the picture into files, with one line on standard output.
+/// The verdict into a file, and the picture beside it unless a person reads it in the verdict; one
+/// line on standard output.
 static hn_exit write_files(const task *t, const hn_verdict *v, hn_strbuf *b, hn_strbuf *png) {
     hn_strbuf path;
     hn_strbuf_init(&path);
     hn_strbuf_printf(&path, "%s.%s", t->target, t->form->ending);
-    const bool drawn = png->n > 0;
+    const bool inside = t->form->pictures && !t->form->results;
+    const bool drawn = png->n > 0 && !inside;
+    if (!t->form->results) { // what a platform reads is its own
+        hn_cli_keep_former(hn_strbuf_text(&path), b);
+    }
     hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), b);
     if (result == HN_EXIT_DONE && drawn) {
         hn_strbuf_clear(&path);
         hn_strbuf_printf(&path, "%s.png", t->target);
+        hn_cli_keep_former(hn_strbuf_text(&path), png);
         result = hn_cli_write_file(t->args, hn_strbuf_text(&path), png);
     }
     hn_strbuf_reset(&path);
@@ -199,14 +205,35 @@ static void free_subject(owned_subject *own) {
     hn_model_free(own->model);
 }
 
+/// The form that --format or --json names; else that of the ending of --out; else text. An --out
+/// that is the name of a file must be one of this form, and for one submission.
+static hn_status choose_form(const hn_args *args, const hn_verdict_form **out, hn_diag *diag) {
+    struct stat info;
+    const bool folder = args->out && stat(args->out, &info) == 0 && S_ISDIR(info.st_mode);
+    const hn_verdict_form *file = args->out && !folder ? hn_verdict_form_of_file(args->out) : NULL;
+    const char *said = args->format ? args->format : args->json ? "json" : NULL;
+    HN_TRY(hn_verdict_form_find(said ? said : file ? file->name : "text", out, diag));
+    if (file && strcmp(file->ending, (*out)->ending) != 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/out",
+                           "choose another ending, or leave --format out",
+                           "'%.200s' ends in .%s; the form %s has files that end in .%s", args->out,
+                           file->ending, (*out)->name, (*out)->ending);
+    }
+    if (file && args->words.n > 2) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/out", "--out DIR, with a slash at its end",
+                           "'%.200s' is the name of one file, and %d submissions are graded",
+                           args->out, args->words.n - 1);
+    }
+    return HN_OK;
+}
+
 /// Submissions that are files, each with a verdict of its own.
 static hn_exit grade_files(task t) {
     const hn_args *args = t.args;
-    const char *form = args->format ? args->format : args->json ? "json" : "text";
     hn_verdict_names names = {0};
     hn_diags diags = {0};
     hn_diag diag = {0};
-    if (hn_verdict_form_find(form, &t.form, &diag) != HN_OK) {
+    if (choose_form(args, &t.form, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
 
@@ -222,6 +249,33 @@ static hn_exit grade_files(task t) {
     return result;
 }
 
+/// Refuses options that would say nothing here, and two that say different things.
+static hn_status check_options(const hn_args *args, bool class, hn_diags *diags) {
+    const bool text = !args->json && (!args->format || strcmp(args->format, "text") == 0);
+    const struct {
+        bool given;
+        const char *pointer, *says, *hint;
+    } rows[] = {
+        {args->json && args->format && strcmp(args->format, "json") != 0, "/format",
+         "--json and --format choose different forms", "--json is --format json"},
+        {args->plot && !text, "/plot", "--plot draws bars in the place of text alone",
+         "leave --plot out, or the form"},
+        {class && args->plot, "/plot", "--plot is for one submission, not for a class",
+         "leave --plot out"},
+        {class && args->show_expected, "/show_expected",
+         "--show-expected is for one submission, not for a class", "leave --show-expected out"},
+        {!class && !isnan(args->jobs), "/jobs", "--jobs is for a folder of submissions",
+         "leave --jobs out, or name the folder"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].given) {
+            return hn_diags_add(diags, HN_ERR_INPUT, rows[i].pointer, rows[i].hint, "%s",
+                                rows[i].says);
+        }
+    }
+    return hn_cli_check_student(args, diags);
+}
+
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     task t = {.lib = lib, .args = args};
     owned_subject own = {0};
@@ -229,8 +283,10 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     struct stat info;
     hn_exit result;
     const bool folder = stat(args->words.word[1], &info) == 0 && S_ISDIR(info.st_mode);
+    const bool class = folder || args->shard || args->merge;
     hn_status status = find_subject(lib, args, &own, &t.subject, &diags);
     const bool found = status == HN_OK;
+    HN_THEN(status, check_options(args, class, &diags));
     HN_THEN(status, apply_rubric(args, &own, &diags));
     if (status != HN_OK) {
         result = found ? hn_report_diags(args, status, &diags)

@@ -13,14 +13,15 @@
 #include "cli/shell/print.h"
 
 #include <cjson/cJSON.h>
-#include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_BYTES = 256 << 20, MOST_FORMER = 1000 };
+enum { MOST_BYTES = 256 << 20 };
 static const double TIME_LIMIT = 60; // [s] for one submission
 
 static bool is_graded(const cJSON *o) {
@@ -95,40 +96,6 @@ static void put_csv(hn_strbuf *b, const hn_class_result *r) {
     }
 }
 
-/// Whether the file holds these bytes.
-static bool is_content(const char *path, const hn_strbuf *bytes) {
-    hn_strbuf old;
-    hn_strbuf_init(&old);
-    const bool same = hn_file_read(path, MOST_BYTES, &old, NULL) == HN_OK && old.n == bytes->n &&
-                      memcmp(hn_strbuf_text(&old), hn_strbuf_text(bytes), old.n) == 0;
-    hn_strbuf_reset(&old);
-    return same;
-}
-
-/// Scores of before may hold marks that a teacher changed by hand: where they differ from `bytes`,
-/// they are kept under the first free name FILE.1, FILE.2, ...
-static void keep_former(const char *path, const hn_strbuf *bytes) {
-    struct stat st;
-    char name[1100];
-    if (lstat(path, &st) != 0 || !S_ISREG(st.st_mode) || is_content(path, bytes)) {
-        return;
-    }
-    for (int k = 1; k <= MOST_FORMER; k++) {
-        snprintf(name, sizeof name, "%.1000s.%d", path, k);
-
-        // a link is made only where there is no file, and the old name is replaced afterwards
-        if (link(path, name) == 0) {
-            hn_cli_note("holonom: '%s' held other scores: they are kept in '%s'\n", path, name);
-            return;
-        }
-        if (errno != EEXIST) {
-            break;
-        }
-    }
-    hn_cli_note("holonom: '%s' held other scores: they are replaced, a copy could not be kept\n",
-                path);
-}
-
 /// The whole result into --out: CSV by its ending, else one JSON object a line.
 static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
     hn_strbuf b;
@@ -142,7 +109,7 @@ static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
         }
     }
     if (!b.failed) {
-        keep_former(args->out, &b);
+        hn_cli_keep_former(args->out, &b);
     }
     return hn_cli_write_file(args, args->out, &b);
 }
@@ -220,6 +187,46 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
     return exit;
 }
 
+/// Whether a file would lie in the folder or in one below it; links are followed.
+static bool lies_in(const char *file, const char *folder) {
+    char parent[PATH_MAX], inside[PATH_MAX], outside[PATH_MAX];
+    const char *slash = strrchr(file, '/');
+    const int n = slash == file ? 1 : slash ? (int)(slash - file) : 1;
+    snprintf(parent, sizeof parent, "%.*s", n, slash ? file : ".");
+    if (!realpath(parent, inside) || !realpath(folder, outside)) {
+        return false;
+    }
+    const size_t length = strlen(outside);
+    return strncmp(inside, outside, length) == 0 &&
+           (inside[length] == '/' || inside[length] == '\0' || length == 1);
+}
+
+/// The ending of --out chooses the form; a file among the submissions would be graded next time.
+static hn_status check_out(const char *out, const char *folder, hn_diags *diags) {
+    if (!out) {
+        return HN_OK;
+    }
+    if (strcmp(out, "-") == 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out",
+                            "--json prints the lines on standard output",
+                            "--out of a class is a file");
+    }
+    if (!hn_path_ends_in(out, ".csv") && !hn_path_ends_in(out, ".ndjson") &&
+        !hn_path_ends_in(out, ".jsonl")) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "--out scores.csv, or scores.ndjson",
+                            "the ending of '%.200s' says no form of scores: .csv, or .ndjson and "
+                            ".jsonl, are allowed",
+                            out);
+    }
+    if (folder && lies_in(out, folder)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "choose a place outside the folder",
+                            "'%.200s' lies among the submissions in '%.200s': it would be graded "
+                            "as one",
+                            out, folder);
+    }
+    return hn_cli_check_folder(out, diags);
+}
+
 hn_exit hn_grade_folder(const hn_args *args, const hn_grade_subject *subject) {
     hn_roster roster = {0};
     hn_diags diags = {0};
@@ -233,7 +240,7 @@ hn_exit hn_grade_folder(const hn_args *args, const hn_grade_subject *subject) {
                     args->words.word[1]);
         return hn_report_diag(args, &diag);
     }
-    const hn_status status = hn_cli_check_folder(args->out, &diags);
+    const hn_status status = check_out(args->out, args->words.word[1], &diags);
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
@@ -322,7 +329,11 @@ static hn_status check_whole(const hn_class_result *r, hn_diag *diag) {
 hn_exit hn_grade_merge(const hn_args *args, const hn_grade_subject *subject) {
     hn_class_result result = {0};
     hn_diag diag = {0};
-    hn_status status = HN_OK;
+    hn_diags diags = {0};
+    hn_status status = check_out(args->out, NULL, &diags);
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, &diags);
+    }
     for (int i = 1; i < args->words.n && status == HN_OK; i++) {
         status = take_part(&result, args->words.word[i], &diag);
     }

@@ -11,6 +11,7 @@
 #include "grade/variant.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -78,6 +79,39 @@ static hn_exit check(const hn_args *args, const hn_exercise *e) {
     return report.bad ? HN_EXIT_PROGRAM : result;
 }
 
+/// Refuses options that would say nothing here, and hints that are not there.
+static hn_status check_options(const hn_args *args, const hn_exercise *e, hn_diags *diags) {
+    const bool variant = args->student || !isnan(args->seed);
+    const struct {
+        bool given;
+        const char *pointer, *says, *hint;
+    } rows[] = {
+        {args->seeds && !args->check, "/seeds", "--seeds is for --check", "add --check"},
+        {args->check && variant, "/seed", "--check tries a range of variants, not one",
+         "--seeds A..B in the place of --seed and --student"},
+        {args->check && args->hint > 0, "/hint", "--check prints no hints", "leave --hint out"},
+        {args->check && args->out, "/out", "--check writes no file", "leave --out out"},
+        {args->out && args->hint > 0, "/out", "hints are not written to a file",
+         "leave --out or --hint out"},
+        {args->out && !e->n_parts, "/out", "no part of this exercise asks about a plot",
+         "leave --out out"},
+        {args->out && args->json, "/json", "--out writes plots; it has no JSON",
+         "leave --out or --json out"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].given) {
+            return hn_diags_add(diags, HN_ERR_INPUT, rows[i].pointer, rows[i].hint, "%s",
+                                rows[i].says);
+        }
+    }
+    if (!isnan(args->hint) && (args->hint < 1 || args->hint > e->n_hints)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/hint", "--hint N prints the first N",
+                            "exercise %.60s has %d hint%s; --hint is %.0f", e->id, e->n_hints,
+                            e->n_hints == 1 ? "" : "s", args->hint);
+    }
+    return hn_cli_check_student(args, diags);
+}
+
 static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant *x) {
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -86,7 +120,6 @@ static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant
         hn_draw_text(&b, &x->draw, e->hints[i]);
         hn_strbuf_add(&b, "\n");
     }
-    hn_strbuf_add(&b, e->n_hints ? "" : "this exercise has no hints\n");
     return hn_cli_print_text(&b);
 }
 
@@ -168,6 +201,10 @@ hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
     if (status != HN_OK) {
         const hn_exit result = hn_report_diags(args, status, &diags);
         return hn_cli_is_exercise(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
+    }
+    if (check_options(args, e, &diags) != HN_OK) {
+        hn_exercise_free(e);
+        return hn_report_diags(args, HN_ERR_INPUT, &diags);
     }
     const hn_exit result = args->check  ? check(args, e)
                            : e->n_parts ? print_variant(args, e)

@@ -66,32 +66,41 @@ static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     }
 }
 
-/// Both scores; a verdict without one says so in its place.
+/// Both scores, each of its own maximum; a verdict without one says so in its place.
 static void put_scores(hn_strbuf *b, const cJSON *old, const hn_verdict *v, bool same) {
     const bool graded = strcmp(text_of(old, "status"), "graded") == 0;
+    const double score = hn_part_number(old, "score", (double)NAN);
+    const double most = hn_part_number(old, "max_score", v->max_score);
     hn_strbuf_printf(b, "%s, seed %s: ", v->problem->id, text_of(old, "seed"));
 
     // what could not be graded has no score to compare
     if (v->kind == HN_VERDICT_UNGRADABLE && !graded) {
         hn_strbuf_add(b, "could not be graded before, cannot be graded now\n");
     } else if (v->kind == HN_VERDICT_UNGRADABLE) {
-        hn_strbuf_printf(b, "%g of %g before, cannot be graded now\n",
-                         hn_part_number(old, "score", (double)NAN), v->max_score);
+        hn_strbuf_printf(b, "%g of %g before, cannot be graded now\n", score, most);
     } else if (!graded) {
         hn_strbuf_printf(b, "could not be graded before, %g of %g now\n", v->score, v->max_score);
     } else {
-        hn_strbuf_printf(b, "%s: %g before, %g now, of %g\n",
-                         same ? "the same score" : "ANOTHER SCORE",
-                         hn_part_number(old, "score", (double)NAN), v->score, v->max_score);
+        hn_strbuf_printf(b, "%s: %g of %g before, %g of %g now\n",
+                         same ? "the same score" : "ANOTHER SCORE", score, most, v->score,
+                         v->max_score);
     }
 }
 
-static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *v) {
-    // the same score, up to the rounding of its text
+/// Whether both were graded, or neither, and with the same score of the same maximum, up to the
+/// rounding of their text.
+static bool is_same(const cJSON *old, const hn_verdict *v) {
+    const bool graded = strcmp(text_of(old, "status"), "graded") == 0;
     const double score = hn_part_number(old, "score", (double)NAN);
-    const int graded = strcmp(text_of(old, "status"), "graded") == 0;
-    const int same = graded == (v->kind == HN_VERDICT_GRADED) &&
-                     (!graded || fabs(score - v->score) <= 1e-9 * fmax(1, v->max_score));
+    const double most = hn_part_number(old, "max_score", v->max_score);
+    const double rounding = 1e-9 * fmax(1, v->max_score);
+    return graded == (v->kind == HN_VERDICT_GRADED) &&
+           (!graded ||
+            (fabs(score - v->score) <= rounding && fabs(most - v->max_score) <= rounding));
+}
+
+static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *v) {
+    const bool same = is_same(old, v);
 
     // as a document, or as text with the changes
     hn_strbuf b;
@@ -100,7 +109,8 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
         hn_json_object(&b);
         hn_json_put_string(&b, "problem", v->problem->id);
         hn_json_put_bool(&b, "same", same);
-        hn_json_put_number(&b, "score_before", score);
+        hn_json_put_number(&b, "score_before", hn_part_number(old, "score", (double)NAN));
+        hn_json_put_number(&b, "max_score_before", hn_part_number(old, "max_score", (double)NAN));
         hn_json_put_number(&b, "score", v->kind == HN_VERDICT_GRADED ? v->score : (double)NAN);
         hn_json_put_number(&b, "max_score", v->max_score);
         hn_json_end_object(&b);

@@ -9,7 +9,9 @@
 #include "cli/shell/print.h"
 #include "grade/rubric_apply.h"
 
+#include <stdbool.h>
 #include <string.h>
+#include <unistd.h>
 
 /// Every fault of a rubric: of its fields, then those that its exercise shows.
 static hn_status load(const hn_library *lib, const char *path, hn_rubric **rubric, hn_exercise **e,
@@ -43,7 +45,21 @@ static hn_exit check(const hn_library *lib, const hn_args *args, const char *pat
     return hn_cli_print_text(&b);
 }
 
-static hn_exit write(const hn_library *lib, const hn_args *args, const char *id) {
+/// Whether --out is a file with other bytes than these, which may be a teacher's own rubric.
+static bool is_someones(const hn_args *args, const hn_strbuf *bytes) {
+    const bool file = args->out && strcmp(args->out, "-") != 0;
+    return file && !args->force && access(args->out, F_OK) == 0 &&
+           !hn_cli_is_content(args->out, bytes);
+}
+
+static hn_exit refuse_overwriting(const hn_args *args) {
+    hn_diag diag;
+    hn_diag_set(&diag, HN_ERR_INPUT, "/out", "choose another name; --force replaces it",
+                "'%.200s' is there already and differs from the exercise's own rubric", args->out);
+    return hn_report_diag(args, &diag);
+}
+
+static hn_exit write_rubric(const hn_library *lib, const hn_args *args, const char *id) {
     hn_exercise *e = NULL;
     hn_diags diags = {0};
     hn_strbuf b;
@@ -54,6 +70,10 @@ static hn_exit write(const hn_library *lib, const hn_args *args, const char *id)
     hn_strbuf_init(&b);
     hn_rubric_write(&b, e);
     hn_exercise_free(e);
+    if (is_someones(args, &b)) {
+        hn_strbuf_reset(&b);
+        return refuse_overwriting(args);
+    }
     return hn_cli_write_file(args, args->out, &b);
 }
 
@@ -64,7 +84,7 @@ hn_exit hn_command_rubric(const hn_library *lib, const hn_args *args) {
         return check(lib, args, what);
     }
     if (strcmp(deed, "write") == 0) {
-        return write(lib, args, what);
+        return write_rubric(lib, args, what);
     }
     hn_diag diag;
     const char *near = hn_nearest_name(deed, deeds, 2);

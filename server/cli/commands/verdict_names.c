@@ -12,8 +12,13 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+enum { MOST_FOLDERS = 64 };
+
 /// How much of a submission's path its verdict's name keeps.
-typedef enum kept { NAME_ALONE, WITH_FOLDERS, WITH_ENDING, N_KEPT } kept;
+typedef struct kept {
+    int folders; ///< the last ones
+    bool ending;
+} kept;
 
 void hn_verdict_names_reset(hn_verdict_names *names) {
     for (int i = 0; i < names->n; i++) {
@@ -27,34 +32,23 @@ static const char *full_path(const char *path, char buffer[PATH_MAX]) {
     return realpath(path, buffer) ? buffer : path;
 }
 
-/// Length of the folders, with the slash behind them, that all submissions share.
-static size_t common_folders(const char *const *submissions, int n) {
-    char first[PATH_MAX], other[PATH_MAX];
-    const char *a = full_path(submissions[0], first);
-    size_t common = strlen(a);
-    for (int i = 0; i < n; i++) {
-        const char *b = full_path(submissions[i], other);
-        size_t k = 0;
-        while (k < common && a[k] == b[k]) {
-            k++;
-        }
-        common = k;
+/// Where the last `folders` folders of a path begin; a path with fewer begins behind its root.
+static const char *begin_folders(const char *path, int folders) {
+    const char *from = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    while (folders-- > 0 && from > path + 1) {
+        for (from--; from > path && from[-1] != '/'; from--) {}
     }
-    while (common > 0 && a[common - 1] != '/') {
-        common--;
-    }
-    return common;
+    return from;
 }
 
 /// Adds the part of a submission's path that its verdict keeps. Dots that lead upwards do not leave
 /// the folder of the verdicts.
-static void put_name(hn_strbuf *b, const char *submission, kept keep, size_t common) {
+static void put_name(hn_strbuf *b, const char *submission, kept keep) {
     char buffer[PATH_MAX];
-    const char *path = keep == NAME_ALONE ? submission : full_path(submission, buffer);
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *path = keep.folders ? full_path(submission, buffer) : submission;
+    const char *from = begin_folders(path, keep.folders), *name = begin_folders(path, 0);
     const char *dot = strrchr(name, '.');
-    const char *from = keep == NAME_ALONE ? name : path + common;
-    size_t n = keep != WITH_ENDING && dot && dot > name ? (size_t)(dot - from) : strlen(from);
+    const size_t n = !keep.ending && dot && dot > name ? (size_t)(dot - from) : strlen(from);
     for (size_t i = 0; i < n; i++) {
         const int upwards = from[i] == '.' && i + 1 < n && from[i + 1] == '.';
         hn_strbuf_add_n(b, upwards ? "_" : from + i, 1);
@@ -63,7 +57,6 @@ static void put_name(hn_strbuf *b, const char *submission, kept keep, size_t com
 
 static hn_status put_paths(hn_verdict_names *names, const char *folder,
                            const char *const *submissions, int n, kept keep, int single) {
-    const size_t common = common_folders(submissions, n);
     hn_verdict_names_reset(names);
     for (int i = 0; i < n; i++) {
         hn_strbuf b;
@@ -72,7 +65,7 @@ static hn_status put_paths(hn_verdict_names *names, const char *folder,
         if (single && n == 1) {
             hn_strbuf_add(&b, "results");
         } else {
-            put_name(&b, submissions[i], keep, common);
+            put_name(&b, submissions[i], keep);
         }
         names->path[i] = hn_strbuf_take(&b);
         if (!names->path[i]) {
@@ -160,7 +153,8 @@ hn_status hn_verdict_names_choose(hn_verdict_names *names, const char *folder,
         pair = 0;
         HN_TRY(names->n ? HN_OK : HN_ERR_MEMORY);
     }
-    for (kept keep = NAME_ALONE; keep < N_KEPT && pair; keep++) {
+    for (int k = 0; k <= 2 * MOST_FOLDERS + 1 && pair; k++) {
+        const kept keep = {.folders = k % (MOST_FOLDERS + 1), .ending = k > MOST_FOLDERS};
         HN_TRY(put_paths(names, folder, submissions, n, keep, single));
         pair = find_pair(names, &first, &second);
     }

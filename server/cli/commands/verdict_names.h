@@ -13,9 +13,10 @@ typedef struct hn_verdict_names {
 
 /// Chooses a path in `folder` for each of n submissions and makes the folders.
 ///
-/// The submission's name without its ending, as long as these differ; otherwise with the folders in
-/// which they differ (a/answer.json, b/answer.json: FOLDER/a/answer, FOLDER/b/answer), and with its
-/// own ending where even these are the same. `single`: one submission alone is called "results".
+/// The submission's name without its ending, as long as these differ; otherwise with as many of its
+/// last folders as tell them apart (a/answer.json, b/answer.json: FOLDER/a/answer,
+/// FOLDER/b/answer), and with its own ending where even these are the same. `single`: one
+/// submission alone is called "results".
 /// Fails: HN_ERR_INPUT (a submission given twice, a submission that would be overwritten),
 /// HN_ERR_IO (a folder cannot be made), HN_ERR_LIMIT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_verdict_names_choose(hn_verdict_names *names, const char *folder,

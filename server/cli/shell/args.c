@@ -77,6 +77,7 @@ static const option OPTIONS[] = {
      "of the program: python, c, cpp, java, octave, julia, wolfram, modelica or latex"},
     {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
     {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
+    {"--force", NULL, OPTION_FLAG, AT(force), "replace a file that is there"},
     {"--loops", "FILE", OPTION_TEXT, AT(loops),
      "what a URDF does not hold, as JSON: joints that close loops, gravity, the start"},
     {"--key", "NAME", OPTION_TEXT, AT(key),

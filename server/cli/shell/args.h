@@ -39,7 +39,7 @@ typedef struct hn_args {
         idle_pause, expiry, keep_alive;
     int guests;
     int json, csv, wide, allow_programs, trust_programs, open, help, raw_lambda, reactions;
-    int once, ascii, blocks, plot, check, no_native, show_expected, no_pictures;
+    int once, ascii, blocks, plot, check, no_native, show_expected, no_pictures, force;
     int ghosts, dimensions, forces, describe;
     int blanks, merge;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given

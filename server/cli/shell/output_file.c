@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "cli/shell/args.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/print.h"
 
 #include <errno.h>
@@ -11,6 +12,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+enum { MOST_FORMER = 1000 };
 
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
     if (!path || strcmp(path, "-") == 0) {
@@ -32,6 +35,39 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
         return HN_EXIT_PROGRAM;
     }
     return HN_EXIT_DONE;
+}
+
+bool hn_cli_is_content(const char *path, const hn_strbuf *bytes) {
+    struct stat st;
+    hn_strbuf old;
+    hn_strbuf_init(&old);
+    const bool same = stat(path, &st) == 0 && (size_t)st.st_size == bytes->n &&
+                      hn_file_read(path, bytes->n + 1, &old, NULL) == HN_OK && old.n == bytes->n &&
+                      memcmp(hn_strbuf_text(&old), hn_strbuf_text(bytes), old.n) == 0;
+    hn_strbuf_reset(&old);
+    return same;
+}
+
+void hn_cli_keep_former(const char *path, const hn_strbuf *bytes) {
+    struct stat st;
+    char name[1100];
+    if (lstat(path, &st) != 0 || !S_ISREG(st.st_mode) || hn_cli_is_content(path, bytes)) {
+        return;
+    }
+    for (int k = 1; k <= MOST_FORMER; k++) {
+        snprintf(name, sizeof name, "%.1000s.%d", path, k);
+
+        // a link is made only where there is no file, and the old name is replaced afterwards
+        if (link(path, name) == 0) {
+            hn_cli_note("holonom: '%s' held something else: that is kept in '%s'\n", path, name);
+            return;
+        }
+        if (errno != EEXIST) {
+            break;
+        }
+    }
+    hn_cli_note("holonom: '%s' held something else: that is replaced, a copy could not be kept\n",
+                path);
 }
 
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {

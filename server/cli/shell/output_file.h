@@ -7,9 +7,17 @@
 #include "base/strbuf.h"
 #include "cli/shell/args.h"
 
+#include <stdbool.h>
+
 /// Writes and frees the buffer's text: into a file, which is replaced as a whole or left as it was,
 /// or to standard output ("-" or NULL). Returns HN_EXIT_PROGRAM when it cannot be written.
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
+/// Whether the file holds these bytes.
+bool hn_cli_is_content(const char *path, const hn_strbuf *bytes);
+/// Before a result is written whose file may hold something else: marks that a teacher changed by
+/// hand, or a file of the user's. Where it differs from `bytes`, it is kept under the first free
+/// name FILE.1, FILE.2, ..., and a note says so.
+void hn_cli_keep_former(const char *path, const hn_strbuf *bytes);
 /// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its
 /// folder is not there or takes no files.
 HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);

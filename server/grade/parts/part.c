@@ -43,6 +43,22 @@ void hn_part_right(hn_part_result *r) {
     r->mistake = "";
 }
 
+void hn_part_qualify(hn_part_result *results, int n) {
+    for (int k = 0; k < n; k++) {
+        hn_part_result *r = &results[k];
+        int shown = 0;
+        for (int j = 0; j < n; j++) {
+            shown += strcmp(results[j].mistake, r->mistake) == 0;
+        }
+        static const char says[] = "this looks like";
+        if (r->likely && shown < 2 && strncmp(r->explanation, says, strlen(says)) != 0) {
+            char text[HN_PART_TEXT];
+            memcpy(text, r->explanation, sizeof text);
+            snprintf(r->explanation, sizeof r->explanation, "%s: %.380s", says, text);
+        }
+    }
+}
+
 const cJSON *hn_part_fault_at(const hn_part *p, int i) {
     return cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(p->node, "faults"), i);
 }

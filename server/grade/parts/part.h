@@ -82,6 +82,9 @@ void hn_part_right(hn_part_result *r);
 /// Begins the one result of an answer: what was handed in, and what is expected. False, with the
 /// result complete, when nothing was handed in.
 bool hn_part_begin(hn_part_result *r, int *n, const cJSON *given, const char *expected);
+/// Begins the sentence of a mistake that chance may explain with "this looks like", unless two
+/// entries show the same mistake.
+void hn_part_qualify(hn_part_result *results, int n);
 /// The i-th object of "faults"; NULL after the last.
 const cJSON *hn_part_fault_at(const hn_part *p, int i);
 const char *hn_part_text(const cJSON *node, const char *key); ///< "" when there is none

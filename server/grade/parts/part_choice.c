@@ -65,21 +65,67 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     }
 }
 
+/// Letters of "b", "(B)." or "b, c", signs between them left out. Returns how many there are; -1
+/// for words and for more than two.
+static int split_letters(const char *text, char letters[2]) {
+    static const char signs[] = " ().,;/";
+    int n = 0;
+    for (text += strspn(text, signs); *text; text += strspn(text, signs)) {
+        if (n == 2 || strcspn(text, signs) != 1) {
+            return -1;
+        }
+        letters[n++] = *text++;
+    }
+    return n;
+}
+
 /// The option that a letter names, -1 with the reason in `r`.
 static int read_letter(const cJSON *node, int n, const char *what, hn_part_result *r) {
     const char *text = cJSON_GetStringValue(node);
-    if (!text || !*text) {
-        hn_part_wrong(r, "blank", 0, "no %s was handed in", what);
+    if (!node || cJSON_IsNull(node) || (text && !text[strspn(text, " \t\r\n")])) {
+        hn_part_wrong(r, "blank", 0, "no %s was handed in%s", what,
+                      strcmp(what, "reason") == 0 ? ": write {\"choice\": \"a\", \"reason\": \"b\"}"
+                                                  : "");
         return -1;
     }
-    text += strspn(text, " (");
-    const int i = tolower((unsigned char)*text) - 'a';
-    if (i < 0 || i >= n || isalnum((unsigned char)text[1])) {
-        hn_part_unreadable(r, "the %s '%.40s' is not a letter from a to %c", what, text,
-                           'a' + n - 1);
+
+    char letters[2];
+    const int i =
+        text && split_letters(text, letters) == 1 ? tolower((unsigned char)letters[0]) - 'a' : -1;
+    if (i < 0 || i >= n) {
+        hn_part_unreadable(r, "the %s '%.60s' is not one letter from a to %c, in quotes: \"a\"",
+                           what, r->given, 'a' + n - 1);
         return -1;
     }
     return i;
+}
+
+/// A member by its name, in capitals too.
+static cJSON *copy_member(const cJSON *object, const char *name) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(object, name);
+    m = m ? m : cJSON_GetObjectItem(object, name);
+    return m ? cJSON_Duplicate(m, 1) : NULL;
+}
+
+/// "choice" and "reason" of an answer, owned: of an object, or of a list or text of two letters in
+/// this order. Another text is the choice alone.
+static cJSON *read_pair(const cJSON *given) {
+    static const char *const names[] = {"choice", "reason"};
+    const char *text = cJSON_GetStringValue(given);
+    char letters[2];
+    const bool two = text && split_letters(text, letters) == 2;
+    const bool list = cJSON_IsArray(given) && cJSON_GetArraySize(given) == 2;
+    cJSON *out = cJSON_CreateObject();
+    for (int i = 0; i < 2; i++) {
+        const char letter[] = {two ? letters[i] : '\0', '\0'};
+        cJSON *value = cJSON_IsObject(given) ? copy_member(given, names[i])
+                       : list                ? cJSON_Duplicate(cJSON_GetArrayItem(given, i), 1)
+                       : two                 ? cJSON_CreateString(letter)
+                       : text && i == 0      ? cJSON_CreateString(text)
+                                             : NULL;
+        cJSON_AddItemToObject(out, names[i], value);
+    }
+    return out;
 }
 
 /// The right option as the question prints it: "(b) its text".
@@ -116,24 +162,39 @@ static hn_status grade_list(const hn_part *p, const char *key, const cJSON *give
     return HN_OK;
 }
 
-static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *results, int *n,
-                       hn_diag *diag) {
-    const cJSON *choice =
-        cJSON_IsObject(given) ? cJSON_GetObjectItemCaseSensitive(given, "choice") : given;
-    *n = has_reasons(p) ? 2 : 1;
-    HN_TRY(grade_list(p, "options", choice, &results[0], diag));
-    if (*n == 1) {
-        return HN_OK;
+/// An answer from which neither choice nor reason can be taken.
+static void refuse_form(const cJSON *given, hn_part_result *results) {
+    for (int i = 0; i < 2; i++) {
+        hn_part_keep_given(&results[i], given);
+        hn_part_unreadable(&results[i],
+                           "write choice and reason as {\"choice\": \"a\", \"reason\": \"b\"}");
     }
-    const cJSON *reason = cJSON_GetObjectItemCaseSensitive(given, "reason");
-    HN_TRY(grade_list(p, "reasons", reason, &results[1], diag));
-    if (results[1].right && !results[0].right) {
+}
+
+static hn_status grade_pair(const hn_part *p, const cJSON *given, hn_part_result *results,
+                            hn_diag *diag) {
+    cJSON *pair = read_pair(given);
+    const cJSON *choice = cJSON_GetObjectItemCaseSensitive(pair, "choice");
+    const cJSON *reason = cJSON_GetObjectItemCaseSensitive(pair, "reason");
+    hn_status status = grade_list(p, "options", choice, &results[0], diag);
+    HN_THEN(status, grade_list(p, "reasons", reason, &results[1], diag));
+    if (status == HN_OK && given && !cJSON_IsNull(given) && !choice && !reason) {
+        refuse_form(given, results);
+    } else if (status == HN_OK && results[1].right && !results[0].right) {
         const bool chose = !results[0].unreadable && results[0].given[0];
         hn_part_wrong(&results[1], "unsupported", 0,
                       chose ? "this is true, and speaks for another choice than the one made"
                             : "this is true; it counts beside the right choice, and none was read");
     }
-    return HN_OK;
+    cJSON_Delete(pair);
+    return status;
+}
+
+static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *results, int *n,
+                       hn_diag *diag) {
+    *n = has_reasons(p) ? 2 : 1;
+    return *n == 2 ? grade_pair(p, given, results, diag)
+                   : grade_list(p, "options", given, &results[0], diag);
 }
 
 static cJSON *write_letters(const hn_part *p, int choice, int reason) {

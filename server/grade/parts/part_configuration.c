@@ -360,7 +360,9 @@ static void judge(const sheet *s, int k, const double *given, bool all, bool bra
         say_open(s, given, open, sizeof open);
     }
     if (slip >= 0) {
+        // a guess comes as near as this to one of the slips about once in five times
         hn_part_wrong(r, SLIPS[slip].id, SLIPS[slip].share, "%s%s", SLIPS[slip].says, open);
+        r->likely = slip != DEGREES || fabs(given[k]) < 2 * PI;
     } else {
         hn_part_wrong(r, "other", 0, "%.3g %s away from the configuration%s",
                       apart(s, i, given[k], s->expected[i]) * hn_pose_solver_reach(s->solver, i),
@@ -391,6 +393,7 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *res
             judge(s, k, x, all, branch, &results[k]);
         }
     }
+    hn_part_qualify(results, *n);
     close_sheet(s);
     return HN_OK;
 }

@@ -65,23 +65,6 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
     return HN_OK;
 }
 
-/// A mistake that chance may explain is called likely, unless two entries show it.
-static void qualify(hn_part_result *results, int n) {
-    for (int k = 0; k < n; k++) {
-        hn_part_result *r = &results[k];
-        int shown = 0;
-        for (int j = 0; j < n; j++) {
-            shown += strcmp(results[j].mistake, r->mistake) == 0;
-        }
-        static const char says[] = "this looks like";
-        if (r->likely && shown < 2 && strncmp(r->explanation, says, strlen(says)) != 0) {
-            char text[HN_PART_TEXT];
-            memcpy(text, r->explanation, sizeof text);
-            snprintf(r->explanation, sizeof r->explanation, "%s: %.380s", says, text);
-        }
-    }
-}
-
 static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_result *results,
                              int *n) {
     const cJSON *list[HN_VALUE_ENTRIES];
@@ -107,7 +90,7 @@ static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_resu
     for (int k = 0; k < *n; k++) {
         HN_TRY(grade_entry(s, k, given ? list[k] : NULL, &results[k]));
     }
-    qualify(results, *n);
+    hn_part_qualify(results, *n);
     return HN_OK;
 }
 

@@ -33,6 +33,10 @@ static const struct factor_row {
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
 
+/// How well a formula with numbers of three digits agrees, relative to its size: what numbers
+/// themselves are allowed.
+static const double ROUNDED = 5e-3;
+
 /// A mistake that the exercise lists: its values, and whether they are wrong for entry k.
 static hn_status read_fault(hn_value_sheet *s, int k, const cJSON *fault, hn_values *wrong,
                             bool *differs) {
@@ -242,6 +246,23 @@ static bool find_constant(const hn_value_sheet *s, int k, const double *given, h
     return false;
 }
 
+/// A formula that agrees with the right one as well as one with numbers of three digits would.
+static bool find_rounded(const hn_value_sheet *s, int k, const double *given, hn_part_result *r) {
+    double worst = 0, size = 0;
+    for (int i = 0; i < s->draw->n_states; i++) {
+        worst = fmax(worst, fabs(given[i] - s->reference.x[k][i]));
+        size = fmax(size, fabs(s->reference.x[k][i]));
+    }
+    if (!s->symbolic || !(worst <= ROUNDED * size)) {
+        return false;
+    }
+    hn_part_wrong(r, "rounded", 0.5,
+                  "right to %.2g %% of its size; a formula must be right to %.2g %%: write numbers "
+                  "with more digits, or by their names",
+                  100 * worst / size, 100 * s->allowed[k] / size);
+    return true;
+}
+
 hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex formula,
                            hn_part_result *r) {
     hn_value_search f;
@@ -267,6 +288,9 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
     }
 
     // one mistake explains more than two: pairs come last
+    if (f.n_found == 0 && find_rounded(s, k, given, r)) {
+        return HN_OK;
+    }
     if (f.n_found == 0) {
         HN_TRY(try_listed_pairs(&f));
     }
