@@ -155,6 +155,7 @@ __attribute__((target("avx2,fma"))) static inline void rows_avx2(const void *ind
 #define FORM_FMA(a, b, c) ((V)_mm256_fmadd_pd((__m256d)(a), (__m256d)(b), (__m256d)(c)))
 #define FORM_ROWS rows_avx2
 #define FORM_ANY(mask) (_mm256_movemask_pd((__m256d)(mask)) != 0)
+#define FORM_CHOOSE(mask, x, y) ((V)_mm256_blendv_pd((__m256d)(y), (__m256d)(x), (__m256d)(mask)))
 #include "expr/lanes_sincos_form.h"
 
 #define WIDE "avx512f,avx512dq,avx512vl,fma"
@@ -187,6 +188,8 @@ __attribute__((target(WIDE))) static inline void rows_avx512(const void *index, 
 #define FORM_FMA(a, b, c) ((V)_mm512_fmadd_pd((__m512d)(a), (__m512d)(b), (__m512d)(c)))
 #define FORM_ROWS rows_avx512
 #define FORM_ANY(mask) (_mm512_movepi64_mask((__m512i)(mask)) != 0)
+#define FORM_CHOOSE(mask, x, y) \
+    ((V)_mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i)(mask)), (__m512d)(y), (__m512d)(x)))
 #include "expr/lanes_sincos_form.h"
 #else
 #define avx2_run one_by_one

@@ -9,6 +9,7 @@
 //   FORM_FMA(a,b,c)  a b + c, rounded once
 //   FORM_ROWS(i,row) row[0 .. 3]: the columns of sine_table in the rows that the vector *i names
 //   FORM_ANY(mask)   whether any entry of the mask is set
+//   FORM_CHOOSE(mask,x,y)  x where all bits of the mask are set, y where none is
 //
 // Constants and order of operations are those of the GNU C Library where the processor has fused
 // multiply-add: IBM's Accurate Mathematical Library, after Gal & Bachelis 1991.
@@ -22,6 +23,7 @@ extern void sincos(double, double *, double *);
 #define FORM_FMA(a, b, c) ((V){fma((a)[0], (b)[0], (c)[0]), fma((a)[1], (b)[1], (c)[1])})
 #define FORM_ROWS(i, row) ((void)(i), (row)[2] = 1 + ((row)[0] = (row)[1] = (row)[3] = (V){0}))
 #define FORM_ANY(mask) ((mask)[0] | (mask)[1])
+#define FORM_CHOOSE(mask, x, y) ((V)(((I)(x) & (mask)) | ((I)(y) & ~(mask))))
 #endif
 
 typedef double FORM(v) __attribute__((vector_size(8 * FORM_WIDTH)));
@@ -30,7 +32,6 @@ typedef unsigned long long FORM(i) __attribute__((vector_size(8 * FORM_WIDTH)));
 #define I FORM(i)
 #define ALL(constant) ((V){0} + (constant))
 #define SIGN ((I){0} + (1ull << 63))
-#define CHOOSE(mask, x, y) ((V)(((I)(x) & (mask)) | ((I)(y) & ~(mask))))
 #define LESS_PRODUCT(z, x, y) FORM_FMA(-(x), y, z) // z - x y
 
 /// An angle brought to |a + da| < pi/4: its sine is that of a + da, or where `swapped` is set the
@@ -57,20 +58,31 @@ FORM_TARGET static inline FORM(angle) FORM(reduce)(V x) {
                          .sign = (quarter << 62) & SIGN};
 }
 
+/// Those that have to be reduced, and all that is not a number.
+FORM_TARGET static inline I FORM(far)(V x) {
+    return ~(I)((V)((I)x & ~SIGN) < ALL(0x1.368fdp1));
+}
+
 /// Below 0.855 the angle is as it is, up to 2.43 the complement serves.
 FORM_TARGET static inline FORM(angle) FORM(bring_near)(V x) {
-    const FORM(angle) far = FORM(reduce)(x);
     const V size = (V)((I)x & ~SIGN), above = 0x1.921fb54442d18p0 - size,
             complement = above + 0x1.1a62633145c07p-54,
             rest = (above - complement) + 0x1.1a62633145c07p-54;
-    const I is_near = (I)(size < ALL(0x1.b6p-1)), is_far = (I)(size >= ALL(0x1.368fdp1)),
-            between = ~is_near & ~is_far;
-    return (FORM(angle)){
-        .a = CHOOSE(is_near, x, CHOOSE(is_far, far.a, complement)),
-        .da = (V)(((I)far.da & is_far) | ((I)rest & between)),
-        .swapped = (far.swapped & is_far) | between,
-        .sign = (far.sign & is_far) | ((I)x & SIGN & between),
-    };
+    const I beyond = ~(I)(size < ALL(0x1.b6p-1));
+    return (FORM(angle)){.a = FORM_CHOOSE(beyond, complement, x),
+                         .da = (V)((I)rest & beyond),
+                         .swapped = beyond,
+                         .sign = (I)x & SIGN & beyond};
+}
+
+/// Angles of every size; those that four parts of pi/2 do not reduce give anything.
+FORM_TARGET static inline FORM(angle) FORM(bring_all)(V x) {
+    const FORM(angle) far = FORM(reduce)(x), near = FORM(bring_near)(x);
+    const I is_far = FORM(far)(x);
+    return (FORM(angle)){.a = FORM_CHOOSE(is_far, far.a, near.a),
+                         .da = FORM_CHOOSE(is_far, far.da, near.da),
+                         .swapped = (I)FORM_CHOOSE(is_far, far.swapped, near.swapped),
+                         .sign = (I)FORM_CHOOSE(is_far, far.sign, near.sign)};
 }
 
 /// The sine of a small angle by its series.
@@ -106,8 +118,8 @@ FORM_TARGET static inline void FORM(near)(V a, V da, V *sine, V *cosine) {
     const V c = FORM_FMA(u, d, uu * FORM(cosine_part)(uu));
     const V by_rows = sn + FORM_FMA(cs, s, LESS_PRODUCT(FORM_FMA(s, cs_low, sn_low), c, sn));
     *sine = (V)(((I)by_rows & ~SIGN) | ((I)a & SIGN));
-    *sine = CHOOSE((I)(size < ALL(0.126)), FORM(series)(a, da), *sine);
-    *sine = CHOOSE((I)(size == 0), a, *sine); // -0 stays so
+    *sine = FORM_CHOOSE((I)(size < ALL(0.126)), FORM(series)(a, da), *sine);
+    *sine = FORM_CHOOSE((I)(size == 0), a, *sine); // -0 stays so
 
     // the cosine
     const V w = u + d, ww = w * w, sw = FORM_FMA(ww * w, FORM(sine_part)(ww), w);
@@ -115,25 +127,48 @@ FORM_TARGET static inline void FORM(near)(V a, V da, V *sine, V *cosine) {
     *cosine = cs + LESS_PRODUCT(LESS_PRODUCT(LESS_PRODUCT(cs_low, sw, sn_low), cs, cw), sw, sn);
 }
 
-FORM_TARGET static void FORM(run)(int n, const double *angle, double *sine, double *cosine) {
-    for (int at = 0; at < n; at += FORM_WIDTH) {
-        const V x = *(const V *)(const void *)(angle + at);
-        const FORM(angle) near = FORM(bring_near)(x);
-        V s, c;
-        FORM(near)(near.a, near.da, &s, &c);
-        c = (V)((I)c ^ near.sign);
-        *(V *)(void *)(sine + at) = CHOOSE(near.swapped, c, s);
-        *(V *)(void *)(cosine + at) = CHOOSE(near.swapped, s, c);
+/// Both of a near angle.
+FORM_TARGET static inline void FORM(both)(FORM(angle) near, V *sine, V *cosine) {
+    V s, c;
+    FORM(near)(near.a, near.da, &s, &c);
+    c = (V)((I)c ^ near.sign);
+    *sine = FORM_CHOOSE(near.swapped, c, s);
+    *cosine = FORM_CHOOSE(near.swapped, s, c);
+}
 
-        // angles that four parts of pi/2 do not reduce
-        const I left_out = ~(I)((V)((I)x & ~SIGN) < ALL(0x1.921fbp26));
-        if (FORM_ANY(left_out)) {
-            for (int k = 0; k < FORM_WIDTH; k++) {
-                if (left_out[k]) {
-                    sincos(x[k], sine + at + k, cosine + at + k);
-                }
+/// Both of any angle.
+FORM_TARGET static inline void FORM(any)(V x, V *sine, V *cosine) {
+    FORM(both)(FORM(bring_all)(x), sine, cosine);
+    const I left_out = ~(I)((V)((I)x & ~SIGN) < ALL(0x1.921fbp26));
+    if (FORM_ANY(left_out)) {
+        for (int k = 0; k < FORM_WIDTH; k++) {
+            if (left_out[k]) {
+                double s, c;
+                sincos(x[k], &s, &c);
+                (*sine)[k] = s;
+                (*cosine)[k] = c;
             }
         }
+    }
+}
+
+FORM_TARGET static void FORM(run)(int n, const double *angle, double *sine, double *cosine) {
+    const V *const x = (const V *)(const void *)angle;
+    V *const s = (V *)(void *)sine, *const c = (V *)(void *)cosine;
+    I far = {0};
+    for (int k = 0; k < n / FORM_WIDTH; k++) {
+        far |= FORM(far)(x[k]);
+    }
+
+    // most blocks hold no angle that has to be reduced: one question for all of a block
+    if (FORM_ANY(far)) {
+        for (int k = 0; k < n / FORM_WIDTH; k++) {
+            FORM(any)(x[k], &s[k], &c[k]);
+        }
+        return;
+    }
+    for (int k = 0; k < n / FORM_WIDTH; k++) {
+        FORM(both)(FORM(bring_near)(x[k]), &s[k], &c[k]);
     }
 }
 
@@ -141,7 +176,6 @@ FORM_TARGET static void FORM(run)(int n, const double *angle, double *sine, doub
 #undef I
 #undef ALL
 #undef SIGN
-#undef CHOOSE
 #undef LESS_PRODUCT
 #undef FORM
 #undef FORM_TARGET
@@ -149,3 +183,4 @@ FORM_TARGET static void FORM(run)(int n, const double *angle, double *sine, doub
 #undef FORM_FMA
 #undef FORM_ROWS
 #undef FORM_ANY
+#undef FORM_CHOOSE
