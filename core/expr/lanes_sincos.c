@@ -158,6 +158,19 @@ __attribute__((target("avx2,fma"))) static inline void rows_avx2(const void *ind
 #define FORM_CHOOSE(mask, x, y) ((V)_mm256_blendv_pd((__m256d)(y), (__m256d)(x), (__m256d)(mask)))
 #include "expr/lanes_sincos_form.h"
 
+__attribute__((target("avx2,fma"))) static void four_avx2(double a, double b, double c, double d,
+                                                          double *sine, double *cosine) {
+    const avx2_v x = {a, b, c, d};
+    avx2_v s, k;
+    if (_mm256_movemask_pd((__m256d)avx2_far(x)) != 0) {
+        avx2_any(x, &s, &k);
+    } else {
+        avx2_both(avx2_bring_near(x), &s, &k);
+    }
+    _mm256_storeu_pd(sine, (__m256d)s);
+    _mm256_storeu_pd(cosine, (__m256d)k);
+}
+
 #define WIDE "avx512f,avx512dq,avx512vl,fma"
 
 /// Rows k and k + 4 of eight, side by side.
@@ -194,6 +207,7 @@ __attribute__((target(WIDE))) static inline void rows_avx512(const void *index, 
 #else
 #define avx2_run one_by_one
 #define avx512_run one_by_one
+#define four_avx2 NULL
 #endif
 
 // ---- the choice ----
@@ -242,20 +256,29 @@ static bool agrees(hn_lanes_sincos form) {
     return true;
 }
 
-static bool serves[HN_LANES_SETS]; // set once, by check_all()
+static bool serves[HN_LANES_SETS]; // each set once, by the two below
 
-static void check_all(void) {
-    for (int set = HN_LANES_AVX2; set <= (int)hn_lanes_set_best(); set++) {
-        serves[set] = agrees(forms[set]);
-    }
+static void check_avx2(void) {
+    serves[HN_LANES_AVX2] = hn_lanes_set_best() >= HN_LANES_AVX2 && agrees(avx2_run);
+}
+
+static void check_avx512(void) {
+    serves[HN_LANES_AVX512] = hn_lanes_set_best() >= HN_LANES_AVX512 && agrees(avx512_run);
 }
 
 bool hn_lanes_sincos_is_vector(hn_lanes_set set) {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, check_all);
+    static pthread_once_t once[HN_LANES_SETS] = {PTHREAD_ONCE_INIT, PTHREAD_ONCE_INIT,
+                                                 PTHREAD_ONCE_INIT};
+    if (set != HN_LANES_PLAIN) {
+        pthread_once(&once[set], set == HN_LANES_AVX2 ? check_avx2 : check_avx512);
+    }
     return serves[set];
 }
 
 hn_lanes_sincos hn_lanes_sincos_get(hn_lanes_set set) {
     return hn_lanes_sincos_is_vector(set) ? forms[set] : one_by_one;
+}
+
+hn_lanes_sincos_four hn_lanes_sincos_four_get(void) {
+    return hn_lanes_sincos_is_vector(HN_LANES_AVX2) ? four_avx2 : NULL;
 }

@@ -255,6 +255,7 @@ static void take_sincos(void) {
         calls[HN_NATIVE_SINCOS + set] =
             (hn_native_call)(void (*)(void))hn_lanes_sincos_get((hn_lanes_set)set);
     }
+    calls[HN_NATIVE_FOUR] = (hn_native_call)(void (*)(void))hn_lanes_sincos_four_get();
 }
 
 static hn_status load_checked(const hn_tape *tape, hn_native_form form, const hn_strbuf *text,

@@ -14,9 +14,13 @@
 
 enum { HN_NATIVE_PATH = 512 };
 
-/// Where `call` of compiled code holds an hn_lanes_sincos for each instruction set; before them,
-/// hn_op_info.value by operator.
-enum { HN_NATIVE_SINCOS = HN_OP_COUNT, HN_NATIVE_CALLS = HN_NATIVE_SINCOS + HN_LANES_SETS };
+/// Where `call` of compiled code holds an hn_lanes_sincos for each instruction set, and behind them
+/// the hn_lanes_sincos_four, if there is one; before them, hn_op_info.value by operator.
+enum {
+    HN_NATIVE_SINCOS = HN_OP_COUNT,
+    HN_NATIVE_FOUR = HN_NATIVE_SINCOS + HN_LANES_SETS,
+    HN_NATIVE_CALLS
+};
 
 /// Compiled code: evaluates a tape on its workspace.
 typedef double (*hn_native_call)(const double *);

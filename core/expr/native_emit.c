@@ -15,17 +15,15 @@
 // of 30 for 25,000 instructions, at the same speed of the code.
 enum { WHOLE = 1500, PIECE = 500 };
 
-// From so many angles on, sines and cosines of inputs are found together before everything else, by
-// vector instructions: a vector of 8 takes about as long as six angles one by one.
-enum { TOGETHER = 6, VECTOR = 8 };
+// Up to FOUR angles go to one call in registers, more through memory in vectors of VECTOR.
+enum { FOUR = 4, VECTOR = 8 };
 
 typedef struct emitter {
     hn_strbuf *b;
     const hn_tape *tape;
     hn_lanes_set set;
     int width;           ///< doubles in a vector; 0: single states
-    int32_t *angle;      ///< by input: its place among the angles found together, or -1
-    int n_angles;        ///< 0: each where it is needed
+    int32_t n_angles;    ///< the first instructions, found together; 0: each by itself
     int32_t *definition; ///< by slot: 2 * instruction (+ 1: the cosine) in this piece, or -1
     uint8_t *live;       ///< by slot: read by a later piece, or an output
     int32_t *starts;     ///< of the pieces, the last one first
@@ -89,20 +87,14 @@ static void put_function_of_lanes(const emitter *e, int32_t k) {
     hn_strbuf_add(e->b, "; }\n");
 }
 
-/// Whether a sincos is among those of inputs that are found together.
-static bool is_found_before(const emitter *e, const hn_tape_instruction *i) {
-    return e->n_angles > 0 && i->v[1] < e->tape->info.n_inputs;
-}
-
 /// Adds a function of one or two numbers.
 static void put_function(const emitter *e, int32_t k) {
     const hn_tape_instruction *i = &e->tape->code[k];
     const int code = i->code;
 
     // two results at once, found before or here
-    if (code == TAPE_SINCOS && is_found_before(e, i)) {
-        const int at = e->angle[i->v[1]];
-        hn_strbuf_printf(e->b, "const double v%d = sine[%d], c%d = cosine[%d];\n", k, at, k, at);
+    if (k < e->n_angles) {
+        hn_strbuf_printf(e->b, "const double v%d = sine[%d], c%d = cosine[%d];\n", k, k, k, k);
         return;
     }
     if (code == TAPE_SINCOS) {
@@ -183,6 +175,8 @@ static void put_head(const emitter *e) {
         "__attribute__((target(\"avx512f,avx512dq,avx512vl\")))"};
     hn_strbuf_add(e->b, "typedef double (*hn_call)(const double *);\n"
                         "typedef void (*hn_many)(int, const double *, double *, double *);\n"
+                        "typedef void (*hn_four)(double, double, double, double, double *, "
+                        "double *);\n"
                         "extern double sin(double), cos(double);\n");
     if (!e->width) {
         hn_strbuf_add(e->b, "extern double sqrt(double);\n"
@@ -204,37 +198,36 @@ static void put_head(const emitter *e) {
     hn_strbuf_add(e->b, "})\n");
 }
 
-/// Numbers the inputs whose sine and cosine are wanted; leaves n_angles 0 where they are few.
-static void number_angles(emitter *e) {
-    int n = 0;
-    for (int32_t k = 0; k < e->tape->info.instructions; k++) {
-        const hn_tape_instruction *i = &e->tape->code[k];
-        if (i->code == TAPE_SINCOS && i->v[1] < e->tape->info.n_inputs && e->angle[i->v[1]] < 0) {
-            e->angle[i->v[1]] = n++;
-        }
+/// Adds what finds four angles at most: the last ones are filled up with the first.
+static void put_four_angles(const emitter *e) {
+    hn_strbuf_printf(e->b, "double sine[%d], cosine[%d];\n((hn_four)call[%d])(", FOUR, FOUR,
+                     HN_NATIVE_FOUR);
+    for (int32_t k = 0; k < FOUR; k++) {
+        hn_strbuf_printf(e->b, "work[%d], ", e->tape->code[k < e->n_angles ? k : 0].v[1]);
     }
-    e->n_angles = n >= TOGETHER && !e->width ? n : 0; // in lanes each is a vector by itself
+    hn_strbuf_add(e->b, "sine, cosine);\n");
 }
 
-/// Adds what finds them: whole vectors, the last filled up with zeros.
+/// Adds what finds the angles: whole vectors, the last filled up with zeros.
 static void put_angles(const emitter *e) {
-    const int room = (e->n_angles + VECTOR - 1) / VECTOR * VECTOR;
     if (e->n_angles == 0) {
         hn_strbuf_add(e->b, "const double *const sine = work, *const cosine = work;\n");
         return;
     }
+    if (e->n_angles <= FOUR) {
+        put_four_angles(e);
+        return;
+    }
+    const int n = (e->n_angles + VECTOR - 1) / VECTOR * VECTOR;
     hn_strbuf_printf(e->b,
-                     "double angle[%d] __attribute__((aligned(64))), sine[%d] "
-                     "__attribute__((aligned(64))), cosine[%d] __attribute__((aligned(64)));\n"
-                     "for (int i = %d; i < %d; i++) {\nangle[i] = 0;\n}\n",
-                     room, room, room, e->n_angles, room);
-    for (int slot = 0; slot < e->tape->info.n_inputs; slot++) {
-        if (e->angle[slot] >= 0) {
-            hn_strbuf_printf(e->b, "angle[%d] = work[%d];\n", e->angle[slot], slot);
-        }
+                     "_Alignas(64) double angle[%d], sine[%d], cosine[%d];\n"
+                     "for (int i = %d; i < %d; i++) { angle[i] = 0; }\n",
+                     n, n, n, (int)e->n_angles, n);
+    for (int32_t k = 0; k < e->n_angles; k++) {
+        hn_strbuf_printf(e->b, "angle[%d] = work[%d];\n", (int)k, e->tape->code[k].v[1]);
     }
     hn_strbuf_printf(e->b, "((hn_many)call[%d])(%d, angle, sine, cosine);\n",
-                     HN_NATIVE_SINCOS + (int)e->set, room);
+                     HN_NATIVE_SINCOS + (int)e->set, n);
 }
 
 /// Whether an instruction is a piece by itself: sine and cosine of whole blocks.
@@ -273,7 +266,6 @@ static void put_all(emitter *e) {
     for (int k = 0; k < e->tape->info.n_outputs; k++) {
         e->live[e->tape->outputs[k]] = 1;
     }
-    number_angles(e);
     put_head(e);
 
     // the last piece first: what crosses a cut is known only from behind
@@ -304,16 +296,14 @@ hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape, hn_native_form form)
                  .tape = tape,
                  .set = set,
                  .width = form == HN_NATIVE_SINGLE ? 0 : hn_lanes_set_width(set),
-                 .angle = malloc(((size_t)tape->info.n_inputs + 1) * sizeof *e.angle),
+                 .n_angles = form == HN_NATIVE_SINGLE && tape->four ? tape->n_angles : 0,
                  .definition = malloc(slots * sizeof *e.definition),
                  .live = calloc(slots, 1),
                  .starts = malloc(((size_t)tape->info.instructions + 1) * sizeof *e.starts)};
-    const bool fits = e.angle && e.definition && e.live && e.starts;
+    const bool fits = e.definition && e.live && e.starts;
     if (fits) {
-        memset(e.angle, 0xff, (size_t)tape->info.n_inputs * sizeof *e.angle);
         put_all(&e);
     }
-    free(e.angle);
     free(e.definition);
     free(e.live);
     free(e.starts);

@@ -6,8 +6,9 @@
 //
 // Workspace: inputs first, then constants, then slots that are reused. A sum of two or three terms
 // is one instruction; its key has a digit per term, in ascending order: 1 for + a b, 2 for + a, 3
-// for - a b, 4 for - a.
+// for - a b, 4 for - a. Sines and cosines of inputs come first, so that they can be found together.
 
+#include "expr/lanes_sincos.h"
 #include "expr/tape.h"
 #include "expr/tape_ir.h"
 
@@ -80,6 +81,8 @@ struct hn_tape {
     double *constants;         ///< loaded to work[n_inputs ...]
     uint16_t *outputs;         ///< slot of each output
     int32_t n_constants;
+    int32_t n_angles;          ///< the first instructions: each TAPE_SINCOS of an input
+    hn_lanes_sincos_four four; ///< finds four of those at once; NULL: each by itself
     hn_tape_info info;
     struct hn_native_state *native; ///< NULL: the interpreter alone, see native.h
 };

@@ -323,6 +323,36 @@ static void order_all(compiler *c) {
     }
 }
 
+static bool is_of_input(const compiler *c, const draft *d) {
+    return d->code == TAPE_SINCOS && c->ir.nodes[d->operand[0]].kind == HN_IR_INPUT;
+}
+
+/// Moves sines and cosines of inputs to the front; the others keep their order. Returns how many.
+static int32_t put_angles_first(compiler *c) {
+    int32_t n = 0;
+    for (int32_t i = 0; i < c->n_drafts; i++) {
+        n += is_of_input(c, &c->drafts[i]);
+    }
+
+    // from behind, since the others move back by those that follow them
+    draft *first = malloc(((size_t)n + 1) * sizeof *first);
+    if (!first) {
+        c->ir.failed = 1;
+        return 0;
+    }
+    int32_t at = n, to = c->n_drafts;
+    for (int32_t i = c->n_drafts - 1; i >= 0; i--) {
+        if (is_of_input(c, &c->drafts[i])) {
+            first[--at] = c->drafts[i];
+        } else {
+            c->drafts[--to] = c->drafts[i];
+        }
+    }
+    memcpy(c->drafts, first, (size_t)n * sizeof *first);
+    free(first);
+    return n;
+}
+
 // ---- slots ----
 
 static void find_last_uses(compiler *c) {
@@ -548,8 +578,10 @@ static hn_status compile(hn_graph *g, const hn_tape_key *key, hn_tape **out) {
         absorb_in_products(&c);
         find_partners(&c);
         order_all(&c);
+        tape->n_angles = put_angles_first(&c);
+        tape->four = tape->n_angles > 1 ? hn_lanes_sincos_four_get() : NULL;
         find_last_uses(&c);
-        status = assemble(&c, key->n_sym, tape);
+        status = c.ir.failed ? HN_ERR_MEMORY : assemble(&c, key->n_sym, tape);
     }
 
     compiler_reset(&c);

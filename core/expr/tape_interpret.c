@@ -12,10 +12,32 @@
 #define e (w[i->v[5]])
 #define f (w[i->v[6]])
 
+/// Runs the instructions that find sines and cosines of inputs, four at once, the last ones filled
+/// up with one of them; returns the instruction behind them.
+static const hn_tape_instruction *find_angles(const hn_tape *tape, double *w) {
+    const hn_tape_instruction *i = tape->code;
+    for (int32_t left = tape->n_angles; left > 0; left -= 4, i += 4) {
+        const hn_tape_instruction *const second = left > 1 ? i + 1 : i,
+                                         *const third = left > 2 ? i + 2 : i,
+                                         *const fourth = left > 3 ? i + 3 : i;
+        double sine[4], cosine[4];
+        tape->four(w[i->v[1]], w[second->v[1]], w[third->v[1]], w[fourth->v[1]], sine, cosine);
+        w[fourth->v[0]] = sine[3];
+        w[fourth->v[2]] = cosine[3];
+        w[third->v[0]] = sine[2];
+        w[third->v[2]] = cosine[2];
+        w[second->v[0]] = sine[1];
+        w[second->v[2]] = cosine[1];
+        w[i->v[0]] = sine[0];
+        w[i->v[2]] = cosine[0];
+    }
+    return tape->code + tape->n_angles;
+}
+
 /// One jump per instruction, from the end of the one before, so that the processor learns each
 /// one's successor.
 void hn_tape_interpret(const hn_tape *tape, double *w) {
-    const hn_tape_instruction *i = tape->code;
+    const hn_tape_instruction *i = tape->four ? find_angles(tape, w) : tape->code;
 #define LABEL(code, key, n, expression) &&run_##code,
 #define NEXT \
     i++;     \
