@@ -117,6 +117,20 @@ test("S5 Why? has what happened, the rule and things to try", async (t) => {
   });
 });
 
+test("the card says what happens at a dead point, and a method that stops there can be tried", async (t) => {
+  const page = await open(t, { hash: "#slider-crank" });
+  await playTo(page, 1);
+  await page.getByRole("button", { name: "Why? projection" }).click();
+  await page.getByText(/^Dead point of x at 0\.\d\d s$/).click();
+  await page.getByText(/x turns back there while th1 moves on at \d+ rad\/s/).waitFor();
+  await page.getByRole("button", { name: "reduced with x: it stops there" }).click();
+  await until(page, (data) => data.methods.some((m) => /^reduced:coordinate=3@/.test(m.spelling)));
+  await playTo(page, 1);
+  await soon(async () =>
+    assert.match(await page.textContent(".live"), /stopped at .*independent coordinates/),
+  );
+});
+
 test("S6 trying Baumgarte with 20 closes the gap a hundredfold, and the energy hardly moves", async (t) => {
   const page = await open(t);
   await playTo(page, 9.9);

@@ -6,9 +6,10 @@ import { test } from "node:test";
 import { createHistory, thin } from "../../web/state/history.js";
 import { findJump } from "../../web/state/jump.js";
 import { limits, readIndex } from "../../web/state/catalogue.js";
+import { deadPointAt, lastDeadPoint } from "../../web/state/dead-point.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
-import { predictionAt, stopReason } from "../../web/state/words.js";
+import { passageWords, predictionAt, stopReason } from "../../web/state/words.js";
 
 const frame = (k, gap, extra = {}) => ({
   frame: k,
@@ -329,12 +330,78 @@ test("what is seen coming is counted down until it is there, for the methods it 
   assert.equal(predictionAt(data, 6), "");
   assert.equal(predictionAt(data, 30), "singular configuration in 0.25 s: J loses rank (raw)");
   assert.equal(predictionAt(data, 54), "");
-  data.incidents.push({ code: "near-singular", method: 0, t: 0.76, value: 1e-5 });
+  data.incidents.push({ code: "near-singular", method: 0, t: 0.76, value: 1e-5, message: "" });
   assert.equal(predictionAt(data, 54), "the mechanism passed a singular configuration at 0.76 s");
+  assert.equal(passageWords(data, 54), "", "the engine does not say how");
   data.incidents.push({ code: "rank-ahead", method: 1, t: 0.3, value: 0.4 });
   assert.equal(predictionAt(data, 30), "singular configuration in 0.20 s: J loses rank");
   data.view.hidden.add(1);
   assert.equal(predictionAt(data, 30), "singular configuration in 0.25 s: J loses rank");
+});
+
+test("how the methods came through a singular configuration is said once for all of them", () => {
+  const history = createHistory(2, 1);
+  for (let k = 0; k <= 60; k++) {
+    history.push({ ...frame(k, 1), methods: [frame(k, 1).methods[0], frame(k, 1).methods[0]] });
+  }
+  const at = (method, t, fate) => ({
+    ...{ code: "near-singular", method, t, value: 1e-5 },
+    message: `J all but loses rank; two branches of motion cross; the run ${fate}`,
+  });
+  const straight = "went straight on";
+  const data = {
+    history,
+    methods: [{ label: "raw" }, { label: "projection" }],
+    incidents: [at(0, 0.6, straight), at(0, 0.76, straight), at(1, 0.76, straight)],
+    view: { hidden: new Set() },
+  };
+  assert.equal(
+    passageWords(data, 54),
+    "two branches of motion cross there; all methods went straight on",
+  );
+  data.incidents[2] = at(1, 0.76, "turned off there by 0.4 rad");
+  assert.equal(
+    passageWords(data, 54),
+    "two branches of motion cross there; raw went straight on; " +
+      "projection turned off there by 0.4 rad",
+  );
+  assert.equal(passageWords(data, 30), "", "it is not there yet");
+});
+
+test("a dead point is a coordinate that turns back while another one moves on", () => {
+  const history = createHistory(1, 1, 2);
+  for (let k = 0; k <= 60; k++) {
+    history.push(frame(k, 1, { q: [k, 0], v: [10, Math.cos(k / 10)] }));
+  }
+  const coordinates = [
+    { name: "th1", kind: "angle", actuated: true },
+    { name: "x", kind: "length", actuated: false },
+  ];
+  const data = {
+    history,
+    duration: 10,
+    scene: { dof: 1, m: 2, coordinates },
+    methods: [{ label: "reduced", formulation: "reduced", spelling: "reduced@rk4:h=0.01" }],
+    incidents: [],
+  };
+  assert.equal(lastDeadPoint(data, 0, 15), null, "cos has no zero before pi/2");
+  const found = lastDeadPoint(data, 0, 40);
+  assert.equal(found.coordinate, 1);
+  assert.ok(Math.abs(found.t - (history.t[1] - history.t[0]) * 5 * Math.PI) < 1e-3);
+  const { title, words, tries } = deadPointAt(data, 0, 40);
+  assert.match(title, /^Dead point of x at 0\.26 s$/);
+  assert.match(words, /^x turns back there while th1 moves on at 10 rad\/s\./);
+  assert.deepEqual(
+    tries.map(({ method }) => method),
+    ["reduced:coordinate=2@rk4:h=0.01"],
+  );
+
+  // a swing: all coordinates turn back at once, and the mechanism has no dead point
+  const swing = createHistory(1, 1, 2);
+  for (let k = 0; k <= 60; k++) {
+    swing.push(frame(k, 1, { q: [0, 0], v: [Math.cos(k / 10), 2 * Math.cos(k / 10)] }));
+  }
+  assert.equal(lastDeadPoint({ ...data, history: swing }, 0, 60), null);
 });
 
 test("a history keeps the state of each frame, and of a failed method its last one", () => {

@@ -3,6 +3,7 @@
 // The card that says why a method behaves as it does, and incidents grouped by their cause.
 import { niceBelow, quantity, scientific, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
+import { deadPointAt, singularWords } from "./dead-point.js";
 import { errorsOf } from "./errors.js";
 import { jumpWords } from "./jump.js";
 import { listed, trendOf, verdictAt } from "./verdict.js";
@@ -183,8 +184,7 @@ function happenedWords(data, m, shown) {
       : `the point farthest from the reference solution is ${quantity(off[at], "m")} off now`,
     `the energy has changed by ${quantity(history.columns[m].energy_change[shown], "J")}`,
   ];
-  const now = `After ${seconds(history.t[shown], data.duration)} ${listed(parts.filter(Boolean))}.`;
-  return [now, costWords(data, m, shown)].filter(Boolean).join(" ");
+  return `After ${seconds(history.t[shown], data.duration)} ${listed(parts.filter(Boolean))}.`;
 }
 
 /**
@@ -194,6 +194,9 @@ function happenedWords(data, m, shown) {
  */
 const hasFailed = ({ history, methods }, { method }) =>
   methods.some(({ spelling }, m) => spelling === method && !Number.isNaN(history.ended[m]));
+
+/** Do two suggestions do the same? @param {Try} a @param {Try} b */
+const sameTry = (a, b) => a.method === b.method && a.key === b.key && a.value === b.value;
 
 /**
  * The card of a method: the verdict, what happened on this run, the rule behind it, what to try.
@@ -215,14 +218,20 @@ export function cardOfMethod(data, m, shown) {
     title: method.title,
     label: method.label,
     verdict: verdictAt(data, m, shown),
-    happened: [happenedWords(data, m, shown), jumpWords(data, m, shown), estimateWords(data, m)]
+    happened: [happenedWords(data, m, shown), jumpWords(data, m, shown)].filter(Boolean).join(" "),
+    figures: [stopped ? "" : costWords(data, m, shown), estimateWords(data, m)]
       .filter(Boolean)
       .join(" "),
+    singular: withPowers(singularWords(data, m, shown)),
+    deadPoint: deadPointAt(data, m, shown),
     groups: groupIncidents(incidents),
     rule: withPowers(method.rule),
     drift: withPowers(method.drift ?? ""),
     remedies,
     // of a run that has stopped the engine knows what helps; the general list is a guess
-    tries: stopped && remedies.length > 0 ? [] : triesOf(data, m),
+    tries:
+      stopped && remedies.length > 0
+        ? []
+        : triesOf(data, m).filter((item) => !remedies.some((other) => sameTry(item, other))),
   };
 }

@@ -35,6 +35,7 @@
  *   parameters: Parameter[], n: number, m: number, rank: number, dof: number, length: number,
  *   drawing: Drawing,
  *   coordinates: {name: string, rate: string, kind: string, joint: string, actuated: boolean,
+ *     pinned?: boolean,
  *     value: number, rate_value: number, start_parameter: string | null,
  *     rate_parameter: string | null}[],
  *   bodies: {name: string, com: number[]}[], joints: Joint[],

@@ -8,17 +8,55 @@ import { listed, verdictAt } from "./verdict.js";
 const SAID_AFTER = 0.5; // [s] that a passed configuration is still reported: some come quickly
 const PASSED = ["near-singular", "rank-loss"];
 
+/**
+ * Incidents of singular configurations that were passed a moment ago.
+ * @param {import("./store.js").Store["data"]} data @param {number} now [s]
+ */
+const justPassed = ({ incidents, view }, now) =>
+  incidents.filter(
+    ({ code, method, t }) =>
+      PASSED.includes(code) &&
+      t > 0 &&
+      t <= now &&
+      now - t < SAID_AFTER &&
+      !view.hidden.has(method),
+  );
+
 /** @param {import("./store.js").Store["data"]} data @param {number} now [s] */
-function passedAt({ incidents, view, duration }, now) {
-  const last = incidents
-    .filter(
-      ({ code, method, t }) =>
-        PASSED.includes(code) && t > 0 && t <= now && !view.hidden.has(method),
-    )
-    .reduce((latest, { t }) => Math.max(latest, t), -Infinity);
-  return now - last < SAID_AFTER
-    ? `the mechanism passed a singular configuration at ${seconds(last, duration)}`
+function passedAt(data, now) {
+  const passed = justPassed(data, now);
+  const last = passed.reduce((latest, { t }) => Math.max(latest, t), -Infinity);
+  return passed.length
+    ? `the mechanism passed a singular configuration at ${seconds(last, data.duration)}`
     : "";
+}
+
+/**
+ * How the runs came through the singular configuration that was passed a moment ago: "two branches
+ * of motion cross there; index-1 and reduced went straight on"; "" where the engine does not say.
+ * @param {import("./store.js").Store["data"]} data
+ * @param {number} shown
+ */
+export function passageWords(data, shown) {
+  const passed = shown < 0 ? [] : justPassed(data, data.history.t[shown]);
+  const newest = new Map(passed.map((incident) => [incident.method, incident]));
+  /** @type {Map<string, string[]>} labels by what their runs did */
+  const fates = new Map();
+  let branches = "";
+  for (const [m, { message }] of newest) {
+    for (const part of message.split("; ")) {
+      const fate = /^the run (.+)/.exec(part)?.[1];
+      branches = /^(two branches|no motion)/.test(part) ? `${part} there` : branches;
+      if (fate) {
+        fates.set(fate, [...(fates.get(fate) ?? []), data.methods[m].label]);
+      }
+    }
+  }
+  const drawn = data.methods.length - data.view.hidden.size;
+  const runs = [...fates].map(
+    ([fate, labels]) => `${labels.length === drawn ? "all methods" : listed(labels)} ${fate}`,
+  );
+  return [branches, ...runs].filter(Boolean).join("; ");
 }
 
 /**

@@ -4,8 +4,9 @@
 // true size.
 import { ROUNDING, gapWords, magnification, niceBelow } from "../state/format.js";
 import { lookOf } from "../state/look.js";
-import { listen } from "../state/store.js";
+import { listen, shownIndex } from "../state/store.js";
 import { h, s, say, set } from "../widgets/dom.js";
+import { paintNoMore, paintSoon } from "../widgets/pace.js";
 import { term } from "../widgets/term.js";
 
 const SIZE = 144; // [px] of the drawn square
@@ -33,6 +34,7 @@ export function createTear(el, store, stage) {
   const power = term("magnified", "");
   power.classList.add("power");
   const size = h("span", { class: "number" });
+  const among = h("span", { hidden: true });
   const name = h("span", {});
   const cut = h("span", {}, ", ", term("cut", "cut"), " ");
   const joint = h("span", {});
@@ -41,7 +43,7 @@ export function createTear(el, store, stage) {
     "figure",
     { class: "tear-inset" },
     glass,
-    h("figcaption", {}, power, size, whose),
+    h("figcaption", {}, power, size, among, whose),
   );
   el.append(figure);
   let glassPower = STRONGEST;
@@ -74,14 +76,13 @@ export function createTear(el, store, stage) {
   }
 
   /**
-   * The loop gap, as the table has it; with several loops the gap is that of all of them together,
-   * and the glass shows the widest cut.
+   * The loop gap, as the table has it; with several loops that gap is of all of them together, so
+   * the size is that of the cut under the glass.
    * @param {number} here [m] @param {number} gap [m]
    */
   function sizeWords(here, gap) {
-    const count = data.scene.drawing.tears.length;
-    if (count > 1) {
-      return `${gapWords(here)}, the widest of ${count} cuts`;
+    if (data.scene.drawing.tears.length > 1) {
+      return gapWords(here);
     }
     if (Number.isNaN(gap)) {
       return `gap ${gapWords(here)}`; // the run has stopped: this is where
@@ -92,7 +93,7 @@ export function createTear(el, store, stage) {
   function update() {
     const history = data.history;
     const m = data.view.selected;
-    const now = data.view.shown < 0 ? (history?.count ?? 0) - 1 : data.view.shown;
+    const now = shownIndex(data);
     if (!history || now < 0 || !data.methods[m]) {
       return;
     }
@@ -101,6 +102,7 @@ export function createTear(el, store, stage) {
     if (!tear || !Number.isFinite(tear.gap)) {
       say(power, "no cut");
       say(size, data.scene?.m ? "the constraints close no joint" : "no loop to close");
+      among.hidden = true;
       whose.hidden = true;
       return;
     }
@@ -114,8 +116,23 @@ export function createTear(el, store, stage) {
     set(segment, {
       d: `M${(centre - half[0]).toFixed(2)} ${(centre - half[1]).toFixed(2)}L${(centre + half[0]).toFixed(2)} ${(centre + half[1]).toFixed(2)}`,
     });
+    paintSoon(paintWords);
+  }
+
+  /** What stands beside the glass: on the beat of the table, so that both have the same numbers. */
+  function paintWords() {
+    const { history } = data;
+    const m = data.view.selected;
+    const now = shownIndex(data);
+    const tear = now >= 0 && data.methods[m] ? widest(history.pointsAt(m, now)) : null;
+    if (!tear || !Number.isFinite(tear.gap)) {
+      return;
+    }
     say(power, magnification(glassPower));
     say(size, sizeWords(tear.gap, history.columns[m].gap[now]));
+    const count = data.scene.drawing.tears.length;
+    among.hidden = count < 2;
+    say(among, `the widest of ${count} cuts`);
     whose.hidden = false;
     say(name, data.methods[m].label);
     say(joint, tear.name || "joint");
@@ -131,6 +148,7 @@ export function createTear(el, store, stage) {
     update,
     dispose() {
       stop();
+      paintNoMore(paintWords);
       figure.remove();
     },
   };

@@ -23,6 +23,7 @@ export function createWhyCard(el, store, actions) {
   const data = store.data;
   const holder = h("div", { class: "why-card", hidden: true, onkeydown: onKey });
   el.append(holder);
+  const { attempt } = actions;
   let cardOf = -1;
 
   /** @param {KeyboardEvent} event */
@@ -51,6 +52,17 @@ export function createWhyCard(el, store, actions) {
     return lines.length ? [h("ul", { class: "reasons" }, ...lines)] : [];
   }
 
+  /** A part of the card that opens on a click. @param {string} title @param {string} text */
+  function fold(title, text, ...more) {
+    const summary = h("summary", {}, title);
+    const part = h("details", { class: "fold" }, summary, h("p", {}, ...explained(text)), ...more);
+    part.addEventListener("toggle", () => {
+      place(data.view.why);
+      part.scrollIntoView({ block: "nearest" });
+    });
+    return part;
+  }
+
   function makeCard(m) {
     const card = cardOfMethod(data, m, shownIndex(data));
     const drift =
@@ -73,9 +85,18 @@ export function createWhyCard(el, store, actions) {
       h("div", { class: "card-head" }, h("h3", {}, `${card.label}: why?`), closeButton),
       h("p", { class: "sentence verdict", "data-tone": card.verdict.tone }, card.verdict.words),
       h("p", { class: "happened" }, ...explained(card.happened)),
+      card.singular ? h("p", {}, ...explained(card.singular)) : "",
       ...incidentLines(card.groups),
       h("p", { class: "rule" }, ...explained(`${card.rule}${drift}`)),
-      tryButtons(tries, actions.attempt),
+      tryButtons(tries, attempt),
+      card.deadPoint
+        ? fold(
+            card.deadPoint.title,
+            card.deadPoint.words,
+            tryButtons(card.deadPoint.tries, attempt),
+          )
+        : "",
+      card.figures ? fold("Cost of a step, and the error as estimated", card.figures) : "",
     );
   }
 

@@ -14,9 +14,23 @@ export function term(key, text) {
 }
 
 /**
- * A text whose special words explain themselves, each where it first stands.
+ * A text whose special words explain themselves, each where it first stands. A punctuation mark
+ * stays on the line of the word before it.
  * @param {string} text
  * @returns {(Node | string)[]}
  */
-export const explained = (text) =>
-  termsIn(text).map(({ key, text: part }) => (key ? term(key, part) : part));
+export function explained(text) {
+  const parts = termsIn(text);
+  return parts.map(({ key, text: part }, i) => {
+    const mark = key ? markOf(parts[i + 1]?.text) : "";
+    const rest = parts[i - 1]?.key ? part.slice(markOf(part).length) : part;
+    return !key
+      ? rest
+      : mark
+        ? h("span", { class: "whole" }, term(key, part), mark)
+        : term(key, part);
+  });
+}
+
+/** The punctuation that a text begins with. @param {string} [text] */
+const markOf = (text) => /^[.,:;)]+/.exec(text ?? "")?.[0] ?? "";

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// Dead points: configurations where one coordinate turns back while the mechanism moves on, and
+// singular configurations, in words for the card of a method.
+import { quantity, seconds } from "./format.js";
+import { sentenceCase } from "./words.js";
+
+/** Of its own greatest velocity so far: a coordinate that is slower does not move on. */
+const MOVES_ON = 0.05;
+/** A coordinate that never was faster [rad/s or m/s] does not move at all. */
+const MOVES = 1e-6;
+const SINGULAR = ["near-singular", "rank-loss"];
+const UNIT = { angle: "rad/s", length: "m/s" };
+
+/**
+ * The coordinate that moves on: the input where it does, else the one that is nearest to its own
+ * greatest velocity; -1: the whole mechanism turns back.
+ * @param {import("./types.js").Scene} scene @param {number[]} v @param {number[]} greatest
+ */
+function leader(scene, v, greatest) {
+  const share = v.map((x, k) => (greatest[k] > MOVES ? Math.abs(x) / greatest[k] : 0));
+  const input = scene.coordinates.findIndex(({ actuated, pinned }) => actuated || pinned);
+  const at = share[input] > MOVES_ON ? input : share.indexOf(Math.max(...share));
+  return share[at] > MOVES_ON ? at : -1;
+}
+
+/** The coordinate whose velocity changes its sign first between two frames, and where. */
+function turning(before, v, greatest) {
+  let at = -1;
+  let share = 1;
+  for (let k = 0; k < v.length; k++) {
+    const where = before[k] / (before[k] - v[k]);
+    if (before[k] * v[k] < 0 && greatest[k] > MOVES && where < share) {
+      [at, share] = [k, where];
+    }
+  }
+  return { at, share };
+}
+
+/**
+ * The last dead point until the frame shown of a mechanism with one degree of freedom: the velocity
+ * of a coordinate changes its sign while another coordinate moves on. There the null vector of J
+ * has a zero in that place, so J without that column is singular.
+ * @typedef {{coordinate: number, t: number, leads: number, speed: number}} DeadPoint
+ * leads: the coordinate that is fastest there, speed: its velocity [rad/s or m/s]
+ * @param {import("./store.js").Data} data @param {number} m @param {number} shown
+ * @returns {DeadPoint | null}
+ */
+export function lastDeadPoint({ history, scene }, m, shown) {
+  if (scene?.dof !== 1 || !(scene.m > 0)) {
+    return null;
+  }
+  const greatest = scene.coordinates.map(() => 0);
+  /** @type {DeadPoint | null} */
+  let found = null;
+  for (let i = 1; i <= shown && !(history.ended[m] <= history.t[i]); i++) {
+    const [before, v] = [history.stateAt(m, i - 1).v, history.stateAt(m, i).v];
+    greatest.forEach((speed, k) => (greatest[k] = Math.max(speed, Math.abs(v[k]))));
+    const { at, share } = turning(before, v, greatest);
+    if (at >= 0) {
+      const there = Array.from(v, (x, k) => before[k] + share * (x - before[k]));
+      const leads = leader(scene, there, greatest);
+      const t = history.t[i - 1] + share * (history.t[i] - history.t[i - 1]);
+      found = leads >= 0 ? { coordinate: at, t, leads, speed: there[leads] } : found;
+    }
+  }
+  return found;
+}
+
+/** How a method fares at a dead point of a coordinate. */
+function fateWords({ formulation, label }) {
+  if (formulation === "partitioning") {
+    return `${label} takes another coordinate before it comes there.`;
+  }
+  return formulation === "reduced"
+    ? `${label} integrates another coordinate, so it passes.`
+    : `${label} passes: J as a whole keeps its rank there.`;
+}
+
+/**
+ * What happens at dead points, and which coordinate loses its grip; null where there was none.
+ * `tries`: a method that integrates the very coordinate that turned back, and stops there.
+ * @param {import("./store.js").Data} data @param {number} m @param {number} shown
+ * @returns {{title: string, words: string, tries: import("./cards.js").Try[]} | null}
+ */
+export function deadPointAt(data, m, shown) {
+  const point = lastDeadPoint(data, m, shown);
+  if (!point || data.history.ended[m] <= data.history.t[shown]) {
+    return null;
+  }
+  const { name } = data.scene.coordinates[point.coordinate];
+  const other = data.scene.coordinates[point.leads];
+  const speed = quantity(Math.abs(point.speed), UNIT[other.kind] ?? "1/s");
+  const { spelling } = data.methods[m];
+  const integrator = spelling.slice(spelling.indexOf("@") + 1);
+  const method = `reduced:coordinate=${point.coordinate + 1}@${integrator}`;
+  return {
+    title: `Dead point of ${name} at ${seconds(point.t, data.duration)}`,
+    words:
+      `${name} turns back there while ${other.name} moves on at ${speed}. A force along ${name} ` +
+      `moves nothing then, and ${name} does not determine the configuration; ${other.name} ` +
+      `does. ${fateWords(data.methods[m])}`,
+    tries: data.methods.some((one) => one.spelling === method)
+      ? []
+      : [{ label: `reduced with ${name}: it stops there`, method }],
+  };
+}
+
+/**
+ * The last singular configuration of a run until the frame shown, as the engine words it; "" where
+ * there was none.
+ * @param {import("./store.js").Data} data @param {number} m @param {number} shown
+ */
+export function singularWords({ incidents, history, duration }, m, shown) {
+  const last = incidents
+    .filter(
+      ({ code, method, t }) => method === m && SINGULAR.includes(code) && t <= history.t[shown],
+    )
+    .sort((a, b) => a.t - b.t)
+    .at(-1);
+  return last
+    ? `Singular configuration at ${seconds(last.t, duration)}: ${sentenceCase(last.message)}`
+    : "";
+}
