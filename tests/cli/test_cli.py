@@ -115,6 +115,20 @@ class CommandLine(Command):
         self.assertRegex(text, r"ground +no +vertical 0, .*, \u2026\n")  # the bodies of the ground's group are 122
         self.assertIn("B60: tilt 2\n", text)  # rows that vanish: not in a table
 
+    def test_inspect_names_everything_in_words(self):
+        def members(value):
+            for key, inner in value.items() if isinstance(value, dict) else ():
+                yield key
+                yield from members(inner)
+            for inner in value if isinstance(value, list) else ():
+                yield from members(inner)
+
+        for scene in "bennett", "fb0-lagrangian", "car-axis", "3-rrr":
+            names = {key for key in members(strict(self.assert_exit(call("inspect", scene, "--json"), DONE))) if "_" in key}
+            text = self.assert_exit(call("inspect", scene), DONE)
+            self.assertGreater(len(names), 10)
+            self.assertEqual([name for name in names if name in text.split()], [], scene)
+
     def test_inspect_tells_how_positions_are_found(self):
         def answers(scene):
             return strict(self.assert_exit(call("inspect", scene, "--json"), DONE))["position_analysis"]

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom inspect, equations, terms: questions about one scene.
+#include "cli/commands/inspect_words.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
@@ -52,7 +53,7 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
         return printed == HN_EXIT_DONE && !assembled ? HN_EXIT_INPUT : printed;
     }
     cJSON *document = hn_document_parse(&b);
-    hn_document_outline(&b, document, 0);
+    hn_document_outline(&b, document, hn_inspect_words);
     b.failed |= document == NULL;
     cJSON_Delete(document);
     const hn_exit printed = hn_cli_print_text(&b);

@@ -127,9 +127,50 @@ static int find_column(const hn_list_column *columns, int n, const char *key) {
     return -1;
 }
 
+// ---- outlines ----
+
+enum { MAX_PATH = 100, STEP = 2 };
+
+/// Where an outline has come to.
+typedef struct outline {
+    hn_strbuf *b;
+    const hn_outline_word *words;
+    char path[MAX_PATH]; ///< of the object, with a point behind it; "" at the top
+    int indent;
+} outline;
+
+/// How a member of the object at hand is named for people.
+static const char *words_of(const outline *o, const char *key) {
+    char path[2 * MAX_PATH];
+    snprintf(path, sizeof path, "%s%.90s", o->path, key);
+    for (const hn_outline_word *w = o->words; w->path; w++) {
+        if (strcmp(w->path, path) == 0) {
+            return w->words;
+        }
+    }
+    return key;
+}
+
+/// The outline of a member that has members.
+static outline step_into(const outline *o, const char *key) {
+    outline inner = *o;
+    snprintf(inner.path + strlen(o->path), sizeof inner.path - strlen(o->path), "%.40s.", key);
+    inner.indent += STEP;
+    return inner;
+}
+
+/// Adds the lines of a text, each as far to the right as the outline is.
+static void put_indented(const outline *o, const char *text) {
+    while (*text) {
+        const size_t n = strcspn(text, "\n");
+        hn_strbuf_printf(o->b, "%*s%.*s\n", o->indent, "", (int)n, text);
+        text += n + (text[n] == '\n');
+    }
+}
+
 /// A table of objects, its columns the members that any of them has; members with parts of their
 /// own are left out.
-static void put_objects(hn_strbuf *b, const cJSON *array) {
+static void put_objects(const outline *o, const cJSON *array) {
     hn_list_column columns[HN_TABLE_COLUMNS];
     int n = 0;
     for (const cJSON *row = array->child; row; row = row->next) {
@@ -137,12 +178,19 @@ static void put_objects(hn_strbuf *b, const cJSON *array) {
             const int flat =
                 is_scalar(m) || (cJSON_IsArray(m) && (!m->child || is_scalar(m->child)));
             if (flat && find_column(columns, n, m->string) < 0) {
-                columns[n++] =
-                    (hn_list_column){m->string, m->string, cJSON_IsNumber(m) ? "" : NULL};
+                columns[n++] = (hn_list_column){words_of(o, m->string), m->string,
+                                                cJSON_IsNumber(m) ? "" : NULL};
             }
         }
     }
-    hn_document_list(b, array, columns, n);
+
+    // made beside, then moved to its place
+    hn_strbuf table;
+    hn_strbuf_init(&table);
+    hn_document_list(&table, array, columns, n);
+    put_indented(o, hn_strbuf_text(&table));
+    o->b->failed |= table.failed;
+    hn_strbuf_reset(&table);
 }
 
 /// Text that is laid out by its own indentation stands line by line.
@@ -156,10 +204,10 @@ static bool holds_lines(const cJSON *array) {
     return false;
 }
 
-static void put_lines(hn_strbuf *b, const cJSON *array, int indent) {
+static void put_lines(const outline *o, const cJSON *array) {
     const cJSON *item;
     cJSON_ArrayForEach(item, array) {
-        hn_strbuf_printf(b, "%*s%s\n", indent, "", item->valuestring);
+        put_indented(o, item->valuestring);
     }
 }
 
@@ -178,35 +226,41 @@ static void put_line(hn_strbuf *b, const cJSON *array) {
     }
 }
 
-void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent) {
+static bool is_one_line(const cJSON *item) {
+    return is_scalar(item) ||
+           (cJSON_IsArray(item) && !(item->child && holds_objects(item)) && !holds_lines(item));
+}
+
+static void put_members(const outline *o, const cJSON *object) {
     int width = 0;
     const cJSON *item;
     cJSON_ArrayForEach(item, object) {
-        int n = (int)strlen(item->string);
-        width = n > width && is_scalar(item) ? n : width;
+        const int n = (int)strlen(words_of(o, item->string));
+        width = n > width && is_one_line(item) ? n : width;
     }
 
     // lines, then what is nested, indented
     cJSON_ArrayForEach(item, object) {
+        const char *words = words_of(o, item->string);
+        hn_strbuf_printf(o->b, "%*s%-*s", o->indent, "", is_one_line(item) ? width + 2 : 0, words);
         if (is_scalar(item)) {
-            hn_strbuf_printf(b, "%*s%-*s  ", indent, "", width, item->string);
-            put_scalar(b, item);
-            hn_strbuf_add(b, "\n");
-        } else if (cJSON_IsObject(item)) {
-            hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
-            hn_document_outline(b, item, indent + 2);
-        } else if (item->child && holds_objects(item)) {
-            hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
-            put_objects(b, item);
-        } else if (holds_lines(item)) {
-            hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
-            put_lines(b, item, indent + 2);
-        } else {
-            hn_strbuf_printf(b, "%*s%-*s  ", indent, "", width, item->string);
-            put_line(b, item);
-            hn_strbuf_add(b, "\n");
+            put_scalar(o->b, item);
+        } else if (is_one_line(item)) {
+            put_line(o->b, item);
+        }
+        hn_strbuf_add(o->b, "\n");
+        const outline inner = step_into(o, item->string);
+        if (cJSON_IsObject(item)) {
+            put_members(&inner, item);
+        } else if (!is_one_line(item)) {
+            (holds_lines(item) ? put_lines : put_objects)(&inner, item);
         }
     }
+}
+
+void hn_document_outline(hn_strbuf *b, const cJSON *object, const hn_outline_word *words) {
+    const outline o = {.b = b, .words = words};
+    put_members(&o, object);
 }
 
 void hn_document_matrix(hn_strbuf *b, const char *name, const cJSON *rows, const cJSON *row_names,

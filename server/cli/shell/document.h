@@ -23,9 +23,14 @@ typedef struct hn_list_column {
 } hn_list_column;
 /// A table with one row for each object of the array.
 void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *columns, int n);
+/// How a member is named for people; its path is "start.dof", of a column "loops.why".
+typedef struct hn_outline_word {
+    const char *path, *words;
+} hn_outline_word;
 /// An outline of any document: a line for each member, lists of numbers and words in one line,
-/// lists of objects as tables.
-void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent);
+/// lists of objects as tables. Members that `words` does not list (it ends with a NULL path) keep
+/// their names.
+void hn_document_outline(hn_strbuf *b, const cJSON *object, const hn_outline_word *words);
 /// A matrix with names for rows and columns (either may be NULL).
 void hn_document_matrix(hn_strbuf *b, const char *name, const cJSON *rows, const cJSON *row_names,
                         const cJSON *column_names);
