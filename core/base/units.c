@@ -60,6 +60,20 @@ void hn_si_format(double value, const char *unit, int digits, char out[HN_SI_TEX
              value / pow(10, 3 * group), space, prefixes[group - SMALLEST], MAX_UNIT, unit);
 }
 
+int hn_digits_apart(double a, double b, int least) {
+    enum { MOST = 17 }; // tell any two doubles apart
+    HN_ASSERT(least >= 1 && least <= MOST);
+    for (int digits = least; digits <= MOST; digits++) {
+        char text[2][40];
+        snprintf(text[0], sizeof text[0], "%.*g", digits, a);
+        snprintf(text[1], sizeof text[1], "%.*g", digits, b);
+        if (strcmp(text[0], text[1]) != 0) {
+            return digits;
+        }
+    }
+    return least;
+}
+
 double hn_round_125(double value) {
     HN_ASSERT(value > 0 && isfinite(value));
     const double decade = pow(10, floor(log10(value)));

@@ -14,6 +14,11 @@ enum { HN_SI_TEXT = 48 };
 /// longer than 16 bytes.
 void hn_si_format(double value, const char *unit, int digits, char out[HN_SI_TEXT]);
 
+/// Returns the number of significant digits, `least` (1..17) or more, with which printf's %.*g
+/// writes two numbers as different texts: "0.001201 exceeds 0.0012", not "0.0012 exceeds 0.0012".
+/// Equal numbers get `least`.
+int hn_digits_apart(double a, double b, int least);
+
 /// The largest of 1, 2, 5 x 10^k that is not above `value` (> 0, finite): lengths of scale bars,
 /// ticks.
 double hn_round_125(double value);

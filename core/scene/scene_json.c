@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
+#include "base/units.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,8 +34,8 @@ static double read_positive(hn_reader *r, const cJSON *root, const char *key, do
     hn_quantity q;
     if (hn_rd_member(r, root, key, 0, fallback, &q, HN_RD_CONST) &&
         !(q.value > 0 && q.value <= bound)) {
-        hn_rd_fault_at(r, key, NULL, "%s = %g s, expected more than 0 and at most %g s", key,
-                       q.value, bound);
+        hn_rd_fault_at(r, key, NULL, "%s = %.*g s, expected more than 0 and at most %g s", key,
+                       hn_digits_apart(q.value, bound, 6), q.value, bound);
     }
     return q.value;
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parameters: a number or a formula of other parameters, a unit, a range.
 
+#include "base/units.h"
 #include "scene/reader.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+enum { LEAST_DIGITS = 6 }; // of numbers in messages
 
 static const char *const UNITS[] = {
     "",      "1",      "m",   "kg",    "s",       "rad",       "N", "N*m", "m/s", "rad/s",
@@ -237,7 +240,9 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
         p->max = q.value;
     }
     if (p->min > p->max) {
-        hn_rd_fault_at(r, "min", NULL, "min %g is larger than max %g", p->min, p->max);
+        const int digits = hn_digits_apart(p->min, p->max, LEAST_DIGITS);
+        hn_rd_fault_at(r, "min", NULL, "min %.*g is larger than max %.*g", digits, p->min, digits,
+                       p->max);
     } else if (!isfinite(p->value)) {
         hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
     } else if (fabs(p->value) > HN_SCENE_MAX_NUMBER) {
@@ -249,10 +254,13 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
         hn_rd_fault(r, NULL, "%s = %g%s%s must be %s", p->name, p->value, p->unit[0] ? " " : "",
                     p->unit, needed_sign(p));
     } else if (p->value < p->min || p->value > p->max) {
-        hn_rd_fault(r, NULL, "%s = %g is outside its range %g ... %g %s", p->name, p->value, p->min,
-                    p->max, p->unit);
+        const double limit = p->value < p->min ? p->min : p->max;
+        const int digits = hn_digits_apart(p->value, limit, LEAST_DIGITS);
+        hn_rd_fault(r, NULL, "%s = %.*g is outside its range %.*g ... %.*g %s", p->name, digits,
+                    p->value, digits, p->min, digits, p->max, p->unit);
     } else if (p->integer && p->value != floor(p->value)) {
-        hn_rd_fault(r, NULL, "%s = %g must be a whole number", p->name, p->value);
+        hn_rd_fault(r, NULL, "%s = %.*g must be a whole number", p->name,
+                    hn_digits_apart(p->value, round(p->value), LEAST_DIGITS), p->value);
     }
 }
 

@@ -155,6 +155,17 @@ class Services(OneFile):
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual([p["state"] for p in json.loads(done.stdout)["methods"][0]["points"]], ["done"] * 3)
 
+    def test_a_program_that_ends_at_once_is_no_motion_that_diverged(self):
+        method = "program:./mine.py@own:h=1e-2"
+        with open(os.path.join(self.folder.name, "mine.py"), "w", encoding="utf-8") as f:
+            f.write("raise SystemExit(1)\n")
+        done = call("compare", "pendulum", "--methods", method, "--time", "0.2", ALLOW, cwd=self.folder.name)
+        self.assertEqual(done.returncode, ENDED)
+        # the head names the time that was asked for, not that of the first look
+        self.assertRegex(done.stdout.splitlines()[0], r": every method ended before t = 0\.2 s$")
+        end = json.loads(call("run", "pendulum", "--method", method, "--time", "0.2", "--json", ALLOW, cwd=self.folder.name).stdout)["incidents"][-1]
+        self.assertEqual((end["code"], end["remedies"]), ("program-failed", []))
+
     def test_they_are_off_until_the_command_line_allows_them(self):
         done = self.run_program(STEP, allow=None)
         self.assertEqual(done.returncode, INPUT)

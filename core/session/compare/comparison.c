@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
+#include "base/units.h"
 #include "study/run/diagnosis.h"
 #include "formulations/list/formulation_list.h"
 
@@ -132,7 +133,8 @@ static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_di
     }
     if (!(opts->duration >= 0) || !(opts->duration <= 1e6)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/duration", NULL,
-                            "the duration is %g s; 0 to 1e6 s are allowed", opts->duration);
+                            "the duration is %.*g s; 0 to 1e6 s are allowed",
+                            hn_digits_apart(opts->duration, 1e6, 6), opts->duration);
     }
     return HN_OK;
 }

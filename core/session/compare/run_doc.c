@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/run_doc.h"
 
+#include "base/units.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "session/store/columns_json.h"
@@ -273,12 +274,14 @@ static hn_status check_at(const hn_run_request *r, hn_diags *diags) {
         if (!(r->at[i] >= before) || !isfinite(r->at[i])) {
             return hn_diags_add(
                 diags, HN_ERR_INPUT, "/at", NULL,
-                "output time %d is %g; times must be finite, ascending and not before 0", i + 1,
-                r->at[i]);
+                "output time %d is %.*g; times must be finite, ascending and not before 0", i + 1,
+                hn_digits_apart(r->at[i], before, 6), r->at[i]);
         }
         if (r->at[i] > r->time * (1 + 1e-12)) {
+            const int digits = hn_digits_apart(r->at[i], r->time, 6);
             return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
-                                "output time %g s lies after the end, %g s", r->at[i], r->time);
+                                "output time %.*g s lies after the end, %.*g s", digits, r->at[i],
+                                digits, r->time);
         }
     }
     return HN_OK;
@@ -287,7 +290,8 @@ static hn_status check_at(const hn_run_request *r, hn_diags *diags) {
 static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags) {
     if (!(r->time > 0) || !(r->time <= 1e7)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %g s; it must be above 0 and at most 1e7 s", r->time);
+                            "the end time is %.*g s; it must be above 0 and at most 1e7 s",
+                            hn_digits_apart(r->time, 1e7, 6), r->time);
     }
     if (!(r->every >= 0) || !isfinite(r->every)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,

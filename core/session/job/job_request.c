@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/job/job_request.h"
 
+#include "base/units.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -103,7 +105,8 @@ static hn_status check_times(const hn_job_request *r, hn_diags *diags) {
     const double limit = r->limits.time_limit;
     if (r->n_models == 1 && !(r->time > 0 && r->time <= 1e7)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %g s; it must be above 0 and at most 1e7 s", r->time);
+                            "the end time is %.*g s; it must be above 0 and at most 1e7 s",
+                            hn_digits_apart(r->time, 1e7, 6), r->time);
     }
     if (!(limit >= 0) || !isfinite(limit)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time_limit", NULL,

@@ -298,8 +298,8 @@ static void explain(const hn_budget_work *b, hn_diag *diag) {
     if (hn_run_passed_singular(b->run, &t)) {
         const size_t used = strlen(diag->message);
         snprintf(diag->message + used, sizeof diag->message - used,
-                 "; J all but loses rank near t = %.3g s, and neighbours off the loops cannot be "
-                 "followed past that",
+                 "; the constraints become all but dependent near t = %.3g s (J all but loses "
+                 "rank), and neighbours off the loops cannot be followed past that",
                  t);
     }
 }

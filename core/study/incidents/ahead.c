@@ -69,10 +69,13 @@ static void check(hn_watch *w) {
     const hn_incident *i = hn_incident_report(
         w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
         s->info.lowest < LOST * s->largest
-            ? "J loses rank in %.3g s, at t = %.4g s: a pilot run from here reaches a singular "
-              "configuration then; sigma_min is %.2g of %.2g now"
-            : "J all but loses rank in %.3g s, at t = %.4g s: a pilot run from here passes close "
-              "to a singular configuration then; sigma_min is %.2g of %.2g now",
+            ? "the constraints become dependent (J loses rank) in %.3g s, at t = %.4g s: a robust "
+              "method run ahead from here (a pilot run) reaches a singular configuration then; "
+              "the smallest singular value of J (sigma_min) is %.2g now, the largest %.2g"
+            : "the constraints become all but dependent (J all but loses rank) in %.3g s, at "
+              "t = %.4g s: a robust method run ahead from here (a pilot run) passes close to a "
+              "singular configuration then; the smallest singular value of J (sigma_min) is %.2g "
+              "now, the largest %.2g",
         s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
     if (i) {
         s->announced = 1 + (int)(i - w->log.list);

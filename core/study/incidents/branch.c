@@ -126,9 +126,10 @@ static void check_stay(hn_watch *w) {
     double way = 0;
     if (hn_heading_stays_singular(w, &way)) {
         hn_incident_report(w, &hn_incident_branch_flip, "way", way, w->length,
-                           "the run moves on and J stays rank deficient (sigma_min is %.2g of "
-                           "%.2g at most): it turned off at a singular configuration into a "
-                           "motion that has some links folded onto each other",
+                           "the run moves on and the constraints stay dependent (the smallest "
+                           "singular value of J is %.2g, its largest so far %.2g): it turned off "
+                           "at a singular configuration into a motion that has some links folded "
+                           "onto each other",
                            w->singular.info.sigma_min, w->singular.largest);
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/energy.h"
 
+#include "base/units.h"
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
@@ -73,10 +74,11 @@ static void check_drift(hn_watch *w) {
         hn_incident_over(&w->log, HN_INCIDENT_ENERGY_DRIFT);
         return;
     }
+    const int digits = hn_digits_apart(fabs(change), limit, 3);
     hn_incident_report(w, &hn_incident_energy_drift, "energy change", change, limit,
-                       "the energy has changed by %.3g J since the start, more than %.3g J, and no "
+                       "the energy has changed by %.*g J since the start, more than %.*g J, and no "
                        "load does work",
-                       change, limit);
+                       digits, change, digits, limit);
 }
 
 static void check_jump(hn_watch *w) {
@@ -87,9 +89,10 @@ static void check_jump(hn_watch *w) {
         hn_incident_over(&w->log, HN_INCIDENT_ENERGY_JUMP);
         return;
     }
+    const int digits = hn_digits_apart(fabs(e->change), limit, 3);
     hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
-                       "the energy changed by %.3g J in one step, more than %.3g J", e->change,
-                       limit);
+                       "the energy changed by %.*g J in one step, more than %.*g J", digits,
+                       e->change, digits, limit);
 }
 
 /// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed

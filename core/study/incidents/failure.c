@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/failure.h"
 
+#include "integrators/method/guest.h"
 #include "study/incidents/rank.h"
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
@@ -14,7 +15,16 @@ static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
                                                                   : &hn_incident_newton_failed;
 }
 
+/// Whether the method is a program of its own and that failed, not the motion.
+static bool is_of_program(const hn_watch *w, hn_status status) {
+    return hn_guest_is_named(w->run->spec.formulation->name) &&
+           (status == HN_ERR_IO || status == HN_ERR_INPUT || status == HN_ERR_LIMIT);
+}
+
 static const hn_incident_kind *kind_of(const hn_watch *w, hn_status status) {
+    if (is_of_program(w, status)) {
+        return &hn_incident_program;
+    }
     switch (status) {
     // charts and iterations of the method
     case HN_ERR_CHART:
@@ -111,6 +121,15 @@ const hn_incident_kind hn_incident_mass = {
     .rule = "A link without mass makes M singular. The constraints may still determine the motion, "
             "but only for methods that never form the inverse of M.",
     .remedies = {{hn_remedy_singular_mass, 0}},
+};
+
+const hn_incident_kind hn_incident_program = {
+    .code = HN_INCIDENT_PROGRAM,
+    .is_wrong = true,
+    .spelling = "program-failed",
+    .name = "the program gave no answer that can be used",
+    .rule = "The method is a program of its own. It ended, took too long, or answered with "
+            "something else than what was asked for.",
 };
 
 const hn_incident_kind hn_incident_stopped = {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/gap.h"
 
+#include "base/units.h"
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
@@ -12,10 +13,11 @@ static void check(hn_watch *w) {
         hn_incident_over(&w->log, HN_INCIDENT_GAP_OPEN);
         return;
     }
+    const int digits = hn_digits_apart(gap, limit, 3);
     hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
-                       "the loop has opened: the constraint violation of %.3g m exceeds the limit "
-                       "of %.3g m",
-                       gap, limit);
+                       "the loop has opened: the constraint violation of %.*g m exceeds the limit "
+                       "of %.*g m",
+                       digits, gap, digits, limit);
 }
 
 const hn_incident_kind hn_incident_gap_open = {

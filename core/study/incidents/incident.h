@@ -32,6 +32,7 @@ typedef enum hn_incident_code {
     HN_INCIDENT_STEP_UNDERFLOW,
     HN_INCIDENT_DIVERGED,
     HN_INCIDENT_MASS,
+    HN_INCIDENT_PROGRAM,
     HN_INCIDENT_STOPPED,
     HN_INCIDENT_COUNT
 } hn_incident_code;
@@ -48,7 +49,9 @@ typedef struct hn_incident {
     double value, limit;
     char message[400];             ///< what happened in this run, with numbers and units
     hn_remedy remedy[HN_REMEDIES]; ///< what to try, best first; "" ends the list
-    hn_remedy tried[HN_REMEDIES];  ///< what each of them gave in a trial; "": not tried
+    /// "tried ...": what each of them gave in a trial; "not tried: ...": why there was none; "":
+    /// not yet.
+    hn_remedy tried[HN_REMEDIES];
     /// Rises each time a report is written or completed; a reader that keeps the newest one it saw
     /// knows what is new.
     unsigned revision;

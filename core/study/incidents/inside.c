@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/inside.h"
 
+#include "base/units.h"
 #include "study/incidents/branch.h"
 #include "study/incidents/energy.h"
 #include "study/incidents/gap.h"
@@ -19,10 +20,11 @@ static void set_time(hn_incident *i, double t) {
 static void check_gap(hn_watch *w, const hn_state_at *at, double gap) {
     const double limit = w->warn_gap * w->length;
     if (gap > limit) {
+        const int digits = hn_digits_apart(gap, limit, 3);
         set_time(hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
-                                    "the loop is open by %.3g m at t = %.6g s, inside a step; "
-                                    "the limit is %.3g m",
-                                    gap, at->t, limit),
+                                    "the loop is open by %.*g m at t = %.6g s, inside a step; "
+                                    "the limit is %.*g m",
+                                    digits, gap, at->t, digits, limit),
                  at->t);
     }
 }
@@ -37,10 +39,11 @@ static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m
     const double limit = HN_RUN_WARN_ENERGY * (e->t_max + range);
     if (e->conservative && limit > 0 && fabs(change) > fmax(limit, e->noise) &&
         fabs(since_start) > limit) {
+        const int digits = hn_digits_apart(fabs(change), limit, 3);
         set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
-                                    "the energy changes by %.3g J up to t = %.6g s, inside a step; "
-                                    "the limit is %.3g J",
-                                    change, at->t, limit),
+                                    "the energy changes by %.*g J up to t = %.6g s, inside a step; "
+                                    "the limit is %.*g J",
+                                    digits, change, at->t, digits, limit),
                  at->t);
     }
 }

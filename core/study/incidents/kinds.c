@@ -35,6 +35,7 @@ static const hn_incident_kind *const kinds[HN_INCIDENT_COUNT] = {
     [HN_INCIDENT_STEP_UNDERFLOW] = &hn_incident_step_underflow,
     [HN_INCIDENT_DIVERGED] = &hn_incident_diverged,
     [HN_INCIDENT_MASS] = &hn_incident_mass,
+    [HN_INCIDENT_PROGRAM] = &hn_incident_program,
     [HN_INCIDENT_STOPPED] = &hn_incident_stopped,
 };
 

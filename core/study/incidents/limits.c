@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/limits.h"
 
+#include "base/units.h"
 #include "study/incidents/report.h"
 
 static const char *unit_of(const hn_coordinate *c) {
@@ -16,11 +17,12 @@ static void check(hn_watch *w) {
         const bool below = x < c->min, beyond = below || x > c->max;
         if (beyond && !w->beyond[i]) {
             const double limit = below ? c->min : c->max;
+            const int digits = hn_digits_apart(x, limit, 6);
             hn_incident_over(&w->log,
                              HN_INCIDENT_JOINT_LIMIT); // another coordinate's may still hold
             hn_incident_report(w, &hn_incident_joint_limit, c->name, x, limit,
-                               "%s = %.6g%s has passed its limit of %.6g%s; nothing stops it there",
-                               c->name, x, unit_of(c), limit, unit_of(c));
+                               "%s = %.*g%s has passed its limit of %.*g%s; nothing stops it there",
+                               c->name, digits, x, unit_of(c), digits, limit, unit_of(c));
         }
         w->beyond[i] = beyond;
     }

@@ -54,8 +54,8 @@ void hn_pose_explain(const hn_watch *w, char why[256]) {
     const size_t used = strlen(why);
     if (w->run->info.nc > 0 && s->info.sigma_min < SINGULAR * s->largest) {
         snprintf(why + used, 256 - used,
-                 "; J all but loses rank there (sigma_min %.2g of %.2g), and the step has to solve "
-                 "with it",
+                 "; the constraints are all but dependent there (smallest singular value of J %.2g "
+                 "of %.2g), and the step has to solve with them",
                  s->info.sigma_min, s->largest);
     }
 }

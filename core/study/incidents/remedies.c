@@ -2,6 +2,7 @@
 #include "study/incidents/remedies.h"
 
 #include "formulations/list/formulation_list.h"
+#include "integrators/method/guest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -35,12 +36,18 @@ static double tolerance(const hn_watch *w) {
     return hn_method_option(&w->run->spec, "rtol", 1e-6);
 }
 
+/// Whether an integrator serves a formulation that is in the list; a program's own steps serve it
+/// alone.
+static bool fits(const hn_formulation *f, const hn_stepper *stepper) {
+    return strcmp(stepper->name, HN_GUEST_STEPPER) != 0 && hn_method_fits(f, stepper);
+}
+
 /// Another formulation with its defaults, the integrator as it is where it serves that too.
 static bool write_formulation(const hn_watch *w, const hn_formulation *f, hn_remedy out) {
     hn_method_spec spec = w->run->spec;
     char text[HN_SPEC_MAX];
     spec.formulation = f;
-    if (!hn_method_fits(f, spec.stepper)) {
+    if (!fits(f, spec.stepper)) {
         snprintf(out, sizeof(hn_remedy), "%s@%s:rtol=1e-8", f->name,
                  f->form == HN_FORM_ODE ? "dopri5" : "radau5");
         return true;
@@ -74,10 +81,10 @@ bool hn_remedy_robust(const hn_watch *w, double factor, hn_remedy out) {
     const double mean = s->steps > 0 ? (s->now.t - s->t0) / (double)s->steps : LONGEST;
     const double fixed = hn_method_option(&s->spec, "h", 0);
     const double h = fixed > 0 ? fixed : fmin(fmax(mean, 1e-4), LONGEST);
-    const bool fits = hn_method_fits(closing(), s->spec.stepper);
+    const bool serves = fits(closing(), s->spec.stepper);
     const bool same = closing() == formulation_of(w) && fixed > 0;
     snprintf(out, sizeof(hn_remedy), "%s@%s:h=%.4g", closing()->name,
-             fixed > 0 && fits && !same ? s->spec.stepper->name : "rk4",
+             fixed > 0 && serves && !same ? s->spec.stepper->name : "rk4",
              same ? 0.7 * h : h); // another step lands beside the singular configuration
     return true;
 }

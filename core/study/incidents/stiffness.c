@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/stiffness.h"
 
+#include "base/units.h"
 #include "study/incidents/failure.h"
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
@@ -90,21 +91,23 @@ void hn_step_limit_check(hn_watch *w) {
     const double rate = hn_pulling_rate(&w->run->spec), limit = stepper->real_limit;
     hn_incident_over(&w->log, HN_INCIDENT_STEP_LIMIT);
     if (rate * h > limit) {
+        const int digits = hn_digits_apart(rate * h, limit, 3);
         hn_incident_report(w, &hn_incident_step_limit, "alpha h", rate * h, limit,
-                           "the stabilisation is too fast for the step: rate x h = %.3g, %s is "
-                           "stable up to %.3g",
-                           rate * h, stepper->name, limit);
+                           "the stabilisation is too fast for the step: rate x h = %.*g, %s is "
+                           "stable up to %.*g",
+                           digits, rate * h, stepper->name, digits, limit);
     }
 }
 
 void hn_step_long_check(hn_watch *w) {
     const double h = hn_method_option(&w->run->spec, "h", 0), whole = w->t_end - w->run->t0;
     if (!w->run->adaptive && w->t_end > 0 && h > whole * (1 + HN_STEPPING_LANDING)) {
+        const int digits = hn_digits_apart(h, whole, 4);
         hn_incident_report(
             w, &hn_incident_step_long, "h", h, whole,
-            "the step of %.4g s is longer than the run of %.4g s: the output is that "
-            "of one shorter step; choose h below %.4g s",
-            h, whole, whole);
+            "the step of %.*g s is longer than the run of %.*g s: the output is that "
+            "of one shorter step; choose h below %.*g s",
+            digits, h, digits, whole, digits, whole);
     }
 }
 

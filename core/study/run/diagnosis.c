@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/run/diagnosis.h"
 
+#include "base/units.h"
 #include "study/incidents/energy.h"
 #include "study/spectrum/load_share.h"
 #include "study/spectrum/region.h"
@@ -9,10 +10,18 @@
 #include <stdio.h>
 #include <string.h>
 
-/// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms.
+/// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms. A remedy that fails
+/// from a state on the way gets twice as many for a second trial, from the start of the run.
 /// A remedy makes about FINER steps for one of the run.
 /// Its samples are about as dense as those of a run's output.
-enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, PILOT_LOOKS = 100, FINER = 4, MOST_SPEEDS = 60 };
+enum {
+    PILOT_STEPS = 2000,
+    START_STEPS = 4000,
+    PILOT_SIZE = 20,
+    PILOT_LOOKS = 100,
+    FINER = 4,
+    MOST_SPEEDS = 60
+};
 
 /// How the results of remedies begin.
 #define TRIED "tried "
@@ -102,8 +111,9 @@ static bool explain_instability(const hn_stepping *s, double *limit, char *out, 
     *limit = part.limit;
     describe_part(&part, what, sizeof what);
     const bool decays = is_decay(part.value);
-    snprintf(out, size, "h = %.4g s is above the stability limit of %s here, %.3g s: %s at %.2g %s",
-             h, s->spec.stepper->name, part.limit, what,
+    const int digits = hn_digits_apart(h, part.limit, 3);
+    snprintf(out, size, "h = %.*g s is above the stability limit of %s here, %.*g s: %s at %.2g %s",
+             digits, h, s->spec.stepper->name, digits, part.limit, what,
              decays ? fabs(part.value.re) : fabs(part.value.im), decays ? "1/s" : "rad/s");
     return true;
 }
@@ -188,6 +198,13 @@ static bool is_right(const hn_run *pilot, hn_status status) {
 
 typedef enum outcome { REMOVES, FAILS, UNKNOWN } outcome;
 
+/// The trial of a remedy.
+typedef struct trial {
+    outcome is;
+    bool whole; ///< tried from the start of the run
+    hn_remedy said;
+} trial;
+
 /// Where the pilot runs of report k begin. A state shortly before the event may hold its error
 /// already, so the start of the run is taken where it is not many steps away, and in any case where
 /// the equations of the run are wrong: a state on its way belongs to another motion.
@@ -197,7 +214,7 @@ static const hn_state_at *pilot_start(const hn_watch *w, int k) {
     return near || wrong || !(w->before[k].t < w->log.list[k].t) ? &w->run->start : &w->before[k];
 }
 
-/// How long a pilot run is: past the event, as far as its steps reach where they are fixed. Large
+/// How long a pilot run is: past the event, as far as *most steps reach where they are fixed. Large
 /// mechanisms get fewer steps.
 static double pilot_end(const hn_stepping *s, const hn_method_spec *spec, double from, double event,
                         long long *most) {
@@ -205,7 +222,7 @@ static double pilot_end(const hn_stepping *s, const hn_method_spec *spec, double
     const double own = fmax(s->h, hn_method_option(&s->spec, "h", 0));
     const double wanted = event + BEYOND * (event - from) + BEYOND_STEPS * own;
     const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
-    *most = PILOT_STEPS * PILOT_SIZE / size;
+    *most = *most * PILOT_SIZE / size;
     const double reached = from + h * (double)(*most - 1);
     return reached > event + h && reached < wanted ? reached : wanted;
 }
@@ -223,12 +240,12 @@ static hn_status run_pilot(hn_run *pilot, double from, double end) {
     return hn_run_advance(pilot, end);
 }
 
-/// Runs a remedy of report k from the state before its event to a time past it and writes the
-/// result to `said`.
-static outcome try_remedy(const hn_watch *w, int k, const char *text, hn_remedy said) {
+/// Runs a remedy of report k from a state before its event to a time past it and writes the result
+/// to `said`.
+static outcome try_from(const hn_watch *w, int k, const char *text, const hn_state_at *from,
+                        hn_remedy said) {
     const hn_stepping *s = w->run;
     const double event = w->log.list[k].t;
-    const hn_state_at *from = pilot_start(w, k);
     hn_run_opts opts = hn_run_opts_default();
     hn_method_spec spec;
     hn_run *pilot = NULL;
@@ -237,6 +254,7 @@ static outcome try_remedy(const hn_watch *w, int k, const char *text, hn_remedy 
     if (!read_remedy(s, text, &spec)) {
         return UNKNOWN;
     }
+    opts.max_steps = pilot_start(w, k) == from ? PILOT_STEPS : START_STEPS;
     const double end = pilot_end(s, &spec, from->t, event, &opts.max_steps);
     opts.t0 = from->t;
     if (hn_run_create(s->sys, &spec, from->q, from->v, &opts, &pilot, &diag) != HN_OK) {
@@ -273,26 +291,60 @@ static outcome try_remedy(const hn_watch *w, int k, const char *text, hn_remedy 
     return right ? REMOVES : FAILS;
 }
 
+/// Tries a remedy of report k. A state on the way may hold the error that the report is about:
+/// what fails from there is tried from the start of the run too.
+static trial try_remedy(const hn_watch *w, int k, const char *text) {
+    const hn_state_at *from = pilot_start(w, k), *start = &w->run->start;
+    trial out = {.whole = from == start};
+    out.is = try_from(w, k, text, from, out.said);
+    if (out.is != FAILS || from == start) {
+        return out;
+    }
+
+    trial second = {.whole = true};
+    second.is = try_from(w, k, text, start, second.said);
+    out.whole = second.is == FAILS;
+    return second.is == REMOVES ? second : out;
+}
+
+/// Says what was tried in vain, from when on, and why not from the start.
+static void tell_in_vain(hn_watch *w, hn_incident *i, hn_remedy texts[], const trial trials[],
+                         int n) {
+    const hn_state_at *from = pilot_start(w, (int)(i - w->log.list));
+    char begun[128] = "";
+    bool whole = true;
+    for (int k = 0; k < n; k++) {
+        whole &= trials[k].whole;
+    }
+    if (from != &w->run->start) {
+        snprintf(begun, sizeof begun, " from t = %.4g s on%s", from->t,
+                 whole ? " and from the start"
+                       : " (the state there holds the errors so far; from the start a trial takes "
+                         "too many steps)");
+    }
+    hn_incident_append(&w->log, i, IN_VAIN "%s: %s%s%s%s%s", begun, texts[0], n > 1 ? ", " : "",
+                       n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
+}
+
 /// Keeps the remedies of a report that remove it, the tried ones first.
 static void try_remedies(hn_run *run, hn_incident *i) {
     hn_watch *w = hn_run_watching(run);
-    hn_remedy texts[HN_REMEDIES], said[HN_REMEDIES];
-    outcome outcomes[HN_REMEDIES];
+    hn_remedy texts[HN_REMEDIES];
+    trial trials[HN_REMEDIES];
     int n = 0, kept = 0;
 
     // try every remedy
     for (; n < HN_REMEDIES && i->remedy[n][0]; n++) {
         memcpy(texts[n], i->remedy[n], sizeof texts[n]);
-        said[n][0] = '\0';
-        outcomes[n] = try_remedy(w, (int)(i - w->log.list), texts[n], said[n]);
+        trials[n] = try_remedy(w, (int)(i - w->log.list), texts[n]);
     }
 
     // keep those that work, then those that could not be tried; drop those that fail
     for (int pass = REMOVES; pass <= UNKNOWN; pass += UNKNOWN - REMOVES) {
         for (int k = 0; k < n; k++) {
-            if ((int)outcomes[k] == pass) {
+            if ((int)trials[k].is == pass) {
                 memcpy(i->remedy[kept], texts[k], sizeof texts[k]);
-                memcpy(i->tried[kept++], said[k], sizeof said[k]);
+                memcpy(i->tried[kept++], trials[k].said, sizeof trials[k].said);
             }
         }
     }
@@ -301,15 +353,16 @@ static void try_remedies(hn_run *run, hn_incident *i) {
         i->remedy[kept][0] = i->tried[kept][0] = '\0';
     }
     if (n > 0 && kept == 0) {
-        // from the start of the run on the same remedy may do better
-        const hn_state_at *from = pilot_start(w, (int)(i - w->log.list));
-        char begun[40] = "";
-        if (from != &w->run->start) {
-            snprintf(begun, sizeof begun, " from t = %.4g s on", from->t);
-        }
-        hn_incident_append(&w->log, i, IN_VAIN "%s: %s%s%s%s%s", begun, texts[0], n > 1 ? ", " : "",
-                           n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
+        tell_in_vain(w, i, texts, trials, n);
     }
+}
+
+/// Says why the remedies of a report that is about no error are offered without a trial.
+static void leave_untried(hn_watch *w, hn_incident *i) {
+    for (int k = 0; k < HN_REMEDIES && i->remedy[k][0]; k++) {
+        snprintf(i->tried[k], sizeof i->tried[k], "not tried: this is a warning, not an error");
+    }
+    i->revision = ++w->log.revision;
 }
 
 /// The reports of the run that a remedy removes.
@@ -343,10 +396,13 @@ static const char *find_best(const hn_watch *w) {
 /// run, where it removes this one too: so that a run is not told that nothing helps and what helps.
 static void share_remedies(const hn_watch *w, hn_incident *i) {
     const char *best = find_best(w);
-    hn_remedy said = "";
-    if (!i->remedy[0][0] && best && try_remedy(w, (int)(i - w->log.list), best, said) == REMOVES) {
+    if (i->remedy[0][0] || !best) {
+        return;
+    }
+    const trial t = try_remedy(w, (int)(i - w->log.list), best);
+    if (t.is == REMOVES) {
         memcpy(i->remedy[0], best, sizeof i->remedy[0]);
-        memcpy(i->tried[0], said, sizeof i->tried[0]);
+        memcpy(i->tried[0], t.said, sizeof i->tried[0]);
         i->remedy[1][0] = i->tried[1][0] = '\0';
     }
 }
@@ -380,6 +436,8 @@ void hn_run_diagnose(hn_run *run) {
         hn_incident *i = &w->log.list[w->diagnosed];
         if (hn_incident_kinds()[i->code]->is_wrong && i->remedy[0][0]) {
             try_remedies(run, i);
+        } else {
+            leave_untried(w, i);
         }
     }
     for (int k = 0; k < w->log.n; k++) {

@@ -40,8 +40,8 @@ static hn_status create_parts(hn_accuracy *a, const hn_system *sys, const double
     // a large mechanism gets no estimate: it would delay the start
     if (hn_system_get_info(sys).nodes > HN_ACCURACY_NODES) {
         snprintf(a->reason, sizeof a->reason,
-                 "the mechanism is so large that starting a pilot run would take longer than the "
-                 "estimate is worth");
+                 "the mechanism is so large that starting a second, tighter run (the pilot run) "
+                 "would take longer than the estimate is worth");
         return HN_OK;
     }
 
@@ -168,8 +168,8 @@ static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
         a->t_out = fmin(a->t_out, pilot->t);
         a->lost = true;
         snprintf(a->reason, sizeof a->reason,
-                 "neighbouring motions part too fast: from t = %.4g s on the pilot run itself may "
-                 "be off by %.0g",
+                 "neighbouring motions part too fast: from t = %.4g s on the tighter run beside it "
+                 "(the pilot run) may be off by %.0g itself",
                  pilot->t, HN_ACCURACY_LOST);
         return false;
     }

@@ -204,7 +204,35 @@ static void put_remarks(hn_strbuf *b, const cJSON *summary) {
     }
 }
 
-static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary) {
+/// The scene and the time of the end; where every method ended before, the time that was asked for.
+static void put_head(hn_strbuf *b, const hn_scene *scene, const cJSON *summary, double duration) {
+    bool goes_on = false;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
+        goes_on |= !has_failed(m);
+    }
+    hn_strbuf_printf(b, goes_on ? "%s to t = %g s\n" : "%s: every method ended before t = %g s\n",
+                     scene->title ? scene->title : scene->id, duration);
+}
+
+/// Says by which measure the status judges, where it finds fault: the workbench has another.
+static void put_measure(hn_strbuf *b, const cJSON *summary) {
+    bool at_fault = false;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
+        const char *is = hn_document_text(hn_document_get(m, "verdict"), "is");
+        at_fault |= !has_failed(m) && (strcmp(is, "wrong") == 0 || strcmp(is, "inaccurate") == 0);
+    }
+    if (at_fault) {
+        hn_strbuf_printf(b,
+                         "status, by the error estimate of coordinates and reactions over the "
+                         "whole run: right up to %g, inaccurate above, WRONG from %g on (the "
+                         "workbench and the page judge by the way of drawn points and by energy)\n",
+                         HN_ACCURACY_WARN, HN_ACCURACY_WRONG);
+    }
+}
+
+static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary, double duration) {
     // the order in which columns are left out: what can be computed from others goes first
     static const struct {
         const char *head;
@@ -237,9 +265,9 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary)
     }
 
     // title, table, and what happened on the way
-    hn_strbuf_printf(b, "%s to t = %g s\n", scene->title ? scene->title : scene->id,
-                     hn_document_number(summary, "t"));
+    put_head(b, scene, summary, duration);
     hn_table_write(b, &t);
+    put_measure(b, summary);
     put_remarks(b, summary);
     hn_table_reset(&t);
 }
@@ -300,7 +328,7 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
     cJSON *summary = cJSON_Parse(hn_strbuf_text(&b));
     if (!args->json) {
         hn_strbuf_clear(&b);
-        put_table(&b, model, summary);
+        put_table(&b, model, summary, hn_comparison_duration(c));
         if (args->plot) {
             hn_motion_plot_text(&b, &plot, hn_terminal_columns(), hn_terminal_colours());
         }

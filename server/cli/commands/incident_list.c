@@ -71,5 +71,6 @@ void hn_incident_ending(const hn_incident_list *list, double t, const char *reas
 const char *hn_incident_remedy(const cJSON *incident) {
     const cJSON *remedy = incident ? hn_document_get(incident, "remedies")->child : NULL;
     const cJSON *tried = incident ? hn_document_get(incident, "tried")->child : NULL;
-    return remedy && tried && tried->valuestring[0] ? remedy->valuestring : NULL;
+    return remedy && tried && strncmp(tried->valuestring, "tried ", 6) == 0 ? remedy->valuestring
+                                                                            : NULL;
 }

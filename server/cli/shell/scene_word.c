@@ -2,6 +2,7 @@
 #include "cli/shell/scene_word.h"
 
 #include "base/file.h"
+#include "base/units.h"
 #include "cli/shell/args.h"
 #include "cli/shell/notes.h"
 
@@ -90,10 +91,12 @@ static void tell_beyond(const hn_model *model) {
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
         if (p->beyond) {
+            const int digits = hn_digits_apart(p->value, p->value < p->min ? p->min : p->max, 6);
             hn_cli_note(
-                "holonom: %s = %g is outside its range, %g to %g%s%s, of which the texts of "
+                "holonom: %s = %.*g is outside its range, %.*g to %.*g%s%s, of which the texts of "
                 "this scene speak\n",
-                p->name, p->value, p->min, p->max, p->unit[0] ? " " : "", p->unit);
+                p->name, digits, p->value, digits, p->min, digits, p->max, p->unit[0] ? " " : "",
+                p->unit);
         }
     }
 }

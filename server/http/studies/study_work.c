@@ -2,6 +2,7 @@
 #include "http/studies/study_work.h"
 
 #include "base/clock.h"
+#include "base/units.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -70,8 +71,9 @@ static hn_status read_fields(hn_study_work *w, const cJSON *body, const hn_http_
     *limit = isnan(*limit) ? opts->max_run_cpu : *limit;
     if (w->request.time > opts->max_duration) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL,
-                            "the time is %g s; at most %g s are run", w->request.time,
-                            opts->max_duration);
+                            "the time is %.*g s; at most %g s are run",
+                            hn_digits_apart(w->request.time, opts->max_duration, 6),
+                            w->request.time, opts->max_duration);
     }
     return HN_OK;
 }
@@ -106,7 +108,8 @@ hn_status hn_study_work_read(hn_study_work *w, const cJSON *body, const hn_http_
     const double duration = hn_model_scene(w->model)->duration;
     if (isnan(w->request.time) && !(duration <= opts->max_duration)) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "say until when",
-                            "the scene lasts %g s; at most %g s are run", duration,
+                            "the scene lasts %.*g s; at most %g s are run",
+                            hn_digits_apart(duration, opts->max_duration, 6), duration,
                             opts->max_duration);
     }
 

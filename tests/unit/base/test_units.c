@@ -54,10 +54,23 @@ static void round_numbers_are_one_two_or_five(void **state) {
     }
 }
 
+static void two_different_numbers_get_the_digits_that_tell_them_apart(void **state) {
+    (void)state;
+    assert_int_equal(hn_digits_apart(0.00121, 0.0012, 3), 3);
+    assert_int_equal(hn_digits_apart(0.00120004, 0.0012, 3), 6);
+    assert_int_equal(hn_digits_apart(nextafter(0.1, 1), 0.1, 3), 17);
+    assert_int_equal(hn_digits_apart(5, 7, 1), 1);
+
+    // equal numbers have no such digits
+    assert_int_equal(hn_digits_apart(0.0012, 0.0012, 3), 3);
+    assert_int_equal(hn_digits_apart((double)NAN, (double)NAN, 4), 4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_to_three_digits_stand_before_the_point),
         cmocka_unit_test(round_numbers_are_one_two_or_five),
+        cmocka_unit_test(two_different_numbers_get_the_digits_that_tell_them_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
