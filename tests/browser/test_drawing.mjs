@@ -2,6 +2,7 @@
 // What the page draws, without a browser: camera, outlines, order in depth, names, arrows.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { createHistory } from "../../web/state/history.js";
 import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
 import { createNamePlaces } from "../../web/widgets/name-places.js";
 import { createPen, piecesOf } from "../../web/widgets/pieces.js";
@@ -126,4 +127,48 @@ test("arrows keep their scale while the largest can be read, and rounding is no 
   assert.ok(zero.moment > 3e-16 && zero.moment < 1e-9 && zero.force < 1e-9);
   assert.equal(pointAt([0, 0, 0, 1, 2, 3], [1, 2, 3 + 1e-9], 1), 1);
   assert.equal(pointAt([0, 0, 0, 1, 2, 3], [1, 2, 3.1], 1), -1);
+});
+
+/** A history of one point on a circle, that turns by an angle from frame to frame. */
+function turning(angle, count) {
+  const history = createHistory(1, 1, 1);
+  for (let k = 0; k < count; k++) {
+    const points = [Math.cos(k * angle), Math.sin(k * angle), 0];
+    const method = { state: "running", t: k / 50, points, q: [k * angle], v: [50 * angle] };
+    history.push({ frame: k, t: k / 50, generation: 0, methods: [method] });
+  }
+  return history;
+}
+
+test("between two frames a point goes on along its arc, and what is too quick stays at its frame", () => {
+  const slow = turning(0.2, 5);
+  for (const place of [1.1, 1.5, 2.5, 3.9]) {
+    const [x, y] = slow.pointsAt(0, place);
+    const off = Math.hypot(x - Math.cos(0.2 * place), y - Math.sin(0.2 * place));
+    assert.ok(off < 0.2 ** 3 / 15, `${off} off at ${place}`); // the bound of a parabola on a circle
+    assert.ok(Math.abs(slow.coordinatesAt(0, place)[0] - 0.2 * place) < 1e-12);
+    assert.ok(Math.abs(slow.frameAt(place) - place) < 1e-12);
+  }
+  assert.deepEqual(
+    [...slow.pointsAt(0, 3)],
+    [Math.cos(0.6000000000000001), Math.sin(0.6000000000000001), 0],
+  );
+
+  const quick = turning(1, 5);
+  assert.deepEqual([...quick.pointsAt(0, 2.5)], [...quick.pointsAt(0, 2)]);
+});
+
+test("the place of a time is between the frames about it, and never beyond the last", () => {
+  const history = turning(0.2, 4);
+  for (const [time, place] of [
+    [-1, 0],
+    [0, 0],
+    [0.03, 1.5],
+    [0.039, 1.95],
+    [0.05, 2.5],
+    [9, 3],
+  ]) {
+    const found = history.placeAt(time);
+    assert.ok(Math.abs(found - place) < 1e-9, `${time} s is at ${found}`);
+  }
 });

@@ -73,6 +73,56 @@ test("after the recording the computation goes on; at the end Replay starts from
   await soon(async () => assert.equal(await read(page, (data) => data.history.count), frames));
 });
 
+/** The outlines drawn while so many frames pass: in the page, picture by picture. */
+const outlines = (page, frames) =>
+  page.evaluate(
+    (most) =>
+      new Promise((done) => {
+        const { data } = globalThis.holonom;
+        const now = () => (data.view.shown < 0 ? data.history.count - 1 : data.view.shown);
+        const first = now();
+        const seen = new Set();
+        const look = () => {
+          seen.add(document.querySelector(".ghost.selected .outline").getAttribute("d"));
+          if (now() < first + most) {
+            requestAnimationFrame(look);
+          } else {
+            done(seen.size);
+          }
+        };
+        look();
+      }),
+    frames,
+  );
+
+test("in slow motion the picture goes on evenly between frames, live and from the recording; what stands is a frame", async (t) => {
+  const page = await open(t);
+  await page.selectOption("#speed", "0.05");
+  await until(page, (data) => data.speed === 0.05);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.history.count > 3);
+  const live = await outlines(page, 4);
+  assert.ok(live > 12, `${live} pictures of 4 frames as they come`);
+  await page.keyboard.press("Space");
+  await stood(page);
+
+  const outline = () =>
+    page.evaluate(() => document.querySelector(".ghost.selected .outline").getAttribute("d"));
+  const stands = await outline();
+  await page.keyboard.press("ArrowLeft");
+  await soon(async () => assert.notEqual(await outline(), stands));
+  await page.keyboard.press("ArrowRight");
+  await soon(async () => assert.equal(await outline(), stands));
+
+  await page.keyboard.press("Backspace");
+  await until(page, (data) => data.view.shown === 0);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.view.replaying && data.view.shown > 0);
+  const again = await outlines(page, 3);
+  assert.ok(again > 9, `${again} pictures of 3 frames of the recording`);
+});
+
 test("pointing at a plot shows the values of all curves in both plots", async (t) => {
   const page = await open(t);
   await playTo(page, 2);

@@ -41,6 +41,7 @@ export function createPlayback(store, exchange) {
     data.view.shown = from;
     replay.t = data.history.t[from];
     replay.at = performance.now();
+    data.view.moment = replay.t;
     setReplaying(true);
     replay.timer = requestAnimationFrame(tick);
     store.emit("frame");
@@ -68,6 +69,7 @@ export function createPlayback(store, exchange) {
     }
     replay.t += (Math.max(0, time - replay.at) / 1000) * wantedSpeed();
     replay.at = time;
+    view.moment = replay.t;
     const last = lastIndex();
     if (replay.t >= history.t[last]) {
       endReplay();

@@ -4,6 +4,8 @@
 // the whole span stays, at half the resolution. A failed method has its last good values at its
 // end, NaN in its curves from then on, and keeps its last good points.
 
+import { rowAt } from "./between.js";
+
 const BYTES = 32e6;
 const MOST_FRAMES = 8192;
 const FEWEST_FRAMES = 256;
@@ -47,6 +49,11 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     { length: nMethods },
     () => new Float64Array(capacity * 2 * nCoordinates),
   );
+  /** what lies between two frames, by method */
+  const scratch = Array.from({ length: nMethods }, () => ({
+    points: new Float64Array(3 * nPoints),
+    q: new Float64Array(nCoordinates),
+  }));
   /** time at which a method ended early, or NaN */
   const ended = new Float64Array(nMethods).fill(NaN);
   /** code of what ended a method, or "" @type {string[]} */
@@ -156,17 +163,27 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
       return true;
     },
     /**
-     * Points of a method in the i-th kept frame (a view, not a copy).
+     * Points of a method in the i-th kept frame (a view, not a copy). With a fraction: between two
+     * frames, until the next call.
      * @param {number} m
      * @param {number} i
      */
     pointsAt(m, i) {
-      return points[m].subarray(i * 3 * nPoints, (i + 1) * 3 * nPoints);
+      const width = 3 * nPoints;
+      return rowAt({ values: points[m], width, from: 0, size: width }, i, scratch[m].points);
+    },
+    /** Coordinates alone, in the same way. @param {number} m @param {number} i */
+    coordinatesAt(m, i) {
+      const width = 2 * nCoordinates;
+      return rowAt({ values: states[m], width, from: 0, size: nCoordinates }, i, scratch[m].q);
     },
     /** The hand in the i-th kept frame; null: none. @param {number} i */
-    pullAt: (i) => pulls[i] ?? null,
-    /** Which frame of the clock the i-th kept one is. @param {number} i */
-    frameAt: (i) => frames[i],
+    pullAt: (i) => pulls[Math.floor(i)] ?? null,
+    /** Which frame of the clock the i-th kept one is, or a place between two. @param {number} i */
+    frameAt(i) {
+      const low = Math.floor(i);
+      return i === low ? frames[i] : frames[low] + (i - low) * (frames[low + 1] - frames[low]);
+    },
     /**
      * Coordinates and rates of a method in the i-th kept frame (views).
      * @param {number} m
@@ -192,6 +209,13 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
         }
       }
       return low > 0 && time - t[low - 1] < t[low] - time ? low - 1 : low;
+    },
+    /** The place of a time among the kept frames, with its fraction. @param {number} time */
+    placeAt(time) {
+      const near = this.indexAt(time);
+      const low = Math.max(0, t[near] > time ? near - 1 : near);
+      const step = low + 1 < count ? t[low + 1] - t[low] : 0;
+      return step > 0 ? low + Math.min(1, Math.max(0, (time - t[low]) / step)) : low;
     },
     /**
      * Largest magnitude of a quantity up to and including index i.

@@ -62,6 +62,7 @@ function initialView() {
     letters: true,
     stepped: false,
     /** the recording plays */ replaying: false,
+    /** the time that it shows while it plays [s] */ moment: 0,
     /** the recording plays again and again */ loop: false,
     /** the method whose card is open, or -1 */ why: -1,
     /** the drawer of parameters is open */ parameters: false,

@@ -12,6 +12,7 @@ import { createHandles } from "./handles.js";
 import { createLengths } from "./lengths.js";
 import { createLight } from "./light.js";
 import { createMarks } from "./marks.js";
+import { createMotion } from "./motion.js";
 import { createNotices } from "./notices.js";
 import { createStage } from "./stage.js";
 
@@ -97,20 +98,29 @@ export function createDrawing(el, store, actions) {
     return h("button", { type: "button", class: "quiet", "aria-pressed": pressed, onclick }, word);
   }
 
-  function update() {
-    const now = shownIndex(data);
-    if (!data.scene || !data.history || now < 0 || !ghosts.isReady()) {
+  /** @param {number} place among the kept frames, with its fraction */
+  function drawAt(place) {
+    if (!data.scene || !data.history || place < 0 || !ghosts.isReady()) {
       return;
     }
-    depth.draw(now);
+    depth.draw(place);
     if (!stage.camera3) {
-      ghosts.draw(now);
+      ghosts.draw(place);
     }
-    marks.draw(now);
-    hand.draw(now);
+    marks.draw(place);
+    hand.draw(place);
     light.draw();
     lengths.draw();
-    notices.update(now);
+  }
+
+  const draw = () => drawAt(motion.place());
+
+  /** Another frame is shown. */
+  function update() {
+    if (!motion.moves()) {
+      draw();
+    }
+    notices.update(shownIndex(data));
     if (data.state !== "running" && !data.view.replaying) {
       notices.describe(); // the text that stands for the drawing follows what is shown
     }
@@ -126,7 +136,7 @@ export function createDrawing(el, store, actions) {
   function refit() {
     if (data.scene) {
       stage.refresh();
-      update();
+      draw();
     }
   }
 
@@ -136,7 +146,7 @@ export function createDrawing(el, store, actions) {
     if (data.scene) {
       ghosts.make();
       depth.make();
-      update();
+      draw();
     }
   }
 
@@ -153,7 +163,7 @@ export function createDrawing(el, store, actions) {
     if (stage.camera3) {
       fit(); // the motion may go farther than was known
     } else {
-      update();
+      draw();
     }
   }
 
@@ -167,11 +177,12 @@ export function createDrawing(el, store, actions) {
     if (ghosts.isStale()) {
       makeGhosts();
     } else {
-      update();
+      draw();
     }
   }
 
-  const light = createLight(svg, store, stage, () => shownIndex(data));
+  const light = createLight(svg, store, stage, () => motion.place());
+  const motion = createMotion(store, drawAt);
   const depth = createDepth(frame, store, actions, stage, { refit, fit });
   const observer = new ResizeObserver(() => {
     stage.fit();
@@ -186,14 +197,14 @@ export function createDrawing(el, store, actions) {
       notices.clear();
     },
     methods: makeGhosts,
-    reactions: update,
+    reactions: draw,
     drag: () => {
       handles.draw();
       lengths.draw();
     },
     hand: () => {
       hand.say();
-      update();
+      draw();
     },
     reference: makeReference,
     theme: makeGhosts,
@@ -212,13 +223,14 @@ export function createDrawing(el, store, actions) {
     overlay: layers.labels.parentNode,
     /** The solids of a scene in space, drawn now; null: there are none. @param {number} scale */
     solids(scale) {
-      update();
-      return depth.picture(shownIndex(data), scale);
+      draw();
+      return depth.picture(motion.place(), scale);
     },
     update,
     dispose() {
       stop();
       observer.disconnect();
+      motion.dispose();
       depth.dispose();
       light.dispose();
       handles.dispose();

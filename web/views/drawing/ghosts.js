@@ -64,7 +64,7 @@ export function createGhosts(layers, data, stage) {
     }
   }
 
-  /** @param {number} now index of the frame shown */
+  /** @param {number} now place among the kept frames */
   function drawReference(now) {
     const { reference, history, view } = data;
     const points = view.reference ? referenceAt(reference, history.frameAt(now)) : null;
@@ -102,7 +102,7 @@ export function createGhosts(layers, data, stage) {
       }));
       layers.truth.replaceChildren();
     },
-    /** @param {number} now index of the frame shown */
+    /** @param {number} now place among the kept frames, with its fraction */
     draw(now) {
       ghosts.forEach((ghost, m) => {
         if (ghost.group.parentNode) {
@@ -111,7 +111,10 @@ export function createGhosts(layers, data, stage) {
           if (ghost.sorted) {
             sortPieces(ghost, points);
           }
-          ghost.group.classList.toggle("ended", data.history.ended[m] <= data.history.t[now]);
+          ghost.group.classList.toggle(
+            "ended",
+            data.history.ended[m] <= data.history.t[Math.floor(now)],
+          );
         }
       });
       drawReference(now);

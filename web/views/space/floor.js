@@ -6,12 +6,24 @@ import { niceBelow } from "../../state/format.js";
 
 const SHADOW_PIXELS = 1024;
 
+/** What shows shadows alone, just above the grid: all of it is drawn, even where none falls. */
+function makeSheet(width, radius, dark) {
+  const sheet = new THREE.Mesh(
+    new THREE.PlaneGeometry(width, width),
+    new THREE.ShadowMaterial({ opacity: dark ? 0.5 : 0.22 }),
+  );
+  sheet.rotation.x = -Math.PI / 2;
+  sheet.position.y = 1e-3 * radius;
+  sheet.receiveShadow = true;
+  return sheet;
+}
+
 /**
  * @param {{low: number[], high: number[], radius: number, vertical: number}} box of the motion;
  *   vertical: index of the upward axis
- * @param {{line: string, dark: boolean}} look
+ * @param {{line: string, dark: boolean, shadows: boolean}} look
  */
-export function makeFloor({ low, high, radius, vertical }, { line, dark }) {
+export function makeFloor({ low, high, radius, vertical }, { line, dark, shadows }) {
   const group = new THREE.Group();
   const middle = low.map((x, k) => (x + high[k]) / 2);
   const ground = low[vertical] - 0.12 * radius;
@@ -22,15 +34,11 @@ export function makeFloor({ low, high, radius, vertical }, { line, dark }) {
   const grid = new THREE.GridHelper(cells * cell, cells, line, line);
   grid.material.transparent = true;
   grid.material.opacity = dark ? 0.75 : 0.9;
-  const sheet = new THREE.Mesh(
-    new THREE.PlaneGeometry(cells * cell, cells * cell),
-    new THREE.ShadowMaterial({ opacity: dark ? 0.5 : 0.22 }),
-  );
-  sheet.rotation.x = -Math.PI / 2;
-  sheet.position.y = 1e-3 * radius;
-  sheet.receiveShadow = true;
   const floor = new THREE.Group();
-  floor.add(grid, sheet);
+  floor.add(grid);
+  if (shadows) {
+    floor.add(makeSheet(cells * cell, radius, dark));
+  }
   floor.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), up);
   floor.position.set(
     ...middle.map((x, k) => (k === vertical ? ground : Math.round(x / cell) * cell)),
@@ -49,7 +57,7 @@ export function makeFloor({ low, high, radius, vertical }, { line, dark }) {
     .addScaledVector(up, 3 * radius)
     .addScaledVector(aside, 3 * radius);
   sun.target.position.set(...middle);
-  sun.castShadow = true;
+  sun.castShadow = shadows;
   sun.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
   Object.assign(sun.shadow.camera, {
     left: -1.7 * radius,

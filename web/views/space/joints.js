@@ -4,46 +4,59 @@
 // driven joint carries a ring with an arrow.
 import * as THREE from "three";
 import { jointPlace } from "../../state/kinematics.js";
+import { facesOf } from "./solids.js";
 
-const ROUND = 18;
-
-/** A cylinder along z. */
-function rod(radius, length, material) {
-  const geometry = new THREE.CylinderGeometry(radius, radius, length, ROUND);
+/** A cylinder along z, of a number of faces. */
+function rod(radius, length, faces, material) {
+  const geometry = new THREE.CylinderGeometry(radius, radius, length, faces);
   geometry.rotateX(Math.PI / 2);
   return new THREE.Mesh(geometry, material);
 }
 
 /** The same, along x. */
-function rodAlongX(radius, length, material) {
-  const geometry = new THREE.CylinderGeometry(radius, radius, length, ROUND);
+function rodAlongX(radius, length, faces, material) {
+  const geometry = new THREE.CylinderGeometry(radius, radius, length, faces);
   geometry.rotateZ(Math.PI / 2);
   return new THREE.Mesh(geometry, material);
 }
 
-/** @param {number} r of a bar [m] */
+/** A ball of as many faces round it, and half as many from pole to pole. */
+const ball = (radius, faces, material) =>
+  new THREE.Mesh(new THREE.SphereGeometry(radius, faces, Math.ceil(faces / 2)), material);
+
+/** A ring round z, or an arc of it. */
+const hoop = (radius, thick, faces, material, arc = 2 * Math.PI) =>
+  new THREE.Mesh(
+    new THREE.TorusGeometry(radius, thick, Math.ceil(faces / 3), 2 * faces, arc),
+    material,
+  );
+
+/**
+ * Of each type, by r of a bar [m] and n faces round it.
+ * @type {Record<string, (r: number, n: number, of: {pin: any, axis: any}) => any[]>}
+ */
 const GLYPHS = {
-  revolute: (r, { pin, axis }) => [rod(1.45 * r, 3.4 * r, pin), rod(0.28 * r, 13 * r, axis)],
-  prismatic: (r, { axis }) => [rod(0.4 * r, 16 * r, axis)],
-  cylindrical: (r, { pin, axis }) => [rod(1.6 * r, 5 * r, pin), rod(0.5 * r, 18 * r, axis)],
-  universal: (r, { pin, axis }) => [
-    new THREE.Mesh(new THREE.SphereGeometry(1.1 * r, ROUND, ROUND), pin),
-    rod(0.55 * r, 6 * r, axis),
+  revolute: (r, n, { pin, axis }) => [
+    rod(1.45 * r, 3.4 * r, n, pin),
+    rod(0.28 * r, 13 * r, n, axis),
   ],
-  spherical: (r, { pin, axis }) => [
-    new THREE.Mesh(new THREE.SphereGeometry(1.8 * r, ROUND, ROUND), pin),
-    new THREE.Mesh(new THREE.TorusGeometry(1.9 * r, 0.25 * r, 8, 28), axis),
+  prismatic: (r, n, { axis }) => [rod(0.4 * r, 16 * r, n, axis)],
+  cylindrical: (r, n, { pin, axis }) => [
+    rod(1.6 * r, 5 * r, n, pin),
+    rod(0.5 * r, 18 * r, n, axis),
   ],
-  planar: (r, { pin, axis }) => [
+  universal: (r, n, { pin, axis }) => [ball(1.1 * r, n, pin), rod(0.55 * r, 6 * r, n, axis)],
+  spherical: (r, n, { pin, axis }) => [ball(1.8 * r, n, pin), hoop(1.9 * r, 0.25 * r, n, axis)],
+  planar: (r, n, { pin, axis }) => [
     new THREE.Mesh(new THREE.BoxGeometry(7 * r, 7 * r, 0.4 * r), pin),
-    rod(0.25 * r, 9 * r, axis),
+    rod(0.25 * r, 9 * r, n, axis),
   ],
 };
 
 /** An arrow round the axis: this joint is driven. */
-function ring(r, material) {
+function ring(r, faces, material) {
   const arc = 1.6 * Math.PI;
-  const turn = new THREE.Mesh(new THREE.TorusGeometry(3.2 * r, 0.3 * r, 8, 36, arc), material);
+  const turn = hoop(3.2 * r, 0.3 * r, faces, material, arc);
   const head = new THREE.Mesh(new THREE.ConeGeometry(0.95 * r, 2 * r, 10), material);
   head.position.set(3.2 * r * Math.cos(arc), 3.2 * r * Math.sin(arc), 0);
   head.rotation.z = arc;
@@ -80,8 +93,10 @@ function settle(node, { at, axis, ref }) {
  * @param {import("../../state/types.js").Scene} scene
  * @param {number} r half a bar's width [m]
  * @param {{pin: any, axis: any, drive: any}} materials
+ * @param {boolean} coarse
  */
-export function makeJoints(scene, r, materials) {
+export function makeJoints(scene, r, materials, coarse) {
+  const faces = facesOf(coarse);
   const group = new THREE.Group();
   const driven = new Set(
     scene.coordinates.filter(({ actuated }) => actuated).map(({ joint }) => joint),
@@ -92,16 +107,17 @@ export function makeJoints(scene, r, materials) {
       return [];
     }
     const node = new THREE.Group();
-    node.add(...make(r, materials));
+    node.add(...make(r, faces, materials));
     if (driven.has(joint.name)) {
       const slides = joint.type === "prismatic";
-      node.add(slides ? push(r, materials.drive) : ring(r, materials.drive));
+      node.add(slides ? push(r, materials.drive) : ring(r, faces, materials.drive));
     }
     node.userData = { joint: joint.name };
     group.add(node);
 
     // the second axis of a universal joint is the child's
-    const second = joint.type === "universal" ? rodAlongX(0.55 * r, 6 * r, materials.axis) : null;
+    const second =
+      joint.type === "universal" ? rodAlongX(0.55 * r, 6 * r, faces, materials.axis) : null;
     if (second) {
       group.add(second);
     }
@@ -128,13 +144,16 @@ export function makeJoints(scene, r, materials) {
   };
 }
 
-/** Pins at points, where a scene has no joints. @param {any} scene @param {number} r */
-export function makePins(scene, r, material) {
+/**
+ * Pins at points, where a scene has no joints.
+ * @param {any} scene @param {number} r @param {any} material @param {boolean} coarse
+ */
+export function makePins(scene, r, material, coarse) {
   const group = new THREE.Group();
   const shapes = scene.drawing.shapes.filter(({ kind }) => kind === "pivot" || kind === "ground");
-  const geometry = new THREE.SphereGeometry(1.5 * r, ROUND, ROUND);
+  const pin = ball(1.5 * r, facesOf(coarse), material);
   const nodes = shapes.map(({ p }) => {
-    const node = new THREE.Mesh(geometry, material);
+    const node = pin.clone();
     group.add(node);
     return { node, p };
   });

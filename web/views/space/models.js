@@ -6,7 +6,7 @@ import * as THREE from "three";
 import { createKinematics } from "../../state/kinematics.js";
 import { baseOf, drawnPoints, isCrowded } from "../../widgets/pieces.js";
 import { makeJoints, makePins, makeTriad, settleTriad } from "./joints.js";
-import { makeSolid } from "./solids.js";
+import { facesOf, makeSolid } from "./solids.js";
 
 const GHOST = 0.28; // opacity
 const REFERENCE = 0.4;
@@ -35,11 +35,10 @@ export function widthOf(scene, shape = { width: 0 }) {
   return shape.width > 0 ? Math.min(0.5 * shape.width, 2 * usual) : usual;
 }
 
+/** Without gloss: what shines costs twice the time where the processor draws. */
 const solid = (colour, opacity = 1) =>
-  new THREE.MeshStandardMaterial({
+  new THREE.MeshLambertMaterial({
     color: colour,
-    roughness: 0.62,
-    metalness: 0.05,
     transparent: opacity < 1,
     opacity,
     depthWrite: opacity === 1,
@@ -48,17 +47,19 @@ const solid = (colour, opacity = 1) =>
 /**
  * The solids of all moving bodies.
  * @param {import("../../state/types.js").Scene} scene
- * @param {any} material
- * @param {boolean} shadow
- * @param {number} slim part of the usual width: what coincides lies inside the thicker one
+ * @param {{material: any, shadow: boolean, coarse: boolean, slim?: number}} how slim: part of the
+ *   usual width; what coincides lies inside the thicker one
  */
-function makeBodies(scene, material, shadow, slim = 1) {
+function makeBodies(scene, { material, shadow, coarse, slim = 1 }) {
+  const faces = facesOf(coarse);
   const group = new THREE.Group();
   const { solid: base, marks } = baseOf(scene);
   const still = new Set([...base, ...marks]);
   const places = scene.drawing.shapes.flatMap((shape) => {
     const radius = slim * widthOf(scene, shape);
-    const made = still.has(shape) ? null : makeSolid(shape, scene.points, { radius, material });
+    const made = still.has(shape)
+      ? null
+      : makeSolid(shape, scene.points, { radius, material, faces });
     if (made) {
       group.add(made.node);
     }
@@ -71,14 +72,19 @@ function makeBodies(scene, material, shadow, slim = 1) {
   return { group, place: (points) => places.forEach((place) => place(points)) };
 }
 
-/** What stands on the ground: solids, guides, posts. @param {any} floor @param {string} colour */
-export function makeBase(scene, floor, colour) {
+/**
+ * What stands on the ground: solids, guides, posts.
+ * @param {any} floor @param {string} colour @param {boolean} coarse
+ */
+export function makeBase(scene, floor, colour, coarse) {
+  const faces = facesOf(coarse);
   const group = new THREE.Group();
   const material = solid(colour);
   const { solid: base, marks } = baseOf(scene);
   const r = widthOf(scene);
   for (const shape of base) {
-    const made = makeSolid(shape, scene.points, { radius: widthOf(scene, shape), material });
+    const how = { radius: widthOf(scene, shape), material, faces };
+    const made = makeSolid(shape, scene.points, how);
     made?.place(scene.points);
     if (made) {
       group.add(made.node);
@@ -168,16 +174,17 @@ function makeBeam(p, q, { ground, up }, r, material) {
 /**
  * One method.
  * @param {import("../../state/types.js").Scene} scene
- * @param {{colour: string, selected: boolean, ink: string, pale: string}} look of pins: pale
+ * @param {{colour: string, selected: boolean, ink: string, pale: string, coarse: boolean}} look
+ *   pale: of pins
  */
-export function makeModel(scene, { colour, selected, ink, pale }) {
+export function makeModel(scene, { colour, selected, ink, pale, coarse }) {
   const group = new THREE.Group();
-  const bodies = makeBodies(
-    scene,
-    solid(colour, selected ? 1 : GHOST),
-    selected,
-    selected ? 1 : 0.86,
-  );
+  const bodies = makeBodies(scene, {
+    material: solid(colour, selected ? 1 : GHOST),
+    shadow: selected,
+    coarse,
+    slim: selected ? 1 : 0.86,
+  });
   group.add(bodies.group);
   if (!selected) {
     return { group, place: (points) => bodies.place(points), showFrames() {} };
@@ -187,9 +194,9 @@ export function makeModel(scene, { colour, selected, ink, pale }) {
   const pin = solid(pale);
   const kinematics = createKinematics(scene);
   const joints = scene.joints?.length
-    ? makeJoints(scene, r, { pin, axis: solid(ink), drive: solid(ink) })
+    ? makeJoints(scene, r, { pin, axis: solid(ink), drive: solid(ink) }, coarse)
     : null;
-  const pins = joints ? null : makePins(scene, r, pin);
+  const pins = joints ? null : makePins(scene, r, pin, coarse);
   const triads = (scene.bodies ?? []).map(() => makeTriad(0.16 * scene.length));
   triads.forEach((triad) => {
     triad.userData = { hidden: true };
@@ -223,9 +230,10 @@ export function makeModel(scene, { colour, selected, ink, pale }) {
   };
 }
 
-/** The reference solution, grey. */
-export function makeReference(scene, colour) {
-  const bodies = makeBodies(scene, solid(colour, REFERENCE), false, 0.72);
+/** The reference solution, grey. @param {string} colour @param {boolean} coarse */
+export function makeReference(scene, colour, coarse) {
+  const material = solid(colour, REFERENCE);
+  const bodies = makeBodies(scene, { material, shadow: false, coarse, slim: 0.72 });
   bodies.group.visible = false;
   return bodies;
 }

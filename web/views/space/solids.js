@@ -4,7 +4,8 @@
 // a mesh and `place(points)`, that moves it.
 import * as THREE from "three";
 
-const ROUND = 14; // faces round a bar
+const FINE = 16; // faces round a bar
+const COARSE = 9; // where the processor draws, and every triangle costs time
 const COILS = 8;
 const COIL_STEPS = 14; // per turn
 
@@ -12,6 +13,9 @@ const Y = new THREE.Vector3(0, 1, 0);
 const from = new THREE.Vector3();
 const to = new THREE.Vector3();
 const along = new THREE.Vector3();
+
+/** Faces round whatever is round. @param {boolean} coarse */
+export const facesOf = (coarse) => (coarse ? COARSE : FINE);
 
 /** @param {THREE.Vector3} v @param {ArrayLike<number>} points @param {number} i */
 const take = (v, points, i) => v.set(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
@@ -44,9 +48,9 @@ function lengthOf(points, { p, q }) {
 }
 
 /** A round bar with round ends. */
-function bar(shape, points, { radius, material }) {
+function bar(shape, points, { radius, material, faces }) {
   const length = lengthOf(points, shape);
-  const geometry = new THREE.CapsuleGeometry(radius, length, 5, ROUND);
+  const geometry = new THREE.CapsuleGeometry(radius, length, Math.ceil(faces / 4), faces);
   geometry.translate(0, length / 2, 0);
   const node = new THREE.Mesh(geometry, material);
   return { node, place: stretch(node, shape, length) };
@@ -76,9 +80,9 @@ function spring(shape, points, { radius, material }) {
 }
 
 /** A pot, and a rod that goes into it. */
-function damper(shape, points, { radius, material }) {
+function damper(shape, points, { radius, material, faces }) {
   const length = lengthOf(points, shape);
-  const pot = new THREE.CylinderGeometry(radius, radius, 0.55 * length, ROUND, 1, true);
+  const pot = new THREE.CylinderGeometry(radius, radius, 0.55 * length, faces, 1, true);
   pot.translate(0, 0.28 * length, 0);
   const rod = new THREE.CylinderGeometry(0.3 * radius, 0.3 * radius, 0.6 * length, 8);
   rod.translate(0, 0.7 * length, 0);
@@ -168,7 +172,7 @@ const MAKERS = { bar, spring, damper, slider, polygon, arrow: load };
 /**
  * @param {import("../../state/types.js").Shape} shape
  * @param {ArrayLike<number>} points at which it is made
- * @param {{radius: number, material: any}} how
+ * @param {{radius: number, material: any, faces: number}} how faces: round a bar
  * @returns {{node: any, place: (points: ArrayLike<number>) => void} | null} null: not a solid
  */
 export function makeSolid(shape, points, how) {

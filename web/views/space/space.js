@@ -112,16 +112,19 @@ export function createSpace(frame, store, actions, drawing) {
     }
     const dark = data.theme === "dark";
     const colours = { ink: colourOf("--ink"), pale: colourOf(dark ? "--edge" : "--paper") };
-    const floor = makeFloor(boxOf(scene), { line: colourOf("--hairline"), dark });
-    const base = makeBase(scene, floor, colourOf("--edge"));
+    const { coarse } = pace;
+    const look = { line: colourOf("--hairline"), dark, shadows: !coarse };
+    const floor = makeFloor(boxOf(scene), look);
+    const base = makeBase(scene, floor, colourOf("--edge"), coarse);
     const ghosts = data.methods.map(({ slot }, m) =>
       makeModel(scene, {
         ...colours,
         colour: data.look.slots[slot][data.theme],
         selected: m === data.view.selected,
+        coarse,
       }),
     );
-    const reference = makeReference(scene, colourOf("--reference"));
+    const reference = makeReference(scene, colourOf("--reference"), coarse);
     const traced = scene.drawing.shapes.filter(({ kind }) => kind === "trace");
     const which = (traced.length ? traced : scene.drawing.tears).map(({ p }) => p);
     const { slot } = data.methods[data.view.selected];
@@ -129,7 +132,7 @@ export function createSpace(frame, store, actions, drawing) {
       p,
       ...createTrail(
         0.45 * widthOf(scene),
-        new THREE.MeshStandardMaterial({ color: data.look.slots[slot][data.theme], roughness: 1 }),
+        new THREE.MeshLambertMaterial({ color: data.look.slots[slot][data.theme] }),
       ),
     }));
     world.add(
@@ -325,7 +328,7 @@ export function createSpace(frame, store, actions, drawing) {
       made.ghosts.forEach((ghost, m) => {
         ghost.group.visible = !view.hidden.has(m);
         if (ghost.group.visible) {
-          ghost.place(history.pointsAt(m, now), history.stateAt(m, now).q);
+          ghost.place(history.pointsAt(m, now), history.coordinatesAt(m, now));
         }
       });
       drawReference(now);
