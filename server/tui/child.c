@@ -79,8 +79,10 @@ bool hn_child_start(hn_child *child, const char *const *arguments, int columns) 
 }
 
 static void forget(hn_child *child) {
+    int status = -1;
     close(child->output);
-    waitpid(child->pid, NULL, 0);
+    waitpid(child->pid, &status, 0);
+    child->status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     child->pid = 0;
 }
 

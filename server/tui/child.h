@@ -12,6 +12,7 @@
 typedef struct hn_child {
     pid_t pid; ///< 0: none
     int output;
+    int status; ///< how the one before ended: its exit status; -1: by a signal
 } hn_child;
 
 /// Starts `holonom` with these arguments (NULL ends them; without the program's name), and tells it

@@ -347,12 +347,25 @@ static void add_hints(hn_strbuf *b, const hn_tui_exercise *x) {
     hn_variant_reset(&variant);
 }
 
+/// What each answer is worth, where they differ: "2 of 5 answers" are not 2 points then.
+static void add_worth(hn_strbuf *b, const hn_verdict *v) {
+    if (v->max_score == v->n_entries || v->score >= v->max_score) {
+        return;
+    }
+    hn_strbuf_printf(b, "%d answers are checked, worth", v->n_entries);
+    for (int i = 0; i < v->n_entries; i++) {
+        hn_strbuf_printf(b, "%s %s %g", i > 0 ? "," : "", v->entry[i].name, v->entry[i].max_points);
+    }
+    hn_strbuf_add(b, " points; one that is partly right earns a part of them\n");
+}
+
 /// The verdict on the whole, or what keys there are for it.
 static void add_end(hn_strbuf *b, const hn_tui_exercise *x) {
     const hn_verdict *v = x->verdict;
     if (x->checked && v->kind == HN_VERDICT_GRADED) {
         hn_strbuf_printf(b, "%g of %g points: %s\n%s%s", v->score, v->max_score, v->summary,
                          v->note, v->note[0] ? "\n" : "");
+        add_worth(b, v);
     } else if (x->checked) {
         hn_strbuf_printf(b, "not graded: %s%s%s\n", v->reason, v->hint[0] ? "; " : "", v->hint);
     } else {

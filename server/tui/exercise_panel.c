@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/exercise_panel.h"
 
+#include "tui/best_scores.h"
 #include "tui/keys.h"
 #include "tui/text_panel.h"
 
@@ -46,7 +47,10 @@ static void check(hn_workbench *w) {
     const hn_verdict *v = hn_tui_exercise_verdict(w->exercise);
     write_text(w, true);
     if (v->kind == HN_VERDICT_GRADED) {
-        hn_workbench_say(w, "%g of %g points: %s", v->score, v->max_score, v->summary);
+        const char *id = hn_tui_exercise_id(w->exercise);
+        const bool kept = hn_best_scores_keep(id, v->score, v->max_score, &diag) == HN_OK;
+        hn_workbench_say(w, "%g of %g points: %s%s%s", v->score, v->max_score, v->summary,
+                         kept ? "" : "; this score is not kept: ", kept ? "" : diag.message);
     } else {
         hn_workbench_say(w, "not graded: %s", v->reason);
     }

@@ -17,7 +17,8 @@ typedef struct hn_joint_forces {
     double *q, *v, *a; ///< the state in system coordinates, its accelerations
     const double *at;  ///< the coordinates that were given last; NULL: none yet
 
-    int first; ///< line of the view that is shown first
+    int first;      ///< line of the view that is shown first
+    double longest; ///< [N] what the longest arrow stands for; 0: none drawn yet
 
     // of that state
     hn_status status; ///< HN_OK, or why there are no forces

@@ -43,7 +43,7 @@ enum {
     X(WHY, 'i', "i", "why: the incidents of the method")           \
     X(REACTIONS, 'r', "r", "reactions: multipliers, joint forces") \
     X(PICTURES, 'c', "c", "characters or pictures, if shown here") \
-    X(STEP, 'd', "d", "type another step dt")                      \
+    X(STEP, 'd', "d", "type another step dt for all methods")      \
     X(PARAMETERS, 'p', "p", "change parameters")                   \
     X(METHODS, 'm', "m", "add, change or remove methods")          \
     X(SCENES, 's', "s", "choose another scene")                    \

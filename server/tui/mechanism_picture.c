@@ -7,7 +7,9 @@
 #include "render/snapshot.h"
 #include "terminal/kitty_image.h"
 #include "terminal/sixel_image.h"
+#include "tui/force_arrows.h"
 #include "tui/mechanism_view.h"
+#include "tui/reactions_view.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,6 +25,7 @@ typedef struct subject {
     const hn_envelope *envelope;
     hn_snapshot_pose poses[HN_COMPARISON_MAX_METHODS + 1];
     int n_poses;
+    hn_force_arrows arrows;
 } subject;
 
 static void add_pose(subject *s, const double *points, int slot, bool selected) {
@@ -56,6 +59,8 @@ static subject subject_of(const hn_workbench *w) {
             add_pose(&s, track->points + (size_t)frame * n, track->slot, m == w->selected);
         }
     }
+    hn_reactions_update(w);
+    hn_force_arrows_take(w, &s.arrows);
     return s;
 }
 
@@ -67,6 +72,9 @@ static uint64_t hash_of(const subject *s, int theme) {
         hash = hn_hash_double(hash, 2 * pose->slot + pose->selected);
         hash = hn_hash_bytes(hash, pose->points,
                              3 * (size_t)s->drawing.n_points * sizeof *pose->points);
+    }
+    for (int i = 0; i < s->arrows.n; i++) {
+        hash = hn_hash_bytes(hash, s->arrows.load[i].force, sizeof s->arrows.load[i].force);
     }
     return hash;
 }
@@ -95,6 +103,9 @@ static unsigned char *paint(const subject *s, int theme, int width, int height,
     hn_snapshot_opts opts = hn_snapshot_opts_default();
     opts.bare = true;
     opts.look = s->envelope->look;
+    opts.loads = s->arrows.load;
+    opts.n_loads = s->arrows.n;
+    opts.longest_load = s->arrows.longest;
     if (box[2] > box[0]) {
         opts.view[0] = box[0];
         opts.view[1] = box[2];

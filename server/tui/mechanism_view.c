@@ -3,11 +3,18 @@
 
 #include "base/units.h"
 #include "render/look.h"
+#include "tui/force_arrows.h"
 
 #include <math.h>
 #include <stdio.h>
 
 enum { ACROSS = HN_DOTS_ACROSS, DOWN = HN_DOTS_DOWN };
+
+static const double ARROW_SHARE = 0.3;    // of the smaller side, for the longest arrow
+static const double SHORTEST_ARROW = 2.5; // [dots]
+static const double HEAD = 3;             // [dots] of its strokes, along the arrow
+static const double HEAD_WIDTH = 0.6;     // of that, across the arrow
+static const double NAME_DISTANCE = 4.5;  // [dots] of its size from the tip: another cell
 
 typedef struct placing {
     const hn_model *model;
@@ -150,6 +157,82 @@ static void scale_bar(hn_cells *c, hn_area area, const placing *p) {
     hn_cells_put(c, area, 2 + columns, area.rows - 1, HN_CELL_MUTED, 0, text);
 }
 
+/// A force in dots: where it acts, and how far it reaches from there.
+typedef struct force_line {
+    double x, y, dx, dy, length;
+} force_line;
+
+/// False: it is too short to be seen.
+static bool lay_force(const placing *p, const hn_snapshot_load *load, double dots_per_newton,
+                      force_line *out) {
+    double from[2], force[2];
+    hn_view_project(&p->envelope->look, load->place, from);
+    hn_view_project(&p->envelope->look, load->force, force);
+    const double dx = dots_per_newton * force[0], dy = -dots_per_newton * force[1];
+    *out =
+        (force_line){p->x + p->scale * from[0], p->y - p->scale * from[1], dx, dy, hypot(dx, dy)};
+    return out->length >= SHORTEST_ARROW;
+}
+
+static double dots_per_newton(hn_area area, const hn_force_arrows *arrows) {
+    return ARROW_SHARE * fmin(area.columns * ACROSS, area.rows * DOWN) / arrows->longest;
+}
+
+/// A shaft each, and two strokes back from the tip.
+static void draw_forces(hn_area area, const placing *p, const hn_force_arrows *arrows) {
+    for (int i = 0; i < arrows->n; i++) {
+        force_line f;
+        if (!lay_force(p, &arrows->load[i], dots_per_newton(area, arrows), &f)) {
+            continue;
+        }
+        const double ux = HEAD * f.dx / f.length, uy = HEAD * f.dy / f.length;
+        const double x = f.x + f.dx, y = f.y + f.dy;
+        hn_dots_line(p->dots, f.x, f.y, x, y, HN_CELL_ALARM, 1, 0);
+        for (int side = -1; side <= 1; side += 2) {
+            hn_dots_line(p->dots, x, y, x - ux - side * HEAD_WIDTH * uy,
+                         y - uy + side * HEAD_WIDTH * ux, HN_CELL_ALARM, 1, 0);
+        }
+    }
+}
+
+/// Whether nothing stands in n cells, nor in the one before and the one behind.
+static bool is_free(const hn_cells *c, hn_area area, int x, int y, int n) {
+    if (x < 0 || y < 0 || y >= area.rows || x + n > area.columns) {
+        return false;
+    }
+    for (int k = x > 0 ? x - 1 : 0; k < x + n + 1 && k < area.columns; k++) {
+        const hn_cell *cell = &c->at[(area.y + y) * c->columns + area.x + k];
+        if (cell->glyph[0] && cell->glyph[0] != ' ') {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// The size of each force beyond its tip, where nothing else stands there; all are in the list.
+static void name_forces(hn_cells *c, hn_area area, const placing *p,
+                        const hn_force_arrows *arrows) {
+    for (int i = 0; i < arrows->n; i++) {
+        const double *force = arrows->load[i].force;
+        char text[HN_SI_TEXT];
+        force_line f;
+        if (!lay_force(p, &arrows->load[i], dots_per_newton(area, arrows), &f)) {
+            continue;
+        }
+        hn_si_format(hypot(hypot(force[0], force[1]), force[2]), "N", 2, text);
+        const int wide = hn_text_columns(text);
+
+        // before or behind the tip, or in the middle above or below it
+        const double beyond = 1 + NAME_DISTANCE / f.length;
+        const int aside = fabs(f.dx) < fabs(f.dy) ? -wide / 2 : f.dx < 0 ? -wide : 0;
+        const int x = (int)floor((f.x + beyond * f.dx) / ACROSS) + aside;
+        const int y = (int)floor((f.y + beyond * f.dy) / DOWN);
+        if (is_free(c, area, x, y, wide)) {
+            hn_cells_put(c, area, x, y, HN_CELL_ALARM, 0, text);
+        }
+    }
+}
+
 /// The methods as they are now, or the mechanism that is dragged.
 static void draw_present(placing *p, const hn_workbench *w) {
     const int frame = hn_workbench_frame(w);
@@ -178,9 +261,13 @@ void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
         return;
     }
     placing p = place(w->model, &w->envelope, area, &dots);
+    hn_force_arrows arrows;
+    hn_force_arrows_take(w, &arrows);
     draw_present(&p, w);
     scale_bar(c, area, &p);
+    draw_forces(area, &p, &arrows);
     hn_dots_show(c, area, &dots, w->form);
+    name_forces(c, area, &p, &arrows);
     hn_dots_free(&dots);
 }
 

@@ -2,11 +2,11 @@
 #include "tui/methods.h"
 
 #include "base/units.h"
+#include "tui/seconds.h"
 #include "tui/versions.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct kept {
@@ -53,26 +53,24 @@ static bool is_adaptive(const char *spelling) {
     return hn_method_parse(spelling, &spec, &diag) == HN_OK && hn_method_is_adaptive(&spec);
 }
 
-void hn_methods_set_step(hn_workbench *w, char *text) {
+void hn_methods_set_step(hn_workbench *w, const char *text) {
     kept before;
-    char *end;
-    for (char *c = text; *c; c++) {
-        *c = *c == ',' ? '.' : *c;
-    }
-    const double h = strtod(text, &end);
-    const double scale = strncmp(end + strspn(end, " "), "ms", 2) == 0 ? 1e-3 : 1;
-    if (end == text || !(h > 0) || !isfinite(h)) {
+    double h;
+    if (!hn_seconds_read(text, &h)) {
         hn_workbench_say(w, "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms", text);
         return;
     }
     keep(&before, w);
+    int n = 0;
     for (int i = 0; i < w->n_methods; i++) {
-        if (!is_adaptive(w->methods[i])) {
-            set_option(w->methods[i], "h", h * scale);
-        }
+        n += !is_adaptive(w->methods[i]) && set_option(w->methods[i], "h", h);
     }
-    if (record_again(w, &before)) {
-        hn_workbench_say(w, "dt = %g s", h * scale);
+    if (n == 0) {
+        hn_workbench_say(w, "no method here has a fixed step: all choose it by a tolerance (m)");
+    } else if (record_again(w, &before)) {
+        hn_workbench_say(w, "dt = %g s for %s%s", h,
+                         n == w->n_methods ? "every method" : "the methods of fixed step",
+                         n == w->n_methods ? "" : "; the others choose it by a tolerance");
     }
 }
 
@@ -89,12 +87,34 @@ void hn_methods_put(hn_workbench *w, int at, const char *spelling) {
     record_again(w, &before);
 }
 
-void hn_methods_add(hn_workbench *w, const char *spelling) {
-    int at = 0;
-    while (at < w->n_methods && strcmp(w->methods[at], spelling) != 0) {
-        at++;
+/// The one way to spell a method; false: it is no spelling of any.
+static bool canonical(const char *spelling, char out[HN_SPEC_MAX]) {
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    if (hn_method_parse(spelling, &spec, &diag) != HN_OK) {
+        return false;
     }
-    if (at == w->n_methods) {
+    hn_method_format(&spec, out);
+    return true;
+}
+
+int hn_methods_find(const hn_workbench *w, const char *spelling) {
+    char wanted[HN_SPEC_MAX], there[HN_SPEC_MAX];
+    if (!canonical(spelling, wanted)) {
+        return -1;
+    }
+    for (int m = 0; m < w->n_methods; m++) {
+        if (canonical(w->methods[m], there) && strcmp(there, wanted) == 0) {
+            return m;
+        }
+    }
+    return -1;
+}
+
+void hn_methods_add(hn_workbench *w, const char *spelling) {
+    int at = hn_methods_find(w, spelling);
+    if (at < 0) {
+        at = w->n_methods;
         hn_methods_put(w, at, spelling);
     }
     if (at < w->n_methods) {

@@ -7,14 +7,17 @@
 #include "tui/workbench.h"
 
 /// Another step for every method of fixed step: "0.01", "0,01" or "20 ms".
-void hn_methods_set_step(hn_workbench *w, char *text);
+void hn_methods_set_step(hn_workbench *w, const char *text);
 /// Replaces method `at`, or adds one behind the last.
 void hn_methods_put(hn_workbench *w, int at, const char *spelling);
-/// The last one stays.
+/// The place of a method with the same formulation, integrator and options, however it is spelled;
+/// -1: it is not compared.
+int hn_methods_find(const hn_workbench *w, const char *spelling);
 /// Adds a method, or finds it where it is already compared, and selects it.
 void hn_methods_add(hn_workbench *w, const char *spelling);
 /// Sets an option of the selected method: "h". What it was before is said.
 void hn_methods_set_one(hn_workbench *w, const char *key, double value);
+/// The last one stays.
 void hn_methods_remove(hn_workbench *w, int at);
 /// Alpha and beta of the method with this spelling; it is added where it is not compared yet. Says
 /// what the worst gap and energy change were before.

@@ -11,6 +11,7 @@
 #include "session/model/equations.h"
 #include "session/model/lists.h"
 #include "terminal/short_spelling.h"
+#include "tui/best_scores.h"
 #include "tui/exercise_panel.h"
 #include "tui/list.h"
 #include "tui/methods.h"
@@ -99,16 +100,29 @@ static void list_parameters(hn_workbench *w) {
     list_starts(w);
 }
 
+/// An exercise with the best score that was reached.
+static void list_exercise(hn_workbench *w, const cJSON *exercise, const cJSON *scores) {
+    char about[HN_TUI_LINE];
+    double score, most;
+    const char *id = text_of(exercise, "id"), *title = text_of(exercise, "title");
+    snprintf(about, sizeof about, "%.200s", title);
+    if (hn_best_scores_find(scores, id, &score, &most)) {
+        snprintf(about, sizeof about, "best %g of %g: %.200s", score, most, title);
+    }
+    hn_item *item = hn_list_add(w, id, about);
+    if (item) {
+        item->is_exercise = true;
+    }
+}
+
 /// A lesson, then its exercises.
-static void list_lesson(hn_workbench *w, const cJSON *lesson, const cJSON *exercises) {
+static void list_lesson(hn_workbench *w, const cJSON *lesson, const cJSON *exercises,
+                        const cJSON *scores) {
     const cJSON *one;
     hn_list_add(w, text_of(lesson, "id"), text_of(lesson, "title"));
     cJSON_ArrayForEach(one, exercises) {
         if (strcmp(text_of(one, "lesson"), text_of(lesson, "id")) == 0) {
-            hn_item *item = hn_list_add(w, text_of(one, "id"), text_of(one, "title"));
-            if (item) {
-                item->is_exercise = true;
-            }
+            list_exercise(w, one, scores);
         }
     }
 }
@@ -121,11 +135,12 @@ static void list_lessons(hn_workbench *w) {
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
     hn_strbuf_clear(&b);
     hn_shelf_exercises_json(&b, w->library);
-    cJSON *exercises = cJSON_Parse(hn_strbuf_text(&b));
+    cJSON *exercises = cJSON_Parse(hn_strbuf_text(&b)), *scores = hn_best_scores_load();
     hn_list_begin(w, HN_LIST_LESSONS, "lessons and exercises: Enter opens, Esc goes back");
     cJSON_ArrayForEach(lesson, cJSON_GetObjectItem(document, "lessons")) {
-        list_lesson(w, lesson, cJSON_GetObjectItem(exercises, "problems"));
+        list_lesson(w, lesson, cJSON_GetObjectItem(exercises, "problems"), scores);
     }
+    cJSON_Delete(scores);
     cJSON_Delete(exercises);
     cJSON_Delete(document);
     hn_strbuf_reset(&b);

@@ -6,6 +6,7 @@
 #include "tui/exercise_panel.h"
 #include "tui/keys.h"
 #include "tui/methods.h"
+#include "tui/study_panel.h"
 #include "tui/text_panel.h"
 
 #include <math.h>
@@ -136,6 +137,7 @@ static void accept_export(hn_workbench *w) {
     }
     const char *const words[] = {"export", w->scene, "--language", chosen, "--out", w->input};
     hn_text_panel_run(w, "export: Esc goes back", words, 6);
+    snprintf(w->writes, sizeof w->writes, "%s", w->input);
 }
 
 /// The error for which the cheapest method is wanted; the study says which that is.
@@ -148,6 +150,10 @@ static void accept_wanted(hn_workbench *w) {
     }
     snprintf(w->wanted, sizeof w->wanted, "%.31s", w->input);
     w->scroll = 0;
+}
+
+static void accept_study_time(hn_workbench *w) {
+    hn_study_panel_set_time(w, w->input);
 }
 
 /// Cuts the line after its first n characters.
@@ -174,7 +180,8 @@ void hn_prompt_key(hn_workbench *w, int key) {
                                                      [HN_PROMPT_PARAMETER] = accept_parameter,
                                                      [HN_PROMPT_EXPORT] = accept_export,
                                                      [HN_PROMPT_ANSWER] = hn_exercise_panel_accept,
-                                                     [HN_PROMPT_WANTED] = accept_wanted};
+                                                     [HN_PROMPT_WANTED] = accept_wanted,
+                                                     [HN_PROMPT_STUDY_TIME] = accept_study_time};
 
     // Escape forgets the line, Enter hands it over
     if (key == HN_KEY_ESCAPE) {

@@ -43,6 +43,23 @@ static void put_words(page *p, int colour, const char *text) {
     p->line++;
 }
 
+/// A sentence of plain characters, in as many lines as it needs.
+static void put_folded(page *p, const char *text) {
+    const size_t width = p->area.columns > 0 ? (size_t)p->area.columns : 1;
+    char line[160];
+    while (*text) {
+        size_t n = strlen(text);
+        if (n > width) {
+            for (n = width; n > 0 && text[n] != ' '; n--) {}
+            n = n > 0 ? n : width;
+        }
+        snprintf(line, sizeof line, "%.*s", (int)n, text);
+        put_words(p, HN_CELL_MUTED, line);
+        text += n;
+        text += *text == ' ';
+    }
+}
+
 /// The columns of the names where n numbers stand behind them.
 static int name_columns(const page *p, int n) {
     const int left = p->area.columns - n * NUMBER_COLUMNS;
@@ -174,11 +191,25 @@ static void put_multipliers(page *p, const hn_joint_forces *r) {
     }
     snprintf(line, sizeof line, "multipliers lambda: %s", hn_multiplier_marks[r->mark]);
     put_words(p, r->mark == HN_MULTIPLIERS_DETERMINED ? HN_CELL_MUTED : HN_CELL_ALARM, line);
+    put_words(p, HN_CELL_MUTED, "forces (moments) that keep the loop closed");
     for (int i = 0; i < n && r->status == HN_OK; i++) {
         snprintf(line, sizeof line, "%.60s%s", hn_system_row_name(sys, i),
                  hn_system_row_is_length(sys, i) ? " [N]" : "");
         put_numbers(p, line, &r->lambda[i], 1, 0);
     }
+}
+
+void hn_reactions_update(const hn_workbench *w) {
+    hn_joint_forces *r = w->forces;
+    if (!w->reactions || !r) {
+        return;
+    }
+    const hn_track *track = hn_recording_track(w->recording, w->selected);
+    const hn_system_info info = hn_system_get_info(hn_model_system(r->model));
+    const int frame = hn_workbench_frame(w);
+    const size_t first = (size_t)frame * (size_t)info.n_user;
+    hn_joint_forces_calc(r, hn_recording_time(w->recording, frame), track->q + first,
+                         track->v + first, track->gap[frame]);
 }
 
 void hn_reactions_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
@@ -191,10 +222,6 @@ void hn_reactions_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     if (!r) {
         return;
     }
-    const hn_system_info info = hn_system_get_info(hn_model_system(r->model));
-    const size_t first = (size_t)frame * (size_t)info.n_user;
-    hn_joint_forces_calc(r, hn_recording_time(w->recording, frame), track->q + first,
-                         track->v + first, track->gap[frame]);
     if (r->status != HN_OK) {
         hn_cells_fold(c, in, 0, HN_CELL_ALARM,
                       isfinite(track->gap[frame])
@@ -211,6 +238,8 @@ void hn_reactions_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
         put_forces(&p, reactions);
         put_efforts(&p, cJSON_GetObjectItem(r->document, "efforts"));
         put_words(&p, HN_CELL_MUTED, "forces on the body named; world axes");
+        put_folded(&p, "Each multiplier is the force (or moment) with which one loop constraint "
+                       "holds the loop closed; J' lambda are these forces along the coordinates.");
         const int most = p.line > in.rows ? p.line - in.rows : 0;
         r->first = r->first < most ? r->first : most;
     }

@@ -17,6 +17,9 @@
 void hn_reactions_toggle(hn_workbench *w);
 /// Moves the lines by half a page, down (1) or up (-1).
 void hn_reactions_scroll(hn_workbench *w, int by);
-/// Draws the view; w->forces keeps the numbers of the last frame that was drawn.
+/// Computes the forces of the selected method at the frame shown, into w->forces; nothing while the
+/// view is closed.
+void hn_reactions_update(const hn_workbench *w);
+/// Draws the view with the numbers of hn_reactions_update().
 void hn_reactions_draw(hn_cells *c, hn_area area, const hn_workbench *w);
 #endif

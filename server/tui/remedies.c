@@ -27,11 +27,19 @@ static bool is_recorded(const hn_workbench *w) {
 static void list_remedies(hn_workbench *w, const hn_incident *incident) {
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
         const char *tried = incident->tried[k];
+        const int runs = hn_methods_find(w, incident->remedy[k]);
         if (!is_listed(w, incident->remedy[k])) {
-            char words[2 * HN_TUI_LINE];
-            const char *yet = is_recorded(w) ? "not tried" : "not tried yet";
-            snprintf(words, sizeof words, "%s, against: %.400s", yet, incident->message);
-            hn_list_add(w, incident->remedy[k], tried[0] ? tried : words);
+            char words[2 * HN_TUI_LINE], already[48] = "";
+            if (runs >= 0) {
+                snprintf(already, sizeof already, "runs already as method %d; ", runs + 1);
+            }
+            if (tried[0]) {
+                snprintf(words, sizeof words, "%s%s", already, tried);
+            } else {
+                snprintf(words, sizeof words, "%s%s, against: %.400s", already,
+                         is_recorded(w) ? "not tried" : "not tried yet", incident->message);
+            }
+            hn_list_add(w, incident->remedy[k], words);
         }
     }
 }
@@ -64,7 +72,11 @@ void hn_remedies_take(hn_workbench *w) {
     if (sscanf(remedy, "%31[a-z_A-Z] = %lf%n", key, &value, &end) == 2 && remedy[end] == '\0') {
         hn_methods_set_one(w, key, value);
     } else if (strchr(remedy, '@') && !strchr(remedy, ' ')) {
+        const int runs = hn_methods_find(w, remedy);
         hn_methods_add(w, remedy);
+        if (runs >= 0) {
+            hn_workbench_say(w, "%s runs already: it is method %d, now selected", remedy, runs + 1);
+        }
     } else {
         hn_workbench_say(w, "%s", remedy);
     }

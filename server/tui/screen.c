@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "cli/shell/plain.h"
+#include "render/look.h"
 #include "tui/keys.h"
 
 #include <math.h>
@@ -269,15 +270,23 @@ void hn_screen_close(void) {
 
 // ---- colours ----
 
-/// The nearest of eight colours, where a terminal has no more; its own for a grey, which would be
-/// white and unseen on white.
-static int of_eight(int colour_256) {
+/// The nearest of the colours of a terminal that has 8 or 16; its own for a grey, which would be
+/// white and unseen on white. Blue is hardly seen on black: it is bright, or cyan where there is
+/// nothing brighter.
+static int of_few(int colour_256, int theme) {
+    enum { BLUE = 4, CYAN = 6, BRIGHT = 8 };
     const int i = colour_256 - 16, red = i / 36, green = i / 6 % 6, blue = i % 6;
     if (red == green && green == blue) {
         return -1;
     }
     const int most = red > green ? (red > blue ? red : blue) : (green > blue ? green : blue);
-    return (2 * red > most ? 1 : 0) | (2 * green > most ? 2 : 0) | (2 * blue > most ? 4 : 0);
+    const int colour =
+        (2 * red > most ? 1 : 0) | (2 * green > most ? 2 : 0) | (2 * blue > most ? 4 : 0);
+    const bool dark = theme == HN_THEME_DARK;
+    if (COLORS >= 2 * BRIGHT) {
+        return dark ? colour + BRIGHT : colour;
+    }
+    return dark && colour == BLUE ? CYAN : colour;
 }
 
 static void make_colours(int theme) {
@@ -285,8 +294,8 @@ static void make_colours(int theme) {
     use_default_colors();
     for (int i = 0; i < HN_CELL_COLOURS; i++) {
         const int colour = hn_cell_colour_256(i, theme);
-        init_pair((short)(i + 1), (short)(colour < 0 || COLORS >= 256 ? colour : of_eight(colour)),
-                  -1);
+        const bool own = colour < 0 || COLORS >= 256;
+        init_pair((short)(i + 1), (short)(own ? colour : of_few(colour, theme)), -1);
     }
 }
 

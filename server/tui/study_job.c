@@ -128,7 +128,8 @@ static hn_status make_request(hn_tui_study *s, const hn_tui_study_request *r, hn
     s->request = hn_job_request_default(s->model);
     HN_TRY(hn_job_request_set_methods(&s->request, methods, r->n_methods, diags));
     s->request.lib = r->library;
-    s->request.time = fmin(hn_model_scene(s->model)->duration, cost ? LONGEST : LONGEST_MAP);
+    const double longest = cost ? LONGEST : LONGEST_MAP;
+    s->request.time = r->time > 0 ? r->time : fmin(hn_model_scene(s->model)->duration, longest);
 
     // a ladder of sizes, or the plane of Baumgarte's two numbers
     if (cost) {
@@ -202,6 +203,10 @@ double hn_tui_study_share(const hn_tui_study *s) {
 
 hn_tui_study_kind hn_tui_study_get_kind(const hn_tui_study *s) {
     return s->kind;
+}
+
+double hn_tui_study_time(const hn_tui_study *s) {
+    return s->request.time;
 }
 
 void hn_tui_study_cost(hn_tui_study *s, hn_cost_plot *out) {

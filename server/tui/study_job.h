@@ -7,7 +7,7 @@
 #include "terminal/cost_plot.h"
 #include "terminal/map_plot.h"
 
-typedef enum hn_tui_study_kind { HN_TUI_COST, HN_TUI_STABILITY } hn_tui_study_kind;
+typedef enum hn_tui_study_kind { HN_TUI_COST, HN_TUI_STABILITY, HN_TUI_STUDIES } hn_tui_study_kind;
 
 /// What a study is made of; copied.
 typedef struct hn_tui_study_request {
@@ -16,6 +16,7 @@ typedef struct hn_tui_study_request {
     hn_tui_study_kind kind;
     const char *const *methods;
     int n_methods;
+    double time;       ///< of motion [s]; 0: a short one, so that something is seen within seconds
     int columns, rows; ///< of a map
 } hn_tui_study_request;
 
@@ -32,6 +33,7 @@ void hn_tui_study_stop(hn_tui_study *s);
 bool hn_tui_study_running(const hn_tui_study *s);
 double hn_tui_study_share(const hn_tui_study *s); ///< of the whole that is done, 0 to 1
 hn_tui_study_kind hn_tui_study_get_kind(const hn_tui_study *s);
+double hn_tui_study_time(const hn_tui_study *s); ///< of motion [s]
 /// Copies of the plot as it is now; of the kind that was started.
 void hn_tui_study_cost(hn_tui_study *s, hn_cost_plot *out);
 void hn_tui_study_map(hn_tui_study *s, hn_map_plot *out);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/study_panel.h"
 
+#include "render/look.h"
 #include "terminal/short_spelling.h"
 #include "tui/keys.h"
 #include "tui/methods.h"
+#include "tui/seconds.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,6 +63,7 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
                                           .kind = kind,
                                           .methods = methods,
                                           .n_methods = n,
+                                          .time = w->study_time[kind],
                                           .columns = MAP_COLUMNS,
                                           .rows = room < LEAST_MAP_ROWS  ? LEAST_MAP_ROWS
                                                   : room > MOST_MAP_ROWS ? MOST_MAP_ROWS
@@ -68,12 +71,26 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
     hn_tui_study_free(w->study);
     w->study = NULL;
     if (hn_tui_study_start(&request, &w->study, &diags) != HN_OK) {
+        w->panel = HN_PANEL_MAIN;
         hn_workbench_say_fault(w, &diags);
         return;
     }
     w->panel = HN_PANEL_STUDY;
     w->scroll = 0;
     w->at = (hn_map_place){-1, -1};
+}
+
+void hn_study_panel_set_time(hn_workbench *w, const char *text) {
+    const hn_tui_study_kind kind = hn_tui_study_get_kind(w->study);
+    const double most = hn_model_scene(w->model)->duration;
+    double time;
+    if (!hn_seconds_read(text, &time) || time > most) {
+        hn_workbench_say(w, "'%.40s' is no time of motion above 0 and up to %g s; type one as 5",
+                         text, most);
+        return;
+    }
+    w->study_time[kind] = time;
+    hn_study_panel_open(w, kind);
 }
 
 // ---- keys ----
@@ -149,6 +166,8 @@ void hn_study_panel_key(hn_workbench *w, int key) {
         take_cheapest(w);
     } else if (!map && key == 'e') {
         hn_workbench_ask(w, HN_PROMPT_WANTED, w->wanted);
+    } else if (key == 't') {
+        hn_workbench_ask(w, HN_PROMPT_STUDY_TIME, "");
     } else if (map && (down || across)) {
         move_cursor(w, across, -down);
     } else if (down) {
@@ -190,10 +209,20 @@ static int draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
     return p->scatter.n;
 }
 
+/// A method has the colour and glyph of the table: the study is about its methods, in its order.
+static void take_looks(hn_cost_plot *plot, const hn_workbench *w) {
+    for (int m = 0; m < plot->scatter.n && m < w->n_methods; m++) {
+        const int slot = hn_recording_track(w->recording, m)->slot;
+        plot->scatter.series[m].colour = slot;
+        plot->scatter.series[m].glyph = hn_look_get(slot)->glyph;
+    }
+}
+
 /// The plot, and beside or below it a legend and what there is to read.
 static void draw_cost(hn_cells *c, hn_area in, const hn_workbench *w) {
     static hn_cost_plot plot;
     hn_tui_study_cost(w->study, &plot);
+    take_looks(&plot, w);
     const bool beside = in.columns >= 60 + SIDE_COLUMNS;
     const int below = plot.scatter.n + 4;
     const hn_area left = beside
@@ -225,7 +254,9 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     const int rows = hn_map_plot_rows(&map);
     char shown[HN_SPEC_MAX];
     hn_short_spelling(map.name, shown, sizeof shown);
-    hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);
+    const int used = 1 + hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);
+    hn_cells_put(c, in, used + 2, 0, HN_CELL_MUTED, 0,
+                 "the gap e obeys e'' + 2 alpha e' + beta² e = 0");
     hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
 
     // the cell under the cursor, or what the map says as a whole
@@ -248,11 +279,12 @@ void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     const char *name = cost ? "what accuracy costs" : "stability over alpha and beta";
     const char *moves = cost ? "" : "arrows move, ★ is now, ";
     char title[HN_TUI_LINE];
+    const double time = hn_tui_study_time(w->study);
     if (running) {
-        snprintf(title, sizeof title, "%s: %.0f %% done, %sEsc stops", name,
+        snprintf(title, sizeof title, "%s in %g s: %.0f %% done, %sEsc stops", name, time,
                  100 * hn_tui_study_share(w->study), moves);
     } else {
-        snprintf(title, sizeof title, "%s: %sEsc goes back", name, moves);
+        snprintf(title, sizeof title, "%s in %g s: %sEsc goes back", name, time, moves);
     }
     const hn_area in = hn_cells_frame(c, area, title);
     if (cost) {

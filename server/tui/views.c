@@ -14,11 +14,15 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_NAME = 16, NUMBER_COLUMNS = 11, VERDICT_COLUMNS = 50, MOST_INCIDENTS = 512 };
+enum { MOST_NAME = 16, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
+enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
 
 /// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
 static const double SMALLEST_PREFIXED = 1e-9;
+
+/// An incident is news for this share of the motion.
+static const double NEWS = 0.2;
 
 // ---- places ----
 
@@ -86,6 +90,10 @@ static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
 
 /// The keys of what is shown.
 static const char *keys_line(const hn_workbench *w, int columns) {
+    static const char short_line[] =
+        "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q";
+    static const char long_line[] = "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  "
+                                    "w cost  m methods  s scene  p values  ? menu  q";
     static const char *const lists[] = {
         [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
         [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
@@ -103,8 +111,8 @@ static const char *keys_line(const hn_workbench *w, int columns) {
         return "↑↓ part  Enter type  c check  h hint  PageUp PageDown  Esc back";
     case HN_PANEL_STUDY:
         return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                   ? "arrows choose a cell  Enter take its alpha and beta  Esc back"
-                   : "e error wanted  Enter add the cheapest  ↑↓ scroll  Esc back";
+                   ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc back"
+                   : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  Esc back";
     default:
         if (w->why) {
             return hn_why_has_remedy(w)
@@ -114,19 +122,20 @@ static const char *keys_line(const hn_workbench *w, int columns) {
         if (w->reactions) {
             return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";
         }
-        return columns < 92 ? "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene "
-                              " ? menu  q"
-                            : "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  w cost  "
-                              "m methods  s scene  p values  ? menu  q";
+        return hn_text_columns(long_line) <= columns ? long_line : short_line;
     }
 }
 
 /// The last line: what is typed, or the keys.
 static void draw_footer(hn_cells *c, const hn_workbench *w) {
-    static const char *const asks[] = {
-        [HN_PROMPT_STEP] = "dt [s, or 20 ms]: ", [HN_PROMPT_METHOD] = "method: ",
-        [HN_PROMPT_PARAMETER] = "value: ",       [HN_PROMPT_EXPORT] = "write to: ",
-        [HN_PROMPT_ANSWER] = "answer: ",         [HN_PROMPT_WANTED] = "error wanted: "};
+    static const char *const asks[] = {[HN_PROMPT_STEP] = "dt of every method [s, or 20 ms]: ",
+                                       [HN_PROMPT_METHOD] = "method: ",
+                                       [HN_PROMPT_PARAMETER] = "value: ",
+                                       [HN_PROMPT_EXPORT] = "write to: ",
+                                       [HN_PROMPT_ANSWER] = "answer: ",
+                                       [HN_PROMPT_WANTED] = "error wanted: ",
+                                       [HN_PROMPT_STUDY_TIME] =
+                                           "study so much of the motion [s]: "};
     const hn_area area = {1, c->rows - 1, c->columns - 2, 1};
     if (w->prompt != HN_PROMPT_NONE) {
         const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);
@@ -148,12 +157,22 @@ static void put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int 
     }
 }
 
-/// The latest incident up to the time shown, of the selected method first; or what was said.
+/// Whether an incident is worth the line: it has just happened, or the selected method is still not
+/// well.
+static bool is_news(const hn_workbench *w, const hn_incident *incident, int method) {
+    const int frame = hn_workbench_frame(w);
+    const double t = hn_recording_time(w->recording, frame);
+    const bool late = t - incident->t > NEWS * hn_recording_duration(w->recording);
+    const bool ill = method == w->selected &&
+                     hn_recording_verdict(w->recording, method, frame).tone != HN_TONE_CALM;
+    return incident->t <= t && !w->hidden[method] && (ill || !late);
+}
+
+/// The latest incident that is news, of the selected method first; or what was said.
 static void draw_notice(hn_cells *c, const hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS];
     const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
-    const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     if (w->message[0]) {
         // a long one takes the place of the keys
         hn_cells_fold(c, (hn_area){area.x, area.y, area.columns, 1 + needs_two_lines(c, w)}, 0,
@@ -167,7 +186,7 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     for (int i = 0; i < n; i++) {
         const bool chosen = last >= 0 && whose[last] == w->selected;
         const bool better = whose[i] == w->selected || !chosen;
-        if (list[i].t <= t && !w->hidden[whose[i]] && better) {
+        if (better && is_news(w, &list[i], whose[i])) {
             last = i;
         }
     }
@@ -209,9 +228,10 @@ enum { N_NUMBERS = sizeof NUMBERS / sizeof *NUMBERS };
 
 /// Where the columns of the table are, in columns of its inside.
 typedef struct table_columns {
-    int name, numbers, verdict;
+    int name, numbers, number, verdict; ///< number: width of one
 } table_columns;
 
+/// Gap and error are shown even where the verdict is cut; the others while it has room.
 static table_columns lay_out(const hn_workbench *w, int width) {
     int longest = 4;
     for (int m = 0; m < w->n_methods; m++) {
@@ -219,9 +239,16 @@ static table_columns lay_out(const hn_workbench *w, int width) {
         longest = n > longest ? n : longest;
     }
     longest = longest < MOST_NAME ? longest : MOST_NAME;
-    const int room = (width - 3 - longest - VERDICT_COLUMNS) / NUMBER_COLUMNS;
-    const int numbers = room < 0 ? 0 : room < N_NUMBERS ? room : N_NUMBERS;
-    return (table_columns){3, numbers, 3 + longest + 1 + numbers * NUMBER_COLUMNS};
+    const int room = width - 3 - longest - 1 - VERDICT_COLUMNS;
+    const int wide = room / WIDE_NUMBER;
+    const int numbers = wide < LEAST_NUMBERS ? LEAST_NUMBERS : wide < N_NUMBERS ? wide : N_NUMBERS;
+    const int number = wide < LEAST_NUMBERS ? TIGHT_NUMBER : WIDE_NUMBER;
+    return (table_columns){3, numbers, number, 3 + longest + numbers * number + 1};
+}
+
+/// Where number i ends.
+static int number_end(table_columns at, int i) {
+    return at.verdict - 1 - (at.numbers - 1 - i) * at.number;
 }
 
 static void put_number(hn_cells *c, hn_area area, int right, int y, double value,
@@ -232,7 +259,7 @@ static void put_number(hn_cells *c, hn_area area, int right, int y, double value
     } else if (!unit[0]) {
         snprintf(text, sizeof text, "%.0f", value);
     } else if (fabs(value) < SMALLEST_PREFIXED && value != 0) {
-        snprintf(text, sizeof text, "%.1e %s", value, unit);
+        snprintf(text, sizeof text, "%.0e %s", value, unit);
     } else {
         hn_si_format(value, unit, 2, text);
     }
@@ -249,10 +276,8 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
                     hn_look_get(track->slot)->glyph);
     hn_cells_printf(c, area, at.name, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%.*s",
                     MOST_NAME, track->name);
-    const int first = at.verdict - at.numbers * NUMBER_COLUMNS;
     for (int i = 0; i < at.numbers; i++) {
-        put_number(c, area, first + (i + 1) * NUMBER_COLUMNS - 2, m, NUMBERS[i].of(track)[frame],
-                   NUMBERS[i].unit);
+        put_number(c, area, number_end(at, i), m, NUMBERS[i].of(track)[frame], NUMBERS[i].unit);
     }
 
     // the verdict, in words; hidden methods say so
@@ -269,11 +294,9 @@ static void draw_table(hn_cells *c, const hn_workbench *w) {
     const hn_area inside = hn_cells_frame(c, table, "methods");
     const hn_area edge = {inside.x, table.y, inside.columns, 1};
     const table_columns at = lay_out(w, inside.columns);
-    const int first = at.verdict - at.numbers * NUMBER_COLUMNS;
     for (int i = 0; i < at.numbers; i++) {
-        const int right = first + (i + 1) * NUMBER_COLUMNS - 2;
-        hn_cells_printf(c, edge, right - (int)strlen(NUMBERS[i].head) - 1, 0, HN_CELL_MUTED, 0,
-                        " %s ", NUMBERS[i].head);
+        const int left = number_end(at, i) - (int)strlen(NUMBERS[i].head);
+        hn_cells_printf(c, edge, left - 1, 0, HN_CELL_MUTED, 0, " %s ", NUMBERS[i].head);
     }
     const int frame = hn_workbench_frame(w);
     for (int m = 0; m < w->n_methods; m++) {
@@ -415,6 +438,7 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     } else {
         const hn_places places = hn_views_places(c->columns, c->rows, w);
         const hn_area left = {0, 1, places.plot.x, places.plot.rows};
+        hn_reactions_update(w);
         hn_mechanism_view(c, hn_cells_frame(c, left, "mechanism"), w);
         if (w->why) {
             hn_why_draw(c, places.plot, w);

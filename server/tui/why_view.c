@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/why_view.h"
 
+#include "tui/methods.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +15,10 @@ void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,
                    char out[HN_WHY_WORDS]) {
     const char *remedy = incident->remedy[k], *tried = incident->tried[k];
     const bool recorded = hn_recording_frames(w->recording) > hn_recording_last(w->recording);
-    if (tried[0] && strncmp(tried, NOT_TRIED, strlen(NOT_TRIED)) != 0) {
+    const int runs = hn_methods_find(w, remedy);
+    if (runs >= 0) {
+        snprintf(out, HN_WHY_WORDS, "%s runs already: method %d", remedy, runs + 1);
+    } else if (tried[0] && strncmp(tried, NOT_TRIED, strlen(NOT_TRIED)) != 0) {
         snprintf(out, HN_WHY_WORDS, "try %s (%s)", remedy, tried);
     } else if (tried[0]) {
         snprintf(out, HN_WHY_WORDS, "%s: %s", remedy, tried);

@@ -11,8 +11,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { AHEAD = 60 }; // [frames] recorded before they are shown
+
+/// Said until the reference is there, or cannot be.
+static const char COMPUTING[] = "no reference is stored for these values: it is being computed, "
+                                "and errors are unknown until then";
 
 // ---- opening ----
 
@@ -229,9 +234,22 @@ static void compute_reference(hn_workbench *w) {
     w->computes = hn_model_load(w->library, &source, &model, &diags) == HN_OK &&
                   hn_recording_compute_reference(w->recording, model);
     if (w->computes && !w->message[0]) {
-        hn_workbench_say(w, "no reference is stored for these values: it is being computed, and "
-                            "errors are unknown until then");
+        hn_workbench_say(w, "%s", COMPUTING);
     }
+}
+
+/// Says how a command ended, and how large the file is that it was to write.
+static void end_command(hn_workbench *w) {
+    struct stat file;
+    if (w->child.status != 0) {
+        hn_workbench_say(w, "the command failed; its reason is above");
+        hn_strbuf_add(&w->text, "\n(failed; Esc goes back)\n");
+        return;
+    }
+    if (w->writes[0] && stat(w->writes, &file) == 0) {
+        hn_workbench_say(w, "%.200s: written, %lld bytes", w->writes, (long long)file.st_size);
+    }
+    hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
 }
 
 void hn_workbench_tick(hn_workbench *w, double seconds) {
@@ -247,6 +265,9 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
     // the card of the reasons has remedies tried, which is done at the end of the motion
     hn_recording_want(w->recording, w->why ? last : (int)w->clock + AHEAD);
     hn_recording_update(w->recording);
+    if (strcmp(w->message, COMPUTING) == 0 && !hn_recording_is_asking(w->recording)) {
+        w->message[0] = '\0';
+    }
     if (w->computes && hn_recording_needs_reference(w->recording)) {
         compute_reference(w);
     }
@@ -254,7 +275,7 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
         open_forces(w);
     }
     if (w->child.pid != 0 && !hn_child_read(&w->child, &w->text)) {
-        hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
+        end_command(w);
     }
     if (w->panel == HN_PANEL_LIST && w->list == HN_LIST_SCENES) {
         hn_preview_load(w, w->n_items > 0 ? w->items[w->cursor].name : "");

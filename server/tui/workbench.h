@@ -40,7 +40,8 @@ typedef enum hn_prompt_kind {
     HN_PROMPT_PARAMETER,
     HN_PROMPT_EXPORT,
     HN_PROMPT_ANSWER,
-    HN_PROMPT_WANTED
+    HN_PROMPT_WANTED,
+    HN_PROMPT_STUDY_TIME
 } hn_prompt_kind;
 typedef enum hn_tui_plot { HN_TUI_GAP, HN_TUI_ERROR, HN_TUI_ENERGY, HN_TUI_PLOTS } hn_tui_plot;
 
@@ -125,11 +126,13 @@ typedef struct hn_workbench {
     int marked;                ///< line of the text that is marked; -1: none
     hn_tui_exercise *exercise; ///< the one that was opened last; owned, NULL: none
     hn_child child;            ///< the command whose text this is, while it runs
+    char writes[HN_TUI_LINE];  ///< the file that this command writes; "": none
     hn_preview preview;
-    hn_tui_study *study; ///< of its panel; owned, NULL otherwise
-    char wanted[32];     ///< error that is wanted of a method, as it was typed
-    double present[2];   ///< alpha and beta of the method that a map is about
-    hn_map_place at;     ///< cursor of a map
+    hn_tui_study *study;               ///< of its panel; owned, NULL otherwise
+    double study_time[HN_TUI_STUDIES]; ///< [s] of motion that was typed for each kind; 0: none
+    char wanted[32];                   ///< error that is wanted of a method, as it was typed
+    double present[2];                 ///< alpha and beta of the method that a map is about
+    hn_map_place at;                   ///< cursor of a map
 
     int chosen; ///< hn_tui_action chosen in the menu, to be done; 0: none
 

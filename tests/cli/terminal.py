@@ -9,17 +9,19 @@ import select
 import signal
 import struct
 import subprocess
+import tempfile
 import termios
 import time
 
 PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+STATE = tempfile.TemporaryDirectory()  # scores of exercises are kept here and not in the user's own folder
 PATIENCE = 20.0  # [s] a crowded machine; what is waited for comes in a fraction of a second
 
 
 def once(*words, **environment):
     """(status, standard output, standard error) of one frame as text."""
-    env = {**os.environ, "LC_ALL": "C.UTF-8", **environment}
+    env = {**os.environ, "LC_ALL": "C.UTF-8", "XDG_STATE_HOME": STATE.name, **environment}
     done = subprocess.run([PROGRAM, "tui", *words], capture_output=True, timeout=60, env=env, stdin=subprocess.DEVNULL)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
@@ -32,7 +34,7 @@ class Terminal:
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
         self.before_start(slave)
         self.modes = termios.tcgetattr(slave)
-        env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **environment}
+        env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "XDG_STATE_HOME": STATE.name, **environment}
         self.process = subprocess.Popen([PROGRAM, "tui", *words], stdin=slave, stdout=slave, stderr=slave, env=env,
                                         start_new_session=True)
         self.slave = slave

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the terminal workbench says: of whom a key changes the step, which remedy runs already, what was written, scores that are kept.
+import json
+import os
+import re
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+from terminal import PROGRAM, Terminal, once  # noqa: E402
+
+OPENS = ("--methods", "index1@rk4:h=0.02", "projection@rk4:h=0.02")  # the first one's loop opens
+
+
+def message(frame):
+    """The line above the keys."""
+    return frame.rstrip("\n").split("\n")[-2].strip()
+
+
+class Table(unittest.TestCase):
+    def test_eighty_columns_show_gap_and_error_and_the_whole_verdict(self):
+        _, out, _ = once("four-bar", "--once", "--t", "3.5")
+        head = next(line for line in out.split("\n") if "methods" in line)
+        self.assertEqual(re.findall(r"gap|error|energy|evals", head), ["gap", "error"])
+        self.assertRegex(out, r"(?m)^│1\S index-1 +[\d.]+ mm +[\d.]+ mm ↗ open by [\d.]+ mm and \d+ mm from the true motion │$")
+        # with more room the energy comes before the cost
+        for columns, heads in ((88, ["gap", "error"]), (95, ["gap", "error", "energy"]), (120, ["gap", "error", "energy", "evals"])):
+            _, out, _ = once("four-bar", "--once", "--t", "1", "--size", f"{columns}x24")
+            head = next(line for line in out.split("\n") if "methods" in line)
+            self.assertEqual(re.findall(r"gap|error|energy|evals", head), heads, columns)
+
+    def test_the_longest_line_of_keys_that_fits_is_shown_whole(self):
+        for columns in (80, 92, 100, 106, 120):
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", f"{columns}x24")
+            self.assertTrue(out.rstrip("\n").endswith("? menu  q"), columns)
+
+
+class Messages(unittest.TestCase):
+    def test_a_new_step_says_whose_it_is(self):
+        def after(*methods):
+            return message(once("four-bar", "--once", "--t", "0.1", "--keys", "d20 ms<Enter>", "--methods", *methods)[1])
+        self.assertEqual(after("index1@rk4", "reduced@rk4"), "dt = 0.02 s for every method")
+        self.assertEqual(after("index1@rk4", "reduced@dopri5"), "dt = 0.02 s for the methods of fixed step; the others choose it by a tolerance")
+        self.assertEqual(after("reduced@dopri5"), "no method here has a fixed step: all choose it by a tolerance (m)")
+
+    def test_times_are_read_as_people_type_them(self):
+        for typed, said in (("20 ms", "dt = 0.02 s"), ("0,02", "dt = 0.02 s"), ("0.02 s", "dt = 0.02 s"), ("2e-2s", "dt = 0.02 s"), ("5 m", "dt must be above 0"),
+                            ("-1", "dt must be above 0"), ("", "dt must be above 0"), ("0.02 seconds", "dt must be above 0"), ("nan", "dt must be above 0")):
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", f"d{typed}<Enter>", "--methods", "index1@rk4")
+            self.assertTrue(message(out).startswith(said), (typed, message(out)))
+
+    def test_a_remedy_that_runs_already_is_said_and_selected(self):
+        def frame(keys, *methods):
+            return once("four-bar", "--once", "--t", "4", "--size", "120x40", "--keys", keys, *(methods or OPENS))[1]
+        self.assertIn("projection@rk4:h=0.02 runs already: method 2", frame("i"))
+        self.assertRegex(frame("i<Enter>"), r"(?m)^│ projection@rk4:h=0\.02 +runs already as method 2; ")
+        taken = frame("i<Enter><Enter>")
+        self.assertEqual(message(taken), "projection@rk4:h=0.02 runs already: it is method 2, now selected")
+        self.assertIn("why: projection", taken)
+        self.assertEqual(len(re.findall(r"(?m)^│\d\S", taken)), 2)
+        # another spelling of it is the same method
+        other = frame("i<Enter><Enter>", "--methods", "index1@rk4:h=0.02", "projection@rk4:h=2e-2")
+        self.assertEqual(len(re.findall(r"(?m)^│\d\S", other)), 2)
+        # where it does not run, it is tried
+        self.assertRegex(" ".join(frame("i", "--methods", "index1@rk4:h=0.02").split()), r"try projection@rk4:h=0\.02 \(tried")
+
+    def test_an_export_says_what_was_written_or_that_it_failed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "p.py")
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "150x24", "--set", "l1=0.55", "--keys", f"xp<Enter><CtrlU>{path}<Enter>")
+            self.assertEqual(message(out), f"{path}: written, {os.path.getsize(path)} bytes")
+            # the program is that of the values shown
+            with open(path, encoding="utf-8") as file:
+                self.assertIn("0.55", file.read())
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "150x24", "--keys", f"xp<Enter><CtrlU>{folder}/no/p.py<Enter>")
+            self.assertEqual(message(out), "the command failed; its reason is above")
+            self.assertIn("(failed; Esc goes back)", out)
+
+    def test_an_incident_leaves_the_line_when_it_is_no_news(self):
+        # the first run opens at 1 s; a fifth of the motion later only its own line still tells
+        def line(t, keys):
+            return message(once("four-bar", "--once", "--t", t, "--size", "150x30", "--keys", keys, *OPENS)[1])
+        happened = float(re.search(r"! index-1 at ([\d.]+) s: the loop has opened", line("1.9", "1")).group(1))
+        self.assertLess(happened, 1.9)
+        self.assertIn("! index-1 at", line("1.9", "2"))
+        later = happened + 0.2 * 10 + 0.5
+        self.assertIn("! index-1 at", line(f"{later:.2f}", "1"))
+        self.assertNotIn(f"at {happened:g} s", line(f"{later:.2f}", "2"))
+
+
+class Studies(unittest.TestCase):
+    METHODS = ("--methods", "projection@rk4:h=0.02", "index1@rk4:h=0.02")
+
+    def study(self, keys, scene="pendulum", *more):
+        with tempfile.TemporaryDirectory() as cache:
+            return once(scene, "--once", "--t", "0.5", "--size", "120x40", *(more or self.METHODS), "--keys", keys, HOLONOM_CACHE=cache)[1]
+
+    def test_a_method_has_one_symbol_in_table_and_plot(self):
+        table = dict(re.findall(r"(?m)^│\d(\S) (\S+)", self.study("")))
+        legend = dict((name.split("@")[0], glyph) for glyph, name in re.findall(r"(\S) 6/6 (\S+)", self.study("w")))
+        self.assertEqual({glyph: name.replace("index-1", "index1") for glyph, name in table.items()}, {glyph: name for name, glyph in legend.items()})
+        self.assertEqual(len(table), 2)
+
+    def test_the_time_of_a_study_is_said_and_typed(self):
+        self.assertIn("what accuracy costs in 2 s: Esc goes back", self.study("w"))
+        shorter = self.study("wt500 ms<Enter>")
+        self.assertIn("what accuracy costs in 0.5 s: Esc goes back", shorter)
+        self.assertIn("up to t = 0.5 s", " ".join(shorter.split()))
+        self.assertIn("'99' is no time of motion above 0 and up to 10 s", self.study("wt99<Enter>"))
+        # it is kept for the next study of this scene
+        self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>w"))
+
+    def test_the_map_says_what_alpha_and_beta_are(self):
+        out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
+        self.assertIn("the gap e obeys e'' + 2 alpha e' + beta² e = 0", out)
+        self.assertIn("stability over alpha and beta in 0.2 s", out)
+
+
+class Forces(unittest.TestCase):
+    def test_arrows_at_the_joints_have_the_sizes_of_the_list(self):
+        def frame(keys, *more):
+            return once("four-bar", "--once", "--t", "0", "--size", "200x60", "--methods", "projection@rk4:h=0.01", "--keys", keys, *more)[1].split("\n")[2:50]
+        shown, plain = frame("r"), frame("")
+        listed = [f"{float(size):.2g}" for size in re.findall(r"│ \w+: \w+ +([\d.]+) ", "\n".join(line[89:] for line in shown))]
+        self.assertEqual(len(listed), 4)
+        mechanism = "\n".join(line[:89] for line in shown)
+        named = re.findall(r"([\d.]+) N\b", mechanism)
+        self.assertGreater(len(named), 1)
+        self.assertLessEqual({f"{float(x):.2g}" for x in named}, set(listed))
+        self.assertNotIn(" N", "\n".join(line[:89] for line in plain))
+        # arrows are dots more than the mechanism alone
+        def dots(lines):
+            return sum(bin(ord(c) - 0x2800).count("1") for line in lines for c in line[:89] if 0x2800 <= ord(c) < 0x2900)
+        self.assertGreater(dots(shown), dots(plain) + 20)
+        self.assertEqual(dots(frame("rr")), dots(plain))
+
+    def test_multipliers_are_explained(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "r<PageDown>")
+        self.assertIn("Each multiplier is the force (or moment)", " ".join("".join(line[37:79] for line in out.split("\n")[2:16]).split()))
+        self.assertIn("forces (moments) that keep the loop closed", once("four-bar", "--once", "--t", "0.1", "--keys", "r")[1])
+
+
+class Scores(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.state = os.path.join(folder.name, "state")
+        self.file = os.path.join(self.state, "holonom", "lessons.json")
+        listed = json.loads(subprocess.run([PROGRAM, "list", "problems", "--json"], capture_output=True, check=True).stdout)["problems"]
+        lessons = [one["id"] for one in json.loads(subprocess.run([PROGRAM, "list", "lessons", "--json"], capture_output=True, check=True).stdout)["lessons"]]
+        rows = [row for lesson in lessons for row in [lesson] + [one["id"] for one in listed if one["lesson"] == lesson]]
+        self.ring, self.closure = ("t" + "<Down>" * rows.index(name) for name in ("ring", "closure"))
+
+    def frame(self, keys, **environment):
+        status, out, err = once("pendulum", "--once", "--t", "0.1", "--size", "160x60", "--keys", keys, **{"XDG_STATE_HOME": self.state, **environment})
+        self.assertEqual((status, err), (0, ""))
+        return out
+
+    def kept(self):
+        with open(self.file, encoding="utf-8") as file:
+            return json.load(file)["solved"]["ring"]
+
+    def test_the_best_score_is_kept_and_listed(self):
+        self.assertNotIn("best ", self.frame(self.ring))
+        some = self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c")
+        score, most = map(float, re.search(r"([\d.]+) of ([\d.]+) points:", message(some)).groups())
+        self.assertGreater(score, 0)
+        self.assertEqual(self.kept(), {"score": score, "most": most})
+        self.assertIn(f"best {score:g} of {most:g}: ", self.frame(self.ring))
+        # a lower one does not replace it; what else is in the file stays
+        with open(self.file, "w", encoding="utf-8") as file:
+            json.dump({"lessons": {"x": {"read": True}}, "solved": {"ring": {"score": most, "most": most}}}, file)
+        self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c")
+        self.assertEqual(self.kept()["score"], most)
+        with open(self.file, "w", encoding="utf-8") as file:
+            json.dump({"lessons": {"x": {"read": True}}, "solved": {"ring": {"score": 0, "most": most}}}, file)
+        self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c")
+        self.assertEqual(self.kept()["score"], score)
+        with open(self.file, encoding="utf-8") as file:
+            self.assertTrue(json.load(file)["lessons"]["x"]["read"])
+
+    def test_without_a_folder_the_score_stands_and_says_that_it_is_not_kept(self):
+        answer = self.ring + "<Enter><Down><Enter>6<Enter>c"
+        self.assertIn("this score is not kept: neither XDG_STATE_HOME nor HOME is set", self.frame(answer, XDG_STATE_HOME="", HOME=""))
+        # a folder that cannot be made, a file that is not one of scores
+        with open(self.state, "w", encoding="ascii") as file:
+            file.write("a file")
+        self.assertRegex(self.frame(answer), r"of [\d.]+ points: .*this score is not kept: ")
+        os.remove(self.state)
+        os.makedirs(os.path.dirname(self.file))
+        with open(self.file, "w", encoding="ascii") as file:
+            file.write("[not scores")
+        self.assertIn("holds no scores", " ".join(self.frame(answer).split()))
+        with open(self.file, encoding="ascii") as file:
+            self.assertEqual(file.read(), "[not scores")
+
+    def test_answers_and_points_are_told_apart(self):
+        out = self.frame(self.closure + "<Enter><Enter>1<Enter><Enter>l3 sin(th3) u3<Enter>c")
+        worth = re.search(r"(\d+) answers are checked, worth (.*) points; one that", " ".join(line.strip("│ ") for line in out.split("\n")))
+        self.assertTrue(worth, out)
+        points = [float(one.split()[-1]) for one in worth.group(2).split(",")]
+        self.assertEqual(len(points), int(worth.group(1)))
+        self.assertEqual(sum(points), float(re.search(r"of ([\d.]+) points:", message(out)).group(1)))
+        # where each answer is worth a point nothing is explained
+        self.assertNotIn("answers are checked", self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c"))
+
+
+class Colours(unittest.TestCase):
+    def colours(self, term, *words):
+        terminal = Terminal("four-bar", "--frames", "20", "--t", "1", *words, TERM=term)
+        self.addCleanup(terminal.close)
+        self.assertEqual(terminal.ended(), 0)
+        return set(re.findall(rb"\033\[(?:\d+;)*?(3\d|9\d)m", terminal.seen))
+
+    def test_no_method_is_blue_on_black_where_there_are_eight_colours(self):
+        seen = self.colours("xterm")
+        self.assertNotIn(b"34", seen)
+        self.assertIn(b"36", seen)
+        self.assertIn(b"34", self.colours("xterm", "--theme", "light"))
+
+    @unittest.skipUnless(shutil.which("infocmp") and subprocess.run(["infocmp", "xterm-16color"], capture_output=True).returncode == 0,
+                         "no description of a terminal of 16 colours is here")
+    def test_sixteen_colours_are_bright_on_black(self):
+        self.assertIn(b"94", self.colours("xterm-16color"))
+
+
+if __name__ == "__main__":
+    driver.main()
