@@ -182,8 +182,10 @@ static void put_alike(hn_strbuf *b, counts *c) {
             const char *mistake = strstr(word, ": ") + 2;
             hn_strbuf_printf(b, "%s  %.*s %s (%.*s)\n",
                              shown++ ? ""
-                                     : "equal wrong parts, each variant's numbers replaced by "
-                                       "their names\n",
+                                     : "equal wrong parts (formulas with each variant's numbers "
+                                       "replaced by their names;\nplain numbers of 4 digits or "
+                                       "more within one variant alone: another has another "
+                                       "answer)\n",
                              (int)(mistake - word - 1), word, hn_strbuf_text(&c->item[k].who),
                              (int)(hash - mistake), mistake);
         }

@@ -88,9 +88,4 @@ double hn_exercise_points(const hn_exercise *problem);
 /// Whether a drawn number is marked "hidden": true, because it would give an answer away; it is
 /// then not among the numbers of a variant.
 bool hn_exercise_is_hidden(const hn_exercise *problem, const char *name);
-/// The statement for a person: what is given, what is asked, how to hand it in. Form 1 alone: see
-/// variant.h for form 2.
-void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem);
-/// {"id","title","statement","points","entries":[..],"given":[..],"submission":{..}}; form 1.
-void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem);
 #endif

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "grade/exercise_shelf.h"
+#include "grade/exercise_text.h"
 #include "grade/grade.h"
 #include "grade/variant.h"
 
@@ -87,7 +88,7 @@ static hn_status make(hn_tui_exercise *x, const hn_library *library, const char 
         }
         hn_variant_reset(&variant);
     } else {
-        hn_exercise_json(&b, x->exercise);
+        hn_exercise_json(&b, x->exercise, 0);
     }
     x->document = cJSON_Parse(hn_strbuf_text(&b));
     hn_strbuf_reset(&b);

@@ -40,6 +40,10 @@ def variants():
     formula = next(line for line in run("problem", "loops").stdout.splitlines() if line.startswith('  answer "e"'))
     expect("a formula may use the numbers that are given, by their names",
            formula.endswith("names: th2 th3 w1 w2 w3; with numbers given: b j l1 l2 l3 d th1"), formula)
+    own, other = (run("problem", "p3", "--student", n).stdout for n in ("s1001", "s1002"))
+    numbers = json.loads(run("problem", "p3", "--student", "s1001", "--json").stdout)["numbers"]
+    expect("so has the exercise whose formulas are the same for all", own != other and '{"student": "s1001", "J": ' in own
+           and all(f"{name} = {x:.6f}" in own and f"{name} = {x:.6f}" not in other for name, x in numbers.items()), own)  # fmt: skip
     hints = run("problem", "p1", "--hint", "1").stdout
     expect("a hint is printed when asked for", hints.startswith("hint 1 of 3:") and hints.count("hint") == 1, hints)
     written = {name: run("problem", name).stdout for name in ("closure", "p1", "slips-1")}
@@ -479,7 +483,8 @@ def the_guide_for_teachers(folder):
     place = os.path.join(folder, "autograder")
     os.makedirs(os.path.join(place, "submission"))
     write(place, "submission_metadata.json", {"users": [{"email": "ada@example.org"}]})
-    write(os.path.join(place, "submission"), "answer.json", {"student": "ada@example.org", "c": 0})
+    gears = json.loads(run("problem", "gears", "--student", "ada@example.org", "--json").stdout)["numbers"]["k"]
+    write(os.path.join(place, "submission"), "answer.json", {"student": "ada@example.org", "c": 2 * (gears - 1)})
     script = indented(text, "#!/bin/sh", "exit 0").replace("/autograder", place).replace("holonom grade", f"{os.path.abspath(PROGRAM)} grade")
     subprocess.run(["/bin/sh", write(folder, "run_autograder", script)], capture_output=True, text=True, timeout=120, check=True)
     with open(os.path.join(place, "results", "results.json"), encoding="utf-8") as f:

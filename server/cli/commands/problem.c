@@ -7,6 +7,7 @@
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "grade/exercise_check.h"
+#include "grade/exercise_text.h"
 #include "grade/rubric_apply.h"
 #include "grade/variant.h"
 
@@ -186,10 +187,11 @@ static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
 static hn_exit print_matrix_exercise(const hn_args *args, const hn_exercise *e) {
     hn_strbuf b;
     hn_strbuf_init(&b);
+    const uint64_t seed = hn_cli_variant_seed(args, e);
     if (args->json) {
-        hn_exercise_json(&b, e);
+        hn_exercise_json(&b, e, seed);
     } else {
-        hn_exercise_text(&b, e);
+        hn_exercise_text(&b, e, seed, args->student);
     }
     return args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
 }

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "grade/exercise_shelf.h"
+#include "grade/exercise_text.h"
 #include "grade/grade.h"
 #include "grade/variant.h"
 #include "http/live/pulls.h"
@@ -291,7 +292,7 @@ void hn_handle_problem(hn_request *r) {
         } else if (problem->n_parts) {
             hn_variant_json(&b, &x);
         } else {
-            hn_exercise_json(&b, problem);
+            hn_exercise_json(&b, problem, 0);
         }
         hn_variant_reset(&x);
         hn_reply_json(r, MHD_HTTP_OK, &b);

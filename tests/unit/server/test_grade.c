@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grading of Problem 3: right answers in many spellings, each known mistake named, unreadable files
 // refused with a reason.
+#include "grade/exercise_text.h"
 #include "grade/grade.h"
 
 #include "support/alloc.h"
@@ -440,16 +441,53 @@ static void every_prefix_of_a_submission_ends_in_a_verdict(void **state) {
 static void the_statement_says_that_the_ground_is_held_and_how_to_hand_in(void **state) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_exercise_text(&b, *state);
+    hn_exercise_text(&b, *state, 0, NULL);
     assert_non_null(strstr(hn_strbuf_text(&b), "two degrees of freedom"));
     assert_non_null(
         strstr(hn_strbuf_text(&b), "{\"J\": [[\"...\", \"...\", \"...\", \"...\"], [\"...\""));
     hn_strbuf_clear(&b);
-    hn_exercise_json(&b, *state);
+    hn_exercise_json(&b, *state, 0);
     cJSON *root = parse(&b);
     assert_near(number_of(root, "points"), 8, 0);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(root, "entries")), 8);
     cJSON_Delete(root);
+}
+
+/// The right Jacobian by hand, at the numbers of a document.
+static void each_variant_has_numbers_that_close_the_loop_and_a_velocity_of_j(void **state) {
+    double first = 0;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        double l[4], c[4], s[4], v[4], phi[2] = {0, 0}, jv[2] = {0, 0}, size = 0;
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_exercise_json(&b, *state, seed);
+        cJSON *root = parse(&b);
+        const cJSON *numbers = cJSON_GetObjectItemCaseSensitive(root, "numbers");
+        for (int i = 0; i < 4; i++) {
+            char length[4], angle[5];
+            snprintf(length, sizeof length, "l%d", i + 1);
+            snprintf(angle, sizeof angle, "th%d", i + 1);
+            l[i] = (i < 2 ? 1 : -1) * number_of(numbers, length);
+            c[i] = cos(number_of(numbers, angle));
+            s[i] = sin(number_of(numbers, angle));
+            v[i] = number_of(cJSON_GetObjectItemCaseSensitive(root, "velocity"), angle);
+            phi[0] += l[i] * c[i];
+            phi[1] += l[i] * s[i];
+            jv[0] -= l[i] * s[i] * v[i];
+            jv[1] += l[i] * c[i] * v[i];
+            size += fabs(v[i]);
+        }
+
+        // lengths of up to 3 m: rounding is far below
+        for (int k = 0; k < 2; k++) {
+            assert_near(phi[k], 0, 1e-13);
+            assert_near(jv[k], 0, 1e-13);
+        }
+        assert_true(size > 0.05);
+        assert_true(number_of(numbers, "l1") != first);
+        first = number_of(numbers, "l1");
+        cJSON_Delete(root);
+    }
 }
 
 static void a_faulty_problem_is_told(void **state) {
@@ -515,6 +553,7 @@ int main(void) {
         cmocka_unit_test(a_file_that_is_missing_is_ungradable),
         cmocka_unit_test(every_prefix_of_a_submission_ends_in_a_verdict),
         cmocka_unit_test(the_statement_says_that_the_ground_is_held_and_how_to_hand_in),
+        cmocka_unit_test(each_variant_has_numbers_that_close_the_loop_and_a_velocity_of_j),
         cmocka_unit_test(a_faulty_problem_is_told),
         cmocka_unit_test(memory_that_runs_out_is_the_graders_failure_and_nothing_leaks),
     };

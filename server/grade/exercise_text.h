@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_EXERCISE_TEXT_H
+#define HN_GRADE_EXERCISE_TEXT_H
+// An exercise of form 1 for those who solve it; see variant.h for form 2. Its formulas are the same
+// for everybody; a variant has numbers of its own to try them on.
+
+#include "grade/exercise.h"
+
+/// The statement for a person: what is given, what is asked, a closed state of this variant with a
+/// velocity v of J v = 0, and how to hand in. seed 0: the exercise's own variant; `student`: whose
+/// it is, NULL: nobody's.
+void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem, uint64_t seed, const char *student);
+/// {"id","title","statement","points","entries":[..],"seed","numbers":{..},"velocity":{..},
+/// "submission":".."}.
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem, uint64_t seed);
+#endif
