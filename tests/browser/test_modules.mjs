@@ -98,6 +98,14 @@ test("a number is read as people type it, and only in its unit", () => {
   }
 });
 
+test("a typed decimal stays one in another unit, with no rounding behind it", () => {
+  assert.notEqual(57 * 0.01, 0.57, "a plain product has one");
+  assert.equal(parseQuantity("1.1 in", "m"), 0.02794);
+  assert.equal(parseQuantity("57 cm", "m"), 0.57);
+  assert.equal(parseQuantity("8.2 mm", "m"), 0.0082);
+  assert.equal(parseQuantity("30 deg", "rad"), Math.PI / 6, "as near as a double comes");
+});
+
 test("a quantity has one to three digits before the point", () => {
   assert.equal(quantity(0.0042, "m"), "4.2 mm");
   assert.equal(quantity(1.3e-6, "s"), "1.3 µs");

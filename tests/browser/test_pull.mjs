@@ -75,6 +75,20 @@ test("a hand pulls while it runs, its force is told, and the log done again give
   await until(page, (data) => data.reference?.state === "none");
   await page.getByRole("button", { name: "forget the pulls" }).click();
   await until(page, (data) => !data.pulled && data.reference?.state === "ready");
+
+  // forgetting is a change like others: undone, the same log is there again
+  const log = JSON.stringify(pulls);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await until(page, `(data) => data.pulled && JSON.stringify(data.pulls) === '${log}'`);
+  await until(page, (data) => data.undo.future === 1);
+  await page.getByRole("button", { name: "Redo" }).click();
+  await until(page, (data) => !data.pulled && data.pulls.length === 0 && data.undo.future === 0);
+
+  // so is the pull itself
+  await page.getByRole("button", { name: "Undo" }).click();
+  await until(page, (data) => data.pulls.length > 0 && data.undo.future === 1);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await until(page, (data) => data.pulls.length === 0 && data.undo.future === 2);
 });
 
 test("a hand pulls by keys, and lets go with Escape", async (t) => {

@@ -115,8 +115,8 @@ export function createExchange(store, notice) {
     );
     data.refused = refused;
     data.document = typeof body.scene === "object" ? body.scene : null;
-    adopt(description);
     data.pulls = body.pulls ?? [];
+    adopt(description);
     if (old) {
       api
         .deleteComparison(old)

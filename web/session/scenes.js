@@ -25,6 +25,9 @@ const FIRST_METHODS = [
   "reduced@rk4:h=0.02",
 ];
 
+/** @param {{pulls?: number[][]}} [link] */
+const pullsOf = (link) => (link?.pulls?.length ? { pulls: link.pulls } : {});
+
 /** @param {{spelling: string}} method */
 const spellingOf = ({ spelling }) => spelling;
 
@@ -287,15 +290,14 @@ export function createSceneActions(store, exchange, notice) {
         : await suggested();
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
       const speed = link?.speed || firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
-      const pulled = link?.pulls?.length ? { pulls: link.pulls } : {};
       const parameters = link?.settings ?? {};
-      await exchange.create({ scene: id, methods, speed, parameters, ...pulled });
+      await exchange.create({ scene: id, methods, speed, parameters, ...pullsOf(link) });
     },
     /**
      * Opens a scene that is none of the shipped ones. The one that runs goes on when the server
      * refuses it.
      * @param {any} document
-     * @param {{settings: Record<string, number>, methods: string[]}} [link]
+     * @param {{settings: Record<string, number>, methods: string[], pulls?: number[][]}} [link]
      */
     async loadDocument(document, link) {
       const present = data.methods.map(spellingOf);
@@ -303,7 +305,8 @@ export function createSceneActions(store, exchange, notice) {
       const wanted = link?.methods ?? (data.document ? present : suggested);
       const methods = wanted.slice(0, limits().methods);
       const parameters = link?.settings ?? {};
-      await exchange.create({ scene: document, methods, speed: data.speed, parameters });
+      const { speed } = data;
+      await exchange.create({ scene: document, methods, speed, parameters, ...pullsOf(link) });
     },
     endSession: keeper.dispose,
     equations: () => api.equations(sourceOf(data), data.settings),

@@ -32,12 +32,12 @@ export function createSession(store) {
 
   const undo = createUndo(
     store,
-    ({ scene, settings, methods }) =>
+    ({ scene, settings, methods, pulls }) =>
       JSON.stringify(scene) === JSON.stringify(sourceOf(store.data))
-        ? exchange.restart({ parameters: settings, methods })
+        ? exchange.restart({ parameters: settings, methods, pulls })
         : typeof scene === "string"
-          ? scenes.loadScene(scene, { settings, methods })
-          : scenes.loadDocument(scene, { settings, methods }),
+          ? scenes.loadScene(scene, { settings, methods, pulls })
+          : scenes.loadDocument(scene, { settings, methods, pulls }),
     notice,
   );
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Undo and redo of changes that start the runs anew: methods, parameters, the start, the scene.
+// Undo and redo of changes that start the runs anew (methods, parameters, the start, the scene) and
+// of what a hand pulled.
 import { sentenceOf } from "../api/client.js";
 import { sourceOf } from "../state/store.js";
 
@@ -12,10 +13,11 @@ function differenceOf(a, b) {
   const [one, other] = [a, b].map((text) => JSON.parse(text));
   const names = new Set([...Object.keys(one.settings), ...Object.keys(other.settings)]);
   const changed = [...names].filter((name) => one.settings[name] !== other.settings[name]);
-  const methods = JSON.stringify(one.methods) !== JSON.stringify(other.methods);
+  const same = (name) => JSON.stringify(one[name]) === JSON.stringify(other[name]);
   return [
-    JSON.stringify(one.scene) === JSON.stringify(other.scene) ? "" : "scene",
-    methods ? "methods" : "",
+    same("scene") ? "" : "scene",
+    same("methods") ? "" : "methods",
+    same("pulls") ? "" : "pulls",
     ...changed,
   ].join();
 }
@@ -40,6 +42,7 @@ export function createUndo(store, apply, notice) {
       scene: sourceOf(data),
       settings: data.settings,
       methods: data.methods.map(({ spelling }) => spelling),
+      pulls: data.pulls,
     });
 
   function tell() {
@@ -47,7 +50,7 @@ export function createUndo(store, apply, notice) {
     store.emit("undo");
   }
 
-  store.on("methods", () => {
+  function remember() {
     const now = data.scene ? snapshot() : "";
     if (busy || now === present) {
       return;
@@ -61,7 +64,11 @@ export function createUndo(store, apply, notice) {
     }
     present = now;
     tell();
-  });
+  }
+
+  store.on("methods", remember);
+  // the log of a hand that let go; runs without any pull are told by "methods"
+  store.on("hand", () => data.pulls.length > 0 && !data.hand && remember());
 
   /** @param {string[]} from @param {string[]} to @param {string} word */
   async function move(from, to, word) {
@@ -73,8 +80,11 @@ export function createUndo(store, apply, notice) {
     busy = true;
     to.push(present);
     try {
-      await apply(JSON.parse(wanted));
+      const before = JSON.parse(wanted);
+      await apply(before);
+      data.pulls = before.pulls;
       present = snapshot();
+      store.emit("hand");
     } catch (error) {
       notice(sentenceOf(error));
     }

@@ -14,6 +14,8 @@ const SHOWN = [
   [6, "M"],
   [9, "G"],
 ];
+/** A number of so many digits is the same after it has been a double. */
+const DECIMAL = 15;
 const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 /**
@@ -186,10 +188,20 @@ export function parseQuantity(text, unit) {
     return value;
   }
   if (tail in (TYPED[unit] ?? {})) {
-    return value * TYPED[unit][tail];
+    return times(value, TYPED[unit][tail]);
   }
   const prefix = unit && tail.endsWith(unit) ? tail.slice(0, -unit.length) : null;
-  return prefix !== null && prefix in PREFIXES ? value * 10 ** PREFIXES[prefix] : NaN;
+  return prefix !== null && prefix in PREFIXES ? times(value, 10 ** PREFIXES[prefix]) : NaN;
+}
+
+/**
+ * A product of decimal numbers as by hand: 7 cm are 0.07 m, not 0.07000000000000001 m. A factor
+ * that is no short decimal, as of degrees, keeps all its digits.
+ * @param {number} value @param {number} factor
+ */
+function times(value, factor) {
+  const short = factor === Number(factor.toPrecision(DECIMAL));
+  return short ? Number((value * factor).toPrecision(DECIMAL)) : value * factor;
 }
 
 /** The largest of 1, 2, 5 times a power of ten that is not above x. @param {number} x > 0 */

@@ -35,13 +35,24 @@ static double mass_of(const hn_scene *scene) {
     return mass > 0 ? mass : 1;
 }
 
+/// The nearest number of three decimal digits: nobody chooses a hand more finely, and a log of it
+/// stays short. 0 and infinity stay.
+static double round_digits(double x) {
+    if (!(x > 0) || !isfinite(x)) {
+        return x;
+    }
+    const int places = 2 - (int)floor(log10(x));
+    const double scale = pow(10, abs(places));
+    return places >= 0 ? round(x * scale) / scale : round(x / scale) * scale;
+}
+
 void hn_pull_choose_spring(const hn_system *sys, hn_pull *pull) {
     const double mass = mass_of(hn_system_scene(sys));
     if (pull->stiffness < 0) {
-        pull->stiffness = STRENGTH * mass * GRAVITY / hn_system_length(sys);
+        pull->stiffness = round_digits(STRENGTH * mass * GRAVITY / hn_system_length(sys));
     }
     if (pull->damping < 0) {
-        pull->damping = sqrt(pull->stiffness * mass);
+        pull->damping = round_digits(sqrt(pull->stiffness * mass));
     }
 }
 

@@ -27,7 +27,7 @@ typedef struct hn_hand {
 } hn_hand;
 
 /// Chooses stiffness and damping where they are below 0: stiffness from the weight and the size of
-/// the mechanism, damping half the critical one of its whole mass.
+/// the mechanism, damping half the critical one of its whole mass, both of three digits.
 void hn_pull_choose_spring(const hn_system *sys, hn_pull *pull);
 /// Makes an idle hand for a system; in one without pulls it stays idle. Fails: HN_ERR_MEMORY,
 /// HN_ERR_LIMIT.

@@ -45,7 +45,7 @@ static hn_status shorten(hn_reference_work *w, hn_ref_request *request, hn_diags
         return HN_OK;
     }
     if (hold <= 0) {
-        return hn_diags_add(diags, HN_ERR_NO_CONVERGENCE, NULL, "take a shorter --time",
+        return hn_diags_add(diags, HN_ERR_NO_CONVERGENCE, NULL, "take a shorter time",
                             "the two computations share fewer than %d digits from the start on",
                             HN_HOLD_DIGITS);
     }

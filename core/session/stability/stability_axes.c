@@ -367,7 +367,7 @@ static hn_status check_sizes(hn_map *map, hn_diags *diags) {
     // a trial must not take too many steps
     h = map->y.is_step ? map->y.value[0] : h;
     if (map->T / h > HN_MAP_STEPS) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a shorter --time or larger steps",
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a shorter time or larger steps",
                             "%g s at steps of %.3g s take %.3g of them; a trial has at most %g",
                             map->T, h, map->T / h, HN_MAP_STEPS);
     }

@@ -183,7 +183,7 @@ static void why_unsettled(const hn_class *c, double T, char out[200]) {
                                        "not resolve the motion yet"
                       : below        ? "the errors fall more slowly than theory"
                                      : "the slopes change from size to size";
-    snprintf(out, 200, ": %s; try a shorter run, --time %.3g", why, T / 10);
+    snprintf(out, 200, ": %s; try a shorter time, %.3g s", why, T / 10);
 }
 
 static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *c) {

@@ -7,6 +7,7 @@
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -215,6 +216,22 @@ static void a_point_without_a_load_is_refused(void **state) {
     hn_model_free(model);
 }
 
+/// A log holds each number with all its digits: the spring that is chosen has three of them.
+static void a_spring_of_its_own_has_three_digits(void **state) {
+    (void)state;
+    hn_model *model = load(NULL, 0);
+    hn_pull pull = {.point = POINT, .stiffness = -1, .damping = -1};
+    hn_pull_choose_spring(hn_model_system(model), &pull);
+    const double values[] = {pull.stiffness, pull.damping};
+    for (int k = 0; k < 2; k++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.3g", values[k]);
+        assert_true(values[k] > 0);
+        assert_true(strtod(text, NULL) == values[k]);
+    }
+    hn_model_free(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_log_done_again_gives_the_same_bits),
@@ -222,6 +239,7 @@ int main(void) {
         cmocka_unit_test(every_method_feels_the_same_hand),
         cmocka_unit_test(the_force_is_that_of_the_spring),
         cmocka_unit_test(a_point_without_a_load_is_refused),
+        cmocka_unit_test(a_spring_of_its_own_has_three_digits),
     };
     return cmocka_run_group_tests(tests, hn_test_library_open, hn_test_library_close);
 }
