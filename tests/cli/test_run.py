@@ -128,7 +128,7 @@ class Run(Command):
         self.assertTrue(run["reason"])
         # a sample between two steps finds the end before the next step does
         run = strict(self.assert_exit(call("run", "four-bar", "--set", "l2=1.55", "--method", "reduced@rk4:h=1e-2", "--time", "1", "--json"), ENDED))
-        self.assertIn("cannot be closed with this value", run["reason"])
+        self.assertIn("the end of its range was passed", run["reason"])
         self.assertEqual(run["incidents"][-1]["code"], "chart-lost")
 
     def test_a_weight_that_hangs_is_held_up_as_help_and_readme_say(self):

@@ -204,6 +204,7 @@ hn_status hn_chart_settle(hn_chart *chart) {
         // a chart chosen near a singular pose must not take that pose for its measure
         chart->pivot_start = fmax(chart->pivot_start, hn_chart_smallest_pivot(chart, from));
         chart->volume_start = hn_chart_log_volume(chart, from);
+        chart->volume_unit = exp(-chart->volume_start);
         chart->is_measured = 1;
     }
 
@@ -284,6 +285,11 @@ static hn_status close_by_dyads(hn_chart *chart, hn_chart_point *p, double t, do
     return HN_OK;
 }
 
+// a gap that stopped falling at rounding level is as closed as it gets
+bool hn_chart_is_closed(const hn_chart *chart, double gap, double last, double tol) {
+    return gap <= tol * chart->length || (gap <= FLOOR * chart->length && gap >= 0.5 * last);
+}
+
 hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q, double tol) {
     double last = HUGE_VAL;
     p->valid = 0;
@@ -301,9 +307,7 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
         if (!hn_chart_factor(chart, p)) {
             return fail_singular(chart, t, p->q);
         }
-        // a gap that stopped falling at rounding level is as closed as it gets
-        const int at_floor = p->gap <= FLOOR * chart->length && p->gap >= 0.5 * last;
-        if (p->gap <= tol * chart->length || at_floor) {
+        if (hn_chart_is_closed(chart, p->gap, last, tol)) {
             hn_chart_make_basis(chart, p);
             memmove(q, p->q, (size_t)chart->nq * sizeof *q);
             p->tol = tol;

@@ -42,6 +42,9 @@ void hn_chart_destroy(hn_chart *chart);
 /// det J_d vanished on the way.
 HN_MUST_CHECK hn_status hn_chart_close(hn_chart *chart, hn_chart_point *point, double t, double *q,
                                        double tol);
+/// Whether a configuration with this gap counts as closed to `tol`; `last` is the gap before the
+/// last step of Newton's method.
+bool hn_chart_is_closed(const hn_chart *chart, double gap, double last, double tol);
 /// `here` becomes the accepted state. HN_ERR_CHART when det J_d changed its sign since the last
 /// one: the loop went over to its other assembly mode.
 HN_MUST_CHECK hn_status hn_chart_settle(hn_chart *chart);

@@ -42,6 +42,9 @@ double hn_chart_log_volume(const hn_chart *chart, const hn_chart_point *p) {
 }
 
 double hn_chart_volume(const hn_chart *chart) {
+    if (chart->here.is_bare) {
+        return chart->here.volume * chart->volume_unit;
+    }
     return exp(hn_chart_log_volume(chart, &chart->here) - chart->volume_start);
 }
 
@@ -116,6 +119,7 @@ static bool has_regular_order(hn_chart *chart, hn_chart_point *p) {
 bool hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
     memcpy(p->J, hn_eval_list(chart->loop, HN_TERM_J), (size_t)chart->n_J * sizeof *p->J);
     chart->cost.factorisations++;
+    p->is_bare = false;
     if (!(is_square(chart) ? factor_sparse(chart, p) : factor_dense(chart, p))) {
         return false;
     }

@@ -50,6 +50,10 @@ static hn_status follow_in(hn_chart *chart, hn_chart_point *point, hn_chart_poin
     return HN_OK;
 }
 
+bool hn_chart_is_near(const hn_chart *chart, const double *predicted, const double *q) {
+    return correction(chart, predicted, q) <= FAR;
+}
+
 hn_status hn_chart_follow(hn_chart *chart, hn_chart_point *point, hn_chart_point *spare, double t,
                           const double *q_ind, double *q, double tol) {
     double worst = 0;

@@ -28,10 +28,12 @@ typedef struct hn_chart_point {
     double *s;        ///< nv
     hn_sparse_lu *lu; ///< factor of J_d when it is square, its columns scaled
     double *jd_values;
-    hn_qr jd;   ///< factor of J_d otherwise, nc x rank
-    int sign;   ///< of det J_d when square, else 0
-    double gap; ///< ||phi||
-    double tol; ///< that q was closed to; infinite when it was only located
+    hn_qr jd;      ///< factor of J_d otherwise, nc x rank
+    int sign;      ///< of det J_d when square, else 0
+    bool is_bare;  ///< made by a tape: J and the factor are those of another configuration
+    double volume; ///< of a bare point: |det J_d|, columns scaled
+    double gap;    ///< ||phi||
+    double tol;    ///< that q was closed to; infinite when it was only located
 } hn_chart_point;
 
 typedef struct hn_chart {
@@ -66,6 +68,7 @@ typedef struct hn_chart {
     double pivot_start;
     bool is_measured;    ///< the next two belong to the present choice
     double volume_start; ///< logarithm of |det J_d| there
+    double volume_unit;  ///< 1 / |det J_d| there
     /// |det J_d| against that at the last accepted state, and its rate where has_rate is set
     double volume, volume_rate;
     bool has_rate;

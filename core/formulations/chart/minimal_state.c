@@ -9,6 +9,7 @@
 
 // accepted steps over which HN_POSITION_AUTO counts what Newton's method costs
 enum { STEPS_MEASURED = 8 };
+enum { RUNS_OF_DYADS = 4 };
 
 hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                           hn_diag *diag) {
@@ -32,16 +33,27 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
 void hn_minimal_destroy(void *self) {
     hn_minimal_state *s = self;
     hn_chart_destroy(&s->chart);
+    hn_minimal_tape_free(&s->tape);
     hn_chart_jacobian_free(&s->slopes);
     hn_dyads_free(s->dyads);
     s->dyads = NULL;
 }
 
-// `here` goes to the closed pose with the independent entries of y
+// one closing by the tape; what HN_POSITION_AUTO counts
+static bool close_by_tape(hn_minimal_state *s, double t, const double *y, double tol) {
+    hn_chart *chart = &s->chart;
+    const long long newton = chart->cost.newton;
+    const bool closed = hn_minimal_tape_close(&s->tape, chart, t, y, tol);
+    s->closings += chart->cost.newton > newton;
+    s->newton_steps += chart->cost.newton - newton;
+    return closed;
+}
+
+// `here` goes to the closed pose with the independent entries of y, with its factor
 static hn_status place(hn_minimal_state *s, double t, const double *y, double tol) {
     hn_chart *chart = &s->chart;
     hn_chart_point *p = &chart->here;
-    int same = p->valid && p->t == t && p->tol <= tol;
+    int same = p->valid && !p->is_bare && p->t == t && p->tol <= tol;
     for (int j = 0; j < chart->r && same; j++) {
         same = p->q[chart->at[chart->ind[j]]] == y[j];
     }
@@ -59,9 +71,13 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_minimal_state *s = self;
     const int r = s->chart.r;
     s->chart.cost.evals++;
+    memcpy(ydot, y + r, (size_t)r * sizeof *y);
+    if (close_by_tape(s, t, y, HN_CHART_TOL) &&
+        hn_minimal_tape_get_accelerations(&s->tape, ydot + r)) {
+        return HN_OK;
+    }
     HN_TRY(place(s, t, y, HN_CHART_TOL));
     hn_chart_speeds(&s->chart, &s->chart.here, y + r, s->v);
-    memcpy(ydot, y + r, (size_t)r * sizeof *y);
     return hn_chart_accel(&s->chart, s->v, ydot + r);
 }
 
@@ -140,20 +156,30 @@ static hn_status choose_position(hn_minimal_state *s, double t) {
     return s->position == HN_POSITION_DYADS ? demand_dyads(s, t) : HN_OK;
 }
 
-// Newton's method took a loop evaluation, a factor and a solve for each of its steps; the closed
-// form takes one run of its tape for each closing, and looks at its branches twice a step.
-static void compare_costs(hn_minimal_state *s, double t) {
+// In the tape with the accelerations Newton's method took a run for each of its steps, and an
+// evaluation with the closed form takes the time of about RUNS_OF_DYADS of them: measured on the
+// shipped scenes, 2 to 4.5. Elsewhere it took a loop evaluation, a factor and a solve for each; the
+// closed form takes one run of its tape for each closing, and looks at its branches twice a step.
+static bool are_dyads_cheaper(const hn_minimal_state *s) {
     const hn_chart *chart = &s->chart;
-    if (s->position != HN_POSITION_AUTO || chart->dyads || !s->dyads ||
-        hn_dyads_refusal(s->dyads) || ++s->n_settled < STEPS_MEASURED) {
-        return;
+    if (s->tape.serves) {
+        return s->newton_steps > RUNS_OF_DYADS * s->closings;
     }
     const double step = hn_eval_info(chart->loop).ops + hn_sparse_lu_factor_ops(chart->here.lu) +
                         hn_sparse_lu_solve_ops(chart->here.lu);
     const double newton = step * (double)s->newton_steps;
     const double dyads = hn_dyads_info(s->dyads).ops * (double)s->closings +
                          2.0 * hn_dyads_branch_info(s->dyads).ops * STEPS_MEASURED;
-    if (dyads < newton) {
+    return dyads < newton;
+}
+
+static void compare_costs(hn_minimal_state *s, double t) {
+    const hn_chart *chart = &s->chart;
+    if (s->position != HN_POSITION_AUTO || chart->dyads || !s->dyads ||
+        hn_dyads_refusal(s->dyads) || ++s->n_settled < STEPS_MEASURED) {
+        return;
+    }
+    if (are_dyads_cheaper(s)) {
         (void)adopt_dyads(s, t); // at a dead point Newton's method goes on, as long as it can
     }
     s->closings = s->newton_steps = 0; // a mechanism that starts from rest needs more of them later
@@ -165,6 +191,7 @@ static hn_status settle_in(hn_minimal_state *s, double t, double *y) {
     hn_chart *chart = &s->chart;
     HN_TRY(hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE));
     HN_TRY(choose_position(s, t));
+    HN_TRY(hn_minimal_tape_begin(&s->tape, chart, s->arena));
     for (int j = 0; j < chart->r; j++) {
         y[j] = s->q[chart->at[chart->ind[j]]];
         y[chart->r + j] = s->v[chart->ind[j]];
@@ -255,7 +282,11 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     const double h = t - chart->base.t;
 
     // close the loops at the end of the step, in the same assembly mode
-    HN_TRY(place(s, t, y, HN_CHART_TOL_FINE));
+    if (close_by_tape(s, t, y, HN_CHART_TOL_FINE)) {
+        hn_minimal_tape_put(&s->tape, chart);
+    } else {
+        HN_TRY(place(s, t, y, HN_CHART_TOL_FINE));
+    }
     HN_TRY(check_dyads(s, t, y));
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
     if (jumped_a_dead_point(s, h)) {

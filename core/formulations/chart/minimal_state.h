@@ -4,11 +4,13 @@
 // What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many
 // entries as the mechanism has freedoms. Which entry of q an independent speed moves must be plain,
 // so the speeds of balls are always dependent; where that cannot be, the scene is refused. Every
-// right-hand side closes the loops first, by Newton from a tangent prediction or, where the loops
-// fall apart into dyads, in closed form, so no gap can open.
+// right-hand side closes the loops first, by Newton from a tangent prediction (in one tape with the
+// accelerations, minimal_tape.h, where that serves) or, where the loops fall apart into dyads, in
+// closed form, so no gap can open.
 
 #include "formulations/chart/chart.h"
 #include "formulations/chart/chart_jacobian.h"
+#include "formulations/chart/minimal_tape.h"
 
 /// How loops are closed once the independent coordinates are known.
 typedef enum hn_position {
@@ -22,6 +24,7 @@ typedef struct hn_minimal_state {
     hn_chart chart;
     hn_chart_jacobian slopes;
     hn_position position; ///< HN_POSITION_NEWTON after init
+    hn_minimal_tape tape; ///< answers first
     hn_dyads *dyads;      ///< for the present choice of coordinates; NULL before the first start
     // what HN_POSITION_AUTO measures since the start or the last comparison
     long long closings, newton_steps;

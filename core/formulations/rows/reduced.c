@@ -84,7 +84,7 @@ const hn_formulation hn_formulation_reduced = {
                  .max = N_POSITIONS - 1,
                  .about =
                      "how the loops are closed: dyads in closed form, Newton's method, or auto: "
-                     "dyads once they have cost fewer operations than Newton's method",
+                     "dyads once Newton's method has cost more",
                  .choices = positions,
                  .n_choices = N_POSITIONS},
         },

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Minimal coordinates with the tape against the same without it.
+#include "formulations/chart/minimal_state.h"
+#include "linalg/dense.h"
+
+#include "support/model.h"
+#include "support/near.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { MAX = 32 };
+
+typedef struct motion {
+    hn_minimal_state s;
+    hn_arena *arena;
+    hn_ode ode;
+    double t, y[2 * MAX];
+} motion;
+
+static void begin(motion *w, const hn_model *m, bool with_tape) {
+    hn_diag diag = {0};
+    memset(w, 0, sizeof *w);
+    w->arena = hn_arena_create(0);
+    assert_int_equal(hn_minimal_init(&w->s, m->sys, w->arena, &diag), HN_OK);
+    assert_int_equal(hn_minimal_start(&w->s, HN_CHART_PREFERRED, 0, m->q, m->v, w->y), HN_OK);
+    hn_minimal_ode(&w->s, &w->ode);
+    w->s.tape.serves &= with_tape;
+}
+
+static void end(motion *w) {
+    hn_minimal_destroy(&w->s);
+    hn_arena_free(w->arena);
+}
+
+/// A step of the classical Runge-Kutta method.
+static hn_status step(motion *w, double h) {
+    static const double c[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
+    const int n = 2 * w->ode.n_pos;
+    double k[4][2 * MAX], at[2 * MAX];
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < n; j++) {
+            at[j] = i > 0 ? w->y[j] + h * c[i] * k[i - 1][j] : w->y[j];
+        }
+        HN_TRY(w->ode.rhs(&w->s, w->t + c[i] * h, at, k[i]));
+    }
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < 4; i++) {
+            w->y[j] += h / 6 * weight[i] * k[i][j];
+        }
+    }
+    w->t += h;
+    return hn_minimal_settle(&w->s, w->t, w->y);
+}
+
+static const char *const scenes[] = {"four-bar",     "fb0",          "slider-crank", "five-bar",
+                                     "driven-crank", "watt-six-bar", "quick-return"};
+enum { N_SCENES = sizeof scenes / sizeof *scenes };
+
+static void the_motion_is_that_of_the_careful_way(void **state) {
+    (void)state;
+    for (int k = 0; k < N_SCENES; k++) {
+        hn_model m;
+        motion tape, careful;
+        double q[2][MAX], v[2][MAX];
+        hn_model_open_closed(&m, scenes[k], NULL);
+        begin(&tape, &m, true);
+        begin(&careful, &m, false);
+        for (int i = 0; i < 200; i++) {
+            assert_int_equal(step(&tape, 1e-3), HN_OK);
+            assert_int_equal(step(&careful, 1e-3), HN_OK);
+        }
+        assert_int_equal(hn_minimal_get_state(&tape.s, tape.t, tape.y, q[0], v[0]), HN_OK);
+        assert_int_equal(hn_minimal_get_state(&careful.s, careful.t, careful.y, q[1], v[1]), HN_OK);
+
+        // rounding of 200 steps, and the basis that both have at the end
+        assert_all_near(q[0], q[1], (size_t)m.info.nq, 1e-11);
+        assert_all_near(v[0], v[1], (size_t)m.info.nv, 1e-9);
+        const size_t n = (size_t)(m.info.nv * tape.s.chart.r);
+        assert_all_near(tape.s.chart.base.N, careful.s.chart.base.N, n, 1e-9);
+        assert_all_near(tape.s.chart.base.s, careful.s.chart.base.s, (size_t)m.info.nv, 1e-9);
+        assert_rel(tape.s.chart.volume, careful.s.chart.volume, 1e-9);
+        assert_int_equal(tape.s.chart.base.sign, careful.s.chart.base.sign);
+        end(&careful);
+        end(&tape);
+        hn_model_close(&m);
+    }
+}
+
+static void one_run_of_the_tape_serves_an_evaluation_of_a_short_step(void **state) {
+    (void)state;
+    enum { STEPS = 200 };
+    hn_model m;
+    motion w;
+    hn_model_open_closed(&m, "fb0", NULL);
+    begin(&w, &m, true);
+    const hn_cost before = w.s.chart.cost;
+    for (int i = 0; i < STEPS; i++) {
+        assert_int_equal(step(&w, 1e-4), HN_OK);
+    }
+
+    // three stages and the end of the step, whose accelerations the next step begins with
+    const long long runs = w.s.chart.cost.newton - before.newton;
+    assert_int_equal(w.s.chart.cost.evals - before.evals, 4 * STEPS);
+    assert_in_range(runs, 4 * STEPS, 4 * STEPS + STEPS / 50);
+    assert_true(w.s.chart.here.is_bare);
+    end(&w);
+    hn_model_close(&m);
+}
+
+/// The same positions with other velocities need a run of their own.
+static void accelerations_follow_the_velocities(void **state) {
+    (void)state;
+    hn_model m;
+    motion tape, careful;
+    double y[2], slope[2][2];
+    hn_model_open_closed(&m, "four-bar", NULL);
+    begin(&tape, &m, true);
+    begin(&careful, &m, false);
+    for (int i = 0; i < 3; i++) {
+        y[0] = tape.y[0] + 0.01;
+        y[1] = 2.0 * i;
+        assert_int_equal(tape.ode.rhs(&tape.s, 0, y, slope[0]), HN_OK);
+        assert_int_equal(careful.ode.rhs(&careful.s, 0, y, slope[1]), HN_OK);
+        assert_all_near(slope[0], slope[1], 2, 1e-11 * (1 + fabs(slope[1][1])));
+    }
+    end(&careful);
+    end(&tape);
+    hn_model_close(&m);
+}
+
+/// Matrices of Newton's method need the factor that a point made by the tape does not have.
+static void the_jacobian_is_that_of_the_careful_way(void **state) {
+    (void)state;
+    hn_model m;
+    motion tape, careful;
+    double jac[2][4];
+    hn_model_open_closed(&m, "slider-crank", NULL);
+    begin(&tape, &m, true);
+    begin(&careful, &m, false);
+    assert_int_equal(step(&tape, 1e-3), HN_OK);
+    assert_int_equal(step(&careful, 1e-3), HN_OK);
+    assert_true(tape.s.chart.here.is_bare);
+    assert_int_equal(tape.ode.jacobian(&tape.s, tape.t, tape.y, jac[0]), HN_OK);
+    assert_int_equal(careful.ode.jacobian(&careful.s, careful.t, careful.y, jac[1]), HN_OK);
+    assert_all_near(jac[0], jac[1], 4, 1e-9 * (1 + hn_norm_max(4, jac[1])));
+    end(&careful);
+    end(&tape);
+    hn_model_close(&m);
+}
+
+/// A long step, whose prediction is far off, is left to the careful way, which goes in pieces.
+static void a_far_prediction_is_followed_in_pieces(void **state) {
+    (void)state;
+    hn_model m;
+    motion tape, careful;
+    double y[2], slope[2][2];
+    hn_model_open_closed(&m, "four-bar", NULL);
+    begin(&tape, &m, true);
+    begin(&careful, &m, false);
+    y[0] = tape.y[0] + 2.5;
+    y[1] = 1;
+    assert_false(hn_minimal_tape_close(&tape.s.tape, &tape.s.chart, 0, y, HN_CHART_TOL));
+    assert_int_equal(tape.ode.rhs(&tape.s, 0, y, slope[0]), HN_OK);
+    assert_int_equal(careful.ode.rhs(&careful.s, 0, y, slope[1]), HN_OK);
+    assert_memory_equal(slope[0], slope[1], sizeof slope[0]); // the same way, the same bits
+    end(&careful);
+    end(&tape);
+    hn_model_close(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_motion_is_that_of_the_careful_way),
+        cmocka_unit_test(one_run_of_the_tape_serves_an_evaluation_of_a_short_step),
+        cmocka_unit_test(accelerations_follow_the_velocities),
+        cmocka_unit_test(the_jacobian_is_that_of_the_careful_way),
+        cmocka_unit_test(a_far_prediction_is_followed_in_pieces),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
