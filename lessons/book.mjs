@@ -97,7 +97,7 @@ const block = {
   figure,
   exhibit: (n) => `<div class="box"><b>Run it.</b><pre>holonom ${plain(n.command)}</pre>${all(n.children)}</div>`,
   predict,
-  slip: (n) => `<div class="slip"><b>Printed (slip ${n.number}).</b> ${all(n.children)}</div>`,
+  slip: (n) => `<div class="slip"><b>Slip ${n.number} of the printed lesson.</b> ${all(n.children)}</div>`,
   exercise,
 };
 

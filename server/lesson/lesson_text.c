@@ -371,7 +371,7 @@ static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
         put_choices(b, node, indent, width);
     } else if (is_kind(node, "slip")) {
         // a heading line, then the text below it
-        hn_strbuf_printf(b, "%*sPrinted in a lesson (slip %.0f):\n", indent, "",
+        hn_strbuf_printf(b, "%*sSlip %.0f of the printed lesson:\n", indent, "",
                          cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "number")));
         put_blocks(b, children_of(node), indent + INDENT, width);
     } else if (is_kind(node, "exercise")) {
