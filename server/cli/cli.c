@@ -5,6 +5,7 @@
 #include "cli/command_table.h"
 #include "cli/completion.h"
 #include "cli/examples.h"
+#include "cli/glossary.h"
 #include "cli/manual.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -62,6 +63,15 @@ static void describe_one(hn_strbuf *b, const hn_command *command) {
     }
 }
 
+static void describe_words(hn_strbuf *b) {
+    int n;
+    const hn_term *terms = hn_glossary(&n);
+    for (int i = 0; i < n; i++) {
+        hn_strbuf_printf(b, "%s\n%*s", terms[i].word, HELP_INDENT, "");
+        add_folded(b, HELP_INDENT, terms[i].means);
+    }
+}
+
 /// What `holonom` alone says: the first three things to do.
 static const char FIRST_STEPS[] =
     "holonom: mechanisms with closed loops, many methods on one clock\n\n"
@@ -71,7 +81,8 @@ static const char FIRST_STEPS[] =
     "  holonom compare four-bar       several methods, and where they part\n"
     "  holonom run four-bar --plot    one method, drawn over time\n"
     "  holonom list scenes            the mechanisms that are there\n\n"
-    "'holonom help' lists all commands, 'holonom help COMMAND' explains one.\n";
+    "'holonom help' lists all commands, 'holonom help COMMAND' explains one,\n"
+    "'holonom help words' the terms of messages and tables.\n";
 
 static hn_diag unknown_command(const char *name) {
     enum { MOST = 64 };
@@ -110,6 +121,10 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
         return hn_cli_print(&b);
     }
     const char *word = args->words.word[0];
+    if (strcmp(word, "words") == 0) {
+        describe_words(&b);
+        return hn_cli_print(&b);
+    }
     const hn_command *command = hn_command_find(is_list(word) ? "list" : word);
     if (!command) {
         hn_diag diag = unknown_command(word);

@@ -63,7 +63,7 @@ static const struct {
     {"completion",
      {"completion bash >~/.local/share/bash-completion/completions/holonom", "completion zsh",
       "completion fish"}},
-    {"help", {"help", "help run", "run --help"}},
+    {"help", {"help", "help run", "help words"}},
     {"version", {"version", "version --json", "--version"}},
 };
 

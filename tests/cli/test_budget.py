@@ -81,7 +81,7 @@ class Budget(unittest.TestCase):
             path = os.path.join(folder, "budget.json")
             done = call("study", "fb0", "budget", "--time", "0.5", "--methods", METHODS[0], "--out", path)
             self.assertEqual(done.returncode, DONE, done.stderr)
-            for word in ("truncation", "formulation", "projection", "drift", "solve", "rounding", "their sum", "error at the end", "outside", "nrad"):
+            for word in ("truncation", "formulation", "projection", "drift", "solve", "rounding", "their sum", "error at the end", "outside", "a2 [rad]"):
                 self.assertIn(word, done.stdout)
             with open(path, encoding="utf-8") as f:
                 self.assertEqual(json.load(f)["methods"][0]["method"], "index1@rk4:h=0.01")

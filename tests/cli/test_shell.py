@@ -106,9 +106,20 @@ LEFT_OUT = ("serve", "report", "merge", "import")
 
 class Help(unittest.TestCase):
     def test_every_line_of_help_fits_eighty_columns(self):
-        for words in [[], *([c] for c in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M))]:
+        for words in [[], ["words"], *([c] for c in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M))]:
             wide = [line for line in call("help", *words).stdout.splitlines() if len(line) > 80]
             self.assertEqual(wide, [], words)
+
+    def test_terms_of_messages_are_explained(self):
+        words = call("help", "words").stdout
+        heads = [word for line in re.findall(r"(?m)^(\S.*)$", words) for word in line.split(", ")]
+        self.assertEqual(len(heads), len(set(heads)))
+        # what the reports of a run have in brackets, and the status of a table
+        told = call("run", "parallelogram", "--method", "projection@rk4:h=1e-3", "--time", "1", "--at", "1").stderr
+        terms = set(re.findall(r"\((?:an? )?([a-zA-Z_ ]+)\)", told)) - set(re.findall(r"\((between [^)]*)\)", told))
+        self.assertGreaterEqual(terms, {"J loses rank", "pilot run", "sigma_min", "pivot ratio"})
+        for term in terms | {"right", "inaccurate", "WRONG", "error estimate"}:
+            self.assertIn(term, heads)
 
     def test_holonom_alone_says_what_to_do_first(self):
         done = call()
@@ -158,7 +169,7 @@ class Width(unittest.TestCase):
                 ["problem", "p3"], ["problem", "p1", "--seeds", "1..2", "--check"], ["grade", "p3", "bad.json"], ["regrade", "verdict.json"],
                 ["rubric", "check", "rubric.json"],
                 ["grade", "p3", "handed-in"], ["lesson", "1"], ["snapshot", "four-bar", "-o", "a.png"], ["import", "robot.urdf", "-o", "b.json"],
-                ["tui", "--once"], ["help"], ["help", "serve"], ["version", "--json"])
+                ["tui", "--once"], ["help"], ["help", "serve"], ["help", "words"], ["version", "--json"])
     # they wait for somebody, take minutes, or what they print is a program, roff or a script
     NO_TEXT = ("serve", "report", "merge", "export", "program", "manual", "completion")
 

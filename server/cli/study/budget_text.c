@@ -40,13 +40,22 @@ static const char *unit_of(const sheet *s, int i) {
     return s->energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
 }
 
-/// "a2", or the time that a budget of energy goes to.
+/// "a2 [rad]", or the time that a budget of energy goes to.
 static void put_subject(hn_table *t, const sheet *s, int i) {
     if (s->energy) {
         hn_table_quantity(t, s->rows[i]->budget.t, "s");
     } else {
         const hn_model *model = hn_budgets_model(s->budgets);
-        hn_table_cell(t, "%s", hn_budget_coordinate(model, s->rows[i])->name);
+        hn_table_cell(t, "%s [%s]", hn_budget_coordinate(model, s->rows[i])->name, unit_of(s, i));
+    }
+}
+
+/// A number in the unit of its budget, without a prefix: parts that are added have one unit.
+static void put_part(hn_table *t, double value) {
+    if (isfinite(value)) {
+        hn_table_cell(t, "%.3g", value);
+    } else {
+        hn_table_cell(t, "-");
     }
 }
 
@@ -70,12 +79,12 @@ static void fill_by_method(hn_table *t, const sheet *s) {
     for (int i = 0; i < s->n; i++) {
         hn_table_cell(t, "%s", s->rows[i]->spelling);
         put_subject(t, s, i);
-        hn_table_quantity(t, whole_of(s, i), unit_of(s, i));
+        put_part(t, whole_of(s, i));
         for (int k = 0; k < s->n_parts; k++) {
-            hn_table_quantity(t, hn_budget_part(s->rows[i], s->energy, k), unit_of(s, i));
+            put_part(t, hn_budget_part(s->rows[i], s->energy, k));
         }
         if (!s->energy) {
-            hn_table_quantity(t, s->rows[i]->budget.sum, unit_of(s, i));
+            put_part(t, s->rows[i]->budget.sum);
         }
     }
 }
@@ -87,7 +96,7 @@ static void put_line(hn_table *t, const sheet *s, int from, int to, const char *
         const double value = part == -1   ? whole_of(s, i)
                              : part == -2 ? s->rows[i]->budget.sum
                                           : hn_budget_part(s->rows[i], s->energy, part);
-        hn_table_quantity(t, value, unit_of(s, i));
+        put_part(t, value);
     }
 }
 
@@ -125,7 +134,7 @@ static void put_by_cause(hn_strbuf *b, const sheet *s) {
         if (s->energy) {
             hn_strbuf_printf(b, ", to t = %g s\n", s->rows[i]->budget.t);
         } else {
-            hn_strbuf_printf(b, ", error of %s\n", c->name);
+            hn_strbuf_printf(b, ", error of %s [%s]\n", c->name, unit_of(s, i));
         }
     }
 }
@@ -181,7 +190,7 @@ void hn_budgets_text(hn_strbuf *b, const hn_budgets *a) {
     hn_strbuf_printf(b, "%s, to t = %g s\n\nWhere the error at the end comes from\n",
                      scene->title ? scene->title : scene->id, hn_budgets_time(a));
     put_sheet(b, a, 0);
-    hn_strbuf_add(b, "\nEnergy put in (+) or taken out (-)\n");
+    hn_strbuf_add(b, "\nEnergy put in (+) or taken out (-), in J\n");
     put_sheet(b, a, 1);
     put_reasons(b, a);
     put_legend(b);
