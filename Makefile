@@ -568,10 +568,13 @@ run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW)) $(COMMA_LOCALE)
 	@$(SANITISED) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(if $(filter asan,$(VARIANT)),$(SLOW)) $(UNIT)
 
+# a sanitised program wants to see its whole machine: it cannot be bundled
+UNSANITISED = $(if $(filter %san,$(VARIANT)),tests/cli/test_bundles.py)
+
 run-server: $(PROGRAM)
 	@$(SANITISED) HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=$(CURDIR)/tests/support/tsan.supp \
 	    LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/lsan.supp:print_suppressions=0 \
-	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(SCRIPTS))
+	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(filter-out $(UNSANITISED),$(SCRIPTS)))
 
 run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$(basename $$b)"; $$b || exit 1; done >build/bench.csv

@@ -29,11 +29,12 @@ static const hn_command COMMANDS[] = {
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
      "julia, wolfram or modelica (of the last three the equations are tested, no program was run); "
      "latex: its equations to read; or as a model: --format mjcf or urdf",
-     MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o", 1, 1,
-     hn_command_export},
+     MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o "
+                   "--force",
+     1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java|julia",
-     "a starting point for a solver of your own, run as program:FILE", "--out -o", 1, 1,
-     hn_command_program},
+     "a starting point for a solver of your own, run as program:FILE; that in python needs numpy",
+     "--out -o --force", 1, 1, hn_command_program},
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
     {"run", "SCENE", "one method; samples as --format csv, ndjson or json, with a verdict",

@@ -2,6 +2,8 @@
 """Students' programs: the starting points give what Baumgarte gives, and whatever a program does, its row says what it did."""
 
 import concurrent.futures
+import csv
+import io
 import json
 import os
 import re
@@ -88,6 +90,25 @@ class StartingPoints(unittest.TestCase):
             self.assertEqual(text.count(pair[0]), text.count(pair[1]), pair)
         opened = len(re.findall(r"^(function|for)\b", text, re.M))
         self.assertEqual((opened, len(re.findall(r"^end$", text, re.M))), (3, 3))
+
+    def test_it_does_not_write_over_the_work_of_a_student(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mine.py")
+            for words in (("program", "python"), ("export", "pendulum", "--blanks")):
+                self.assertEqual(call(*words, "-o", path, "--force").returncode, DONE)
+                self.assertEqual(call(*words, "-o", path).returncode, DONE, "the same text again does no harm")
+                with open(path, "a", encoding="utf-8") as f:
+                    f.write("# my own\n")
+                done = call(*words, "-o", path)
+                self.assertEqual(done.returncode, INPUT)
+                self.assertIn("--force", done.stderr)
+                self.assertTrue(open(path, encoding="utf-8").read().endswith("# my own\n"))
+                self.assertEqual(call(*words, "-o", path, "--force").returncode, DONE)
+                self.assertNotIn("# my own", open(path, encoding="utf-8").read())
+
+    def test_what_the_starting_point_in_python_needs_is_said(self):
+        self.assertIn("python3-numpy", call("program", "python").stdout)
+        self.assertIn("needs numpy", " ".join(call("program", "--help").stdout.split()))
 
     def test_a_language_that_is_not_there_is_answered_with_those_that_are(self):
         done = call("program", "pyton")
@@ -203,6 +224,25 @@ class Services(OneFile):
         self.assertEqual(done.returncode, DONE, done.stderr)
         heads, row = (re.split(r" {2,}", line) for line in done.stdout.splitlines()[1:3])
         self.assertEqual([row[heads.index(head)] for head in ("ops", "ops/step")], ["-", "-"], done.stdout)
+
+    def test_the_documents_say_null_and_why(self):
+        own, ours = json.loads(self.run_program(STEP, "--json").stdout)["methods"]
+        self.assertIsNone(own["ops"])
+        self.assertIn("not counted", own["ops_reason"])
+        self.assertGreater(ours["ops"], 0)
+        self.assertNotIn("ops_reason", ours)
+        where = {"cwd": self.folder.name}
+        cost = json.loads(call("run", "pendulum", "--method", "program:./mine.py@own:h=1e-2", "--time", "0.1", "--json", ALLOW, **where).stdout)["cost"]
+        self.assertIsNone(cost["operations"])
+        self.assertIn("not counted", cost["operations_reason"])
+        self.assertGreater(cost["evaluations"], 0)
+        words = ("study", "pendulum", "--methods", "program:./mine.py@own", "projection@rk4", "--time", "0.2", "--levels", "2", "--samples", "0", ALLOW)
+        own, ours = (m["points"] for m in json.loads(call(*words, "--json", **where).stdout)["methods"])
+        self.assertEqual({(p["operations"], "not counted" in p["operations_reason"]) for p in own}, {(None, True)})
+        self.assertTrue(all(p["operations"] > 0 and "operations_reason" not in p for p in ours))
+        rows = list(csv.DictReader(io.StringIO(call(*words, "--csv", **where).stdout)))
+        self.assertEqual({r["operations"] == "" for r in rows if r["method"].startswith("program")}, {True})
+        self.assertRegex(call(*words, **where).stdout, r"(?m)program:\S+ +2/2 .* -$")
 
     def test_a_file_that_is_none_is_refused(self):
         for name, said in (("no-such.py", "there is no program"), ("/tmp", "is not a file"), ("/etc/passwd", "cannot be started")):

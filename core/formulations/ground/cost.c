@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/cost.h"
 
+#include <math.h>
+
 void hn_cost_add(hn_cost *sum, const hn_cost *part) {
     sum->evals += part->evals;
     sum->factorisations += part->factorisations;
@@ -29,4 +31,8 @@ hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
         .chart_changes = after->chart_changes - before->chart_changes,
         .rejected = after->rejected - before->rejected,
     };
+}
+
+double hn_cost_known_ops(const hn_cost *cost) {
+    return cost->evals > 0 && cost->ops == 0 ? (double)NAN : cost->ops;
 }

@@ -21,4 +21,8 @@ void hn_cost_add(hn_cost *sum, const hn_cost *part);
 /// Returns the difference of two readings: after - before.
 hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after);
 
+/// Returns `ops` for a document; NaN where right-hand sides were computed outside of this program,
+/// which counts nothing of them.
+double hn_cost_known_ops(const hn_cost *cost);
+
 #endif

@@ -3,6 +3,7 @@
 #include "session/compare/estimate.h"
 #include "session/compare/failure.h"
 #include "session/compare/incident_json.h"
+#include "session/store/cost_json.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -61,7 +62,7 @@ static void put_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_put_int(b, "steps", s->steps);
     hn_json_put_int(b, "rejected", s->rejected);
     hn_json_put_int(b, "evals", s->cost.evals);
-    hn_json_put_number(b, "ops", s->cost.ops);
+    hn_cost_put_ops_json(b, "ops", &s->cost);
     hn_json_put_number(b, "cpu", s->cpu_seconds);
     hn_json_put_number(b, "worst_gap", s->worst_gap);
     hn_json_put_number(b, "worst_velocity_gap", s->worst_velocity_gap);
@@ -239,6 +240,7 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         // cost and error totals
         put_cost(b, &s);
         put_step_cost(b, c, i);
+        hn_cost_put_reason_json(b, "ops_reason", &s.cost);
         put_estimate(b, c, i, reached, true);
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);

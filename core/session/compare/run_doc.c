@@ -5,6 +5,7 @@
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "session/store/columns_json.h"
+#include "session/store/cost_json.h"
 #include "session/compare/comparison.h"
 #include "session/compare/estimate.h"
 #include "session/compare/failure.h"
@@ -461,7 +462,8 @@ static void put_run_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_object(b);
     hn_json_put_number(b, "cpu_seconds", s->cpu_seconds);
     hn_json_put_int(b, "evaluations", s->cost.evals);
-    hn_json_put_number(b, "operations", s->cost.ops);
+    hn_cost_put_ops_json(b, "operations", &s->cost);
+    hn_cost_put_reason_json(b, "operations_reason", &s->cost);
     hn_json_put_int(b, "steps", s->steps);
     hn_json_put_int(b, "rejected", s->rejected);
     hn_json_put_int(b, "factorisations", s->cost.factorisations);

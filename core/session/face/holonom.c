@@ -418,7 +418,7 @@ holonom_result holonom_run_result(const holonom_run *run) {
                         .energy_change = s.worst_energy_change,
                         .steps = s.steps,
                         .evaluations = s.cost.evals,
-                        .operations = s.cost.ops,
+                        .operations = hn_cost_known_ops(&s.cost),
                         .seconds = s.cpu_seconds};
     snprintf(r.reason, sizeof r.reason, "%s", s.reason);
     return r;

@@ -111,7 +111,7 @@ typedef struct holonom_result {
     double velocity_gap;   ///< largest, over all steps
     double energy_change;  ///< largest, over all steps, less the work done [J]
     long long steps, evaluations;
-    double operations; ///< arithmetic operations, exact
+    double operations; ///< arithmetic operations, exact; NaN: not counted
     double seconds;    ///< CPU time of stepping
 } holonom_result;
 

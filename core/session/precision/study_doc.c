@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/precision/study_doc.h"
 
+#include "session/store/cost_json.h"
 #include "session/store/csv.h"
 #include "session/store/ending_json.h"
 #include "session/precision/study_internal.h"
@@ -119,7 +120,8 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
         hn_json_put_int(b, "steps", p->steps);
         hn_json_put_int(b, "rejected", p->rejected);
         hn_json_put_int(b, "evaluations", p->cost.evals);
-        hn_json_put_number(b, "operations", p->cost.ops);
+        hn_cost_put_ops_json(b, "operations", &p->cost);
+        hn_cost_put_reason_json(b, "operations_reason", &p->cost);
         hn_json_put_int(b, "factorisations", p->cost.factorisations);
         hn_json_put_int(b, "solves", p->cost.solves);
         hn_json_put_int(b, "newton", p->cost.newton);
@@ -302,7 +304,7 @@ static void put_row(hn_strbuf *b, const hn_study *s, int m, int k) {
     put_cell(b, (double)p->steps);
     put_cell(b, (double)p->rejected);
     put_cell(b, (double)p->cost.evals);
-    put_cell(b, p->cost.ops);
+    put_cell(b, hn_cost_known_ops(&p->cost));
     put_cell(b, p->median);
     put_cell(b, p->spread);
     put_cell(b, p->half[0]);

@@ -220,7 +220,7 @@ void hn_study_put_methods(hn_strbuf *b, const hn_study *s, int level) {
             put_error(b, wp, best, (hn_error_kind)i);
         }
         put_quantity(b, best ? best->median : (double)NAN, "s");
-        put_quantity(b, best ? best->cost.ops : (double)NAN, "op");
+        put_quantity(b, best ? hn_cost_known_ops(&best->cost) : (double)NAN, "op");
         hn_strbuf_add(b, "</tr>");
     }
     hn_strbuf_add(b, "</tbody></table></div>\n");
@@ -298,7 +298,7 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
         b, isfinite(p->spread) ? "<td class=\"n\">%.0f %%%s</td>" : "<td class=\"n\">–</td>",
         100 * p->spread, p->busy ? " (busy)" : "");
     hn_strbuf_printf(b, "<td class=\"n\">%lld</td>", p->cost.evals);
-    put_quantity(b, p->cost.ops, "op");
+    put_quantity(b, hn_cost_known_ops(&p->cost), "op");
     hn_strbuf_add(b, "</tr>");
 }
 

@@ -140,10 +140,9 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     put_estimate(t, hn_document_get(m, "error_estimate"));
     hn_table_cell(t, "%.0f", steps);
     hn_table_cell(t, "%.0f", hn_document_number(m, "evals"));
-    // a program's operations are its own affair: nobody counts them
-    const double ops = hn_document_number(m, "ops"), counted = ops > 0 ? ops : (double)NAN;
-    hn_table_quantity(t, counted, "op");
-    hn_table_quantity(t, steps > 0 ? counted / steps : (double)NAN, "op");
+    const double ops = hn_document_number(m, "ops");
+    hn_table_quantity(t, ops, "op");
+    hn_table_quantity(t, steps > 0 ? ops / steps : (double)NAN, "op");
 
     // the time of a step, with its quartiles where it was measured
     const cJSON *cost = hn_document_get(m, "step_cpu");

@@ -81,6 +81,9 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
                                                           &left_out, model, args->format, &diags)
                               : write_program(lib, args, model, &b, &diags);
     }
+    if (status == HN_OK && args->blanks) {
+        status = hn_cli_protect_work(args, &b, &diags);
+    }
     hn_model_free(model);
     if (status != HN_OK) {
         hn_strbuf_reset(&b);

@@ -46,6 +46,7 @@ hn_exit hn_command_program(const hn_library *lib, const hn_args *args) {
         snprintf(path, sizeof path, "%.3900s/../core/export/start/mine.%s.txt",
                  hn_library_lessons(lib), suffix);
         status = hn_file_load(path, LARGEST, &b, &diags);
+        HN_THEN(status, hn_cli_protect_work(args, &b, &diags));
     }
     if (status != HN_OK) {
         hn_strbuf_reset(&b);

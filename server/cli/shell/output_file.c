@@ -84,6 +84,31 @@ hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
                         n < (int)sizeof folder ? strerror(errno) : "its name is too long");
 }
 
+/// Whether the file holds this text, to the byte.
+static bool holds(const char *path, const hn_strbuf *text) {
+    FILE *f = fopen(path, "rb");
+    bool same = f != NULL;
+    for (size_t i = 0; same && i < text->n; i++) {
+        same = getc(f) == (unsigned char)hn_strbuf_text(text)[i];
+    }
+    same = same && getc(f) == EOF;
+    if (f) {
+        fclose(f);
+    }
+    return same;
+}
+
+hn_status hn_cli_protect_work(const hn_args *args, const hn_strbuf *text, hn_diags *diags) {
+    struct stat st;
+    if (!args->out || strcmp(args->out, "-") == 0 || args->force || stat(args->out, &st) != 0 ||
+        !S_ISREG(st.st_mode) || holds(args->out, text)) {
+        return HN_OK;
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, "/out",
+                        "choose another name, or add --force to replace it",
+                        "'%.200s' is there already and may be somebody's work", args->out);
+}
+
 int hn_cli_same_file(const char *a, const char *b) {
     struct stat first, second;
     return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&

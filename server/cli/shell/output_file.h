@@ -21,6 +21,10 @@ void hn_cli_keep_former(const char *path, const hn_strbuf *bytes);
 /// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its
 /// folder is not there or takes no files.
 HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);
+/// Refuses an --out that is there and holds another text, unless --force is given: what is written
+/// is a beginning that somebody completes, and that work must not be lost. Fails: HN_ERR_INPUT.
+HN_MUST_CHECK hn_status hn_cli_protect_work(const hn_args *args, const hn_strbuf *text,
+                                            hn_diags *diags);
 /// Returns 1 when both paths lead to one existing file.
 int hn_cli_same_file(const char *a, const char *b);
 /// Refuses an --out that is one of the files the command reads: HN_ERR_INPUT. A folder is let

@@ -63,7 +63,7 @@ static void put_best(hn_table *t, const hn_wp *wp, int m) {
     put_error(t, wp, HN_ERROR_GAP, p->worst[HN_ERROR_GAP]);
     put_error(t, wp, HN_ERROR_ENERGY, p->worst[HN_ERROR_ENERGY]);
     hn_table_quantity(t, p->median, "s");
-    hn_table_quantity(t, p->cost.ops, "op");
+    hn_table_quantity(t, hn_cost_known_ops(&p->cost), "op");
 }
 
 static int count(const hn_wp *wp, int m, hn_wp_state state) {
