@@ -220,21 +220,32 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
 
 // ---- what a shell needs ----
 
+// bash takes : = and @ for ends of words where it may complete: the line is split at blanks here,
+// and what stands up to the last of them is not typed again; @ itself is
 static const char BASH[] =
     "_holonom() {\n"
-    "    local IFS=$'\\n' cur words cword\n"
-    "    _get_comp_words_by_ref -n :=@ cur words cword 2>/dev/null ||\n"
-    "        { cur=${COMP_WORDS[COMP_CWORD]}; words=(\"${COMP_WORDS[@]}\"); cword=$COMP_CWORD; }\n"
-    "    COMPREPLY=($(holonom complete -- \"${words[@]:1:cword}\" 2>/dev/null | cut -f1))\n"
-    "    [[ ${COMPREPLY[0]} == *[=@] ]] && compopt -o nospace\n"
-    "    declare -F __ltrim_colon_completions >/dev/null && __ltrim_colon_completions \"$cur\"\n"
+    "    local IFS=$'\\n' line=${COMP_LINE:0:COMP_POINT} cur breaks kept=\n"
+    "    local -a words\n"
+    "    IFS=$' \\t' read -ra words <<<\"$line\"\n"
+    "    [[ $line == *[$' \\t'] ]] && words+=('')\n"
+    "    cur=${words[${#words[@]} - 1]}\n"
+    "    COMPREPLY=($(holonom complete -- \"${words[@]:1}\" 2>/dev/null | cut -f1))\n"
+    "    [[ ${COMPREPLY[0]} == *[=@] ]] && compopt -o nospace 2>/dev/null\n"
+    "    breaks=${COMP_WORDBREAKS//[^:=@]/}\n"
+    "    [[ $breaks ]] && kept=${cur%\"${cur##*[$breaks]}\"} kept=${kept%@}\n"
+    "    COMPREPLY=(\"${COMPREPLY[@]#\"$kept\"}\")\n"
     "}\ncomplete -o default -F _holonom holonom\n";
+// a blank follows what is complete; works from a folder of functions and when it is sourced
 static const char ZSH[] =
     "#compdef holonom\n_holonom() {\n"
-    "    local -a found\n"
+    "    local -a found open whole\n"
     "    found=(${(f)\"$(holonom complete -- ${words[2,CURRENT]} 2>/dev/null | cut -f1)\"})\n"
-    "    if (( $#found )); then compadd -S '' -Q -- $found; else _files; fi\n"
-    "}\n_holonom \"$@\"\n";
+    "    open=(${(M)found:#*[=@]}) whole=(${found:#*[=@]})\n"
+    "    (( $#open )) && compadd -S '' -Q -- $open\n"
+    "    (( $#whole )) && compadd -Q -- $whole\n"
+    "    (( $#found )) || _files\n"
+    "}\n"
+    "if [[ $funcstack[1] == _holonom ]]; then _holonom \"$@\"; else compdef _holonom holonom; fi\n";
 static const char FISH[] =
     "complete -c holonom -f -a '(holonom complete -- (commandline -opc)[2..-1] (commandline -ct) "
     "2>/dev/null)'\n"

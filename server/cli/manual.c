@@ -71,6 +71,8 @@ static void put_sections(hn_strbuf *b) {
         "holonom grade p3 answer.json\n.fi\n"
         ".SH ENVIRONMENT\n.TP\n.B HOLONOM_HOME\nfolder with lessons/ and web/\n"
         ".TP\n.B HOLONOM_CACHE\nfolder for computed references and unfinished studies\n"
+        ".TP\n.B XDG_STATE_HOME\nfolder in which the workbench in the terminal keeps the best "
+        "scores of exercises, as holonom/lessons.json; ~/.local/state when not set\n"
         ".TP\n.B NO_COLOR\nno colours, whatever the terminal can show\n");
 }
 

@@ -78,14 +78,14 @@ class Completion(unittest.TestCase):
             self.assertRegex(offered[line], rf"(?m)^{re.escape(wanted)}(\s|$)", line)
 
     def test_bash_completes_with_what_the_program_says(self):
-        cases = "".join(f"COMP_WORDS=(holonom {line}); COMP_CWORD={len(line.split())}; COMPREPLY=(); _holonom 2>/dev/null; echo '> {line}'; "
+        cases = "".join(f"COMP_LINE='holonom {line}'; COMP_POINT=${{#COMP_LINE}}; COMP_WORDBREAKS=; COMPREPLY=(); _holonom 2>/dev/null; echo '> {line}'; "
                         # what bash does itself when nothing is offered: complete -o default
                         f'((${{#COMPREPLY[@]}})) && printf "%s\\n" "${{COMPREPLY[@]}}" || compgen -f -- "{line.split()[-1]}"; ' for line, _ in self.CASES)
         self.assert_offered(self.offered(["bash", "-c"], "source <(holonom completion bash); complete -p holonom | grep -q default || exit 1; " + cases))
 
     def test_zsh_completes_with_what_the_program_says(self):
         # compadd and _files outside of a completion refuse; what they are given is what counts
-        head = ("compdef() { :; }; compadd() { shift 4; print -rl -- $@; }; _files() { print -rl -- ${words[CURRENT]}*(N); }; "
+        head = ("compdef() { :; }; compadd() { print -rl -- ${@[$@[(i)--] + 1,-1]}; }; _files() { print -rl -- ${words[CURRENT]}*(N); }; "
                 "words=(holonom); CURRENT=1; source <(holonom completion zsh) >/dev/null; ")
         cases = "".join(f"words=(holonom {line}); CURRENT={len(line.split()) + 1}; print -r -- '> {line}'; _holonom; " for line, _ in self.CASES)
         self.assert_offered(self.offered(["zsh", "-f", "-c"], head + cases))
