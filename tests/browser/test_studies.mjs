@@ -95,6 +95,36 @@ test("a study that is stopped shows what was done, and says so", async (t) => {
   await soon(async () => assert.ok((await page.locator(".scatter .spot").count()) > 0));
 });
 
+test("a stopped study goes on with what is left, and is not begun again", async (t) => {
+  const page = await open(t);
+  const asked = [];
+  page.on("request", (request) => {
+    if (/\/studies\b/.test(request.url()) && request.method() !== "GET") {
+      asked.push(`${request.method()} ${request.postData()?.slice(0, 20)}`);
+    }
+  });
+  await page.keyboard.press("w");
+  await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
+  await page.getByRole("button", { name: "Stop" }).click();
+  await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
+  const { id, done } = await read(page, (data) => ({
+    id: data.studies["work-precision"].id,
+    done: data.studies["work-precision"].document.methods.flatMap(({ points }) => points).length,
+  }));
+  const before = asked.length;
+  await page.getByRole("button", { name: "Go on" }).click();
+  await until(page, (data) => data.studies["work-precision"].state !== "stopped", LONG);
+  await until(page, hasEnded("work-precision"), LONG);
+  const after = await read(page, (data) => ({
+    id: data.studies["work-precision"].id,
+    done: data.studies["work-precision"].document.methods.flatMap(({ points }) => points).length,
+  }));
+  assert.equal(after.id, id, "it is the same study");
+  assert.ok(after.done >= done, `${done} points were done, now ${after.done}`);
+  assert.deepEqual(asked.slice(before), ['PATCH {"state":"running"}'.slice(0, 26)]);
+  await soon(async () => assert.ok((await page.locator(".scatter .spot").count()) >= done));
+});
+
 test("B maps alpha and beta with letters and the predicted boundary; a cell sets both", async (t) => {
   const page = await open(t, { hash: STABILISED });
   await page.keyboard.press("b");
@@ -116,7 +146,7 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   });
   await page.getByRole("button", { name: "outcome" }).click();
   await soon(async () => {
-    const letters = await page.locator(".maps .cell .letter").allTextContents();
+    const letters = await page.locator(".maps .letters .letter").allTextContents();
     assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
   });
   await soon(async () => assert.ok((await page.locator(".maps .boundary").count()) > 0));
@@ -167,13 +197,37 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   await until(page, `(data) => ${near(`${set}[1]`, wanted[0])} && ${near(`${set}[2]`, wanted[1])}`);
   await dragTo(1, (await middle(".maps .here-handle"))[1]);
   await until(page, `(data) => ${set}[1] < ${wanted[0]} && ${set}[1] > 0`);
-  await page.getByLabel("over").selectOption("limits");
+  await page.getByLabel("over", { exact: true }).selectOption("limits");
   await until(page, (data) => data.studies.stability.document?.x === null, LONG);
   await soon(async () =>
     assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side"),
   );
   await soon(async () =>
     assert.equal(await page.locator('.maps [data-spot$=" 0"]').count(), 2, "a column each"),
+  );
+});
+
+test("a map of steps whose axis ends before the present step is made again with an axis that holds it", async (t) => {
+  const page = await open(t, {
+    hash: "#scene=four-bar&method=projection@rk4:h=1e-4&study=stability&map=limits",
+  });
+  await until(page, hasEnded("stability"), LONG);
+  const { low } = await read(page, (data) => ({
+    low: data.studies.stability.document.y.values[0],
+  }));
+  assert.ok(low > 1e-4, "the server's own axis ends before");
+  await page.getByRole("button", { name: "widen the axes" }).click();
+  await until(
+    page,
+    ({ studies: { stability } }) =>
+      stability.state !== "running" && stability.document?.y.values[0] <= 1e-4,
+    LONG,
+  );
+  await soon(async () =>
+    assert.match(
+      await page.locator(".legend").first().textContent(),
+      /present values: drag the ring/,
+    ),
   );
 });
 
@@ -207,6 +261,49 @@ test("an error that is not the sum of its parts has no bar, and the time until w
       await page.locator(".budgets").textContent(),
       /the errors are too large to be split, the parts add up to .*; they agree until/,
     ),
+  );
+
+  // a step that is typed, a text that is none, and the end that is offered
+  await page.getByLabel("step h =").fill("nothing");
+  await page.keyboard.press("Enter");
+  await soon(async () =>
+    assert.match(
+      await page.locator(".study-bar .hint").last().textContent(),
+      /'nothing' is no time/,
+    ),
+  );
+  await page.getByLabel("step h =").fill("5 ms");
+  await page.keyboard.press("Enter");
+  await until(
+    page,
+    ({ studies: { budget } }) =>
+      budget.state === "finished" &&
+      budget.document.methods.every(({ method }) => /h=0\.005$/.test(method)),
+    LONG,
+  );
+  await page.getByLabel("step h =").fill("");
+  await page.keyboard.press("Enter");
+  await page
+    .getByRole("button", { name: /^split it until/ })
+    .first()
+    .click();
+  await until(
+    page,
+    ({ view, studies: { budget } }) =>
+      view.split.time > 0 &&
+      budget.state === "finished" &&
+      budget.document.methods.some(({ error }) => error?.holds),
+    LONG,
+  );
+  await soon(async () =>
+    assert.match(await page.getByLabel("until t =").inputValue(), /^[\d.]+ s$/),
+  );
+  await page.getByLabel("until t =").fill("");
+  await page.keyboard.press("Enter");
+  await until(
+    page,
+    ({ view, studies: { budget } }) => view.split.time === 0 && budget.state === "finished",
+    LONG,
   );
 
   // of a coordinate that is chosen

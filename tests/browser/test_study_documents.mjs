@@ -18,6 +18,7 @@ import {
 import { readIndex } from "../../web/state/catalogue.js";
 import {
   baumgarteLimit,
+  axesWith,
   contourOf,
   heatRange,
   heatSentences,
@@ -251,7 +252,7 @@ test("counts are said in words, and an error of a position as a length", () => {
   assert.equal(meaningOf("v", 1.2), "");
 });
 
-test("a place on an axis and its value agree; contours lie between the values they part", () => {
+test("a place on an axis and its value agree; contours run along the edges of the cells they part", () => {
   const axis = { scale: "log", values: [1, 10, 100] };
   assert.ok(Math.abs(placeOnAxis(axis, 10) - 1.5) < 1e-12);
   assert.equal(valueOnAxis(axis, placeOnAxis(axis, 31.6)), 31.6);
@@ -262,8 +263,12 @@ test("a place on an axis and its value agree; contours lie between the values th
   ];
   assert.deepEqual(contourOf(rows, 1), [
     [
-      [1, 0.5],
-      [1, 1.5],
+      [1, 0],
+      [1, 1],
+    ],
+    [
+      [1, 1],
+      [1, 2],
     ],
   ]);
   assert.deepEqual(
@@ -274,11 +279,42 @@ test("a place on an axis and its value agree; contours lie between the values th
       ],
       1,
     ),
-    [],
+    [
+      [
+        [1, 1],
+        [1, 2],
+      ],
+    ],
+    "no edge beside a cell without a value",
   );
   const map = { x: { name: "alpha", values: [40] }, y: { name: "beta", values: [24] } };
   const method = { rows: [[{ margin: (0.02 * 72) / 2.785 }]] };
   assert.ok(Math.abs(baumgarteLimit(map, method, 0.02) - 2.785) < 1e-12);
+});
+
+test("axes are widened to present values beyond them, and keep their ends otherwise", () => {
+  const x = { name: "k", kind: "parameter", scale: "log", values: [1, 10, 100] };
+  const y = { name: "h", kind: "step", scale: "lin", values: [0.01, 0.02] };
+  assert.equal(
+    axesWith({ x, y }, { x: [50], y: [0.1, 0.001] }),
+    "k=1..100:log,step=0.001..0.1:lin",
+  );
+  assert.equal(axesWith({ x: null, y }, { x: [], y: [0.015] }), "step=0.01..0.02:lin");
+});
+
+test("a budget is asked for until a time and at a step, where they are given", () => {
+  const data = {
+    scene: { id: "pendulum" },
+    settings: {},
+    methods: [{ spelling: "index1@rk4:h=0.02" }, { spelling: "index1@dop853:rtol=1e-6" }],
+    catalogue: CATALOGUE,
+  };
+  const own = orderOf("budget", data, "");
+  assert.deepEqual([own.time, own.coordinate], [undefined, undefined]);
+  assert.equal(own.methods[0], "index1@rk4:h=0.02");
+  const split = orderOf("budget", data, "", { coordinate: "a", time: 1.5, step: 0.005 });
+  assert.deepEqual([split.time, split.coordinate], [1.5, "a"]);
+  assert.deepEqual(split.methods, ["index1@rk4:h=0.005", "index1@dop853:rtol=1e-6"]);
 });
 
 test("a map over alpha and beta is asked for the methods that have them alone", () => {

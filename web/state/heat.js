@@ -107,6 +107,20 @@ export function valueOnAxis(axis, at) {
   return Number((axis.scale === "log" ? Math.exp(value) : value).toPrecision(3));
 }
 
+/**
+ * The axes of a map, made wider where present values lie beyond them, as the server is asked for
+ * them.
+ * @param {any} map document @param {{x: number[], y: number[]}} present values, by axis
+ */
+export function axesWith({ x, y }, present) {
+  const widened = (axis, values) => {
+    const all = [axis.values[0], axis.values[axis.values.length - 1], ...values];
+    const name = axis.kind === "step" ? "step" : axis.name;
+    return `${name}=${Math.min(...all)}..${Math.max(...all)}:${axis.scale === "log" ? "log" : "lin"}`;
+  };
+  return [...(x ? [widened(x, present.x)] : []), widened(y, present.y)].join(",");
+}
+
 /** Is it a map over the two constants of Baumgarte's method? */
 const isOfBaumgarte = ({ x, y }) => x?.name === "alpha" && y?.name === "beta";
 
@@ -155,42 +169,32 @@ export function baumgarteLimit({ x, y }, method, h) {
   return limit;
 }
 
-/** Where a level lies between two values; 0 to 1. */
-const crossing = (a, b, level) => (level - a) / (b - a);
-
 /**
- * Contour of a quantity at a level, as pieces between the centres of cells.
+ * Contour of a quantity at a level: the edges between cells below it and cells not below it, so
+ * that no line crosses a number.
  * @param {number[][]} values rows from below; NaN where there is none
  * @param {number} level
- * @returns {[number, number][][]} pieces, in cells from the lower left corner
+ * @returns {[number, number][][]} edges, in cells from the lower left corner
  */
 export function contourOf(values, level) {
-  const pieces = /** @type {[number, number][][]} */ ([]);
-  for (let j = 0; j + 1 < values.length; j++) {
-    for (let i = 0; i + 1 < values[j].length; i++) {
-      const corners = /** @type {[number, number, number][]} */ (
-        [
-          [i, j],
+  const parted = (a, b) => !Number.isNaN(a + b) && a >= level !== b >= level;
+  return values.flatMap((row, j) =>
+    row.flatMap((value, i) => {
+      /** @type {[number, number][][]} */
+      const edges = [];
+      if (i + 1 < row.length && parted(value, row[i + 1])) {
+        edges.push([
           [i + 1, j],
           [i + 1, j + 1],
+        ]);
+      }
+      if (j + 1 < values.length && parted(value, values[j + 1][i])) {
+        edges.push([
           [i, j + 1],
-        ].map(([a, b]) => [a, b, values[b][a]])
-      );
-      if (corners.some(([, , value]) => Number.isNaN(value))) {
-        continue;
+          [i + 1, j + 1],
+        ]);
       }
-      const ends = corners.flatMap(([a, b, value], k) => {
-        const [c, d, next] = corners[(k + 1) % 4];
-        if (value >= level === next >= level) {
-          return [];
-        }
-        const f = crossing(value, next, level);
-        return [/** @type {[number, number]} */ ([a + f * (c - a) + 0.5, b + f * (d - b) + 0.5])];
-      });
-      for (let k = 0; k + 1 < ends.length; k += 2) {
-        pieces.push([ends[k], ends[k + 1]]);
-      }
-    }
-  }
-  return pieces;
+      return edges;
+    }),
+  );
 }

@@ -59,6 +59,9 @@ function initialView() {
     /** the study that is open, or "" */ study: "",
     /** axes of the stability map; "": the ones that fit the methods */ map: "",
     /** the coordinate whose error the budget splits; "": of each method the largest */ judged: "",
+    /** end [s] and step [s] of the motion whose error is split, of this scene; 0: its own
+     * @type {{scene: string, time: number, step: number}} */
+    split: { scene: "", time: 0, step: 0 },
     letters: true,
     stepped: false,
     /** the recording plays */ replaying: false,

@@ -5,7 +5,7 @@
 // document is that of the command line.
 import { Problem, addressOf, api, sentenceOf } from "../api/client.js";
 import { mostMethods, presets, variedBy } from "./catalogue.js";
-import { formatSpelling, parseSpelling, settingOf } from "./spelling.js";
+import { formatSpelling, parseSpelling, settingOf, withSetting } from "./spelling.js";
 
 /** @typedef {{formulations: any[], integrators: any[]}} Catalogue */
 
@@ -19,8 +19,9 @@ const LEVELS = 6;
 
 /**
  * @typedef {{state: "none" | "running" | "finished" | "stopped" | "failed", progress: number,
- *   elapsed: number, left: number | null,
- *   reason: string, document: any, asked: string, report: string}} Study
+ *   elapsed: number, left: number | null, id: string,
+ *   reason: string, document: any, asked: string, report: string}} Study id: "" until the server has
+ *   it, and when it has forgotten it
  */
 
 /** @returns {Study} */
@@ -29,6 +30,7 @@ export const noStudy = () => ({
   progress: 0,
   elapsed: 0,
   left: null,
+  id: "",
   reason: "",
   document: null,
   asked: "",
@@ -88,13 +90,14 @@ function widerAxes(catalogue, spelling, keys) {
  *   catalogue: Catalogue,
  * }} data
  * @param {string} preset of a map; "": the server chooses the most telling one
- * @param {string} [coordinate] whose error a budget splits
+ * @param {{coordinate: string, time: number, step: number}} [split] whose error a budget splits, until
+ *   when [s], and at which step [s]; "" and 0: the study chooses, or they are the methods' own
  */
 export function orderOf(
   kind,
   { scene, document, settings, methods, catalogue },
   preset,
-  coordinate = "",
+  { coordinate, time, step } = { coordinate: "", time: 0, step: 0 },
 ) {
   const all = methods.map(({ spelling }) => spelling);
   const common = { scene: document ?? scene.id, parameters: settings, kind };
@@ -110,8 +113,17 @@ export function orderOf(
     const axes = over ? { over } : { preset };
     return { ...common, methods: fitting.slice(0, mostMethods(kind)), ...axes, ...MAP_SIDE };
   }
-  if (kind === "budget" && coordinate) {
-    return { ...common, methods: all, coordinate };
+  if (kind === "budget") {
+    const stepped = (spelling) =>
+      step > 0 && settingOf(catalogue, spelling, "h")
+        ? withSetting(catalogue, spelling, "h", String(step))
+        : spelling;
+    return {
+      ...common,
+      methods: all.map(stepped),
+      ...(coordinate ? { coordinate } : {}),
+      ...(time > 0 ? { time } : {}),
+    };
   }
   return kind === "work-precision"
     ? { ...common, methods: all, samples: SAMPLES, levels: LEVELS }
@@ -150,13 +162,16 @@ export function createStudyFeed(store) {
 
   /** @param {string} kind @param {any} answer */
   function take(kind, answer) {
+    const runs = answer.state === "running";
     put(kind, {
       state: answer.state,
       progress: answer.progress,
       elapsed: answer.elapsed_s,
       left: answer.time_left_s,
       reason: answer.hint ? `${answer.reason} (${answer.hint})` : answer.reason,
-      document: answer.document,
+      // while what was left is computed, what was done stays as it is
+      document: (runs && data.studies[kind].document) || answer.document,
+      id: answer.id,
       report: addressOf(answer.links.report ?? ""),
     });
   }
@@ -209,18 +224,31 @@ export function createStudyFeed(store) {
   /** The coordinate that is asked for, where this scene has it. */
   const judged = () =>
     data.scene?.coordinates.some(({ name }) => name === data.view.judged) ? data.view.judged : "";
-  const order = (kind) => orderOf(kind, data, preset(), judged());
+  /** End and step of the motion whose error is split; 0: its own. */
+  const split = () => {
+    const { scene, time, step } = data.view.split;
+    return scene === data.scene?.id ? { time, step } : { time: 0, step: 0 };
+  };
+  const order = (kind) => orderOf(kind, data, preset(), { coordinate: judged(), ...split() });
+
+  /** @param {unknown} error */
+  const orBusy = (error) =>
+    error instanceof Problem && error.status === 503
+      ? new Error("the server is at other studies: try again in a few seconds")
+      : error;
 
   return {
     preset,
     judged,
+    split,
     /** Does the document tell of what is on the page now? @param {string} kind */
     isPresent: (kind) => data.studies[kind].asked === signatureOf(order(kind)),
-    /** @param {string} kind */
-    async start(kind) {
-      const body = order(kind);
+    /** @param {string} kind @param {string} [over] other axes of a map than those asked for */
+    async start(kind, over = "") {
+      const { preset: _, ...axes } = order(kind);
+      const body = over ? { ...axes, over } : order(kind);
       forget(kind);
-      const asked = signatureOf(body);
+      const asked = signatureOf(order(kind));
       put(kind, { ...noStudy(), state: "running", asked });
       try {
         const answer = await api.createStudy(body);
@@ -231,11 +259,29 @@ export function createStudyFeed(store) {
           api.abandonStudy(answer.id);
         }
       } catch (error) {
-        const busy = error instanceof Problem && error.status === 503;
-        fail(
-          kind,
-          busy ? new Error("the server is at other studies: try again in a few seconds") : error,
-        );
+        fail(kind, orBusy(error));
+      }
+    },
+    /** Can what is left of it be computed? @param {string} kind */
+    canGoOn: (kind) => data.studies[kind].state === "stopped" && data.studies[kind].id !== "",
+    /**
+     * Computes what a study that was stopped, or whose time was over, has left; what is done stays.
+     * @param {string} kind
+     */
+    async goOn(kind) {
+      const { id } = data.studies[kind];
+      try {
+        const answer = await api.resumeStudy(id);
+        if (data.studies[kind].id === id && !running.has(kind)) {
+          take(kind, answer);
+          lookLater(kind, id);
+        }
+      } catch (error) {
+        const gone = error instanceof Problem && error.status === 404;
+        const reason = gone
+          ? "the server no longer has this study: run it again"
+          : sentenceOf(orBusy(error));
+        put(kind, { reason, ...(gone ? { id: "" } : {}) });
       }
     },
     /** What was done is kept. @param {string} kind */

@@ -49,6 +49,7 @@ export function createStudies(el, store, actions) {
       actions.setView({ map: preset });
       studies.start("stability");
     },
+    widen: (over) => studies.start("stability", over),
     onPick: ({ m, spelling, parameters, words }) =>
       apply(async () => {
         for (const [name, value] of Object.entries(parameters)) {
@@ -65,6 +66,12 @@ export function createStudies(el, store, actions) {
     judged: studies.judged,
     judge(coordinate) {
       actions.setView({ judged: coordinate });
+      studies.start("budget");
+    },
+    split: studies.split,
+    setSplit(change) {
+      const scene = data.scene.id;
+      actions.setView({ split: { scene, ...studies.split(), ...change } });
       studies.start("budget");
     },
   });
@@ -98,6 +105,16 @@ export function createStudies(el, store, actions) {
     "button",
     { type: "button", class: "plain", onclick: () => studies.stop(data.view.study) },
     "Stop",
+  );
+  const goOn = h(
+    "button",
+    {
+      type: "button",
+      class: "plain",
+      title: "compute what is left; what was done stays",
+      onclick: () => studies.goOn(data.view.study),
+    },
+    "Go on",
   );
   const again = h(
     "button",
@@ -150,7 +167,7 @@ export function createStudies(el, store, actions) {
       },
       ...tabs,
     ),
-    h("div", { class: "study-run" }, bar, state, stop, again, report),
+    h("div", { class: "study-run" }, bar, state, stop, goOn, again, report),
     note,
     spoken,
     ...panels,
@@ -236,6 +253,7 @@ export function createStudies(el, store, actions) {
     bar.hidden = stop.hidden = !runs;
     bar.value = study.progress;
     again.hidden = runs;
+    goOn.hidden = !studies.canGoOn(kind);
     report.hidden = !study.report;
     set(report, { href: study.report || null });
     const old =
@@ -270,11 +288,11 @@ export function createStudies(el, store, actions) {
   observer.observe(dialog);
   const stopListening = listen(store, {
     study: (kind) => {
-      if (kind === data.view.study) {
-        (data.studies[kind].state === "running" && !data.studies[kind].document ? showRun : show)();
-        if (data.studies[kind].state === "running") {
-          views[kind].el.classList.add("waiting");
-        }
+      if (kind === data.view.study && data.studies[kind].state === "running") {
+        showRun();
+        views[kind].el.classList.toggle("waiting", !data.studies[kind].document);
+      } else if (kind === data.view.study) {
+        show();
       }
     },
     theme: show,

@@ -2,7 +2,7 @@
 // @ts-check
 // Where the error at the end comes from, and who put energy in: the parts of each method as a bar
 // that adds up, and as numbers.
-import { quantity, scientific, seconds } from "../state/format.js";
+import { parseQuantity, plain, quantity, scientific, seconds } from "../state/format.js";
 import { BILL, CAUSES, barsOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
@@ -22,9 +22,19 @@ const numberOf = (value, unit) =>
       ? `${scientific(value)} ${unit}`
       : quantity(value, unit);
 
+/** Fields for the end and the step of the motion that is split. */
+const FIELDS = /** @type {const} */ ([
+  { key: "time", word: "until t =", own: "the end" },
+  { key: "step", word: "step h =", own: "its own" },
+]);
+
 /**
+ * @typedef {{time: number, step: number}} Split end and step [s]; 0: the scene's, the methods'
  * @param {import("../state/store.js").Store} store
- * @param {{judged: () => string, judge: (coordinate: string) => void}} actions
+ * @param {{
+ *   judged: () => string, judge: (coordinate: string) => void,
+ *   split: () => Split, setSplit: (change: Partial<Split>) => void,
+ * }} actions
  */
 export function createStudyBudget(store, actions) {
   const data = store.data;
@@ -35,6 +45,8 @@ export function createStudyBudget(store, actions) {
     h("label", { for: "budget-of", class: "word" }, "of"),
     menu,
   );
+  const refused = h("p", { class: "hint", role: "status" });
+  const fields = FIELDS.map((field) => makeField(field));
   let shown = BUDGETS[0];
   const choices = BUDGETS.map((budget) =>
     h(
@@ -62,12 +74,56 @@ export function createStudyBudget(store, actions) {
   const el = h(
     "div",
     {},
-    h("div", { class: "study-bar" }, h("div", { class: "choices" }, ...choices), choice),
+    h(
+      "div",
+      { class: "study-bar" },
+      h("div", { class: "choices" }, ...choices),
+      choice,
+      ...fields.map(({ el: one }) => one),
+      refused,
+    ),
     about,
     list,
     legend,
     table,
   );
+
+  /** @param {typeof FIELDS[number]} field */
+  function makeField({ key, word, own }) {
+    const input = h("input", {
+      type: "text",
+      id: `budget-${key}`,
+      size: 8,
+      inputmode: "decimal",
+      autocomplete: "off",
+      spellcheck: "false",
+      placeholder: own,
+      onchange: () => take(key, input),
+    });
+    const label = h("label", { for: `budget-${key}`, class: "word" }, word);
+    return { key, input, el: h("span", { class: "choices" }, label, input) };
+  }
+
+  /** Another end or step, where what was typed is one; nothing typed: the motion's own. */
+  function take(key, input) {
+    const text = input.value.trim();
+    const value = text === "" ? 0 : parseQuantity(text, "s");
+    const good = text === "" || (value > 0 && Number.isFinite(value));
+    refused.textContent = good ? "" : `'${text}' is no time above 0; try 0.5 s or 20 ms`;
+    input.setAttribute("aria-invalid", String(!good));
+    if (good && value !== actions.split()[key]) {
+      actions.setSplit({ [key]: value });
+    }
+  }
+
+  function fillFields() {
+    const now = actions.split();
+    for (const { key, input } of fields) {
+      if (document.activeElement !== input && input.getAttribute("aria-invalid") !== "true") {
+        input.value = now[key] > 0 ? `${plain(now[key])} s` : "";
+      }
+    }
+  }
 
   const study = () => data.studies.budget.document;
   const labelOf = (m) => data.methods[m]?.label ?? study().methods[m].method;
@@ -145,10 +201,23 @@ export function createStudyBudget(store, actions) {
     const words = budget
       ? `${budget.what} ${numberOf(budget.total, budget.unit)}${warning}${partly}`
       : why;
+    // to the digits that the sentence has, and not beyond the time
+    const until = ended && budget.until > 0 ? Math.floor(100 * budget.until) / 100 : 0;
+    const shorter =
+      until > 0
+        ? [
+            " ",
+            h(
+              "button",
+              { type: "button", class: "try", onclick: () => actions.setSplit({ time: until }) },
+              `split it until ${seconds(until)}`,
+            ),
+          ]
+        : [];
     return h(
       "figure",
       {},
-      h("figcaption", {}, h("b", {}, labelOf(m)), ` ${words}`),
+      h("figcaption", {}, h("b", {}, labelOf(m)), ` ${words}`, ...shorter),
       ...(budget && !ended
         ? [
             bar(
@@ -213,12 +282,13 @@ export function createStudyBudget(store, actions) {
   function paint() {
     choices.forEach((node, i) => node.setAttribute("aria-pressed", String(BUDGETS[i] === shown)));
     fillMenu();
+    fillFields();
     if (!study()) {
       return;
     }
     about.textContent =
       shown.name === "error"
-        ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. An error too large to be the sum of its parts has no bar; a shorter time or a smaller step has one."
+        ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. An error too large to be the sum of its parts has no bar; an earlier end or a smaller step, typed above, has one."
         : "Each bar shows the parts that added energy (right) and removed energy (left) as shares. Their sum is the energy change.";
     const judged = [...new Set(study().methods.flatMap(({ error }) => error?.coordinate ?? []))];
     if (shown.name === "error" && judged.length && !actions.judged()) {

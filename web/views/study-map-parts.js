@@ -98,6 +98,21 @@ export function drawContours(picture, name, rows, length, scale) {
   }
 }
 
+/**
+ * Puts what is written in the cells above the lines, on a ground of the cell's colour.
+ * @param {SVGElement} picture with the cells and lines
+ */
+export function raiseLetters(picture) {
+  const cells = [.../** @type {NodeListOf<SVGElement>} */ (picture.querySelectorAll(".cell"))];
+  const letters = cells.map((cell) => {
+    const [rect, letter] = /** @type {any} */ (cell.children);
+    letter.setAttribute("class", cell.getAttribute("class")?.replace("cell", "letter") ?? "letter");
+    letter.style.stroke = rect.style.fill;
+    return letter;
+  });
+  picture.append(s("g", { class: "letters" }, ...letters));
+}
+
 /** A power of ten for a cell: all of it, its exponent, or nothing where neither has room. */
 const powerWords = (power, width) =>
   width >= WHOLE ? powerOfTen(power) : width >= EXPONENT ? powerOfTen(power).slice(2) : "";
@@ -113,10 +128,11 @@ const lineEntry = (name, words) => entry("", s("path", { d: "M0 9H18", class: na
 /**
  * @param {HTMLElement} legend
  * @param {any} map document
- * @param {{heat: string, here: "" | "inside" | "outside", step: number}} shown here: where the
- *   present values are; step: of the map's first method [s]
+ * @param {{heat: string, here: "" | "inside" | "outside", step: number, widen: () => void}} shown
+ *   here: where the present values are; step: of the map's first method [s]; widen: makes the map
+ *   again with axes that hold them
  */
-export function fillLegend(legend, map, { heat, here, step }) {
+export function fillLegend(legend, map, { heat, here, step, widen }) {
   const used = new Set(map.methods.flatMap(({ rows }) => rows.flat().map((cell) => cell.class)));
   const kind = HEATS.find(({ name }) => name === heat);
   const ran = ["stable", "inaccurate"];
@@ -158,7 +174,16 @@ export function fillLegend(legend, map, { heat, here, step }) {
             s("circle", { cx: 9, cy: 9, r: 6, class: "here" }),
             here === "inside"
               ? "present values: drag the ring"
-              : "present values lie beyond the axes: run the map again, or drag the ring",
+              : "present values lie beyond the axes:",
+          ),
+        ]
+      : []),
+    ...(here === "outside"
+      ? [
+          h(
+            "li",
+            {},
+            h("button", { type: "button", class: "try", onclick: widen }, "widen the axes"),
           ),
         ]
       : []),

@@ -3,20 +3,26 @@
 // Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
 // was predicted. A cell can be pointed at, and clicked to set what its axes stand for.
 import { plain, prettyUnit, quantity, withPowers } from "../state/format.js";
-import { HEATS, heatOf, heatSentences, heatWords } from "../state/heat.js";
+import { HEATS, axesWith, heatOf, heatSentences, heatWords } from "../state/heat.js";
 import { presetsOf } from "../state/studies.js";
 import { CLASSES } from "../state/study-documents.js";
 import { parseSpelling, settingOf, withSetting } from "../state/spelling.js";
 import { h, s, say } from "../widgets/dom.js";
 import { rove } from "../widgets/roving.js";
-import { drawContours, drawLines, fillLegend, shadeCells } from "./study-map-parts.js";
+import {
+  drawContours,
+  drawLines,
+  fillLegend,
+  raiseLetters,
+  shadeCells,
+} from "./study-map-parts.js";
 import { addPresentPoint } from "./study-map-point.js";
 
 const SWEET_SPOT =
   "Small α and β let the gap grow; near the boundary every step overshoots. The best place lies " +
   "between, and it is another one for the gap, the motion and the energy.";
 const GREEK = { alpha: "α", beta: "β" };
-const ROOM = { left: 62, right: 12, top: 8, bottom: 44 };
+const ROOM = { left: 78, right: 12, top: 8, bottom: 44 };
 const HEIGHT = 360;
 const TICKS = 6;
 
@@ -29,7 +35,7 @@ const valueOf = (axis, value) =>
 
 /**
  * @param {import("../state/store.js").Store} store
- * @param {{changePreset: (preset: string) => void, onPick: (change: {m: number, spelling: string,
+ * @param {{changePreset: (preset: string) => void, widen: (over: string) => void, onPick: (change: {m: number, spelling: string,
  *   parameters: Record<string, number>, words: string}) => void, preset: () => string}} actions
  */
 export function createStudyMap(store, actions) {
@@ -243,6 +249,7 @@ export function createStudyMap(store, actions) {
       shadeCells(picture, heat, method.rows, data.scene.length, (i) => (x ? i : i === k ? 0 : -1));
       drawContours(picture, x ? heat : "", method.rows, data.scene.length, scale);
     });
+    raiseLetters(picture);
     const ticks = tickList(y).map(({ value, i }) =>
       s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)),
     );
@@ -353,6 +360,8 @@ export function createStudyMap(store, actions) {
   function mark() {
     fields.querySelectorAll(".here-group").forEach((ring) => ring.remove());
     let outside = false;
+    /** present values by axis */
+    const present = { x: /** @type {number[]} */ ([]), y: /** @type {number[]} */ ([]) };
     for (const { method, picture, scale } of drawn) {
       const { x, y } = map();
       const now = { x: presentValue(method, x), y: presentValue(method, y) };
@@ -362,11 +371,19 @@ export function createStudyMap(store, actions) {
           onDrop: (atX, atY) => actions.onPick(changeTo(method, atX, atY)),
         });
         outside ||= ring.outside;
+        present.x.push(now.x);
+        present.y.push(now.y);
       }
     }
     if (map()) {
       const here = fields.querySelector(".here-group") ? (outside ? "outside" : "inside") : "";
-      fillLegend(legend, map(), { heat, here, step: stepOf(map().methods[0]) });
+      const over = axesWith(map(), present);
+      fillLegend(legend, map(), {
+        heat,
+        here,
+        step: stepOf(map().methods[0]),
+        widen: () => actions.widen(over),
+      });
     }
   }
 
