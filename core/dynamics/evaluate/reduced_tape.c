@@ -132,14 +132,25 @@ static bool plan(builder *b) {
     return hn_block_lu_plan(&b->order, p->rank, b->Jd, value);
 }
 
+/// 1 where the loops are open, 0 where they are closed to rounding.
+static hn_ex is_open(const builder *b) {
+    hn_graph *g = b->sys->g;
+    hn_ex over = hn_num(-b->split->closed * b->split->closed);
+    for (int i = 0; i < b->sys->nc; i++) {
+        over = hn_add(g, over, hn_mul(g, b->phi[i], b->phi[i]));
+    }
+    return hn_apply(g, HN_OP_STEP, &over);
+}
+
 /// (1), and the terms at the configuration that it leads to.
 static void correct(builder *b) {
     const hn_reduced_split *p = b->split;
     hn_graph *g = b->sys->g;
+    const hn_ex open = is_open(b);
     memcpy(b->rhs, b->phi, (size_t)p->rank * sizeof *b->rhs);
     solve(b, 1);
     for (int k = 0; k < p->rank; k++) {
-        b->q_d[k] = hn_sub(g, b->sys->q[p->dep[k]], b->x[k]);
+        b->q_d[k] = hn_sub(g, b->sys->q[p->dep[k]], hn_mul(g, open, b->x[k]));
         b->symbols[k] = b->sys->q_symbols[p->dep[k]];
     }
     hn_substitute(g, b->terms, b->n_terms, b->symbols, b->q_d, p->rank, b->terms);

@@ -6,11 +6,12 @@
 // gives the gap that is left, the basis of the velocities and the accelerations of the independent
 // coordinates i:
 //
-//     q_d <- q_d - J_d^-1 phi                                                                (1)
+//     q_d <- q_d - J_d^-1 phi   where |phi| >= closed, else q_d stays                        (1)
 //     v = N u + s,   N = [I; -J_d^-1 J_i],   s = [0; -J_d^-1 phi_t]                          (2)
 //     (N' M N) u' = N' (f - M c),   c = [0; -J_d^-1 gamma]                                   (3)
 //
-// The order of elimination is chosen once (block_lu.h), so every pivot is compared with its value
+// A correction of a closed configuration would add nothing but rounding, which near a singular
+// configuration is not small. The order of elimination is chosen once (block_lu.h), so every pivot is compared with its value
 // where the tape was made. Where one has become small, the caller solves by other means.
 
 #include "base/arena.h"
@@ -27,6 +28,7 @@ typedef struct hn_reduced_split {
     int rank, r;          ///< numbers of dependent and independent velocities
     const int *dep, *ind; ///< rank, r: which
     const double *J;      ///< the entries of J, without those that are zero everywhere, by rows
+    double closed;        ///< a gap below this is left as it is [the units of the rows]
 } hn_reduced_split;
 
 /// Compiles the tape for a split. *out is NULL where it cannot serve: a ball among the coordinates,

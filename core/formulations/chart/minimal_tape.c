@@ -13,7 +13,8 @@ static hn_status make(hn_minimal_tape *w, const hn_chart *chart, hn_arena *arena
                                     .r = chart->r,
                                     .dep = chart->dep,
                                     .ind = chart->ind,
-                                    .J = chart->here.J};
+                                    .J = chart->here.J,
+                                    .closed = HN_CHART_TOL_FINE * chart->length};
     w->was_made = true;
     w->y = hn_arena_doubles(arena, 2 * (size_t)chart->nv);
     w->q = hn_arena_doubles(arena, (size_t)chart->nq);

@@ -74,6 +74,9 @@ static void check_drift(hn_watch *w) {
         hn_incident_over(&w->log, HN_INCIDENT_ENERGY_DRIFT);
         return;
     }
+    if (!hn_incident_is_taken(&w->log, HN_INCIDENT_ENERGY_DRIFT)) { // before its text is made
+        return;
+    }
     const int digits = hn_digits_apart(fabs(change), limit, 3);
     hn_incident_report(w, &hn_incident_energy_drift, "energy change", change, limit,
                        "the energy has changed by %.*g J since the start, more than %.*g J, and no "
@@ -87,6 +90,9 @@ static void check_jump(hn_watch *w) {
     const double limit = HN_RUN_WARN_ENERGY * size * w->every;
     if (!is_large(w, e->change, limit)) {
         hn_incident_over(&w->log, HN_INCIDENT_ENERGY_JUMP);
+        return;
+    }
+    if (!hn_incident_is_taken(&w->log, HN_INCIDENT_ENERGY_JUMP)) { // before its text is made
         return;
     }
     const int digits = hn_digits_apart(fabs(e->change), limit, 3);
