@@ -11,8 +11,9 @@
 //     (N' M N) u' = N' (f - M c),   c = [0; -J_d^-1 gamma]                                   (3)
 //
 // A correction of a closed configuration would add nothing but rounding, which near a singular
-// configuration is not small. The order of elimination is chosen once (block_lu.h), so every pivot is compared with its value
-// where the tape was made. Where one has become small, the caller solves by other means.
+// configuration is not small. The order of elimination is chosen once (block_lu.h), so every pivot
+// is compared with its value where the tape was made. Where one has become small, the caller solves
+// by other means.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
