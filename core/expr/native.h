@@ -22,7 +22,7 @@ struct hn_tape;
 typedef struct hn_native_opts {
     const char *folder;   ///< where compiled tapes are kept
     const char *compiler; ///< NULL: the first of gcc, clang, tcc in PATH
-    double time_limit;    ///< [s] for one compilation; 60
+    double time_limit;    ///< [s] for one compilation, and again for each megabyte of C text; 60
     double look_after;    ///< [s] of interpretation before the folder is searched; 0.002
     double build_after;   ///< [s] of interpretation before the compiler is started; 0.02
 } hn_native_opts;

@@ -30,7 +30,7 @@ typedef void (*hn_native_code)(double *work, const hn_native_call *call);
 typedef struct hn_native_builder {
     char compiler[HN_NATIVE_PATH]; ///< absolute path
     char folder[HN_NATIVE_PATH];
-    double time_limit;   ///< [s] wall clock for one compilation
+    double time_limit;   ///< [s] wall clock for one compilation, and again for each megabyte
     uint64_t identity;   ///< hash of the compiler's file, its flags and this program
     atomic_bool *ending; ///< a compilation under way is killed once this is set; may be NULL
 } hn_native_builder;

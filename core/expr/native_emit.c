@@ -11,9 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// One function up to WHOLE instructions (about 0.3 s of gcc), pieces of PIECE beyond: 3 s in place
-// of 30 for 25,000 instructions, at the same speed of the code.
-enum { WHOLE = 1500, PIECE = 500 };
+// One function up to WHOLE instructions (about 0.3 s of gcc), pieces of PIECE beyond: gcc's time
+// grows with the square of a function, and longer pieces give no quicker code (ladder of 200
+// loops).
+enum { WHOLE = 1500, PIECE = 100 };
 
 // Up to FOUR angles go to one call in registers, more through memory in vectors of VECTOR.
 enum { FOUR = 4, VECTOR = 8 };

@@ -5,7 +5,7 @@
 //
 // Each instruction becomes one constant with the very expression of the interpreter, so that a
 // compiler without fused multiply-add gives the same bits. Functions of the operator table are
-// called through the same pointers. Long tapes are cut into functions of some hundred instructions,
+// called through the same pointers. Long tapes are cut into functions of a hundred instructions,
 // since compilers take quadratic time; what crosses a cut goes through the workspace. In lanes a
 // function works on all vectors of its blocks, and sine and cosine of a block are cuts.
 
