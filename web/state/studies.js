@@ -90,8 +90,8 @@ function widerAxes(catalogue, spelling, keys) {
  *   catalogue: Catalogue,
  * }} data
  * @param {string} preset of a map; "": the server chooses the most telling one
- * @param {{coordinate: string, time: number, step: number}} [split] whose error a budget splits, until
- *   when [s], and at which step [s]; "" and 0: the study chooses, or they are the methods' own
+ * @param {{coordinate: string, time: number, step: number}} [split] whose error a budget splits,
+ *   until when [s], and at which step [s]; "" and 0: the study chooses, or they are the methods' own
  */
 export function orderOf(
   kind,
@@ -245,7 +245,7 @@ export function createStudyFeed(store) {
     isPresent: (kind) => data.studies[kind].asked === signatureOf(order(kind)),
     /** @param {string} kind @param {string} [over] other axes of a map than those asked for */
     async start(kind, over = "") {
-      const { preset: _, ...axes } = order(kind);
+      const { preset: _, ...axes } = /** @type {any} */ (order(kind));
       const body = over ? { ...axes, over } : order(kind);
       forget(kind);
       const asked = signatureOf(order(kind));

@@ -35,8 +35,12 @@ const valueOf = (axis, value) =>
 
 /**
  * @param {import("../state/store.js").Store} store
- * @param {{changePreset: (preset: string) => void, widen: (over: string) => void, onPick: (change: {m: number, spelling: string,
- *   parameters: Record<string, number>, words: string}) => void, preset: () => string}} actions
+ * @param {{
+ *   changePreset: (preset: string) => void, widen: (over: string) => void, preset: () => string,
+ *   onPick: (change: {
+ *     m: number, spelling: string, parameters: Record<string, number>, words: string,
+ *   }) => void,
+ * }} actions
  */
 export function createStudyMap(store, actions) {
   const data = store.data;
