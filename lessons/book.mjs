@@ -16,6 +16,10 @@ const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replac
 const faults = [];
 const embedded = (path, type) => `data:${type};base64,${readFileSync(path).toString("base64")}`;
 let lesson, figures, answers;
+/** More pictures than this stand in three columns. */
+const GALLERY = 4;
+/** Of all lessons, for the end of the book. */
+const seen = [];
 
 function math(node) {
   try {
@@ -118,7 +122,8 @@ function page(nodes) {
       runs.push([node]);
     }
   }
-  return runs.map((run) => (run.length > 1 ? `<div class="pictures">${all(run)}</div>` : all(run))).join("");
+  const side = (run) => `<div class="pictures${run.length > GALLERY ? " gallery" : ""}">${all(run)}</div>`;
+  return runs.map((run) => (run.length > 1 ? side(run) : all(run))).join("");
 }
 
 function chapter(id) {
@@ -126,16 +131,18 @@ function chapter(id) {
   figures = 0;
   answers = [];
   const text = page(lesson.blocks);
-  const seen = answers.length ? `<h3>Answers to the predictions</h3><ol class="answers">${answers.join("")}</ol>` : "";
-  return `<section id="${lesson.id}">${text}${seen}</section>`;
+  if (answers.length) {
+    seen.push(`<h3>${plain(lesson.title)}</h3><ol class="answers">${answers.join("")}</ol>`);
+  }
+  return `<section id="${lesson.id}">${text}</section>`;
 }
 
 const STYLE = `
 @page { size: A4; margin: 22mm 20mm 20mm; @bottom-center { content: counter(page); font: 9pt "DejaVu Sans", sans-serif; } }
 @page :first { @bottom-center { content: none; } }
-body { font: 10.5pt/1.45 "DejaVu Serif", Georgia, serif; max-width: 42em; margin: 2em auto; color: #1a1a1a; }
+body { font: 10.5pt/1.42 "DejaVu Serif", Georgia, serif; max-width: 42em; margin: 2em auto; color: #1a1a1a; }
 h1, h2, h3, h4 { font-family: "DejaVu Sans", sans-serif; line-height: 1.2; break-after: avoid; }
-section { break-before: page; }
+section { margin-top: 3.5em; border-top: 2px solid #333; } section h2 { margin-top: .8em; } ol + section { break-before: page; border: 0; } p, li { orphans: 3; widows: 3; }
 pre, code { font: 8.5pt/1.35 "DejaVu Sans Mono", monospace; }
 pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5em 0; }
 .box { border: 1px solid #9aa5b1; border-radius: 3px; padding: .5em .8em; margin: 1em 0; break-inside: avoid; }
@@ -144,10 +151,11 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .exercise { break-inside: auto; } .exercise > p { display: block; break-after: avoid; orphans: 9; widows: 9; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
 .form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
 .exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
-.exercise li { margin: .25em 0; break-inside: avoid; } .answers p { display: inline; }
+.exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
+.gallery { grid-template-columns: 1fr 1fr 1fr; } .gallery figure { margin: .5em 0; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
-figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; }
+figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; max-height: 100mm; }
 figcaption { font-size: 9pt; color: #444; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 9.5pt; break-inside: avoid; }
 th, td { border-bottom: 1px solid #ccc; padding: .25em .7em; } th { border-bottom: 1px solid #333; }
@@ -167,7 +175,8 @@ writeFileSync(
   out,
   `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Mechanisms with closed loops</title><style>${formulaStyle()}${STYLE}</style>
 <h1>Mechanisms with closed loops</h1><p>A course with the workbench holonom: text, exhibits to run, and exercises that are marked.</p>
-<ol>${contents}</ol>${chapters.join("\n")}</html>\n`,
+<ol>${contents}<li><a href="#answers">Answers to the predictions</a></li></ol>${chapters.join("\n")}
+<section id="answers"><h2>Answers to the predictions</h2>${seen.join("")}</section></html>\n`,
 );
 for (const fault of faults) {
   console.error(fault);

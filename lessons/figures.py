@@ -65,7 +65,7 @@ MODEL = [
 ]
 STEP = [
     ("State (q, v) at time t", "terms fb0"),
-    ("M, h, J, γ at the state of this stage", "terms fb0 --q th1=1.2"),
+    ("M, f, J, γ at the state of this stage", "terms fb0 --q th1=1.2"),
     ("Solve the saddle-point system: a, λ", "terms fb0 --json"),
     ("Next stage, until the step to t + h is complete", "run fb0 --method index1@rk4:h=0.01 --time 0.01"),
     ("Project q, then v, in the measure of M", "run fb0 --method projection@rk4:h=0.01 --time 0.01"),
@@ -73,7 +73,7 @@ STEP = [
 ]
 PROBLEM = [
     ("Start: assemble q, then v with J v = 0", "inspect fb0"),
-    ("Assemble M, h, J, γ", "terms fb0"),
+    ("Assemble M, f, J, γ", "terms fb0"),
     ("Solve for a and λ, at every stage", "problem p5 --hint 1"),
     ("Integrate v and q to the next time", "run fb0 --method index1@rk4:h=0.01 --time 1"),
     ("Project: position first, then velocity", "compare fb0 --methods index1@rk4:h=0.01 projection@rk4:h=0.01 --time 1"),
