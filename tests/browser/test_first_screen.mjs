@@ -182,6 +182,31 @@ test("text is 15 px or more, and there are four sizes of it", async (t) => {
   );
 });
 
+test("a value that is typed is asked for once: Enter, leaving the field and the same again send nothing more", async (t) => {
+  const page = await open(t);
+  const changes = [];
+  page.on("request", (request) => {
+    if (request.method() === "PATCH") {
+      changes.push(JSON.parse(request.postData()).methods?.[0].match(/h=([^,]*)/)?.[1]);
+    }
+  });
+  const run = await read(page, (data) => data.run);
+  await page.fill("#set-h", "0.005");
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Tab");
+  await until(page, `(data) => data.run > ${run}`);
+  await page.fill("#set-h", "5 ms");
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Tab");
+
+  // what comes last shows that nothing was sent in between
+  await page.fill("#set-h", "0.004");
+  await page.keyboard.press("Enter");
+  await until(page, (data) => data.methods.every(({ spelling }) => /h=0\.004/.test(spelling)));
+  assert.deepEqual(changes, ["0.005", "0.004"]);
+  assert.equal(await read(page, (data) => data.run), run + 2);
+});
+
 test("it opens on a step that tells; two buttons let it fall apart and hold it together", async (t) => {
   const page = await open(t);
   await soon(async () =>

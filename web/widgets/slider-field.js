@@ -133,6 +133,12 @@ export function createSliderField(options) {
       next = wanted;
       return;
     }
+    if (wanted === value && !refused) {
+      // Enter and then leaving the field say the same: it is asked for once
+      tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
+      show();
+      return;
+    }
     const before = value;
     value = wanted;
     tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
