@@ -311,6 +311,7 @@ help:
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make attacks      what a hostile client does, healthz beside it: tests/tables/attacks.txt'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
+	@echo 'make page-damage  10,000 damaged links opened by a browser, every bad scene put into its editor: over an hour'
 	@echo 'make page-speed   frames a second, first paint and bytes of the page, on a machine that does nothing else: tests/tables/page_speed.txt'
 	@echo 'make compilers    the numbers of gcc and clang on every shipped scene, none may differ: tests/tables/compilers.txt'
 	@echo 'make bench        time the engine beside hand-written C: tests/tables/bench.csv'
@@ -348,7 +349,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz load attacks page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages notebook skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
+.PHONY: test test-quick asan tsan fuzz load attacks page-damage page-speed compilers bench bench-tui bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises languages notebook skeletons classes gradescope prairielearn book run-suite run-unit run-server run-bench run-fuzz reports mechanisms accuracy tolerance
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -379,6 +380,10 @@ load: all
 attacks: all
 	@python3 tests/load/attacks.py $(PROGRAM) >build/attacks.txt || { cat build/attacks.txt; exit 1; }
 	@cp build/attacks.txt tests/tables/attacks.txt && cat tests/tables/attacks.txt
+
+# the test of damaged links and scenes with all of them: make test takes a few
+page-damage: all $(WEB_READY) $(BROWSER_READY)
+	@DAMAGED_LINKS=10000 EVERY_SCENE=1 HOLONOM=$(PROGRAM) node --test tests/browser/test_damage.mjs
 
 page-speed: all $(WEB_READY) $(BROWSER_READY)
 	@mkdir -p build
