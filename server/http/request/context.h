@@ -28,6 +28,7 @@ typedef struct hn_context {
     struct hn_runs *runs;
     struct hn_run_list *run_list;
     hn_kept_text scenes;       ///< the list of shipped scenes, as JSON
+    hn_kept_text openapi;      ///< the description of the API
     struct hn_shares *streams; ///< places of open streams
     struct hn_jobs *quick;     ///< threads of requests that take no time
     atomic_int open_requests;  ///< begun and not completed

@@ -127,6 +127,24 @@ void hn_reply_json(hn_request *r, unsigned status, hn_strbuf *text) {
     hn_reply_bytes(r, status, "application/json", text);
 }
 
+void hn_reply_kept(hn_request *r, hn_kept_text *kept,
+                   void (*put)(hn_strbuf *b, const hn_context *c)) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    pthread_mutex_lock(&kept->lock);
+    if (!kept->text) {
+        put(&b, r->context);
+        kept->text = hn_strbuf_take(&b);
+    }
+    if (kept->text) {
+        hn_strbuf_add(&b, kept->text);
+    } else {
+        b.failed = 1;
+    }
+    pthread_mutex_unlock(&kept->lock);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
 void hn_reply_empty(hn_request *r, unsigned status) {
     hn_strbuf_reset(&r->text);
     r->status = status;

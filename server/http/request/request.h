@@ -22,6 +22,7 @@ enum { HN_MAX_REPLY_HEADERS = 10 };
 enum { HN_MAX_ADDRESS = 8000, HN_MAX_PARAMETERS = 256 };
 
 struct hn_context;
+struct hn_kept_text;
 
 typedef struct hn_reply_header {
     const char *name; ///< static text
@@ -95,6 +96,9 @@ void hn_reply_header_add(hn_request *r, const char *name, const char *format, ..
 /// a problem.
 void hn_reply_json(hn_request *r, unsigned status, hn_strbuf *text);
 void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_strbuf *bytes);
+/// Replies with a JSON document that never changes. The first such request makes it by `put`.
+void hn_reply_kept(hn_request *r, struct hn_kept_text *kept,
+                   void (*put)(hn_strbuf *b, const struct hn_context *c));
 void hn_reply_empty(hn_request *r, unsigned status);
 /// Takes the response.
 void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response);

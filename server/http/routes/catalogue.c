@@ -137,22 +137,12 @@ void hn_handle_health(hn_request *r) {
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }
 
+static void put_scenes(hn_strbuf *b, const hn_context *c) {
+    hn_scenes_json(b, c->lib);
+}
+
 void hn_handle_scenes(hn_request *r) {
-    hn_kept_text *kept = &r->context->scenes;
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    pthread_mutex_lock(&kept->lock);
-    if (!kept->text) {
-        hn_scenes_json(&b, r->context->lib);
-        kept->text = hn_strbuf_take(&b);
-    }
-    if (kept->text) {
-        hn_strbuf_add(&b, kept->text);
-    } else {
-        b.failed = 1;
-    }
-    pthread_mutex_unlock(&kept->lock);
-    hn_reply_json(r, MHD_HTTP_OK, &b);
+    hn_reply_kept(r, &r->context->scenes, put_scenes);
 }
 
 typedef struct query_settings {

@@ -546,35 +546,37 @@ static void put_components(hn_strbuf *b, const hn_route_table *table, int with_t
     hn_json_end_object(b);
 }
 
-void hn_handle_openapi(hn_request *r) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_json_object(&b);
-    hn_json_put_string(&b, "openapi", "3.1.0");
-    hn_json_key(&b, "info");
-    hn_json_object(&b);
-    hn_json_put_string(&b, "title", "holonom");
-    hn_json_put_string(&b, "version", hn_build_name());
-    hn_json_put_string(&b, "summary", "Mechanisms with closed loops, many methods on one clock");
+/// Writes the whole document.
+static void put_document(hn_strbuf *b, const hn_context *c) {
+    hn_json_object(b);
+    hn_json_put_string(b, "openapi", "3.1.0");
+    hn_json_key(b, "info");
+    hn_json_object(b);
+    hn_json_put_string(b, "title", "holonom");
+    hn_json_put_string(b, "version", hn_build_name());
+    hn_json_put_string(b, "summary", "Mechanisms with closed loops, many methods on one clock");
     hn_json_put_string(
-        &b, "description",
+        b, "description",
         "Simulates mechanisms with closed loops by several methods at once. Errors are "
         "problem documents (RFC 9457); JSON never holds NaN or Infinity; limits are in "
         "the index, /api/v1/.");
-    hn_json_key(&b, "license");
-    hn_json_raw(&b, "{\"name\":\"GPL-3.0-or-later\",\"identifier\":\"GPL-3.0-or-later\"}");
-    hn_json_key(&b, "contact");
-    hn_json_raw(&b, "{\"name\":\"whoever runs this server\"}");
-    hn_json_end_object(&b);
+    hn_json_key(b, "license");
+    hn_json_raw(b, "{\"name\":\"GPL-3.0-or-later\",\"identifier\":\"GPL-3.0-or-later\"}");
+    hn_json_key(b, "contact");
+    hn_json_raw(b, "{\"name\":\"whoever runs this server\"}");
+    hn_json_end_object(b);
 
     // addresses are relative, so that a prefix of a proxy holds; nothing is asked of who calls
-    hn_json_key(&b, "servers");
-    hn_json_raw(&b, "[{\"url\":\"/\",\"description\":\"this server\"}]");
-    hn_json_key(&b, "security");
-    hn_json_raw(&b, r->context->opts.token ? "[{\"token\":[]}]" : "[{}]");
-    put_tags(&b);
-    put_paths(&b, &r->context->routes);
-    put_components(&b, &r->context->routes, r->context->opts.token != NULL);
-    hn_json_end_object(&b);
-    hn_reply_json(r, MHD_HTTP_OK, &b);
+    hn_json_key(b, "servers");
+    hn_json_raw(b, "[{\"url\":\"/\",\"description\":\"this server\"}]");
+    hn_json_key(b, "security");
+    hn_json_raw(b, c->opts.token ? "[{\"token\":[]}]" : "[{}]");
+    put_tags(b);
+    put_paths(b, &c->routes);
+    put_components(b, &c->routes, c->opts.token != NULL);
+    hn_json_end_object(b);
+}
+
+void hn_handle_openapi(hn_request *r) {
+    hn_reply_kept(r, &r->context->openapi, put_document);
 }

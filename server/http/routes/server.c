@@ -133,6 +133,7 @@ hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts, hn_se
     s->context.routes = hn_routes();
     s->context.opts = *opts;
     pthread_mutex_init(&s->context.scenes.lock, NULL);
+    pthread_mutex_init(&s->context.openapi.lock, NULL);
     set_hosts(s);
 
     const hn_status status = start(s, diag);
@@ -195,5 +196,7 @@ void hn_server_stop(hn_server *s) {
     hn_static_files_free(c->files);
     pthread_mutex_destroy(&c->scenes.lock);
     free(c->scenes.text);
+    pthread_mutex_destroy(&c->openapi.lock);
+    free(c->openapi.text);
     free(s);
 }
