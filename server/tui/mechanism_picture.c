@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double SHARE = 1.0 / 12; // of a processor, for painting
+static const double SHARE = 1.0 / 15; // of a processor, for painting; the rest of it is characters
 // [px] xterm shows no more of a sixel picture; kitty stretches a picture that is painted smaller
 enum { MOST_SIXELS = 1000, MOST_PIXELS = 300000 };
 enum { GUESSED_WIDTH = 8, GUESSED_HEIGHT = 16 }; // [px] of a cell, for kitty, where it is not known

@@ -14,7 +14,6 @@ static const double ARROW_SHARE = 0.3;    // of the smaller side, for the longes
 static const double SHORTEST_ARROW = 2.5; // [dots]
 static const double HEAD = 3;             // [dots] of its strokes, along the arrow
 static const double HEAD_WIDTH = 0.6;     // of that, across the arrow
-static const double NAME_DISTANCE = 4.5;  // [dots] of its size from the tip: another cell
 
 typedef struct placing {
     const hn_model *model;
@@ -187,10 +186,10 @@ static void draw_forces(hn_area area, const placing *p, const hn_force_arrows *a
         }
         const double ux = HEAD * f.dx / f.length, uy = HEAD * f.dy / f.length;
         const double x = f.x + f.dx, y = f.y + f.dy;
-        hn_dots_line(p->dots, f.x, f.y, x, y, HN_CELL_ALARM, 1, 0);
+        hn_dots_line(p->dots, f.x, f.y, x, y, HN_CELL_INK, 1, 0);
         for (int side = -1; side <= 1; side += 2) {
             hn_dots_line(p->dots, x, y, x - ux - side * HEAD_WIDTH * uy,
-                         y - uy + side * HEAD_WIDTH * ux, HN_CELL_ALARM, 1, 0);
+                         y - uy + side * HEAD_WIDTH * ux, HN_CELL_INK, 1, 0);
         }
     }
 }
@@ -223,12 +222,13 @@ static void name_forces(hn_cells *c, hn_area area, const placing *p,
         const int wide = hn_text_columns(text);
 
         // before or behind the tip, or in the middle above or below it
-        const double beyond = 1 + NAME_DISTANCE / f.length;
-        const int aside = fabs(f.dx) < fabs(f.dy) ? -wide / 2 : f.dx < 0 ? -wide : 0;
-        const int x = (int)floor((f.x + beyond * f.dx) / ACROSS) + aside;
-        const int y = (int)floor((f.y + beyond * f.dy) / DOWN);
+        const bool steep = fabs(f.dx) < fabs(f.dy);
+        const int tip_x = (int)floor((f.x + f.dx) / ACROSS),
+                  tip_y = (int)floor((f.y + f.dy) / DOWN);
+        const int x = steep ? tip_x - wide / 2 : f.dx < 0 ? tip_x - wide - 1 : tip_x + 2;
+        const int y = !steep ? tip_y : f.dy < 0 ? tip_y - 1 : tip_y + 1;
         if (is_free(c, area, x, y, wide)) {
-            hn_cells_put(c, area, x, y, HN_CELL_ALARM, 0, text);
+            hn_cells_put(c, area, x, y, HN_CELL_INK, 0, text);
         }
     }
 }

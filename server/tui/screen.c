@@ -270,32 +270,29 @@ void hn_screen_close(void) {
 
 // ---- colours ----
 
-/// The nearest of the colours of a terminal that has 8 or 16; its own for a grey, which would be
-/// white and unseen on white. Blue is hardly seen on black: it is bright, or cyan where there is
-/// nothing brighter.
-static int of_few(int colour_256, int theme) {
-    enum { BLUE = 4, CYAN = 6, BRIGHT = 8 };
-    const int i = colour_256 - 16, red = i / 36, green = i / 6 % 6, blue = i % 6;
-    if (red == green && green == blue) {
+/// Colours of a terminal that has 8 or 16, for the slots of render/look.h and for an alarm. Blue is
+/// hardly seen on black: there it is cyan, or bright where there are 16. -1 is the terminal's own,
+/// which is seen on its background.
+static int of_few(int colour, int theme) {
+    enum { BLACK, RED, GREEN, YELLOW, BLUE, MAGENTA, CYAN, BRIGHT = 8 };
+    static const signed char few[HN_LOOK_METHODS] = {BLUE, RED, GREEN, MAGENTA, RED, CYAN, YELLOW};
+    const bool dark = theme == HN_THEME_DARK;
+    if (colour != HN_CELL_ALARM && colour >= HN_LOOK_METHODS) {
         return -1;
     }
-    const int most = red > green ? (red > blue ? red : blue) : (green > blue ? green : blue);
-    const int colour =
-        (2 * red > most ? 1 : 0) | (2 * green > most ? 2 : 0) | (2 * blue > most ? 4 : 0);
-    const bool dark = theme == HN_THEME_DARK;
+    const int chosen = colour == HN_CELL_ALARM ? RED : few[colour];
     if (COLORS >= 2 * BRIGHT) {
-        return dark ? colour + BRIGHT : colour;
+        return chosen + (dark ? BRIGHT : 0);
     }
-    return dark && colour == BLUE ? CYAN : colour;
+    return dark && chosen == BLUE ? CYAN : chosen;
 }
 
 static void make_colours(int theme) {
     start_color();
     use_default_colors();
     for (int i = 0; i < HN_CELL_COLOURS; i++) {
-        const int colour = hn_cell_colour_256(i, theme);
-        const bool own = colour < 0 || COLORS >= 256;
-        init_pair((short)(i + 1), (short)(own ? colour : of_few(colour, theme)), -1);
+        const int colour = COLORS >= 256 ? hn_cell_colour_256(i, theme) : of_few(i, theme);
+        init_pair((short)(i + 1), (short)colour, -1);
     }
 }
 

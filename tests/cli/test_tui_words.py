@@ -167,7 +167,7 @@ class Scores(unittest.TestCase):
 
     def test_the_best_score_is_kept_and_listed(self):
         self.assertNotIn("best ", self.frame(self.ring))
-        some = self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c")
+        some = self.frame(self.ring + "<Enter><Down><Enter>2<Enter>c")
         score, most = map(float, re.search(r"([\d.]+) of ([\d.]+) points:", message(some)).groups())
         self.assertGreater(score, 0)
         self.assertEqual(self.kept(), {"score": score, "most": most})
@@ -175,17 +175,17 @@ class Scores(unittest.TestCase):
         # a lower one does not replace it; what else is in the file stays
         with open(self.file, "w", encoding="utf-8") as file:
             json.dump({"lessons": {"x": {"read": True}}, "solved": {"ring": {"score": most, "most": most}}}, file)
-        self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c")
+        self.frame(self.ring + "<Enter><Down><Enter>2<Enter>c")
         self.assertEqual(self.kept()["score"], most)
         with open(self.file, "w", encoding="utf-8") as file:
             json.dump({"lessons": {"x": {"read": True}}, "solved": {"ring": {"score": 0, "most": most}}}, file)
-        self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c")
+        self.frame(self.ring + "<Enter><Down><Enter>2<Enter>c")
         self.assertEqual(self.kept()["score"], score)
         with open(self.file, encoding="utf-8") as file:
             self.assertTrue(json.load(file)["lessons"]["x"]["read"])
 
     def test_without_a_folder_the_score_stands_and_says_that_it_is_not_kept(self):
-        answer = self.ring + "<Enter><Down><Enter>6<Enter>c"
+        answer = self.ring + "<Enter><Down><Enter>2<Enter>c"
         self.assertIn("this score is not kept: neither XDG_STATE_HOME nor HOME is set", self.frame(answer, XDG_STATE_HOME="", HOME=""))
         # a folder that cannot be made, a file that is not one of scores
         with open(self.state, "w", encoding="ascii") as file:
@@ -207,7 +207,7 @@ class Scores(unittest.TestCase):
         self.assertEqual(len(points), int(worth.group(1)))
         self.assertEqual(sum(points), float(re.search(r"of ([\d.]+) points:", message(out)).group(1)))
         # where each answer is worth a point nothing is explained
-        self.assertNotIn("answers are checked", self.frame(self.ring + "<Enter><Down><Enter>6<Enter>c"))
+        self.assertNotIn("answers are checked", self.frame(self.ring + "<Enter><Down><Enter>2<Enter>c"))
 
 
 class Colours(unittest.TestCase):
@@ -218,9 +218,9 @@ class Colours(unittest.TestCase):
         return set(re.findall(rb"\033\[(?:\d+;)*?(3\d|9\d)m", terminal.seen))
 
     def test_no_method_is_blue_on_black_where_there_are_eight_colours(self):
-        seen = self.colours("xterm")
+        # index-1, Baumgarte, projection, null-space, reduced: five colours
+        self.assertLessEqual({b"36", b"31", b"32", b"35", b"33"}, seen := self.colours("xterm"))
         self.assertNotIn(b"34", seen)
-        self.assertIn(b"36", seen)
         self.assertIn(b"34", self.colours("xterm", "--theme", "light"))
 
     @unittest.skipUnless(shutil.which("infocmp") and subprocess.run(["infocmp", "xterm-16color"], capture_output=True).returncode == 0,
