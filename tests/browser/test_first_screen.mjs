@@ -106,6 +106,50 @@ test("the card that says why opens in sight, under its row, takes the focus and 
   }
 });
 
+test("a notice covers no verdict, no curve of the widest layout and no button to play", async (t) => {
+  for (const [width, height] of [
+    [1366, 768],
+    [1024, 768],
+    [768, 1024],
+    [360, 740],
+  ]) {
+    const page = await open(t, { viewport: { width, height }, hash: "#scene=four-bar&zzz=1" });
+    await page.locator(".note:not([hidden]) .notice").waitFor();
+    const { note, ...boxes } = await boxesOf(page, {
+      note: ".note:not([hidden])",
+      verdict: "#verdict",
+      play: "#play",
+      scrubber: ".scrubber",
+      ...(width > 1199 ? { curve: "figure.plot:nth-child(2) .curve" } : {}),
+    });
+    for (const [name, box] of Object.entries(boxes)) {
+      const apart =
+        note.bottom <= box.top ||
+        note.top >= box.bottom ||
+        note.right <= box.left ||
+        note.left >= box.right;
+      assert.ok(apart, `${width}: ${name} is free`);
+    }
+  }
+});
+
+test("methods with steps of their own say them, and the field says that they differ", async (t) => {
+  const page = await open(t, {
+    hash: "#scene=four-bar&method=index1@rk4:h=0.02&method=projection@rk4:h=0.005",
+  });
+  await soon(async () => {
+    const own = await page.locator("tbody .own").allTextContents();
+    assert.deepEqual(own, ["dt 0.02 s", "dt 0.005 s"]);
+    assert.match(await page.textContent("#set-h-hint"), /the methods differ/);
+  });
+  await page.fill("#set-h", "0.01");
+  await page.press("#set-h", "Enter");
+  await soon(async () => {
+    assert.deepEqual(await page.locator("tbody .own").allTextContents(), ["", ""]);
+    assert.doesNotMatch(await page.textContent("#set-h-hint"), /differ/);
+  });
+});
+
 test("the drawer of parameters moves nothing and closes with Escape", async (t) => {
   const page = await open(t, { viewport: { width: 1366, height: 768 } });
   const before = await boxesOf(page, FIRST);

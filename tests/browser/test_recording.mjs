@@ -253,6 +253,12 @@ test("the recording is saved as CSV and NDJSON with every digit, the drawing as 
   const svg = (await fetchFile("SVG")).bytes.toString();
   assert.match(svg, /^<svg[^>]* xmlns="http:\/\/www.w3.org\/2000\/svg"/);
   assert.doesNotMatch(svg, /var\(--|class=/);
+  const { t: time, words } = await read(page, (data) => ({
+    t: data.history.t[data.view.shown < 0 ? data.history.count - 1 : data.view.shown],
+    words: data.methods.map(({ label }) => label),
+  }));
+  assert.ok(svg.includes(`, t = ${time.toFixed(2)} s<`), "the picture says its time");
+  words.forEach((label) => assert.ok(svg.includes(`>${label}: `), `and names ${label}`));
   const png = (await fetchFile("PNG")).bytes;
   assert.equal(png.subarray(1, 4).toString(), "PNG");
 });

@@ -99,8 +99,15 @@ export function createControls(el, store, actions) {
     return null;
   }
 
-  /** Why the step is not the scene's own. @param {string} key @param {number} held */
+  /** That methods have values of their own, or why the step is not the scene's. @param {string} key @param {number} held */
   function hintOf(key, held) {
+    const values = data.methods.map(({ spelling }) =>
+      Number(settingOf(data.catalogue, spelling, key)?.value ?? held),
+    );
+    const free = key === "h" ? 0 : held; // a step that the method chooses itself
+    if (values.some((value) => value !== held && value !== free)) {
+      return "the methods differ: a value set here is for all of them";
+    }
     const own = data.scene?.step ?? 0;
     if (key !== "h" || !(own > 0) || held === own) {
       return "";

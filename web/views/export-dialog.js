@@ -4,6 +4,7 @@
 // the drawing as a picture, the scene as a program.
 import { sentenceOf } from "../api/client.js";
 import { documents } from "../api/documents.js";
+import { seconds } from "../state/format.js";
 import { toCsv, toNdjson } from "../state/export.js";
 import { toReplay } from "../state/replay.js";
 import { shownIndex, sourceOf } from "../state/store.js";
@@ -32,7 +33,31 @@ export function createExportDialog(el, store, actions, mechanism) {
 
   const solids = () => mechanism.solids(1);
   const picture = () =>
-    standAlone(svg(), { below: mechanism.solids(PIXELS)?.toDataURL("image/png") ?? "" });
+    standAlone(svg(), {
+      below: mechanism.solids(PIXELS)?.toDataURL("image/png") ?? "",
+      caption: caption(),
+    });
+
+  /** What the picture shows: scene, time, and each method that is drawn with its verdict. */
+  function caption() {
+    const { scene, history, methods, view, look, theme, reference } = data;
+    const now = shownIndex(data);
+    const drawn = methods.flatMap((method, m) => {
+      const { [theme]: colour, dash } = look.slots[method.slot];
+      const words = `${method.label}: ${verdictAt(data, m, now).words}`;
+      return view.hidden.has(m) ? [] : [{ words, colour, dash }];
+    });
+    const known = view.reference && reference?.state === "ready";
+    return {
+      title: `${scene.title}, t = ${seconds(history.t[now], data.duration)}`,
+      lines: [
+        ...drawn,
+        ...(known
+          ? [{ words: "reference solution", colour: look.reference[theme], dash: [] }]
+          : []),
+      ],
+    };
+  }
 
   /** A film of the whole recording; afterwards the page shows what it showed. */
   async function film() {

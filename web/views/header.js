@@ -39,7 +39,7 @@ export function createHeader(el, store, actions, open) {
     h(
       "div",
       { class: "choices" },
-      button("lessons", "read, run, predict, solve", open.openLessons),
+      button("lessons", "the lesson of this scene; its menu lists all", open.openLessons),
       button(
         "studies",
         "what accuracy costs (W), where steps are stable (B), where the error comes from (E)",

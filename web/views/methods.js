@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The methods side by side: how each is drawn, the verdict on it, its gap, error, energy and cost.
-import { bound, gapWords, quantity, scientific, withPowers } from "../state/format.js";
+import { bound, gapWords, plain, quantity, scientific, withPowers } from "../state/format.js";
 import { costWords, estimateWords } from "../state/cards.js";
 import { errorsOf } from "../state/errors.js";
 import { limits } from "../state/catalogue.js";
@@ -12,6 +12,11 @@ import { h, icon, s, say, set } from "../widgets/dom.js";
 import { paintNoMore, paintSoon } from "../widgets/pace.js";
 import { term } from "../widgets/term.js";
 
+/** What sets the accuracy of a method, and how a row says it. */
+const SIZES = [
+  { key: "h", word: "dt", unit: " s" },
+  { key: "rtol", word: "tolerance", unit: "" },
+];
 const GREEK = { alpha: "α", beta: "β" };
 
 /** Index of the last value that is a number, at `now` or before. @param {Float64Array} column */
@@ -122,6 +127,19 @@ export function createMethods(el, store, actions, openDialog) {
     );
   }
 
+  /** The method's own step or tolerance, where the methods have several. */
+  function ownSize({ spelling }) {
+    for (const { key, word, unit } of SIZES) {
+      const held = (text) => Number(settingOf(data.catalogue, text, key)?.value ?? 0);
+      const own = held(spelling);
+      if (own > 0) {
+        const differ = data.methods.some((other) => held(other.spelling) !== own);
+        return differ ? `${word} ${plain(own)}${unit}` : "";
+      }
+    }
+    return "";
+  }
+
   /** @param {import("../state/store.js").Method} method @param {number} m */
   function makeParts(method, m) {
     const number = () => h("span", { class: "number" });
@@ -185,7 +203,7 @@ export function createMethods(el, store, actions, openDialog) {
       cell("check", parts.check),
       cell("who", parts.select),
       cell("more", parts.why, parts.edit),
-      cell("verdict", parts.verdict, ...badge),
+      cell("verdict", parts.verdict, h("span", { class: "own number" }, ownSize(method)), ...badge),
       cell("gap", parts.gap),
       cell("off", parts.off),
       cell("energy", parts.energy),
@@ -257,6 +275,12 @@ export function createMethods(el, store, actions, openDialog) {
   const workWords = (work) =>
     `Energy error, with the work of drives, dampers and loads taken off; that work is ${quantity(work, "J")} so far.`;
 
+  /** Unit of an error of the coordinates: the largest of them all. */
+  function unitOf({ coordinates }) {
+    const lengths = coordinates.filter(({ kind }) => kind === "length").length;
+    return lengths === 0 ? "rad" : lengths === coordinates.length ? "m" : "rad, m";
+  }
+
   /** Error of position, as a bound where the reference itself says no more. */
   function errorWords(m, now) {
     const { reference } = data;
@@ -264,7 +288,7 @@ export function createMethods(el, store, actions, openDialog) {
     const value = off[lastKnown(off, now)];
     if (Number.isNaN(value) || !reference) {
       const estimate = data.latest?.methods[m]?.error_estimate?.q ?? NaN;
-      return Number.isFinite(estimate) ? `≈ ${scientific(estimate, 1)}` : "–";
+      return Number.isFinite(estimate) ? `≈ ${scientific(estimate, 1)} ${unitOf(data.scene)}` : "–";
     }
     return value <= reference.own ? `< ${bound(value, "m")}` : quantity(value, "m", 2);
   }
