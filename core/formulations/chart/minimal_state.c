@@ -71,7 +71,9 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_minimal_state *s = self;
     const int r = s->chart.r;
     s->chart.cost.evals++;
-    memcpy(ydot, y + r, (size_t)r * sizeof *y);
+    for (int j = 0; j < r; j++) {
+        ydot[j] = y[r + j];
+    }
     if (close_by_tape(s, t, y, HN_CHART_TOL) &&
         hn_minimal_tape_get_accelerations(&s->tape, ydot + r)) {
         return HN_OK;
