@@ -216,9 +216,10 @@ typedef struct hn_shape {
 typedef struct hn_scene {
     hn_arena *arena; ///< owns everything below
     const char *id, *name, *title, *about,
-        *look_for;      ///< id: file name without .json, or the "id" field
-    bool is_lagrangian; ///< no bodies at all
-    bool has_formulas;  ///< a scene of bodies to which `lagrangian` adds energies
+        *look_for;       ///< id: file name without .json, or the "id" field
+    const char *exhibit; ///< what its own methods are meant to show going wrong; "": nothing
+    bool is_lagrangian;  ///< no bodies at all
+    bool has_formulas;   ///< a scene of bodies to which `lagrangian` adds energies
     int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_constraints, n_shapes;
     hn_param *params;
     hn_body *bodies;

@@ -75,6 +75,7 @@ static void read_head(hn_reader *r, const cJSON *root, const char *id) {
     s->title = (text = hn_rd_text(r, root, "title", 0)) ? text : s->name;
     s->about = (text = hn_rd_text(r, root, "about", 0)) ? text : "";
     s->look_for = (text = hn_rd_text(r, root, "look_for", 0)) ? text : "";
+    s->exhibit = (text = hn_rd_text(r, root, "exhibit", 0)) ? text : "";
     s->duration = read_positive(r, root, "duration", 10, 1e6);
     s->step = read_positive(r, root, "step", 1e-3, 1e6);
     read_methods(r, root);
@@ -143,9 +144,9 @@ static void read_mechanism(hn_reader *r, const cJSON *root) {
 
 static void read_root(hn_reader *r, const cJSON *root, const char *id) {
     static const char *const fields[] = {
-        "holonom",    "id",      "name",   "title",    "about",       "look_for",
-        "parameters", "gravity", "bodies", "joints",   "constraints", "loads",
-        "lagrangian", "draw",    "start",  "duration", "step",        "methods"};
+        "holonom",    "id",      "name",     "title",  "about",       "look_for", "exhibit",
+        "parameters", "gravity", "bodies",   "joints", "constraints", "loads",    "lagrangian",
+        "draw",       "start",   "duration", "step",   "methods"};
 
     // faults of JSON first: names used twice, numbers not finite
     hn_rd_check_tree(r, root);
@@ -187,8 +188,8 @@ static void strip_words(cJSON *node) {
 /// Of what moves, normalised, and the present values of the parameters: not of words, drawing, what
 /// is compared by default, or bounds of parameters.
 static bool calc_hash(hn_reader *r, const cJSON *root) {
-    static const char *const shown[] = {"id",       "name", "look_for",  "methods",
-                                        "duration", "step", "parameters"};
+    static const char *const shown[] = {"id",      "name",     "look_for", "exhibit",
+                                        "methods", "duration", "step",     "parameters"};
 
     // the tree without what is only shown
     cJSON *meaning = cJSON_Duplicate(root, 1);

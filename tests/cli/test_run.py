@@ -2,6 +2,7 @@
 """holonom run and compare: times, settings, ends, verdicts on the motion, remedies, incidents and estimates of the error."""
 
 import csv
+import glob
 import io
 import json
 import os
@@ -215,6 +216,24 @@ class Run(Command):
         self.assertRegex(" ".join(done.split()), "status, by the error estimate of coordinates and reactions .*: right up to 0.01, inaccurate above, WRONG from 1 on")
         done = call("compare", "four-bar", "--methods", "projection@rk4:h=1e-3", "--time", "1").stdout.decode()
         self.assertNotIn("status, by", done)
+
+    def test_a_scene_whose_methods_are_meant_to_go_wrong_says_so(self):
+        own = " ".join(call("compare", "four-bar").stdout.decode().split())
+        self.assertIn("meant to go wrong: The step of 0.01 s is long on purpose", own)
+        for words in ("--methods", "index1@rk4:h=0.01"), ("--time", "1"):  # of somebody else; nothing has gone wrong
+            self.assertNotIn("meant to go wrong", call("compare", "four-bar", *words).stdout.decode())
+        # the methods of every other shipped scene stay below 1 %, as the table says
+        wrong, said = set(), set()
+        with open("tests/tables/accuracy.txt", encoding="utf-8") as file:
+            for line in file:
+                if "above 1 %, " in line:
+                    self.assertIn("an exhibit", line)
+                    wrong.add(line.split()[0])
+        for path in glob.glob("lessons/*/scenes/*.json"):
+            with open(path, encoding="utf-8") as file:
+                if json.load(file).get("exhibit"):
+                    said.add(os.path.basename(path)[:-5])
+        self.assertEqual(wrong, said)
 
     def test_a_status_is_the_verdict_on_the_motion(self):
         methods = ("projection@rk4:h=1e-3", "index1@rk4:h=0.01", "projection@rk4:h=0.1")

@@ -31,7 +31,7 @@
  * and `envelope` in m; `duration` and `step` in s. `start_parameter` and `rate_parameter`: the
  * parameters that are the start of a coordinate and of its rate.
  * @typedef {{
- *   id: string, title: string, about: string, look_for: string, caption: string,
+ *   id: string, title: string, about: string, look_for: string, exhibit: string, caption: string,
  *   parameters: Parameter[], n: number, m: number, rank: number, dof: number, length: number,
  *   drawing: Drawing,
  *   coordinates: {name: string, rate: string, kind: string, joint: string, actuated: boolean,

@@ -95,6 +95,7 @@ export function createHappening(el, store, actions) {
     const notes = [
       ["The scene", data.scene?.about],
       ["What to look for", data.scene?.look_for],
+      ["Meant to go wrong", data.scene?.exhibit],
     ];
     about.replaceChildren(
       ...notes

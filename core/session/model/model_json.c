@@ -34,6 +34,7 @@ static void put_scene_head(hn_strbuf *b, const hn_model *model) {
     hn_json_put_string(b, "title", scene->title);
     hn_json_put_string(b, "about", scene->about);
     hn_json_put_string(b, "look_for", scene->look_for);
+    hn_json_put_string(b, "exhibit", scene->exhibit);
     hn_json_put_string(b, "kind",
                        scene->is_lagrangian  ? "Lagrangian"
                        : scene->has_formulas ? "bodies, joints and formulas"

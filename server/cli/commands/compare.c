@@ -214,15 +214,21 @@ static void put_head(hn_strbuf *b, const hn_scene *scene, const cJSON *summary, 
                      scene->title ? scene->title : scene->id, duration);
 }
 
-/// Says by which measure the status judges, where it finds fault: the workbench has another.
-static void put_measure(hn_strbuf *b, const cJSON *summary) {
-    bool at_fault = false;
+/// Whether the status finds fault with a motion that came to its end.
+static bool is_at_fault(const cJSON *summary) {
     const cJSON *m;
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
         const char *is = hn_document_text(hn_document_get(m, "verdict"), "is");
-        at_fault |= !has_failed(m) && (strcmp(is, "wrong") == 0 || strcmp(is, "inaccurate") == 0);
+        if (!has_failed(m) && (strcmp(is, "wrong") == 0 || strcmp(is, "inaccurate") == 0)) {
+            return true;
+        }
     }
-    if (at_fault) {
+    return false;
+}
+
+/// Says by which measure the status judges, where it finds fault: the workbench has another.
+static void put_measure(hn_strbuf *b, const cJSON *summary) {
+    if (is_at_fault(summary)) {
         hn_strbuf_printf(b,
                          "status, by the error estimate of coordinates and reactions over the "
                          "whole run: right up to %g, inaccurate above, WRONG from %g on (the "
@@ -231,7 +237,9 @@ static void put_measure(hn_strbuf *b, const cJSON *summary) {
     }
 }
 
-static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary, double duration) {
+/// `own`: the methods are those of the scene.
+static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary, double duration,
+                      bool own) {
     // the order in which columns are left out: what can be computed from others goes first
     static const struct {
         const char *head;
@@ -267,6 +275,9 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary,
     put_head(b, scene, summary, duration);
     hn_table_write(b, &t);
     put_measure(b, summary);
+    if (own && scene->exhibit[0] && is_at_fault(summary)) {
+        hn_strbuf_printf(b, "meant to go wrong: %s\n", scene->exhibit);
+    }
     put_remarks(b, summary);
     hn_table_reset(&t);
 }
@@ -327,7 +338,7 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
     cJSON *summary = cJSON_Parse(hn_strbuf_text(&b));
     if (!args->json) {
         hn_strbuf_clear(&b);
-        put_table(&b, model, summary, hn_comparison_duration(c));
+        put_table(&b, model, summary, hn_comparison_duration(c), args->methods.n == 0);
         if (args->plot) {
             hn_motion_plot_text(&b, &plot, hn_terminal_columns(), hn_terminal_colours());
         }
