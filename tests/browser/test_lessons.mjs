@@ -255,3 +255,34 @@ test("every lesson of the server is shown, with no formula in error", async (t) 
     ),
   );
 });
+
+test("a lesson is put on paper with every picture, seen or not", async (t) => {
+  const page = await open(t, {
+    init: () => {
+      globalThis.print = () => {
+        const empty = [...document.querySelectorAll(".lesson-text .exhibit-picture")].filter(
+          (one) => !one.querySelector("svg"),
+        );
+        const missing = [...document.querySelectorAll(".lesson-text img")].filter(
+          (one) => !(one.complete && one.naturalWidth > 0),
+        );
+        globalThis.printed = [empty.length, missing.length];
+      };
+    },
+  });
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.selectOption("#lesson", "01-closed-loops");
+  const pictures = page.locator(".lesson-text .exhibit-picture");
+  await soon(async () => assert.ok((await pictures.count()) > 1));
+  assert.ok(
+    await page.evaluate(() =>
+      [...document.querySelectorAll(".lesson-text .exhibit-picture")].some(
+        (one) => !one.querySelector("svg"),
+      ),
+    ),
+    "some are not drawn before they are seen",
+  );
+  await page.getByRole("button", { name: "print", exact: true }).click();
+  await page.waitForFunction(() => globalThis.printed);
+  assert.deepEqual(await page.evaluate(() => globalThis.printed), [0, 0]);
+});

@@ -23,7 +23,7 @@ export function createLessons(el, store, actions) {
   let katex = null;
   let shown = "";
   let isOpen = false;
-  /** what is made when it is first seen @type {Map<Element, () => void>} */
+  /** what is made when it is first seen @type {Map<Element, () => Promise<void> | void>} */
   const waiting = new Map();
 
   const menu = h("select", {
@@ -52,7 +52,7 @@ export function createLessons(el, store, actions) {
         { class: "choices" },
         back,
         next,
-        button("print", "this lesson on paper", () => print()),
+        button("print", "this lesson on paper", putOnPaper),
         button("close", "back to the page", close),
       ),
     ),
@@ -72,7 +72,27 @@ export function createLessons(el, store, actions) {
     { root: text, rootMargin: "200px" },
   );
 
-  /** @param {Element} node @param {() => void} act */
+  /** Paper needs the pictures that nobody has seen yet as well. */
+  async function drawAll() {
+    const pictures = [...waiting].filter(([node]) => node.matches(".exhibit-picture"));
+    for (const [node] of pictures) {
+      waiting.delete(node);
+      watcher.unobserve(node);
+    }
+    const images = [...text.querySelectorAll("img")];
+    images.forEach((image) => (image.loading = "eager"));
+    await Promise.allSettled([
+      ...pictures.map(([, act]) => act()),
+      ...images.map((image) => image.decode()),
+    ]);
+  }
+
+  async function putOnPaper() {
+    await drawAll();
+    print();
+  }
+
+  /** @param {Element} node @param {() => Promise<void> | void} act */
   function whenSeen(node, act) {
     waiting.set(node, act);
     watcher.observe(node);
@@ -209,6 +229,7 @@ export function createLessons(el, store, actions) {
     }
   });
 
+  addEventListener("beforeprint", () => isOpen && drawAll()); // asked for by the browser's own menu
   store.on("view", obey);
   return { open: obey };
 }

@@ -20,7 +20,7 @@ const wordsIn = (list) =>
  * @param {import("./blocks.js").Block} block
  * @param {import("./blocks.js").Kit} kit
  * @param {import("../../session/session.js").Session} actions
- * @param {(seen: HTMLElement, show: () => void) => void} whenSeen
+ * @param {(seen: HTMLElement, show: () => Promise<void>) => void} whenSeen
  */
 export function makeExhibit(block, kit, actions, whenSeen) {
   const { scene, command, children } = block;
@@ -45,12 +45,12 @@ export function makeExhibit(block, kit, actions, whenSeen) {
   }
 
   if (scene) {
-    whenSeen(picture, () => {
+    whenSeen(picture, () =>
       api.scene(scene).then(
         (document) => picture.replaceChildren(makeThumbnail(document)),
         (error) => say(said, sentenceOf(error)),
-      );
-    });
+      ),
+    );
   }
   return h(
     "section",
