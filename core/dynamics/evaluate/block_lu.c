@@ -8,8 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double THRESHOLD = 0.1; // of the largest entry of the column
-static const double VANISHED = 1e-13;
+/// Judgements of pivots of one row, the smaller the better: numbers by the fill that they make,
+/// then entries alone in their row or column, then any others.
+enum { LONE = HN_BLOCK_LU_MOST * HN_BLOCK_LU_MOST, ANY = 2 * LONE };
+static const double THRESHOLD = 0.1;  // of the largest entry of the column
+static const double VANISHED = 1e-13; // of the largest entry of the matrix
 
 // ---- the order ----
 
@@ -53,9 +56,8 @@ static bool is_large(const plan *p, int i, int j) {
     return fabs(p->value[i][j]) >= THRESHOLD * most && most > VANISHED * p->largest;
 }
 
-/// The order in which single pivots are preferred; smaller is better, negative: none.
+/// Judges entry (i, j) as a pivot; -1: it is none.
 static int judge_single(const plan *p, int i, int j) {
-    enum { LONE = HN_BLOCK_LU_MOST * HN_BLOCK_LU_MOST, ANY = 2 * LONE };
     const int row = count_row(p, i), col = count_col(p, j), fill = (row - 1) * (col - 1);
     if (!(fabs(p->value[i][j]) > VANISHED * p->largest)) {
         return -1;
@@ -156,7 +158,6 @@ static bool take_pair(plan *p, const int row[2], const int col[2]) {
 }
 
 static bool take_next(plan *p) {
-    enum { LONE = HN_BLOCK_LU_MOST * HN_BLOCK_LU_MOST, ANY = 2 * LONE };
     int i = 0, j = 0, row[2], col[2];
     const int single = find_single(p, &i, &j);
     if ((single < 0 || single >= ANY) && find_pair(p, row, col)) {

@@ -362,6 +362,9 @@ hn_status hn_reduced_tape_create(const hn_system *sys, const hn_reduced_split *s
     bool serves = false;
     hn_status status = hn_arena_failed(arena) ? HN_ERR_MEMORY : build(&b, arena, tape, &serves);
     hn_arena_free(b.scratch);
+    if (status == HN_ERR_LIMIT) { // too long to be written out
+        return HN_OK;
+    }
     if (status != HN_OK || !serves) {
         return status;
     }

@@ -35,7 +35,7 @@ typedef struct hn_reduced_split {
 /// Compiles the tape for a split. *out is NULL where it cannot serve: a ball among the coordinates,
 /// dependent rows, no constraint at all, or too many coordinates to be written out. Adds nodes to
 /// the system's graph. Memory from `arena`; the tape is freed by hn_reduced_tape_free(). Fails:
-/// HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_reduced_tape_create(const hn_system *sys, const hn_reduced_split *split,
                                                hn_arena *arena, hn_reduced_tape **out);
 void hn_reduced_tape_free(hn_reduced_tape *tape); ///< NULL is legal

@@ -66,7 +66,7 @@ typedef struct hn_chart {
     int *first_dep, has_first; ///< the first choice of all
     /// largest of the smallest pivots of the scaled J_d where charts were chosen
     double pivot_start;
-    bool is_measured;    ///< the next two belong to the present choice
+    bool is_measured;    ///< the next three belong to the present choice
     double volume_start; ///< logarithm of |det J_d| there
     double volume_unit;  ///< 1 / |det J_d| there
     /// |det J_d| against that at the last accepted state, and its rate where has_rate is set

@@ -72,12 +72,15 @@ static bool iterate(hn_minimal_tape *w, hn_chart *chart, double t, const double 
         hn_reduced_tape_run(w->tape, t, w->q, u);
         count_run(w, chart);
         w->gap = hn_reduced_tape_gap(w->tape);
-        if (!is_regular(w, chart) || !(w->gap < last)) {
+        if (!is_regular(w, chart)) {
             return false;
         }
         hn_reduced_tape_get_position(w->tape, w->q);
         if (hn_chart_is_closed(chart, w->gap, last, tol)) {
             return true;
+        }
+        if (!(w->gap < last)) {
+            return false;
         }
         last = w->gap;
     }
@@ -117,12 +120,13 @@ bool hn_minimal_tape_close(hn_minimal_tape *w, hn_chart *chart, double t, const 
         return false;
     }
 
-    // the same state again
-    if (w->valid && w->gap <= tol * chart->length && is_last(w, chart, t, y)) {
+    // the same state again; a hand may pull at it differently
+    const bool may_differ = hn_system_pulls(chart->sys) != NULL;
+    if (w->valid && !may_differ && w->gap <= tol * chart->length && is_last(w, chart, t, y)) {
         return true;
     }
 
-    // from the tangent at the last accepted state, or from here with other velocities
+    // from the tangent at the last accepted state
     w->valid = false;
     predict(w, chart, t, y);
     w->valid =

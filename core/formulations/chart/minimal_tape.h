@@ -25,7 +25,7 @@ typedef struct hn_minimal_tape {
 
 /// Compiles the tape when it is called first, for the choice of coordinates of `chart`, whose point
 /// `here` is closed; later calls see whether it is for the present choice. The first call adds
-/// nodes to the system's graph. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// nodes to the system's graph. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_minimal_tape_begin(hn_minimal_tape *w, const hn_chart *chart,
                                               hn_arena *arena);
 void hn_minimal_tape_free(hn_minimal_tape *w);

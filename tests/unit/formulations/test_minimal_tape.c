@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Minimal coordinates with the tape against the same without it.
+#include "dynamics/compile/compile.h"
 #include "formulations/chart/minimal_state.h"
 #include "linalg/dense.h"
 
@@ -170,12 +171,41 @@ static void a_far_prediction_is_followed_in_pieces(void **state) {
     hn_model_close(&m);
 }
 
+/// A hand that takes hold at an accepted state is felt there at once.
+static void a_hand_that_takes_hold_between_two_steps_is_felt(void **state) {
+    (void)state;
+    const hn_pull hold = {.point = 1, .to = {3, 2, 0}, .stiffness = 50};
+    hn_diags diags = {0};
+    hn_model m = {0};
+    motion w;
+    double before[2], after[2];
+    const char path[] = "lessons/01-closed-loops/scenes/four-bar.json";
+    assert_int_equal(hn_scene_load_file(path, NULL, 0, &m.scene, &diags), HN_OK);
+    assert_int_equal(hn_scene_add_pull(m.scene, hold.point), HN_OK);
+    assert_int_equal(hn_system_compile(m.scene, NULL, &m.sys, &diags), HN_OK);
+    double q[MAX], v[MAX], a[MAX], lambda[MAX];
+    assert_int_equal(hn_assemble(m.sys, 0, q, v, a, lambda, &m.assembly, &diags), HN_OK);
+    m.q = q;
+    m.v = v;
+    begin(&w, &m, true);
+    assert_true(w.s.tape.serves);
+    assert_int_equal(step(&w, 1e-3), HN_OK);
+    assert_int_equal(w.ode.rhs(&w.s, w.t, w.y, before), HN_OK);
+    assert_int_equal(hn_pull_log_add(hn_system_pulls(m.sys), w.t, &hold), HN_OK);
+    assert_int_equal(w.ode.rhs(&w.s, w.t, w.y, after), HN_OK);
+    assert_true(fabs(after[1] - before[1]) > 1); // some 100 N on links of about 1 kg
+    end(&w);
+    hn_system_free(m.sys);
+    hn_scene_free(m.scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_motion_is_that_of_the_careful_way),
         cmocka_unit_test(one_run_of_the_tape_serves_an_evaluation_of_a_short_step),
         cmocka_unit_test(accelerations_follow_the_velocities),
         cmocka_unit_test(the_jacobian_is_that_of_the_careful_way),
+        cmocka_unit_test(a_hand_that_takes_hold_between_two_steps_is_felt),
         cmocka_unit_test(a_far_prediction_is_followed_in_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
