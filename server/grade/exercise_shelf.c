@@ -36,6 +36,13 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
     return hn_diags_add(diags, HN_ERR_INPUT, "/problem", hint, "there is no problem '%.80s'", id);
 }
 
+/// Where it belongs, short: "1, sections 2 and 6" of lesson 01-closed-loops.
+static void put_place(hn_strbuf *b, const hn_exercise *problem) {
+    char place[120];
+    snprintf(place, sizeof place, "%d, %.100s", atoi(problem->lesson), problem->section);
+    hn_json_put_string(b, "place", place);
+}
+
 /// The names whose numbers differ from variant to variant, in one text.
 static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
     hn_strbuf names;
@@ -46,6 +53,9 @@ static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
             !hn_exercise_is_hidden(problem, m->string)) {
             hn_strbuf_printf(&names, "%s%s", names.n ? " " : "", m->string);
         }
+    }
+    for (int i = 0; !problem->n_parts && i < problem->n_names; i++) {
+        hn_strbuf_printf(&names, "%s%s", i ? " " : "", problem->names[i].name);
     }
     hn_json_put_string(b, "varied", hn_strbuf_text(&names));
     b->failed |= names.failed;
@@ -68,6 +78,7 @@ void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
             hn_json_put_string(b, "title", hn_exercise_title(problem));
             hn_json_put_string(b, "lesson", problem->lesson);
             hn_json_put_string(b, "section", problem->section);
+            put_place(b, problem);
             hn_json_put_int(b, "parts", problem->n_parts ? problem->n_parts : 1);
             put_varied(b, problem);
             hn_json_put_string(b, "scene", hn_exercise_scene(problem));

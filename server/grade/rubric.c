@@ -5,8 +5,11 @@
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "grade/parts/part.h"
+#include "grade/repeated_member.h"
 
+#include <ctype.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,9 +61,43 @@ const cJSON *hn_rubric_section(const hn_rubric *r, const char *name) {
 
 // ---- reading ----
 
-static const char *const FIELDS[] = {"rubric",    "exercise", "total", "points",
-                                     "tolerance", "shares",   "hints", "about"};
+static const char *const FIELDS[] = {"rubric", "exercise", "total", "points",    "tolerance",
+                                     "shares", "hints",    "about", "visibility"};
 enum { N_FIELDS = sizeof FIELDS / sizeof *FIELDS };
+
+/// Gradescope's words.
+static const char *const VISIBILITIES[] = {"visible", "hidden", "after_due_date",
+                                           "after_published"};
+enum { N_VISIBILITIES = sizeof VISIBILITIES / sizeof *VISIBILITIES };
+
+static hn_status check_visibilities(const hn_rubric *r, hn_diags *diags) {
+    const cJSON *m;
+    hn_status status = HN_OK;
+    cJSON_ArrayForEach(m, hn_rubric_section(r, "visibility")) {
+        const char *word = cJSON_GetStringValue(m);
+        bool known = false;
+        for (int i = 0; word && i < N_VISIBILITIES; i++) {
+            known |= strcmp(word, VISIBILITIES[i]) == 0;
+        }
+        if (!known) {
+            const char *near = word ? hn_nearest_name(word, VISIBILITIES, N_VISIBILITIES) : NULL;
+            status =
+                hn_rubric_fault(r, diags, "visibility", m->string,
+                                near ? near : "visible, hidden, after_due_date or after_published",
+                                "the visibility of part %.40s is no word of Gradescope's",
+                                m->string ? m->string : "");
+        }
+    }
+    return status;
+}
+
+/// A name that is there twice: one of its values would be ignored.
+static hn_status check_once(const hn_rubric *r, hn_diags *diags) {
+    const char *name = hn_repeated_member_find(r->root);
+    return name ? hn_rubric_fault(r, diags, name, NULL, "keep the one that counts",
+                                  "'%.40s' is there more than once in one object", name)
+                : HN_OK;
+}
 
 /// Every member is a number from 0 to `most`.
 static hn_status check_numbers(const hn_rubric *r, const char *section, double most,
@@ -125,9 +162,13 @@ static hn_status check_fields(hn_rubric *r, hn_diags *diags) {
             r, diags, "rubric", NULL, "holonom rubric write ID",
             "a rubric begins with \"rubric\": 1 and the \"exercise\" that it is for");
     }
-    const hn_status checked[] = {status, check_numbers(r, "points", 1e6, diags),
+    const hn_status checked[] = {status,
+                                 check_numbers(r, "points", 1e6, diags),
                                  check_numbers(r, "shares", 1, diags),
-                                 check_numbers(r, "hints", 1e6, diags), check_tolerances(r, diags)};
+                                 check_numbers(r, "hints", 1e6, diags),
+                                 check_tolerances(r, diags),
+                                 check_visibilities(r, diags),
+                                 check_once(r, diags)};
     for (size_t i = 0; i < sizeof checked / sizeof *checked; i++) {
         status = status == HN_OK ? checked[i] : status;
     }
@@ -182,6 +223,18 @@ uint64_t hn_rubric_hash(const hn_rubric *r) {
 
 double hn_rubric_share(const hn_rubric *r, const char *mistake, double otherwise) {
     return r ? hn_part_number(hn_rubric_section(r, "shares"), mistake, otherwise) : otherwise;
+}
+
+const char *hn_rubric_visibility(const hn_rubric *r, const char *entry) {
+    const cJSON *m, *section = r ? hn_rubric_section(r, "visibility") : NULL;
+    cJSON_ArrayForEach(m, section) {
+        const size_t n = strlen(m->string);
+        const char *behind = strncmp(entry, m->string, n) == 0 ? entry + n : "?";
+        if (!*behind || *behind == '.' || isdigit((unsigned char)*behind)) {
+            return m->valuestring;
+        }
+    }
+    return "visible";
 }
 
 double hn_rubric_hints_cost(const hn_rubric *r, int n) {

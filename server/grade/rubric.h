@@ -6,10 +6,13 @@
 //
 //     {"rubric": 1, "exercise": "fourbar", "total": 10,
 //      "points": {"a": 1, "b": 3}, "tolerance": {"a": {"relative": 0.01}},
-//      "shares": {"sign": 0.5, "degrees": 0}, "hints": [0.5, 1]}
+//      "shares": {"sign": 0.5, "degrees": 0}, "hints": [0.5, 1],
+//      "visibility": {"b": "after_due_date"}}
 //
 // All but the first two fields may be left out; the exercise's own values then hold. A part has the
 // name of the exercise's file; an exercise with one matrix has one part, of the matrix's name.
+// "visibility" says when Gradescope shows the verdict on a part, in Gradescope's words; other forms
+// of a verdict show all parts.
 
 #include "base/diag.h"
 
@@ -29,6 +32,9 @@ uint64_t hn_rubric_hash(const hn_rubric *r);        ///< of the file's text; 0 f
 /// The share of the points that a mistake earns; `otherwise` where the rubric, which may be NULL,
 /// says nothing.
 double hn_rubric_share(const hn_rubric *r, const char *mistake, double otherwise);
+/// When the verdict on a part is shown: "visible" where the rubric, which may be NULL, says nothing.
+/// `entry` is the part's name, or begins with it: "b.2", "J11".
+const char *hn_rubric_visibility(const hn_rubric *r, const char *entry);
 /// The points that the first n hints cost.
 double hn_rubric_hints_cost(const hn_rubric *r, int n);
 

@@ -168,10 +168,12 @@ hn_status hn_rubric_check(const hn_rubric *r, const hn_exercise *e, hn_diags *di
                                "the rubric is for exercise '%.40s', not %s", hn_rubric_exercise(r),
                                e->id);
     }
-    const hn_status checked[] = {check_names(r, "points", "part", parts, n_parts, diags),
+    const hn_status checked[] = {check_names(r, "visibility", "part", parts, n_parts, diags),
+                                 check_names(r, "points", "part", parts, n_parts, diags),
                                  check_names(r, "tolerance", "part", parts, n_parts, diags),
                                  check_names(r, "shares", "mistake", mistakes, n_mistakes, diags),
-                                 check_kinds(r, e, diags), check_total(r, e, diags)};
+                                 check_kinds(r, e, diags),
+                                 check_total(r, e, diags)};
     for (size_t i = 0; i < sizeof checked / sizeof *checked; i++) {
         HN_TRY(checked[i]);
     }
@@ -206,7 +208,10 @@ hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *e, hn_diags *diags) {
 static void put_meaning(hn_strbuf *b, double relative, double absolute, bool symbolic) {
     const int digits = (int)ceil(1 - log10(2 * relative) - 1e-9);
     if (symbolic) {
-        hn_strbuf_printf(b, "%g of the largest value over the random states", relative);
+        hn_strbuf_printf(b,
+                         "%g of the largest value over the random states: passes formulas whose "
+                         "numbers have %d digits",
+                         relative, digits);
     } else {
         hn_strbuf_printf(b, "%g %%: passes every answer rounded to %d digit%s", 100 * relative,
                          digits, digits == 1 ? "" : "s");
@@ -235,10 +240,16 @@ void hn_rubric_text(hn_strbuf *b, const hn_exercise *e) {
         put_meaning(b, e->relative, e->absolute, true);
         hn_strbuf_add(b, "\n");
     }
+    for (int i = 0; i < e->n_parts; i++) {
+        const char *shown = hn_rubric_visibility(e->rubric, e->parts[i].id);
+        if (strcmp(shown, "visible") != 0) {
+            hn_strbuf_printf(b, "  %-8s in Gradescope: %s\n", e->parts[i].id, shown);
+        }
+    }
     for (int i = 1; i <= e->n_hints && e->rubric; i++) {
-        hn_strbuf_printf(b, "  hint %d costs %g points\n", i,
-                         hn_rubric_hints_cost(e->rubric, i) -
-                             hn_rubric_hints_cost(e->rubric, i - 1));
+        const double cost =
+            hn_rubric_hints_cost(e->rubric, i) - hn_rubric_hints_cost(e->rubric, i - 1);
+        hn_strbuf_printf(b, "  hint %d costs %g point%s\n", i, cost, cost == 1 ? "" : "s");
     }
 }
 
@@ -246,6 +257,40 @@ static void put_tolerance(hn_strbuf *b, const char *name, double relative, doubl
                           bool first) {
     hn_strbuf_printf(b, "%s\n    \"%s\": {\"relative\": %g, \"absolute\": %g}", first ? "" : ",",
                      name, relative, absolute);
+}
+
+/// Whether every mistake of this id earns the same share in all parts. One of the general ids has
+/// shares that depend on the kind of the answer.
+static bool has_one_share(const hn_exercise *e, const char *id, double share) {
+    bool one = !is_listed(GENERAL, N_GENERAL, id);
+    for (int i = 0; i < e->n_parts; i++) {
+        const cJSON *m;
+        cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "faults")) {
+            one &= strcmp(hn_part_text(m, "id"), id) != 0 || hn_part_number(m, "share", 0) == share;
+        }
+    }
+    return one;
+}
+
+/// The shares that the exercise itself gives for its listed mistakes.
+static void put_shares(hn_strbuf *b, const hn_exercise *e) {
+    const char *names[MAX_NAMES];
+    name_list list = {.names = names};
+    for (int i = 0; i < e->n_partial; i++) {
+        hn_strbuf_printf(b, "%s\"%s\": %g", i ? ", " : "", e->partial[i].key, e->partial[i].value);
+    }
+    for (int i = 0; i < e->n_parts; i++) {
+        const cJSON *m;
+        cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "faults")) {
+            const char *id = hn_part_text(m, "id");
+            const double share = hn_part_number(m, "share", 0);
+            if (!is_listed(names, list.n, id) && has_one_share(e, id, share) &&
+                e->parts[i].kind == &hn_part_values) {
+                add_name(&list, id);
+                hn_strbuf_printf(b, "%s\"%s\": %g", list.n > 1 ? ", " : "", id, share);
+            }
+        }
+    }
 }
 
 void hn_rubric_write(hn_strbuf *b, const hn_exercise *e) {
@@ -271,7 +316,9 @@ void hn_rubric_write(hn_strbuf *b, const hn_exercise *e) {
     if (!e->n_parts) {
         put_tolerance(b, e->answer, e->relative, e->absolute, true);
     }
-    hn_strbuf_add(b, "\n  },\n  \"shares\": {\"sign\": 0.5, \"degrees\": 0.5},\n  \"hints\": [");
+    hn_strbuf_add(b, "\n  },\n  \"shares\": {");
+    put_shares(b, e);
+    hn_strbuf_add(b, "},\n  \"hints\": [");
     for (int i = 0; i < e->n_hints; i++) {
         hn_strbuf_add(b, i ? ", 0" : "0");
     }

@@ -259,6 +259,14 @@ void hn_variant_json(hn_strbuf *b, hn_variant *x) {
 
 // ---- grading ----
 
+/// The share of an entry. A second mistake beside the one that is named lowers the rubric's share
+/// as it lowers the exercise's own.
+static double share_of(const hn_rubric *rubric, const hn_part_result *r) {
+    const double lowered = r->alone > 0 ? r->share / r->alone : 1;
+    const double said = hn_rubric_share(rubric, r->mistake, (double)NAN);
+    return r->right || isnan(said) ? r->share : lowered * said;
+}
+
 /// Copies what a kind of answer found into entries of the verdict.
 static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *results, int n) {
     for (int i = 0; i < n && v->n_entries < HN_GRADE_MAX_ENTRIES; i++) {
@@ -267,9 +275,7 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
         *e = (hn_entry_verdict){.row = v->n_entries - 1, .state = -1};
         snprintf(e->name, sizeof e->name, "%s%s%.12s", p->id, r->name[0] ? "." : "", r->name);
         e->max_points = p->points / n;
-        const hn_rubric *rubric = v->problem->rubric;
-        e->points =
-            e->max_points * (r->right ? r->share : hn_rubric_share(rubric, r->mistake, r->share));
+        e->points = e->max_points * share_of(v->problem->rubric, r);
         e->right = r->right;
         e->mistake = r->mistake;
         e->likeness = r->likeness;

@@ -210,7 +210,7 @@ static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_json_put_string(b, "status", e->points == e->max_points ? "passed" : "failed");
     hn_json_put_string(b, "output", detail.n ? hn_strbuf_text(&detail) : "right");
     hn_json_put_string(b, "output_format", "text");
-    hn_json_put_string(b, "visibility", "visible");
+    hn_json_put_string(b, "visibility", hn_rubric_visibility(v->problem->rubric, e->name));
     hn_json_end_object(b);
     b->failed |= detail.failed | name.failed;
     hn_strbuf_reset(&detail);

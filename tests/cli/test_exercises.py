@@ -222,12 +222,37 @@ def rubrics(folder):
     before, same = (json.loads(run("grade", "fourbar", slip, "--json", *more).stdout)["score"] for more in ([], ["--rubric", path]))
     expect("it changes no score", before == same == 2, f"{before}, {same}")
 
+    # nor does that of any exercise, also where two mistakes meet, or a mistake has another share in each kind of answer
+    placed = json.loads(run("grade", "assemble", write(folder, "far.json", {"a": {"th2": 100, "th3": 100}}), "--show-expected", "--json").stdout)["entries"]
+    turned = {e["name"].split(".")[1]: -float(e["expected"].split()[0]) for e in placed if e["name"].startswith("a.")}
+    for name, answers in (("fourbar", {"b": "-m2*l1*l2*cos(th1+th2)/2", "c": "0", "d": [1, 2], "e": "-l2*l3*cos(th2-th3)"}), ("assemble", {"a": turned}),
+                          ("p3", {"J": [["l1*sin(th1)", "-l2*sin(th1)", "l3", "l4*cos(th4)"], ["l1*cos(th1*pi/180)", "-2*l2*cos(th2)", "3.14", "0"]]})):
+        answer, kept = write(folder, "answer.json", answers), write(folder, f"{name}-own.json", run("rubric", "write", name).stdout)
+        scores = [json.loads(run("grade", name, answer, "--json", *more).stdout)["score"] for more in ([], ["--rubric", kept])]
+        expect(f"nor does that of {name}", scores[0] == scores[1] and scores[0] > 0, str(scores))
+
     # b is worth 6, a sign a quarter of it, and two hints cost 0.5
     other = dict(json.loads(own), total=12, shares={"sign": 0.25}, hints=[0.25, 0.25], points={"a": 1, "b": 6, "c": 2, "d": 2, "e": 1})
     path = write(folder, "other.json", other)
     verdict = run("grade", "fourbar", slip, "--json", "--rubric", path).stdout
     v = json.loads(verdict)
     expect("points, shares and hints are the rubric's", (v["score"], v["max_score"]) == (6 * 0.25 + 1 - 0.5, 12) and "hints cost 0.5" in v["note"], verdict)
+    two = write(folder, "two.json", {"b": "-m2*l1*l2*cos(th1+th2)/2"})
+    shares = write(folder, "shares.json", dict(json.loads(own), shares={"sum-of-angles": 0.5}))
+    half, quarter = (json.loads(run("grade", "fourbar", two, "--json", *more).stdout)["score"] for more in (["--rubric", shares], []))
+    expect("a second mistake lowers the rubric's share too", half == 2 * quarter > 0, f"{half}, {quarter}")
+
+    # when Gradescope shows a part; a name that is there twice
+    late = write(folder, "late.json", dict(json.loads(own), visibility={"b": "after_due_date", "d": "hidden"}))
+    tests = json.loads(run("grade", "fourbar", slip, "--format", "gradescope", "--rubric", late).stdout)["tests"]
+    expect("a part is shown when the rubric says", {t["name"]: t["visibility"] for t in tests} == {"part a": "visible", "part b": "after_due_date",
+           "part c": "visible", "part d.1": "hidden", "part d.2": "hidden", "part e": "visible"}, str(tests)[:300])  # fmt: skip
+    expect("and check says it", "b        in Gradescope: after_due_date" in run("rubric", "check", late).stdout)
+    for text, said in ((json.dumps(dict(json.loads(own), visibility={"b": "after_due"})), "after_due_date"),
+                       (own.replace('"points": {', '"points": {"a": 3, '), "'a' is there more than once")):
+        done = run("rubric", "check", write(folder, "bad.json", text))
+        expect(f"a faulty rubric is refused: {said}", done.returncode == 2 and said in done.stderr, done.stderr)
+
     kept = write(folder, "kept.json", verdict)
     expect("a verdict names its rubric", "name it with --rubric" in run("regrade", kept).stdout)
     expect("and is reproduced with it", json.loads(run("regrade", kept, "--rubric", path, "--json").stdout)["same"])

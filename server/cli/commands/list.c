@@ -78,10 +78,12 @@ static const struct {
        5,
        {{"problem", "id", NULL},
         {"title", "title", NULL},
-        {"lesson", "lesson", NULL},
+        {"lesson", "place", NULL},
         {"points", "points", ""},
         {"drawn from the seed", "varied", NULL}},
-       NULL}}},
+       "Time limit: 60 s for a submission of a class; a run that a part asks for ends after "
+       "200,000 "
+       "steps."}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 

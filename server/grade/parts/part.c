@@ -19,7 +19,7 @@ double hn_part_number(const cJSON *node, const char *key, double otherwise) {
 void hn_part_wrong(hn_part_result *r, const char *mistake, double share, const char *format, ...) {
     va_list list;
     r->right = 0;
-    r->share = share;
+    r->share = r->alone = share;
     r->mistake = mistake;
     va_start(list, format);
     vsnprintf(r->explanation, sizeof r->explanation, format, list);
@@ -29,7 +29,7 @@ void hn_part_wrong(hn_part_result *r, const char *mistake, double share, const c
 void hn_part_unreadable(hn_part_result *r, const char *format, ...) {
     va_list list;
     r->right = 0;
-    r->share = 0;
+    r->share = r->alone = 0;
     r->unreadable = 1;
     r->mistake = "unreadable";
     va_start(list, format);

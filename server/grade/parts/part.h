@@ -18,6 +18,7 @@ enum { HN_PART_TEXT = 400, HN_PART_RESULTS = 16 };
 typedef struct hn_part_result {
     char name[32]; ///< "" for an answer of one entry, else "2", "12"
     double share;  ///< of the points of this entry, 0 .. 1
+    double alone;  ///< the share that this mistake earns without a second one beside it
     int right, unreadable;
     bool likely;         ///< the mistake explains the answer, but chance may do so as well
     uint64_t likeness;   ///< equal for equal wrong answers, whatever the variant; 0: says nothing

@@ -293,7 +293,8 @@ static hn_status judge_curve(hn_scene_check *c, const cJSON *node, int point, hn
         char words[280];
         snprintf(words, sizeof words, "distances %s m, allowed %.3g m", detail, within);
         fail_check(node, r, words);
-        r->share = hn_part_number(node, "share", 1) * met / n;
+        r->alone = hn_part_number(node, "share", 1);
+        r->share = r->alone * met / n;
         r->mistake = met ? "some-points" : r->mistake;
     }
     return HN_OK;

@@ -75,6 +75,7 @@ static hn_status try_listed_pairs(hn_value_search *f) {
         bool differs;
         HN_TRY(read_fault(s, k, fault, &wrong, &differs));
         const double share = hn_part_number(fault, "share", 0);
+        f->alone = share;
         for (int m = 0; m < N_FACTORS && differs; m++) {
             if (!FACTORS[m].numbers || !s->symbolic) {
                 hn_value_search_try(f, wrong.e[k], FACTORS[m].factor, hn_part_text(fault, "id"),
@@ -83,6 +84,7 @@ static hn_status try_listed_pairs(hn_value_search *f) {
             }
         }
     }
+    f->alone = 0;
     return HN_OK;
 }
 
@@ -104,6 +106,7 @@ static hn_status try_two_listed(hn_value_search *f) {
                                    hn_div(g, hn_mul(g, a.e[k], b.e[k]), s->reference.e[k])};
             const double share =
                 hn_part_number(first, "share", 0) * hn_part_number(second, "share", 0);
+            f->alone = hn_part_number(second, "share", 0);
             for (int m = 0; m < 2 && differs[0] && differs[1]; m++) {
                 hn_value_search_try(f, both[m], 1, hn_part_text(second, "id"), share,
                                     "two mistakes at once: %s; and %s",
@@ -111,6 +114,7 @@ static hn_status try_two_listed(hn_value_search *f) {
             }
         }
     }
+    f->alone = 0;
     return HN_OK;
 }
 
@@ -140,7 +144,9 @@ static hn_ex replace_names(const hn_value_search *f, const int *names, int n, do
 static void try_signed(hn_value_search *f, hn_ex e, const char *id, double share,
                        const char *says) {
     if (!hn_value_search_try(f, e, 1, id, share, "%s", says)) {
+        f->alone = share;
         hn_value_search_try(f, e, -1, id, share / 2, "%s; and the sign is wrong as well", says);
+        f->alone = 0;
     }
 }
 

@@ -110,7 +110,7 @@ static void add_second(hn_value_search *f, double share, const char *text) {
     hn_part_result *r = f->result;
     const size_t used = strlen(r->explanation);
     snprintf(r->explanation + used, sizeof r->explanation - used, "; or: %s", text);
-    r->share = fmax(r->share, share);
+    r->share = r->alone = fmax(r->share, share);
     f->n_found = 2;
 }
 
@@ -134,6 +134,7 @@ bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char 
     const bool better = close && !f->close;
     if (f->n_found == 0 || better || (found == EVIDENCE_FOR && f->result->likely)) {
         hn_part_wrong(f->result, id, share, "%s", text);
+        f->result->alone = f->alone > 0 ? f->alone : share;
         keep_first(f, e, factor, close, found == EVIDENCE_FOR);
     } else if (close == f->close && strcmp(id, f->result->mistake) != 0 &&
                is_same(f, f->first, f->first_factor, e, factor, NULL) == 0) {

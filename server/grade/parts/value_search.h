@@ -19,6 +19,8 @@ typedef struct hn_value_search {
     bool close;  ///< the first of them agrees ten times better than is asked for
     hn_ex first; ///< its formula, and the factor of it
     double first_factor;
+    double alone; ///< of the candidates tried next: the share of the mistake that is named, where
+                  ///< a second one beside it lowers the share; 0: nothing lowers it
 } hn_value_search;
 
 /// Begins the search for the mistake in entry k, whose values `given` are wrong.
