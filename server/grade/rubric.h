@@ -32,8 +32,8 @@ uint64_t hn_rubric_hash(const hn_rubric *r);        ///< of the file's text; 0 f
 /// The share of the points that a mistake earns; `otherwise` where the rubric, which may be NULL,
 /// says nothing.
 double hn_rubric_share(const hn_rubric *r, const char *mistake, double otherwise);
-/// When the verdict on a part is shown: "visible" where the rubric, which may be NULL, says nothing.
-/// `entry` is the part's name, or begins with it: "b.2", "J11".
+/// When the verdict on a part is shown: "visible" where the rubric, which may be NULL, says
+/// nothing. `entry` is the part's name, or begins with it: "b.2", "J11".
 const char *hn_rubric_visibility(const hn_rubric *r, const char *entry);
 /// The points that the first n hints cost.
 double hn_rubric_hints_cost(const hn_rubric *r, int n);
