@@ -7,7 +7,7 @@
 #include "render/snapshot.h"
 #include "tui/workbench.h"
 
-enum { HN_FORCE_ARROWS = 64 };
+enum { HN_FORCE_ARROWS = 256 };
 
 typedef struct hn_force_arrows {
     int n;
@@ -15,7 +15,8 @@ typedef struct hn_force_arrows {
     double longest;                         ///< [N] what the longest arrow stands for
 } hn_force_arrows;
 
-/// Lists the forces that hn_reactions_update() has computed; none while they are not listed. The
-/// scale stays while the largest force is between a third of `longest` and all of it.
+/// Lists the forces that hn_reactions_update() has computed, the first HN_FORCE_ARROWS of them;
+/// none while they are not listed. The scale stays while the largest force is between a third of
+/// `longest` and all of it.
 void hn_force_arrows_take(const hn_workbench *w, hn_force_arrows *out);
 #endif

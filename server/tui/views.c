@@ -157,15 +157,12 @@ static void put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int 
     }
 }
 
-/// Whether an incident is worth the line: it has just happened, or the selected method is still not
-/// well.
-static bool is_news(const hn_workbench *w, const hn_incident *incident, int method) {
-    const int frame = hn_workbench_frame(w);
-    const double t = hn_recording_time(w->recording, frame);
+/// Whether an incident is worth the line: it has just happened, or its method is the selected one,
+/// which is still not well (`ill`).
+static bool is_news(const hn_workbench *w, const hn_incident *incident, int method, bool ill) {
+    const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     const bool late = t - incident->t > NEWS * hn_recording_duration(w->recording);
-    const bool ill = method == w->selected &&
-                     hn_recording_verdict(w->recording, method, frame).tone != HN_TONE_CALM;
-    return incident->t <= t && !w->hidden[method] && (ill || !late);
+    return incident->t <= t && !w->hidden[method] && (!late || (ill && method == w->selected));
 }
 
 /// The latest incident that is news, of the selected method first; or what was said.
@@ -181,12 +178,14 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     }
 
     // the last one so far, of the selected method if it has any
+    const int frame = hn_workbench_frame(w);
+    const bool ill = hn_recording_verdict(w->recording, w->selected, frame).tone != HN_TONE_CALM;
     const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
     int last = -1;
     for (int i = 0; i < n; i++) {
         const bool chosen = last >= 0 && whose[last] == w->selected;
         const bool better = whose[i] == w->selected || !chosen;
-        if (better && is_news(w, &list[i], whose[i])) {
+        if (better && is_news(w, &list[i], whose[i], ill)) {
             last = i;
         }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/workbench.h"
 
+#include "cli/shell/command.h"
 #include "render/look.h"
 #include "tui/preview.h"
 #include "tui/versions.h"
@@ -187,7 +188,11 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
         return false;
     }
     hn_versions_free(fresh.versions);
-    fresh.playing = strcmp(scene, w->scene) != 0 || w->playing;
+    const bool same = strcmp(scene, w->scene) == 0;
+    fresh.playing = !same || w->playing;
+    if (same) {
+        memcpy(fresh.study_time, w->study_time, sizeof fresh.study_time);
+    }
     carry_over(&fresh, w);
     hn_workbench_close(w);
     *w = fresh;
@@ -241,7 +246,9 @@ static void compute_reference(hn_workbench *w) {
 /// Says how a command ended, and how large the file is that it was to write.
 static void end_command(hn_workbench *w) {
     struct stat file;
-    if (w->child.status != 0) {
+    // a run that ended early has its reason in the text; a file is then not there
+    const bool ended = w->child.status == HN_EXIT_ENDED && !w->writes[0];
+    if (w->child.status != HN_EXIT_DONE && !ended) {
         hn_workbench_say(w, "the command failed; its reason is above");
         hn_strbuf_add(&w->text, "\n(failed; Esc goes back)\n");
         return;

@@ -114,6 +114,7 @@ class Studies(unittest.TestCase):
         self.assertIn("'99' is no time of motion above 0 and up to 10 s", self.study("wt99<Enter>"))
         # it is kept for the next study of this scene
         self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>w"))
+        self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>p<Right><Esc>w"))
 
     def test_the_map_says_what_alpha_and_beta_are(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
