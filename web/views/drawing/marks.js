@@ -3,7 +3,7 @@
 // What is drawn over the mechanism: open cut joints, arrows of forces, names of points, paths.
 import { quantity } from "../../state/format.js";
 import { arrowScale, sizeOf, zeroOf } from "../../state/reactions.js";
-import { s } from "../../widgets/dom.js";
+import { s, say, set } from "../../widgets/dom.js";
 import { isCrowded } from "../../widgets/pieces.js";
 import * as shapes from "../../widgets/shapes.js";
 
@@ -19,6 +19,11 @@ const ROOM = 8; // [px] that names keep from an arrow
  */
 export function createMarks(layers, data, stage) {
   let newton = 1; // [px]
+  const halves = s("path", { class: "tear" });
+  const rings = s("path", { class: "cut" });
+  layers.tears.replaceChildren(halves, rings);
+  /** names of points, as many as were ever shown at once @type {SVGElement[]} */
+  const names = [];
 
   /** The two halves of each cut joint, joined by a line, with a ring round them. */
   function drawTears(points) {
@@ -26,13 +31,11 @@ export function createMarks(layers, data, stage) {
       .map(({ p, q }) => [stage.camera.point(points, p), stage.camera.point(points, q)])
       .filter(([[x]]) => Number.isFinite(x));
     const lines = ends.map((pair) => shapes.polyline(pair, false));
-    const rings = (isCrowded(data.scene) ? [] : ends).map(([a, b]) =>
+    const circles = (isCrowded(data.scene) ? [] : ends).map(([a, b]) =>
       shapes.circle([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], RING),
     );
-    layers.tears.replaceChildren(
-      s("path", { d: lines.join(""), class: "tear" }),
-      s("path", { d: rings.join(""), class: "cut" }),
-    );
+    set(halves, { d: lines.join("") });
+    set(rings, { d: circles.join("") });
   }
 
   /**
@@ -44,17 +47,20 @@ export function createMarks(layers, data, stage) {
     if (!data.view.labels) {
       return;
     }
-    const names = data.scene.drawing.labels.flatMap((text, i) => {
+    const named = data.scene.drawing.labels.flatMap((text, i) => {
       const at = stage.camera.point(points, i);
       return text && Number.isFinite(at[0]) ? [{ i, text, at }] : [];
     });
-    const obstacles = names.length ? [...stage.pen.obstacles(points), ...arrows] : [];
-    const placed = stage.places.place(names, obstacles);
-    layers.labels.replaceChildren(
-      ...placed.map(({ text, x, y }) =>
-        s("text", { x: x.toFixed(1), y: (y + 4.5).toFixed(1), "text-anchor": "middle" }, text),
-      ),
-    );
+    const obstacles = named.length ? [...stage.pen.obstacles(points), ...arrows] : [];
+    const placed = stage.places.place(named, obstacles);
+    placed.forEach(({ text, x, y }, k) => {
+      names[k] ??= s("text", { "text-anchor": "middle" });
+      set(names[k], { x: x.toFixed(1), y: (y + 4.5).toFixed(1) });
+      say(names[k], text);
+    });
+    if (layers.labels.childElementCount !== placed.length) {
+      layers.labels.replaceChildren(...names.slice(0, placed.length));
+    }
   }
 
   /**
