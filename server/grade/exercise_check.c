@@ -20,21 +20,35 @@ typedef struct trial {
     hn_variant variant;
     hn_exercise_report *report;
     int good;
+    char first[2 * HN_GRADE_TEXT]; ///< what is wrong with this variant, "" if nothing
 } trial;
 
 static void complain(trial *t, const char *part, const char *format, ...) HN_PRINTF(3, 4);
 
 static void complain(trial *t, const char *part, const char *format, ...) {
-    hn_exercise_report *r = t->report;
     t->good = 0;
-    if (!r->first[0]) {
-        const int n = snprintf(r->first, sizeof r->first,
+    if (!t->first[0]) {
+        const int n = snprintf(t->first, sizeof t->first,
                                "seed %llu%s%s: ", (unsigned long long)t->variant.seed,
                                part[0] ? ", part " : "", part);
         va_list list;
         va_start(list, format);
-        vsnprintf(r->first + n, sizeof r->first - (size_t)n, format, list);
+        vsnprintf(t->first + n, sizeof t->first - (size_t)n, format, list);
         va_end(list);
+    }
+}
+
+/// Counts a variant; a bad one stands in the list as long as its line fits.
+static void end_trial(const trial *t) {
+    hn_exercise_report *r = t->report;
+    r->variants++;
+    r->bad += !t->good;
+    if (!r->first[0]) {
+        memcpy(r->first, t->first, sizeof r->first);
+    }
+    const size_t used = strlen(r->list), n = strlen(t->first);
+    if (!t->good && used + n + 2 <= sizeof r->list) {
+        snprintf(r->list + used, sizeof r->list - used, "%s\n", t->first);
     }
 }
 
@@ -234,8 +248,7 @@ static hn_status try_matrix_seed(const hn_exercise *exercise, uint64_t seed, uin
         complain(&t, "", "%s", diag.message);
         status = HN_OK;
     }
-    out->variants++;
-    out->bad += !t.good;
+    end_trial(&t);
     if (exam) {
         hn_exam_reset(exam);
     }
@@ -257,8 +270,7 @@ static hn_status try_seed(const hn_exercise *exercise, uint64_t seed, uint64_t *
         complain(&t, "", "%s", diag.message);
         status = status == HN_ERR_MEMORY ? status : HN_OK;
     }
-    out->variants++;
-    out->bad += !t.good;
+    end_trial(&t);
     hn_variant_reset(&t.variant);
     return status;
 }

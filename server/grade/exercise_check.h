@@ -11,6 +11,9 @@ typedef struct hn_exercise_report {
     long long distinct;            ///< variants with numbers of their own
     long long rights, faults;      ///< right answers and wrong answers that were graded
     char first[2 * HN_GRADE_TEXT]; ///< the first fault found, "" if none: seed, part, what happened
+    /// for each bad variant, as long as there is room: its seed, part, and the first thing that
+    /// happened; one a line
+    char list[2000];
 } hn_exercise_report;
 
 /// Tries seeds from..to of an exercise of form 2. Fails: HN_ERR_MEMORY. What is wrong with the

@@ -537,6 +537,23 @@ def read(path):
         return f.read()
 
 
+def bad_variants(folder):
+    """Every bad variant is listed with its reason."""
+    with open("lessons/09-space-and-drives/problems/count-space.json", encoding="utf-8") as f:
+        exercise = json.load(f)
+    path = write(folder, "count.json", dict(exercise, conditions=["n-2.5"]))  # two of its mistakes may now give one number: n - k = 6
+    done = run("problem", path, "--seeds", "1..60", "--check")
+    report = json.loads(run("problem", path, "--seeds", "1..60", "--check", "--json").stdout)
+    lines = [line.strip() for line in done.stdout.splitlines() if line.startswith("  seed ")]
+    expect("every bad variant is listed", done.returncode == 3 and len(lines) == report["bad"] > 1 and all("'legs' (6) is named free" in line for line in lines), done.stdout)
+    expect("and in JSON", report["bad_variants"].splitlines() == lines, str(report))
+    many = write(folder, "many.json", dict(exercise, conditions=["n-2.5"], parts=[dict(p, faults=[{"id": "none", "answer": p["answer"], "says": "right", "share": 0}])
+                                                                                  for p in exercise["parts"] if p["kind"] == "number"]))  # fmt: skip
+    said = run("problem", many, "--seeds", "1..200", "--check").stdout
+    listed = said.count("\n  seed ")
+    expect("what does not fit is counted", 0 < listed < 200 and f"  and {200 - listed} more\n" in said, said[-300:])
+
+
 def refusals(folder):
     """An option that would say nothing, and an output that would replace something, are refused with words."""
     right = write(folder, "right.json", {"c": 1})
@@ -627,7 +644,7 @@ def main():
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)
-    for test in (refusals, outputs, other_maximum):
+    for test in (bad_variants, refusals, outputs, other_maximum):
         with tempfile.TemporaryDirectory() as folder:
             test(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):

@@ -45,6 +45,7 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
         hn_json_put_int(b, "right_answers", r->rights);
         hn_json_put_int(b, "mistakes", r->faults);
         hn_json_put_string(b, "first_fault", r->first);
+        hn_json_put_string(b, "bad_variants", r->list);
         hn_json_end_object(b);
         return;
     }
@@ -52,8 +53,13 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
                      "%s: %lld variants, %lld distinct; %lld right answers and %lld mistakes "
                      "graded; %lld variants are bad\n",
                      hn_exercise_id(e), r->variants, r->distinct, r->rights, r->faults, r->bad);
-    if (r->first[0]) {
-        hn_strbuf_printf(b, "  %s\n", r->first);
+    long long listed = 0;
+    for (const char *at = r->list; *at; at += strcspn(at, "\n") + 1) {
+        hn_strbuf_printf(b, "  %.*s\n", (int)strcspn(at, "\n"), at);
+        listed++;
+    }
+    if (listed < r->bad) {
+        hn_strbuf_printf(b, "  and %lld more\n", r->bad - listed);
     }
     hn_rubric_put_mistakes(b, e);
 }
