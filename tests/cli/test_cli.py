@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line as a person and a script use it: exit statuses, outputs that parse, faults that are told."""
 
+import functools
 import json
 import os
 import re
@@ -12,6 +13,14 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 sys.path.insert(0, os.path.dirname(__file__))
 import driver  # noqa: E402
 from command import DONE, ENDED, INPUT, PROGRAM, RK4, SUBMISSION, Command, call, strict  # noqa: E402
+
+
+def write_in(folder, name, text):
+    """The path of a new file."""
+    path = os.path.join(folder, name)
+    with open(path, "w") as f:
+        f.write(text)
+    return path
 
 
 class CommandLine(Command):
@@ -178,12 +187,7 @@ class CommandLine(Command):
 
     def test_grading_a_wrong_answer_is_done_and_an_unreadable_one_is_not(self):
         with tempfile.TemporaryDirectory() as folder:
-            def write(name, text):
-                path = os.path.join(folder, name)
-                with open(path, "w") as f:
-                    f.write(text)
-                return path
-
+            write = functools.partial(write_in, folder)
             wrong = json.loads(json.dumps(SUBMISSION))
             wrong["J"][1][2] = "l3*cos(th3)"
             right, wrong = write("right.json", json.dumps(SUBMISSION)), write("wrong.json", json.dumps(wrong))
@@ -271,12 +275,7 @@ class CommandLine(Command):
 
     def test_a_file_at_fault_is_named_in_every_message(self):
         with tempfile.TemporaryDirectory() as folder:
-            def write(name, text):
-                path = os.path.join(folder, name)
-                with open(path, "w") as f:
-                    f.write(text)
-                return path
-
+            write = functools.partial(write_in, folder)
             with open("lessons/01-closed-loops/scenes/four-bar.json") as f:
                 four_bar = f.read()
             fields, syntax = write("a.json", '{"name": "x", "bodies": [{"nam": "a"}]}'), write("b.json", '{"name":')

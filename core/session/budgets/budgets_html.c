@@ -12,22 +12,24 @@
 #include <math.h>
 #include <stdio.h>
 
-static void put_quantity(hn_strbuf *b, double value, const char *unit) {
+/// A number in the unit of its budget, without a prefix: parts that are added have one unit.
+static void put_part(hn_strbuf *b, double value) {
     char text[HN_SI_TEXT] = "\xe2\x80\x93";
     if (isfinite(value)) {
-        hn_si_format(fabs(value), unit, 3, text);
+        snprintf(text, sizeof text, "%.3g", fabs(value));
     }
     hn_strbuf_printf(b, "<td class=\"n\">%s%s</td>", value < 0 ? "\xe2\x88\x92" : "", text);
 }
 
 static void put_head(hn_strbuf *b, int energy) {
     hn_strbuf_add(b, "<thead><tr><th>method</th><th>");
-    hn_strbuf_add(b, energy ? "to t</th><th class=\"n\">change"
+    hn_strbuf_add(b, energy ? "to t</th><th class=\"n\">change [J]"
                             : "error of</th><th class=\"n\">at the end");
     for (int k = 0; k < (energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT); k++) {
-        hn_strbuf_printf(b, "</th><th class=\"n\">%s",
+        hn_strbuf_printf(b, "</th><th class=\"n\">%s%s",
                          energy ? hn_energy_item_name((hn_energy_item)k)
-                                : hn_cause_name((hn_cause)k));
+                                : hn_cause_name((hn_cause)k),
+                         energy ? " [J]" : "");
     }
     hn_strbuf_add(b, energy ? "</th></tr></thead>"
                             : "</th><th class=\"n\">their sum</th></tr></thead>");
@@ -36,7 +38,6 @@ static void put_head(hn_strbuf *b, int energy) {
 /// Writes a line of the table; none for a row without a budget or without an error at its end.
 static void put_row(hn_strbuf *b, const hn_budgets *a, const hn_budget_row *row, int energy) {
     const hn_coordinate *c = hn_budget_coordinate(a->model, row);
-    const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
 
     // a row without a budget has no line in this table
     if (row->status != HN_OK || (!energy && !c)) {
@@ -51,16 +52,17 @@ static void put_row(hn_strbuf *b, const hn_budgets *a, const hn_budget_row *row,
         hn_strbuf_printf(b, "%.4g s", row->budget.t);
     } else {
         hn_html_text(b, c->name);
+        hn_strbuf_printf(b, " [%s]", c->kind == HN_LENGTH ? "m" : "rad");
     }
     hn_strbuf_add(b, "</td>");
 
     // the whole, its parts, and for errors their sum
-    put_quantity(b, energy ? row->budget.energy : row->budget.error, unit);
+    put_part(b, energy ? row->budget.energy : row->budget.error);
     for (int k = 0; k < (energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT); k++) {
-        put_quantity(b, hn_budget_part(row, energy, k), unit);
+        put_part(b, hn_budget_part(row, energy, k));
     }
     if (!energy) {
-        put_quantity(b, row->budget.sum, unit);
+        put_part(b, row->budget.sum);
     }
     hn_strbuf_add(b, "</tr>\n");
 }

@@ -49,7 +49,7 @@ typedef struct hn_class {
     double floor_size;   ///< coarsest size there
     double offset;       ///< elsewhere: distance of the limit from the reference
     double own;          ///< elsewhere: distance of the finest points from each other
-    char text[360];      ///< in words
+    char text[480];      ///< in words
 } hn_class;
 
 /// Of the coordinates' largest error over the run; beyond the horizon nothing is said.
