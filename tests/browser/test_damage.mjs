@@ -6,6 +6,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { damaged, randomFrom } from "./damage.mjs";
 import { createBench, playTo, read, ROOT, soon, until } from "./support.mjs";
 
 const LINKS = Number(process.env.DAMAGED_LINKS ?? 16);
@@ -32,27 +33,6 @@ const ENTRIES = [
   "speed=2",
   "note=say%20why",
 ];
-const SIGNS = [..."=%@:,.#+-0x /é<", "%F", "%00", "set.", "__proto__", "NaN", "1e999"];
-
-/** Numbers that look random and are the same each time. @param {number} seed */
-function randomFrom(seed) {
-  let now = seed;
-  return (n) => Math.floor(((now = (now * 48271) % 2147483647) / 2147483647) * n);
-}
-
-/** A text with one place that something happened to. */
-function damaged(text, random) {
-  const at = random(text.length);
-  const sign = SIGNS[random(SIGNS.length)];
-  return [
-    text.slice(0, at) + sign + text.slice(at),
-    text.slice(0, at) + sign + text.slice(at + 1),
-    text.slice(0, at) + text.slice(at + 1 + random(8)),
-    text.slice(at),
-    text + text,
-  ][random(5)];
-}
-
 /** All that has to be of one run: what the page knows, and what it shows. */
 const whole = (page) =>
   page.evaluate(() => {

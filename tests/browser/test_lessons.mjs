@@ -247,6 +247,10 @@ test("every lesson of the server is shown, with no formula in error", async (t) 
       assert.equal(await page.locator(".lesson-text .katex-error").count(), 0, id),
     );
     assert.doesNotMatch(await page.textContent(".lesson-text"), /undefined|\[object/, id);
+    const regions = await page
+      .locator(".lesson-text section[aria-label]")
+      .evaluateAll((list) => list.map((one) => one.ariaLabel));
+    assert.deepEqual(regions, [...new Set(regions)], `${id}: no two regions have one name`);
   }
   await soon(async () =>
     assert.equal(

@@ -26,20 +26,7 @@ import {
 import { incidentOf, limits, readIndex } from "../../web/state/catalogue.js";
 import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs.js";
 import { fits } from "../../web/state/link.js";
-
-const CATALOGUE = {
-  formulations: [
-    { name: "index1", options: [] },
-    {
-      name: "baumgarte",
-      options: [
-        { key: "alpha", default: 5 },
-        { key: "beta", default: 5 },
-      ],
-    },
-  ],
-  integrators: [{ name: "rk4", options: [{ key: "h", default: null }] }],
-};
+import { CATALOGUE } from "./catalogue.mjs";
 
 test("no key is bound twice in a context", () => {
   const bindings = KEYS.map(bindingOf);

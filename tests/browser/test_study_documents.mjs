@@ -29,6 +29,7 @@ import {
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
 import { cheapestFor, sizeToRun, wantedError } from "../../web/state/wanted.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
+import { CATALOGUE } from "./catalogue.mjs";
 
 const point = (size, state, more = {}) => ({
   method: `a@rk4:h=${size}`,
@@ -199,19 +200,6 @@ const STUDIES = [
   },
   { name: "budget", chooses: [], presets: [], fields: [] },
 ];
-const CATALOGUE = {
-  formulations: [
-    { name: "index1", options: [] },
-    {
-      name: "baumgarte",
-      options: [
-        { key: "alpha", default: 5 },
-        { key: "beta", default: 5 },
-      ],
-    },
-  ],
-  integrators: [{ name: "rk4", options: [{ key: "h", default: 1e-3 }] }],
-};
 readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
 
 test("the present α and β are inside the axes of their map, whatever the step", () => {

@@ -127,16 +127,19 @@ export function createLessons(el, store, actions) {
   /** @param {any} lesson */
   function kitOf(lesson) {
     let questions = 0;
+    let exhibits = 0;
     const kit = {
       katex,
       picture: (src) => documents.pictureAddress(lesson.id, src),
       live: {
-        exhibit: (block) => makeExhibit(block, kit, actions, whenSeen),
+        exhibit: (block) => makeExhibit(block, kit, actions, { number: ++exhibits, whenSeen }),
         predict: (block) => {
           const k = questions++;
-          return makePrediction(block, kit, progress.predicted(lesson.id, k), (choice) =>
-            progress.setPredicted(lesson.id, k, choice),
-          );
+          return makePrediction(block, kit, {
+            number: k,
+            made: progress.predicted(lesson.id, k),
+            choose: (choice) => progress.setPredicted(lesson.id, k, choice),
+          });
         },
         slip: (block) => makeSlip(block, kit),
         exercise: (block) => exercise(block.id, make(block.children, kit)),

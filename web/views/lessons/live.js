@@ -20,9 +20,11 @@ const wordsIn = (list) =>
  * @param {import("./blocks.js").Block} block
  * @param {import("./blocks.js").Kit} kit
  * @param {import("../../session/session.js").Session} actions
- * @param {(seen: HTMLElement, show: () => Promise<void>) => void} whenSeen
+ * @param {{
+ *   number: number, whenSeen: (seen: HTMLElement, show: () => Promise<void>) => void,
+ * }} place number: in the lesson
  */
-export function makeExhibit(block, kit, actions, whenSeen) {
+export function makeExhibit(block, kit, actions, { number, whenSeen }) {
   const { scene, command, children } = block;
   const picture = h("div", { class: "exhibit-picture" });
   const said = h("p", { role: "status", class: "about" });
@@ -54,7 +56,7 @@ export function makeExhibit(block, kit, actions, whenSeen) {
   }
   return h(
     "section",
-    { class: "live exhibit", "aria-label": scene ? `Exhibit: ${scene}` : "Exhibit" },
+    { class: "live exhibit", "aria-label": `Exhibit ${number}${scene ? `: ${scene}` : ""}` },
     scene ? picture : "",
     h(
       "div",
@@ -79,10 +81,14 @@ export function makeExhibit(block, kit, actions, whenSeen) {
  * The answer is shown once a choice is made.
  * @param {import("./blocks.js").Block} block
  * @param {import("./blocks.js").Kit} kit
- * @param {number} made the choice that was made earlier, or -1
- * @param {(choice: number) => void} choose
+ * @param {{number: number, made: number, choose: (choice: number) => void}} place number: in the
+ *   lesson, from 0; made: the choice that was made earlier, or -1
  */
-export function makePrediction({ children, choices = [], right, after }, kit, made, choose) {
+export function makePrediction(
+  { children, choices = [], right, after },
+  kit,
+  { number, made, choose },
+) {
   const told = h("div", { class: "prediction-after", hidden: true }, ...make(after, kit));
   const verdict = h("p", { role: "status" });
   const buttons = choices.map((choice, i) =>
@@ -110,7 +116,7 @@ export function makePrediction({ children, choices = [], right, after }, kit, ma
   }
   return h(
     "section",
-    { class: "live predict", "aria-label": "Predict first" },
+    { class: "live predict", "aria-label": `Predict first, question ${number + 1}` },
     h("p", { class: "live-title" }, "Predict first"),
     ...make(children, kit),
     h("div", { class: "choices predictions" }, ...buttons),
