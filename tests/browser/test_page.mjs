@@ -263,6 +263,14 @@ test("keys typed into a field stay in the field", async (t) => {
   );
 });
 
+test("the option of a coordinate says which number is which", async (t) => {
+  const page = await open(t);
+  await page.getByRole("button", { name: "Change or remove reduced" }).click();
+  await page
+    .getByText(/number of the joint coordinate to keep, here 1 th1, 2 a2, 3 th3;/)
+    .waitFor();
+});
+
 test("each curve has a table with the same numbers", async (t) => {
   const page = await open(t);
   await playTo(page, 1);

@@ -117,13 +117,13 @@ export function createExportDialog(el, store, actions, mechanism) {
     {
       ending: "svg",
       word: "SVG",
-      about: "the drawing as it is shown now, for print",
+      about: "the drawing as it is shown now, with time and verdicts, for print",
       make: () => new Blob([picture().text], { type: "image/svg+xml" }),
     },
     {
       ending: "png",
       word: "PNG",
-      about: "the drawing as it is shown now, at twice its size",
+      about: "the same picture, at twice its size",
       make: () => toPng(picture(), PIXELS),
     },
     {

@@ -16,6 +16,8 @@ import { cardOf, formatSpelling, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
 
+const MOST_NAMED = 12; // coordinates in a hint
+
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
@@ -216,12 +218,19 @@ export function createMethodDialog(el, store, actions) {
 
   const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
+  /** The numbers by which an option names coordinates: ", here 1 th1, 2 a2, 3 x". */
+  function numbersOfCoordinates() {
+    const names = (data.scene?.coordinates ?? []).map(({ name }, k) => `${k + 1} ${name}`);
+    const more = names.length > MOST_NAMED ? ", ..." : "";
+    return names.length ? `, here ${names.slice(0, MOST_NAMED).join(", ")}${more}` : "";
+  }
+
   /** What may be written, and what it means: "0 to 1, 0.2 if left out: ...". */
   function hintOf(setting) {
     const range = setting.choices?.length
       ? ""
       : `${plain(setting.min)} to ${plain(setting.max)}${setting.unit ? ` ${prettyUnit(setting.unit)}` : ""}; `;
-    return `${range}${setting.about}`;
+    return `${range}${setting.about.replace(", as inspect lists them", numbersOfCoordinates())}`;
   }
 
   function settingFields(kind, part) {
