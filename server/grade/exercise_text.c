@@ -35,7 +35,7 @@ static void submission_form(hn_strbuf *b, const hn_exercise *p, const char *stud
 /// The numbers of a variant.
 typedef struct numbers {
     double value[HN_GRADE_MAX_NAMES];      ///< of a state that closes the loop; [m], [rad]
-    double velocity[HN_GRADE_MAX_COLUMNS]; ///< J velocity = 0 there; of size about 1
+    double velocity[HN_GRADE_MAX_COLUMNS]; ///< J velocity = 0 there; a random one, projected
 } numbers;
 
 /// Projects `v` on the null space of the n x m matrix J, rows of J: v - J' (J J')^-1 J v.
@@ -97,7 +97,7 @@ static void put_numbers(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
     if (status != HN_OK) {
         return;
     }
-    hn_strbuf_add(b, "\nYour numbers, to try your formulas on: with");
+    hn_strbuf_add(b, "\nYour numbers, in m and rad, to try your formulas on: with");
     for (int i = 0; i < p->n_names; i++) {
         hn_strbuf_printf(b, "%s %s = %.6f", i ? "," : "", p->names[i].name, own.value[i]);
     }

@@ -142,9 +142,43 @@ static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
     return status;
 }
 
+/// What the other checks rely on: objects with a member for each part or mistake, lists of costs.
+static hn_status check_shapes(const hn_rubric *r, hn_diags *diags) {
+    static const struct {
+        const char *field, *says, *hint;
+        bool list;
+    } ROWS[] = {{"points", "an object with a number for each part", "{\"a\": 2}", false},
+                {"tolerance", "an object with a member for each part",
+                 "{\"a\": {\"relative\": 0.005}}", false},
+                {"shares", "an object with a number for each mistake", "{\"sign\": 0.5}", false},
+                {"visibility", "an object with a word for each part", "{\"a\": \"hidden\"}", false},
+                {"hints", "a list with the cost of each hint", "[0.5, 1]", true}};
+    hn_status status = HN_OK;
+    if (!cJSON_IsObject(r->root)) {
+        return hn_rubric_fault(r, diags, "", NULL, "holonom rubric write ID",
+                               "a rubric is an object");
+    }
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        const cJSON *node = hn_rubric_section(r, ROWS[i].field);
+        if (node && !(ROWS[i].list ? cJSON_IsArray(node) : cJSON_IsObject(node))) {
+            status = hn_rubric_fault(r, diags, ROWS[i].field, NULL, ROWS[i].hint, "\"%s\" is %s",
+                                     ROWS[i].field, ROWS[i].says);
+        }
+    }
+    const cJSON *m;
+    cJSON_ArrayForEach(m, hn_rubric_section(r, "tolerance")) {
+        if (status == HN_OK && !cJSON_IsObject(m)) {
+            status = hn_rubric_fault(r, diags, "tolerance", m->string, "{\"relative\": 0.005}",
+                                     "the tolerance of part %.20s is an object", m->string);
+        }
+    }
+    return status;
+}
+
 static hn_status check_fields(hn_rubric *r, hn_diags *diags) {
     hn_status status = HN_OK;
     const cJSON *m;
+    HN_TRY(check_shapes(r, diags));
     cJSON_ArrayForEach(m, r->root) {
         int k = 0;
         while (k < N_FIELDS && strcmp(FIELDS[k], m->string) != 0) {

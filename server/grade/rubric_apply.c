@@ -133,6 +133,15 @@ static hn_status check_kinds(const hn_rubric *r, const hn_exercise *e, hn_diags 
     return status;
 }
 
+/// No more costs than there are hints.
+static hn_status check_hints(const hn_rubric *r, const hn_exercise *e, hn_diags *diags) {
+    const int n = cJSON_GetArraySize(hn_rubric_section(r, "hints"));
+    return n > e->n_hints
+               ? hn_rubric_fault(r, diags, "hints", NULL, NULL, "exercise %s has %d hint%s, not %d",
+                                 e->id, e->n_hints, e->n_hints == 1 ? "" : "s", n)
+               : HN_OK;
+}
+
 static hn_status check_total(const hn_rubric *r, const hn_exercise *e, hn_diags *diags) {
     const cJSON *total = hn_rubric_section(r, "total");
     const char *names[HN_GRADE_MAX_PARTS];
@@ -173,6 +182,7 @@ hn_status hn_rubric_check(const hn_rubric *r, const hn_exercise *e, hn_diags *di
                                  check_names(r, "tolerance", "part", parts, n_parts, diags),
                                  check_names(r, "shares", "mistake", mistakes, n_mistakes, diags),
                                  check_kinds(r, e, diags),
+                                 check_hints(r, e, diags),
                                  check_total(r, e, diags)};
     for (size_t i = 0; i < sizeof checked / sizeof *checked; i++) {
         HN_TRY(checked[i]);

@@ -119,8 +119,9 @@ void hn_variant_notation(hn_strbuf *b, const hn_variant *x) {
     } NOTATIONS[] = {
         {{"formula", "formulas", "basis"},
          "Formulas: a*b or a b, a^2, a/b, sin(th1), sqrt(x), pi; angles in radians; theta_1 is "
-         "th1, in Greek letters too.\n"
-         "Write numbers by their names, or with 7 digits: a rounded one earns half.\n"},
+         "th1, in Greek letters too.\n"},
+        {{"formula", "formulas"},
+         "Write numbers in formulas by their names, or with 7 digits: a rounded one earns half.\n"},
         {{"matrix", "blocks"},
          "Formulas of matrices: M J or M*J is the product, J' or J^T the transpose, inv(M) the "
          "inverse.\n"},
@@ -421,7 +422,8 @@ static void show_answer(const hn_variant *x, const cJSON *submission, hn_verdict
     for (int k = 0; k < v->n_entries && v->shown_entry < 0; k++) {
         const hn_entry_verdict *e = &v->entry[k];
         const size_t n = strcspn(e->name, ".");
-        for (int i = 0; i < x->n_parts && !e->right; i++) {
+        const bool read = !e->right && strcmp(e->mistake, "unreadable") != 0;
+        for (int i = 0; i < x->n_parts && read; i++) {
             const hn_part *p = &x->part[i];
             if (p->kind->view && strlen(p->id) == n && strncmp(p->id, e->name, n) == 0) {
                 p->kind->view(p, cJSON_GetObjectItemCaseSensitive(submission, p->id), &v->view);

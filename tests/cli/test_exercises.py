@@ -253,6 +253,15 @@ def rubrics(folder):
         done = run("rubric", "check", write(folder, "bad.json", text))
         expect(f"a faulty rubric is refused: {said}", done.returncode == 2 and said in done.stderr, done.stderr)
 
+    # what is no rubric
+    for fields, said in (({"points": [1, 2]}, '"points" is an object'), ({"visibility": ["hidden"]}, '"visibility" is an object'), ({"shares": 3}, '"shares" is an object'),
+                         ({"tolerance": [{}]}, '"tolerance" is an object'), ({"tolerance": {"a": 3}}, "the tolerance of part a is an object"),
+                         ({"hints": {"a": 1}}, '"hints" is a list'), ({"hints": [1, 1, 1]}, "has 2 hints, not 3"), ([1], "a rubric is an object")):  # fmt: skip
+        bad = write(folder, "bad.json", fields if isinstance(fields, list) else {"rubric": 1, "exercise": "fourbar", **fields})
+        for words in (("rubric", "check", bad), ("grade", "fourbar", slip, "--rubric", bad)):
+            done = run(*words)
+            expect(f"{words[0]} refuses {fields}", done.returncode == 2 and said in " ".join(done.stderr.split()), f"{done.returncode} {done.stderr}")
+
     kept = write(folder, "kept.json", verdict)
     expect("a verdict names its rubric", "name it with --rubric" in run("regrade", kept).stdout)
     expect("and is reproduced with it", json.loads(run("regrade", kept, "--rubric", path, "--json").stdout)["same"])

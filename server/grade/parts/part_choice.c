@@ -101,14 +101,13 @@ static int read_letter(const cJSON *node, int n, const char *what, hn_part_resul
 }
 
 /// A member by its name, in capitals too.
-static cJSON *copy_member(const cJSON *object, const char *name) {
+static const cJSON *find_member(const cJSON *object, const char *name) {
     const cJSON *m = cJSON_GetObjectItemCaseSensitive(object, name);
-    m = m ? m : cJSON_GetObjectItem(object, name);
-    return m ? cJSON_Duplicate(m, 1) : NULL;
+    return m ? m : cJSON_GetObjectItem(object, name);
 }
 
 /// "choice" and "reason" of an answer, owned: of an object, or of a list or text of two letters in
-/// this order. Another text is the choice alone.
+/// this order. Another text is the choice alone. NULL: no memory.
 static cJSON *read_pair(const cJSON *given) {
     static const char *const names[] = {"choice", "reason"};
     const char *text = cJSON_GetStringValue(given);
@@ -116,14 +115,16 @@ static cJSON *read_pair(const cJSON *given) {
     const bool two = text && split_letters(text, letters) == 2;
     const bool list = cJSON_IsArray(given) && cJSON_GetArraySize(given) == 2;
     cJSON *out = cJSON_CreateObject();
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2 && out; i++) {
         const char letter[] = {two ? letters[i] : '\0', '\0'};
-        cJSON *value = cJSON_IsObject(given) ? copy_member(given, names[i])
+        cJSON *value = cJSON_IsObject(given) ? cJSON_Duplicate(find_member(given, names[i]), 1)
                        : list                ? cJSON_Duplicate(cJSON_GetArrayItem(given, i), 1)
                        : two                 ? cJSON_CreateString(letter)
                        : text && i == 0      ? cJSON_CreateString(text)
                                              : NULL;
-        cJSON_AddItemToObject(out, names[i], value);
+        if (!cJSON_AddItemToObject(out, names[i], value)) {
+            cJSON_Delete(value);
+        }
     }
     return out;
 }
@@ -174,6 +175,9 @@ static void refuse_form(const cJSON *given, hn_part_result *results) {
 static hn_status grade_pair(const hn_part *p, const cJSON *given, hn_part_result *results,
                             hn_diag *diag) {
     cJSON *pair = read_pair(given);
+    if (!pair) {
+        return HN_ERR_MEMORY;
+    }
     const cJSON *choice = cJSON_GetObjectItemCaseSensitive(pair, "choice");
     const cJSON *reason = cJSON_GetObjectItemCaseSensitive(pair, "reason");
     hn_status status = grade_list(p, "options", choice, &results[0], diag);
@@ -193,8 +197,11 @@ static hn_status grade_pair(const hn_part *p, const cJSON *given, hn_part_result
 static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *results, int *n,
                        hn_diag *diag) {
     *n = has_reasons(p) ? 2 : 1;
-    return *n == 2 ? grade_pair(p, given, results, diag)
-                   : grade_list(p, "options", given, &results[0], diag);
+    if (*n == 2) {
+        return grade_pair(p, given, results, diag);
+    }
+    const cJSON *choice = cJSON_IsObject(given) ? find_member(given, "choice") : given;
+    return grade_list(p, "options", choice ? choice : given, &results[0], diag);
 }
 
 static cJSON *write_letters(const hn_part *p, int choice, int reason) {

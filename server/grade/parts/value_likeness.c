@@ -62,8 +62,11 @@ static uint64_t hash_values(hn_value_sheet *s, const char *formula) {
             x[i] = 0.6 + 0.8 * hn_draw_random(k, (uint64_t)i);
         }
         const double value = hn_graph_eval(s->draw->graph, e, x);
+        if (!isfinite(value)) {
+            return 0;
+        }
         snprintf(digits, sizeof digits, "%.6e", value);
-        hash = isfinite(value) ? hn_hash_text(hash, digits) : 0;
+        hash = hn_hash_text(hash, digits);
     }
     return hash;
 }

@@ -116,6 +116,32 @@ static void another_form_of_a_choice_is_refused_with_the_form_to_write(void **st
     }
 }
 
+static void a_choice_without_reasons_is_a_letter_or_a_member(void **state) {
+    (void)state;
+    hn_exercise *e = NULL;
+    hn_diags diags = {0};
+    static const char one[] =
+        "{\"exercise\":2,\"id\":\"t\",\"title\":\"t\",\"lesson\":\"l\",\"section\":\"s\","
+        "\"statement\":[\"A rod.\"],\"parts\":[{\"id\":\"a\",\"ask\":\"which?\",\"points\":1,"
+        "\"kind\":\"choice\",\"options\":[{\"text\":\"yes\",\"right\":true},"
+        "{\"text\":\"no\",\"says\":\"not no\"}]}]}";
+    assert_int_equal(hn_exercise_load_json(one, strlen(one), &e, &diags), HN_OK);
+    int n_right = 0;
+    for (int i = 0; i < 2; i++) {
+        char plain[40], member[60];
+        snprintf(plain, sizeof plain, "{\"a\":\"(%c)\"}", 'a' + i);
+        snprintf(member, sizeof member, "{\"a\":{\"Choice\":\"%c\"}}", 'A' + i);
+        assert_true(verdict_on(e, plain)->n_entries == 1);
+        const int right = verdict_on(e, plain)->n_right;
+        assert_int_equal(verdict_on(e, member)->n_right, right);
+        n_right += right;
+    }
+    assert_int_equal(n_right, 1);
+    assert_string_equal(verdict_on(e, "{\"a\":[\"a\"]}")->hint,
+                        "the choice '[\"a\"]' is not one letter from a to b, in quotes: \"a\"");
+    hn_exercise_free(e);
+}
+
 static void a_part_that_is_answered_twice_is_not_guessed(void **state) {
     char right[2], text[160];
     find_right(*state, right);
@@ -236,6 +262,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_choice_with_its_reason_is_read_in_any_clear_form),
         cmocka_unit_test(another_form_of_a_choice_is_refused_with_the_form_to_write),
+        cmocka_unit_test(a_choice_without_reasons_is_a_letter_or_a_member),
         cmocka_unit_test(a_part_that_is_answered_twice_is_not_guessed),
         cmocka_unit_test(the_same_answer_twice_is_accepted_with_a_remark),
         cmocka_unit_test(a_submission_that_says_two_things_of_itself_is_ungradable),
