@@ -14,7 +14,7 @@
 
 /// How loops are closed once the independent coordinates are known.
 typedef enum hn_position {
-    /// by Newton's method at first; in closed form once that is seen to cost fewer operations
+    /// by Newton's method at first; in closed form once Newton's method has cost more
     HN_POSITION_AUTO,
     HN_POSITION_NEWTON,
     HN_POSITION_DYADS ///< in closed form, or not at all
