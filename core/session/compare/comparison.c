@@ -97,12 +97,14 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     return HN_OK;
 }
 
-/// Returns the least multiple of `step`, from `least` to twice as many, of which whole frames make
-/// up the duration, so that the last frame is at the end; `least` where there is none.
+/// Returns the least multiple of `step`, from `least` to twice as many (MOST_TRIALS at most), of
+/// which whole frames make up the duration, so that the last frame is at the end; `least` where
+/// there is none.
 static double fit_frames(double step, double least, double duration) {
+    enum { MOST_TRIALS = 1000 };
     const double steps = round(duration / step);
     const bool is_whole = fabs(steps * step - duration) <= 1e-9 * duration;
-    for (double k = least; is_whole && k <= fmin(2 * least, least + 1000); k++) {
+    for (double k = least; is_whole && k <= fmin(2 * least, least + MOST_TRIALS); k++) {
         if (fmod(steps, k) == 0) {
             return step * k;
         }

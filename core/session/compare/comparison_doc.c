@@ -210,42 +210,45 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_end_object(b);
 }
 
+/// One method's row of the final table.
+static void put_summary(hn_strbuf *b, const hn_comparison *c, int method) {
+    const hn_run *run = hn_comparison_run(c, method);
+    const hn_run_summary s = hn_run_get_summary(run);
+    char spelling[HN_SPEC_MAX];
+    hn_method_format(hn_run_spec(run), spelling);
+
+    // name and state
+    hn_json_object(b);
+    hn_json_put_string(b, "method", spelling);
+    hn_json_put_string(b, "short", hn_run_spec(run)->formulation->short_name);
+    hn_json_put_int(b, "slot", hn_comparison_slot(c, method));
+    hn_json_put_string(b, "state", state_name(c, method));
+    put_warning(b, c, method);
+    put_reason(b, c, method, &s);
+    // a step may end beyond the clock or short of it; its sample is that of the clock's time
+    const double clock = clock_of(c);
+    const double reached = hn_comparison_is_live(c, method) ? clock : fmin(s.t, clock);
+    hn_json_put_number(b, "t_reached", reached);
+
+    // cost and error totals
+    put_cost(b, &s);
+    put_step_cost(b, c, method);
+    hn_cost_put_reason_json(b, "ops_reason", &s.cost);
+    put_estimate(b, c, method, reached, true);
+    hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
+    hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
+    hn_json_put_int(b, "chart_changes", s.cost.chart_changes);
+    hn_json_end_object(b);
+}
+
 void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(hn_comparison_model(c))->id);
     hn_json_put_number(b, "t", clock_of(c));
-
-    // one entry per method
     hn_json_key(b, "methods");
     hn_json_array(b);
     for (int i = 0; i < hn_comparison_n_methods(c); i++) {
-        hn_run_summary s = hn_run_get_summary(hn_comparison_run(c, i));
-        char spelling[HN_SPEC_MAX];
-        hn_method_format(hn_run_spec(hn_comparison_run(c, i)), spelling);
-
-        // name and state
-        hn_json_object(b);
-        hn_json_put_string(b, "method", spelling);
-        hn_json_put_string(b, "short",
-                           hn_run_spec(hn_comparison_run(c, i))->formulation->short_name);
-        hn_json_put_int(b, "slot", hn_comparison_slot(c, i));
-        hn_json_put_string(b, "state", state_name(c, i));
-        put_warning(b, c, i);
-        put_reason(b, c, i, &s);
-        // a step may end beyond the clock or short of it; its sample is that of the clock's time
-        const double clock = clock_of(c);
-        const double reached = hn_comparison_is_live(c, i) ? clock : fmin(s.t, clock);
-        hn_json_put_number(b, "t_reached", reached);
-
-        // cost and error totals
-        put_cost(b, &s);
-        put_step_cost(b, c, i);
-        hn_cost_put_reason_json(b, "ops_reason", &s.cost);
-        put_estimate(b, c, i, reached, true);
-        hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
-        hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
-        hn_json_put_int(b, "chart_changes", s.cost.chart_changes);
-        hn_json_end_object(b);
+        put_summary(b, c, i);
     }
     hn_json_end_array(b);
     put_incidents(b, c);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/model.h"
 
+#include "base/units.h"
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
 
@@ -71,10 +72,11 @@ static void put_changes(const hn_scene *scene, char *out, size_t size) {
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
         if (p->value != p->initial && used < size) {
-            const char *space = p->unit[0] ? " " : "";
-            used += (size_t)snprintf(
-                out + used, size - used, "%s%.40s = %.6g%s%s, in the scene %.6g",
-                used ? "; " : "; changed: ", p->name, p->value, space, p->unit, p->initial);
+            const char *space = p->unit[0] ? " " : "", *lead = used ? "; " : "; changed: ";
+            const int digits = hn_digits_apart(p->value, p->initial, 6);
+            used += (size_t)snprintf(out + used, size - used,
+                                     "%s%.40s = %.*g%s%s, in the scene %.*g", lead, p->name, digits,
+                                     p->value, space, p->unit, digits, p->initial);
         }
     }
 }

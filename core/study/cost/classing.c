@@ -210,24 +210,28 @@ static void explain_order(const hn_class *c, char out[140]) {
     }
 }
 
-static void describe_order(const hn_wp *wp, int m, hn_class *c) {
-    char floor[120] = "", size[HN_SI_TEXT];
-
-    // the fine end of the ladder: a floor, or rounding
+/// The fine end of the ladder: a floor, or rounding; "" where neither shows.
+static void describe_fine_end(const hn_wp *wp, int m, const hn_class *c, char floor[120]) {
+    char size[HN_SI_TEXT];
+    floor[0] = '\0';
     if (!isnan(c->floor)) {
         hn_si_format(c->floor_size, wp->methods[m].adaptive ? "" : "s", 2, size);
         if (wp->methods[m].adaptive) {
             snprintf(size, sizeof size, "%.0e", c->floor_size);
         }
-        snprintf(floor, sizeof floor, "; at its floor of %.1e from %s = %s on", c->floor,
+        snprintf(floor, 120, "; at its floor of %.1e from %s = %s on", c->floor,
                  wp->methods[m].adaptive ? "rtol" : "h", size);
     }
     if (c->rounding >= 0) {
         hn_si_format(wp->methods[m].point[c->rounding].size, "s", 2, size);
-        snprintf(floor, sizeof floor, "; from h = %s on rounding adds to the error", size);
+        snprintf(floor, 120, "; from h = %s on rounding adds to the error", size);
     }
+}
 
-    // the observed order, or why there is none
+/// The observed order, or why there is none.
+static void describe_order(const hn_wp *wp, int m, hn_class *c) {
+    char floor[120];
+    describe_fine_end(wp, m, c, floor);
     if (c->kind == HN_CLASS_CONVERGES && c->as_theory) {
         snprintf(c->text, sizeof c->text, "converges with order %.2f (theory %g)%s", c->order,
                  c->theory, floor);

@@ -434,9 +434,9 @@ void hn_run_diagnose(hn_run *run) {
     }
     for (; w->diagnosed < w->log.n; w->diagnosed++) {
         hn_incident *i = &w->log.list[w->diagnosed];
-        if (hn_incident_kinds()[i->code]->is_wrong && i->remedy[0][0]) {
+        if (i->remedy[0][0] && hn_incident_kinds()[i->code]->is_wrong) {
             try_remedies(run, i);
-        } else {
+        } else if (i->remedy[0][0]) {
             leave_untried(w, i);
         }
     }

@@ -2,7 +2,7 @@
 #ifndef HN_STUDY_DIAGNOSIS_H
 #define HN_STUDY_DIAGNOSIS_H
 // The diagnosis of a run that went wrong. The cause comes from the spectrum of the equations at a
-// state before the event; the remedies are tried in short runs from that state.
+// state before the event; the remedies are tried in short runs from that state, or from the start.
 
 #include "study/run/run.h"
 

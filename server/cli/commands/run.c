@@ -231,6 +231,24 @@ static void tell_ending(const cJSON *run, const hn_incident_list *incidents) {
     tell_remedy(incidents->end);
 }
 
+/// Tells people what was noticed, and leaves in `b` what goes to standard output after the rows: a
+/// plot, or the end of NDJSON.
+static void tell_run(const hn_args *args, cJSON *run, const hn_incident_list *incidents,
+                     const hn_run_rows *rows, hn_strbuf *b) {
+    tell_marks(run);
+    tell_incidents(incidents);
+    tell_estimate(run);
+    if (args->plot) {
+        put_plot(b, run);
+    } else if (rows->ndjson) {
+        put_tail(b, run);
+    }
+    b->failed |= rows->failed;
+    if (hn_document_text(run, "warning")[0]) {
+        hn_cli_note("holonom: %s\n", hn_document_text(run, "warning"));
+    }
+}
+
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     hn_diags diags = {0};
     hn_status ended = HN_OK;
@@ -256,18 +274,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         if (streams && !rows.begun) {
             hn_run_rows_begin(&rows, run); // no sample was made
         }
-        tell_marks(run);
-        tell_incidents(&incidents);
-        tell_estimate(run);
-        if (args->plot) {
-            put_plot(&b, run);
-        } else if (rows.ndjson) {
-            put_tail(&b, run);
-        }
-        b.failed |= rows.failed;
-        if (hn_document_text(run, "warning")[0]) {
-            hn_cli_note("holonom: %s\n", hn_document_text(run, "warning"));
-        }
+        tell_run(args, run, &incidents, &rows, &b);
     }
 
     // a run that ended early has an exit status of its own
