@@ -121,7 +121,7 @@ test("a stopped study goes on with what is left, and is not begun again", async 
   }));
   assert.equal(after.id, id, "it is the same study");
   assert.ok(after.done >= done, `${done} points were done, now ${after.done}`);
-  assert.deepEqual(asked.slice(before), ['PATCH {"state":"running"}'.slice(0, 26)]);
+  assert.deepEqual(asked.slice(before), ['PATCH {"state":"running"}']);
   await soon(async () => assert.ok((await page.locator(".scatter .spot").count()) >= done));
 });
 

@@ -287,6 +287,7 @@ test("axes are widened to present values beyond them, and keep their ends otherw
     axesWith({ x, y }, { x: [50], y: [0.1, 0.001] }),
     "k=1..100:log,step=0.001..0.1:lin",
   );
+  assert.match(axesWith({ x, y }, { x: [0], y: [] }), /^k=1\.\.100:log/);
   assert.equal(axesWith({ x: null, y }, { x: [], y: [0.015] }), "step=0.01..0.02:lin");
 });
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Where a mechanism is between two frames that were received: on the parabola through them and the
-// frame before. A body that turns by an angle d from frame to frame is off by at most d^3 / 16 of
-// its radius: 0.1 % at a tenth of a turn a second and 50 frames.
+// frame before. A body that turns by an angle d from frame to frame is off by at most d^3 / 15 of
+// its radius: 0.1 % at two turns and 50 frames a second.
 
 /**
  * The largest ratio of the second to the first differences, about the turn from frame to frame

@@ -109,12 +109,13 @@ export function valueOnAxis(axis, at) {
 
 /**
  * The axes of a map, made wider where present values lie beyond them, as the server is asked for
- * them.
+ * them. An axis of ratios has no place for zero.
  * @param {any} map document @param {{x: number[], y: number[]}} present values, by axis
  */
 export function axesWith({ x, y }, present) {
   const widened = (axis, values) => {
-    const all = [axis.values[0], axis.values[axis.values.length - 1], ...values];
+    const fit = values.filter((value) => axis.scale !== "log" || value > 0);
+    const all = [axis.values[0], axis.values[axis.values.length - 1], ...fit];
     const name = axis.kind === "step" ? "step" : axis.name;
     return `${name}=${Math.min(...all)}..${Math.max(...all)}:${axis.scale === "log" ? "log" : "lin"}`;
   };

@@ -26,7 +26,8 @@ export function createMotion(store, draw) {
     const { t, count } = data.history;
     const newest = t[count - 1];
     const earliest = t[Math.max(0, count - 1 - BEHIND)];
-    const next = Number.isNaN(time) ? earliest : time + (spent / 1000) * data.speed;
+    // it sets out from where it stands, and waits for frames that are late
+    const next = Number.isNaN(time) ? newest : time + (spent / 1000) * data.speed;
     time = Math.min(newest, Math.max(earliest, next));
   }
 
