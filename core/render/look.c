@@ -43,6 +43,14 @@ int hn_look_slot(int i) {
     return i % HN_LOOK_METHODS;
 }
 
+const char *hn_look_glyph(int i) {
+    static const char *const others[HN_LOOK_GLYPHS - HN_LOOK_METHODS] = {
+        "\xe2\x96\xa1", "\xe2\x96\xb3", "\xe2\x97\x87", "\xe2\x96\xbd", "\xe2\x96\xbc", "$"};
+    HN_ASSERT(i >= 0);
+    i %= HN_LOOK_GLYPHS;
+    return i < HN_LOOK_METHODS ? looks[i].glyph : others[i - HN_LOOK_METHODS];
+}
+
 const hn_surface *hn_surface_get(hn_theme theme) {
     HN_ASSERT((int)theme >= 0 && theme < HN_THEME_COUNT);
     return &surfaces[theme];

@@ -46,6 +46,11 @@ const hn_look *hn_look_get(int slot);
 /// The slot of the i-th method of a list: 0..6, then from 0 again.
 int hn_look_slot(int i);
 
+/// The glyph of the i-th method of a list: those of the slots, then HN_LOOK_GLYPHS - 7 others, and
+/// from the first again.
+enum { HN_LOOK_GLYPHS = 13 };
+const char *hn_look_glyph(int i);
+
 /// What is not a method: surfaces and inks.
 typedef struct hn_surface {
     uint32_t paper;    ///< behind everything

@@ -53,7 +53,7 @@ void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp) {
     for (int m = 0; m < wp->n_methods; m++) {
         const int slot = hn_look_slot(m);
         p->scatter.series[m].colour = slot;
-        p->scatter.series[m].glyph = hn_look_get(slot)->glyph;
+        p->scatter.series[m].glyph = hn_look_glyph(m);
         snprintf(p->name[m], sizeof p->name[m], "%s", wp->methods[m].spelling);
         for (int k = 0; k < wp->n_levels; k++) {
             take_point(p, wp, m, k);

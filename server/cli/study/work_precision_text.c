@@ -14,10 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *glyph_of(int m) {
-    return hn_look_get(hn_look_slot(m))->glyph;
-}
-
 /// Writes the error that may be claimed: "< 1e-12" where the reference is no more accurate.
 static void put_error(hn_table *t, const hn_wp *wp, hn_error_kind kind, double error) {
     const double bound = HN_WP_ABOVE_REFERENCE * wp->ref->error[kind];
@@ -83,7 +79,7 @@ static void put_methods(hn_strbuf *b, const hn_wp *wp) {
         hn_table_column(&t, heads[i], i > 1);
     }
     for (int m = 0; m < wp->n_methods; m++) {
-        hn_table_cell(&t, "%s", glyph_of(m));
+        hn_table_cell(&t, "%s", hn_look_glyph(m));
         hn_table_cell(&t, "%s", wp->methods[m].spelling);
         hn_table_cell(&t, "%d/%d", count(wp, m, HN_WP_DONE), wp->n_levels);
         put_best(&t, wp, m);
@@ -96,7 +92,7 @@ static void put_verdicts(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     hn_strbuf_add(b, "\nWhat the ladder of sizes says of each\n");
     for (int m = 0; m < wp->n_methods; m++) {
-        hn_strbuf_printf(b, "  %s %-28s %s\n", glyph_of(m), wp->methods[m].spelling,
+        hn_strbuf_printf(b, "  %s %-28s %s\n", hn_look_glyph(m), wp->methods[m].spelling,
                          hn_study_classes(study)[m].text);
     }
 }
@@ -172,7 +168,7 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
 
     // the error of each method at each cost
     for (int m = 0; m < wp->n_methods; m++) {
-        hn_table_cell(&t, "%s", glyph_of(m));
+        hn_table_cell(&t, "%s", hn_look_glyph(m));
         hn_table_cell(&t, "%s", wp->methods[m].spelling);
         for (int i = 0; i < race.n; i++) {
             if (race.is_bound[i][m]) {
@@ -244,7 +240,7 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
             char spelling[HN_SPEC_MAX];
             hn_wp_spelling(wp, m, k, spelling);
             shorten_size(spelling);
-            hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", glyph_of(m),
+            hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", hn_look_glyph(m),
                              spelling);
 
             // how far it came, and how many others share the reason

@@ -160,6 +160,19 @@ static void any_two_methods_differ_without_colour_too(void **state) {
     }
 }
 
+static void thirteen_methods_have_glyphs_of_their_own(void **state) {
+    (void)state;
+    for (int a = 0; a < HN_LOOK_GLYPHS; a++) {
+        for (int b = 0; b < a; b++) {
+            assert_string_not_equal(hn_look_glyph(a), hn_look_glyph(b));
+        }
+    }
+    for (int slot = 0; slot < HN_LOOK_METHODS; slot++) {
+        assert_string_equal(hn_look_glyph(slot), hn_look_get(slot)->glyph);
+    }
+    assert_string_equal(hn_look_glyph(HN_LOOK_GLYPHS), hn_look_glyph(0));
+}
+
 static void more_methods_than_slots_begin_again(void **state) {
     (void)state;
     assert_int_equal(hn_look_slot(0), 0);
@@ -194,6 +207,7 @@ int main(void) {
         cmocka_unit_test(every_colour_stands_out_from_its_paper),
         cmocka_unit_test(any_two_slots_differ_to_every_sight),
         cmocka_unit_test(any_two_methods_differ_without_colour_too),
+        cmocka_unit_test(thirteen_methods_have_glyphs_of_their_own),
         cmocka_unit_test(more_methods_than_slots_begin_again),
         cmocka_unit_test(the_json_says_what_the_table_says),
     };
