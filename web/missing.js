@@ -6,6 +6,8 @@
     "The libraries of the page are installed by `make run`; by hand: " +
     "`npm ci && npm run vendor` in the folder web. Then load the page again.";
 
+  const LISTED = 100; // [ms] until the browser's list has the answer to a request
+
   /** Paths of files that the server did not have. */
   function missingFiles() {
     const files = performance
@@ -26,13 +28,13 @@
     }
   }
 
-  /** A file of the page did not load. Its name is known once it is in the browser's list. */
+  /** A file of the page did not load. */
   function sayMissing() {
     setTimeout(() => {
       const files = missingFiles();
       const names = files.length ? `: the server has no ${files.join(", ")}` : "";
       say(`The page cannot start${names}. ${HOW}`);
-    }, 100);
+    }, LISTED);
   }
 
   addEventListener(
@@ -41,7 +43,7 @@
       const { target } = event;
       if (target instanceof HTMLScriptElement) {
         sayMissing();
-      } else if (target === window) {
+      } else if (target === window && event.error) {
         say(`The page cannot start: ${event.message}. A browser from 2023 or later is needed.`);
       }
     },

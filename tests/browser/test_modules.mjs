@@ -14,6 +14,8 @@ import {
   scientific,
   withPowers,
 } from "../../web/state/format.js";
+import { createUndo } from "../../web/session/undo.js";
+import { createStore } from "../../web/state/store.js";
 import { evaluate } from "../../web/state/formula.js";
 import { KEYS, bindingOf, findKey, isCharacter } from "../../web/state/keys.js";
 import {
@@ -83,6 +85,27 @@ test("a number is read as people type it, and only in its unit", () => {
       `${text} [${unit}]`,
     );
   }
+});
+
+test("an undo that fails changes nothing and can be asked for again", async () => {
+  const store = createStore();
+  Object.assign(store.data, { scene: { id: "four-bar" }, methods: [{ spelling: "index1@rk4" }] });
+  let fails = true;
+  const apply = async () => {
+    if (fails) {
+      throw new Error("no server");
+    }
+  };
+  const { undo } = createUndo(store, apply, () => undefined);
+  store.emit("methods");
+  store.data.settings = { l1: 2 };
+  store.emit("methods");
+  assert.deepEqual(store.data.undo, { past: 1, future: 0 });
+  await undo();
+  assert.deepEqual(store.data.undo, { past: 1, future: 0 });
+  fails = false;
+  await undo();
+  assert.deepEqual(store.data.undo, { past: 0, future: 1 });
 });
 
 test("a typed decimal stays one in another unit, with no rounding behind it", () => {

@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { createHistory, thin } from "../../web/state/history.js";
 import { findJump } from "../../web/state/jump.js";
 import { limits, readIndex } from "../../web/state/catalogue.js";
-import { deadPointAt, lastDeadPoint } from "../../web/state/dead-point.js";
+import { deadPointAt, lastDeadPoint, singularWords } from "../../web/state/dead-point.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
 import { passageWords, predictionAt, stopReason } from "../../web/state/words.js";
@@ -339,6 +339,19 @@ test("what is seen coming is counted down until it is there, for the methods it 
   assert.equal(predictionAt(data, 30), "singular configuration in 0.25 s: J loses rank");
 });
 
+test("constraints that are dependent from the start on are no singular configuration passed", () => {
+  const history = createHistory(1, 1);
+  [0, 30, 60].forEach((k) => history.push(frame(k, 1)));
+  const incident = { code: "rank-loss", method: 0, message: "1 of 3 depend on the others" };
+  const data = { history, duration: 10, incidents: [{ ...incident, t: 0 }] };
+  assert.equal(singularWords(data, 0, 2), "");
+  data.incidents.push({ ...incident, t: 0.5 });
+  assert.equal(
+    singularWords(data, 0, 2),
+    "Singular configuration at 0.50 s: 1 of 3 depend on the others.",
+  );
+});
+
 test("how the methods came through a singular configuration is said once for all of them", () => {
   const history = createHistory(2, 1);
   for (let k = 0; k <= 60; k++) {
@@ -381,8 +394,16 @@ test("a dead point is a coordinate that turns back while another one moves on", 
     history,
     duration: 10,
     scene: { dof: 1, m: 2, coordinates },
-    methods: [{ label: "reduced", formulation: "reduced", spelling: "reduced@rk4:h=0.01" }],
+    methods: [
+      {
+        label: "reduced",
+        formulation: "reduced",
+        integrator: "rk4",
+        spelling: "reduced@rk4:h=0.01",
+      },
+    ],
     incidents: [],
+    catalogue: { formulations: [{ name: "reduced", integrators: ["rk4"] }], integrators: [] },
   };
   assert.equal(lastDeadPoint(data, 0, 15), null, "cos has no zero before pi/2");
   const found = lastDeadPoint(data, 0, 40);
@@ -395,6 +416,8 @@ test("a dead point is a coordinate that turns back while another one moves on", 
     tries.map(({ method }) => method),
     ["reduced:coordinate=2@rk4:h=0.01"],
   );
+  data.methods[0].integrator = "genalpha";
+  assert.deepEqual(deadPointAt(data, 0, 40).tries, [], "no method that cannot be");
 
   // a swing: all coordinates turn back at once, and the mechanism has no dead point
   const swing = createHistory(1, 1, 2);

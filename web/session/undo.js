@@ -86,6 +86,8 @@ export function createUndo(store, apply, notice) {
       present = snapshot();
       store.emit("hand");
     } catch (error) {
+      to.pop();
+      from.push(wanted); // nothing was changed, and it can be asked for again
       notice(sentenceOf(error));
     }
     busy = false;

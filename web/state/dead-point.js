@@ -3,6 +3,7 @@
 // Dead points: configurations where one coordinate turns back while the mechanism moves on, and
 // singular configurations, in words for the card of a method.
 import { quantity, seconds } from "./format.js";
+import { cardOf } from "./spelling.js";
 import { sentenceCase } from "./words.js";
 
 /** Of its own greatest velocity so far: a coordinate that is slower does not move on. */
@@ -42,7 +43,7 @@ function turning(before, v, greatest) {
  * of a coordinate changes its sign while another coordinate moves on. There the null vector of J
  * has a zero in that place, so J without that column is singular.
  * @typedef {{coordinate: number, t: number, leads: number, speed: number}} DeadPoint
- * leads: the coordinate that is fastest there, speed: its velocity [rad/s or m/s]
+ * leads: the coordinate that moves on, speed: its velocity [rad/s or m/s]
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
  * @returns {DeadPoint | null}
  */
@@ -91,30 +92,33 @@ export function deadPointAt(data, m, shown) {
   const { name } = data.scene.coordinates[point.coordinate];
   const other = data.scene.coordinates[point.leads];
   const speed = quantity(Math.abs(point.speed), UNIT[other.kind] ?? "1/s");
-  const { spelling } = data.methods[m];
-  const integrator = spelling.slice(spelling.indexOf("@") + 1);
-  const method = `reduced:coordinate=${point.coordinate + 1}@${integrator}`;
+  const { spelling, integrator } = data.methods[m];
+  const how = spelling.slice(spelling.indexOf("@") + 1);
+  const method = `reduced:coordinate=${point.coordinate + 1}@${how}`;
+  const fits = cardOf(data.catalogue, "formulation", "reduced")?.integrators.includes(integrator);
   return {
     title: `Dead point of ${name} at ${seconds(point.t, data.duration)}`,
     words:
       `${name} turns back there while ${other.name} moves on at ${speed}. A force along ${name} ` +
       `moves nothing then, and ${name} does not determine the configuration; ${other.name} ` +
       `does. ${fateWords(data.methods[m])}`,
-    tries: data.methods.some((one) => one.spelling === method)
-      ? []
-      : [{ label: `reduced with ${name}: it stops there`, method }],
+    tries:
+      fits && !data.methods.some((one) => one.spelling === method)
+        ? [{ label: `reduced with ${name}: it stops there`, method }]
+        : [],
   };
 }
 
 /**
- * The last singular configuration of a run until the frame shown, as the engine words it; "" where
- * there was none.
+ * The last singular configuration that a run passed until the frame shown, as the engine words it;
+ * "" where there was none. Constraints that are dependent from the start on are no such place.
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
  */
 export function singularWords({ incidents, history, duration }, m, shown) {
   const last = incidents
     .filter(
-      ({ code, method, t }) => method === m && SINGULAR.includes(code) && t <= history.t[shown],
+      ({ code, method, t }) =>
+        method === m && SINGULAR.includes(code) && t > 0 && t <= history.t[shown],
     )
     .sort((a, b) => a.t - b.t)
     .at(-1);

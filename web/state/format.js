@@ -195,7 +195,7 @@ export function parseQuantity(text, unit) {
 }
 
 /**
- * A product of decimal numbers as by hand: 7 cm are 0.07 m, not 0.07000000000000001 m. A factor
+ * A product of decimal numbers as by hand: 57 cm are 0.57 m, not 0.5700000000000001 m. A factor
  * that is no short decimal, as of degrees, keeps all its digits.
  * @param {number} value @param {number} factor
  */

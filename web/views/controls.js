@@ -99,7 +99,10 @@ export function createControls(el, store, actions) {
     return null;
   }
 
-  /** That methods have values of their own, or why the step is not the scene's. @param {string} key @param {number} held */
+  /**
+   * That methods have values of their own, or why the step is not the scene's.
+   * @param {string} key @param {number} held
+   */
   function hintOf(key, held) {
     const values = data.methods.map(({ spelling }) =>
       Number(settingOf(data.catalogue, spelling, key)?.value ?? held),

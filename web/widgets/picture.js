@@ -27,6 +27,8 @@ const EDGE = 12; // [px] around them
 const SAMPLE = 34; // [px] of a line as the method is drawn
 const SIZE = 14; // [px] of the words, where they have room
 const LETTER = 0.56; // width of a letter, of its size
+const GAP = 8; // [px] between a line and its words
+const MIDDLE = 5; // [px] from the foot of the letters to their middle
 
 /**
  * @param {string} tag
@@ -46,7 +48,7 @@ function shape(tag, attributes, text = "") {
  * @param {Caption} caption @param {number} width [px] of the picture @param {number} top [px]
  */
 function captionShape({ title, lines }, width, top) {
-  const start = EDGE + SAMPLE + 8;
+  const start = EDGE + SAMPLE + GAP;
   const longest = Math.max(title.length, ...lines.map(({ words }) => words.length));
   const words = {
     fill: getComputedStyle(document.body).color,
@@ -60,7 +62,7 @@ function captionShape({ title, lines }, width, top) {
     const dash = line.dash.join(" ") || "none";
     const look = { stroke: line.colour, "stroke-width": 2.5, "stroke-dasharray": dash };
     group.append(
-      shape("path", { d: `M${EDGE} ${base(i + 1) - 5}h${SAMPLE}`, ...look }),
+      shape("path", { d: `M${EDGE} ${base(i + 1) - MIDDLE}h${SAMPLE}`, ...look }),
       shape("text", { ...words, x: start, y: base(i + 1) }, line.words),
     );
   });

@@ -22,13 +22,11 @@ export function term(key, text) {
 export function explained(text) {
   const parts = termsIn(text);
   return parts.map(({ key, text: part }, i) => {
-    const mark = key ? markOf(parts[i + 1]?.text) : "";
-    const rest = parts[i - 1]?.key ? part.slice(markOf(part).length) : part;
-    return !key
-      ? rest
-      : mark
-        ? h("span", { class: "whole" }, term(key, part), mark)
-        : term(key, part);
+    if (!key) {
+      return parts[i - 1]?.key ? part.slice(markOf(part).length) : part;
+    }
+    const mark = markOf(parts[i + 1]?.text);
+    return mark ? h("span", { class: "whole" }, term(key, part), mark) : term(key, part);
   });
 }
 

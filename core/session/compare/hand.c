@@ -36,9 +36,9 @@ static double mass_of(const hn_scene *scene) {
 }
 
 /// The nearest number of three decimal digits: nobody chooses a hand more finely, and a log of it
-/// stays short. 0 and infinity stay.
+/// stays short. 0, and what a power of ten cannot scale, stays.
 static double round_digits(double x) {
-    if (!(x > 0) || !isfinite(x)) {
+    if (!(x > 1e-200 && x < 1e200)) {
         return x;
     }
     const int places = 2 - (int)floor(log10(x));
