@@ -228,6 +228,10 @@ class CollapsingSteps(unittest.TestCase):
         document = run("four-bar", "projection@rk4:h=1e-12", "--time", "1", "--at", "1")
         self.assertEqual((document["status"], document["cost"]["steps"]), ("stopped", 0))
         self.assertIn("needs 1e+12 steps", document["reason"])
+        # each of the 200 samples lies few enough steps after the one before, the end does not
+        document = run("four-bar", "projection@rk4:h=1e-8", "--time", "10")
+        self.assertEqual((document["status"], document["cost"]["steps"]), ("stopped", 0))
+        self.assertIn("needs 1e+09 steps to reach t = 10 s", document["reason"])
 
     def test_steps_that_collapse_end_within_a_second_with_the_cause(self):
         for scene, method in (("fb0", "index3@ida:rtol=1e-8,h0=-1,safety=1"), ("four-bar", "index3@ida:rtol=1e-8,loosen=1,safety=1")):

@@ -151,7 +151,8 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
     mark_cost(run);
     run->state = HN_RUN_RUNNING;
     s->t_asked = t_end;
-    if (hn_headway_check_steps(s, t_end) != HN_OK) {
+    const bool whole = run->opts.to_the_end && s->steps == 0;
+    if (hn_headway_check_steps(s, whole ? fmax(t_end, run->opts.t_end) : t_end) != HN_OK) {
         return fail(run, HN_ERR_STOPPED);
     }
 

@@ -20,6 +20,7 @@ typedef enum hn_run_state {
 typedef struct hn_run_opts {
     double t0;
     double t_end;        ///< end that the run is for: a longer step is reported; 0: not known
+    bool to_the_end;     ///< nobody stops it before: more fixed steps than max_steps end it at once
     long long max_steps; ///< HN_ERR_STOPPED beyond; 0: 50,000,000
     double warn_gap;     ///< times the characteristic length; 0: HN_RUN_WARN_GAP
     int raw_lambda;      ///< samples carry the scheme's own multipliers too, where it has some
