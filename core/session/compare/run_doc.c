@@ -539,7 +539,7 @@ static hn_status create_run(const hn_model *model, const hn_run_request *request
                             const hn_method_spec *spec, hn_run **out, hn_diag *diag) {
     hn_run_opts opts = hn_run_opts_default();
     opts.t_end = request->time;
-    opts.to_the_end = true;
+    opts.to_the_end = request->to_the_end;
     if (request->max_steps > 0) {
         opts.max_steps = request->max_steps;
     }

@@ -7,6 +7,8 @@
 #include "base/strbuf.h"
 #include "session/model/model.h"
 
+#include <stdbool.h>
+
 /// A run with output, for `holonom run` and POST /runs.
 typedef struct hn_run_request {
     const char *method;
@@ -17,6 +19,8 @@ typedef struct hn_run_request {
     long long max_samples; ///< bound
     long long max_numbers; ///< in the tables of the answer; 0: 2^25
     long long max_steps;
+    /// no time limit stops it: fixed steps that are more than max_steps end it before the first
+    bool to_the_end;
     /// 1: adds a column "raw_lambda" where the integrator computes multipliers of its own
     int raw_lambda;
     /// 1: adds columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names:

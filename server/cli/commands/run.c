@@ -152,6 +152,7 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_ro
                                   .at = args->at.n > 0 ? args->at.value : NULL,
                                   .n_at = args->at.n,
                                   .every = isnan(args->every) ? 0 : args->every,
+                                  .to_the_end = true,
                                   .raw_lambda = args->raw_lambda,
                                   .reactions = args->reactions,
                                   .row = rows ? take_row : NULL,
