@@ -2,6 +2,7 @@
 // What a submission may look like beside the form that is asked for: members that are there twice,
 // other ways to write a choice with its reason, fields that nobody reads, rounded numbers.
 #include "grade/grade.h"
+#include "grade/variant.h"
 
 #include "p3.h"
 
@@ -23,7 +24,10 @@ static const char ASKED[] =
     "{\"id\":\"c\",\"ask\":\"f?\",\"kind\":\"formula\",\"points\":2,"
     "\"states\":{\"th1\":{\"range\":[-3,3],\"unit\":\"rad\"}},\"answer\":\"l/3*sin(th1)\","
     "\"second\":\"sin(th1)*l/3\","
-    "\"faults\":[{\"id\":\"third\",\"answer\":\"l*sin(th1)\",\"says\":\"a third\"}]}]}";
+    "\"faults\":[{\"id\":\"third\",\"answer\":\"l*sin(th1)\",\"says\":\"a third\"}]},"
+    "{\"id\":\"d\",\"ask\":\"sum?\",\"kind\":\"number\",\"points\":1,\"answer\":\"0\","
+    "\"second\":\"l-l\",\"tolerance\":{\"relative\":0.005,\"absolute\":1e-6},"
+    "\"faults\":[{\"id\":\"one\",\"answer\":\"l\",\"says\":\"only one\"}]}]}";
 
 static const uint64_t SEED = 7;
 
@@ -241,6 +245,28 @@ static void a_formula_with_a_rounded_number_gets_half_and_is_told(void **state) 
     assert_non_null(strstr(e->explanation, "more digits, or by their names"));
 }
 
+static void a_number_that_should_be_zero_is_not_accused_of_every_mistake(void **state) {
+    static const struct {
+        const char *answer, *mistake;
+    } rows[] = {{"0", ""}, {"1e-7", ""}, {"123", "other"}, {"-4", "other"}, {"\"l\"", "one"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[60];
+        hn_variant x;
+        double l;
+        assert_int_equal(hn_variant_init(&x, *state, SEED, NULL), HN_OK);
+        assert_int_equal(hn_draw_value(&x.draw, "l", &l, NULL), HN_OK);
+        hn_variant_reset(&x);
+        snprintf(text, sizeof text, "{\"d\":%s}", rows[i].answer);
+        if (strcmp(rows[i].answer, "\"l\"") == 0) {
+            snprintf(text, sizeof text, "{\"d\":%.17g}", l);
+        }
+        const hn_entry_verdict *e = entry_of(verdict_on(*state, text), "d");
+        if (strcmp(e->mistake, rows[i].mistake) != 0) {
+            fail_msg("%s: '%s' (%s)", text, e->mistake, e->explanation);
+        }
+    }
+}
+
 static void a_rounded_constant_in_the_matrix_is_told(void **state) {
     (void)state;
     hn_exercise *p = load_p3();
@@ -270,6 +296,7 @@ int main(void) {
         cmocka_unit_test(a_flood_of_members_is_refused_before_they_are_compared),
         cmocka_unit_test(every_field_that_is_not_read_is_named),
         cmocka_unit_test(a_formula_with_a_rounded_number_gets_half_and_is_told),
+        cmocka_unit_test(a_number_that_should_be_zero_is_not_accused_of_every_mistake),
         cmocka_unit_test(a_rounded_constant_in_the_matrix_is_told),
     };
     return cmocka_run_group_tests(tests, load_asked, free_asked);
