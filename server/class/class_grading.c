@@ -8,6 +8,7 @@
 #include "class/likeness.h"
 #include "grade/grade.h"
 #include "grade/rubric.h"
+#include "grade/submission.h"
 #include "grade/variant.h"
 
 #include <cjson/cJSON.h>
@@ -74,6 +75,13 @@ static int count_name(const hn_roster *r, int i) {
     return n;
 }
 
+/// Continues a hash with what every line depends on: the exercise and the rubric.
+static uint64_t hash_rules(const grading *g, uint64_t hash) {
+    const uint64_t rubric = hn_rubric_hash(g->exercise->rubric);
+    hash = hn_hash_bytes(hash, &g->exercise->hash, sizeof g->exercise->hash);
+    return hn_hash_bytes(hash, &rubric, sizeof rubric);
+}
+
 /// What the line of a submission depends on: its text or why there is none, the exercise, the seed,
 /// others of its name, and this build.
 static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
@@ -82,10 +90,7 @@ static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     hn_diag diag = {0};
     hn_strbuf_init(&text);
     const hn_status status = hn_roster_load(e, kinds_of(g), &text, file, &diag);
-    uint64_t hash = hn_hash_text(HN_HASH_START, hn_build_name());
-    const uint64_t rubric = hn_rubric_hash(g->exercise->rubric);
-    hash = hn_hash_bytes(hash, &g->exercise->hash, sizeof g->exercise->hash);
-    hash = hn_hash_bytes(hash, &rubric, sizeof rubric);
+    uint64_t hash = hash_rules(g, hn_hash_text(HN_HASH_START, hn_build_name()));
     const uint64_t seed = seed_of(g, e);
     hash = hn_hash_bytes(hash, &seed, sizeof seed);
     hash = hn_hash_text(hash, e->student);
@@ -105,9 +110,14 @@ static void begin_line(const grading *g, int i, hn_strbuf *b, const char *status
     hn_json_put_string(b, "status", status);
     hn_json_put_string(b, "key", hex);
     if (g->opts->shard.n > 0) {
-        // its place in the roster, by which merge puts the parts together
+        // its place in the roster, by which merge puts together parts that have the same rules
+        const uint64_t seed = g->opts->seed;
+        const uint64_t marking = hn_hash_bytes(hash_rules(g, HN_HASH_START), &seed, sizeof seed);
         hn_json_put_int(b, "place", i);
         hn_json_put_int(b, "of", g->roster->n);
+        hn_json_put_string(b, "exercise", hn_exercise_id(g->exercise));
+        hn_hash_hex(hn_hash_mix(marking), hex);
+        hn_json_put_string(b, "marking", hex);
     }
     const int same = count_name(g->roster, i);
     if (same > 1) {
@@ -208,6 +218,12 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
         status = g->opts->programs
                      ? grade_program(g, file, &text, v)
                      : hn_grade_json(g->exercise, hn_strbuf_text(&text), text.n, seed_of(g, e), v);
+    }
+
+    // the name chooses no variant of an exercise without numbers, but it is still compared
+    if (there && status == HN_OK && !g->opts->programs && g->exercise->n_parts == 0 &&
+        !g->opts->seed) {
+        hn_submission_check_student(v, e->student);
     }
 
     // graded, not gradable by its own fault, or the grader's fault
@@ -416,6 +432,14 @@ static int find_key(const grading *g, const char *student, const char *hex) {
     return -1;
 }
 
+/// Whether a line has the place that submission i has now: a run of the whole class gives it none.
+static bool is_in_place(const grading *g, const cJSON *line, int i) {
+    const cJSON *place = cJSON_GetObjectItem(line, "place"), *of = cJSON_GetObjectItem(line, "of");
+    return g->opts->shard.n > 0 ? cJSON_IsNumber(place) && place->valueint == i &&
+                                      cJSON_IsNumber(of) && of->valueint == g->roster->n
+                                : !place;
+}
+
 /// Takes the lines of an earlier run that still hold; a line that was cut off by a kill is dropped.
 static hn_status open_journal(grading *g, hn_diag *diag) {
     char *line = NULL;
@@ -429,7 +453,7 @@ static hn_status open_journal(grading *g, hn_diag *diag) {
         const int i = student && hex && status && strcmp(status, "failed") != 0
                           ? find_key(g, student, hex)
                           : -1;
-        if (i >= 0) {
+        if (i >= 0 && is_in_place(g, o, i)) {
             line[n - 1] = '\0';
             if (keep_line(g, i, line, false, diag) == HN_OK) {
                 g->out->resumed++;

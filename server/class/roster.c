@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "class/zip_file.h"
+#include "grade/student_name.h"
 
 #include <ctype.h>
 #include <dirent.h>
@@ -119,6 +120,7 @@ static hn_status add(hn_roster *r, const char *folder, const char *name, hn_diag
     if (!e->is_folder && dot && dot > e->student && strcmp(e->student, name) == 0) {
         *dot = '\0';
     }
+    hn_student_name_normalise(e->student, e->student, sizeof e->student);
     r->n++;
     return HN_OK;
 }

@@ -2,6 +2,7 @@
 #include "grade/submission.h"
 
 #include "grade/repeated_member.h"
+#include "grade/student_name.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -73,6 +74,18 @@ int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const
         }
     }
     return 1;
+}
+
+void hn_submission_check_student(hn_verdict *v, const char *name) {
+    char own[sizeof v->student], said[sizeof v->student];
+    hn_student_name_normalise(name, own, sizeof own);
+    hn_student_name_normalise(v->student, said, sizeof said);
+    if (said[0] && strcmp(said, own) != 0) {
+        hn_submission_refuse(v, "put the right name into \"student\", or leave it out",
+                             "the submission says that it is by student '%s', and it was handed "
+                             "in by '%s'",
+                             said, own);
+    }
 }
 
 /// Remarks on fields that are not read; refuses the file of another exercise.

@@ -17,6 +17,9 @@ void hn_submission_remark_unread(hn_verdict *v, const cJSON *root, const char *c
 /// Refuses a field that says which variant or exercise is answered, or what it cost, and is there
 /// twice with different values. `fields`: names of such fields, up to NULL.
 int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const *fields);
+/// Makes a verdict ungradable whose submission names another student than `name`; a submission
+/// without a name is everybody's.
+void hn_submission_check_student(hn_verdict *v, const char *name);
 /// Checks fields and shape. `answer` receives the list of rows, `transposed` whether its shape is
 /// that of the transposed matrix.
 int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, int *transposed);

@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "grade/repeated_member.h"
 #include "grade/rubric.h"
+#include "grade/student_name.h"
 #include "grade/submission.h"
 
 #include <math.h>
@@ -37,7 +38,7 @@ void hn_variant_reset(hn_variant *x) {
 
 uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student) {
     uint64_t hash = hn_hash_text(HN_HASH_START, exercise->id);
-    hash = hn_hash_mix(hn_hash_text(hash, student));
+    hash = hn_hash_mix(hn_student_name_hash(hash, student));
     return (hash & ((1ull << 48) - 1)) + 1; // programs that read it as a double keep it
 }
 
@@ -289,6 +290,19 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
     }
 }
 
+/// "student 'Ada' (seed 7)" where a student has this variant, else "seed 7".
+static void name_variant(const hn_variant *x, char *out, size_t size) {
+    const hn_exercise *e = x->exercise;
+    for (int i = 0; i < e->n_owners; i++) {
+        if (e->owners[i].seed == x->seed) {
+            snprintf(out, size, "student '%.60s' (seed %llu)", e->owners[i].name,
+                     (unsigned long long)x->seed);
+            return;
+        }
+    }
+    snprintf(out, size, "seed %llu", (unsigned long long)x->seed);
+}
+
 /// Refuses a submission that says it answers another variant.
 static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
     const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
@@ -304,22 +318,20 @@ static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *
     }
 
     // by its number, or by its name
+    char own[120], other[80];
+    name_variant(x, own, sizeof own);
     if (cJSON_IsNumber(seed)) {
-        return hn_submission_refuse(v, "grade it with --seed of that number",
-                                    "the submission answers the variant of seed %.17g, this is "
-                                    "%llu",
-                                    seed->valuedouble, (unsigned long long)x->seed);
+        snprintf(other, sizeof other, "seed %.17g", seed->valuedouble);
+    } else if (cJSON_IsString(seed)) {
+        snprintf(other, sizeof other, "seed '%.20s'", seed->valuestring);
+    } else {
+        snprintf(other, sizeof other, "student '%.60s'", student->valuestring);
     }
-    if (cJSON_IsString(seed)) {
-        return hn_submission_refuse(v, "grade it with --seed of that number",
-                                    "the submission answers the variant of seed '%.20s', this is "
-                                    "%llu",
-                                    seed->valuestring, (unsigned long long)x->seed);
-    }
-    return hn_submission_refuse(v, "grade it with --student of that name",
-                                "the submission answers the variant of student '%.60s', this is "
-                                "the variant of seed %llu",
-                                student->valuestring, (unsigned long long)x->seed);
+    return hn_submission_refuse(
+        v,
+        cJSON_IsNumber(seed) || cJSON_IsString(seed) ? "grade it with --seed of that number"
+                                                     : "grade it with --student of that name",
+        "the submission answers the variant of %s, this is that of %s", other, own);
 }
 
 /// The hints that a submission says were used: a whole number of those that there are.

@@ -20,7 +20,8 @@ typedef struct hn_variant {
 HN_MUST_CHECK hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t seed,
                                         hn_diag *diag);
 void hn_variant_reset(hn_variant *x);
-/// The seed of a student's variant: the same for the same name, never 0.
+/// The seed of a student's variant: the same for every spelling of a name (student_name.h), never
+/// 0.
 uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student);
 /// The seed that a submission says it answers, by its "seed" or its "student"; 0: it says none.
 uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submission);

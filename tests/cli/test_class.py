@@ -214,6 +214,38 @@ class Class(unittest.TestCase):
         said = " ".join(call("help", "grade").stdout.split())
         self.assertIn("whose name chooses the variant unless --seed does", said)
 
+    def test_a_name_chooses_one_variant_in_all_its_spellings(self):
+        def seed(name):
+            return json.loads(call("problem", "gears", "--student", name, "--json").stdout)["seed"]
+
+        self.assertEqual(seed("José Núñez"), seed("Jose\u0301 Nu\u0301n\u0303ez"))
+        self.assertEqual(seed("ada"), seed(" ada "))
+        self.assertNotEqual(seed("ada"), seed("Ada"))
+        self.put("Jose\u0301.json", json.dumps({"student": "José"}))
+        lines = [json.loads(line) for line in call("grade", "gears", self.folder, "--json").stdout.splitlines()]
+        self.assertEqual([line["student"] for line in lines], ["José"])
+        self.assertNotIn("answers the variant of", lines[0]["reason"])
+
+    def test_a_file_with_the_name_of_another_student_is_not_graded(self):
+        self.put("ben.json", RIGHT.replace("{", '{"student": "ben",', 1))
+        self.put("eve.json", RIGHT.replace("{", '{"student": "ben",', 1))
+        lines = {line["student"]: line for line in self.lines()}
+        self.assertEqual({name: line["status"] for name, line in lines.items()}, {"ben": "graded", "eve": "ungradable"})
+        self.assertIn("by student 'ben', and it was handed in by 'eve'", lines["eve"]["reason"])
+        eve = os.path.join(self.folder, "eve.json")
+        for student, status in (("eve", 2), ("ben", 0), (" ben", 0)):
+            self.assertEqual(call("grade", "p3", eve, "--student", student).returncode, status, student)
+        # names of folders that are no students': one variant for all, and no name is compared
+        self.assertEqual(call("grade", "p3", eve).returncode, 0)
+        done = call("grade", "p3", self.folder, "--seed", "7", "--json")
+        self.assertEqual([json.loads(line)["status"] for line in done.stdout.splitlines()], ["graded"] * 2)
+
+    def test_whose_variant_it_is_is_said_by_name(self):
+        self.put("bob.json", '{"student": "Bob", "a": 1}')
+        done = call("grade", "gears", os.path.join(self.folder, "bob.json"), "--student", "Ada Lovelace")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(" ".join(done.stdout.split()), r"the variant of student 'Bob', this is that of student 'Ada Lovelace' \(seed \d+\)")
+
     def test_near_copies_are_listed_when_only_their_names_differ(self):
         wrong = '{"J": [["-a*cos(x)", "b*y"], ["a*sin(x)", "0"]], "n": 3}'.replace('"n": 3', '"note": "a b"')
         shape = json.dumps({"problem": "p3", "J": [["l1*cos(th1)", "l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1", "l2", "l3", "l4"]]})
@@ -287,6 +319,46 @@ class Class(unittest.TestCase):
         with open(merged, "rb") as a, open(self.out, "rb") as b:
             self.assertEqual(a.read(), b.read())
         self.assertEqual(len(whole), 11)
+
+    def test_parts_of_another_exercise_rubric_or_seed_are_refused(self):
+        for k in range(4):
+            self.put(f"student{k}.json", '{"a": "1"}')
+        rubric = os.path.join(self.temporary.name, "rubric.json")
+        self.assertEqual(call("rubric", "write", "gears", "--out", rubric).returncode, 0)
+        with open(rubric, encoding="utf-8") as f:
+            dearer = re.sub(r'"total": [0-9.]+,', "", f.read()).replace('"a": ', '"a": 1', 1)
+        with open(rubric, "w", encoding="utf-8") as f:
+            f.write(dearer)
+
+        def part(name, i, exercise, *words):
+            out = os.path.join(self.temporary.name, name + ".ndjson")
+            done = call("grade", exercise, self.folder, "--shard", f"{i}/2", "--out", out, *words)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return out
+
+        def merged(exercise, *parts):
+            return call("grade", exercise, "--merge", *parts, "--out", os.path.join(self.temporary.name, "all.csv"))
+
+        first, second = part("first", 1, "gears"), part("second", 2, "gears")
+        dear = [part(f"dear{i}", i, "gears", "--rubric", rubric) for i in (1, 2)]
+        self.assertEqual(merged("gears", first, second).returncode, 0)
+        self.assertEqual(merged("gears", *dear).returncode, 0)
+        # the journal of a part is none of the whole class
+        whole = os.path.join(self.temporary.name, "first.ndjson")
+        self.assertEqual(call("grade", "gears", self.folder, "--out", whole).returncode, 0)
+        with open(whole, encoding="utf-8") as f:
+            self.assertNotIn('"place"', f.read())
+        self.assertEqual(merged("gears", whole, second).returncode, 2)
+        first = part("first", 1, "gears")
+        for exercise, parts, said in (
+            ("p3", [first, second], "is a part of exercise 'gears', not of 'p3'"),
+            ("gears", [first, part("other", 2, "p1")], "is a part of exercise 'p1', not of 'gears'"),
+            ("gears", [first, dear[1]], "was graded with another rubric, another --seed or another version of exercise 'gears' than"),
+            ("gears", [first, part("seeded", 2, "gears", "--seed", "7")], "was graded with another rubric, another --seed"),
+        ):
+            done = merged(exercise, *parts)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(said, " ".join(done.stderr.split()))
 
     def test_a_disk_that_is_full_is_called_that_and_the_run_goes_on_later(self):
         for k in range(40):

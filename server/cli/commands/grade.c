@@ -14,6 +14,7 @@
 #include "cli/shell/scene_word.h"
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
+#include "grade/submission.h"
 #include "grade/variant.h"
 #include "grade/verdict_forms.h"
 #include "terminal/bars.h"
@@ -138,6 +139,9 @@ static hn_exit grade_one(const task *t) {
     hn_exit result = HN_EXIT_PROGRAM;
     if (status == HN_OK) {
         if (t->args->student) {
+            if (!t->subject.programs && t->subject.exercise->n_parts == 0) {
+                hn_submission_check_student(v, t->args->student);
+            }
             snprintf(v->student, sizeof v->student, "%s", t->args->student);
         }
         v->show_expected = t->args->show_expected;
@@ -169,7 +173,8 @@ static hn_exit grade_all(task t, const hn_verdict_names *names) {
 /// What ID names, owned.
 typedef struct owned_subject {
     hn_exercise *exercise;
-    hn_model *model; ///< of a scene whose program is graded
+    hn_variant_owner student; ///< of --student, whom the exercise points to
+    hn_model *model;          ///< of a scene whose program is graded
     hn_filled_exam exam;
 } owned_subject;
 
@@ -180,6 +185,12 @@ static hn_status find_subject(const hn_library *lib, const hn_args *args, owned_
     hn_status status;
     if (hn_library_problem_path(lib, id) || !hn_library_scene_path(lib, id)) {
         status = hn_cli_load_exercise(lib, id, &own->exercise, diags);
+        if (status == HN_OK && args->student) {
+            own->student = (hn_variant_owner){
+                .name = args->student, .seed = hn_variant_seed(own->exercise, args->student)};
+            own->exercise->owners = &own->student;
+            own->exercise->n_owners = 1;
+        }
         *out = (hn_grade_subject){.exercise = own->exercise};
         return status;
     }

@@ -253,38 +253,80 @@ hn_exit hn_grade_folder(const hn_args *args, const hn_grade_subject *subject) {
 
 // ---- parts of a class, put together ----
 
-/// A copy of a line as a run of the whole class writes it.
-static char *without_place(const char *line, size_t n, int place, int of) {
-    char words[64];
+/// The parts read so far: their lines, and by which rules the first of them was graded.
+typedef struct merging {
+    const char *exercise; ///< the id that the command names
+    char first[200];      ///< file of the first part
+    char marking[20];     ///< of the first part: hash of its exercise, its rubric and its --seed
+    hn_class_result result;
+} merging;
+
+/// A copy of a line as a run of the whole class writes it: without what only a part has.
+static char *without_place(const char *line, size_t n, const char *marking) {
+    char last[40];
     char *own = strndup(line, n);
-    snprintf(words, sizeof words, "\"place\":%d,\"of\":%d,", place, of);
-    char *at = own ? strstr(own, words) : NULL;
-    if (at) {
-        memmove(at, at + strlen(words), strlen(at + strlen(words)) + 1);
+    char *from = own ? strstr(own, "\"place\":") : NULL;
+    snprintf(last, sizeof last, "\"marking\":\"%s\",", marking);
+    const char *to = from ? strstr(from, last) : NULL;
+    if (to) {
+        to += strlen(last);
+        memmove(from, to, strlen(to) + 1);
     }
     return own;
 }
 
+/// Whether a line has its place in a class of the size that the lines before it have.
+static bool has_place(const merging *m, const cJSON *o) {
+    const cJSON *place = cJSON_GetObjectItem(o, "place"), *of = cJSON_GetObjectItem(o, "of");
+    const int n = m->result.n;
+    return cJSON_IsNumber(place) && cJSON_IsNumber(of) && of->valueint > 0 &&
+           of->valueint <= 1000000 && place->valueint >= 0 && place->valueint < of->valueint &&
+           (n == 0 || n == of->valueint) && hn_document_text(o, "marking")[0];
+}
+
+/// Refuses a line of another class, of another exercise, or one that was graded by other rules.
+static hn_status check_line(const merging *m, const char *file, const cJSON *o, hn_diag *diag) {
+    const char *exercise = hn_document_text(o, "exercise");
+    if (!has_place(m, o)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                           "holonom grade ID FOLDER --shard i/n --out FILE.ndjson makes one",
+                           "'%.200s' is not a part of this class", file);
+    }
+    if (strcmp(exercise, m->exercise) != 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/merge", "name the exercise that was graded",
+                           "'%.200s' is a part of exercise '%.60s', not of '%.60s'", file, exercise,
+                           m->exercise);
+    }
+    if (m->first[0] && strcmp(hn_document_text(o, "marking"), m->marking) != 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/merge",
+                           "grade one of them again with the --rubric and --seed of the other",
+                           "'%.150s' was graded with another rubric, another --seed or another "
+                           "version of exercise '%.60s' than '%.150s'",
+                           file, exercise, m->first);
+    }
+    return HN_OK;
+}
+
+/// Room for the lines of the class, whose size the first line of the first part says.
+static hn_status begin_merging(merging *m, const char *file, const cJSON *o) {
+    m->result.n = cJSON_GetObjectItem(o, "of")->valueint;
+    m->result.line = calloc((size_t)m->result.n + 1, sizeof *m->result.line);
+    snprintf(m->first, sizeof m->first, "%s", file);
+    snprintf(m->marking, sizeof m->marking, "%s", hn_document_text(o, "marking"));
+    return m->result.line ? HN_OK : HN_ERR_MEMORY;
+}
+
 /// Takes one line of a part into its place.
-static hn_status take_line(hn_class_result *r, const char *file, const char *line, size_t n,
+static hn_status take_line(merging *m, const char *file, const char *line, size_t n,
                            hn_diag *diag) {
     cJSON *o = cJSON_ParseWithLength(line, n);
-    const cJSON *place = cJSON_GetObjectItem(o, "place"), *of = cJSON_GetObjectItem(o, "of");
-    const bool fits = cJSON_IsNumber(place) && cJSON_IsNumber(of) && of->valueint > 0 &&
-                      of->valueint <= 1000000 && place->valueint >= 0 &&
-                      place->valueint < of->valueint && (r->n == 0 || r->n == of->valueint);
-    hn_status status = HN_OK;
-    if (!fits) {
-        status = hn_diag_set(diag, HN_ERR_INPUT, NULL,
-                             "holonom grade ID FOLDER --shard i/n --out FILE.ndjson makes one",
-                             "'%.200s' is not a part of this class", file);
-    } else if (!r->line) {
-        r->n = of->valueint;
-        r->line = calloc((size_t)r->n + 1, sizeof *r->line);
-        status = r->line ? HN_OK : HN_ERR_MEMORY;
+    hn_status status = check_line(m, file, o, diag);
+    if (status == HN_OK && !m->result.line) {
+        status = begin_merging(m, file, o);
     }
-    char *own = status == HN_OK ? without_place(line, n, place->valueint, of->valueint) : NULL;
-    char **kept = status == HN_OK ? &r->line[place->valueint] : NULL;
+    char *own = status == HN_OK ? without_place(line, n, m->marking) : NULL;
+    char **kept =
+        status == HN_OK ? &m->result.line[cJSON_GetObjectItem(o, "place")->valueint] : NULL;
     if (status == HN_OK && !own) {
         status = HN_ERR_MEMORY;
     } else if (status == HN_OK && *kept && strcmp(*kept, own) != 0) {
@@ -301,13 +343,13 @@ static hn_status take_line(hn_class_result *r, const char *file, const char *lin
     return status;
 }
 
-static hn_status take_part(hn_class_result *r, const char *file, hn_diag *diag) {
+static hn_status take_part(merging *m, const char *file, hn_diag *diag) {
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_status status = hn_file_read(file, MOST_BYTES, &text, diag);
     for (const char *at = hn_strbuf_text(&text); status == HN_OK && *at;) {
         const size_t n = strcspn(at, "\n");
-        status = take_line(r, file, at, n, diag);
+        status = take_line(m, file, at, n, diag);
         at += n + (at[n] == '\n');
     }
     hn_strbuf_reset(&text);
@@ -327,7 +369,7 @@ static hn_status check_whole(const hn_class_result *r, hn_diag *diag) {
 }
 
 hn_exit hn_grade_merge(const hn_args *args, const hn_grade_subject *subject) {
-    hn_class_result result = {0};
+    merging m = {.exercise = hn_exercise_id(subject->exercise)};
     hn_diag diag = {0};
     hn_diags diags = {0};
     hn_status status = check_out(args->out, NULL, &diags);
@@ -335,11 +377,11 @@ hn_exit hn_grade_merge(const hn_args *args, const hn_grade_subject *subject) {
         return hn_report_diags(args, status, &diags);
     }
     for (int i = 1; i < args->words.n && status == HN_OK; i++) {
-        status = take_part(&result, args->words.word[i], &diag);
+        status = take_part(&m, args->words.word[i], &diag);
     }
-    HN_THEN(status, check_whole(&result, &diag));
-    const hn_exit exit = status == HN_OK ? finish(args, &result, subject->programs != NULL)
+    HN_THEN(status, check_whole(&m.result, &diag));
+    const hn_exit exit = status == HN_OK ? finish(args, &m.result, subject->programs != NULL)
                                          : hn_report_diag(args, &diag);
-    hn_class_result_reset(&result);
+    hn_class_result_reset(&m.result);
     return exit;
 }
