@@ -2,6 +2,7 @@
 // What the page draws, without a browser: camera, outlines, order in depth, names, arrows.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { coincide } from "../../web/state/between.js";
 import { createHistory } from "../../web/state/history.js";
 import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
 import { createNamePlaces } from "../../web/widgets/name-places.js";
@@ -171,4 +172,10 @@ test("the place of a time is between the frames about it, and never beyond the l
     const found = history.placeAt(time);
     assert.ok(Math.abs(found - place) < 1e-9, `${time} s is at ${found}`);
   }
+});
+
+test("what coincides is told from what does not, and from what is not known", () => {
+  assert.ok(coincide([1, 2, 3], [1, 2.0009, 3], 1e-3));
+  assert.ok(!coincide([1, 2, 3], [1, 2, 3.0011], 1e-3));
+  assert.ok(!coincide([1, NaN], [1, NaN], 1e-3));
 });

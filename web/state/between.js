@@ -53,3 +53,16 @@ export function rowAt(rows, place, out) {
   }
   return out;
 }
+
+/**
+ * Is every value of one row within a distance of the other's? NaN is near nothing.
+ * @param {ArrayLike<number>} a @param {ArrayLike<number>} b @param {number} near
+ */
+export function coincide(a, b, near) {
+  for (let i = 0; i < a.length; i++) {
+    if (!(Math.abs(a[i] - b[i]) < near)) {
+      return false;
+    }
+  }
+  return true;
+}

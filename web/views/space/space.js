@@ -3,6 +3,7 @@
 // A mechanism in space, drawn by WebGL under the drawing's SVG: light, ground, shadows, solids,
 // joints with their axes, paths as tubes. Names, arrows and cut joints stay in the SVG.
 import * as THREE from "three";
+import { coincide } from "../../state/between.js";
 import { referenceAt } from "../../state/reference.js";
 import { firstSpace } from "../../state/shown.js";
 import { h } from "../../widgets/dom.js";
@@ -15,6 +16,7 @@ import { createTrail } from "./trail.js";
 const MOST_PIXELS = 2; // of the canvas per pixel of the page
 const SLOW = 30; // [ms] a picture: then shadows and fine pixels are left out
 const SETTLED = 300; // [ms] after a movement of the view
+const INSIDE = 0.04; // of half a bar's width: so near, a slimmer solid is hidden in a thicker one
 const NEAR = 0.02; // of the distance
 const FAR = 12;
 
@@ -78,7 +80,9 @@ export function createSpace(frame, store, actions, drawing) {
   const place = h("div", { class: "space" }, canvas);
   frame.prepend(place);
 
-  /** @type {{ghosts: any[], reference: any, base: any, floor: any, trails: any[]} | null} */
+  /** near: [m] what is no farther from the selected method is hidden inside it
+   * @type {{ghosts: any[], reference: any, base: any, floor: any, trails: any[], near: number}
+   *   | null} */
   let made = null;
   let frames = false;
   let settled = 0;
@@ -142,7 +146,9 @@ export function createSpace(frame, store, actions, drawing) {
       ...ghosts.map(({ group }) => group),
       ...trails.map(({ node }) => node),
     );
-    made = { ghosts, reference, base, floor, trails };
+    const widths = scene.drawing.shapes.map((shape) => widthOf(scene, shape));
+    const near = INSIDE * Math.min(...widths, widthOf(scene));
+    made = { ghosts, reference, base, floor, trails, near };
     showFrames(frames);
   }
 
@@ -251,11 +257,34 @@ export function createSpace(frame, store, actions, drawing) {
       ? referenceAt(data.reference, data.history.frameAt(now))
       : null;
     if (made) {
-      made.reference.group.visible = Boolean(points);
+      made.reference.group.visible = points !== null && !isInside(points, now);
       if (points) {
         made.reference.place(points);
       }
     }
+  }
+
+  /** Is it hidden inside the selected method, which is the thickest? @param {number} now */
+  function isInside(points, now) {
+    const { history, view } = data;
+    return (
+      made !== null &&
+      !view.hidden.has(view.selected) &&
+      coincide(points, history.pointsAt(view.selected, now), made.near)
+    );
+  }
+
+  /** @param {number} now place among the kept frames */
+  function drawGhosts(now) {
+    const { history, view } = data;
+    made?.ghosts.forEach((ghost, m) => {
+      const points = history.pointsAt(m, now);
+      const covered = m !== view.selected && isInside(points, now);
+      ghost.group.visible = !view.hidden.has(m) && !covered;
+      if (ghost.group.visible) {
+        ghost.place(points, history.coordinatesAt(m, now));
+      }
+    });
   }
 
   canvas.addEventListener("webglcontextlost", (event) => {
@@ -324,13 +353,7 @@ export function createSpace(frame, store, actions, drawing) {
       if (!made || lost) {
         return;
       }
-      const { history, view } = data;
-      made.ghosts.forEach((ghost, m) => {
-        ghost.group.visible = !view.hidden.has(m);
-        if (ghost.group.visible) {
-          ghost.place(history.pointsAt(m, now), history.coordinatesAt(m, now));
-        }
-      });
+      drawGhosts(now);
       drawReference(now);
       drawTrails(now);
       renderer.render(world, setCamera());
