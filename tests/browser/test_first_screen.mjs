@@ -133,6 +133,34 @@ test("a notice covers no verdict, no curve of the widest layout and no button to
   }
 });
 
+test("the lens says the gap of the table while it plays", async (t) => {
+  const page = await open(t);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 1.2);
+  for (let k = 0; k < 60; k++) {
+    const [lens, row] = await page.evaluate(() =>
+      [".tear-inset .number", "tbody tr.selected .gap .number"].map(
+        (selector) => document.querySelector(selector).textContent,
+      ),
+    );
+    assert.equal(lens, `gap ${row}`);
+  }
+});
+
+test("a cut among several is said to be the widest, in lines that fit", async (t) => {
+  const page = await open(t, { hash: "#peaucellier" });
+  await page.getByText("the widest of 3 cuts").waitFor();
+  await soon(async () =>
+    assert.ok(
+      await page.evaluate(() =>
+        [...document.querySelectorAll(".tear-inset figcaption > *")].every(
+          (line) => line.scrollWidth <= line.clientWidth,
+        ),
+      ),
+    ),
+  );
+});
+
 test("methods with steps of their own say them, and the field says that they differ", async (t) => {
   const page = await open(t, {
     hash: "#scene=four-bar&method=index1@rk4:h=0.02&method=projection@rk4:h=0.005",
