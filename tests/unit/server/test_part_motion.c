@@ -151,6 +151,19 @@ static void a_predicted_configuration_is_compared_with_the_triangles(void **stat
     assert_string_equal(grade(PREDICTED, "a", answer, "a.a2", v)->mistake, "absolute");
     assert_true(v->entry[1].right);
 
+    // a guess may come as near to one of the slips: only two coordinates, or a number that is no
+    // angle in radians, make it certain
+    static const char likely[] = "this looks like: ";
+    assert_int_equal(strncmp(v->entry[0].explanation, likely, strlen(likely)), 0);
+    snprintf(answer, sizeof answer, "[%.6f, %.6f]", a2, th3 * 180 / PI);
+    assert_null(strstr(grade(PREDICTED, "a", answer, "a.th3", v)->explanation, likely));
+    snprintf(answer, sizeof answer, "[%.6f, %.6f]", -a2, -th3);
+    for (int k = 0; k < 2; k++) {
+        const hn_entry_verdict *both = grade(PREDICTED, "a", answer, k ? "a.th3" : "a.a2", v);
+        assert_string_equal(both->mistake, "sign");
+        assert_null(strstr(both->explanation, likely));
+    }
+
     // a loop that stays open is told, and the picture has both configurations
     const hn_entry_verdict *e = grade(PREDICTED, "a", "[0.1, 0.2]", "a.th3", v);
     assert_string_equal(e->mistake, "other");
