@@ -234,7 +234,11 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
     if (graded) {
         put_graded(g, b, v, hn_strbuf_text(&text));
     } else {
-        put_zero(g, b, failed ? hn_status_text(status) : there ? v->reason : diag.message);
+        char why[2 * HN_GRADE_TEXT + 2] = "";
+        if (!failed && there) { // the hint of a submission says what to do, or why
+            snprintf(why, sizeof why, "%s%s%s", v->reason, v->hint[0] ? "; " : "", v->hint);
+        }
+        put_zero(g, b, failed ? hn_status_text(status) : there ? why : diag.message);
     }
     hn_json_end_object(b);
     hn_strbuf_add(b, "\n");

@@ -115,6 +115,11 @@ class Class(unittest.TestCase):
         self.assertIn("copy1, copy2", text)
         self.assertNotRegex(text.split("equal wrong")[1], "right|own")
 
+    def test_a_row_says_why_no_answer_can_be_read(self):
+        self.put("ann.json", '{"a": 1, "a": 2}')
+        line = json.loads(call("grade", "closure", self.folder, "--json").stdout)
+        self.assertEqual((line["status"], line["reason"]), ("ungradable", "no answer can be read (a); 'a' is there more than once, with different values: keep one"))
+
     def test_order_and_jobs_change_nothing_and_csv_holds_the_same(self):
         chance = random.Random(3)
         for k in chance.sample(range(60), 60):

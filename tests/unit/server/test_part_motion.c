@@ -151,6 +151,26 @@ static void a_predicted_configuration_is_compared_with_the_triangles(void **stat
     assert_string_equal(grade(PREDICTED, "a", answer, "a.a2", v)->mistake, "absolute");
     assert_true(v->entry[1].right);
 
+    // a loop that stays open is told, and the picture has both configurations
+    const hn_entry_verdict *e = grade(PREDICTED, "a", "[0.1, 0.2]", "a.th3", v);
+    assert_string_equal(e->mistake, "other");
+    assert_non_null(strstr(e->explanation, "open by"));
+    assert_true(v->view.overlay);
+    assert_string_equal(v->view.scene, "four-bar");
+    assert_near(v->view.expected[2], th3, 1e-9);
+    assert_near(v->view.given[2], 0.2, 0);
+    free(v);
+}
+
+static void a_slip_is_certain_only_where_two_coordinates_show_it(void **state) {
+    double a2, th3;
+    char answer[80];
+    hn_verdict *v = calloc(1, sizeof *v);
+    (void)state;
+    open_four_bar(drawn(PREDICTED, "l1"), drawn(PREDICTED, "t1"), &a2, &th3);
+    snprintf(answer, sizeof answer, "[%.6f, %.6f]", a2 + drawn(PREDICTED, "t1"), th3);
+    assert_string_equal(grade(PREDICTED, "a", answer, "a.a2", v)->mistake, "absolute");
+
     // a guess may come as near to one of the slips: only two coordinates, or a number that is no
     // angle in radians, make it certain
     static const char likely[] = "this looks like: ";
@@ -163,15 +183,6 @@ static void a_predicted_configuration_is_compared_with_the_triangles(void **stat
         assert_string_equal(both->mistake, "sign");
         assert_null(strstr(both->explanation, likely));
     }
-
-    // a loop that stays open is told, and the picture has both configurations
-    const hn_entry_verdict *e = grade(PREDICTED, "a", "[0.1, 0.2]", "a.th3", v);
-    assert_string_equal(e->mistake, "other");
-    assert_non_null(strstr(e->explanation, "open by"));
-    assert_true(v->view.overlay);
-    assert_string_equal(v->view.scene, "four-bar");
-    assert_near(v->view.expected[2], th3, 1e-9);
-    assert_near(v->view.given[2], 0.2, 0);
     free(v);
 }
 
@@ -319,6 +330,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_part_is_sound_over_seeds),
         cmocka_unit_test(a_predicted_configuration_is_compared_with_the_triangles),
+        cmocka_unit_test(a_slip_is_certain_only_where_two_coordinates_show_it),
         cmocka_unit_test(the_other_assembly_mode_is_named),
         cmocka_unit_test(the_largest_angle_of_a_plot_is_the_dead_point_of_the_rocker),
         cmocka_unit_test(a_plot_has_round_labels_and_its_curve),
