@@ -214,6 +214,22 @@ test("bars, pins and motors are put with the mouse, and the document follows", a
   await until(page, (data) => data.document.loads?.length === 1);
   await page.getByRole("button", { name: "undo", exact: true }).first().click();
   await until(page, (data) => !data.document.loads);
+
+  // away from the start nothing is added where the part stands only for a moment
+  await page.getByRole("button", { name: "bar", exact: true }).click();
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.1);
+  const [u, v] = await tip();
+  await page.mouse.move(u, v);
+  await page.mouse.down();
+  await page.mouse.move(u - 60, v - 110, { steps: 4 });
+  await page.mouse.up();
+  await soon(async () =>
+    assert.match(await page.textContent("#editor-state"), /added at the start of the motion/),
+  );
+  await until(page, (data) => data.state !== "running" && data.view.shown === 0);
+  assert.equal(await read(page, (data) => data.scene.bodies.length), 2);
 });
 
 test("models of other programs are dropped on the page", async (t) => {

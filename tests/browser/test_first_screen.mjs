@@ -254,6 +254,16 @@ test("text is 15 px or more, and there are four sizes of it", async (t) => {
   );
 });
 
+test("the field of the step holds that of most methods; one of its own stands in its row", async (t) => {
+  const page = await open(t, {
+    hash: "#scene=four-bar&method=index1@rk4:h=0.005&method=projection@rk4:h=0.02&method=reduced@rk4:h=0.02",
+  });
+  await soon(async () => {
+    assert.equal(await page.inputValue("#set-h"), "0.02");
+    assert.match(await page.textContent("#method-list tbody tr:nth-child(1)"), /0\.005/);
+  });
+});
+
 test("a value that is typed is asked for once: Enter, leaving the field and the same again send nothing more", async (t) => {
   const page = await open(t);
   const changes = [];

@@ -205,6 +205,43 @@ test("a comparison that the server has forgotten is made again, and said so", as
   ]);
 });
 
+test("another scene opens although the server has closed the comparison before it, and nothing is said of that", async (t) => {
+  const page = await open(t);
+  const id = await read(page, (data) => data.id);
+  await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
+  await until(page, (data) => data.stream.state === "ended");
+  await Promise.all([
+    page.waitForResponse((answer) => answer.request().method() === "DELETE"),
+    page.evaluate(() => (location.hash = "#pendulum")),
+  ]);
+  await until(page, (data) => data.scene.id === "pendulum");
+  assert.doesNotMatch(await read(page, (data) => data.notice), /could not close/);
+  assert.deepEqual(bench.faultsOf(page).splice(0), [
+    `not found: ${bench.url}api/v1/comparisons/${id}`,
+  ]);
+});
+
+test("a speed that is chosen for a comparison that the server has forgotten stays chosen", async (t) => {
+  const page = await open(t);
+  const asked = [];
+  page.on("request", (request) => {
+    if (request.method() === "POST" && /\/comparisons$/.test(request.url())) {
+      asked.push(JSON.parse(request.postData()).speed);
+    }
+  });
+  const id = await read(page, (data) => data.id);
+  await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
+  await until(page, (data) => data.stream.state === "ended");
+  await page.selectOption("#speed", "0.1");
+  await until(page, `(data) => data.id !== "" && data.id !== "${id}"`);
+  await soon(async () => assert.equal(await page.inputValue("#speed"), "0.1"));
+  assert.deepEqual(asked, [0.1], "the new comparison has it from its start");
+  await until(page, (data) => data.speed === 0.1);
+  assert.deepEqual(bench.faultsOf(page).splice(0), [
+    `not found: ${bench.url}api/v1/comparisons/${id}`,
+  ]);
+});
+
 test("a server that ends and starts again: said plainly, every frame stays, the run goes on", async (t) => {
   const line = await bench.line(t);
   const first = await bench.server(t);

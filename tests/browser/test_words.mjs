@@ -8,6 +8,8 @@ import { GLOSSARY, termsIn } from "../../web/state/glossary.js";
 import { markWords } from "../../web/state/reactions.js";
 import { QUANTITIES } from "../../web/state/quantities.js";
 import { ERRORS, byName, leftOutOf } from "../../web/state/study-documents.js";
+import { createHistory } from "../../web/state/history.js";
+import { beforeAndAfter } from "../../web/state/words.js";
 import { isOpen, markerOf } from "../../web/widgets/markers.js";
 
 const keysIn = (text) =>
@@ -101,5 +103,35 @@ test("a remedy stands beside what its trial gave", () => {
   assert.deepEqual(
     triesOfIncident(incident).map(({ said }) => said),
     ["", "tried to t = 2 s: gap 7e-16 m"],
+  );
+});
+
+/** A history of one method whose gap grows by 1 mm a second; it stops at a time if one is given. */
+function growing(count, stop = Infinity) {
+  const history = createHistory(1, 1);
+  for (let k = 0; k < count; k++) {
+    const t = k / 10;
+    const state = t > stop ? "failed" : "running";
+    const now = Math.min(t, stop);
+    const method = { state, t: now, points: [0, 0, 0], gap: 1e-3 * now, energy_change: now };
+    history.push({ frame: k, t, generation: 0, methods: [method] });
+  }
+  return history;
+}
+
+test("before and after are compared over the time that both ran, and where one stopped is said", () => {
+  const method = (spelling) => ({ formulation: "index1", label: "index-1", spelling });
+  const data = (stop) => ({
+    before: { methods: [method("index1@rk4:h=0.02")], history: growing(101) },
+    history: growing(101, stop),
+    methods: [method("index1@rk4:h=0.04")],
+    duration: 10,
+  });
+  assert.deepEqual(beforeAndAfter(data(Infinity), 100), [
+    "index-1 until 10.00 s: worst gap 10 mm before, 10 mm now; energy change 10 J before, 10 J now",
+  ]);
+  assert.match(
+    beforeAndAfter(data(5.55), 100)[0],
+    /^index-1 until 5\.55 s, where it stopped: worst gap 5\.[56] mm before, 5\.[56] mm now/,
   );
 });

@@ -118,9 +118,12 @@ export function createExchange(store, notice) {
     data.pulls = body.pulls ?? [];
     adopt(description);
     if (old) {
-      api
-        .deleteComparison(old)
-        .catch(() => notice("the server could not close the previous comparison"));
+      api.deleteComparison(old).catch((error) => {
+        // one that the server has closed itself is closed
+        if (!(error instanceof Problem) || error.status !== 404) {
+          notice("the server could not close the previous comparison");
+        }
+      });
     }
   }
 
@@ -203,6 +206,8 @@ export function createExchange(store, notice) {
       if (startsAnew(wanted)) {
         await createChanged(wanted);
       } else {
+        const { speed } = /** @type {{speed?: number}} */ (wanted);
+        receiver.applyState({ speed: speed ?? data.speed }); // chosen now, before it is there again
         await resume();
         await changeNow(wanted);
       }

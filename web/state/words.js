@@ -101,14 +101,20 @@ export function beforeAndAfter(data, shown) {
   if (!before || before.history.count < 2 || shown < 1) {
     return [];
   }
-  const t = Math.min(history.t[shown], before.history.t[before.history.count - 1]);
-  const then = before.history.indexAt(t);
-  const now = history.indexAt(t);
+  const both = Math.min(history.t[shown], before.history.t[before.history.count - 1]);
   return methods.flatMap((method, m) => {
     const old = before.methods.findIndex((other) => other.formulation === method.formulation);
     if (old < 0 || before.methods[old].spelling === method.spelling) {
       return [];
     }
+    // a run that has stopped has no worst value after it
+    const ends = [history.ended[m], before.history.ended[old]].filter((end) => end < both);
+    const t = Math.min(both, ...ends);
+    const then = before.history.indexAt(t);
+    const now = history.indexAt(t);
+    const where = ends.length
+      ? `${seconds(t, data.duration)}, where it stopped`
+      : seconds(t, data.duration);
     const pair = (name) => [
       before.history.worst(old, name, 0, then),
       history.worst(m, name, 0, now),
@@ -118,9 +124,7 @@ export function beforeAndAfter(data, shown) {
     const energy = `energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`;
     const gap = `worst gap ${quantity(gap0, "m")} before, ${quantity(gap1, "m")} now`;
     const closed = gap1 < ROUNDING && gap0 < ROUNDING;
-    return [
-      `${method.label} until ${seconds(t, data.duration)}: ${closed ? `worst ${energy}` : `${gap}; ${energy}`}`,
-    ];
+    return [`${method.label} until ${where}: ${closed ? `worst ${energy}` : `${gap}; ${energy}`}`];
   });
 }
 

@@ -88,15 +88,22 @@ export function createControls(el, store, actions) {
   const fields = new Map();
   let scene = "";
 
-  /** The value that the methods share; the first one when they differ. @param {string} key */
+  /**
+   * The value that the methods share; where they differ, that of most of them, the first of equally
+   * many. A method that has a value of its own changes nothing here. @param {string} key
+   */
   function heldBy(key) {
+    /** @type {Map<number, number>} */
+    const counts = new Map();
     for (const { spelling } of data.methods) {
       const found = settingOf(data.catalogue, spelling, key);
       if (found) {
-        return Number(found.value);
+        const value = Number(found.value);
+        counts.set(value, (counts.get(value) ?? 0) + 1);
       }
     }
-    return null;
+    const most = Math.max(0, ...counts.values());
+    return [...counts.keys()].find((value) => counts.get(value) === most) ?? null;
   }
 
   /**

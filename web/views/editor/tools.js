@@ -4,6 +4,7 @@
 // Every part is written into the document.
 import { createPlaces } from "../../state/places.js";
 import { addBar, addMotor, addPin, addSlider } from "../../state/scene-parts.js";
+import { shownIndex } from "../../state/store.js";
 import { h, s, set } from "../../widgets/dom.js";
 
 const REACH = 18; // [px]
@@ -93,6 +94,11 @@ export function createEditorTools(data, { stage, frame, overlay }, { change, tel
     }
     event.stopImmediatePropagation();
     event.preventDefault();
+    if (data.state === "running" || shownIndex(data) > 0) {
+      begin();
+      tell("parts are added at the start of the motion: it is shown now, press again");
+      return;
+    }
     const [x, y] = pixelOf(event);
     const world = worldAt(x, y);
     const near = createPlaces(data.scene).near(world, REACH / stage.camera.scale);
