@@ -111,7 +111,9 @@ static hn_status ask(const hn_export_exam *exam, hn_guest_process *process, int 
     }
     if (status == HN_OK && (n < out->n || at[strspn(at, " ")] != '\0')) {
         status = hn_diag_set(
-            diag, HN_ERR_INPUT, NULL, "print nothing of your own while it is asked for states",
+            diag, HN_ERR_INPUT, NULL,
+            "hand in the file of 'export SCENE --blanks', filled in; no other program answers, and "
+            "it prints nothing of your own",
             "its answer to state %d is not the %d numbers of its parts, but '%.40s'", k + 1, out->n,
             hn_strbuf_text(&line));
     }

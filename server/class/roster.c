@@ -179,8 +179,9 @@ static bool is_kind(const char *name, hn_roster_kind kind) {
 /// The files of a kind and the zip files below a folder: how many, and the first of each by name.
 typedef struct finds {
     hn_roster_kind kind;
-    int n_file, n_zip;
+    int n_file, n_zip, n_other;
     char file[HN_ROSTER_PATH], zip[HN_ROSTER_PATH];
+    char other[HN_ROSTER_PATH]; ///< of the files that are neither
 } finds;
 
 static void keep(int *n, char first[HN_ROSTER_PATH], const char *path) {
@@ -211,9 +212,23 @@ static void search(finds *f, const char *folder, int depth) {
             keep(&f->n_file, f->file, path);
         } else if (S_ISREG(info.st_mode) && ends_in(path, ".zip")) {
             keep(&f->n_zip, f->zip, path);
+        } else {
+            keep(&f->n_other, f->other, path);
         }
     }
     closedir(dir);
+}
+
+/// "no JSON file was handed in, only 'answer.json.txt' and 2 other files".
+static hn_status refuse_others(const finds *f, hn_diag *diag) {
+    char others[40] = "";
+    if (f->n_other > 1) {
+        snprintf(others, sizeof others, " and %d other file%s", f->n_other - 1,
+                 f->n_other > 2 ? "s" : "");
+    }
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, KINDS[f->kind].hint,
+                       "no %s was handed in, only '%.100s'%s", KINDS[f->kind].name,
+                       strrchr(f->other, '/') + 1, others);
 }
 
 static hn_status refuse_count(int n, hn_roster_kind kind, hn_diag *diag) {
@@ -297,6 +312,9 @@ hn_status hn_roster_load(const hn_roster_entry *e, hn_roster_kind kind, hn_strbu
     }
     if (f.n_file == 0 && f.n_zip == 1) {
         return load_zip(f.zip, kind, text, file, diag);
+    }
+    if (f.n_file == 0 && f.n_zip == 0 && f.n_other > 0) {
+        return refuse_others(&f, diag);
     }
     if (f.n_file != 1) {
         return refuse_count(f.n_file, kind, diag);

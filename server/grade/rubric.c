@@ -27,19 +27,51 @@ struct hn_rubric {
 
 // ---- faults ----
 
-/// The line of `key` within the field `section`; of the field itself for key NULL.
+/// The quote before the key `name` that stands `depth` brackets inside `text`: of a whole text, or
+/// of the value that follows, at whose end the search stops. NULL: there is none.
+static const char *find_key(const char *text, int depth, const char *name) {
+    int inside = 0;
+    for (const char *at = text; *at && !(inside == 0 && *at == ','); at++) {
+        if (*at == '"') {
+            const char *begin = at++;
+            while (*at && *at != '"') {
+                at += *at == '\\' && at[1] ? 2 : 1;
+            }
+            if (!*at) {
+                return NULL;
+            }
+            const char *behind = at + 1 + strspn(at + 1, " \t\r\n");
+            const size_t n = (size_t)(at - begin) - 1;
+            if (inside == depth && *behind == ':' && n == strlen(name) &&
+                strncmp(begin + 1, name, n) == 0) {
+                return begin;
+            }
+        }
+        inside += (*at == '{' || *at == '[') - (*at == '}' || *at == ']');
+        if (inside < 0) {
+            return NULL;
+        }
+    }
+    return NULL;
+}
+
+/// The line of `key` within the field `section`; of the field itself for key NULL. Keys of parts
+/// have members of their own, and a name that is there twice stands at any depth.
 static int line_of(const hn_rubric *r, const char *section, const char *key) {
-    char quoted[80];
-    const char *text = hn_strbuf_text(&r->text), *at = text;
-    const char *const words[] = {section, key};
-    for (int i = 0; i < 2 && words[i]; i++) {
-        snprintf(quoted, sizeof quoted, "\"%.70s\"", words[i]);
-        const char *found = strstr(at, quoted);
-        at = found ? found : at;
+    const char *text = hn_strbuf_text(&r->text), *at = text, *found = NULL;
+    for (int depth = 1; depth <= MAX_DEPTH && !found; depth++) {
+        found = find_key(text, depth, section);
+    }
+    at = found ? found : at;
+    if (found && key) {
+        const char *value = found + strlen(section) + 2;
+        const char *inner = find_key(value, 1, key);
+        inner = inner ? inner : find_key(value, 2, key);
+        at = inner ? inner : at;
     }
     int line = 1;
-    for (const char *p = text; p < at; p++) {
-        line += *p == '\n';
+    for (const char *q = text; q < at; q++) {
+        line += *q == '\n';
     }
     return line;
 }
@@ -104,12 +136,16 @@ static hn_status check_numbers(const hn_rubric *r, const char *section, double m
                                hn_diags *diags) {
     const cJSON *m, *node = hn_rubric_section(r, section);
     hn_status status = HN_OK;
+    int entry = 0;
     cJSON_ArrayForEach(m, node) {
+        entry++;
         if (!cJSON_IsNumber(m) || !(m->valuedouble >= 0 && m->valuedouble <= most)) {
-            const char *name = m->string ? m->string : section;
-            status = hn_rubric_fault(r, diags, section, m->string, NULL,
-                                     "'%.40s' in \"%s\" needs a number from 0 to %g", name, section,
-                                     most);
+            status = m->string ? hn_rubric_fault(r, diags, section, m->string, NULL,
+                                                 "'%.40s' in \"%s\" needs a number from 0 to %g",
+                                                 m->string, section, most)
+                               : hn_rubric_fault(r, diags, section, NULL, NULL,
+                                                 "entry %d of \"%s\" needs a number from 0 to %g",
+                                                 entry, section, most);
         }
     }
     return status;
@@ -143,7 +179,8 @@ static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
 }
 
 /// What the other checks rely on: objects with a member for each part or mistake, lists of costs.
-static hn_status check_shapes(const hn_rubric *r, hn_diags *diags) {
+/// A field of another shape is left out after its fault is added, so that the rest is checked too.
+static hn_status check_shapes(hn_rubric *r, hn_diags *diags) {
     static const struct {
         const char *field, *says, *hint;
         bool list;
@@ -163,22 +200,31 @@ static hn_status check_shapes(const hn_rubric *r, hn_diags *diags) {
         if (node && !(ROWS[i].list ? cJSON_IsArray(node) : cJSON_IsObject(node))) {
             status = hn_rubric_fault(r, diags, ROWS[i].field, NULL, ROWS[i].hint, "\"%s\" is %s",
                                      ROWS[i].field, ROWS[i].says);
+            cJSON_DeleteItemFromObjectCaseSensitive(r->root, ROWS[i].field);
+            if (strcmp(ROWS[i].field, "points") == 0) {
+                // a sum without these points would be another
+                cJSON_DeleteItemFromObjectCaseSensitive(r->root, "total");
+            }
         }
     }
-    const cJSON *m;
-    cJSON_ArrayForEach(m, hn_rubric_section(r, "tolerance")) {
-        if (status == HN_OK && !cJSON_IsObject(m)) {
+    cJSON *tolerance = cJSON_GetObjectItemCaseSensitive(r->root, "tolerance");
+    for (cJSON *m = tolerance ? tolerance->child : NULL, *next; m; m = next) {
+        next = m->next;
+        if (!cJSON_IsObject(m)) {
             status = hn_rubric_fault(r, diags, "tolerance", m->string, "{\"relative\": 0.005}",
                                      "the tolerance of part %.20s is an object", m->string);
+            cJSON_Delete(cJSON_DetachItemViaPointer(tolerance, m));
         }
     }
     return status;
 }
 
 static hn_status check_fields(hn_rubric *r, hn_diags *diags) {
-    hn_status status = HN_OK;
     const cJSON *m;
-    HN_TRY(check_shapes(r, diags));
+    hn_status status = check_shapes(r, diags);
+    if (!cJSON_IsObject(r->root)) {
+        return status;
+    }
     cJSON_ArrayForEach(m, r->root) {
         int k = 0;
         while (k < N_FIELDS && strcmp(FIELDS[k], m->string) != 0) {

@@ -21,8 +21,7 @@ static void write_gradescope(hn_strbuf *b, const hn_verdict *v, const hn_verdict
 }
 
 static void write_junit(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
-    (void)x;
-    hn_verdict_junit(b, v);
+    hn_verdict_junit(b, v, x->submission);
 }
 
 static void write_csv(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x) {
@@ -53,16 +52,16 @@ static void write_lti(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra 
 }
 
 static const hn_verdict_form FORMS[] = {
-    {"text", "txt", false, false, write_text},
-    {"json", "json", false, false, write_json},
-    {"gradescope", "json", true, false, write_gradescope},
-    {"prairielearn", "json", true, true, write_prairielearn},
-    {"autolab", "txt", false, false, write_autolab},
-    {"coderunner", "json", false, false, write_coderunner},
-    {"lti-score", "json", false, false, write_lti},
-    {"junit", "xml", false, false, write_junit},
-    {"csv", "csv", false, false, write_csv},
-    {"html", "html", false, true, write_html},
+    {"text", "txt", false, false, "", "", write_text},
+    {"json", "json", false, false, "", "", write_json},
+    {"gradescope", "json", true, false, "", "", write_gradescope},
+    {"prairielearn", "json", true, true, "", "", write_prairielearn},
+    {"autolab", "txt", false, false, "", "", write_autolab},
+    {"coderunner", "json", false, false, "", "", write_coderunner},
+    {"lti-score", "json", false, false, "", "", write_lti},
+    {"junit", "xml", false, false, HN_VERDICT_JUNIT_HEAD, HN_VERDICT_JUNIT_TAIL, write_junit},
+    {"csv", "csv", false, false, "", "", write_csv},
+    {"html", "html", false, true, "", "", write_html},
 };
 enum { N_FORMS = sizeof FORMS / sizeof *FORMS };
 

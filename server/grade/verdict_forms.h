@@ -7,15 +7,17 @@
 
 /// What a form may need besides the verdict.
 typedef struct hn_verdict_extra {
-    double seconds;       ///< [s] that grading took
-    bool first;           ///< of several verdicts on one output
-    const hn_strbuf *png; ///< the picture of a state where a wrong entry shows; NULL: none
+    double seconds;         ///< [s] that grading took
+    bool first;             ///< of several verdicts on one output
+    const char *submission; ///< of several on one output: which it is; NULL: there is one
+    const hn_strbuf *png;   ///< the picture of a state where a wrong entry shows; NULL: none
 } hn_verdict_extra;
 
 typedef struct hn_verdict_form {
     const char *name, *ending; ///< of the form, and of its files
     bool results;              ///< the platform reads one file of the name "results"
     bool pictures;             ///< holds the picture itself
+    const char *head, *tail;   ///< around all verdicts of one output
     void (*write)(hn_strbuf *b, const hn_verdict *v, const hn_verdict_extra *x);
 } hn_verdict_form;
 

@@ -37,15 +37,16 @@ static void put_case(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_strbuf_add(b, "</failure>\n    </testcase>\n");
 }
 
-void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v) {
+void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v, const char *submission) {
     const int graded = v->kind == HN_VERDICT_GRADED;
     int failures = 0;
     for (int k = 0; k < v->n_entries && graded; k++) {
         failures += !is_full(&v->entry[k]);
     }
-    hn_strbuf_add(b,
-                  "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"");
+    hn_strbuf_add(b, "  <testsuite name=\"");
     hn_verdict_escape(b, v->problem->title);
+    hn_strbuf_add(b, submission ? ": " : "");
+    hn_verdict_escape(b, submission ? submission : "");
     hn_strbuf_printf(b, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n",
                      graded ? v->n_entries : 1, failures, !graded);
 
@@ -60,7 +61,7 @@ void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v) {
         hn_verdict_escape(b, v->reason);
         hn_strbuf_add(b, "</error></testcase>\n");
     }
-    hn_strbuf_add(b, "  </testsuite>\n</testsuites>\n");
+    hn_strbuf_add(b, "  </testsuite>\n");
 }
 
 /// What is to be read off the page at once: colours of both themes, and tables that fold on a

@@ -5,9 +5,13 @@
 
 #include "grade/verdict.h"
 
-/// JUnit's XML: one test case an entry; an entry with less than its points fails, a submission that
-/// cannot be graded is an error.
-void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v);
+#define HN_VERDICT_JUNIT_HEAD "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+#define HN_VERDICT_JUNIT_TAIL "</testsuites>\n"
+
+/// A suite of JUnit's XML, to stand between head and tail: one test case an entry. An entry with
+/// less than its points fails, a submission that cannot be graded is an error. `submission` is
+/// added to the name of the suite; NULL: none.
+void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v, const char *submission);
 /// A page of its own for a person, without scripts. It holds the picture `png`, which may be NULL.
 void hn_verdict_html(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png);
 /// A line of comma-separated values: problem, student, seed, status, score, max_score, and the

@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum { MAX_COLUMNS = 12, INDENT = 4, GUTTER = 2, MIN_COLUMN = 6 };
+static const char PICTURE[] = "[picture] "; // before the caption of one
 
 /// The member of a formula that holds its spelling in ASCII.
 static const char SPELLED[] = "ascii";
@@ -379,7 +380,8 @@ static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
                          text_of(node, "id"), text_of(node, "id"));
         put_blocks(b, children_of(node), indent + INDENT, width);
     } else if (is_kind(node, "figure")) {
-        put_inline(b, children_of(node), indent, width, "[picture] ");
+        put_inline(b, children_of(node), indent, width, PICTURE);
+        hn_strbuf_printf(b, "%*s%s\n", indent + INDENT, "", text_of(node, "src"));
     } else {
         put_inline(b, children_of(node), indent, width, "");
     }
@@ -450,6 +452,10 @@ void hn_lesson_text(hn_strbuf *b, const cJSON *lesson, int columns) {
     hn_strbuf_init(&all);
     put_blocks(&all, blocks, 0, columns);
     put_answers(&all, blocks, columns);
+    if (strstr(hn_strbuf_text(&all), PICTURE)) {
+        hn_strbuf_printf(&all, "\nThe pictures are files in the folder lessons/%s.\n",
+                         text_of(lesson, "id"));
+    }
     put_tidy(b, &all);
     hn_strbuf_reset(&all);
 }

@@ -87,6 +87,8 @@ class Class(unittest.TestCase):
         self.put("two/a.json", RIGHT)
         self.put("two/b.json", RIGHT)
         self.put("none/readme.txt", "later")
+        self.put("named/answer.json.txt", RIGHT)
+        self.put("named/notes.txt", "x")
         self.put("large.json", '{"J": "' + "x" * (2 << 20) + '"}')
         self.put("broken.zip", b"PK\3\4 and no more")
         self.put("cut.zip", zipped({"answer.json": RIGHT})[:-40])
@@ -96,8 +98,8 @@ class Class(unittest.TestCase):
         self.put("good.json", RIGHT)
         lines = {line["student"]: line for line in self.lines("--jobs", "2")}
         self.assertEqual({name: line["status"] for name, line in lines.items() if line["status"] != "ungradable"}, {"good": "graded"})
-        self.assertEqual(len(lines), 14)
-        for name, said in (("two", "2 JSON files"), ("none", "no JSON file"), ("bomb", "larger than"), ("link", "no JSON file"), ("broken", "zip"), ("cut", "zip")):
+        self.assertEqual(len(lines), 15)
+        for name, said in (("two", "2 JSON files"), ("none", "no JSON file was handed in, only 'readme.txt'"), ("named", "only 'answer.json.txt' and 1 other file"), ("bomb", "larger than"), ("link", "no JSON file"), ("broken", "zip"), ("cut", "zip")):
             self.assertIn(said, lines[name]["reason"])
         for line in lines.values():
             self.assertTrue(line.get("reason") or line.get("summary"), line)

@@ -153,6 +153,13 @@ def forms(folder):
     suite = xml.etree.ElementTree.fromstring(junit)[0]
     failures = [c for c in suite if c.find("failure") is not None]
     expect("JUnit counts its cases and failures", len(suite) == int(suite.get("tests")) and len(failures) == int(suite.get("failures")) > 0, junit)
+    other = write(folder, "other.json", {})
+    several = run("grade", "p1", path, other, "--format", "junit")
+    suites = xml.etree.ElementTree.fromstring(several.stdout)
+    expect("several verdicts are one document of JUnit", several.returncode == 2 and suites.tag == "testsuites" and len(suites) == 2, several.stdout)
+    expect("whose suites have the names of the files", suites[0].get("name").endswith(path) and suites[1].get("name").endswith(other), several.stdout)
+    done = run("grade", "p1", path, "--format", "junit", "--out", os.path.join(folder, "some.xml"))
+    expect("a file of JUnit is whole", done.returncode == 0 and len(xml.etree.ElementTree.parse(os.path.join(folder, "some.xml")).getroot()) == 1, done.stderr)
     lines = list(csv.reader(run("grade", "p1", path, path, "--format", "csv", "--student", "=cmd()").stdout.splitlines()))
     expect("CSV has one head and a line for each file", [line[0] for line in lines if line] == ["problem", "p1", "p1"], str(lines))
     expect("CSV hands no formula to a spreadsheet", lines[1][1] == " =cmd()", str(lines))
@@ -293,6 +300,14 @@ def whole_check(folder):
     said = ["no field 'hint'", "no part 'bb'", "needs a number", "below the error", "no mistake 'sgn'", "sum up to"]
     expect("all faults of a rubric are told at once", all(s in told for s in said), told)
     expect("each with its line", len(re.findall(r"line \d+: ", told)) >= 6, told)
+    shapeless = os.path.join(folder, "shapeless.json")
+    with open(shapeless, "w", encoding="utf-8") as f:
+        f.write('{"rubric": 1, "exercise": "gears",\n "points": {"a": 1,\n  "foo": 1},\n "hints": ["x"],\n "foo": 5,\n "shares": [1],\n'
+                ' "tolerance": {"a": 3,\n  "c": {"relative": 2}}}')
+    told = run("rubric", "check", shapeless).stderr
+    for line, fault in ((3, "has no part 'foo'"), (4, 'entry 1 of "hints" needs a number from 0'), (5, "no field 'foo'"), (6, '"shares" is an object'),
+                        (7, "the tolerance of part a is an object"), (8, "tolerance 2 of part c is too wide")):
+        expect(f"beside a fault of shape, line {line} is named", re.search(rf"line {line}: .*{re.escape(fault)}", told) is not None, told)
     told = run("problem", "closure", "--seeds", "1..2", "--check").stdout
     expect("the mistakes that an exercise names are listed", "mistakes of part a: along-y coupler-sign" in told, told)
 
@@ -616,6 +631,39 @@ def outputs(folder):
     expect("verdicts keep the folders that tell them apart", all(os.path.exists(os.path.join(verdicts, name, "sub", "p3.txt")) for name in ("s1", "s2")), str(os.listdir(verdicts)))
 
 
+def files_of_others(folder):
+    """A plot of this program is replaced, any other file of its name is kept, and what was written is named."""
+    path = os.path.join(folder, "gp.svg")
+    first = os.path.join(folder, "gp-a.svg")
+    with open(first, "w", encoding="utf-8") as f:
+        f.write("mine")
+    for _ in range(2):
+        done = run("problem", "gap-plot", "-o", path)
+        expect("the plots that were written are named", done.returncode == 0 and f"the plot of part a: {first}\n" in done.stdout, done.stdout)
+    with open(first + ".1", encoding="utf-8") as f:
+        expect("a file of somebody else's is kept", f.read() == "mine")
+    expect("and a plot is not", not os.path.exists(first + ".2"))
+    full = run("grade", "gears", "-", "--out", "/dev/full")
+    expect("a device is no folder of verdicts", full.returncode == 2 and "'/dev/full' is no folder" in full.stderr, full.stderr)
+    done = subprocess.run([PROGRAM, "grade", "gears", "-", "--format", "html", "--out", os.path.join(folder, "verdicts")], input='{"a": 1}', capture_output=True, text=True)
+    expect("a verdict on standard input has a name", done.returncode == 0 and os.path.exists(os.path.join(folder, "verdicts", "submission.html")), done.stderr)
+    done = run("grade", "gears", "x.ndjson", "--shard", "1/2", "--merge")
+    expect("a shard is not merged at once", done.returncode == 2 and "--merge puts graded parts together" in done.stderr, done.stderr)
+
+
+def in_a_students_words(folder):
+    """Messages of the program that mean nothing to a student are said in his words, with units."""
+    told = run("grade", "method", write(folder, "m.json", {"a": "program:./x.py", "b": "index1@rk4:h=0.01"}), "--no-pictures").stdout
+    expect("no option that grade lacks is advised", "list methods" in told and "--allow-programs" not in told, told)
+    expect("a loop gap has its unit", re.search(r"the loop gap reaches [0-9.e-]+ m; at most 0.0002 m is allowed", told) is not None, told)
+    told = run("grade", "turning", write(folder, "t.json", {"a": {"l1": 0.2, "l3": 0.1}}), "--no-pictures").stdout
+    expect("the shipped scene is not named", "the loop cannot be closed" in told and "in the scene" not in told, told)
+    told = run("grade", "assemble", write(folder, "o.json", {"a": {"th2": 0.1, "th3": 0.3}}), "--no-pictures").stdout
+    expect("an open loop has its unit", re.search(r"the loop is open by [0-9.]+ m\n", told) is not None, told)
+    told = run("lesson", "3").stdout
+    expect("a picture's file is named", "pictures/missing-term.svg" in told and "in the folder lessons/03-null-space." in told, told[-300:])
+
+
 def other_maximum(folder):
     """Graded again with other points: both scores stand beside their own maximum."""
     rubric = os.path.join(folder, "double.json")
@@ -653,7 +701,7 @@ def main():
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)
-    for test in (bad_variants, refusals, outputs, other_maximum):
+    for test in (bad_variants, refusals, outputs, files_of_others, in_a_students_words, other_maximum):
         with tempfile.TemporaryDirectory() as folder:
             test(folder)
     for n, (name, good, said) in enumerate(RESULTS, 1):

@@ -90,6 +90,12 @@ class Filled(unittest.TestCase):
         done = subprocess.run(["gcc", "-std=c99", "-Wall", "-Wextra", "-Wno-unused-variable", "-Werror", "-o", path + ".x", path, "-lm"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_a_whole_program_is_no_program_with_blanks(self):
+        path = self.put("whole.c", call("export", "four-bar", "--language", "c").stdout)
+        status, verdict = self.grade("four-bar", path)
+        self.assertEqual((status, verdict["status"]), (2, "ungradable"), verdict)
+        self.assertIn("'export SCENE --blanks'", verdict["hint"])
+
     def test_mistakes_are_named(self):
         _, filled = blank_and_filled("four-bar", "c")
         last = filled.rindex("    energy[0] =")

@@ -128,6 +128,36 @@ class Snapshot(Command):
             self.assertEqual(json.loads(places[1])["scene"], "four-angles-as-printed")
             self.assert_exit(call("snapshot", "four-bar", "--seed", "42", "-o", path), INPUT)
 
+    def test_a_file_that_is_no_picture_of_this_program_is_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in (("k.svg", b"{}"), ("k.png", b"\x89PNG\r\n\x1a\n of somebody else, who wants to have it later too")):
+                path = os.path.join(folder, name)
+                with open(path, "wb") as f:
+                    f.write(content)
+                for t in ("0", "0.1", "0.2"):
+                    done = call("snapshot", "four-bar", "--method", RK4, "--time", t, "-o", path)
+                    self.assert_exit(done, DONE)
+                    self.assertEqual(b"is kept in" in done.stderr, t == "0", done.stderr)
+                with open(path + ".1", "rb") as f:
+                    self.assertEqual(f.read(), content)
+            film = os.path.join(folder, "k.png")
+            for _ in range(2):
+                self.assert_exit(call("snapshot", "four-bar", "--method", RK4, "--at", "0,0.1", "--animate", "40", "-o", film), DONE)
+            self.assertEqual(sorted(os.listdir(folder)), ["k.png", "k.png.1", "k.svg", "k.svg.1"])
+
+    def test_options_that_say_two_things_are_refused(self):
+        for words, said in ((["--time", "1", "--at", "0,0.5"], b"both say which time"), (["--at", "0,1", "--ghosts", "--animate", "9"], b"--ghosts draws all times into one")):
+            done = call("snapshot", "four-bar", *words, "-o", os.path.join(tempfile.gettempdir(), "never.png"))
+            self.assert_exit(done, INPUT)
+            self.assertIn(said, done.stderr)
+
+    def test_a_configuration_that_is_asked_for_is_not_drawn_and_that_is_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for exercise, said in (("assemble", True), ("p3", False)):
+                done = call("snapshot", exercise, "--student", "ada", "-o", os.path.join(folder, "a.png"))
+                self.assert_exit(done, DONE)
+                self.assertEqual(b"the angles are those of the scene's start" in done.stderr, said)
+
     def test_times_must_rise(self):
         done = call("snapshot", "four-bar", "--at", "0.5,0.2", "-o", os.path.join(tempfile.gettempdir(), "never.png"))
         self.assert_exit(done, INPUT)

@@ -101,20 +101,23 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
     hn_strbuf_init(&b);
     hn_strbuf_init(&png);
     const hn_exit drawn = draw_picture(t, v, &png);
-    const bool text = strcmp(t->form->name, "text") == 0;
+    const bool text = strcmp(t->form->name, "text") == 0, several = t->args->words.n > 2;
 
     // under the name of its submission where there are several
-    if (t->args->words.n > 2 && text && !t->target) {
+    if (several && text && !t->target) {
         hn_strbuf_printf(&b, "== %s\n", t->submission);
     }
     const hn_verdict_extra extra = {.seconds = seconds,
                                     .first = t->target || t->submission == t->args->words.word[1],
+                                    .submission = several && !t->target ? t->submission : NULL,
                                     .png = png.n > 0 ? &png : NULL};
+    hn_strbuf_add(&b, t->target ? t->form->head : "");
     if (t->args->plot && text && v->kind == HN_VERDICT_GRADED) {
         write_bars(&b, v);
     } else {
         t->form->write(&b, v, &extra);
     }
+    hn_strbuf_add(&b, t->target ? t->form->tail : "");
 
     // a picture that cannot be drawn takes no verdict away
     const hn_exit written = t->target ? write_files(t, v, &b, &png)
@@ -161,13 +164,18 @@ static hn_exit grade_one(const task *t) {
 /// One bad submission never stops the rest; the worst outcome is the exit status.
 static hn_exit grade_all(task t, const hn_verdict_names *names) {
     hn_exit worst = HN_EXIT_DONE;
+    fputs(t.args->out ? "" : t.form->head, stdout);
     for (int i = 1; i < t.args->words.n; i++) {
         t.submission = t.args->words.word[i];
         t.target = t.args->out ? names->path[i - 1] : NULL;
         const hn_exit one = grade_one(&t);
         worst = one > worst ? one : worst;
     }
-    return worst;
+    hn_strbuf tail;
+    hn_strbuf_init(&tail);
+    hn_strbuf_add(&tail, t.args->out ? "" : t.form->tail);
+    const hn_exit ended = hn_cli_print(&tail);
+    return ended > worst ? ended : worst;
 }
 
 /// What ID names, owned.
@@ -224,6 +232,11 @@ static hn_status choose_form(const hn_args *args, const hn_verdict_form **out, h
     const hn_verdict_form *file = args->out && !folder ? hn_verdict_form_of_file(args->out) : NULL;
     const char *said = args->format ? args->format : args->json ? "json" : NULL;
     HN_TRY(hn_verdict_form_find(said ? said : file ? file->name : "text", out, diag));
+    if (args->out && !folder && !file && stat(args->out, &info) == 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/out", "--out DIR, or --out FILE.txt",
+                           "'%.200s' is no folder, and its ending is that of no form of verdicts",
+                           args->out);
+    }
     if (file && strcmp(file->ending, (*out)->ending) != 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/out",
                            "choose another ending, or leave --format out",
@@ -275,6 +288,9 @@ static hn_status check_options(const hn_args *args, bool class, hn_diags *diags)
          "leave --plot out"},
         {class && args->show_expected, "/show_expected",
          "--show-expected is for one submission, not for a class", "leave --show-expected out"},
+        {args->shard && args->merge, "/merge",
+         "--shard grades a part of a class, --merge puts graded parts together",
+         "leave one of them out"},
         {!class && !isnan(args->jobs), "/jobs", "--jobs is for a folder of submissions",
          "leave --jobs out, or name the folder"},
     };

@@ -29,8 +29,13 @@ static hn_status choose_form(const hn_args *args, hn_picture_request *request, h
                             "'%.200s' is no name for a picture: snapshots are PNG or SVG",
                             args->out);
     }
+    if (!isnan(args->animate) && args->ghosts) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/animate", "leave one of them out",
+                            "--ghosts draws all times into one picture, --animate one after the "
+                            "other");
+    }
     if (!isnan(args->animate) &&
-        (svg || args->at.n < 2 || args->ghosts || args->animate < 1 || args->animate > 65535)) {
+        (svg || args->at.n < 2 || args->animate < 1 || args->animate > 65535)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/animate", "--at 0,0.1,0.2 --animate 100",
                             "an animation is a PNG of several times, each for 1 to 65535 ms");
     }
@@ -41,6 +46,10 @@ static hn_status choose_form(const hn_args *args, hn_picture_request *request, h
 
 /// Moments of one motion follow each other.
 static hn_status check_times(const hn_args *args, hn_diags *diags) {
+    if (args->at.n > 0 && !isnan(args->time)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", "leave one of them out",
+                            "--time %g and --at both say which time is drawn", args->time);
+    }
     for (int i = 1; i < args->at.n; i++) {
         if (!(args->at.value[i] > args->at.value[i - 1])) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/at",
@@ -129,6 +138,19 @@ static hn_status load_exercise(const hn_library *lib, const hn_args *args, subje
     return hn_model_load(lib, &source, &s->model, diags);
 }
 
+/// The start of the scene is drawn where a part asks for the configuration: the answer is not.
+static void note_start(const hn_exercise *e) {
+    bool asked = false;
+    for (int i = 0; i < e->n_parts; i++) {
+        asked |= strcmp(hn_part_text(e->parts[i].node, "kind"), "configuration") == 0;
+    }
+    if (asked) {
+        hn_cli_note("holonom: the lengths are those of the variant; the angles are those of the "
+                    "scene's start, since '%s' asks for the variant's\n",
+                    e->id);
+    }
+}
+
 static hn_status load_subject(const hn_library *lib, const hn_args *args, subject *s,
                               hn_diags *diags) {
     const char *word = args->words.word[0];
@@ -160,6 +182,9 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     }
     HN_THEN(status, hn_model_picture(&png, &description, s.model, &request, &ended, &diags));
     hn_model_free(s.model);
+    if (status == HN_OK && s.exercise) {
+        note_start(s.exercise);
+    }
     hn_exercise_free(s.exercise);
 
     // the picture, then what it shows
@@ -168,6 +193,7 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&description);
         return hn_report_diags(args, status, &diags);
     }
+    hn_cli_keep_other(args->out, &png);
     hn_exit result = hn_cli_write_file(args, args->out, &png);
     if (result == HN_EXIT_DONE && (args->json || args->describe) && strcmp(args->out, "-") != 0) {
         result = hn_cli_print(&description);

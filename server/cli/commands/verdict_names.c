@@ -65,7 +65,7 @@ static hn_status put_paths(hn_verdict_names *names, const char *folder,
         if (single && n == 1) {
             hn_strbuf_add(&b, "results");
         } else {
-            put_name(&b, submissions[i], keep);
+            put_name(&b, strcmp(submissions[i], "-") == 0 ? "submission" : submissions[i], keep);
         }
         names->path[i] = hn_strbuf_take(&b);
         if (!names->path[i]) {

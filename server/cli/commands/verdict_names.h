@@ -15,7 +15,8 @@ typedef struct hn_verdict_names {
 ///
 /// The submission's name without its ending, as long as these differ; otherwise with as many of its
 /// last folders as tell them apart (a/answer.json, b/answer.json: FOLDER/a/answer,
-/// FOLDER/b/answer), and with its own ending where even these are the same. `single`: one
+/// FOLDER/b/answer), and with its own ending where even these are the same. The name of standard
+/// input is "submission". `single`: one
 /// submission alone is called "results".
 /// Fails: HN_ERR_INPUT (a submission given twice, a submission that would be overwritten),
 /// HN_ERR_IO (a folder cannot be made), HN_ERR_LIMIT, HN_ERR_MEMORY.

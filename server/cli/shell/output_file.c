@@ -70,6 +70,34 @@ void hn_cli_keep_former(const char *path, const hn_strbuf *bytes) {
                 path);
 }
 
+/// Whether the file begins as a picture of this program does: a PNG of 8 bits with the chunk sRGB
+/// first, or acTL of an animation, or an SVG with the attributes of its plots.
+static bool is_own_picture(const char *path) {
+    static const char png[] = "\x89PNG\r\n\x1a\n",
+                      svg[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
+    enum { DEPTH = 24, FIRST = 37, SECOND = 50 }; // bytes at which fields of a PNG stand
+    char begins[400] = "";
+    FILE *f = fopen(path, "rb");
+    const size_t n = f ? fread(begins, 1, sizeof begins - 1, f) : 0;
+    if (f) {
+        fclose(f);
+    }
+    if (n > SECOND + 4 && memcmp(begins, png, sizeof png - 1) == 0) {
+        const bool still =
+            memcmp(begins + FIRST, "sRGB\1", 5) == 0 && memcmp(begins + SECOND, "IDAT", 4) == 0;
+        return memcmp(begins + DEPTH, "\10\2", 2) == 0 &&
+               (still || memcmp(begins + FIRST, "acTL", 4) == 0);
+    }
+    const char *end = strchr(begins, '>'), *role = strstr(begins, "role=\"img\"");
+    return strncmp(begins, svg, sizeof svg - 1) == 0 && role && end == role + 10;
+}
+
+void hn_cli_keep_other(const char *path, const hn_strbuf *picture) {
+    if (strcmp(path, "-") != 0 && !is_own_picture(path)) {
+        hn_cli_keep_former(path, picture);
+    }
+}
+
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
     const char *slash = path ? strrchr(path, '/') : NULL;
     char folder[4096] = "";

@@ -18,6 +18,9 @@ bool hn_cli_is_content(const char *path, const hn_strbuf *bytes);
 /// hand, or a file of the user's. Where it differs from `bytes`, it is kept under the first free
 /// name FILE.1, FILE.2, ..., and a note says so.
 void hn_cli_keep_former(const char *path, const hn_strbuf *bytes);
+/// The same before a picture is written, but a picture that this program drew is replaced: it can
+/// be drawn again.
+void hn_cli_keep_other(const char *path, const hn_strbuf *picture);
 /// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its
 /// folder is not there or takes no files.
 HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);

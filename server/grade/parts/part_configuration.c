@@ -338,7 +338,7 @@ static void say_open(const sheet *s, const double *given, char *text, size_t siz
     const double gap = hn_pose_solver_open(s->solver);
     text[0] = 0;
     if (hn_pose_solver_gap(s->solver) > s->within) {
-        snprintf(text, size, "; with the whole answer the loop is open by %.3g", gap);
+        snprintf(text, size, "; with the whole answer the loop is open by %.3g m", gap);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "grade/parts/part_list.h"
 #include "grade/parts/part_model.h"
 
+#include "integrators/method/guest.h"
 #include "integrators/method/method_spec.h"
 #include "study/run/run.h"
 
@@ -82,6 +83,13 @@ static double measure(const hn_part *p, const outcome *found, const outcome *ref
 
 static void judge(const hn_part *p, const outcome *found, const outcome *reference,
                   hn_part_result *r) {
+    static const struct {
+        const char *says, *unit;
+    } measures[] = {{"a coordinate differs from the reference by", "rad or m"},
+                    {"the loop gap reaches", "m"},
+                    {"the energy changes by", "J"}};
+    const char *what = hn_part_text(p->node, "measure");
+    const int kind = strcmp(what, "gap") == 0 ? 1 : strcmp(what, "energy") == 0 ? 2 : 0;
     const double limit = hn_part_number(p->node, "error", 0),
                  cost = hn_part_number(p->node, "evaluations", HUGE_VAL);
     const double error = measure(p, found, reference);
@@ -91,7 +99,9 @@ static void judge(const hn_part *p, const outcome *found, const outcome *referen
     } else if (!(error <= limit)) {
         const int near = error <= 10 * limit && found->evaluations <= cost;
         hn_part_wrong(r, "inaccurate", near ? 0.5 : 0.25,
-                      "%.3g, allowed %.3g (at %.0f evaluations)", error, limit, found->evaluations);
+                      "%s %.3g %s; at most %.3g %s is allowed (%.0f evaluations)",
+                      measures[kind].says, error, measures[kind].unit, limit, measures[kind].unit,
+                      found->evaluations);
     } else if (found->evaluations > cost) {
         hn_part_wrong(r, "costly", 0.5,
                       "accurate enough (%.2g), but %.0f evaluations of the dynamics; allowed %.0f",
@@ -113,7 +123,10 @@ static hn_status grade_word(const hn_part *p, const char *word, hn_part_result *
         if (tried == HN_OK) {
             judge(p, &found, &reference, r);
         } else {
-            hn_part_unreadable(r, "%.250s%s%.100s", why.message, why.hint[0] ? "; " : "", why.hint);
+            // the options that allow programs are not those of a student
+            const char *hint =
+                hn_guest_is_named(word) ? "choose one of 'holonom list methods'" : why.hint;
+            hn_part_unreadable(r, "%.250s%s%.100s", why.message, hint[0] ? "; " : "", hint);
             status = tried == HN_ERR_MEMORY ? tried : status;
         }
     }

@@ -95,6 +95,11 @@ static hn_status load(const hn_part *p, const hn_setting *settings, int n, const
         if (status == HN_ERR_STOPPED) {
             hn_diags_add(&diags, status, NULL, NULL, "it takes more than %g s to compile", SECONDS);
         }
+        // what differs from the scene that is shipped means nothing to a student
+        char *changes = strstr(diags.item[0].message, "; changed: ");
+        if (changes) {
+            *changes = '\0';
+        }
         hn_part_wrong(r, open ? "not-assembled" : "no-scene", 0, "%s: %.250s",
                       open ? "the loop cannot be closed" : "the scene cannot be used",
                       diags.item[0].message);
