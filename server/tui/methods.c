@@ -19,11 +19,38 @@ static void keep(kept *before, const hn_workbench *w) {
     before->n = w->n_methods;
 }
 
+/// Whether a method can come to the end of the motion in as many fixed steps as a run may take; a
+/// spelling that is none is refused elsewhere.
+static hn_status check_steps(const hn_workbench *w, int m, hn_diags *diags) {
+    const double end = hn_model_scene(w->model)->duration;
+    const double allowed = (double)hn_run_opts_default().max_steps;
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    if (hn_method_parse(w->methods[m], &spec, &diag) != HN_OK || hn_method_is_adaptive(&spec)) {
+        return HN_OK;
+    }
+    const double h = hn_method_option(&spec, "h", 0);
+    if (!(h > 0) || end / h <= allowed) {
+        return HN_OK;
+    }
+    return hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
+                        "dt = %.3g s needs %.3g steps to t = %.4g s, and %.3g are allowed; the "
+                        "shortest dt here is %.2g s",
+                        h, end / h, end, allowed, end / allowed);
+}
+
 /// Returns whether the methods could be taken; else they are as before and the fault is said.
 static bool record_again(hn_workbench *w, const kept *before) {
     hn_diags diags = {0};
+    hn_status status = HN_OK;
     w->panel = HN_PANEL_MAIN;
-    if (hn_workbench_record(w, &diags) == HN_OK) {
+    for (int m = 0; m < w->n_methods && status == HN_OK; m++) {
+        status = check_steps(w, m, &diags);
+    }
+    if (status == HN_OK) {
+        status = hn_workbench_record(w, &diags);
+    }
+    if (status == HN_OK) {
         hn_versions_keep(w);
         return true;
     }
@@ -57,7 +84,12 @@ void hn_methods_set_step(hn_workbench *w, const char *text) {
     kept before;
     double h;
     if (!hn_seconds_read(text, &h)) {
-        hn_workbench_say(w, "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms", text);
+        const bool large = isinf(h) && h > 0;
+        hn_workbench_say(w,
+                         large ? "dt must be a finite time; '%.40s' is beyond the largest number. "
+                                 "Try 0.01 or 20 ms"
+                               : "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms",
+                         text);
         return;
     }
     keep(&before, w);

@@ -174,6 +174,17 @@ static int last_word(const hn_workbench *w) {
     return n;
 }
 
+/// The first letter replaces what was filled in, as it does selected text.
+static void add_letter(hn_workbench *w, bool replaces, char letter) {
+    if (replaces) {
+        cut_input(w, 0);
+    }
+    if (w->n_input < HN_TUI_LINE - 1) {
+        w->input[w->n_input++] = letter;
+        w->input[w->n_input] = '\0';
+    }
+}
+
 void hn_prompt_key(hn_workbench *w, int key) {
     static void (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
                                                      [HN_PROMPT_METHOD] = accept_method,
@@ -182,6 +193,9 @@ void hn_prompt_key(hn_workbench *w, int key) {
                                                      [HN_PROMPT_ANSWER] = hn_exercise_panel_accept,
                                                      [HN_PROMPT_WANTED] = accept_wanted,
                                                      [HN_PROMPT_STUDY_TIME] = accept_study_time};
+
+    const bool replaces = w->replaces;
+    w->replaces = false;
 
     // Escape forgets the line, Enter hands it over
     if (key == HN_KEY_ESCAPE) {
@@ -196,8 +210,7 @@ void hn_prompt_key(hn_workbench *w, int key) {
         cut_input(w, 0);
     } else if (key == HN_KEY_CTRL_W) {
         cut_input(w, last_word(w));
-    } else if (key >= 32 && key < 127 && w->n_input < HN_TUI_LINE - 1) {
-        w->input[w->n_input++] = (char)key;
-        w->input[w->n_input] = '\0';
+    } else if (key >= 32 && key < 127) {
+        add_letter(w, replaces, (char)key);
     }
 }

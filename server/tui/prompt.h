@@ -10,7 +10,8 @@
 
 /// Asks for the file that the chosen item of the list of exports goes to.
 void hn_prompt_export(hn_workbench *w);
-/// A key while a line is typed: Escape forgets it, Enter hands it over.
+/// A key while a line is typed: Escape forgets it, Enter hands it over. The first letter replaces
+/// what was filled in; after an arrow or Backspace letters are added to it.
 void hn_prompt_key(hn_workbench *w, int key);
 /// Another value of a parameter or start; everything starts again.
 void hn_prompt_set_parameter(hn_workbench *w, const char *name, double value);

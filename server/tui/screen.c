@@ -232,7 +232,11 @@ static void await_answer(double seconds) {
 static void suspend(void) {
     await_answer(FAREWELL);
     screen.asked = screen.asked && !screen.answers;
+
+    // a job that is let go on in the background stops when it sets the terminal's modes
+    signal(SIGTTOU, SIG_DFL);
     kill(0, SIGTSTP);
+    signal(SIGTTOU, SIG_IGN);
 }
 
 static void prepare_asking(void) {

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
-/// Reads "0.01", "0,01", "0.01 s" or "20 ms" [s]; false: it is none, or not above 0.
+/// Reads "0.01", "0,01", "0.01 s" or "20 ms" [s]; false: it is none, or not above 0;
+/// a number too large for a double gives false and infinity.
 bool hn_seconds_read(const char *text, double *out);
 #endif

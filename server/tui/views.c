@@ -141,7 +141,8 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
         const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);
         const int room = area.columns - x - 1;
         const int from = w->n_input > room && room > 0 ? w->n_input - room : 0;
-        const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input + from);
+        const int style = w->replaces ? HN_CELL_REVERSE : HN_CELL_PLAIN;
+        const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, style, w->input + from);
         hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
     } else if (!needs_two_lines(c, w)) {
         hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0, keys_line(w, area.columns));

@@ -146,6 +146,7 @@ void hn_workbench_close(hn_workbench *w) {
 void hn_workbench_ask(hn_workbench *w, hn_prompt_kind kind, const char *initial) {
     w->prompt = kind;
     w->n_input = snprintf(w->input, sizeof w->input, "%s", initial);
+    w->replaces = w->n_input > 0;
 }
 
 void hn_workbench_say(hn_workbench *w, const char *format, ...) {

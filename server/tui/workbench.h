@@ -139,6 +139,7 @@ typedef struct hn_workbench {
     hn_prompt_kind prompt;
     char input[HN_TUI_LINE];
     int n_input;
+    bool replaces; ///< the line is as it was filled in: the first letter replaces it
 } hn_workbench;
 
 /// Opens a scene by its name or path, with changed parameters (copied). methods: n spellings; 0:

@@ -54,6 +54,29 @@ class Messages(unittest.TestCase):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", f"d{typed}<Enter>", "--methods", "index1@rk4")
             self.assertTrue(message(out).startswith(said), (typed, message(out)))
 
+    def test_a_step_without_end_or_too_short_is_refused_and_the_methods_stay(self):
+        def after(step):
+            frames = []
+            for more in ("", "m"):
+                status, out, err = once("four-bar", "--once", "--t", "0.1", "--size", "120x40", "--methods", "index1@rk4:h=0.02", "--keys", f"d{step}<Enter>{more}")
+                self.assertEqual((status, err), (0, ""))
+                frames.append(out)
+            self.assertIn("index1@rk4:h=0.02", frames[1])
+            return " ".join(frames[0].split())
+        self.assertIn("'1e999' is beyond the largest number", after("1e999"))
+        self.assertIn("dt must be above 0 s; '-1' is not", after("-1"))
+        # 10 s of motion in 50 million steps at most
+        self.assertRegex(after("1e-12"), r"dt = 1e-12 s needs 1e\+13 steps to t = 10 s, and 5e\+07 are allowed; the shortest dt here is 2e-07 s")
+
+    def test_the_first_letter_replaces_what_was_filled_in(self):
+        def line(keys):
+            status, out, err = once("pendulum", "--once", "--t", "0.1", "--size", "100x30", "--methods", "index1@rk4:h=0.02", "--keys", keys)
+            self.assertEqual((status, err), (0, ""))
+            return out.splitlines()[-1].strip()
+        for keys, wanted in (("m<Enter>7", "method: 7"), ("m<Enter><Right>7", "method: index1@rk4:h=0.027"), ("m<Enter>", "method: index1@rk4:h=0.02"),
+                             ("m<Enter><Backspace>5", "method: index1@rk4:h=0.05"), ("m<Enter>75", "method: 75")):
+            self.assertEqual(line(keys), wanted, keys)
+
     def test_a_remedy_that_runs_already_is_said_and_selected(self):
         def frame(keys, *methods):
             return once("four-bar", "--once", "--t", "4", "--size", "120x40", "--keys", keys, *(methods or OPENS))[1]

@@ -9,6 +9,7 @@
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
 #include "render/look.h"
+#include "tui/foreground.h"
 #include "tui/keys.h"
 #include "tui/link.h"
 #include "tui/views.h"
@@ -101,6 +102,11 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
         // a terminal that cannot place its cursor would show a heap of lines
         const char *name = getenv("TERM");
         opts->colours = opts->colours && name && strcmp(name, "dumb") != 0;
+        if (!hn_foreground_wait()) {
+            hn_cli_note("holonom: tui was started in the background, where it can neither draw nor "
+                        "read keys; start it without &, or use --once for one frame as text\n");
+            return HN_EXIT_INPUT;
+        }
         if (name && strcmp(name, "dumb") != 0 && hn_tui_run(w, opts)) {
             return HN_EXIT_DONE;
         }
