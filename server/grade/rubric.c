@@ -178,6 +178,21 @@ static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
     return status;
 }
 
+/// The tolerance of each part is an object; any other is left out after its fault is added.
+static hn_status check_tolerance_shapes(hn_rubric *r, hn_diags *diags) {
+    cJSON *tolerance = cJSON_GetObjectItemCaseSensitive(r->root, "tolerance");
+    hn_status status = HN_OK;
+    for (cJSON *m = tolerance ? tolerance->child : NULL, *next; m; m = next) {
+        next = m->next;
+        if (!cJSON_IsObject(m)) {
+            status = hn_rubric_fault(r, diags, "tolerance", m->string, "{\"relative\": 0.005}",
+                                     "the tolerance of part %.20s is an object", m->string);
+            cJSON_Delete(cJSON_DetachItemViaPointer(tolerance, m));
+        }
+    }
+    return status;
+}
+
 /// What the other checks rely on: objects with a member for each part or mistake, lists of costs.
 /// A field of another shape is left out after its fault is added, so that the rest is checked too.
 static hn_status check_shapes(hn_rubric *r, hn_diags *diags) {
@@ -196,27 +211,23 @@ static hn_status check_shapes(hn_rubric *r, hn_diags *diags) {
                                "a rubric is an object");
     }
     for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
-        const cJSON *node = hn_rubric_section(r, ROWS[i].field);
-        if (node && !(ROWS[i].list ? cJSON_IsArray(node) : cJSON_IsObject(node))) {
-            status = hn_rubric_fault(r, diags, ROWS[i].field, NULL, ROWS[i].hint, "\"%s\" is %s",
-                                     ROWS[i].field, ROWS[i].says);
-            cJSON_DeleteItemFromObjectCaseSensitive(r->root, ROWS[i].field);
-            if (strcmp(ROWS[i].field, "points") == 0) {
+        const char *field = ROWS[i].field;
+        const cJSON *node = hn_rubric_section(r, field);
+
+        // more than one where the field is there twice
+        for (; node && !(ROWS[i].list ? cJSON_IsArray(node) : cJSON_IsObject(node));
+             node = hn_rubric_section(r, field)) {
+            status = hn_rubric_fault(r, diags, field, NULL, ROWS[i].hint, "\"%s\" is %s", field,
+                                     ROWS[i].says);
+            cJSON_DeleteItemFromObjectCaseSensitive(r->root, field);
+            if (strcmp(field, "points") == 0) {
                 // a sum without these points would be another
                 cJSON_DeleteItemFromObjectCaseSensitive(r->root, "total");
             }
         }
     }
-    cJSON *tolerance = cJSON_GetObjectItemCaseSensitive(r->root, "tolerance");
-    for (cJSON *m = tolerance ? tolerance->child : NULL, *next; m; m = next) {
-        next = m->next;
-        if (!cJSON_IsObject(m)) {
-            status = hn_rubric_fault(r, diags, "tolerance", m->string, "{\"relative\": 0.005}",
-                                     "the tolerance of part %.20s is an object", m->string);
-            cJSON_Delete(cJSON_DetachItemViaPointer(tolerance, m));
-        }
-    }
-    return status;
+    const hn_status inner = check_tolerance_shapes(r, diags);
+    return status == HN_OK ? inner : status;
 }
 
 static hn_status check_fields(hn_rubric *r, hn_diags *diags) {

@@ -308,6 +308,10 @@ def whole_check(folder):
     for line, fault in ((3, "has no part 'foo'"), (4, 'entry 1 of "hints" needs a number from 0'), (5, "no field 'foo'"), (6, '"shares" is an object'),
                         (7, "the tolerance of part a is an object"), (8, "tolerance 2 of part c is too wide")):
         expect(f"beside a fault of shape, line {line} is named", re.search(rf"line {line}: .*{re.escape(fault)}", told) is not None, told)
+    with open(shapeless, "w", encoding="utf-8") as f:
+        f.write('{"rubric": 1, "exercise": "gears", "shares": [1], "shares": [2], "points": [1], "points": 3, "visibility": 1, "visibility": ["x"]}')
+    twice = run("rubric", "check", shapeless)
+    expect("a field of another shape that is there twice is refused twice", twice.returncode == 2 and twice.stderr.count('"shares" is an object') == 2, twice.stderr)
     told = run("problem", "closure", "--seeds", "1..2", "--check").stdout
     expect("the mistakes that an exercise names are listed", "mistakes of part a: along-y coupler-sign" in told, told)
 
