@@ -263,6 +263,11 @@ test("an error that is not the sum of its parts has no bar, and the time until w
     ),
   );
 
+  await soon(async () => {
+    const unsplit = await page.locator(".twin-table th", { hasText: "not split" }).count();
+    assert.equal(unsplit, methods.length - held, "the table marks them too");
+  });
+
   // a step that is typed, a text that is none, and the end that is offered
   await page.getByLabel("step h =").fill("nothing");
   await page.keyboard.press("Enter");

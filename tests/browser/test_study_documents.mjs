@@ -137,6 +137,7 @@ test("a study that was cut short names what it left out", () => {
   const map = { methods: [{ rows: [[{ class: "stable" }, { class: "skipped" }]] }] };
   assert.equal(missingIn(map, label), "index-1 1 cell");
   assert.equal(missingIn({ methods: [{ state: "pending" }, { state: "done" }] }, label), "index-1");
+  assert.equal(missingIn({ methods: [{ state: "left out" }] }, label), "index-1", "of a budget");
 });
 
 test("the frame holds every finite error in whole decades, and the band of the reference where it is near", () => {

@@ -76,7 +76,7 @@ export function byName(list, wanted) {
 const ABOVE_REFERENCE = 10;
 const LEAST = 1e-17;
 /** States of points of which nothing is known. */
-export const NOT_RUN = ["pending", "skipped"];
+export const NOT_RUN = ["pending", "skipped", "left out"];
 
 /**
  * @typedef {{m: number, k: number, spelling: string, size: number, sizeName: string, cost: number,

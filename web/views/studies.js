@@ -174,6 +174,7 @@ export function createStudies(el, store, actions) {
   );
   el.append(dialog);
   let told = 0;
+  let toldOf = ""; // the kind and state that were told last
   let present = ""; // the kind that is shown
 
   /** @param {KeyboardEvent} event */
@@ -262,8 +263,10 @@ export function createStudies(el, store, actions) {
         : "";
     say(state, words + old);
     state.dataset.kind = study.state === "failed" ? "error" : "";
-    if (!runs || Date.now() - told > TOLD_EVERY) {
+    const of = `${kind} ${study.state}`;
+    if (!runs || of !== toldOf || Date.now() - told > TOLD_EVERY) {
       told = Date.now();
+      toldOf = of;
       say(spoken, `${wordOf(kind)}: ${words}`);
     }
   }

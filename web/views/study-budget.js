@@ -7,6 +7,8 @@ import { BILL, CAUSES, barsOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
 const HEIGHT = 30;
+const DIGITS = 3; // so that the parts add up as they are printed
+const ABSURD = 10; // times the whole: parts that add up to more say nothing
 const LETTERED = 16; // [px] a part at least so long has its letter
 
 const BUDGETS = [
@@ -20,7 +22,7 @@ const numberOf = (value, unit) =>
     ? "–"
     : Math.abs(value) < 1e-12 && value !== 0
       ? `${scientific(value)} ${unit}`
-      : quantity(value, unit);
+      : quantity(value, unit, DIGITS);
 
 /** Fields for the end and the step of the motion that is split. */
 const FIELDS = /** @type {const} */ ([
@@ -195,9 +197,11 @@ export function createStudyBudget(store, actions) {
     const ended = budget && !budget.holds;
     const agree =
       ended && budget.until !== null ? `; they agree until ${seconds(budget.until)}` : "";
-    const warning = ended
-      ? `: the errors are too large to be split, the parts add up to ${numberOf(budget.sum, budget.unit)}${agree}`
-      : "";
+    const sum =
+      ended && Math.abs(budget.sum) <= ABSURD * Math.abs(budget.total)
+        ? `, the parts add up to ${numberOf(budget.sum, budget.unit)}`
+        : "";
+    const warning = ended ? `: the errors are too large to be split${sum}${agree}` : "";
     const words = budget
       ? `${budget.what} ${numberOf(budget.total, budget.unit)}${warning}${partly}`
       : why;
@@ -255,7 +259,7 @@ export function createStudyBudget(store, actions) {
             return h(
               "tr",
               {},
-              h("th", { scope: "row" }, labelOf(m)),
+              h("th", { scope: "row" }, labelOf(m), budget && !budget.holds ? ", not split" : ""),
               ...(budget
                 ? [budget.total, ...shown.order.map(({ name }) => budget.parts[name])].map(
                     (value) => h("td", {}, numberOf(value, budget.unit)),
