@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_ARENA_H
 #define HN_BASE_ARENA_H
-// A run of memory that is given out piece by piece and freed at once. Blocks grow on demand
-// while things are built; a step never asks. The high-water mark is recorded.
+// Memory that is given out piece by piece and freed all at once. Blocks grow on demand while
+// objects are built; a time step allocates nothing. hn_arena_used() says how much was given out.
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,14 +2,15 @@
 #ifndef HN_EXPR_NATIVE_H
 #define HN_EXPR_NATIVE_H
 // Native tapes: tapes that are evaluated often are compiled by the system's C compiler in the
-// background and replace the interpreter when they are ready, bit for bit (but for which NaN).
+// background and replace the interpreter when they are ready, bit for bit; a NaN may be another
+// NaN.
 //
 // One service for the process, off until hn_native_start(): it owns a thread and a queue. The
 // interpreter serves until then, and for ever where there is no compiler, the compilation fails or
 // takes too long, or the folder cannot be used. A tape is looked up in the folder after 2 ms of
-// interpretation and compiled after 20 ms, so short runs start nothing. Code stays loaded for the
-// next tape that is equal, which then has it from its first evaluation. Before compiled code is
-// taken it is run beside the interpreter at several states; one different bit, and it is dropped.
+// interpretation and compiled after 20 ms, so short runs start nothing. Code stays loaded: a
+// later tape that is equal uses it from its first evaluation. Before compiled code is taken it is
+// run beside the interpreter at several states, and dropped where one bit differs.
 
 #include "base/diag.h"
 #include "expr/native_build.h"

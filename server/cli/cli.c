@@ -35,7 +35,8 @@ static void add_folded(hn_strbuf *b, int indent, const char *words) {
 }
 
 static void describe_all(hn_strbuf *b) {
-    hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods on one clock\n\n");
+    hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods at the same times\n"
+                     "Begin with: holonom compare four-bar\n\n");
     for (int i = 0; i < hn_command_count(); i++) {
         const hn_command *c = hn_command_at(i);
         hn_strbuf_printf(b, "  holonom %s%s%s\n%*s", c->name, c->words[0] ? " " : "", c->words,
@@ -46,9 +47,10 @@ static void describe_all(hn_strbuf *b) {
                      "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...],\n"
                      "as projection@rk4:h=1e-3.\n"
                      "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault,\n"
-                     "4 a run ended early and said why, or a prediction failed,\n"
+                     "4 a run ended early and said why, or a prediction of extreme failed,\n"
                      "130 Ctrl-C ended the workbench in the terminal.\n"
-                     "lessons, problems, scenes and methods are short for list lessons etc.\n");
+                     "'holonom lessons' is short for 'holonom list lessons'; so are problems,\n"
+                     "scenes and methods.\n");
 }
 
 static void describe_one(hn_strbuf *b, const hn_command *command) {
@@ -74,11 +76,11 @@ static void describe_words(hn_strbuf *b) {
 
 /// What `holonom` alone says: the first three things to do.
 static const char FIRST_STEPS[] =
-    "holonom: mechanisms with closed loops, many methods on one clock\n\n"
+    "holonom: mechanisms with closed loops, many methods at the same times\n\n"
     "Start with one of these:\n"
     "  holonom serve                  the page, in a browser\n"
     "  holonom tui four-bar           the same workbench in this terminal\n"
-    "  holonom compare four-bar       several methods, and where they part\n"
+    "  holonom compare four-bar       several methods: which are right\n"
     "  holonom run four-bar --plot    one method, drawn over time\n"
     "  holonom list scenes            the mechanisms that are there\n\n"
     "'holonom help' lists all commands, 'holonom help COMMAND' explains one,\n"

@@ -9,7 +9,7 @@
 #define MODEL_OPTIONS "--set"
 
 static const hn_command COMMANDS[] = {
-    {"serve", "", "the page, the API and the stream, on this machine alone",
+    {"serve", "", "the page and the API, for this machine alone unless --host says more",
      "--host --port --programs --answer-time --allow-host --open --history --max-comparisons "
      "--max-streams "
      "--max-connections --runs --token --guests --run-cpu "
@@ -20,20 +20,23 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS
      " --methods --once --t --keys --frames --size --ascii --blocks --pictures --theme",
      0, 1, hn_command_tui},
-    {"list", "scenes|methods|lessons|problems", "what there is", "--wide", 1, 1, hn_command_list},
-    {"inspect", "SCENE", "sizes, tree, loops, rank, operations kept and left out",
+    {"list", "scenes|methods|lessons|problems", "names what there is, with a line on each",
+     "--wide", 1, 1, hn_command_list},
+    {"inspect", "SCENE", "degrees of freedom, loops, rank, and how the equations are solved",
      MODEL_OPTIONS " --wide", 1, 1, hn_command_inspect},
     {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
      MODEL_OPTIONS " --format --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
-     "julia, wolfram or modelica (of the last three the equations are tested, no program was run); "
-     "latex: its equations to read; or as a model: --format mjcf or urdf",
+     "julia, wolfram or modelica (for Julia, Wolfram and Modelica the equations are tested, but no "
+     "exported program was run); latex: its equations to read; or as a model: --format mjcf or "
+     "urdf",
      MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o "
                    "--force",
      1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java|julia",
-     "a starting point for a solver of your own, run as program:FILE; that in python needs numpy",
+     "a starting point for a solver of your own, run as program:FILE; the one in Python needs "
+     "numpy",
      "--out -o --force", 1, 1, hn_command_program},
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
@@ -41,7 +44,7 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
                    "--raw-lambda --reactions --format --plot",
      1, 1, hn_command_run},
-    {"compare", "SCENE", "several methods on one clock, and where they part",
+    {"compare", "SCENE", "several methods at the same times: which are right, what they cost",
      MODEL_OPTIONS
      " --allow-programs --trust-programs --answer-time --methods --time --frame --plot --wide",
      1, 1, hn_command_compare},
@@ -55,8 +58,8 @@ static const hn_command COMMANDS[] = {
      "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
      "--methods --out -o --plots --wide", 0, HN_JOB_SCENES, hn_command_report},
     {"reference", "SCENE",
-     "the reference solution: by two means, the digits they share; --out writes it as it is "
-     "shipped",
+     "the reference solution, computed in two independent ways, with the digits on which they "
+     "agree; --out writes it in the format of the shipped files",
      MODEL_OPTIONS " --time --out -o --wide", 1, 1, hn_command_reference},
     {"merge", "PART...",
      "the parts of a study (study --shard) put together, as if it had been one run",
@@ -65,8 +68,8 @@ static const hn_command COMMANDS[] = {
      "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
      "--csv --out -o --wide", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
     {"snapshot", "SCENE|ID",
-     "a picture of where the methods have taken a scene, or of an exercise with the numbers of "
-     "--seed or --student; PNG or SVG by the ending of -o",
+     "draws a scene after a run, or an exercise with the numbers of --seed or --student; PNG or "
+     "SVG by the ending of -o",
      MODEL_OPTIONS
      " --allow-programs --trust-programs --answer-time --method --methods --time "
      "--at --ghosts --animate --trace --dimensions --forces --describe --out -o --width "

@@ -63,7 +63,7 @@ static void put_sections(hn_strbuf *b) {
         "projection@rk4:h=1e\\-3\n"
         ".SH EXIT STATUS\n.TP\n.B 0\ndone; a wrong answer that was graded low is done\n"
         ".TP\n.B 2\nthe input is at fault\n.TP\n.B 3\nthe program is at fault\n"
-        ".TP\n.B 4\na run ended early and said why, or a prediction failed\n"
+        ".TP\n.B 4\na run ended early and said why, or a prediction of extreme failed\n"
         ".TP\n.B 130\nCtrl\\-C ended the workbench in the terminal (tui)\n"
         ".SH EXAMPLES\n.nf\nholonom serve\nholonom tui four\\-bar\n"
         "holonom compare four\\-bar \\-\\-methods index1@rk4:h=1e\\-2 projection@rk4:h=1e\\-2\n"

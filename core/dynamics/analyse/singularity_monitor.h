@@ -7,21 +7,22 @@
 //     sigma = singular values of R J D,   D = diag(M)^-1/2                                     (1)
 //     R = one over the largest length that each row of J D has had
 //
-// A row that vanishes shows as well as two rows that become parallel; the ratio
+// A row that vanishes makes sigma_min small, and so do two rows that become parallel. The ratio
 // sigma_min / sigma_max has no unit. sigma_min comes from inverse iteration with the sparse factor
 // of [D^-2 J'; J 0], started from the last answer: a check costs as much as J and the factor have
 // entries. Where the factor has lost a pivot, a dense rank-revealing QR answers.
 //
-// Prediction. When sigma_min has fallen by a tenth, a pilot run (pilot.h) goes half a turn ahead;
-// a configuration is announced only if that run reaches it. No extrapolation is used:
-// along a crank-rocker sigma_min falls almost straight to 0.27 and turns there.
+// Prediction. When sigma_min has fallen by a tenth, a pilot run (pilot.h) goes ahead by half a
+// turn of the fastest coordinate; a configuration is announced only if that run reaches it.
+// Extrapolation would warn falsely: sigma_min of a crank-rocker falls almost linearly to 0.27 and
+// then rises again.
 //
 // A motion along a closed curve of configurations needs no pilot run once it has been all the way
 // round (round_trip.h).
 //
 // Branches. With w' J = 0 the velocities v that J allows must also obey w' gamma(q, v) = 0, a
-// quadratic form. With two degrees of freedom at the configuration, two real roots are two crossing
-// branches, none means that the mechanism is locked, a double one is a cusp.
+// quadratic form. With two degrees of freedom at the configuration, two real roots: two branches
+// cross; none: the mechanism is locked; a double root: a cusp.
 // Source: Gosselin & Angeles 1990; Golub & Van Loan 2013, section 8.2.
 
 #include "base/arena.h"

@@ -18,8 +18,8 @@
 // least-squares sense by dense QR, which for consistent rows is exact.
 //
 // Positions move along speeds (hn_system_move), so ball joints need no chart for their position.
-// Their speeds are no rates of positions and cannot be integrated alone: minimal coordinates keep
-// ball joints dependent (see minimal_state.h).
+// Their speeds are not the derivatives of coordinates and cannot be integrated alone: minimal
+// coordinates keep ball joints dependent (see minimal_state.h).
 //
 // Null-space, partitioning and reduced coordinates are built on this. Source: Wehage & Haug 1982;
 // for which columns to take, Goreinov, Tyrtyshnikov & Zamarashkin 1997 (submatrices of locally

@@ -118,7 +118,7 @@ const hn_formulation hn_formulation_projection = {
             "only remove kinetic energy.",
     .drift = "none: gap and velocity violation at rounding level after every step; energy "
              "may still drift",
-    .when = "short and medium runs: accurate and cheap, the default",
+    .when = "short and medium runs: accurate and cheap; a good first choice",
     .when_not = "very long conservative runs (energy drifts linearly); massless links with "
                 "weight=mass",
     .source = "Eich 1993; Ascher, Chin & Reich 1994; Blajer 2002",

@@ -14,7 +14,7 @@
 // Coordinates are those of the scene, in its order. tests/library/example.c is a first program.
 //
 // Memory: every object is freed by its own function, and NULL may be freed. Pointers that a
-// function returns belong to the object, until its next call.
+// function returns belong to the object and are valid until the next call with that object.
 // Threads: an object belongs to one thread at a time; different mechanisms may run in parallel.
 
 #include <stddef.h>

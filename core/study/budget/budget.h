@@ -5,18 +5,19 @@
 // by cause. While errors are small the parts add up to the whole; where they no longer do, the
 // document says so, and until when they did.
 //
-// Step k takes y_k = (q, v) to y_k+1; u_k+1 is its result before the projection, y_k+1 after it.
-// From the same y_k two exact flows are computed to all digits: B solves the differential equation
-// of the formulation, I the equations of motion of index 1, which exist off the loops too. Then
+// Step k takes y_k = (q, v) to y_(k+1); u_(k+1) is its result before the projection, y_(k+1) after
+// it. From the same y_k two exact flows are computed to all digits: B solves the differential
+// equation of the formulation, I the equations of motion of index 1, which exist off the loops too.
+// Then
 //
-//     y_k+1 - I(y_k)  =  [u_k+1 - B(y_k)]  +  [B(y_k) - I(y_k)]  +  [y_k+1 - u_k+1]            (1)
-//                          truncation          formulation            projection
-//     y_N - exact(T) = sum over k of  DI_(T - t_k+1) (1),   to first order                      (2)
+//     e_k = y_(k+1) - I(y_k) = [u_(k+1) - B(y_k)] + [B(y_k) - I(y_k)] + [y_(k+1) - u_(k+1)]    (1)
+//                                 truncation         formulation          projection
+//     y_N - exact(T) = sum over k of  DI_(T - t_(k+1)) e_k,   to first order                    (2)
 //
 // with DI the derivative of I by its start, carried backwards from T: one row of it, transposed
-// step by step from exact derivatives (flow.h). Each part is split at y_k+1 into what lies along
-// the loops' motion and what leads off the loops; what leads off them, after projection has
-// taken its part back, is summed as drift. Rounding and the linear solve are measured by a second
+// step by step from exact derivatives (flow.h). Each part is split at y_(k+1) into what lies
+// along the loops' motion and what opens the loops; of the latter, what projection does not remove
+// is summed as drift. Rounding and the linear solve are measured by a second
 // run with compensated sums, and one with another solver, and are then subtracted from truncation.
 //
 // The same for energy, where the flow I itself may do work: through the loops, as lambda'(J v +
@@ -35,7 +36,7 @@
     X(HN_CAUSE_TRUNCATION, "truncation", "steps of the integrator")                            \
     X(HN_CAUSE_FORMULATION, "formulation", "terms that the formulation adds to the equations") \
     X(HN_CAUSE_PROJECTION, "projection", "moves of the projection along the motion")           \
-    X(HN_CAUSE_DRIFT, "drift", "what leads off the loops and stays there")                     \
+    X(HN_CAUSE_DRIFT, "drift", "what opens the loops and is not projected back")               \
     X(HN_CAUSE_SOLVE, "solve", "rounding of the linear solve: against another solver")         \
     X(HN_CAUSE_ROUNDING, "rounding", "rounding of the sums: against compensated ones")
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ENSEMBLE_H
 #define HN_STUDY_ENSEMBLE_H
-// Many runs of one scene by one method at once: each starts where it likes, with a step, alpha and
-// beta of its own. Every thread steps HN_LANES runs side by side by vector instructions
+// Many runs of one scene by one method at once, each with its own start, step, alpha and beta.
+// Every thread steps HN_LANES runs side by side by vector instructions
 // (integrators/explicit/rk_lanes.h); a lane whose run has ended takes up the next one.
 //
 // A run's state is bit for bit that of a run by itself without a watch (study/run/run.h), whatever
-// the number of threads, the instruction set and the runs beside it: where a lane comes into doubt
-// its step is made by the ordinary stepping. Serves explicit Runge-Kutta methods with a fixed step
-// and a plain sum on index-1 and Baumgarte with given alpha and beta.
+// the number of threads, the instruction set and the runs beside it: where the pivots of a lane are
+// too small to be sure, its step is made by the ordinary stepping. Serves explicit Runge-Kutta
+// methods with a fixed step and a plain sum on index-1 and Baumgarte with given alpha and beta.
 
 #include "expr/lanes.h"
 #include "integrators/method/method_spec.h"

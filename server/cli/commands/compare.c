@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom compare: several methods on one clock, and a table of where they part.
+// holonom compare: several methods at the same times, and a table of which are right.
 #include "base/units.h"
 #include "cli/shell/commands.h"
 #include "cli/commands/error_advice.h"

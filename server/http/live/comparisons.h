@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_COMPARISONS_H
 #define HN_HTTP_COMPARISONS_H
-// All comparisons of the server: found by id, bounded in number, gone when nobody touched them for
-// long.
+// All comparisons of the server: found by id, bounded in number, deleted after a time without a
+// request (the option --expiry).
 
 #include "http/ground/http_opts.h"
 #include "session/model/library.h"

@@ -554,7 +554,8 @@ static void put_document(hn_strbuf *b, const hn_context *c) {
     hn_json_object(b);
     hn_json_put_string(b, "title", "holonom");
     hn_json_put_string(b, "version", hn_build_name());
-    hn_json_put_string(b, "summary", "Mechanisms with closed loops, many methods on one clock");
+    hn_json_put_string(b, "summary",
+                       "Mechanisms with closed loops, many methods at the same times");
     hn_json_put_string(
         b, "description",
         "Simulates mechanisms with closed loops by several methods at once. Errors are "
