@@ -25,7 +25,8 @@ const hn_formulation hn_formulation_nullspace_untracked = {
     .rule = "Compute a new orthonormal basis of the free velocities at every evaluation. "
             "The factorisation may flip a column's sign at any time; the velocity along "
             "that column then reverses.",
-    .drift = "none in the gap; after the basis first changes its sign the motion is wrong by radians",
+    .drift = "none in the gap; after the basis first changes its sign the motion is wrong by "
+             "radians",
     .when = "to see why a basis must follow the motion continuously",
     .when_not = "any result that matters: use nullspace:basis=orthonormal, whose basis follows "
                 "the motion",
