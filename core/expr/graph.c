@@ -285,6 +285,17 @@ bool hn_graph_is_interrupted(hn_graph *g) {
     return g->interrupted;
 }
 
+bool hn_graph_was_interrupted(const hn_graph *g) {
+    return g->interrupted;
+}
+
+void hn_graph_go_on(hn_graph *g) {
+    if (g->interrupted) {
+        g->interrupted = false;
+        g->failed = 0;
+    }
+}
+
 int hn_graph_size(const hn_graph *g) {
     return g->n;
 }

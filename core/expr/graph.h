@@ -46,8 +46,15 @@ hn_status hn_graph_status(const hn_graph *g);
 /// Sets the callback that building a graph and compiling a tape ask now and then whether to stop.
 /// What it reads must outlive the graph.
 void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt);
-/// Asks it now. Returns true where the graph has been interrupted, which marks it failed for good.
+/// Asks it now. Returns true where the graph has been interrupted, which marks it failed until
+/// hn_graph_go_on().
 bool hn_graph_is_interrupted(hn_graph *g);
+/// Returns whether it has been interrupted, without asking.
+bool hn_graph_was_interrupted(const hn_graph *g);
+/// Lets an interrupted graph grow again; one that is not stays as it is. What was being built was
+/// lost, and nothing wrong was kept: the same calls made again find the nodes that were there and
+/// add the rest, with the same numbers.
+void hn_graph_go_on(hn_graph *g);
 int hn_graph_size(const hn_graph *g); ///< nodes so far
 
 /// A named input: q1, v1, t, alpha, a parameter kept symbolic ... The same name gives the same

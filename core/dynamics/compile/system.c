@@ -73,6 +73,16 @@ hn_graph *hn_system_graph(const hn_system *sys) {
     return sys->g;
 }
 
+bool hn_system_was_stopped(const hn_system *sys) {
+    return hn_graph_was_interrupted(sys->g);
+}
+
+hn_status hn_system_stopped(const hn_system *sys, hn_status status, hn_diag *diag) {
+    return hn_system_was_stopped(sys)
+               ? hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "stopped on request")
+               : status;
+}
+
 hn_system_exprs hn_system_get_exprs(const hn_system *sys) {
     return (hn_system_exprs){.f = sys->f,
                              .phi = sys->phi,

@@ -182,6 +182,7 @@ static bool make_row(hn_budgets *a, hn_budget_row *row) {
     if (row->status == HN_OK && row->budget.coordinate >= 0) {
         find_horizon(a, row);
     }
+    a->stopped |= hn_system_was_stopped(hn_model_system(a->model));
     return row->status != HN_ERR_STOPPED && !a->stopped && !a->out_of_time;
 }
 

@@ -59,6 +59,24 @@ struct hn_job {
     void *work; ///< of the kind
 };
 
+/// Equations whose making was interrupted may be made again.
+static void go_on(const hn_job_request *r) {
+    for (int i = 0; i < r->n_models; i++) {
+        hn_graph_go_on(hn_system_graph(hn_model_system(r->models[i])));
+    }
+}
+
+/// HN_ERR_STOPPED in place of what the making of equations failed with when it was interrupted.
+static hn_status told(const hn_job_request *r, hn_status status, hn_diags *diags) {
+    bool interrupted = false;
+    for (int i = 0; i < r->n_models; i++) {
+        interrupted |= hn_graph_was_interrupted(hn_system_graph(hn_model_system(r->models[i])));
+    }
+    return status == HN_OK || status == HN_ERR_STOPPED || !interrupted
+               ? status
+               : hn_diags_add(diags, HN_ERR_STOPPED, NULL, NULL, "stopped on request");
+}
+
 hn_status hn_job_open(const hn_job_kind *kind, const hn_job_request *request, hn_job **out,
                       hn_diags *diags) {
     hn_job *job = calloc(1, sizeof *job);
@@ -67,7 +85,8 @@ hn_status hn_job_open(const hn_job_kind *kind, const hn_job_request *request, hn
     }
     job->kind = kind;
     job->request = *request;
-    const hn_status status = kind->open(&job->request, &job->work, diags);
+    go_on(request);
+    const hn_status status = told(request, kind->open(&job->request, &job->work, diags), diags);
     if (status != HN_OK) {
         free(job);
         return status;
@@ -82,7 +101,8 @@ int hn_job_resumed(const hn_job *job) {
 
 hn_status hn_job_run(hn_job *job, hn_job_end *end, hn_diags *diags) {
     *end = (hn_job_end){0};
-    return job->kind->run(job->work, &job->request, end, diags);
+    go_on(&job->request);
+    return told(&job->request, job->kind->run(job->work, &job->request, end, diags), diags);
 }
 
 void hn_job_set_time_limit(hn_job *job, double time_limit) {

@@ -74,7 +74,8 @@ HN_MUST_CHECK hn_status hn_job_check(const hn_job_kind *kind, const cJSON *objec
 
 typedef struct hn_job hn_job;
 /// Opens a job. The request is copied; what it points to must outlive the job. Returns owned in
-/// *out. Fails: as the kind's open(), HN_ERR_MEMORY.
+/// *out. Fails: as the kind's open(), HN_ERR_MEMORY, HN_ERR_STOPPED (it was stopped before there
+/// was a job; it may be opened again).
 HN_MUST_CHECK hn_status hn_job_open(const hn_job_kind *kind, const hn_job_request *request,
                                     hn_job **out, hn_diags *diags);
 int hn_job_resumed(const hn_job *job);

@@ -105,6 +105,9 @@ static hn_status set_up(hn_study *s, hn_diags *diags) {
         const hn_walk_limits limits = {CHAOS_SHARE * r->limits.time_limit, r->limits.stop,
                                        r->limits.user};
         hn_study_find_chaos(s, &limits);
+        if (hn_job_must_stop(&r->limits) || hn_system_was_stopped(hn_model_system(s->model))) {
+            return hn_diags_add(diags, HN_ERR_STOPPED, NULL, NULL, "stopped on request");
+        }
     }
     return r->limits.folder ? hn_store_open(s, diags) : HN_OK;
 }

@@ -27,6 +27,9 @@ static int ask_to_stop(void *user) {
 static hn_status load_scene(hn_map *map, hn_map_scene *s, int column, int row, hn_diags *diags) {
     hn_setting settings[2];
     int n = 0;
+    if (s->model) {
+        return HN_OK; // since a run that was stopped
+    }
     if (map->x.is_param) {
         settings[n++] = (hn_setting){map->x.name, map->x.value[column]};
     }
@@ -41,7 +44,8 @@ static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
     hn_diag diag = {0};
     const double limit = map->request.limits.time_limit;
     const hn_walk_limits limits = {limit > 0 ? limit / PATH_SHARE : PATH_SECONDS, ask_to_stop, map};
-    hn_status status = load_scene(map, s, column, row, &diags);
+    const hn_status loaded = load_scene(map, s, column, row, &diags);
+    hn_status status = loaded;
     if (status != HN_OK && diags.n > 0) {
         diag = diags.item[0];
     }
@@ -54,6 +58,10 @@ static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
         snprintf(s->why, sizeof s->why, "no motion to compare with: %.200s",
                  diag.message[0] ? diag.message : hn_status_text(status));
     }
+
+    // equations that were not made to the end say nothing of the motion
+    map->stopped |= loaded == HN_ERR_STOPPED ||
+                    hn_system_was_stopped(hn_model_system(s->model ? s->model : map->model));
     s->tried = !map->stopped && !map->out_of_time;
 }
 

@@ -172,6 +172,11 @@ static bool observe(hn_map *map) {
 static bool run_one(hn_map *map) {
     map->started = hn_clock_wall();
     map->stopped = map->out_of_time = 0;
+    for (int i = 0; i < map->n_scenes; i++) {
+        if (map->scenes[i].model) {
+            hn_graph_go_on(hn_system_graph(hn_model_system(map->scenes[i].model)));
+        }
+    }
     const int finished = try_rounds(map) && observe(map);
     for (int m = 0; m < map->n_methods; m++) {
         for (int i = 0; i < map->x.n; i++) {
@@ -179,6 +184,7 @@ static bool run_one(hn_map *map) {
             hn_map_judge_column(map, m, i);
         }
     }
+    map->stopped |= !finished && !map->out_of_time;
     map->elapsed += hn_clock_wall() - map->started;
     hn_journal_end(&map->journal, finished);
     return finished;

@@ -381,5 +381,5 @@ hn_status hn_budget_make(const hn_system *sys, const hn_method_spec *spec, const
     free(b.record);
     hn_run_free(b.run);
     hn_arena_free(b.arena);
-    return status;
+    return hn_system_stopped(sys, status, diag);
 }

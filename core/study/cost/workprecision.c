@@ -287,6 +287,9 @@ static bool measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     hn_wp_point *p = &wp->methods[m].point[k];
     hn_diag diag = {0};
     hn_run *run = run_of(wp, m, k, &diag);
+    if (!run && diag.status == HN_ERR_STOPPED) {
+        return false; // its equations were not made to the end: it is still to be run
+    }
     if (!run) {
         set_reason(p, HN_WP_FAILED, diag.status, diag.message);
         return true;
@@ -593,7 +596,7 @@ int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
     }
     hn_native_resume();
     hn_wp_compare_ends(wp);
-    wp->stopped = is_stopped(h);
+    wp->stopped = is_stopped(h) || hn_graph_was_interrupted(hn_system_graph(wp->sys));
     wp->elapsed += hn_clock_wall() - started;
     return going && !wp->out_of_time;
 }

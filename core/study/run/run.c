@@ -255,7 +255,7 @@ hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec, const 
     const hn_status status = create_parts(run, sys, spec, q, v, diag);
     if (status != HN_OK) {
         hn_run_free(run);
-        return status;
+        return hn_system_stopped(sys, status, diag);
     }
     *out = run;
     return HN_OK;

@@ -193,6 +193,7 @@ hn_status hn_stability_path_create(const hn_system *sys, const double *q, const 
         status = compute(&m, limits, diag);
     }
     hn_spectrum_free(m.spectrum);
+    status = hn_system_stopped(sys, status, diag);
     if (status != HN_OK) {
         hn_stability_path_free(p);
         return status;
@@ -490,10 +491,12 @@ int hn_stability_try(const hn_stability_path *p, const hn_method_spec *spec,
                       ? hn_run_create(p->sys, spec, p->q0, p->v0, NULL, &run, &diag)
                       : HN_ERR_MEMORY;
     if (out->status != HN_OK) {
+        const bool stopped = out->status == HN_ERR_STOPPED;
+        out->kind = stopped ? HN_STABILITY_PENDING : HN_STABILITY_REFUSED;
         snprintf(out->reason, sizeof out->reason, "%.250s",
                  diag.message[0] ? diag.message : hn_status_text(out->status));
         hn_arena_free(arena);
-        return 1;
+        return !stopped;
     }
 
     // often enough to detect a growing gap or energy, seldom enough to cost little

@@ -234,7 +234,7 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
                            "the end must lie after 0, not at %g s", T);
     }
     if (!is_possible(sys, q, v, out, diag, &status)) {
-        return status;
+        return hn_system_stopped(sys, status, diag);
     }
 
     // an even number of windows: the two halves of the time are compared
@@ -258,7 +258,7 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
     hn_errors_free(w.errors);
     hn_projector_free(w.projector);
     hn_arena_free(w.arena);
-    return status;
+    return hn_system_stopped(sys, status, diag);
 }
 
 double hn_chaos_horizon(const hn_chaos *chaos, double small, double large) {

@@ -269,6 +269,7 @@ hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, 
     hn_status status = arena ? hn_errors_create(sys, arena, &errors) : HN_ERR_MEMORY;
     HN_THEN(status,
             find_two(sys, q, v, T, o.n > 0 ? o.n : HN_REF_TIMES, &o, kept, seen, refused, diag));
+    status = hn_system_stopped(sys, status, diag);
     if (status == HN_OK) {
         // their difference is the error of the first
         set_scales(kept[0], errors, sys, &seen[0]);

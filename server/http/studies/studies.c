@@ -17,6 +17,8 @@
 enum { RETRY_AFTER = 5 };
 /// Below this share nothing is said of the time left: too little is known.
 static const double TELLING = 0.03;
+/// Less computing time than this is none: a study does not go on for it [s].
+static const double LEAST_LEFT = 0.05;
 
 typedef struct study {
     char id[17];
@@ -115,7 +117,8 @@ static double time_left(const study *s, double share, double elapsed) {
     if (s->done) {
         return 0;
     }
-    const double by_share = share > TELLING ? elapsed * (1 - share) / share : (double)NAN;
+    const double by_share =
+        share > TELLING ? (s->before + elapsed) * (1 - share) / share : (double)NAN;
     return fmin(by_share, fmax(0, s->work.request.limits.time_limit - elapsed));
 }
 
@@ -484,20 +487,29 @@ static bool has_no_need(const study *s) {
     return s->done ? s->result.state == HN_STUDY_FINISHED : !atomic_load(&s->work.stop);
 }
 
+/// Computing time that all its runs have left [s].
+static double left_of(const study *s) {
+    return hn_study_work_left(&s->work, s->all->opts->max_run_cpu);
+}
+
 /// Why a study cannot go on; NULL: it can. With the lock held.
 static const char *hindrance(const study *s) {
     return !s->done                             ? "it is still ending; ask again"
            : s->result.state == HN_STUDY_FAILED ? "it failed and kept nothing"
            : !is_listed(s)                      ? "it was deleted"
+           : left_of(s) < LEAST_LEFT            ? "its computing time is used up"
                                                 : NULL;
 }
 
-/// Lets a stopped study go on, with the time limit of the body or else with its own. The document
-/// of what is done stays until there is a new one. With the lock held.
+/// Lets a stopped study go on, for the time limit of the body or else for what is left of its own,
+/// where that is over for all that is left; never for longer than the computing time over all its
+/// runs leaves. The document of what is done stays until there is a new one. With the lock held.
 static hn_status go_on(study *s, const cJSON *body) {
     const cJSON *limit = cJSON_GetObjectItemCaseSensitive(body, "time_limit");
-    const double before = s->before + s->ended - s->started;
-    hn_study_work_again(&s->work, limit ? limit->valuedouble : s->work.request.limits.time_limit);
+    const double ran = s->ended - s->started, before = s->before + ran;
+    const double left = left_of(s);
+    const double rest = s->work.out_of_time ? left : s->work.request.limits.time_limit - ran;
+    hn_study_work_again(&s->work, fmax(LEAST_LEFT, fmin(left, limit ? limit->valuedouble : rest)));
     HN_TRY(start_thread(s));
     s->all->n_places++;
     s->all->n_threads++;

@@ -155,9 +155,11 @@ static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_r
     }
 }
 
+/// Why there is no document. A study that was only stopped before it had one can still go on.
 static void report_failure(const hn_study_work *w, hn_status status, const hn_diags *diags,
                            hn_study_result *out) {
-    out->state = HN_STUDY_FAILED;
+    const bool ended = w->out_of_time || w->cpu_used_up || atomic_load(&w->stop);
+    out->state = ended && status == HN_ERR_STOPPED ? HN_STUDY_STOPPED : HN_STUDY_FAILED;
     if (w->out_of_time && !w->cpu_used_up && !atomic_load(&w->stop)) {
         snprintf(out->reason, sizeof out->reason,
                  "the time limit of %g s was over before there was anything to show",
@@ -174,26 +176,38 @@ static void report_failure(const hn_study_work *w, hn_status status, const hn_di
 }
 
 void hn_study_work_again(hn_study_work *w, double time_limit) {
-    w->cpu_used_up = 0;
+    // a limit that was over is a share of the longer whole; any other share stays
+    const double share = atomic_load(&w->share), spent = w->wall_spent;
+    atomic_store(&w->share, w->out_of_time ? fmin(share, spent / (spent + time_limit)) : share);
+
     w->out_of_time = false;
     atomic_store(&w->stop, 0);
-    atomic_store(&w->share, 0); // the work tells its share as soon as it goes on
     w->request.limits.time_limit = time_limit;
-    hn_job_set_time_limit(w->job, time_limit);
+    if (w->job) {
+        hn_job_set_time_limit(w->job, time_limit);
+    }
+}
+
+double hn_study_work_left(const hn_study_work *w, double cpu_seconds) {
+    return fmax(0, cpu_seconds - w->cpu_spent);
 }
 
 void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out) {
     hn_diags diags = {0};
     hn_job_end end = {0};
     hn_status status = HN_OK;
-    w->cpu_end = hn_clock_thread() + cpu_seconds;
-    w->wall_end = hn_clock_wall() + w->request.limits.time_limit;
+    const double wall = hn_clock_wall(), cpu = hn_clock_thread();
+    w->cpu_end = cpu + hn_study_work_left(w, cpu_seconds);
+    w->wall_end = wall + w->request.limits.time_limit;
     w->computes = true;
     if (!w->job) {
         status = hn_job_open(w->kind, &w->request, &w->job, &diags);
     }
     HN_THEN(status, hn_job_run(w->job, &end, &diags));
     w->computes = false;
+    w->cpu_spent += hn_clock_thread() - cpu;
+    w->wall_spent += hn_clock_wall() - wall;
+    w->out_of_time |= end.out_of_time;
     if (status != HN_OK) {
         report_failure(w, status, &diags, out);
         return;

@@ -33,7 +33,8 @@ typedef struct hn_study_work {
     double wall_end;  ///< of the computing, by the study's own time limit [s, wall clock]
     bool out_of_time; ///< equations were ended at wall_end
     int cpu_used_up;
-    _Atomic double share; ///< of the whole study that is done
+    double cpu_spent, wall_spent; ///< by all runs that have ended [s]
+    _Atomic double share;         ///< of the whole study that is done
     atomic_int stop;
 } hn_study_work;
 
@@ -51,12 +52,14 @@ typedef struct hn_study_result {
 /// with pointers into the body. hn_study_work_reset() afterwards in any case.
 HN_MUST_CHECK hn_status hn_study_work_read(hn_study_work *w, const cJSON *body,
                                            const hn_http_opts *opts, hn_diags *diags);
-/// Computes until the end, the time limit, `cpu_seconds` of this thread, or w->stop. The document
-/// is complete JSON whatever the end, but not when the study failed. A study that was stopped may
-/// be run again, by another thread too: it goes on with what is left, once
-/// hn_study_work_again() was called.
+/// Computes until the end, the time limit, `cpu_seconds` of computing over all runs, or w->stop.
+/// The document is complete JSON whatever the end; a study that failed, or was stopped before there
+/// was anything to show, has none. A study that was stopped may be run again, by another thread
+/// too: it goes on with what is left, once hn_study_work_again() was called.
 void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out);
-/// Makes a stopped study ready to go on, each run with this time limit [s].
+/// Returns how much of `cpu_seconds` the runs so far have left [s].
+double hn_study_work_left(const hn_study_work *w, double cpu_seconds);
+/// Makes a stopped study ready to go on, for this wall time [s].
 void hn_study_work_again(hn_study_work *w, double time_limit);
 void hn_study_work_reset(hn_study_work *w);
 #endif

@@ -23,12 +23,19 @@ typedef struct trial {
     hn_library *lib;
     hn_model *model;
     watch watch;
-    hn_job *job;
+    const hn_job_kind *kind;
+    hn_job_request request;
+    hn_job *job; ///< NULL until a run had time enough to open it
 } trial;
+
+/// The same question, asked while equations are made.
+static bool end_making(void *user) {
+    return stop_after(user);
+}
 
 static void open_trial(trial *t, const char *scene, const char *kind, long long patience) {
     static const char *const METHODS[] = {"projection@rk4:h=1e-2", "baumgarte@rk4:h=1e-2"};
-    const hn_model_source source = {.name = scene};
+    const hn_model_source source = {.name = scene, .interrupt = {end_making, &t->watch}};
     hn_diag diag = {0};
     hn_diags diags = {0};
     *t = (trial){.watch.patience = patience};
@@ -46,9 +53,8 @@ static void open_trial(trial *t, const char *scene, const char *kind, long long 
     r.limits.time_limit = 0;
     r.limits.stop = stop_after;
     r.limits.user = &t->watch;
-    if (hn_job_open(hn_job_kind_find(kind), &r, &t->job, &diags) != HN_OK) {
-        fail_msg("%s: %s", kind, diags.item[0].message);
-    }
+    t->request = r;
+    t->kind = hn_job_kind_find(kind);
 }
 
 static void close_trial(trial *t) {
@@ -57,11 +63,19 @@ static void close_trial(trial *t) {
     hn_library_free(t->lib);
 }
 
-/// One run; returns whether it was stopped.
+/// One run, which begins with the opening where there is no job yet; returns whether it was
+/// stopped.
 static bool run(trial *t, long long patience) {
     hn_job_end end = {0};
     hn_diags diags = {0};
     t->watch = (watch){.patience = patience};
+    if (!t->job) {
+        const hn_status opened = hn_job_open(t->kind, &t->request, &t->job, &diags);
+        if (opened == HN_ERR_STOPPED) {
+            return true;
+        }
+        assert_int_equal(opened, HN_OK);
+    }
     assert_int_equal(hn_job_run(t->job, &end, &diags), HN_OK);
     return end.stopped;
 }
@@ -97,9 +111,10 @@ static void check_kind(const char *kind, const char *scene, const char *says) {
     // stopped again and again, each time after a little more
     open_trial(&cut, scene, kind, never);
     int runs = 1;
-    for (long long patience = 0; run(&cut, patience); patience += asks / 40 + 1) {
+    for (long long patience = 0; run(&cut, patience); patience += asks / 80 + 1) {
         assert_true(++runs < MOST_RUNS);
-        char *part = document_of(&cut); // a document at every end
+        char *part = cut.job ? document_of(&cut) : NULL; // a document at every end
+        assert_true(!part || !strstr(part, "memory"));
         free(part);
     }
     char *got = document_of(&cut);
@@ -114,6 +129,7 @@ static void check_kind(const char *kind, const char *scene, const char *says) {
 static void a_work_precision_study_goes_on(void **state) {
     (void)state;
     check_kind("work-precision", "pendulum", "\"state\":\"done\"");
+    check_kind("work-precision", "four-bar", "\"state\":\"done\"");
 }
 
 static void a_map_goes_on_and_so_does_the_map_that_it_chooses(void **state) {
@@ -136,6 +152,7 @@ static void a_later_run_has_the_time_limit_that_was_set(void **state) {
         hn_job_end end = {0};
         hn_diags diags = {0};
         open_trial(&t, "four-bar", KINDS[i], never);
+        assert_int_equal(hn_job_open(t.kind, &t.request, &t.job, &diags), HN_OK);
         hn_job_set_time_limit(t.job, 1e-9);
         assert_int_equal(hn_job_run(t.job, &end, &diags), HN_OK);
         assert_true(end.out_of_time);
