@@ -144,6 +144,10 @@ void hn_tui_exercise_set_answer(hn_tui_exercise *x, int i, const char *text) {
     x->checked = false;
 }
 
+int hn_tui_exercise_n_hints(const hn_tui_exercise *x) {
+    return x->exercise->n_hints;
+}
+
 bool hn_tui_exercise_show_hint(hn_tui_exercise *x) {
     const bool more = x->n_hints < x->exercise->n_hints;
     x->n_hints += more;

@@ -21,6 +21,7 @@ int hn_tui_exercise_n_fields(const hn_tui_exercise *x);
 const char *hn_tui_exercise_answer(const hn_tui_exercise *x, int i);
 /// Keeps what was typed for a field; what was checked before it no longer holds.
 void hn_tui_exercise_set_answer(hn_tui_exercise *x, int i, const char *text);
+int hn_tui_exercise_n_hints(const hn_tui_exercise *x); ///< that there are, shown or not
 /// Shows one more hint; false: all of them are shown.
 bool hn_tui_exercise_show_hint(hn_tui_exercise *x);
 /// Grades what was typed. An answer "@FILE" is what the file says. Fails: HN_ERR_IO (such a file,

@@ -57,11 +57,14 @@ static void check(hn_workbench *w) {
 }
 
 static void show_hint(hn_workbench *w) {
+    const int n = hn_tui_exercise_n_hints(w->exercise);
     if (hn_tui_exercise_show_hint(w->exercise)) {
         write_text(w, false);
         hn_text_panel_scroll(w, 1 << 20); // hints are at the end
+    } else if (n == 0) {
+        hn_workbench_say(w, "this exercise has no hints");
     } else {
-        hn_workbench_say(w, "there is no other hint");
+        hn_workbench_say(w, "%s%d hint%s shown", n > 1 ? "all " : "", n, n == 1 ? " is" : "s are");
     }
 }
 

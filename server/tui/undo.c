@@ -3,6 +3,8 @@
 
 #include "tui/versions.h"
 
+#include <string.h>
+
 void hn_undo_go(hn_workbench *w, int by) {
     hn_versions *v = w->versions;
     const int to = v->now + by;
@@ -21,12 +23,18 @@ void hn_undo_go(hn_workbench *w, int by) {
     for (int i = 0; i < one->n_methods; i++) {
         methods[i] = one->methods[i];
     }
+    const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
+    const bool same_scene = strcmp(one->scene, w->scene) == 0;
     v->going = true;
     const bool good =
         hn_workbench_reopen(w, one->scene, settings, one->n_settings, methods, one->n_methods);
     v->going = false;
+    if (good && same_scene) {
+        hn_workbench_go_to(w, t);
+    }
     if (good) {
         v->now = to;
-        hn_workbench_say(w, "%s, change %d of %d", by < 0 ? "undone" : "done again", to + 1, v->n);
+        hn_workbench_say(w, "%s: change %d of %d", by < 0 ? "undone" : "done again",
+                         by < 0 ? to + 1 : to, v->n - 1);
     }
 }

@@ -14,12 +14,17 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_NAME = 16, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
+enum { MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
+enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
 enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
 
 /// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
 static const double SMALLEST_PREFIXED = 1e-9;
+
+/// [s] for which the clock waits before it is said that the methods are slower: a single late frame
+/// is none.
+static const double LATE = 1.0;
 
 /// An incident is news for this share of the motion.
 static const double NEWS = 0.2;
@@ -78,7 +83,7 @@ static void draw_header(hn_cells *c, const hn_workbench *w) {
                          w->playing ? "▶ running" : "■ paused");
     const double slow =
         hn_recording_frame_seconds(w->recording) / hn_recording_frame_dt(w->recording);
-    if (w->playing && slow > 2) {
+    if (w->playing && slow > 2 && w->late >= LATE) {
         hn_cells_printf(c, area, x, 0, HN_CELL_ALARM, 0, "%.0f times slower than the clock", slow);
     }
 }
@@ -231,11 +236,39 @@ typedef struct table_columns {
     int name, numbers, number, verdict; ///< number: width of one
 } table_columns;
 
+/// The fixed step of a method [s]; NaN: it has none.
+static double step_of(const hn_track *t) {
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    const bool fixed =
+        hn_method_parse(t->spelling, &spec, &diag) == HN_OK && !hn_method_is_adaptive(&spec);
+    return fixed ? hn_method_option(&spec, "h", (double)NAN) : (double)NAN;
+}
+
+/// The name of method m, with its step where another one has the same name and another step.
+static void name_row(const hn_workbench *w, int m, char out[ROW_NAME]) {
+    const hn_track *own = hn_recording_track(w->recording, m);
+    bool shared = false;
+    snprintf(out, ROW_NAME, "%.*s", MOST_NAME, own->name);
+    for (int i = 0; i < w->n_methods; i++) {
+        const hn_track *other = hn_recording_track(w->recording, i);
+        const bool named = i != m && strcmp(other->name, own->name) == 0;
+        shared |= named && step_of(own) != step_of(other) && isfinite(step_of(own));
+    }
+    if (shared) {
+        char step[HN_SI_TEXT];
+        hn_si_format(step_of(own), "s", 2, step);
+        snprintf(out, ROW_NAME, "%.*s %s", MOST_NAME - 1 - hn_text_columns(step), own->name, step);
+    }
+}
+
 /// Gap and error are shown even where the verdict is cut; the others while it has room.
 static table_columns lay_out(const hn_workbench *w, int width) {
     int longest = 4;
     for (int m = 0; m < w->n_methods; m++) {
-        const int n = hn_text_columns(hn_recording_track(w->recording, m)->name);
+        char name[ROW_NAME];
+        name_row(w, m, name);
+        const int n = hn_text_columns(name);
         longest = n > longest ? n : longest;
     }
     longest = longest < MOST_NAME ? longest : MOST_NAME;
@@ -274,8 +307,9 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     const bool calm = v.tone == HN_TONE_CALM;
     hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
                     hn_look_get(track->slot)->glyph);
-    hn_cells_printf(c, area, at.name, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%.*s",
-                    MOST_NAME, track->name);
+    char name[ROW_NAME];
+    name_row(w, m, name);
+    hn_cells_put(c, area, at.name, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, name);
     for (int i = 0; i < at.numbers; i++) {
         put_number(c, area, number_end(at, i), m, NUMBERS[i].of(track)[frame], NUMBERS[i].unit);
     }
@@ -411,12 +445,12 @@ static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
     }
 }
 
-/// Whether the views would lie over each other.
+/// Whether the views would be empty, or lie over each other.
 static bool is_too_small(const hn_cells *c, const hn_workbench *w) {
     const hn_places places = hn_views_places(c->columns, c->rows, w);
     const bool views = w->panel == HN_PANEL_MAIN;
     return c->columns < HN_TUI_LEAST_COLUMNS || c->rows < HN_TUI_LEAST_ROWS ||
-           (views && places.plot.rows < 0);
+           (views && places.plot.rows < LEAST_VIEW_ROWS);
 }
 
 void hn_views_draw(hn_cells *c, const hn_workbench *w) {

@@ -260,12 +260,20 @@ static void end_command(hn_workbench *w) {
     hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
 }
 
+void hn_workbench_go_to(hn_workbench *w, double t) {
+    const double frame = round(t / hn_recording_frame_dt(w->recording));
+    w->clock = fmax(0, fmin(frame, hn_recording_last(w->recording)));
+    hn_recording_want(w->recording, (int)w->clock + AHEAD);
+}
+
 void hn_workbench_tick(hn_workbench *w, double seconds) {
     const int last = hn_recording_last(w->recording);
     if (w->playing && w->panel == HN_PANEL_MAIN) {
         const double ready = hn_recording_frames(w->recording) - 1;
         const double next = w->clock + seconds * w->speed / hn_recording_frame_dt(w->recording);
-        w->clock = fmin(fmin(next, ready + 0.999), last);
+        // it waits for frames, and does not go back to those that are there
+        w->clock = fmin(fmin(next, fmax(w->clock, ready + 0.999)), last);
+        w->late = next > w->clock && w->clock < last ? w->late + seconds : 0;
         if (w->clock >= last) {
             w->playing = false;
         }

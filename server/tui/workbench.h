@@ -97,6 +97,7 @@ typedef struct hn_workbench {
 
     // what is shown
     double clock, speed; ///< [frames] now; times real time
+    double late;         ///< [s] for which the clock has been waiting for frames without a pause
     bool playing, quit;
     int selected;
     bool hidden[HN_COMPARISON_MAX_METHODS];
@@ -153,6 +154,8 @@ void hn_workbench_close(hn_workbench *w);
 /// Time goes on by `seconds`: the recording is asked for what comes, and the clock moves as far as
 /// there are frames.
 void hn_workbench_tick(hn_workbench *w, double seconds);
+/// Shows the frame at t [s], as soon as it is recorded.
+void hn_workbench_go_to(hn_workbench *w, double t);
 /// The frame shown.
 int hn_workbench_frame(const hn_workbench *w);
 /// Records the methods anew; on failure what was recorded stays.

@@ -325,7 +325,8 @@ class Keys(unittest.TestCase):
         self.assertIn("Formulas: a*b or a b", one)
         self.assertIn("h shows another hint (1 of 2 shown)", one)
         self.assertNotIn("hint 2 of 2", one)
-        self.assertIn("there is no other hint", self.exercise("closure", "hhh"))
+        self.assertIn("all 2 hints are shown", self.exercise("closure", "hhh"))
+        self.assertIn("this exercise has no hints", self.exercise("p3", "h"))
         # a changed answer takes the verdict away; closed and opened again it has its answers
         self.assertIn("right, 1 of 1 point", self.exercise("p3", "<Enter>-l1 sin(th1)<Enter>c"))
         self.assertNotIn("of 6 points:", self.exercise("closure", "<Enter>2<Enter>c<Enter>3<Enter>"))

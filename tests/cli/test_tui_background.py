@@ -5,11 +5,14 @@ import pty
 import re
 import select
 import signal
+import sys
 import tempfile
 import time
 import unittest
 
-from terminal import PATIENCE, PROGRAM
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+from terminal import PATIENCE, PROGRAM  # noqa: E402
 
 
 class Shell:
@@ -73,4 +76,4 @@ class Background(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    driver.main()

@@ -40,7 +40,29 @@ class Table(unittest.TestCase):
             self.assertTrue(out.rstrip("\n").endswith("? menu  q"), columns)
 
 
+    def test_methods_that_differ_in_their_step_alone_show_it(self):
+        _, out, _ = once("pendulum", "--once", "--t", "0.1", "--size", "100x30", "--methods", "index1@rk4:h=0.02", "index1@rk4:h=0.01", "projection@rk4:h=0.02")
+        self.assertRegex(out, r"index-1 20 ms +[^\n]*\n[^\n]*index-1 10 ms ")
+        self.assertRegex(out, r"projection  +\S")
+
+    def test_a_window_without_room_for_the_views_says_so(self):
+        for size, wanted in (("40x12", True), ("80x24", False)):
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", size)
+            self.assertEqual("80x24 is needed" in out, wanted, size)
+
+
 class Messages(unittest.TestCase):
+    def test_undo_counts_changes_and_stays_at_its_time(self):
+        def after(keys):
+            status, out, err = once("pendulum", "--once", "--t", "0.5", "--size", "100x30", "--methods", "index1@rk4:h=0.02", "--keys", keys)
+            self.assertEqual((status, err), (0, ""))
+            return out
+        undone = after("d0.01<Enter>z")
+        self.assertIn("undone: change 1 of 1", undone)
+        self.assertIn("t 0.500 s", undone)
+        self.assertIn("done again: change 1 of 1", after("d0.01<Enter>zy"))
+        self.assertIn("undone: change 1 of 2", after("d0.01<Enter>d0.005<Enter>zz"))
+
     def test_a_new_step_says_whose_it_is(self):
         def after(*methods):
             return message(once("four-bar", "--once", "--t", "0.1", "--keys", "d20 ms<Enter>", "--methods", *methods)[1])
