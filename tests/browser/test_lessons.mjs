@@ -222,6 +222,9 @@ test("a plot that is to be read stands above its field, and styles nothing else"
   assert.deepEqual(seen, { plots: 2, styles: 0, line: seen.words, words: seen.words, width: 360 });
   const first = page.locator(".exercise", { has: page.locator(".exercise-plot") });
   await first.locator("textarea").first().fill("21 m");
+  const sign = () =>
+    first.locator("summary").evaluate((one) => getComputedStyle(one, "::before").content);
+  assert.match(await sign(), /▾/, "a box that is open says so");
   await first.getByRole("button", { name: "Check" }).click();
   await until(page, () => /times what the plot shows/.test(document.body.textContent));
 });

@@ -144,6 +144,12 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
     assert.equal(lines.length, map.steps, "the map of steps by which it was chosen");
     assert.ok(lines.every((line) => /not stiff: at the predicted limit/.test(line)));
   });
+  await soon(async () =>
+    assert.match(
+      await page.locator(".maps figcaption").first().textContent(),
+      /^Baumgarte \(h = 1.0 ms, until [\d.]+ s\) /,
+    ),
+  );
   await page.getByRole("button", { name: "outcome" }).click();
   await soon(async () => {
     const letters = await page.locator(".maps .letters .letter").allTextContents();

@@ -9,13 +9,26 @@ import {
   heatOf,
   heatRange,
 } from "../state/heat.js";
-import { plain, powerOfTen } from "../state/format.js";
+import { plain, powerOfTen, prettyUnit, quantity } from "../state/format.js";
 import { CLASSES, boundaryOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
 const WHOLE = 34; // [px] of a cell that holds 10⁻³
 const EXPONENT = 22; // [px] of one that holds the exponent
 const DEEP = 56; // [%] of the colour: beyond it letters are in the colour of the paper
+
+/** What a map over Baumgarte's constants shows. */
+export const SWEET_SPOT =
+  "Small α and β let the gap grow; near the boundary every step overshoots. The best place lies " +
+  "between, and it is another one for the gap, the motion and the energy.";
+const GREEK = { alpha: "α", beta: "β" };
+
+/** What an axis is called. @param {{name: string, unit: string}} axis */
+export const titleOf = (axis) =>
+  `${GREEK[axis.name] ?? axis.name}${axis.unit ? `, ${prettyUnit(axis.unit)}` : ""}`;
+/** A value on it. @param {{name: string, unit: string}} axis @param {number} value */
+export const valueOf = (axis, value) =>
+  `${GREEK[axis.name] ?? axis.name} = ${axis.unit === "s" ? quantity(value, "s") : `${plain(Number(value.toPrecision(3)))}${axis.unit ? ` ${prettyUnit(axis.unit)}` : ""}`}`;
 
 /**
  * Colours the cells of one method by a quantity and prints its power of ten into them.

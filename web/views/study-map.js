@@ -2,7 +2,7 @@
 // @ts-check
 // Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
 // was predicted. A cell can be pointed at, and clicked to set what its axes stand for.
-import { plain, prettyUnit, quantity, withPowers } from "../state/format.js";
+import { plain, quantity, withPowers } from "../state/format.js";
 import { HEATS, axesWith, heatOf, heatSentences, heatWords } from "../state/heat.js";
 import { presetsOf } from "../state/studies.js";
 import { CLASSES } from "../state/study-documents.js";
@@ -10,28 +10,20 @@ import { parseSpelling, settingOf, withSetting } from "../state/spelling.js";
 import { h, s, say } from "../widgets/dom.js";
 import { rove } from "../widgets/roving.js";
 import {
+  SWEET_SPOT,
   drawContours,
   drawLines,
   fillLegend,
   raiseLetters,
   shadeCells,
+  titleOf,
+  valueOf,
 } from "./study-map-parts.js";
 import { addPresentPoint } from "./study-map-point.js";
 
-const SWEET_SPOT =
-  "Small α and β let the gap grow; near the boundary every step overshoots. The best place lies " +
-  "between, and it is another one for the gap, the motion and the energy.";
-const GREEK = { alpha: "α", beta: "β" };
 const ROOM = { left: 78, right: 12, top: 8, bottom: 44 };
 const HEIGHT = 360;
 const TICKS = 6;
-
-/** @param {{name: string, unit: string}} axis */
-const titleOf = (axis) =>
-  `${GREEK[axis.name] ?? axis.name}${axis.unit ? `, ${prettyUnit(axis.unit)}` : ""}`;
-/** @param {{name: string, unit: string}} axis @param {number} value */
-const valueOf = (axis, value) =>
-  `${GREEK[axis.name] ?? axis.name} = ${axis.unit === "s" ? quantity(value, "s") : `${plain(Number(value.toPrecision(3)))}${axis.unit ? ` ${prettyUnit(axis.unit)}` : ""}`}`;
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -322,7 +314,12 @@ export function createStudyMap(store, actions) {
       "figure",
       {},
       ...methods.map((method) =>
-        h("figcaption", {}, h("b", {}, labelOf(method)), ` ${method.agreement.text}`),
+        h(
+          "figcaption",
+          {},
+          h("b", {}, labelOf(method)),
+          ` ${runOf(method)} ${method.agreement.text}`,
+        ),
       ),
       picture,
     );
@@ -331,6 +328,14 @@ export function createStudyMap(store, actions) {
   const IDLE =
     "Point at a cell or reach it with the arrow keys; a click runs the method with its values. " +
     "The ring stands for the present values and can be dragged.";
+
+  /** At which step, where no axis is the step, and until when it ran. */
+  function runOf(method) {
+    const { x, y, time } = map();
+    const until = `until ${plain(Number(time.toPrecision(3)))} s`;
+    const varied = x?.kind === "step" || y.kind === "step";
+    return varied ? `(${until})` : `(h = ${quantity(stepOf(method), "s")}, ${until})`;
+  }
 
   /** Step of the method a map was made for [s]. */
   const stepOf = (method) =>
