@@ -186,6 +186,15 @@ static void why_unsettled(const hn_class *c, double T, char out[200]) {
     snprintf(out, 200, ": %s; try a shorter time, %.3g s", why, T / 10);
 }
 
+/// Sizes that are still to be run.
+static int count_pending(const hn_wp *wp, int m) {
+    int n = 0;
+    for (int k = 0; k < wp->n_levels; k++) {
+        n += wp->methods[m].point[k].state == HN_WP_PENDING;
+    }
+    return n;
+}
+
 static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *c) {
     const hn_wp_point *p = &wp->methods[m].point[0];
     for (int k = 0; k < wp->n_levels; k++) {
@@ -264,7 +273,14 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
 /// Gives a method the class of those that have no order, and the reason: too few points, a chaotic
 /// motion, another limit. Returns 0 where the method has none of these.
 static bool has_no_order(const hn_wp *wp, int m, const ladder *l, hn_class *out) {
-    // too few points
+    // too few points, so far or for good
+    const int pending = l->n < 2 ? count_pending(wp, m) : 0;
+    if (pending > 0) {
+        out->kind = HN_CLASS_UNSETTLED;
+        snprintf(out->text, sizeof out->text, "not known yet: %d of %d sizes are still to be run",
+                 pending, wp->n_levels);
+        return true;
+    }
     if (l->n < 2) {
         out->kind = HN_CLASS_FAILED;
         describe_failure(wp, m, l, out);

@@ -102,11 +102,10 @@ static void refuse(hn_comparisons *all, hn_request *r, int n_before) {
         return;
     }
     hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed, or wait",
-                     "there are %d comparisons, and yours may be %d of %d; %d requests wait for a "
-                     "place before this one",
-                     hn_shares_taken(all->places),
-                     hn_http_opts_share(all->opts, all->opts->max_comparisons),
-                     all->opts->max_comparisons, n_before);
+                     "%d of %d comparisons are open; while others want one too, a client may have "
+                     "%d of them; %d requests wait for a place before this one",
+                     hn_shares_taken(all->places), all->opts->max_comparisons,
+                     hn_http_opts_share(all->opts, all->opts->max_comparisons), n_before);
     hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
 }
 

@@ -216,6 +216,19 @@ static void a_method_that_hardly_ever_finishes_is_failed_with_its_reason(void **
     assert_non_null(strstr(class_of(&w, 0).text, "1 of 4 sizes came to the end: the loop flew"));
 }
 
+static void sizes_that_are_still_to_be_run_have_not_failed(void **state) {
+    (void)state;
+    written w;
+    const double e[4] = {1, 1, 1, 1e-3};
+    write_down(&w, 1, 4, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    for (int k = 0; k < 3; k++) {
+        w.methods[0].point[k].state = HN_WP_PENDING;
+    }
+    assert_int_equal(class_of(&w, 0).kind, HN_CLASS_UNSETTLED);
+    assert_string_equal(class_of(&w, 0).text, "not known yet: 3 of 4 sizes are still to be run");
+}
+
 // ---- times ----
 
 static void set_time(hn_wp_point *p, const double *samples, int n) {
@@ -466,6 +479,7 @@ int main(void) {
         cmocka_unit_test(a_slow_method_that_still_converges_is_not_something_else),
         cmocka_unit_test(slopes_that_wander_are_not_in_the_asymptotic_range),
         cmocka_unit_test(a_method_that_hardly_ever_finishes_is_failed_with_its_reason),
+        cmocka_unit_test(sizes_that_are_still_to_be_run_have_not_failed),
         cmocka_unit_test(medians_and_quartiles_are_those_of_the_samples),
         cmocka_unit_test(the_cheapest_method_of_each_accuracy_is_named),
         cmocka_unit_test(times_that_cannot_be_told_apart_are_not_ranked),
