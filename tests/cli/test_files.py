@@ -88,7 +88,7 @@ class Files(Command):
                 with open("/dev/full", "w") as full:
                     done = subprocess.run([driver.PROGRAM, "run", "four-bar", "--time", "2", "--every", "0.001", *words], stdout=full,
                                           stderr=subprocess.PIPE, timeout=60)
-                self.assertEqual((done.returncode, b"No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
+                self.assertEqual((done.returncode, b"cannot write to standard output: No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
 
     def test_a_submission_that_is_a_pipe_does_not_hang(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -281,7 +281,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     // a run that ended early has an exit status of its own
     hn_exit result = args->plot ? hn_cli_print_text(&b) : hn_cli_print(&b);
     if (result == HN_EXIT_DONE && rows.error) {
-        hn_cli_note("holonom: %s\n", strerror(rows.error));
+        hn_cli_note("holonom: cannot write to standard output: %s\n", strerror(rows.error));
         result = HN_EXIT_PROGRAM;
     }
     if (ended != HN_OK && run) {

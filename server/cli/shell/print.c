@@ -27,7 +27,7 @@ hn_exit hn_cli_print(hn_strbuf *text) {
         ok = ok && fflush(stdout) == 0;
     }
     if (!ok) {
-        fprintf(stderr, "holonom: %s\n",
+        fprintf(stderr, "holonom: cannot write to standard output: %s\n",
                 text->failed ? hn_status_text(HN_ERR_MEMORY) : strerror(errno));
     }
     hn_strbuf_reset(text);
