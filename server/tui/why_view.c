@@ -61,16 +61,34 @@ void hn_why_scroll(hn_workbench *w, int by) {
     w->why_of = w->selected;
 }
 
-/// One incident with what to try; returns the row below.
+/// Whether remedy k of incident i stands below one of the incidents from `first` on, and gave the
+/// same there.
+static bool is_said(const hn_incident *list, const int *whose, int first, int i, int k) {
+    for (int j = first; j < i; j++) {
+        const bool shown = whose[j] == whose[i] && !is_again(list, whose, j);
+        for (int l = 0; shown && l < HN_REMEDIES && list[j].remedy[l][0]; l++) {
+            if (strcmp(list[j].remedy[l], list[i].remedy[k]) == 0 &&
+                strcmp(list[j].tried[l], list[i].tried[k]) == 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Incident i with what to try that is not said from `first` on; returns the row below.
 static int draw_incident(hn_cells *c, hn_area in, int y, const hn_workbench *w,
-                         const hn_incident *incident) {
+                         const hn_incident *list, const int *whose, int first, int i) {
+    const hn_incident *incident = &list[i];
     char line[512], words[HN_WHY_WORDS];
     snprintf(line, sizeof line, "%.4g s: %s", incident->t, incident->message);
     y = hn_cells_fold(c, in, y, HN_CELL_ALARM, line);
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
-        hn_why_remedy(w, incident, k, words);
         const hn_area inset = {in.x + 2, in.y, in.columns - 2, in.rows};
-        y = hn_cells_fold(c, inset, y, HN_CELL_INK, words);
+        if (!is_said(list, whose, first, i, k)) {
+            hn_why_remedy(w, incident, k, words);
+            y = hn_cells_fold(c, inset, y, HN_CELL_INK, words);
+        }
     }
     return y;
 }
@@ -93,15 +111,16 @@ void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     // incidents of one cause are one entry with a count; the last row is kept for those that follow
     const int before = first_shown(w);
     const hn_area above = {in.x, in.y, in.columns, in.rows - 1};
-    int same = 0, entry = 0, below = 0;
+    int same = 0, entry = 0, below = 0, first = n;
     for (int i = 0; i < n; i++) {
         const bool own = whose[i] == w->selected, again = is_again(list, whose, i);
         same += own && again;
         if (!own || again || entry++ < before) {
             continue;
         }
+        first = i < first ? i : first;
         below += y + 1 >= above.rows;
-        y = below ? y : draw_incident(c, above, y + 1, w, &list[i]);
+        y = below ? y : draw_incident(c, above, y + 1, w, list, whose, first, i);
     }
     if (below > 0) {
         hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more", below);

@@ -99,6 +99,12 @@ class Messages(unittest.TestCase):
                              ("m<Enter><Backspace>5", "method: index1@rk4:h=0.05"), ("m<Enter>75", "method: 75")):
             self.assertEqual(line(keys), wanted, keys)
 
+    def test_a_remedy_of_several_incidents_stands_once_on_the_card(self):
+        status, out, err = once("parallelogram", "--once", "--size", "150x50", "--methods", "projection@rk4:h=0.01", "--keys", "i")
+        self.assertEqual((status, err), (0, ""))
+        self.assertGreater(out.count("the constraints become dependent"), 1)
+        self.assertEqual(out.count("projection@rk4:h=0.007: not tried"), 1)
+
     def test_a_remedy_that_runs_already_is_said_and_selected(self):
         def frame(keys, *methods):
             return once("four-bar", "--once", "--t", "4", "--size", "120x40", "--keys", keys, *(methods or OPENS))[1]
