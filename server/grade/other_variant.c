@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/other_variant.h"
 
+#include "base/hash.h"
 #include "grade/parts/part_list.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { SMALL_SEEDS = 8, LEAST = 2, MAX_WRONG = 16 };
+enum { SMALL_SEEDS = 8, LEAST = 2, MAX_WRONG = 16, BYSTANDERS = 100 };
+
+/// Two numbers that no bystander shares are below it, (1 / 101)^2; one such number beside one of a
+/// hundred small counts is not.
+static const double MOST_CHANCE = 3e-4;
 
 /// A number that is wrong in this variant.
 typedef struct wrong_number {
@@ -40,55 +45,97 @@ static int list_wrong(const hn_variant *x, const hn_verdict *v, wrong_number lis
     return n;
 }
 
-/// Whether all of the wrong numbers but one are right in the variant of this seed.
-static bool fits(const hn_exercise *exercise, uint64_t seed, const cJSON *submission,
-                 const wrong_number *list, int n) {
+/// Which of the wrong numbers are right in the variant of this seed; false: it cannot be drawn.
+static bool try_variant(const hn_exercise *exercise, uint64_t seed, const cJSON *submission,
+                        const wrong_number *list, int n, bool right[MAX_WRONG]) {
     hn_variant other;
     hn_diag diag = {0};
-    int missed = 0;
     bool good = hn_variant_init(&other, exercise, seed, &diag) == HN_OK;
-    for (int i = 0; i < n && good && missed < 2; i++) {
+    for (int i = 0; i < n && good; i++) {
         hn_part_result results[HN_PART_RESULTS];
         int count = 0;
         const hn_part *p = &other.part[list[i].part];
         good = p->kind->grade(p, cJSON_GetObjectItemCaseSensitive(submission, p->id), results,
                               &count, &diag) == HN_OK;
-        missed += good && !(list[i].result < count && results[list[i].result].right);
+        right[i] = good && list[i].result < count && results[list[i].result].right;
     }
     hn_variant_reset(&other);
-    return good && missed < 2 && n - missed >= LEAST;
+    return good;
 }
 
-/// Looks for the variant among the owners and a few small seeds.
-static bool find_owner(const hn_variant *x, const cJSON *submission, const hn_verdict *v,
-                       hn_variant_owner *out) {
-    const hn_exercise *e = x->exercise;
-    wrong_number list[MAX_WRONG];
-    const int n = list_wrong(x, v, list);
-    for (int i = 0; i < e->n_owners + SMALL_SEEDS && n >= LEAST; i++) {
-        const hn_variant_owner seed = {.seed = (uint64_t)(i - e->n_owners + 1)};
-        *out = i < e->n_owners ? e->owners[i] : seed;
-        if (out->seed != x->seed && fits(e, out->seed, submission, list, n)) {
-            return true;
+/// The probability that the numbers which fit do so by chance: for each, the share of variants of
+/// nobody in which it is right as well. Small counts, and ratios of listed numbers, are shared by
+/// many variants.
+static double find_chance(const hn_exercise *exercise, const cJSON *submission,
+                          const wrong_number *list, int n, const bool fits[MAX_WRONG]) {
+    int hits[MAX_WRONG] = {0}, tried = 0;
+    double chance = 1;
+    for (int k = 0; k < BYSTANDERS; k++) {
+        bool right[MAX_WRONG];
+        const uint64_t seed = hn_hash_bytes(HN_HASH_START, &k, sizeof k);
+        if (try_variant(exercise, seed, submission, list, n, right)) {
+            tried++;
+            for (int i = 0; i < n; i++) {
+                hits[i] += right[i];
+            }
         }
     }
-    return false;
+    for (int i = 0; i < n; i++) {
+        chance *= fits[i] ? (double)(1 + hits[i]) / (double)(1 + tried) : 1;
+    }
+    return chance;
+}
+
+/// How many of the wrong numbers are those of this seed; 0 where too few are, or by chance.
+static int count_fits(const hn_exercise *exercise, uint64_t seed, const cJSON *submission,
+                      const wrong_number *list, int n) {
+    bool right[MAX_WRONG];
+    int count = 0;
+    if (!try_variant(exercise, seed, submission, list, n, right)) {
+        return 0;
+    }
+    for (int i = 0; i < n; i++) {
+        count += right[i];
+    }
+    const bool enough = count >= LEAST && n - count < 2;
+    return enough && find_chance(exercise, submission, list, n, right) <= MOST_CHANCE ? count : 0;
+}
+
+/// Looks for the variant among the owners and a few small seeds; writes how many numbers are wrong,
+/// and returns how many of them are its numbers.
+static int find_owner(const hn_variant *x, const cJSON *submission, const hn_verdict *v,
+                      hn_variant_owner *out, int *n) {
+    const hn_exercise *e = x->exercise;
+    wrong_number list[MAX_WRONG];
+    *n = list_wrong(x, v, list);
+    for (int i = 0; i < e->n_owners + SMALL_SEEDS && *n >= LEAST; i++) {
+        const hn_variant_owner seed = {.seed = (uint64_t)(i - e->n_owners + 1)};
+        *out = i < e->n_owners ? e->owners[i] : seed;
+        const int fits = out->seed == x->seed ? 0 : count_fits(e, out->seed, submission, list, *n);
+        if (fits > 0) {
+            return fits;
+        }
+    }
+    return 0;
 }
 
 void hn_other_variant_say(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
     hn_variant_owner owner;
-    if (v->n_right == v->n_entries || !find_owner(x, submission, v, &owner)) {
+    int n = 0;
+    const int fits = v->n_right == v->n_entries ? 0 : find_owner(x, submission, v, &owner, &n);
+    if (fits == 0) {
         return;
     }
-    const size_t used = strlen(v->summary);
-    if (owner.name) {
+
+    size_t used = strlen(v->summary);
+    used += (size_t)snprintf(v->summary + used, sizeof v->summary - used,
+                             "; %d of the %d wrong numbers agree with the numbers of ", fits, n);
+    if (used < sizeof v->summary && owner.name) {
         snprintf(v->summary + used, sizeof v->summary - used,
-                 "; these are the numbers of the variant of '%.60s' (seed %llu), and this is seed "
-                 "%llu",
-                 owner.name, (unsigned long long)owner.seed, (unsigned long long)x->seed);
-    } else {
-        snprintf(v->summary + used, sizeof v->summary - used,
-                 "; these are the numbers of seed %llu%s, and this is seed %llu",
+                 "the variant of '%.60s' (seed %llu), and this is seed %llu", owner.name,
+                 (unsigned long long)owner.seed, (unsigned long long)x->seed);
+    } else if (used < sizeof v->summary) {
+        snprintf(v->summary + used, sizeof v->summary - used, "seed %llu%s, and this is seed %llu",
                  (unsigned long long)owner.seed,
                  owner.seed == x->exercise->seed ? " (the exercise without a name or seed)" : "",
                  (unsigned long long)x->seed);

@@ -3,8 +3,8 @@
 #define HN_GRADE_OTHER_VARIANT_H
 // Numbers that are wrong because they answer another variant: those of another student, or of the
 // exercise as it is printed without a name. Only numbers and vectors are tried, and at least two of
-// them must be right in the other variant, all wrong ones but one: one number alone may agree by
-// chance.
+// them must be right in the other variant, all wrong ones but one, and not by chance: numbers that
+// are right in many variants prove nothing.
 
 #include "grade/variant.h"
 

@@ -440,7 +440,7 @@ def other_numbers(folder):
     said = run("grade", path, write(folder, "plain.json", dict(plain, student="ada"))).stdout
     expect("numbers of the exercise without a name are named", "numbers of seed 1 (the exercise without a name or seed)" in said, said)
     said = run("grade", path, write(folder, "one.json", {"student": "ada", "a": plain["a"], "b": 1, "c": 1})).stdout
-    expect("one number alone is not enough", "these are the numbers" not in said, said)
+    expect("one number alone is not enough", "agree with the numbers" not in said, said)
     os.mkdir(os.path.join(folder, "class"))
     for who, answers in (("ada", bobs), ("bob", bobs), ("eve", dict(numbers("--student", "eve"), c=0))):
         write(os.path.join(folder, "class"), who + ".json", answers)
@@ -449,6 +449,41 @@ def other_numbers(folder):
     bobs_seed, adas_seed = (json.loads(run("problem", path, "--json", "--student", who).stdout)["seed"] for who in ("bob", "ada"))
     expect("with both seeds", f"'bob' (seed {bobs_seed}), and this is seed {adas_seed}" in said, said)
     expect("and nobody else is accused", said.count("the variant of") == 1, said)
+
+
+def what_looks_like_an_answer(folder):
+    """An example must have its shape; a count is not explained by two mistakes; small counts accuse nobody."""
+    def entries(exercise, given):
+        verdict = json.loads(run("grade", exercise, write(folder, "answer.json", given), "--json").stdout)
+        return {e["name"]: (e["mistake"], e["explanation"]) for e in verdict.get("entries", [])}
+
+    told = entries("singular", {"a": {"J": [[1, 2, 3], [0, 0, 0]]}})
+    expect("a zero row is not the example that is asked for", told["a"][0] == "zero-row", str(told))
+    small = {"d": {"choice": "a", "reason": "a"}}
+    for exercise, part, given, said in (("singular", "a", {"J": [[1, 2], [2, 4]]}, "J is 2 x 2; asked for is a matrix of 2 x 3"),
+                                        ("singular", "b", {"J": [[1, 0, 0]], "M": [[1, 0, 0], [0, 0, 0], [0, 0, 0]], "x": [0, 1, 0]}, "J is 1 x 3"),
+                                        ("p4", "b", {"M": [[1]], "Phi": [[0]], "v": [1]}, "M is 1 x 1"),
+                                        ("p4", "c", {"M": [[1, 0, 0], [0, 0, 0], [0, 0, 0]], "Phi": [[1], [0], [0]]}, "M is 3 x 3")):  # fmt: skip
+        told = entries(exercise, dict(small, **{part: given}))
+        expect(f"a matrix of another shape is refused: {said}", told[part][0] == "unreadable" and said in told[part][1], str(told))
+    told = entries("p4", {"b": {"M": [[2, 0], [0, 1]], "Phi": [[1, 0], [0, 1]], "v": [1e-7, 0]}})
+    expect("a small vector is no counter-example", told["b"][0] == "phi-full-rank", str(told))
+
+    told = entries("loops", {"student": "s1001", "a": -1})
+    expect("a wrong count is not called two mistakes", told["a"][0] == "other", str(told))
+    k = json.loads(run("problem", "gears", "--seed", "3", "--json").stdout)["numbers"]["k"]
+    told = entries("gears", {"seed": 3, "c": k + 1})
+    expect("nor a count of gears", "two mistakes" not in told["c"][1], str(told))
+
+    part = {"ask": "?", "kind": "number", "points": 1, "tolerance": {"relative": 0.001}}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"k": {"choose": [3, 5, 7]}, "n": {"choose": [11, 13, 17]}},
+                "parts": [dict(part, id=i, answer=a, second=s) for i, a, s in (("a", "7*k", "k+6*k"), ("b", "9*n", "n+8*n"))]}  # fmt: skip
+    path = write(folder, "few.json", exercise)
+    seeds = [json.loads(run("problem", path, "--json", "--seed", str(i)).stdout)["numbers"] for i in range(1, 9)]
+    mine, other = next((i, n) for i, m in enumerate(seeds, 1) for n in seeds if n["k"] != m["k"] and n["n"] != m["n"])
+    said = run("grade", path, write(folder, "answer.json", {"seed": mine, "a": 7 * other["k"], "b": 9 * other["n"]})).stdout
+    expect("numbers that many variants share accuse nobody", "score 0 of 2" in said and "agree with the numbers" not in said, said)
 
 
 def named_file(folder):
@@ -702,6 +737,7 @@ def main():
         regrading_the_ungradable(folder)
         named_file(folder)
         other_numbers(folder)
+        what_looks_like_an_answer(folder)
         for_teachers(folder)
         broken_exercise(folder)
         the_guide_for_teachers(folder)

@@ -2,12 +2,13 @@
 // An example or a counter-example: matrices or numbers with properties that are tested one by one.
 //
 //     "given": ["M", "Phi", "v"]           the matrices that are asked for (JSON rows)
+//     "shapes": {"M": [2, 2], "v": [2, 1]} and how many rows and columns each must have
 //     "numbers": ["l1", "l2"]              or numbers
 //     "checks": [{"id": "symmetric", "test": "symmetric", "of": "M", "says": "..."}, ...]
 //
-// Tests: symmetric, definite, semidefinite, full-rank (columns), rows-independent, singular,
-// nonsingular: of a formula of matrices; at-most-zero, zero, nonzero: of a formula with one value;
-// positive: of a formula of the numbers.
+// Tests: symmetric, definite, semidefinite, full-rank (columns), rows-independent, rows-nonzero
+// (none of its rows is zero), singular, nonsingular: of a formula of matrices; at-most-zero, zero,
+// nonzero: of a formula with one value; positive: of a formula of the numbers.
 #include "grade/parts/part_list.h"
 #include "grade/parts/world.h"
 
@@ -124,6 +125,18 @@ static int is_nonzero(const hn_matrix *m) {
     return largest(m) > SMALL;
 }
 
+/// A row is zero beside the largest entry, as a whole matrix is where all of them are.
+static int has_no_zero_row(const hn_matrix *m) {
+    const double size = largest(m);
+    for (int i = 0; i < m->rows; i++) {
+        const hn_matrix row = {.rows = 1, .cols = m->cols, .x = m->x + i * m->cols};
+        if (largest(&row) <= SMALL * size) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static const struct {
     const char *name;
     int (*holds)(const hn_matrix *m);
@@ -138,10 +151,26 @@ static const struct {
     {"at-most-zero", is_at_most_zero},
     {"zero", is_zero},
     {"nonzero", is_nonzero},
+    {"rows-nonzero", has_no_zero_row},
 };
 enum { N_TESTS = sizeof TESTS / sizeof *TESTS };
 
 // ---- reading ----
+
+/// Whether the matrix that was read last has the shape that is asked for; else the result says so.
+static int has_shape(const hn_part *p, const hn_world *w, hn_part_result *r) {
+    const hn_matrix *m = &w->matrix[w->n - 1];
+    const char *name = w->name[w->n - 1];
+    const cJSON *shapes = cJSON_GetObjectItemCaseSensitive(p->node, "shapes");
+    const cJSON *shape = cJSON_GetObjectItemCaseSensitive(shapes, name);
+    const cJSON *rows = cJSON_GetArrayItem(shape, 0), *cols = cJSON_GetArrayItem(shape, 1);
+    if (!rows || !cols || (m->rows == rows->valueint && m->cols == cols->valueint)) {
+        return 1;
+    }
+    hn_part_unreadable(r, "%.20s is %d x %d; asked for is a matrix of %d x %d (rows x columns)",
+                       name, m->rows, m->cols, rows->valueint, cols->valueint);
+    return 0;
+}
 
 /// The matrices of an answer as a world of their own; 0 after the result has said what is missing.
 static int read_matrices(const hn_part *p, const cJSON *given, hn_world *w, hn_part_result *r) {
@@ -155,6 +184,9 @@ static int read_matrices(const hn_part *p, const cJSON *given, hn_world *w, hn_p
         }
         if (!hn_world_add(w, name->valuestring, rows, why)) {
             hn_part_unreadable(r, "%s", why);
+            return 0;
+        }
+        if (!has_shape(p, w, r)) {
             return 0;
         }
     }
@@ -271,7 +303,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 
 const hn_part_kind hn_part_example = {
     .name = "example",
-    .fields = "given numbers checks answer faults",
+    .fields = "given shapes numbers checks answer faults",
     .ask = ask,
     .grade = grade,
     .right = hn_part_right_answer,

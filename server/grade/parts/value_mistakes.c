@@ -269,6 +269,15 @@ static bool find_rounded(const hn_value_sheet *s, int k, const double *given, hn
     return true;
 }
 
+/// A count: a whole number where a whole number is right. Two mistakes together give nearly every
+/// small number, so that a pair which gives this one explains nothing. A drawn whole number may be
+/// off by rounding, far below 1e-9.
+static bool is_count(const hn_value_sheet *s, int k, const double *given) {
+    const double right = s->reference.x[k][0];
+    return !s->symbolic && fabs(given[0] - round(given[0])) < 1e-9 &&
+           fabs(right - round(right)) < 1e-9;
+}
+
 hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex formula,
                            hn_part_result *r) {
     hn_value_search f;
@@ -297,10 +306,11 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
     if (f.n_found == 0 && find_rounded(s, k, given, r)) {
         return HN_OK;
     }
-    if (f.n_found == 0) {
+    const bool count = is_count(s, k, given);
+    if (f.n_found == 0 && !count) {
         HN_TRY(try_listed_pairs(&f));
     }
-    if (f.n_found == 0) {
+    if (f.n_found == 0 && !count) {
         HN_TRY(try_two_listed(&f));
     }
     if (f.n_found == 0) {
