@@ -108,3 +108,93 @@ test("a hand pulls by keys, and lets go with Escape", async (t) => {
   await until(page, (data) => data.hand === null);
   await drawn(page);
 });
+
+/** Plays slowly, so that a hand has time. */
+async function playSlowly(page) {
+  for (let k = 0; k < 3; k++) {
+    await page.keyboard.press("-");
+  }
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running" && data.latest?.t > 0.1);
+}
+
+async function pullByKeys(page) {
+  await page.getByRole("button", { name: "pull", exact: true }).click();
+  for (let k = 0; k < 4; k++) {
+    await page.keyboard.press("ArrowUp");
+  }
+  await until(page, (data) => data.hand !== null && data.pulled);
+}
+
+test("a pull by keys shows the newest frame, and the picture goes on", async (t) => {
+  const page = await bench.open(t, { hash: "#slider-crank" });
+  await playSlowly(page);
+  await pullByKeys(page);
+  const from = await read(page, (data) => data.latest.t);
+  await until(page, `(data) => data.latest.t > ${from} + 0.1`);
+  assert.equal(await read(page, (data) => data.view.shown), -1, "the newest frame");
+  await page.keyboard.press("Escape");
+  await until(page, (data) => data.hand === null && data.pulls.length > 0);
+});
+
+test("undo while a hand holds takes back the pull, not the scene", async (t) => {
+  const page = await bench.open(t);
+  await playSlowly(page);
+  await page.getByRole("button", { name: "gallery" }).click();
+  await page.fill("#gallery-search", "slider-crank");
+  await page.locator(".gallery .cards li:visible button").first().click();
+  await until(page, (data) => data.scene.id === "slider-crank" && data.undo.past === 1);
+  await page.locator("#play").click();
+  await until(page, (data) => data.state === "running" && data.latest?.t > 0.1);
+  await pullByKeys(page);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await until(page, (data) => data.undo.future === 1 && !data.hand && !data.pulled);
+  assert.equal(await read(page, (data) => data.scene.id), "slider-crank");
+  await page.getByRole("button", { name: "Redo" }).click();
+  await until(page, (data) => data.pulled && data.pulls.length > 0 && data.undo.future === 0);
+
+  // the letter as well, while the mouse holds: the hand is gone though the button is still down
+  await page.getByRole("button", { name: "Undo" }).click();
+  await until(page, (data) => !data.pulled && data.undo.future === 1 && !data.hand);
+  await until(page, (data) => data.state === "running" && data.latest?.t > 0.1);
+  const at = await jointAt(page, "B");
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 40, at.y - 40, { steps: 4 });
+  await until(page, (data) => data.hand !== null && data.pulled);
+  await page.keyboard.press("z");
+  await until(page, (data) => data.undo.future === 1 && !data.hand && !data.pulled);
+  await page.mouse.move(at.x + 80, at.y - 80, { steps: 4 });
+  await page.mouse.up();
+  const after = await read(page, (data) => [data.scene.id, data.hand, data.pulled]);
+  assert.deepEqual(after, ["slider-crank", null, false]);
+});
+
+test("a recording that plays is not pulled, and the page says why", async (t) => {
+  const page = await bench.open(t);
+  await playSlowly(page);
+  await until(page, (data) => data.latest?.t > 0.5);
+  await page.keyboard.press("Space");
+  await stood(page);
+  await page.keyboard.press("Backspace");
+  await until(page, (data) => data.view.shown === 0);
+  await page.locator("#play").click();
+  await until(page, (data) => data.view.replaying);
+  await page.getByRole("button", { name: "pull", exact: true }).click();
+  await page.keyboard.press("ArrowUp");
+  await until(page, (data) =>
+    /^this is a recording to .* s: a hand can pull only/.test(data.notice),
+  );
+  assert.equal(await read(page, (data) => data.hand), null);
+});
+
+test("a drag over empty places of the drawing marks no text", async (t) => {
+  const page = await bench.open(t);
+  await drawn(page);
+  const box = await page.locator("svg.picture").boundingBox();
+  await page.mouse.move(box.x + 3, box.y + box.height * 0.2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width - 3, box.y + box.height - 60, { steps: 5 });
+  await page.mouse.up();
+  assert.equal(await page.evaluate(() => String(getSelection())), "");
+});

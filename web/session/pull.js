@@ -3,6 +3,7 @@
 // A hand that holds a point by a spring while the methods run. The server keeps a log of what it
 // does; a start anew does it again, to the same bits.
 import { api, sentenceOf } from "../api/client.js";
+import { seconds } from "../state/format.js";
 
 const ENTRY = 7; // numbers of an entry of the log
 const DIGITS = 5; // of a place: a pointer knows no more, and a link is shorter
@@ -44,6 +45,9 @@ export function createPullActions(store, exchange, notice) {
     return asking;
   }
 
+  /** The letting go that goes on, until its log is here. */
+  let lettingGo = Promise.resolve();
+
   /** Fetches the log, so that a link and a new server do it again. */
   async function keepLog() {
     const { id } = data;
@@ -52,6 +56,16 @@ export function createPullActions(store, exchange, notice) {
       data.pulls = pulls;
       store.emit("hand");
     }
+  }
+
+  async function release() {
+    wish = null;
+    put(null);
+    await asking;
+    await exchange
+      .change({ release: true })
+      .then(keepLog)
+      .catch((error) => notice(sentenceOf(error)));
   }
 
   return {
@@ -65,18 +79,23 @@ export function createPullActions(store, exchange, notice) {
       put({ point, to });
       return follow();
     },
-    /** Lets go. */
-    async letGo() {
-      if (!data.hand) {
-        return;
+    /** Lets go. Done when the log is here, also where another call let go. */
+    letGo() {
+      if (data.hand) {
+        lettingGo = release();
       }
-      wish = null;
-      put(null);
-      await asking;
-      await exchange
-        .change({ release: true })
-        .then(keepLog)
-        .catch((error) => notice(sentenceOf(error)));
+      return lettingGo;
+    },
+    /** A recording plays: says why nothing is pulled, and what to do. */
+    refusePull() {
+      const end = seconds(data.history.t[data.history.count - 1], data.duration);
+      notice(
+        data.state === "finished"
+          ? `this is a recording to ${end}, the end of the run: a hand cannot change it. Pause, then ` +
+              "drag a joint to change the start"
+          : `this is a recording to ${end}: a hand can pull only what comes after it, when it ` +
+              "has been played to there",
+      );
     },
     /** The motion without any hand, from the start. */
     forgetPulls() {

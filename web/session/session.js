@@ -40,12 +40,16 @@ export function createSession(store) {
           : scenes.loadDocument(scene, { settings, methods, pulls }),
     notice,
   );
+  const pulls = createPullActions(store, exchange, notice);
+  /** A hand lets go first: what it did is the last change. @param {() => Promise<void>} move */
+  const afterHand = (move) => pulls.letGo().then(move);
 
   return {
     ...scenes,
     ...createDragActions(store, exchange, notice),
-    ...createPullActions(store, exchange, notice),
-    ...undo,
+    ...pulls,
+    undo: () => afterHand(undo.undo),
+    redo: () => afterHand(undo.redo),
     ...createPlayback(store, exchange),
     ...createMethodActions(store, exchange, notice),
     studies,

@@ -203,6 +203,7 @@ export function createDrawing(el, store, actions) {
       lengths.draw();
     },
     hand: () => {
+      handles.loseHand();
       hand.say();
       draw();
     },

@@ -115,13 +115,15 @@ export function createHand(layer, data, stage, actions) {
     const way = WAYS[event.key];
     if (event.key === "Escape" && data.hand) {
       actions.letGo();
-    } else if (way && !data.view.replaying) {
+    } else if (way && data.view.replaying) {
+      actions.refusePull();
+    } else if (way) {
       const point = Number(points.value);
       const from = data.hand?.point === point ? data.hand.to : placeOf(point);
       const { look, scaleBar } = stage.camera;
       const step = STEP * scaleBar.metres * (event.shiftKey ? FAR : 1);
       const to = from.map((c, k) => c + step * (way[0] * look.right[k] + way[1] * look.up[k]));
-      actions.show(-1);
+      actions.show(Infinity); // the newest: what a hand does comes after it
       actions.pull(point, to);
     } else {
       return;

@@ -25,7 +25,7 @@ export function createHandles(svg, layer, data, stage, actions) {
   const note = h("p", { class: "drag-note", role: "status", hidden: true });
   /** pulls: the methods run, and a hand pulls them; otherwise the start is dragged
    * @type {{point: number, x: number, y: number, from: number[], target: number[],
-   *   pulls: boolean} | null} */
+   *   pulls: boolean, moved?: boolean} | null} */
   let held = null;
   /** @type {{shapes: any[], path: SVGElement}[]} */
   let pieces = [];
@@ -89,6 +89,10 @@ export function createHandles(svg, layer, data, stage, actions) {
     }
     event.stopPropagation(); // it would turn the view
     event.preventDefault();
+    if (data.view.replaying) {
+      actions.refusePull();
+      return;
+    }
     const pulls = data.state === "running" && data.view.shown < 0;
     if (pulls || actions.beginDrag()) {
       const from = placeOf(points, point);
@@ -120,6 +124,7 @@ export function createHandles(svg, layer, data, stage, actions) {
     }
     held.target = targetOf(held, x, y, event.shiftKey);
     if (held.pulls) {
+      held.moved = true;
       actions.pull(held.point, held.target);
       return;
     }
@@ -132,6 +137,13 @@ export function createHandles(svg, layer, data, stage, actions) {
     if (held) {
       held = null;
       (pulls ? actions.letGo : actions.endDrag)();
+    }
+  }
+
+  /** The hand let go by itself, as for an undo: the pointer holds nothing any more. */
+  function loseHand() {
+    if (held?.pulls && held.moved && !data.hand) {
+      held = null;
     }
   }
 
@@ -210,6 +222,7 @@ export function createHandles(svg, layer, data, stage, actions) {
 
   return {
     note,
+    loseHand,
     /** The dragged mechanism, as the server closed it last. */
     draw() {
       const { drag } = data;
