@@ -20,7 +20,8 @@ hn_field hn_study_change[3] = {
               "stopped, by its time limit too, goes on with what is left"},
     {.name = "time_limit",
      .type = HN_FIELD_NUMBER,
-     .about = "wall time of going on [s]; that of the study when left out"},
+     .about = "wall time of going on [s], at most what the computing time leaves over all runs; "
+              "what is left of the study's when left out"},
     {.name = NULL},
 };
 
