@@ -343,6 +343,21 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
     return HN_OK;
 }
 
+/// A reference that its second way does not confirm grades nobody: the exercise is at fault.
+static hn_status prove_parts(const hn_variant *x, hn_diag *diag) {
+    for (int i = 0; i < x->n_parts; i++) {
+        const hn_part *p = &x->part[i];
+        hn_diag why = {0};
+        const hn_status status = p->kind->prove ? p->kind->prove(p, &why) : HN_OK;
+        if (status != HN_OK) {
+            return hn_diag_set(diag, status, "/parts", "problem --check tries every variant",
+                               "the exercise is wrong in its part %.20s: %.200s", p->id,
+                               why.message);
+        }
+    }
+    return HN_OK;
+}
+
 /// An exercise of form 2.
 static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
     // the file's own variant where the caller leaves it open
@@ -355,6 +370,9 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
     hn_variant *x = malloc(sizeof *x);
     hn_diag diag = {0};
     hn_status status = x ? hn_variant_init(x, v->problem, v->seed, &diag) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = prove_parts(x, &diag);
+    }
     if (status == HN_OK) {
         status = hn_variant_grade(x, root, v, &diag);
     }

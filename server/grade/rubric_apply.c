@@ -213,6 +213,9 @@ hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *e, hn_diags *diags) {
 
 // ---- words ----
 
+/// A tolerance for counts: nothing but the right number is within it.
+static const double EXACT = 1e-8;
+
 /// "passes every answer rounded to 3 digits": a number rounded to d digits errs by at most half of
 /// the last, which is 0.5 * 10^(1 - d) of a number that begins with 1.
 static void put_meaning(hn_strbuf *b, double relative, double absolute, bool symbolic) {
@@ -222,6 +225,8 @@ static void put_meaning(hn_strbuf *b, double relative, double absolute, bool sym
                          "%g of the largest value over the random states: passes formulas whose "
                          "numbers have %d digits",
                          relative, digits);
+    } else if (relative <= EXACT) {
+        hn_strbuf_add(b, "exact: passes the right number alone");
     } else {
         hn_strbuf_printf(b, "%g %%: passes every answer rounded to %d digit%s", 100 * relative,
                          digits, digits == 1 ? "" : "s");

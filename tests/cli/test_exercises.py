@@ -475,6 +475,33 @@ def what_looks_like_an_answer(folder):
     told = entries("gears", {"seed": 3, "c": k + 1})
     expect("nor a count of gears", "two mistakes" not in told["c"][1], str(told))
 
+    told = entries("baumgarte", {"c": "0.008 1/ms"})
+    expect("a number without a unit says so", "asked for: a plain number, without a unit" in told["c"][1], str(told))
+    right = ["S'*tau - h", "-gamma"]
+    for one in ("I", "E", "eye", "identity", "1"):
+        told = entries("p1", {"a": {"matrix": [[one, "-inv(M)*J'"], ["J", 0]], "right": ["inv(M)*(S'*tau - h)", "-gamma"]}})
+        expect(f"{one} is the identity in a system of blocks", told["a"][0] == "", str(told))
+    told = entries("p1", {"a": {"matrix": [["M", "I"], ["J", 0]], "right": right}})
+    expect("and no block that is not square", "multiple of the identity, but its place is 5 x 2" in told["a"][1], str(told))
+
+    write(folder, "answer.json", {"seed": 1, "a": 1, "d": 0.1})
+    shown = json.loads(run("grade", "loops", os.path.join(folder, "answer.json"), "--show-expected", "--json").stdout)["entries"]
+    theta = float(next(e["expected"] for e in shown if e["name"] == "d").split()[0])
+    expect("an angle is right after a whole turn", entries("loops", {"seed": 1, "d": theta + 6.283185})["d"][0] == ""
+           and entries("loops", {"seed": 1, "d": theta + 3.1415927})["d"][0] != "", str(theta))  # fmt: skip
+
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "tolerance": {"relative": 0.001}, "answer": "0.4932*l/l", "second": "0.4932"}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"l": {"range": [1, 2], "digits": 2}}, "parts": [part]}  # fmt: skip
+    told = entries(write(folder, "round.json", exercise), {"a": 0.49})
+    expect("a number with too few digits is named", told["a"] == ("rounded", "right to 2 digits, but it must be right to 0.1 %: write more digits"), str(told))
+    part["answer"] = "0.4932*1.1*l/l"
+    done = run("grade", write(folder, "wrong.json", exercise), write(folder, "answer.json", {"a": 0.4932}))
+    expect("an exercise that its second way contradicts grades nobody", done.returncode == 3 and "the exercise is wrong in its part a" in done.stdout + done.stderr,
+           done.stdout + done.stderr)  # fmt: skip
+    told = run("rubric", "check", write(folder, "gears.json", run("rubric", "write", "gears").stdout)).stdout
+    expect("a tolerance of a count is told as exact", "exact: passes the right number alone" in told and "10 digits" not in told, told)
+
     part = {"ask": "?", "kind": "number", "points": 1, "tolerance": {"relative": 0.001}}
     exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
                 "draw": {"k": {"choose": [3, 5, 7]}, "n": {"choose": [11, 13, 17]}},

@@ -154,7 +154,7 @@ static hn_exit grade_one(const task *t) {
     } else {
         hn_diag diag;
         hn_diag_set(&diag, status, NULL, NULL, "the grader failed on '%.200s': %s", t->submission,
-                    hn_status_text(status));
+                    v && v->reason[0] ? v->reason : hn_status_text(status));
         hn_report_diag(t->args, &diag);
     }
     free(v);

@@ -115,11 +115,21 @@ static int read_unknowns(system_t *s, const cJSON *answer) {
                : tell(s, "shape", "%s", "not every unknown is there");
 }
 
-/// Copies a block into K; a number other than 0 is no block.
+/// Copies a block into K; a number stands for that multiple of the identity, in a square place.
 static int place_block(system_t *s, const hn_matrix *m, int row, int column, int height) {
     const int width = s->column_of[column + 1] - s->column_of[column];
-    if (m->number && m->x[0] == 0) {
+    if (m->number && (m->x[0] == 0 || height == width)) {
+        for (int i = 0; i < height && i < width; i++) {
+            s->K[(s->row_of[row] + i) * s->size + s->column_of[column] + i] = m->x[0];
+        }
         return 1;
+    }
+    if (m->number) {
+        char text[120];
+        snprintf(text, sizeof text,
+                 "block %d, %d is a multiple of the identity, but its place is %d x %d", row + 1,
+                 column + 1, height, width);
+        return tell(s, "shape", "%s", text);
     }
     if (m->rows != height || m->cols != width) {
         char text[120];

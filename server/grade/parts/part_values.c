@@ -41,6 +41,19 @@ static void write_expected(const hn_value_sheet *s, int k, hn_part_result *r) {
     }
 }
 
+/// Whether a number is the right one after whole periods, as an angle after whole turns.
+static bool is_right_turned(const hn_value_sheet *s, int k, const double *x) {
+    const double period = hn_part_number(s->p->node, "period", 0);
+    if (s->symbolic || !(period > 0)) {
+        return false;
+    }
+    double turned[HN_DRAW_STATES];
+    for (int i = 0; i < s->draw->n_states; i++) {
+        turned[i] = x[i] - period * round((x[i] - s->reference.x[k][i]) / period);
+    }
+    return hn_value_is_right(s, k, turned);
+}
+
 static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_part_result *r) {
     double x[HN_DRAW_STATES];
     hn_ex e;
@@ -50,7 +63,7 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
     if (!hn_value_entry_read(s, node, x, &e, r)) {
         return HN_OK;
     }
-    if (hn_value_is_right(s, k, x)) {
+    if (hn_value_is_right(s, k, x) || is_right_turned(s, k, x)) {
         hn_part_right(r);
         return HN_OK;
     }
@@ -280,7 +293,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 
 const hn_part_kind hn_part_values = {
     .name = "values",
-    .fields = "answer second unit states conditions tolerance faults",
+    .fields = "answer second unit period states conditions tolerance faults",
     .ask = ask,
     .grade = grade,
     .right = right,

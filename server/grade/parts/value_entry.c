@@ -121,8 +121,9 @@ bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_
         return false;
     }
     if (!hn_unit_fits(&unit, &s->unit)) {
+        const char *own = hn_part_text(s->p->node, "unit");
         hn_part_wrong(r, "unit", 0, "this unit measures something else; asked for: %s",
-                      hn_part_text(s->p->node, "unit"));
+                      own[0] ? own : "a plain number, without a unit");
         return false;
     }
 

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /// Factors between the answer and the reference that everyone gets wrong; `again`: as a second
 /// mistake beside another.
@@ -278,6 +279,23 @@ static bool is_count(const hn_value_sheet *s, int k, const double *given) {
            fabs(right - round(right)) < 1e-9;
 }
 
+/// A number that is the right one rounded to two or three digits, which is not exact enough.
+static bool find_rounded_number(const hn_value_sheet *s, int k, const double *given,
+                                hn_part_result *r) {
+    const double right = s->reference.x[k][0];
+    for (int digits = 2; digits <= 3 && !s->symbolic; digits++) {
+        char rounded[40];
+        snprintf(rounded, sizeof rounded, "%.*g", digits, right);
+        if (fabs(given[0] - strtod(rounded, NULL)) <= 1e-9 * fabs(right)) {
+            hn_part_wrong(r, "rounded", 0.5,
+                          "right to %d digits, but it must be right to %.2g %%: write more digits",
+                          digits, 100 * s->allowed[k] / fabs(right));
+            return true;
+        }
+    }
+    return false;
+}
+
 hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex formula,
                            hn_part_result *r) {
     hn_value_search f;
@@ -307,6 +325,9 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
         return HN_OK;
     }
     const bool count = is_count(s, k, given);
+    if (f.n_found == 0 && !count && find_rounded_number(s, k, given, r)) {
+        return HN_OK;
+    }
     if (f.n_found == 0 && !count) {
         HN_TRY(try_listed_pairs(&f));
     }

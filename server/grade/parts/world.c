@@ -17,6 +17,16 @@ static const hn_matrix *look_up(void *user, const char *name) {
             return &w->matrix[i];
         }
     }
+
+    // the identity, where the exercise has no matrix of this name: as a number it fits every shape
+    static const char *const identity[] = {"I", "E", "Id", "eye", "identity", NULL};
+    static double one[] = {1};
+    static const hn_matrix unit = {.rows = 1, .cols = 1, .number = 1, .x = one};
+    for (int i = 0; identity[i]; i++) {
+        if (strcmp(identity[i], name) == 0) {
+            return &unit;
+        }
+    }
     return NULL;
 }
 
