@@ -350,6 +350,37 @@ static int check_hints(const hn_variant *x, const cJSON *submission, hn_verdict 
     return 0;
 }
 
+/// Whether a list of names in an exercise's part has this one.
+static bool has_name(const hn_part *p, const char *list, const char *name) {
+    const cJSON *m;
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, list)) {
+        if (cJSON_IsString(m) && strcmp(m->valuestring, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Remarks on what the answer to a part holds beside the names that the part asks for. A whole
+/// scene has fields of its own.
+static void remark_unread_names(const hn_part *p, const cJSON *answer, hn_verdict *v) {
+    static const char *const lists[] = {"free", "given", "numbers"};
+    const bool scene = cJSON_GetObjectItemCaseSensitive(answer, "holonom") != NULL;
+    const char *kind = hn_part_text(p->node, "kind");
+    const bool named = strcmp(kind, "scene") == 0 || strcmp(kind, "example") == 0;
+    for (const cJSON *m = cJSON_IsObject(answer) && named && !scene ? answer->child : NULL; m;
+         m = m->next) {
+        bool known = false;
+        for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+            known |= has_name(p, lists[i], m->string);
+        }
+        if (!known) {
+            hn_submission_remark(v, "in part %.20s the field '%.50s' was not read", p->id,
+                                 m->string);
+        }
+    }
+}
+
 /// Fields that no part asks for; the file of another exercise or another seed.
 static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     static const char *const others[] = {"problem", "exercise", "student", "seed",
@@ -360,7 +391,9 @@ static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
     // each field is a part, or one that every submission may have
     for (int i = 0; i < x->n_parts; i++) {
         fields[i] = x->part[i].id;
-        answers += cJSON_GetObjectItemCaseSensitive(submission, x->part[i].id) != NULL;
+        const cJSON *answer = cJSON_GetObjectItemCaseSensitive(submission, x->part[i].id);
+        answers += answer != NULL;
+        remark_unread_names(&x->part[i], answer, v);
     }
     memcpy(fields + x->n_parts, others, 6 * sizeof *others);
     hn_submission_remark_unread(v, submission, fields, x->n_parts + 6);

@@ -475,6 +475,8 @@ def what_looks_like_an_answer(folder):
     told = entries("gears", {"seed": 3, "c": k + 1})
     expect("nor a count of gears", "two mistakes" not in told["c"][1], str(told))
 
+    note = json.loads(run("grade", "turning", write(folder, "answer.json", {"a": {"l1": 1, "l3": 2, "d": 0.1}}), "--json").stdout)["note"]
+    expect("what an answer holds beside its names is told", note == "in part a the field 'd' was not read", note)
     told = entries("baumgarte", {"c": "0.008 1/ms"})
     expect("a number without a unit says so", "asked for: a plain number, without a unit" in told["c"][1], str(told))
     right = ["S'*tau - h", "-gamma"]
