@@ -133,6 +133,45 @@ test("a notice covers no verdict, no curve of the widest layout and no button to
   }
 });
 
+test("the line of verdicts has room for all its sentences, keeps it, and gives it back", async (t) => {
+  const asked = [0.05, 0.04, 0.03, 0.02, 0.01]
+    .map((h) => `&method=index1@rk4:h=${h}`)
+    .concat("&method=projection@rk4:h=0.02")
+    .join("");
+  const hash = `#scene=four-bar${asked}`;
+  for (const [width, height] of [
+    [1210, 800],
+    [1024, 768],
+  ]) {
+    const page = await open(t, { viewport: { width, height }, hash, fresh: true });
+    const look = () =>
+      page.evaluate(() => {
+        const bar = document.querySelector("#verdict");
+        const seen = bar.querySelector(".seen");
+        return {
+          count: seen.children.length,
+          all: bar.scrollHeight,
+          room: bar.clientHeight,
+          lines: seen.getBoundingClientRect().height,
+          bottom: bar.getBoundingClientRect().bottom,
+        };
+      });
+    const { room: least } = await look();
+    await playTo(page, 4);
+    await soon(async () => assert.ok((await look()).count > 3));
+    const late = await look();
+    assert.ok(late.lines > 41, `more lines than two: ${late.lines} px`);
+    assert.ok(late.all <= late.room && late.bottom <= height, JSON.stringify(late));
+
+    // fewer sentences leave it as it is, a window of another size does not
+    await page.keyboard.press("Backspace");
+    await soon(async () => assert.equal((await look()).count, 1));
+    assert.equal((await look()).room, late.room);
+    await page.setViewportSize({ width, height: height - 1 });
+    await soon(async () => assert.equal((await look()).room, least));
+  }
+});
+
 test("the lens says the gap of the table while it plays", async (t) => {
   const page = await open(t);
   await page.keyboard.press("Space");

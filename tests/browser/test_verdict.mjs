@@ -235,6 +235,11 @@ test("a closed loop is no praise: without a reference the error is unknown", () 
   assert.equal(verdictOf({ gap: rounding, known: false }), "closed, error unknown");
   assert.equal(verdictOf({ gap: () => 2e-6, known: false }), "closed to 2 µm, error unknown");
   assert.equal(verdictOf({ gap: rounding, known: false, loops: 0 }), "error unknown");
+
+  // an estimate stands beside it: it is not said that nothing is known
+  const data = judged({ gap: rounding, known: false });
+  const latest = { methods: [{ error_estimate: { q: 2e-7 } }] };
+  assert.equal(verdictAt({ ...data, latest }, 0, 600).words, "closed, error only estimated");
 });
 
 test("sentences leave out no method, and methods of one verdict share a sentence", () => {

@@ -102,6 +102,12 @@ function rightDigits({ offShare, energyShare }, reference) {
   return { digits: Math.min(most, own), more: most < own };
 }
 
+/** What is said of an error without a reference. @param {any} data @param {number} m */
+const unknownWords = (data, m) =>
+  Number.isFinite(data.latest?.methods[m]?.error_estimate?.q)
+    ? "error only estimated"
+    : "error unknown";
+
 /**
  * @typedef {{words: string, tone: "calm" | "warn" | "bad", badness: number}} Verdict
  * badness: for sorting, the worst is the largest
@@ -146,7 +152,7 @@ export function verdictAt(data, m, shown) {
 
   const drifts = size.loops && grows ? `, gap ${quantity(size.gap, "m")} and growing` : "";
   if (!size.known) {
-    const asked = reference?.state === "asked" ? "not compared yet" : "error unknown";
+    const asked = reference?.state === "asked" ? "not compared yet" : unknownWords(data, m);
     const closed = drifts ? drifts.slice(2) : closedWords(size);
     const words = [closed, asked].filter(Boolean).join(", ");
     return { words, tone: drifts ? "warn" : "calm", badness: drifts ? 10 : 1 };

@@ -22,6 +22,9 @@ export function createVerdictBar(el, store) {
   el.replaceChildren(changes, seen, live, banner);
   let saidAt = -PAUSE;
   let timer = 0;
+  /** [px] of the bar since the methods changed, and the sentences it was last measured for */
+  let tallest = 0;
+  let roomFor = "";
 
   /** Sentences about the frame shown, with their tones. */
   function present() {
@@ -51,6 +54,22 @@ export function createVerdictBar(el, store) {
     });
   }
 
+  /** It grows with its sentences and never shrinks: what stands above moves as little as it can. */
+  function keepRoom() {
+    const room = el.offsetHeight;
+    if (room > tallest) {
+      tallest = room;
+      document.documentElement.style.setProperty("--verdict-room", `${room}px`);
+    }
+  }
+
+  /** Other methods, another scene, another width: other sentences. */
+  function forgetRoom() {
+    tallest = 0;
+    roomFor = "";
+    document.documentElement.style.removeProperty("--verdict-room");
+  }
+
   function paint() {
     const list = present();
     const key = list.map(({ text, tone }) => tone + text).join("\n");
@@ -63,6 +82,11 @@ export function createVerdictBar(el, store) {
     say(banner, failures().join("; "));
     say(changes, beforeAndAfter(data, shownIndex(data)).join("; "));
     changes.hidden = changes.textContent === "";
+    const all = changes.textContent + key;
+    if (all !== roomFor) {
+      roomFor = all;
+      keepRoom();
+    }
   }
 
   function speak() {
@@ -87,8 +111,12 @@ export function createVerdictBar(el, store) {
     update();
   }
 
+  addEventListener("resize", forgetRoom);
   const stop = listen(store, {
-    methods: () => hurry(PAUSE),
+    methods: () => {
+      forgetRoom();
+      hurry(PAUSE);
+    },
     state: () => hurry(PAUSE_ENDS),
     view: update,
     reference: update,
@@ -97,6 +125,7 @@ export function createVerdictBar(el, store) {
     update,
     dispose() {
       stop();
+      removeEventListener("resize", forgetRoom);
       clearTimeout(timer);
       paintNoMore(paint);
       el.replaceChildren();
