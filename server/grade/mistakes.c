@@ -249,6 +249,27 @@ static bool agrees_turned(const place *at, hn_ex e, const double *value,
     return worst <= hn_exam_allowed(at->exam, size);
 }
 
+/// Whether a formula names a parameter (a length), rather than coordinates alone.
+static bool names_parameter(const place *at, hn_ex e) {
+    for (int i = 0; i < at->exam->problem->n_params; i++) {
+        if (hn_depends_on(at->exam->graph, e, at->exam->symbol[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// What no row explains. Numbers in place of the lengths are right for one mechanism alone.
+static hn_grade_mistake find_nothing(const place *at) {
+    const bool numbers = names_parameter(at, at->reference) && !names_parameter(at, at->given);
+    return (hn_grade_mistake){
+        .id = "other",
+        .text = numbers
+                    ? "no length is named here: write lengths by their names, not as numbers, for "
+                      "the formula is tried with other lengths too"
+                    : "no known mistake gives this: differentiate the row once more, term by term"};
+}
+
 /// Two mistakes at once: one of the rows, and a second on top of it.
 static hn_grade_mistake find_pair(const place *at, const double *value) {
     for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
@@ -267,9 +288,7 @@ static hn_grade_mistake find_pair(const place *at, const double *value) {
             }
         }
     }
-    return (hn_grade_mistake){
-        .id = "other",
-        .text = "no known mistake gives this: differentiate the row once more, term by term"};
+    return find_nothing(at);
 }
 
 /// Whether the values differ from the right ones by no more than a rounded number makes them.

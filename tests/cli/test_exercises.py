@@ -477,6 +477,10 @@ def what_looks_like_an_answer(folder):
 
     note = json.loads(run("grade", "turning", write(folder, "answer.json", {"a": {"l1": 1, "l3": 2, "d": 0.1}}), "--json").stdout)["note"]
     expect("what an answer holds beside its names is told", note == "in part a the field 'd' was not read", note)
+    row = ["-1.1372*sin(th1)", "-l2*th2^3", "l3*sin(th3)", "l4*sin(th4)"]
+    said = run("grade", "p3", write(folder, "answer.json", {"J": [row, ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]})).stdout
+    expect("numbers in place of lengths are told from a wrong formula", said.count("not as numbers") == 1 and said.count("differentiate the row once more") == 1
+           and "6 of 8 entries" in said, said)  # fmt: skip
     told = entries("baumgarte", {"c": "0.008 1/ms"})
     expect("a number without a unit says so", "asked for: a plain number, without a unit" in told["c"][1], str(told))
     right = ["S'*tau - h", "-gamma"]
