@@ -176,15 +176,19 @@ static void put_question(hn_strbuf *b, const hn_exercise *p) {
     hn_json_strings(b, p->phi, (size_t)p->n_rows);
 }
 
-void hn_exercise_json(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
-    char hash[17];
-    hn_hash_hex(p->hash, hash);
-    hn_json_object(b);
+void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *p) {
     hn_json_put_string(b, "id", p->id);
     hn_json_put_string(b, "title", p->title);
     hn_json_put_string(b, "lesson", p->lesson);
     hn_json_put_string(b, "section", p->section);
     hn_json_put_string(b, "scene", p->scene);
+}
+
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
+    char hash[17];
+    hn_hash_hex(p->hash, hash);
+    hn_json_object(b);
+    hn_exercise_put_names(b, p);
     hn_json_put_string(b, "statement", p->statement);
     hn_json_put_number(b, "points", hn_exercise_points(p));
     hn_json_put_string(b, "hash", hash);

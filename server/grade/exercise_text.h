@@ -10,6 +10,9 @@
 /// velocity v of J v = 0, and how to hand in. seed 0: the exercise's own variant; `student`: whose
 /// it is, NULL: nobody's.
 void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem, uint64_t seed, const char *student);
+/// Writes what an exercise is called and where it stands, as members of the open object: "id",
+/// "title", "lesson", "section", "scene".
+void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *problem);
 /// {"id","title","statement","points","entries":[..],"seed","numbers":{..},"velocity":{..},
 /// "submission":".."}.
 void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem, uint64_t seed);

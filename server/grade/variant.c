@@ -2,6 +2,7 @@
 #include "grade/variant.h"
 
 #include "base/hash.h"
+#include "grade/exercise_text.h"
 #include "grade/repeated_member.h"
 #include "grade/rubric.h"
 #include "grade/student_name.h"
@@ -227,11 +228,7 @@ void hn_variant_json(hn_strbuf *b, hn_variant *x) {
     hn_hash_hex(p->hash, hash);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)x->seed);
     hn_json_object(b);
-    hn_json_put_string(b, "id", p->id);
-    hn_json_put_string(b, "title", p->title);
-    hn_json_put_string(b, "lesson", p->lesson);
-    hn_json_put_string(b, "section", p->section);
-    hn_json_put_string(b, "scene", p->scene);
+    hn_exercise_put_names(b, p);
     hn_json_put_number(b, "points", hn_exercise_points(p));
     hn_json_put_string(b, "hash", hash);
     hn_json_put_string(b, "seed", seed);
