@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Answers: what is right, what a wrong one is called, whose numbers it has, what is no answer at all. Speaks TAP."""
+
+import json
+import os
+import re
+import sys
+
+sys.path.insert(0, os.path.dirname(__file__))
+from exercise import expect, run, speak_tap, write  # noqa: E402
+
+
+def readings(folder):
+    """A plot that is read: a coarse reading is no slip, a value of the other axis is."""
+    def entry(value, *more):
+        done = run("grade", "gap-plot", write(folder, "read.json", {"a": value}), "--json", "--no-pictures", *more)
+        return next(e for e in json.loads(done.stdout)["entries"] if e["name"] == "a")
+
+    right = float(entry(1e150, "--show-expected")["expected"].split()[0])
+    axis = max(float(x) for x in re.findall(r'text-anchor="end">([\d.]+)<', json.loads(run("problem", "gap-plot", "--json").stdout)["parts"][0]["figure"]["svg"]))
+    allowed = 0.05 * 1000 * axis  # the axis is in metres, the answer in millimetres
+    told = {name: entry(value)["mistake"] for name, value in
+            (("right", right + 0.9 * allowed), ("coarse", right + 1.5 * allowed), ("time", 10.0), ("metres", right / 1000))}  # fmt: skip
+    expect("a coarse reading is not taken for a value of the other axis",
+           told == {"right": "", "coarse": "inexact", "time": "other-axis", "metres": "power-of-ten"}, str(told))  # fmt: skip
+
+
+def rates_of_a_part(folder):
+    """Every spelling of the crank's rate is the rate that the part asks for, not the given speed."""
+    for spelt in ("u1", "w1", "omega_1", "\\omega_1", "\\dot\\theta_1", "\\dot{\\theta}_1", "thdot1"):
+        second = "\\dot\\theta_2" if "dot\\" in spelt else "u2"
+        path = write(folder, "rate.json", {"student": "s1001", "a": f"-l1*sin(th1)*{spelt}-l2*sin(th2)*{second}"})
+        done = run("grade", "closure", path)
+        expect(f"closure a with {spelt} is right", "2 / 2  right" in done.stdout, done.stdout + done.stderr)
+        path = write(folder, "rate.json", {"c": f"-m2*l1*l2*sin(th1-th2)*{spelt}^2/2+9.81*m2*l2*cos(th2)/2"})
+        done = run("grade", "fourbar", path)
+        expect(f"fourbar c with {spelt} squared is right", "2 / 2  right" in done.stdout, done.stdout + done.stderr)
+
+    # the given number keeps its name where the part has no such rate; of two rates the name must say which
+    part = {"id": "a", "ask": "?", "kind": "formula", "points": 1, "states": {"x": {"range": [1, 2]}}, "answer": "w1*x", "second": "x*w1"}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"w1": {"range": [2, 3], "digits": 1, "unit": "rad/s"}}, "parts": [part]}  # fmt: skip
+    for spelt in ("w1", "omega1"):
+        done = run("grade", write(folder, "mine.json", exercise), write(folder, "a.json", {"a": f"{spelt}*x"}))
+        expect(f"{spelt} is the given number", "1 / 1  right" in done.stdout, done.stdout)
+    part.update(states={"u1": {"range": [1, 2]}, "om1": {"range": [3, 4]}}, answer="u1-om1", second="-om1+u1")
+    done = run("grade", write(folder, "mine.json", exercise), write(folder, "a.json", {"a": "omega_1-u1"}))
+    expect("a name of two rates is unreadable, and both are named", done.returncode == 2 and "'omega1' may be om1 or u1" in done.stdout, done.stdout)
+
+
+def nothing_for_nothing(folder):
+    """A formula that is 0, or one number everywhere, earns nothing and is not told what it lacks."""
+    for exercise, part in (("fourbar", "b"), ("fourbar", "c"), ("fourbar", "e"), ("closure", "b"), ("code", "b"), ("code", "d")):
+        for zero in ("0", "th3-th3" if part in "be" and exercise != "fourbar" else "th2-th2", "3.5"):
+            zero = zero.replace("2", "3") if (exercise, part) == ("closure", "b") else zero
+            done = json.loads(run("grade", exercise, write(folder, "0.json", {part: zero}), "--json").stdout)
+            entry = [e for e in done["entries"] if e["name"] == part][0]
+            expect(f"{exercise} {part} = {zero} earns 0", done["score"] == 0 and entry["mistake"] in ("zero", "constant", "point-masses", "masked"), str(entry))
+    for exercise, part in (("driven", "b"), ("code", "f")):
+        zero = json.loads(run("grade", exercise, write(folder, "0.json", {part: 0}), "--json").stdout)
+        expect(f"{exercise} {part} = 0 earns 0", zero["score"] == 0, str(zero["entries"]))
+    half = json.loads(run("grade", "fourbar", write(folder, "half.json", {"b": "m2*l1*l2*cos(th1-th2)"}), "--json").stdout)
+    expect("a mistake in a formula keeps its share", half["score"] == 1, str(half["score"]))
+
+
+def what_is_told_of_choices_hints_and_rods(folder):
+    """The right option is printed when asked for; hints are counted; l^2/12 is named."""
+    asked = run("problem", "closure").stdout
+    right = re.search(r"\(([a-d])\) the velocity with which the loop opens at B", asked)
+    wrong = write(folder, "d.json", {"d": "abcd".replace(right[1], "")[0]})
+    done = run("grade", "closure", wrong, "--show-expected").stdout
+    expect("the right option is printed", f"expected  ({right[1]}) the velocity with which the loop opens at B" in done, done)
+    silent = run("grade", "closure", wrong).stdout
+    expect("and only when asked for", "the loop opens" not in silent, silent)
+
+    # as many hints as there are
+    for hints in ("two", -1, 5, 1.5, True, [1]):
+        done = run("grade", "fourbar", write(folder, "h.json", {"a": 1, "hints": hints}))
+        expect(f"hints {hints} are refused", done.returncode == 2 and "a whole number from 0 to 2 is allowed" in done.stdout, done.stdout)
+    for hints in (0, 2, None):
+        done = run("grade", "fourbar", write(folder, "h.json", {"a": 1, "hints": hints}))
+        expect(f"hints {hints} are read", done.returncode == 0, done.stdout)
+
+    # the moment of inertia about the wrong point
+    x = json.loads(run("problem", "fourbar", "--json").stdout)["numbers"]
+    done = run("grade", "fourbar", write(folder, "m.json", {"a": x["m1"] * x["l1"] ** 2 / 12 + x["m2"] * x["l1"] ** 2}))
+    expect("m l^2/12 is named", "centre-of-mass" in done.stdout and "not about the pivot" in done.stdout, done.stdout)
+
+
+def other_numbers(folder):
+    """Numbers of another variant are named with their owner; a number that agrees by chance is not."""
+    part = {"ask": "?", "kind": "number", "points": 1, "unit": "m", "tolerance": {"relative": 0.001}}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {n: {"range": [1, 9], "digits": 4} for n in "lk"},
+                "parts": [dict(part, id=i, answer=a, second=s) for i, a, s in (("a", "3*l", "l+2*l"), ("b", "l^2", "l*l"), ("c", "7*k", "k+6*k"))]}  # fmt: skip
+    path = write(folder, "three.json", exercise)
+
+    def numbers(*who):
+        n = json.loads(run("problem", path, "--json", *who).stdout)["numbers"]
+        return {"a": 3 * n["l"], "b": n["l"] ** 2, "c": 7 * n["k"]}
+
+    plain, bobs = numbers(), numbers("--student", "bob")
+    said = run("grade", path, write(folder, "plain.json", dict(plain, student="ada"))).stdout
+    expect("numbers of the exercise without a name are named", "numbers of seed 1 (the exercise without a name or seed)" in said, said)
+    said = run("grade", path, write(folder, "one.json", {"student": "ada", "a": plain["a"], "b": 1, "c": 1})).stdout
+    expect("one number alone is not enough", "agree with the numbers" not in said, said)
+    os.mkdir(os.path.join(folder, "class"))
+    for who, answers in (("ada", bobs), ("bob", bobs), ("eve", dict(numbers("--student", "eve"), c=0))):
+        write(os.path.join(folder, "class"), who + ".json", answers)
+    said = run("grade", path, os.path.join(folder, "class")).stdout
+    expect("in a class the owner of the numbers is named", "ada: 0 of 3" in said and "the variant of 'bob' (seed " in said, said)
+    bobs_seed, adas_seed = (json.loads(run("problem", path, "--json", "--student", who).stdout)["seed"] for who in ("bob", "ada"))
+    expect("with both seeds", f"'bob' (seed {bobs_seed}), and this is seed {adas_seed}" in said, said)
+    expect("and nobody else is accused", said.count("the variant of") == 1, said)
+
+
+def what_looks_like_an_answer(folder):
+    """An example must have its shape; a count is not explained by two mistakes; small counts accuse nobody."""
+    def entries(exercise, given):
+        verdict = json.loads(run("grade", exercise, write(folder, "answer.json", given), "--json").stdout)
+        return {e["name"]: (e["mistake"], e["explanation"]) for e in verdict.get("entries", [])}
+
+    told = entries("singular", {"a": {"J": [[1, 2, 3], [0, 0, 0]]}})
+    expect("a zero row is not the example that is asked for", told["a"][0] == "zero-row", str(told))
+    small = {"d": {"choice": "a", "reason": "a"}}
+    for exercise, part, given, said in (("singular", "a", {"J": [[1, 2], [2, 4]]}, "J is 2 x 2; asked for is a matrix of 2 x 3"),
+                                        ("singular", "b", {"J": [[1, 0, 0]], "M": [[1, 0, 0], [0, 0, 0], [0, 0, 0]], "x": [0, 1, 0]}, "J is 1 x 3"),
+                                        ("p4", "b", {"M": [[1]], "Phi": [[0]], "v": [1]}, "M is 1 x 1"),
+                                        ("p4", "c", {"M": [[1, 0, 0], [0, 0, 0], [0, 0, 0]], "Phi": [[1], [0], [0]]}, "M is 3 x 3")):  # fmt: skip
+        told = entries(exercise, dict(small, **{part: given}))
+        expect(f"a matrix of another shape is refused: {said}", told[part][0] == "unreadable" and said in told[part][1], str(told))
+    told = entries("p4", {"b": {"M": [[2, 0], [0, 1]], "Phi": [[1, 0], [0, 1]], "v": [1e-7, 0]}})
+    expect("a small vector is no counter-example", told["b"][0] == "phi-full-rank", str(told))
+
+    told = entries("loops", {"student": "s1001", "a": -1})
+    expect("a wrong count is not called two mistakes", told["a"][0] == "other", str(told))
+    k = json.loads(run("problem", "gears", "--seed", "3", "--json").stdout)["numbers"]["k"]
+    told = entries("gears", {"seed": 3, "c": k + 1})
+    expect("nor a count of gears", "two mistakes" not in told["c"][1], str(told))
+
+    note = json.loads(run("grade", "turning", write(folder, "answer.json", {"a": {"l1": 1, "l3": 2, "d": 0.1}}), "--json").stdout)["note"]
+    expect("what an answer holds beside its names is told", note == "in part a the field 'd' was not read", note)
+    row = ["-1.1372*sin(th1)", "-l2*th2^3", "l3*sin(th3)", "l4*sin(th4)"]
+    said = run("grade", "p3", write(folder, "answer.json", {"J": [row, ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]})).stdout
+    expect("numbers in place of lengths are told from a wrong formula", said.count("not as numbers") == 1 and said.count("differentiate the row once more") == 1
+           and "6 of 8 entries" in said, said)  # fmt: skip
+    told = entries("baumgarte", {"c": "0.008 1/ms"})
+    expect("a number without a unit says so", "asked for: a plain number, without a unit" in told["c"][1], str(told))
+    right = ["S'*tau - h", "-gamma"]
+    for one in ("I", "E", "eye", "identity", "1"):
+        told = entries("p1", {"a": {"matrix": [[one, "-inv(M)*J'"], ["J", 0]], "right": ["inv(M)*(S'*tau - h)", "-gamma"]}})
+        expect(f"{one} is the identity in a system of blocks", told["a"][0] == "", str(told))
+    told = entries("p1", {"a": {"matrix": [["M", "I"], ["J", 0]], "right": right}})
+    expect("and no block that is not square", "multiple of the identity, but its place is 5 x 2" in told["a"][1], str(told))
+
+    write(folder, "answer.json", {"seed": 1, "a": 1, "d": 0.1})
+    shown = json.loads(run("grade", "loops", os.path.join(folder, "answer.json"), "--show-expected", "--json").stdout)["entries"]
+    theta = float(next(e["expected"] for e in shown if e["name"] == "d").split()[0])
+    expect("an angle is right after a whole turn", entries("loops", {"seed": 1, "d": theta + 6.283185})["d"][0] == ""
+           and entries("loops", {"seed": 1, "d": theta + 3.1415927})["d"][0] != "", str(theta))  # fmt: skip
+
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "tolerance": {"relative": 0.001}, "answer": "0.4932*l/l", "second": "0.4932"}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"l": {"range": [1, 2], "digits": 2}}, "parts": [part]}  # fmt: skip
+    told = entries(write(folder, "round.json", exercise), {"a": 0.49})
+    expect("a number with too few digits is named", told["a"] == ("rounded", "right to 2 digits, but it must be right to 0.1 %: write more digits"), str(told))
+    part["answer"] = "0.4932*1.1*l/l"
+    done = run("grade", write(folder, "wrong.json", exercise), write(folder, "answer.json", {"a": 0.4932}))
+    expect("an exercise that its second way contradicts grades nobody", done.returncode == 3 and "the exercise is wrong in its part a" in done.stdout + done.stderr,
+           done.stdout + done.stderr)  # fmt: skip
+    told = run("rubric", "check", write(folder, "gears.json", run("rubric", "write", "gears").stdout)).stdout
+    expect("a tolerance of a count is told as exact", "exact: passes the right number alone" in told and "10 digits" not in told, told)
+
+    part = {"ask": "?", "kind": "number", "points": 1, "tolerance": {"relative": 0.001}}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"k": {"choose": [3, 5, 7]}, "n": {"choose": [11, 13, 17]}},
+                "parts": [dict(part, id=i, answer=a, second=s) for i, a, s in (("a", "7*k", "k+6*k"), ("b", "9*n", "n+8*n"))]}  # fmt: skip
+    path = write(folder, "few.json", exercise)
+    seeds = [json.loads(run("problem", path, "--json", "--seed", str(i)).stdout)["numbers"] for i in range(1, 9)]
+    mine, other = next((i, n) for i, m in enumerate(seeds, 1) for n in seeds if n["k"] != m["k"] and n["n"] != m["n"])
+    said = run("grade", path, write(folder, "answer.json", {"seed": mine, "a": 7 * other["k"], "b": 9 * other["n"]})).stdout
+    expect("numbers that many variants share accuse nobody", "score 0 of 2" in said and "agree with the numbers" not in said, said)
+
+
+if __name__ == "__main__":
+    sys.exit(speak_tap([
+        readings, rates_of_a_part, nothing_for_nothing, what_is_told_of_choices_hints_and_rods,
+        other_numbers, what_looks_like_an_answer,
+    ]))
