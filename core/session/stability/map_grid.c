@@ -7,10 +7,10 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-// The motion of one scene may take a PATH_SHARE-th of the time limit, or PATH_SECONDS [s] of
-// computing time where there is no limit.
-enum { PATH_SHARE = 10 };
-static const double PATH_SECONDS = 5;
+// The motion of a scene may take this share of the time limit: a small one where there are other
+// scenes, unless it was cut short before. Without a limit it may take PATH_SECONDS [s] of computing
+// time.
+static const double PATH_SHARE = 0.1, ONLY_SHARE = 0.5, PATH_SECONDS = 5;
 
 hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row) {
     return &map->cells[(m * map->y.n + row) * map->x.n + column];
@@ -39,11 +39,16 @@ static hn_status load_scene(hn_map *map, hn_map_scene *s, int column, int row, h
     return n ? map->request.load(map->request.load_user, settings, n, &s->model, diags) : HN_OK;
 }
 
+static double path_seconds(const hn_map *map, const hn_map_scene *s) {
+    const double limit = map->request.limits.time_limit;
+    const double share = map->n_scenes == 1 || s->over ? ONLY_SHARE : PATH_SHARE;
+    return limit > 0 ? share * limit : PATH_SECONDS;
+}
+
 static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
     hn_diags diags = {0};
     hn_diag diag = {0};
-    const double limit = map->request.limits.time_limit;
-    const hn_walk_limits limits = {limit > 0 ? limit / PATH_SHARE : PATH_SECONDS, ask_to_stop, map};
+    const hn_walk_limits limits = {path_seconds(map, s), ask_to_stop, map};
     const hn_status loaded = load_scene(map, s, column, row, &diags);
     hn_status status = loaded;
     if (status != HN_OK && diags.n > 0) {
@@ -63,6 +68,10 @@ static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
     map->stopped |= loaded == HN_ERR_STOPPED ||
                     hn_system_was_stopped(hn_model_system(s->model ? s->model : map->model));
     s->tried = !map->stopped && !map->out_of_time;
+
+    // a motion that was cut short leaves its cells for a run that goes on
+    s->over = s->tried && status == HN_ERR_STOPPED;
+    map->left_out |= s->over;
 }
 
 hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
@@ -98,7 +107,9 @@ bool hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
                 hn_stability_trial *out) {
     const hn_walk_limits limits = {HN_MAP_CELL_SECONDS, ask_to_stop, map};
     if (!scene->path) {
-        *out = (hn_stability_trial){.kind = HN_STABILITY_REFUSED, .status = HN_ERR_UNSUPPORTED};
+        *out = scene->over ? (hn_stability_trial){.kind = HN_STABILITY_PENDING}
+                           : (hn_stability_trial){.kind = HN_STABILITY_REFUSED,
+                                                  .status = HN_ERR_UNSUPPORTED};
         snprintf(out->reason, sizeof out->reason, "%s", scene->why);
         return scene->tried;
     }

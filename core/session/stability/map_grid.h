@@ -16,7 +16,8 @@ hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row);
 hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y);
 /// Returns whether asked to stop or out of time, and records which.
 bool hn_map_must_end(hn_map *map);
-/// Runs one trial within the limits of a cell. Returns false when it was stopped.
+/// Runs one trial within the limits of a cell; it stays pending, with the reason, where the motion
+/// to compare with was cut short. Returns false when it was stopped.
 bool hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
                 hn_stability_trial *out);
 #endif

@@ -181,8 +181,10 @@ static void keep_results(hn_map_team *team, void (*seen)(hn_map *map)) {
         pthread_mutex_unlock(&team->lock);
         for (; kept < end; kept++) {
             const int cell = team->done[kept];
-            hn_map_keep_cell(map, cell / map->x.n / map->y.n, cell % map->x.n,
-                             cell / map->x.n % map->y.n);
+            if (map->cells[cell].trial.kind != HN_STABILITY_PENDING) {
+                hn_map_keep_cell(map, cell / map->x.n / map->y.n, cell % map->x.n,
+                                 cell / map->x.n % map->y.n);
+            }
         }
         pthread_mutex_lock(&team->lock);
         seen(map);
@@ -221,6 +223,10 @@ bool hn_map_team_try(hn_map_team *team, const int *cells, int n, void (*seen)(hn
     keep_results(team, seen);
     for (int i = 0; i < started; i++) {
         pthread_join(team->members[i].thread, NULL);
+    }
+    for (int i = 0; i < team->n; i++) {
+        team->map->left_out |= team->members[i].map.left_out;
+        team->map->out_of_time |= team->members[i].map.out_of_time;
     }
     return team->n_done == n;
 }

@@ -87,7 +87,9 @@ static bool try_cell(hn_map *map, int m, int column, int row) {
         return false;
     }
     cell->trial = trial;
-    hn_map_keep_cell(map, m, column, row);
+    if (trial.kind != HN_STABILITY_PENDING) {
+        hn_map_keep_cell(map, m, column, row);
+    }
     return true;
 }
 
@@ -172,12 +174,16 @@ static bool observe(hn_map *map) {
 static bool run_one(hn_map *map) {
     map->started = hn_clock_wall();
     map->stopped = map->out_of_time = 0;
+    map->left_out = false;
     for (int i = 0; i < map->n_scenes; i++) {
+        map->scenes[i].tried &= !map->scenes[i].over;
         if (map->scenes[i].model) {
             hn_graph_go_on(hn_system_graph(hn_model_system(map->scenes[i].model)));
         }
     }
-    const int finished = try_rounds(map) && observe(map);
+    const bool ended = try_rounds(map) && observe(map);
+    map->out_of_time |= ended && map->left_out;
+    const bool finished = ended && !map->left_out;
     for (int m = 0; m < map->n_methods; m++) {
         for (int i = 0; i < map->x.n; i++) {
             hn_map_predict_column(map, m, i);

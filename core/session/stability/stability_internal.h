@@ -14,6 +14,7 @@ typedef struct hn_map_scene {
     hn_model *model; ///< owned; NULL: the map's own model, or none
     hn_stability_path *path;
     int tried;
+    bool over;                     ///< its motion was cut short by its share of the time limit
     char why[HN_STABILITY_REASON]; ///< why there is no motion to compare with
 } hn_map_scene;
 
@@ -40,6 +41,7 @@ struct hn_map {
     hn_map_column *columns;
     hn_stability_forecast forecasts[HN_MAP_METHODS]; ///< the last made, for reasons
     int resumed, stopped, out_of_time;
+    bool left_out; ///< cells wait for a motion that was cut short: see hn_map_scene
     double elapsed, started;
     hn_journal journal;
 };

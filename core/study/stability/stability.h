@@ -59,8 +59,9 @@ typedef struct hn_stability_trial {
 typedef struct hn_stability_path hn_stability_path;
 
 /// The motion from (q, v), system coordinates, to T, by explicit and failing that implicit
-/// high-order integration within `limits`; the system must outlive it. Fails: HN_ERR_STOPPED or
-/// what the integration ended with, HN_ERR_INPUT (nothing moves: there is no scale of growth),
+/// high-order integration within `limits`, of which the explicit one may use a third; the system
+/// must outlive it. Fails: HN_ERR_STOPPED (on request, or out of computing time), what the
+/// integration ended with, HN_ERR_INPUT (nothing moves: there is no scale of growth),
 /// HN_ERR_MEMORY; reason in diag.
 HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const double *q,
                                                  const double *v, double T,

@@ -143,6 +143,57 @@ static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **
 }
 
 /// The same map by several threads: every cell and column the same bytes, whoever tried it.
+/// Of a map whose motion was cut short: what is left, by one thread or by several.
+static void cut_short(const char *over, int threads) {
+    hn_model *model = open_model();
+    hn_job_request r = request_for(model, over, METHODS, 1);
+    r.time = 19;                // tens of thousands of steps: no machine takes them
+    r.limits.time_limit = 0.05; // in a part of this
+    r.limits.threads = threads;
+    hn_map *map = open_map(&r);
+    assert_int_equal(hn_map_run(map), 0);
+    assert_true(hn_map_out_of_time(map));
+    for (int column = 0; column < hn_map_x(map)->n; column++) {
+        for (int row = 0; row < hn_map_y(map)->n; row++) {
+            const hn_map_cell *cell = hn_map_get(map, 0, column, row);
+            assert_int_equal(cell->trial.kind, HN_STABILITY_PENDING);
+        }
+    }
+    hn_map_free(map);
+    hn_model_free(model);
+}
+
+static void cells_without_a_motion_in_time_wait_for_it(void **state) {
+    (void)state;
+    cut_short("h=1e-4..2e-1", 1);
+    cut_short("h=1e-4..2e-1", 2);
+    cut_short("h=1e-4..2e-1,k=1e7..1e8", 1);
+}
+
+static void what_the_time_limit_left_out_follows_with_a_longer_one(void **state) {
+    (void)state;
+    hn_model *model = open_model();
+    hn_job_request r = request_for(model, OVER, METHODS, 1);
+    hn_strbuf whole, pieces;
+    hn_map *map = open_map(&r);
+    assert_int_equal(hn_map_run(map), 1);
+    text_of(map, &whole);
+    hn_map_free(map);
+
+    r.limits.time_limit = 1e-3;
+    map = open_map(&r);
+    assert_int_equal(hn_map_run(map), 0);
+    assert_true(hn_map_out_of_time(map));
+    hn_map_set_time_limit(map, 1e3);
+    assert_int_equal(hn_map_run(map), 1);
+    text_of(map, &pieces);
+    assert_string_equal(hn_strbuf_text(&whole), hn_strbuf_text(&pieces));
+    hn_map_free(map);
+    hn_strbuf_reset(&whole);
+    hn_strbuf_reset(&pieces);
+    hn_model_free(model);
+}
+
 static void a_team_finds_what_one_thread_finds(void **state) {
     (void)state;
     static const char *const heun[] = {"index1@heun"};
@@ -226,6 +277,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_observed_boundary_is_the_predicted_one_over_four_decades_of_stiffness),
         cmocka_unit_test(a_map_interrupted_again_and_again_ends_as_an_undisturbed_one),
+        cmocka_unit_test(cells_without_a_motion_in_time_wait_for_it),
+        cmocka_unit_test(what_the_time_limit_left_out_follows_with_a_longer_one),
         cmocka_unit_test(a_team_finds_what_one_thread_finds),
         cmocka_unit_test(documents_hold_every_cell_and_no_number_that_is_none),
         cmocka_unit_test(requests_at_fault_are_told_by_field),
