@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// IR to tape: which operations share an instruction, in what order they run, which slot holds what.
+// IR to tape: in what order the instructions of tape_draft.h run, which slot holds what.
 
 #include "expr/tape_code.h"
 
 #include "expr/graph_internal.h"
 #include "expr/native.h"
+#include "expr/tape_draft.h"
 #include "expr/tape_interpret.h"
 #include "expr/tape_lower.h"
 #include "expr/tape_store.h"
@@ -13,22 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// One instruction before slots are known: operands and results are IR nodes.
-typedef struct draft {
-    uint16_t code;
-    uint16_t n_operands;
-    int32_t operand[HN_TAPE_OPERANDS];
-    int32_t result, second; ///< second: the cosine of a sincos, else -1
-    int32_t op;             ///< operator of a call
-} draft;
-
 typedef struct compiler {
     hn_ir ir;
-    uint8_t *absorbed; ///< computed inside the instruction of its one user
-    uint8_t *state;    ///< of the walk
-    int32_t *need;     ///< slots needed to compute a node (Sethi and Ullman's number)
-    int32_t *partner;  ///< the cosine of a sine's argument and the reverse, -1: none
-    draft *drafts;
+    hn_drafter drafter;
+    uint8_t *state; ///< of the walk
+    int32_t *need;  ///< slots needed to compute a node (Sethi and Ullman's number)
+    hn_draft *drafts;
     int32_t n_drafts;
     int32_t *stack;
     uint16_t *slot; ///< by IR node
@@ -39,210 +30,9 @@ typedef struct compiler {
 
 enum { NEW, OPEN, DONE };
 
-// ---- which operations share an instruction ----
-
-static const hn_ir_arg *args_of(const compiler *c, int32_t id) {
-    return c->ir.args + c->ir.nodes[id].first;
-}
-
-static bool is_lone(const compiler *c, int32_t id, hn_ir_kind kind) {
-    return c->ir.nodes[id].kind == kind && c->ir.nodes[id].uses == 1 && !c->absorbed[id];
-}
-
-/// A sum of two slots, which (a + b) * c can take in.
-static bool is_lone_pair(const compiler *c, int32_t id) {
-    if (!is_lone(c, id, HN_IR_SUM) || c->ir.nodes[id].n_args != 2) {
-        return false;
-    }
-    const hn_ir_arg *a = args_of(c, id);
-    return !c->absorbed[a[0].node] && !c->absorbed[a[1].node];
-}
-
-static void absorb_in_sums(compiler *c) {
-    for (int32_t i = 0; i < c->ir.n; i++) {
-        if (!c->ir.nodes[i].live || c->ir.nodes[i].kind != HN_IR_SUM) {
-            continue;
-        }
-        for (int32_t k = 0; k < c->ir.nodes[i].n_args; k++) {
-            const int32_t a = args_of(c, i)[k].node;
-            c->absorbed[a] = (uint8_t)(c->absorbed[a] || is_lone(c, a, HN_IR_MUL));
-        }
-    }
-}
-
-/// Products from the outermost inwards: up to four factors, or a pair's sum and a factor.
-static void absorb_in_products(compiler *c) {
-    for (int32_t i = c->ir.n - 1; i >= 0; i--) {
-        if (!c->ir.nodes[i].live || c->ir.nodes[i].kind != HN_IR_MUL || c->absorbed[i]) {
-            continue;
-        }
-        const int32_t a = args_of(c, i)[0].node, b = args_of(c, i)[1].node;
-        const int product_a = is_lone(c, a, HN_IR_MUL), product_b = is_lone(c, b, HN_IR_MUL);
-        if (product_a || product_b) {
-            c->absorbed[a] = (uint8_t)(c->absorbed[a] || product_a);
-            c->absorbed[b] = (uint8_t)(c->absorbed[b] || product_b);
-        } else if (is_lone_pair(c, a)) {
-            c->absorbed[a] = 1;
-        } else if (is_lone_pair(c, b)) {
-            c->absorbed[b] = 1;
-        }
-    }
-}
-
-static void find_partners(compiler *c) {
-    for (int32_t i = 0; i < c->ir.n; i++) {
-        c->partner[i] = -1;
-    }
-    int32_t *sine_of = c->last_use; // by argument; free until slots are given out
-    memset(sine_of, 0xff, (size_t)c->ir.n * sizeof *sine_of);
-
-    // sines are noted by argument, then cosines look for theirs
-    for (int pass = 0; pass < 2; pass++) {
-        const int op = pass ? HN_OP_COS : HN_OP_SIN;
-        for (int32_t i = 0; i < c->ir.n; i++) {
-            const hn_ir_node *node = &c->ir.nodes[i];
-            if (!node->live || node->kind != HN_IR_CALL || node->op != op) {
-                continue;
-            }
-            const int32_t a = args_of(c, i)[0].node;
-            if (!pass) {
-                sine_of[a] = i;
-            } else if (sine_of[a] >= 0) {
-                c->partner[i] = sine_of[a];
-                c->partner[sine_of[a]] = i;
-            }
-        }
-    }
-}
-
-// ---- drafts ----
-
-static void add_operand(draft *d, int32_t id) {
-    d->operand[d->n_operands++] = id;
-}
-
-static int code_of_key(int key) {
-    for (int code = 0; code < TAPE_SINCOS; code++) {
-        if (hn_tape_get_code_info(code).key == key) {
-            return code;
-        }
-    }
-    HN_ASSERT(key == 0); // every sum of two or three terms has an instruction
-    return TAPE_END;
-}
-
-static int digit(const compiler *c, hn_ir_arg a) {
-    return (a.sign > 0 ? 1 : 3) + !c->absorbed[a.node];
-}
-
-static void draft_sum(const compiler *c, int32_t id, draft *d) {
-    const hn_ir_node *node = &c->ir.nodes[id];
-    int key = 0;
-    for (int want = 1; want <= 4; want++) {
-        for (int32_t k = 0; k < node->n_args; k++) {
-            const hn_ir_arg a = args_of(c, id)[k];
-            if (digit(c, a) != want) {
-                continue;
-            }
-            key = 10 * key + want;
-            if (c->absorbed[a.node]) {
-                add_operand(d, args_of(c, a.node)[0].node);
-                add_operand(d, args_of(c, a.node)[1].node);
-            } else {
-                add_operand(d, a.node);
-            }
-        }
-    }
-    d->code = (uint16_t)code_of_key(key);
-}
-
-static void draft_product(const compiler *c, int32_t id, draft *d) {
-    const int32_t a = args_of(c, id)[0].node, b = args_of(c, id)[1].node;
-    const int32_t inner = c->absorbed[a] ? a : b, other = c->absorbed[a] ? b : a;
-
-    // a plain product
-    d->code = TAPE_MUL;
-    if (!c->absorbed[inner]) {
-        add_operand(d, a);
-        add_operand(d, b);
-        return;
-    }
-
-    // (a + b) * c
-    const hn_ir_arg *in = args_of(c, inner);
-    if (c->ir.nodes[inner].kind == HN_IR_SUM) {
-        const int swap = in[0].sign < 0;
-        d->code = in[0].sign == in[1].sign ? TAPE_MUL_ADD : TAPE_MUL_SUB;
-        add_operand(d, in[swap].node);
-        add_operand(d, in[!swap].node);
-        add_operand(d, other);
-        return;
-    }
-
-    // three factors, or four
-    add_operand(d, in[0].node);
-    add_operand(d, in[1].node);
-    d->code = TAPE_MUL3;
-    if (c->absorbed[other]) {
-        d->code = TAPE_MUL4;
-        add_operand(d, args_of(c, other)[0].node);
-        add_operand(d, args_of(c, other)[1].node);
-    } else {
-        add_operand(d, other);
-    }
-}
-
-static void draft_call(const compiler *c, int32_t id, draft *d) {
-    const hn_ir_node *node = &c->ir.nodes[id];
-    for (int32_t k = 0; k < node->n_args; k++) {
-        add_operand(d, args_of(c, id)[k].node);
-    }
-    d->op = node->op;
-    if (node->op == HN_OP_SQRT) {
-        d->code = TAPE_SQRT;
-    } else if (node->op != HN_OP_SIN && node->op != HN_OP_COS) {
-        d->code = node->n_args == 1 ? TAPE_CALL1 : TAPE_CALL2;
-    } else if (c->partner[id] < 0) {
-        d->code = node->op == HN_OP_SIN ? TAPE_SIN : TAPE_COS;
-    } else {
-        d->code = TAPE_SINCOS;
-        d->result = node->op == HN_OP_SIN ? id : c->partner[id];
-        d->second = node->op == HN_OP_SIN ? c->partner[id] : id;
-    }
-}
-
-/// The instruction that computes a node; code TAPE_END for inputs and constants, which need none.
-static draft make_draft(const compiler *c, int32_t id) {
-    draft d = {.code = TAPE_END, .result = id, .second = -1};
-
-    // nothing to do for what is there before the tape runs
-    switch ((hn_ir_kind)c->ir.nodes[id].kind) {
-    case HN_IR_CONST:
-    case HN_IR_INPUT:
-        break;
-    case HN_IR_MUL:
-        draft_product(c, id, &d);
-        break;
-    case HN_IR_DIV:
-    case HN_IR_NEG:
-        d.code = c->ir.nodes[id].kind == HN_IR_DIV ? TAPE_DIV : TAPE_NEG;
-        for (int32_t k = 0; k < c->ir.nodes[id].n_args; k++) {
-            add_operand(&d, args_of(c, id)[k].node);
-        }
-        break;
-    case HN_IR_SUM:
-        draft_sum(c, id, &d);
-        break;
-    case HN_IR_CALL:
-        draft_call(c, id, &d);
-        break;
-    }
-    return d;
-}
-
 // ---- order ----
 
-static void sort_by_need(const compiler *c, draft *d) {
+static void sort_by_need(const compiler *c, hn_draft *d) {
     for (int i = 1; i < d->n_operands; i++) {
         const int32_t x = d->operand[i];
         int k = i;
@@ -255,7 +45,7 @@ static void sort_by_need(const compiler *c, draft *d) {
 
 /// Sethi and Ullman: the operand that needs most goes first, each one done occupies a slot. `d` is
 /// sorted.
-static int32_t need_of(const compiler *c, const draft *d) {
+static int32_t need_of(const compiler *c, const hn_draft *d) {
     int32_t need = d->n_operands ? 1 : 0;
     for (int i = d->n_operands - 1, held = 0; i >= 0; i--, held++) {
         const int32_t n = c->need[d->operand[i]];
@@ -264,7 +54,7 @@ static int32_t need_of(const compiler *c, const draft *d) {
     return need;
 }
 
-static void finish_node(compiler *c, int32_t id, const draft *d, const draft *sorted) {
+static void finish_node(compiler *c, int32_t id, const hn_draft *d, const hn_draft *sorted) {
     c->state[id] = DONE;
     if (d->second >= 0) {
         c->state[d->result] = c->state[d->second] = DONE;
@@ -285,7 +75,8 @@ static void walk(compiler *c, int32_t root) {
     c->stack[n++] = root;
     while (n > 0) {
         const int32_t id = c->stack[n - 1];
-        const draft d = c->state[id] == DONE ? (draft){.code = TAPE_END} : make_draft(c, id);
+        const hn_draft d =
+            c->state[id] == DONE ? (hn_draft){.code = TAPE_END} : hn_draft_make(&c->drafter, id);
         if (d.code == TAPE_END) {
             c->state[id] = DONE;
             n--;
@@ -293,7 +84,7 @@ static void walk(compiler *c, int32_t root) {
         }
 
         // operands are done: the node comes after them
-        draft sorted = d;
+        hn_draft sorted = d;
         sort_by_need(c, &sorted);
         if (c->state[id] == OPEN) {
             finish_node(c, id, &d, &sorted);
@@ -323,7 +114,7 @@ static void order_all(compiler *c) {
     }
 }
 
-static bool is_of_input(const compiler *c, const draft *d) {
+static bool is_of_input(const compiler *c, const hn_draft *d) {
     return d->code == TAPE_SINCOS && c->ir.nodes[d->operand[0]].kind == HN_IR_INPUT;
 }
 
@@ -335,7 +126,7 @@ static int32_t put_angles_first(compiler *c) {
     }
 
     // from behind, since the others move back by those that follow them
-    draft *first = malloc(((size_t)n + 1) * sizeof *first);
+    hn_draft *first = malloc(((size_t)n + 1) * sizeof *first);
     if (!first) {
         c->ir.failed = 1;
         return 0;
@@ -401,7 +192,7 @@ static bool take_slot(compiler *c, free_slots *f, int32_t id) {
 
 /// Frees the slots of operands that die here; the result may take one of them at once.
 static void release_operands(compiler *c, free_slots *f, int32_t at, int32_t fixed) {
-    const draft *d = &c->drafts[at];
+    const hn_draft *d = &c->drafts[at];
     for (int k = 0; k < d->n_operands; k++) {
         const int32_t id = d->operand[k];
         if (c->last_use[id] == at && c->slot[id] >= fixed) {
@@ -411,7 +202,7 @@ static void release_operands(compiler *c, free_slots *f, int32_t at, int32_t fix
     }
 }
 
-static void write_instruction(const compiler *c, const draft *d, hn_tape_instruction *out,
+static void write_instruction(const compiler *c, const hn_draft *d, hn_tape_instruction *out,
                               const uint16_t *operand_slots) {
     *out = (hn_tape_instruction){.code = d->code};
     out->v[0] = c->slot[d->result];
@@ -428,7 +219,7 @@ static void write_instruction(const compiler *c, const draft *d, hn_tape_instruc
 static bool place_all(compiler *c, free_slots *f, hn_tape_instruction *code) {
     const int32_t fixed = c->n_slots;
     for (int32_t i = 0; i < c->n_drafts; i++) {
-        const draft *d = &c->drafts[i];
+        const hn_draft *d = &c->drafts[i];
         uint16_t slots[HN_TAPE_OPERANDS] = {0};
         for (int k = 0; k < d->n_operands; k++) {
             slots[k] = c->slot[d->operand[k]];
@@ -471,7 +262,7 @@ static void count_operations(const compiler *c, hn_tape_info *info) {
             break;
         case HN_IR_CALL:
             if (node->op == HN_OP_SIN || node->op == HN_OP_COS) {
-                info->sincos += c->partner[i] < i; // a pair counts once
+                info->sincos += c->drafter.partner[i] < i; // a pair counts once
             } else if (node->op == HN_OP_SQRT) {
                 info->sqrt++;
             } else {
@@ -485,10 +276,9 @@ static void count_operations(const compiler *c, hn_tape_info *info) {
 
 static void compiler_reset(compiler *c) {
     hn_ir_reset(&c->ir);
-    free(c->absorbed);
+    hn_drafter_reset(&c->drafter);
     free(c->state);
     free(c->need);
-    free(c->partner);
     free(c->drafts);
     free(c->stack);
     free(c->slot);
@@ -497,16 +287,13 @@ static void compiler_reset(compiler *c) {
 
 static int compiler_alloc(compiler *c) {
     const size_t n = (size_t)c->ir.n + 1;
-    c->absorbed = calloc(n, 1);
     c->state = calloc(n, 1);
     c->need = calloc(n, sizeof *c->need);
-    c->partner = calloc(n, sizeof *c->partner);
     c->drafts = calloc(n, sizeof *c->drafts);
     c->stack = calloc((HN_TAPE_OPERANDS + 1) * n, sizeof *c->stack);
     c->slot = calloc(n, sizeof *c->slot);
     c->last_use = calloc(n, sizeof *c->last_use);
-    return c->absorbed && c->state && c->need && c->partner && c->drafts && c->stack && c->slot &&
-           c->last_use;
+    return c->state && c->need && c->drafts && c->stack && c->slot && c->last_use;
 }
 
 static void copy_constants(const compiler *c, int n_inputs, double *constants) {
@@ -570,13 +357,11 @@ static hn_status compile(hn_graph *g, const hn_tape_key *key, hn_tape **out) {
         hn_ir_split_sums(&c.ir);
         hn_ir_mark_live(&c.ir);
         status = c.ir.failed || !compiler_alloc(&c) ? HN_ERR_MEMORY : HN_OK;
+        HN_THEN(status, hn_drafter_create(&c.ir, &c.drafter));
     }
 
     // instructions, their order, their slots
     if (!status) {
-        absorb_in_sums(&c);
-        absorb_in_products(&c);
-        find_partners(&c);
         order_all(&c);
         tape->n_angles = put_angles_first(&c);
         tape->four = tape->n_angles > 1 ? hn_lanes_sincos_four_get() : NULL;
