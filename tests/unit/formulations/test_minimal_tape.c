@@ -35,6 +35,24 @@ static void end(motion *w) {
     hn_arena_free(w->arena);
 }
 
+/// One model moved in both ways: by the tape, and by the careful way.
+typedef struct pair {
+    hn_model m;
+    motion tape, careful;
+} pair;
+
+static void open_pair(pair *p, const char *scene) {
+    hn_model_open_closed(&p->m, scene, NULL);
+    begin(&p->tape, &p->m, true);
+    begin(&p->careful, &p->m, false);
+}
+
+static void close_pair(pair *p) {
+    end(&p->careful);
+    end(&p->tape);
+    hn_model_close(&p->m);
+}
+
 /// A step of the classical Runge-Kutta method.
 static hn_status step(motion *w, double h) {
     static const double c[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
@@ -62,30 +80,26 @@ enum { N_SCENES = sizeof scenes / sizeof *scenes };
 static void the_motion_is_that_of_the_careful_way(void **state) {
     (void)state;
     for (int k = 0; k < N_SCENES; k++) {
-        hn_model m;
-        motion tape, careful;
+        pair p;
         double q[2][MAX], v[2][MAX];
-        hn_model_open_closed(&m, scenes[k], NULL);
-        begin(&tape, &m, true);
-        begin(&careful, &m, false);
+        open_pair(&p, scenes[k]);
         for (int i = 0; i < 200; i++) {
-            assert_int_equal(step(&tape, 1e-3), HN_OK);
-            assert_int_equal(step(&careful, 1e-3), HN_OK);
+            assert_int_equal(step(&p.tape, 1e-3), HN_OK);
+            assert_int_equal(step(&p.careful, 1e-3), HN_OK);
         }
-        assert_int_equal(hn_minimal_get_state(&tape.s, tape.t, tape.y, q[0], v[0]), HN_OK);
-        assert_int_equal(hn_minimal_get_state(&careful.s, careful.t, careful.y, q[1], v[1]), HN_OK);
+        assert_int_equal(hn_minimal_get_state(&p.tape.s, p.tape.t, p.tape.y, q[0], v[0]), HN_OK);
+        assert_int_equal(hn_minimal_get_state(&p.careful.s, p.careful.t, p.careful.y, q[1], v[1]),
+                         HN_OK);
 
         // rounding of 200 steps, and the basis that both have at the end
-        assert_all_near(q[0], q[1], (size_t)m.info.nq, 1e-11);
-        assert_all_near(v[0], v[1], (size_t)m.info.nv, 1e-9);
-        const size_t n = (size_t)(m.info.nv * tape.s.chart.r);
-        assert_all_near(tape.s.chart.base.N, careful.s.chart.base.N, n, 1e-9);
-        assert_all_near(tape.s.chart.base.s, careful.s.chart.base.s, (size_t)m.info.nv, 1e-9);
-        assert_rel(tape.s.chart.volume, careful.s.chart.volume, 1e-9);
-        assert_int_equal(tape.s.chart.base.sign, careful.s.chart.base.sign);
-        end(&careful);
-        end(&tape);
-        hn_model_close(&m);
+        assert_all_near(q[0], q[1], (size_t)p.m.info.nq, 1e-11);
+        assert_all_near(v[0], v[1], (size_t)p.m.info.nv, 1e-9);
+        const size_t n = (size_t)(p.m.info.nv * p.tape.s.chart.r);
+        assert_all_near(p.tape.s.chart.base.N, p.careful.s.chart.base.N, n, 1e-9);
+        assert_all_near(p.tape.s.chart.base.s, p.careful.s.chart.base.s, (size_t)p.m.info.nv, 1e-9);
+        assert_rel(p.tape.s.chart.volume, p.careful.s.chart.volume, 1e-9);
+        assert_int_equal(p.tape.s.chart.base.sign, p.careful.s.chart.base.sign);
+        close_pair(&p);
     }
 }
 
@@ -113,62 +127,47 @@ static void one_run_of_the_tape_serves_an_evaluation_of_a_short_step(void **stat
 /// The same positions with other velocities need a run of their own.
 static void accelerations_follow_the_velocities(void **state) {
     (void)state;
-    hn_model m;
-    motion tape, careful;
+    pair p;
     double y[2], slope[2][2];
-    hn_model_open_closed(&m, "four-bar", NULL);
-    begin(&tape, &m, true);
-    begin(&careful, &m, false);
+    open_pair(&p, "four-bar");
     for (int i = 0; i < 3; i++) {
-        y[0] = tape.y[0] + 0.01;
+        y[0] = p.tape.y[0] + 0.01;
         y[1] = 2.0 * i;
-        assert_int_equal(tape.ode.rhs(&tape.s, 0, y, slope[0]), HN_OK);
-        assert_int_equal(careful.ode.rhs(&careful.s, 0, y, slope[1]), HN_OK);
+        assert_int_equal(p.tape.ode.rhs(&p.tape.s, 0, y, slope[0]), HN_OK);
+        assert_int_equal(p.careful.ode.rhs(&p.careful.s, 0, y, slope[1]), HN_OK);
         assert_all_near(slope[0], slope[1], 2, 1e-11 * (1 + fabs(slope[1][1])));
     }
-    end(&careful);
-    end(&tape);
-    hn_model_close(&m);
+    close_pair(&p);
 }
 
 /// Matrices of Newton's method need the factor that a point made by the tape does not have.
 static void the_jacobian_is_that_of_the_careful_way(void **state) {
     (void)state;
-    hn_model m;
-    motion tape, careful;
+    pair p;
     double jac[2][4];
-    hn_model_open_closed(&m, "slider-crank", NULL);
-    begin(&tape, &m, true);
-    begin(&careful, &m, false);
-    assert_int_equal(step(&tape, 1e-3), HN_OK);
-    assert_int_equal(step(&careful, 1e-3), HN_OK);
-    assert_true(tape.s.chart.here.is_bare);
-    assert_int_equal(tape.ode.jacobian(&tape.s, tape.t, tape.y, jac[0]), HN_OK);
-    assert_int_equal(careful.ode.jacobian(&careful.s, careful.t, careful.y, jac[1]), HN_OK);
+    open_pair(&p, "slider-crank");
+    assert_int_equal(step(&p.tape, 1e-3), HN_OK);
+    assert_int_equal(step(&p.careful, 1e-3), HN_OK);
+    assert_true(p.tape.s.chart.here.is_bare);
+    assert_int_equal(p.tape.ode.jacobian(&p.tape.s, p.tape.t, p.tape.y, jac[0]), HN_OK);
+    assert_int_equal(p.careful.ode.jacobian(&p.careful.s, p.careful.t, p.careful.y, jac[1]), HN_OK);
     assert_all_near(jac[0], jac[1], 4, 1e-9 * (1 + hn_norm_max(4, jac[1])));
-    end(&careful);
-    end(&tape);
-    hn_model_close(&m);
+    close_pair(&p);
 }
 
 /// A long step, whose prediction is far off, is left to the careful way, which goes in pieces.
 static void a_far_prediction_is_followed_in_pieces(void **state) {
     (void)state;
-    hn_model m;
-    motion tape, careful;
+    pair p;
     double y[2], slope[2][2];
-    hn_model_open_closed(&m, "four-bar", NULL);
-    begin(&tape, &m, true);
-    begin(&careful, &m, false);
-    y[0] = tape.y[0] + 2.5;
+    open_pair(&p, "four-bar");
+    y[0] = p.tape.y[0] + 2.5;
     y[1] = 1;
-    assert_false(hn_minimal_tape_close(&tape.s.tape, &tape.s.chart, 0, y, HN_CHART_TOL));
-    assert_int_equal(tape.ode.rhs(&tape.s, 0, y, slope[0]), HN_OK);
-    assert_int_equal(careful.ode.rhs(&careful.s, 0, y, slope[1]), HN_OK);
+    assert_false(hn_minimal_tape_close(&p.tape.s.tape, &p.tape.s.chart, 0, y, HN_CHART_TOL));
+    assert_int_equal(p.tape.ode.rhs(&p.tape.s, 0, y, slope[0]), HN_OK);
+    assert_int_equal(p.careful.ode.rhs(&p.careful.s, 0, y, slope[1]), HN_OK);
     assert_memory_equal(slope[0], slope[1], sizeof slope[0]); // the same way, the same bits
-    end(&careful);
-    end(&tape);
-    hn_model_close(&m);
+    close_pair(&p);
 }
 
 /// A hand that takes hold at an accepted state is felt there at once.

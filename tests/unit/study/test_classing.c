@@ -45,6 +45,12 @@ static void set_ladder(written *w, int m, const double *e, double limit) {
     }
 }
 
+/// A single method: n errors, the limit of set_ladder(), the error of the reference itself.
+static void write_one(written *w, const double *e, int n, double limit, double reference_error) {
+    write_down(w, 1, n, reference_error);
+    set_ladder(w, 0, e, limit);
+}
+
 static hn_class class_of(const written *w, int m) {
     hn_class c;
     hn_wp_classify(&w->wp, m, &c);
@@ -55,8 +61,7 @@ static void a_fourth_order_ladder_converges_with_order_four(void **state) {
     (void)state;
     written w;
     const double e[6] = {1e-2, 1e-2 / 16, 1e-2 / 256, 1e-2 / 4096, 1e-2 / 65536, 1e-2 / 1048576};
-    write_down(&w, 1, 6, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 6, 0, 1e-13);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_CONVERGES);
     assert_near(c.order, 4, 1e-12);
@@ -67,8 +72,7 @@ static void an_order_that_is_not_the_integrators_is_told_as_such(void **state) {
     (void)state;
     written w;
     const double e[5] = {1e-2, 1e-2 / 8, 1e-2 / 64, 1e-2 / 512, 1e-2 / 4096};
-    write_down(&w, 1, 5, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-13);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_CONVERGES);
     assert_near(c.order, 3, 1e-12);
@@ -83,8 +87,7 @@ an_order_above_the_integrators_is_put_down_to_the_energy_where_it_follows_it(voi
     (void)state;
     written w;
     const double e[5] = {1e-2, 1e-2 / 32, 1e-2 / 1024, 1e-2 / 32768, 1e-2 / 1048576};
-    write_down(&w, 1, 5, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-13);
     assert_null(strstr(class_of(&w, 0).text, "energy")); // its error is not known
 
     for (int k = 0; k < 5; k++) {
@@ -106,8 +109,7 @@ static void a_slope_that_rises_towards_theory_is_told(void **state) {
     written w;
     const double e[5] = {1e-2, 1e-2 / 11, 1e-2 / 11 / 12, 1e-2 / 11 / 12 / 13,
                          1e-2 / 11 / 12 / 13 / 14};
-    write_down(&w, 1, 5, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-13);
     // log2(14) = 3.81
     assert_non_null(strstr(class_of(&w, 0).text, "the slope rises, to 3.81 at the finest"));
 }
@@ -116,8 +118,7 @@ static void rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone(void 
     (void)state;
     written w;
     const double e[7] = {1e-4, 6.25e-6, 3.9e-7, 2.44e-8, 3e-10, 5e-10, 2e-10};
-    write_down(&w, 1, 7, 1e-14);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 7, 0, 1e-14);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_CONVERGES);
     assert_near(c.floor, 5e-10, 1e-14);
@@ -130,8 +131,7 @@ static void rounding_that_bends_the_fine_end_leaves_the_order_above_it(void **st
     written w;
     // measured: a four-bar ladder by RK4 over 10 s, whose last two halvings meet rounding
     const double e[7] = {2.1e-5, 1.31e-6, 8.2e-8, 5.1e-9, 3.2e-10, 3.7e-11, 9.7e-12};
-    write_down(&w, 1, 7, 1e-14);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 7, 0, 1e-14);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_CONVERGES);
     assert_near(c.order, 4, 0.05);
@@ -144,8 +144,7 @@ static void slopes_that_wander_far_above_rounding_are_told_with_the_reason(void 
     written w;
     // measured: the leading terms of the error cancel at one size
     const double e[5] = {1.6e-1, 4.4e-3, 1.04e-4, 8.3e-7, 1.2e-7};
-    write_down(&w, 1, 5, 1e-14);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-14);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_UNSETTLED);
     assert_non_null(strstr(c.text, "cancel"));
@@ -156,8 +155,7 @@ static void errors_below_the_references_own_are_a_floor(void **state) {
     (void)state;
     written w;
     const double e[5] = {3e-12, 2e-12, 4e-12, 1e-12, 2e-12};
-    write_down(&w, 1, 5, 1e-12);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-12);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_FLOOR);
     assert_near(c.floor, 1e-11, 1e-15);
@@ -167,8 +165,7 @@ static void a_limit_that_is_not_the_motion_is_something_else(void **state) {
     (void)state;
     written w;
     const double e[5] = {1e-2, 1e-2 / 16, 1e-2 / 256, 1e-2 / 4096, 1e-2 / 65536};
-    write_down(&w, 1, 5, 1e-13);
-    set_ladder(&w, 0, e, 0.3);
+    write_one(&w, e, 5, 0.3, 1e-13);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_ELSEWHERE);
     assert_near(c.offset, 0.3, 1e-6);
@@ -181,8 +178,7 @@ static void a_slow_method_that_still_converges_is_not_something_else(void **stat
     (void)state;
     written w;
     const double e[5] = {0.4, 0.2, 0.1, 0.05, 0.025}; // order 1, far from the end
-    write_down(&w, 1, 5, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-13);
     const hn_class c = class_of(&w, 0);
     assert_int_equal(c.kind, HN_CLASS_CONVERGES);
     assert_near(c.order, 1, 1e-12);
@@ -192,8 +188,7 @@ static void slopes_that_wander_are_not_in_the_asymptotic_range(void **state) {
     (void)state;
     written w;
     const double e[5] = {0.3, 0.25, 2e-2, 1e-2, 1e-4};
-    write_down(&w, 1, 5, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 5, 0, 1e-13);
     assert_int_equal(class_of(&w, 0).kind, HN_CLASS_UNSETTLED);
     assert_non_null(strstr(class_of(&w, 0).text, "asymptotic"));
 
@@ -206,8 +201,7 @@ static void a_method_that_hardly_ever_finishes_is_failed_with_its_reason(void **
     (void)state;
     written w;
     const double e[4] = {1, 1, 1, 1e-3};
-    write_down(&w, 1, 4, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 4, 0, 1e-13);
     for (int k = 0; k < 3; k++) {
         w.methods[0].point[k].state = HN_WP_FAILED;
         snprintf(w.methods[0].point[k].reason, HN_DIAG_MESSAGE, "the loop flew apart");
@@ -220,8 +214,7 @@ static void sizes_that_are_still_to_be_run_have_not_failed(void **state) {
     (void)state;
     written w;
     const double e[4] = {1, 1, 1, 1e-3};
-    write_down(&w, 1, 4, 1e-13);
-    set_ladder(&w, 0, e, 0);
+    write_one(&w, e, 4, 0, 1e-13);
     for (int k = 0; k < 3; k++) {
         w.methods[0].point[k].state = HN_WP_PENDING;
     }
