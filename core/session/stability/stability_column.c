@@ -315,6 +315,11 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
     } else {
         count_cells(map, m, &a);
     }
+    if (a.compared == 0 && !a.why && map->n_scenes == 1 && !map->scenes[0].path) {
+        a.why = map->out_of_time
+                    ? "the time limit came before the motion to compare with was computed"
+                    : map->scenes[0].why;
+    }
     if (a.compared == 0 && !a.why) {
         const hn_map_column *c = hn_map_column_at(map, m, 0);
         a.why = map->x.n == 1 && c->stable == 0
