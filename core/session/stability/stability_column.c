@@ -315,7 +315,8 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
     } else {
         count_cells(map, m, &a);
     }
-    if (a.compared == 0 && !a.why && map->n_scenes == 1 && !map->scenes[0].path) {
+    if (a.compared == 0 && !a.why && map->n_scenes == 1 && !map->scenes[0].path &&
+        map->scenes[0].why[0]) {
         a.why = map->out_of_time
                     ? "the time limit came before the motion to compare with was computed"
                     : map->scenes[0].why;
