@@ -3,6 +3,7 @@
 #include "session/precision/study_internal.h"
 #include "session/precision/study_store.h"
 #include "session/references/reference_store.h"
+#include "study/cost/measure.h"
 
 #include <math.h>
 #include <stdbool.h>

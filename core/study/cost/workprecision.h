@@ -3,14 +3,7 @@
 #define HN_STUDY_WORKPRECISION_H
 // Error against cost: each method over a ladder of steps (fixed) or tolerances (adaptive), every
 // finished point with six errors against the reference solution, what it counted, and its CPU time.
-//
-// First every method's coarsest point, then the next finer ones, so that a time limit that runs out
-// has served all alike. Then time: samples are taken in rounds over all points (ABAB, not AABB),
-// each a batch of runs that lasts 20 ms or more, so that what disturbs the machine for a while
-// disturbs all alike. A sample whose wall time exceeds its CPU time by 5 % is taken again. Halfway
-// all runs are made anew: the first half of the samples and the second are two measurements, apart
-// in time and in memory, and what they disagree on is not ranked (pareto.h). A point that fails, or
-// that the time limit leaves out, stays with its reason.
+// measure.h runs it.
 //
 // A study may be one part of several (shards.h): then only its own points are run, and one more run
 // is timed in every round, the yardstick. It is the same in all parts, so that parts whose clocks
@@ -76,16 +69,6 @@ typedef struct hn_wp_opts {
     int shard, n_shards; ///< part 1..n_shards; 0, 0: the whole
 } hn_wp_opts;
 
-/// Told as things happen; any may be NULL.
-typedef struct hn_wp_hooks {
-    void *user;
-    int (*stop)(void *user);                    ///< 1: stop now; what is done is kept
-    void (*progress)(void *user, double share); ///< of the whole study
-    void (*point)(void *user, int m, int k);    ///< a point is done or failed
-    void (*sample)(void *user, int m,
-                   int k); ///< a sample of time was added to a point; m = -1: to the yardstick
-} hn_wp_hooks;
-
 typedef struct hn_wp {
     hn_arena *arena; ///< owns everything below but the reference
     const hn_system *sys;
@@ -117,12 +100,11 @@ HN_MUST_CHECK hn_status hn_wp_create(const hn_system *sys, const double *q, cons
                                      const hn_ref *ref, const hn_method_spec *specs, int n,
                                      const hn_wp_opts *opts, hn_wp **out, hn_diag *diag);
 void hn_wp_free(hn_wp *wp); ///< NULL is legal
-/// Runs what is pending: points that are done, failed or timed already (as read from a file) are
-/// left as they are. Returns 1 when nothing is left, 0 when stopped or out of time. Each call has
-/// the whole of opts.time_limit.
-int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks);
 /// Whether the point is run here: of the whole, or of this part.
 bool hn_wp_is_mine(const hn_wp *wp, int m, int k);
+/// Frees the run of a point, or all of them and the yardstick's: they are made anew when needed.
+void hn_wp_drop_run(hn_wp *wp, int m, int k);
+void hn_wp_drop_runs(hn_wp *wp);
 /// Median, quartiles, spread and the halves' medians from the samples.
 void hn_wp_point_statistics(hn_wp_point *p);
 /// The larger of the halves' medians over the smaller; NaN while there are fewer than HN_WP_ENOUGH

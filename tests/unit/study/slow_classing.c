@@ -5,6 +5,7 @@
 #include "support/trial.h"
 
 #include "study/cost/classing.h"
+#include "study/cost/measure.h"
 
 #include <stdio.h>
 

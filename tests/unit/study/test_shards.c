@@ -2,6 +2,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
+#include "study/cost/measure.h"
 #include "study/cost/shards.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/cost/workprecision.h"
+#include "study/cost/measure.h"
 
 #include "support/near.h"
 #include "support/trial.h"
