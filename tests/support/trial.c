@@ -80,3 +80,29 @@ void hn_trial_try_ranges(const char *path) {
     }
     hn_trial_close(&plain);
 }
+
+int hn_trial_coordinate(const hn_trial *trial, const char *name) {
+    for (int i = 0; i < trial->info.n_user; i++) {
+        const hn_coordinate *c =
+            &trial->scene->coordinates[hn_system_user_coordinate(trial->sys, i)];
+        if (strcmp(c->name, name) == 0 || strcmp(c->rate, name) == 0) {
+            return i;
+        }
+    }
+    fail_msg("no coordinate %s", name);
+    return -1;
+}
+
+void hn_trial_check_counts(const hn_trial_count *known, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        hn_trial trial;
+        hn_trial_open(&trial, known[i].scene);
+        hn_assembly report;
+        assert_int_equal(hn_assemble(trial.sys, 0, trial.q, trial.v, NULL, NULL, &report, NULL),
+                         HN_OK);
+        assert_int_equal(report.freedoms, known[i].freedoms);
+        assert_int_equal(report.rank, known[i].rank);
+        assert_int_equal(trial.info.nc, known[i].rows);
+        hn_trial_close(&trial);
+    }
+}

@@ -29,5 +29,15 @@ void hn_trial_try_ranges(const char *path);
 hn_method_spec hn_trial_spec(const char *spelling);
 /// A fresh run from the assembled state.
 hn_run *hn_trial_run(const hn_trial *trial, const char *spelling);
+/// Index in a sample of a user coordinate, by its name or that of its rate.
+int hn_trial_coordinate(const hn_trial *trial, const char *name);
+
+/// What books say of a scene's start.
+typedef struct hn_trial_count {
+    const char *scene; ///< a path
+    int freedoms, rank, rows;
+} hn_trial_count;
+/// Opens each of n scenes and compares.
+void hn_trial_check_counts(const hn_trial_count *known, size_t n);
 
 #endif

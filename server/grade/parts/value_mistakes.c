@@ -48,45 +48,55 @@ static hn_status read_fault(hn_value_sheet *s, int k, const cJSON *fault, hn_val
     return HN_OK;
 }
 
-/// A listed mistake alone.
-static hn_status try_listed(hn_value_search *f) {
-    hn_value_sheet *s = f->sheet;
-    const int k = f->entry;
-    const cJSON *fault;
-    for (int i = 0; (fault = hn_part_fault_at(s->p, i)) != NULL; i++) {
-        hn_values wrong;
-        bool differs;
-        HN_TRY(read_fault(s, k, fault, &wrong, &differs));
-        if (differs) {
-            hn_value_search_try(f, wrong.e[k], 1, hn_part_text(fault, "id"),
-                                hn_part_number(fault, "share", 0), "%s",
-                                hn_part_text(fault, "says"));
-        }
+/// Finds the next listed mistake that is wrong for the entry, from number *i on, and moves *i
+/// behind it. *fault is NULL when there is none.
+static hn_status find_listed(const hn_value_search *f, int *i, const cJSON **fault,
+                             hn_values *wrong) {
+    bool differs = false;
+    while (!differs && (*fault = hn_part_fault_at(f->sheet->p, *i)) != NULL) {
+        HN_TRY(read_fault(f->sheet, f->entry, *fault, wrong, &differs));
+        ++*i;
     }
     return HN_OK;
 }
 
+/// A listed mistake alone.
+static hn_status try_listed(hn_value_search *f) {
+    const cJSON *fault;
+    hn_values wrong;
+    for (int i = 0;;) {
+        HN_TRY(find_listed(f, &i, &fault, &wrong));
+        if (!fault) {
+            return HN_OK;
+        }
+        hn_value_search_try(f, wrong.e[f->entry], 1, hn_part_text(fault, "id"),
+                            hn_part_number(fault, "share", 0), "%s", hn_part_text(fault, "says"));
+    }
+}
+
+static bool applies(const hn_value_sheet *s, int m) {
+    return !FACTORS[m].numbers || !s->symbolic;
+}
+
 /// A listed mistake together with a factor.
 static hn_status try_listed_pairs(hn_value_search *f) {
-    hn_value_sheet *s = f->sheet;
-    const int k = f->entry;
     const cJSON *fault;
-    for (int i = 0; (fault = hn_part_fault_at(s->p, i)) != NULL; i++) {
-        hn_values wrong;
-        bool differs;
-        HN_TRY(read_fault(s, k, fault, &wrong, &differs));
-        const double share = hn_part_number(fault, "share", 0);
-        f->alone = share;
-        for (int m = 0; m < N_FACTORS && differs; m++) {
-            if (!FACTORS[m].numbers || !s->symbolic) {
-                hn_value_search_try(f, wrong.e[k], FACTORS[m].factor, hn_part_text(fault, "id"),
-                                    share * FACTORS[m].share, "%s; and %s",
-                                    hn_part_text(fault, "says"), FACTORS[m].again);
+    hn_values wrong;
+    for (int i = 0;;) {
+        HN_TRY(find_listed(f, &i, &fault, &wrong));
+        if (!fault) {
+            f->alone = 0;
+            return HN_OK;
+        }
+        f->alone = hn_part_number(fault, "share", 0);
+        for (int m = 0; m < N_FACTORS; m++) {
+            if (applies(f->sheet, m)) {
+                hn_value_search_try(f, wrong.e[f->entry], FACTORS[m].factor,
+                                    hn_part_text(fault, "id"), f->alone * FACTORS[m].share,
+                                    "%s; and %s", hn_part_text(fault, "says"), FACTORS[m].again);
             }
         }
     }
-    f->alone = 0;
-    return HN_OK;
 }
 
 /// Two listed mistakes at once, when they change different terms or different factors: the answer
@@ -122,7 +132,7 @@ static hn_status try_two_listed(hn_value_search *f) {
 static void try_factors(hn_value_search *f) {
     const hn_value_sheet *s = f->sheet;
     for (int i = 0; i < N_FACTORS; i++) {
-        if (!FACTORS[i].numbers || !s->symbolic) {
+        if (applies(s, i)) {
             hn_value_search_try(f, s->reference.e[f->entry], FACTORS[i].factor, FACTORS[i].id,
                                 FACTORS[i].share, "%s", FACTORS[i].says);
         }

@@ -27,6 +27,18 @@ static void the_lessons_jacobian_has_full_score(void **state) {
     assert_string_equal(v.summary, "all 8 entries are right");
 }
 
+/// Every spelling of the first entry, -l1 sin(th1), is right, everywhere.
+static void check_spellings(void *state, const char *const *spellings, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        hn_verdict v;
+        grade_with(state, 0, spellings[i], &v);
+        if (!v.entry[0].right) {
+            fail_msg("%s: %s", spellings[i], v.entry[0].explanation);
+        }
+        assert_false(v.entry[0].closed_only);
+    }
+}
+
 static void a_right_entry_is_right_in_any_spelling(void **state) {
     static const char *const spellings[] = {"-sin(th1)*l1",
                                             "-(l1)*sin(th1) + 0",
@@ -37,14 +49,7 @@ static void a_right_entry_is_right_in_any_spelling(void **state) {
                                             "l1*sin(-th1)",
                                             "-l1*sin(th1)^2/sin(th1)",
                                             "0.5*(-l1*sin(th1)) - l1*sin(th1)/2"};
-    for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
-        hn_verdict v;
-        grade_with(*state, 0, spellings[i], &v);
-        if (!v.entry[0].right) {
-            fail_msg("%s: %s", spellings[i], v.entry[0].explanation);
-        }
-        assert_false(v.entry[0].closed_only);
-    }
+    check_spellings(*state, spellings, sizeof spellings / sizeof spellings[0]);
 }
 
 static void a_right_entry_is_right_in_the_spelling_of_other_languages(void **state) {
@@ -56,13 +61,7 @@ static void a_right_entry_is_right_in_the_spelling_of_other_languages(void **sta
                                             "-l_{1}\\\\sin\\\\left(\\\\theta_{1}\\\\right)",
                                             "-\\\\frac{2 l_1}{2}\\\\sin{\\\\theta_1}",
                                             "\xef\xbb\xbf-l1*sin(th1)"};
-    for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
-        hn_verdict v;
-        grade_with(*state, 0, spellings[i], &v);
-        if (!v.entry[0].right) {
-            fail_msg("%s: %s", spellings[i], v.entry[0].explanation);
-        }
-    }
+    check_spellings(*state, spellings, sizeof spellings / sizeof spellings[0]);
 }
 
 static void a_constant_of_seven_digits_passes_in_every_entry_and_with_every_seed(void **state) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/motion.h"
 #include "support/near.h"
 #include "support/trial.h"
 
@@ -17,18 +18,6 @@ static void open_scene(hn_trial *trial, const char *name, const hn_setting *sett
     hn_trial_open_with(trial, path, settings, n);
 }
 
-/// Index of a user coordinate in a sample.
-static int coordinate(const hn_trial *trial, const char *name) {
-    for (int i = 0; i < trial->info.n_user; i++) {
-        const int k = hn_system_user_coordinate(trial->sys, i);
-        if (strcmp(trial->scene->coordinates[k].name, name) == 0) {
-            return i;
-        }
-    }
-    fail_msg("no coordinate %s", name);
-    return -1;
-}
-
 /// A place on a body in a sample, by the label of a drawn point.
 static const double *point(const hn_trial *trial, const hn_sample *s, const char *label) {
     const hn_drawing d = hn_system_drawing(trial->sys);
@@ -41,35 +30,17 @@ static const double *point(const hn_trial *trial, const hn_sample *s, const char
     return NULL;
 }
 
-static hn_sample at(hn_run *run, double t) {
-    hn_sample s = {0};
-    assert_int_equal(hn_run_advance(run, t), HN_OK);
-    assert_int_equal(hn_run_sample(run, t, &s), HN_OK);
-    return s;
-}
-
 static void freedoms_and_rank_are_those_of_the_books(void **state) {
     (void)state;
-    static const struct {
-        const char *scene;
-        int freedoms, rank, rows;
-    } known[] = {
-        {"parallelogram", 1, 2, 2}, {"double-rocker", 1, 2, 2}, {"triple-rocker", 1, 2, 2},
-        {"watt-six-bar", 1, 4, 4},  {"peaucellier", 1, 6, 6},   {"stephenson-six-bar", 1, 4, 4},
-        {"pantograph", 2, 2, 2},    {"scott-russell", 1, 2, 2}, {"quick-return", 1, 4, 4},
-        {"3-rrr", 3, 4, 4},         {"ring", 10, 2, 2},         {"bennett", 1, 2, 5},
+    static const hn_trial_count known[] = {
+        {SCENE("parallelogram"), 1, 2, 2}, {SCENE("double-rocker"), 1, 2, 2},
+        {SCENE("triple-rocker"), 1, 2, 2}, {SCENE("watt-six-bar"), 1, 4, 4},
+        {SCENE("peaucellier"), 1, 6, 6},   {SCENE("stephenson-six-bar"), 1, 4, 4},
+        {SCENE("pantograph"), 2, 2, 2},    {SCENE("scott-russell"), 1, 2, 2},
+        {SCENE("quick-return"), 1, 4, 4},  {SCENE("3-rrr"), 3, 4, 4},
+        {SCENE("ring"), 10, 2, 2},         {SCENE("bennett"), 1, 2, 5},
     };
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        hn_trial trial;
-        open_scene(&trial, known[i].scene, NULL, 0);
-        hn_assembly report;
-        assert_int_equal(hn_assemble(trial.sys, 0, trial.q, trial.v, NULL, NULL, &report, NULL),
-                         HN_OK);
-        assert_int_equal(report.freedoms, known[i].freedoms);
-        assert_int_equal(report.rank, known[i].rank);
-        assert_int_equal(trial.info.nc, known[i].rows);
-        hn_trial_close(&trial);
-    }
+    hn_trial_check_counts(known, sizeof known / sizeof known[0]);
 }
 
 static void peaucelliers_point_stays_on_its_line(void **state) {
@@ -81,7 +52,7 @@ static void peaucelliers_point_stays_on_its_line(void **state) {
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
     double left = 0, right = 0;
     for (int k = 1; k <= 150; k++) {
-        const hn_sample s = at(run, 0.02 * k);
+        const hn_sample s = hn_motion_at(run, 0.02 * k);
         const double *P = point(&trial, &s, "P");
         assert_near(P[1], line, 1e-9);
         left = fmin(left, P[0]);
@@ -96,11 +67,11 @@ static void scott_russells_point_runs_level_through_the_pivot(void **state) {
     (void)state;
     hn_trial trial;
     open_scene(&trial, "scott-russell", NULL, 0);
-    const int th = coordinate(&trial, "th");
+    const int th = hn_trial_coordinate(&trial, "th");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
     double left = 0, right = 0;
     for (int k = 1; k <= 150; k++) {
-        const hn_sample s = at(run, 0.02 * k);
+        const hn_sample s = hn_motion_at(run, 0.02 * k);
         const double *P = point(&trial, &s, "P");
         assert_near(P[1], 0, 1e-9);
         assert_near(P[0], 2 * 0.5 * cos(s.q[th]), 1e-9);
@@ -122,7 +93,7 @@ static void a_pantograph_enlarges_what_its_tracer_draws(void **state) {
         hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
         double travelled = 0, last[2] = {0, 0};
         for (int step = 1; step <= 40; step++) {
-            const hn_sample s = at(run, 0.05 * step);
+            const hn_sample s = hn_motion_at(run, 0.05 * step);
             const double *P = point(&trial, &s, "P"), *D = point(&trial, &s, "D");
             for (int c = 0; c < 2; c++) {
                 assert_near(D[c], ratios[i] * P[c], 1e-10);
@@ -143,8 +114,8 @@ static void a_parallelogram_stays_parallel_and_swings_as_a_pendulum(void **state
     const double a = 0.6, d = 1.4, T = 2;
     hn_trial trial;
     open_scene(&trial, "parallelogram", hanging, 2);
-    const int th1 = coordinate(&trial, "th1"), a2 = coordinate(&trial, "a2"),
-              th3 = coordinate(&trial, "th3");
+    const int th1 = hn_trial_coordinate(&trial, "th1"), a2 = hn_trial_coordinate(&trial, "a2"),
+              th3 = hn_trial_coordinate(&trial, "th3");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
     const double pull = 9.81 * (a + d) / ((2 * a / 3 + d) * a);
     double th = -2, w = 1, h = 1e-5;
@@ -153,7 +124,7 @@ static void a_parallelogram_stays_parallel_and_swings_as_a_pendulum(void **state
         th += h * w_mid;
         w -= h * pull * cos(mid);
     }
-    const hn_sample s = at(run, T);
+    const hn_sample s = hn_motion_at(run, T);
     assert_near(s.q[th1], th, 1e-8);
     assert_near(s.q[th3], s.q[th1], 1e-12);
     assert_near(s.q[th1] + s.q[a2], 0, 1e-12);
@@ -169,11 +140,11 @@ static void whitworths_ram_has_the_stroke_and_the_time_ratio_of_the_formula(void
     const double r = 0.3, d = 0.15, e = 0.2, l = 0.7;
     hn_trial trial;
     open_scene(&trial, "quick-return", &level, 1);
-    const int x = coordinate(&trial, "x"), th1 = coordinate(&trial, "th1");
+    const int x = hn_trial_coordinate(&trial, "x"), th1 = hn_trial_coordinate(&trial, "th1");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=2e-4");
     double most = -9, least = 9, angle_most = 0, angle_least = 0;
     for (int k = 1; k <= 2600; k++) {
-        const hn_sample s = at(run, 5e-4 * k);
+        const hn_sample s = hn_motion_at(run, 5e-4 * k);
         if (s.q[x] > most) {
             most = s.q[x];
             angle_most = s.q[th1];
@@ -200,7 +171,7 @@ static void a_ring_keeps_its_energy_to_the_order_of_the_method(void **state) {
         hn_trial trial;
         open_scene(&trial, "ring", NULL, 0);
         hn_run *run = hn_trial_run(&trial, i ? "projection@rk4:h=1e-3" : "projection@rk4:h=2e-3");
-        at(run, 0.4); // later it is chaotic
+        hn_motion_at(run, 0.4); // later it is chaotic
         worst[i] = hn_run_get_summary(run).worst_energy_change;
         hn_run_free(run);
         hn_trial_close(&trial);
@@ -217,7 +188,7 @@ static void a_ring_of_three_is_a_triangle_that_swings_as_a_pendulum(void **state
     // side l = 1 m: centre at l/sqrt 3 from the pivot, inertia about it m (l^2/12 + l^2/12) plus m
     // l^2/3: m l^2/2
     const double centre = 1 / sqrt(3), inertia = 0.5;
-    const int th1 = coordinate(&trial, "th1");
+    const int th1 = hn_trial_coordinate(&trial, "th1");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
     double angle = 0, w = 0, h = 1e-5;
     for (int k = 0; k < 150000; k++) {
@@ -226,7 +197,7 @@ static void a_ring_of_three_is_a_triangle_that_swings_as_a_pendulum(void **state
         angle += h * w_mid;
         w -= h * 9.81 * centre / inertia * cos(mid);
     }
-    const hn_sample s = at(run, 1.5);
+    const hn_sample s = hn_motion_at(run, 1.5);
     assert_near(s.q[th1], angle - acos(-1) / 6, 1e-7);
     hn_run_free(run);
     hn_trial_close(&trial);
@@ -248,7 +219,7 @@ static void a_ring_of_any_size_falls_by_every_family(void **state) {
         open_scene(&trial, "ring", &n, 1);
         assert_int_equal(trial.info.nv - trial.info.nc, cases[i].n - 2);
         hn_run *run = hn_trial_run(&trial, cases[i].method);
-        const hn_sample s = at(run, 0.5);
+        const hn_sample s = hn_motion_at(run, 0.5);
         assert_true(fabs(s.energy_change) < 5e-5 && s.gap < 1e-6);
         hn_run_free(run);
         hn_trial_close(&trial);
@@ -263,13 +234,13 @@ static void bennetts_loop_moves_with_three_rows_too_many(void **state) {
     static const double gaps[] = {1e-13, 1e-13, 1e-5, 1e-8};
     hn_trial trial;
     open_scene(&trial, "bennett", NULL, 0);
-    const int th1 = coordinate(&trial, "th1"), th2 = coordinate(&trial, "th2");
+    const int th1 = hn_trial_coordinate(&trial, "th1"), th2 = hn_trial_coordinate(&trial, "th2");
     const double ratio = sin(0.9) / sin(0.3); // Bennett 1914: of (be + al)/2 and (be - al)/2
     double end = 0;
     for (int i = 0; i < 4; i++) {
         hn_run *run = hn_trial_run(&trial, methods[i]);
         for (int k = 1; k <= 20; k++) {
-            const hn_sample s = at(run, 0.1 * k);
+            const hn_sample s = hn_motion_at(run, 0.1 * k);
             assert_true(s.gap < gaps[i]);
             assert_near(fabs(tan(s.q[th1] / 2) * tan(s.q[th2] / 2)) / ratio, 1, 1e-3);
             assert_near(s.energy_change, 0, 1e-6);

@@ -161,26 +161,12 @@ static void udwadia_kalaba_is_index_one_by_another_formula(void **state) {
     hn_model_close(&m);
 }
 
-// FB0 with a rocker without mass
-static const char massless_rocker[] =
-    "{\"holonom\": 1, \"name\": \"massless-rocker\", \"lagrangian\": {\"coordinates\": ["
-    "{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}, "
-    "{\"name\": \"th2\", \"rate\": \"w2\", \"unit\": \"rad\"}, "
-    "{\"name\": \"th3\", \"rate\": \"w3\", \"unit\": \"rad\"}],"
-    "\"kinetic\": \"(1/3 + 2)*w1^2/2 + 8/3*w2^2/2 + 2*cos(th1 - th2)*w1*w2\","
-    "\"potential\": \"9.81*(2.5*sin(th1) + 2*sin(th2))\","
-    "\"constraints\": [{\"name\": \"x\", \"formula\": "
-    "\"cos(th1) + 2*cos(th2) - 1.8*cos(th3) - 2.2\"},"
-    "{\"name\": \"y\", \"formula\": \"sin(th1) + 2*sin(th2) - 1.8*sin(th3)\"}]},"
-    "\"start\": {\"positions\": {\"th1\": 1, \"th2\": {\"guess\": 0.5}, \"th3\": {\"guess\": 1.5}},"
-    "\"rates\": {\"th1\": 2}}}";
-
 static void a_massless_rocker_is_moved_as_the_saddle_system_says(void **state) {
     (void)state;
     static const char *const methods[] = {"udwadia-kalaba@rk4:h=1e-3",
                                           "augmented-lagrangian@rk4:h=1e-3"};
     hn_model m;
-    hn_model_open_text(&m, massless_rocker, NULL);
+    hn_model_open_closed(&m, "fb0-massless-rocker", NULL);
     assert_int_equal(m.status, HN_OK);
     hn_run *reference = hn_motion_start(&m, "baumgarte:alpha=10,beta=10@rk4:h=1e-3");
     double q[NV];

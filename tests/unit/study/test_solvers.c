@@ -66,24 +66,10 @@ static void redundant_rows_are_refused_by_name_where_they_are_not_served(void **
     hn_model_close(&m);
 }
 
-// the reference four-bar with a massless rocker
-static const char massless_rocker[] =
-    "{\"holonom\": 1, \"name\": \"massless\", \"lagrangian\": {\"coordinates\": ["
-    "{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}, "
-    "{\"name\": \"th2\", \"rate\": \"w2\", \"unit\": \"rad\"}, "
-    "{\"name\": \"th3\", \"rate\": \"w3\", \"unit\": \"rad\"}],"
-    "\"kinetic\": \"(1/3 + 2)*w1^2/2 + 8/3*w2^2/2 + 2*cos(th1 - th2)*w1*w2\","
-    "\"potential\": \"9.81*(2.5*sin(th1) + 2*sin(th2))\","
-    "\"constraints\": [{\"name\": \"x\", \"formula\": "
-    "\"cos(th1) + 2*cos(th2) - 1.8*cos(th3) - 2.2\"},"
-    "{\"name\": \"y\", \"formula\": \"sin(th1) + 2*sin(th2) - 1.8*sin(th3)\"}]},"
-    "\"start\": {\"positions\": {\"th1\": 1, \"th2\": {\"guess\": 0.5}, \"th3\": {\"guess\": 1.5}},"
-    "\"rates\": {\"th1\": 2}}}";
-
 static void the_range_space_refuses_a_massless_rocker_and_names_it(void **state) {
     (void)state;
     hn_model m;
-    hn_model_open_text(&m, massless_rocker, NULL);
+    hn_model_open_closed(&m, "fb0-massless-rocker", NULL);
     for (int i = 0; i < HN_SOLVER_COUNT; i++) {
         const hn_run_summary s = try(&m, hn_solver_names[i]);
         if (i == HN_SOLVER_RANGE_SPACE) {
@@ -99,7 +85,7 @@ static void the_range_space_refuses_a_massless_rocker_and_names_it(void **state)
 static void symmetric_projection_refuses_a_massless_rocker_and_names_it(void **state) {
     (void)state;
     hn_model m;
-    hn_model_open_text(&m, massless_rocker, NULL);
+    hn_model_open_closed(&m, "fb0-massless-rocker", NULL);
     hn_run *run = hn_motion_start(&m, "symmetric-projection@midpoint:h=1e-3");
     assert_int_not_equal(hn_run_advance(run, 0.1), HN_OK);
     const hn_run_summary s = hn_run_get_summary(run);
@@ -115,7 +101,7 @@ a_method_that_divides_by_a_missing_mass_is_told_as_such_with_one_that_does_not(v
                                           "index1:solver=range-space@rk4:h=1e-3"};
     (void)state;
     hn_model m;
-    hn_model_open_text(&m, massless_rocker, NULL);
+    hn_model_open_closed(&m, "fb0-massless-rocker", NULL);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         const hn_incident *incidents;
         hn_run *run = hn_motion_start(&m, methods[i]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mechanisms in space, drives and published problems, as shipped: what closed forms and other
 // people's figures say of them.
+#include "support/motion.h"
 #include "support/near.h"
 #include "support/trial.h"
 
@@ -22,26 +23,6 @@ static void open_scene(hn_trial *trial, const char *name, const hn_setting *sett
     hn_trial_open_with(trial, path, settings, n);
 }
 
-/// Index of a user coordinate, or of its rate, in a sample.
-static int coordinate(const hn_trial *trial, const char *name) {
-    for (int i = 0; i < trial->info.n_user; i++) {
-        const hn_coordinate *c =
-            &trial->scene->coordinates[hn_system_user_coordinate(trial->sys, i)];
-        if (strcmp(c->name, name) == 0 || strcmp(c->rate, name) == 0) {
-            return i;
-        }
-    }
-    fail_msg("no coordinate %s", name);
-    return -1;
-}
-
-static hn_sample at(hn_run *run, double t) {
-    hn_sample s = {0};
-    assert_int_equal(hn_run_advance(run, t), HN_OK);
-    assert_int_equal(hn_run_sample(run, t, &s), HN_OK);
-    return s;
-}
-
 /// p turned by the rotation vector r (Rodrigues).
 static void turn(const double r[3], const double p[3], double out[3]) {
     double a = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), dot = 0;
@@ -58,29 +39,16 @@ static void turn(const double r[3], const double p[3], double out[3]) {
 
 static void freedoms_and_rank_are_those_of_the_books(void **state) {
     (void)state;
-    static const struct {
-        const char *scene;
-        int freedoms, rank, rows;
-    } known[] = {
-        {"spinning-block", 6, 0, 0},       {"heavy-top", 3, 0, 0},
-        {"spatial-slider-crank", 1, 3, 3}, {"cardan-shaft", 1, 3, 4},
-        {"oblique-four-bar", 1, 2, 2},     {"car-axis", 2, 2, 2},
-        {"seven-body-squeezer", 1, 6, 6},  {"stewart-6-6", 6, 18, 18},
-        {"stewart-6-3", 6, 18, 18},        {"delta-robot", 3, 6, 6},
-        {"driven-crank", 1, 3, 3},         {"planetary-gear", 1, 4, 6},
-        {"rolling-wheel", 2, 2, 2},        {"rssr", 2, 3, 3},
+    static const hn_trial_count known[] = {
+        {SCENE("spinning-block"), 6, 0, 0},       {SCENE("heavy-top"), 3, 0, 0},
+        {SCENE("spatial-slider-crank"), 1, 3, 3}, {SCENE("cardan-shaft"), 1, 3, 4},
+        {SCENE("oblique-four-bar"), 1, 2, 2},     {SCENE("car-axis"), 2, 2, 2},
+        {SCENE("seven-body-squeezer"), 1, 6, 6},  {SCENE("stewart-6-6"), 6, 18, 18},
+        {SCENE("stewart-6-3"), 6, 18, 18},        {SCENE("delta-robot"), 3, 6, 6},
+        {SCENE("driven-crank"), 1, 3, 3},         {SCENE("planetary-gear"), 1, 4, 6},
+        {SCENE("rolling-wheel"), 2, 2, 2},        {SCENE("rssr"), 2, 3, 3},
     };
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        hn_trial trial;
-        open_scene(&trial, known[i].scene, NULL, 0);
-        hn_assembly report;
-        assert_int_equal(hn_assemble(trial.sys, 0, trial.q, trial.v, NULL, NULL, &report, NULL),
-                         HN_OK);
-        assert_int_equal(report.freedoms, known[i].freedoms);
-        assert_int_equal(report.rank, known[i].rank);
-        assert_int_equal(trial.info.nc, known[i].rows);
-        hn_trial_close(&trial);
-    }
+    hn_trial_check_counts(known, sizeof known / sizeof known[0]);
 }
 
 // x^2 = l^2 - y^2 - z^2 with (y, z) the tip of the crank
@@ -88,10 +56,10 @@ static void the_spatial_slider_stands_where_its_rod_reaches(void **state) {
     (void)state;
     hn_trial trial;
     open_scene(&trial, "spatial-slider-crank", NULL, 0);
-    const int th = coordinate(&trial, "th"), x = coordinate(&trial, "x");
+    const int th = hn_trial_coordinate(&trial, "th"), x = hn_trial_coordinate(&trial, "x");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
     for (int k = 1; k <= 100; k++) {
-        const hn_sample s = at(run, 0.02 * k);
+        const hn_sample s = hn_motion_at(run, 0.02 * k);
         double y = 0.12 + 0.08 * cos(s.q[th]), z = -0.1 + 0.08 * sin(s.q[th]);
         assert_near(s.q[x], sqrt(0.09 - y * y - z * z), 1e-13); // gaps of rounding
         assert_near(s.energy_change, 0, 1e-7);                  // of 0.8 J, by RK4 at 28 rad/s
@@ -109,12 +77,12 @@ static void an_rssr_linkage_closes_and_its_coupler_keeps_its_spin(void **state) 
     const double a = 0.2, b = 1.1, c = 0.5, d = 0.8, e = 0.6;
     hn_trial trial;
     open_scene(&trial, "rssr", &spin, 1);
-    const int th = coordinate(&trial, "th"), ps = coordinate(&trial, "ps"),
-              r = coordinate(&trial, "rx"), wx = coordinate(&trial, "wx");
+    const int th = hn_trial_coordinate(&trial, "th"), ps = hn_trial_coordinate(&trial, "ps"),
+              r = hn_trial_coordinate(&trial, "rx"), wx = hn_trial_coordinate(&trial, "wx");
     hn_run *run = hn_trial_run(&trial, "projection@dop853:rtol=1e-10");
     double first = 0;
     for (int k = 0; k <= 50; k++) {
-        const hn_sample s = at(run, 0.02 * k);
+        const hn_sample s = hn_motion_at(run, 0.02 * k);
         const double loop = d * d + a * a + c * c + e * e - b * b - 2 * d * a * cos(s.q[th]) -
                             2 * e * c * sin(s.q[ps]) - 2 * a * c * sin(s.q[th]) * cos(s.q[ps]);
         assert_near(loop, 0, 1e-9); // samples between steps are interpolated
@@ -136,11 +104,12 @@ static void a_cardan_shaft_undoes_or_doubles_its_unevenness(void **state) {
         const hn_setting twist = {"twist", crossed ? PI / 2 : 0};
         hn_trial trial;
         open_scene(&trial, "cardan-shaft", &twist, 1);
-        const int th1 = coordinate(&trial, "th1"), th3 = coordinate(&trial, "th3");
+        const int th1 = hn_trial_coordinate(&trial, "th1"),
+                  th3 = hn_trial_coordinate(&trial, "th3");
         hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
         double least = HUGE_VAL, most = 0;
         for (int k = 1; k <= 2000; k++) {
-            const hn_sample s = at(run, 1e-3 * k);
+            const hn_sample s = hn_motion_at(run, 1e-3 * k);
             least = fmin(least, s.v[th3] / s.v[th1]);
             most = fmax(most, s.v[th3] / s.v[th1]);
             if (!crossed) {
@@ -166,9 +135,9 @@ static void a_heavy_top_precesses_steadily_at_the_lower_root(void **state) {
     hn_trial trial;
     open_scene(&trial, "heavy-top", &steady, 1);
     hn_run *run = hn_trial_run(&trial, "index1@dop853:rtol=1e-11");
-    assert_int_equal(coordinate(&trial, "rx"), 0);
+    assert_int_equal(hn_trial_coordinate(&trial, "rx"), 0);
     for (int k = 1; k <= 20; k++) {
-        const hn_sample s = at(run, 0.05 * k);
+        const hn_sample s = hn_motion_at(run, 0.05 * k);
         const double stem[3] = {0, 1, 0};
         double tip[3];
         turn(s.q, stem, tip);
@@ -190,7 +159,7 @@ static void a_heavy_top_let_go_nods_between_two_heights(void **state) {
     const double stem[3] = {0, 1, 0}, A = 0.00625, C = 0.0025;
     double low = 1, high = -1;
     for (int k = 1; k <= 400; k++) {
-        const hn_sample s = at(run, 1e-3 * k);
+        const hn_sample s = hn_motion_at(run, 1e-3 * k);
         double tip[3], momentum[3] = {A * s.v[0], C * s.v[1], A * s.v[2]}, in_space[3];
         turn(s.q, stem, tip);
         turn(s.q, momentum, in_space);
@@ -220,12 +189,12 @@ static void a_spinning_block_turns_over_as_an_elliptic_function(void **state) {
     const double p = sqrt((I3 - I2) * (L2 - E2 * I1) / (I1 * I2 * I3));
     const double k2 = (I2 - I1) * (E2 * I3 - L2) / ((I3 - I2) * (L2 - E2 * I1));
     const double half = 2 * gsl_sf_ellint_Kcomp(sqrt(k2), GSL_PREC_DOUBLE) / p;
-    const int wy = coordinate(&trial, "wy");
+    const int wy = hn_trial_coordinate(&trial, "wy");
     hn_run *run = hn_trial_run(&trial, "index1@dop853:rtol=1e-12");
     double crossed[8], before = 5;
     int n = 0;
     for (int k = 1; k <= 20000 && n < 5; k++) {
-        const hn_sample s = at(run, 1e-3 * k);
+        const hn_sample s = hn_motion_at(run, 1e-3 * k);
         if (s.v[wy] * before < 0) {
             crossed[n++] = s.t - 1e-3 * s.v[wy] / (s.v[wy] - before);
         }
@@ -252,7 +221,7 @@ static void an_oblique_four_bar_without_gravity_moves_as_one_in_the_plane(void *
     hn_run *a = hn_trial_run(&one, "projection@rk4:h=1e-3"),
            *b = hn_trial_run(&two, "projection@rk4:h=1e-3");
     for (int k = 1; k <= 20; k++) {
-        const hn_sample s = at(a, 0.1 * k), r = at(b, 0.1 * k);
+        const hn_sample s = hn_motion_at(a, 0.1 * k), r = at(b, 0.1 * k);
         for (int i = 0; i < one.info.n_user; i++) {
             assert_near(s.q[i], r.q[i], 1e-11); // rounding grown over 2000 steps
             assert_near(s.v[i], r.v[i], 1e-10);
@@ -276,9 +245,10 @@ static void the_car_axis_ends_where_the_test_set_says(void **state) {
     hn_trial trial;
     open_scene(&trial, "car-axis", NULL, 0);
     hn_run *run = hn_trial_run(&trial, "projection@dop853:rtol=1e-12");
-    const hn_sample s = at(run, 3);
+    const hn_sample s = hn_motion_at(run, 3);
     for (int i = 0; i < 4; i++) {
-        assert_near(s.q[coordinate(&trial, end[i].name)], end[i].value, 1e-10); // 1e-12 times 50
+        assert_near(s.q[hn_trial_coordinate(&trial, end[i].name)], end[i].value,
+                    1e-10); // 1e-12 times 50
     }
     hn_run_free(run);
     hn_trial_close(&trial);
@@ -296,10 +266,11 @@ static void the_squeezer_has_twelve_digits_at_its_end(void **state) {
     hn_trial trial;
     open_scene(&trial, "seven-body-squeezer", NULL, 0);
     hn_run *run = hn_trial_run(&trial, "projection@dop853:rtol=1e-12");
-    const hn_sample s = at(run, 0.03);
+    const hn_sample s = hn_motion_at(run, 0.03);
     for (int i = 0; i < 7; i++) {
         const double size = fmax(1, fabs(end[i].value));
-        assert_near(s.q[coordinate(&trial, end[i].name)] / size, end[i].value / size, 1e-12);
+        assert_near(s.q[hn_trial_coordinate(&trial, end[i].name)] / size, end[i].value / size,
+                    1e-12);
     }
     hn_run_free(run);
     hn_trial_close(&trial);
@@ -313,12 +284,12 @@ static void follow_circle(const char *scene, double w, double h, const char *con
                           double *off, double *low) {
     hn_trial trial;
     open_scene(&trial, scene, NULL, 0);
-    const int x = coordinate(&trial, names[0]), y = coordinate(&trial, names[1]),
-              z = coordinate(&trial, names[2]);
+    const int x = hn_trial_coordinate(&trial, names[0]), y = hn_trial_coordinate(&trial, names[1]),
+              z = hn_trial_coordinate(&trial, names[2]);
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
     *off = *low = 0;
     for (int k = 50; k <= 200; k++) {
-        const hn_sample s = at(run, 0.02 * k);
+        const hn_sample s = hn_motion_at(run, 0.02 * k);
         *off = fmax(*off, hypot(s.q[x] - 0.1 * cos(w * s.t), s.q[z] - 0.1 * sin(w * s.t)));
         *low = fmax(*low, fabs(s.q[y] - h));
         assert_true(s.gap < 1e-13);
@@ -347,13 +318,13 @@ static void platforms_without_gains_fall_and_keep_their_energy(void **state) {
     for (int i = 0; i < 3; i++) {
         hn_trial trial;
         open_scene(&trial, scenes[i], loose, 2);
-        const int y = coordinate(&trial, height[i]);
+        const int y = hn_trial_coordinate(&trial, height[i]);
         hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
-        const double y0 = at(run, 0).q[y];
-        const hn_sample s = at(run, 0.1);
+        const double y0 = hn_motion_at(run, 0).q[y];
+        const hn_sample s = hn_motion_at(run, 0.1);
         // legs that fall along change little of g t^2 / 2
         assert_near(y0 - s.q[y], 9.81 * 0.01 / 2, 0.01);
-        assert_near(at(run, 0.3).energy_change, 0, 1e-5); // of 100 J, by RK4
+        assert_near(hn_motion_at(run, 0.3).energy_change, 0, 1e-5); // of 100 J, by RK4
         hn_run_free(run);
         hn_trial_close(&trial);
     }
@@ -366,13 +337,13 @@ static void a_delta_platform_does_not_turn(void **state) {
         const hn_setting gains[] = {{"kp", 0}, {"kd", 0}};
         hn_trial trial;
         open_scene(&trial, "delta-robot", gains, loose ? 2 : 0);
-        const int turns[] = {coordinate(&trial, "rx"), coordinate(&trial, "ry"),
-                             coordinate(&trial, "rz")};
-        const int x = coordinate(&trial, "x"), y = coordinate(&trial, "y");
+        const int turns[] = {hn_trial_coordinate(&trial, "rx"), hn_trial_coordinate(&trial, "ry"),
+                             hn_trial_coordinate(&trial, "rz")};
+        const int x = hn_trial_coordinate(&trial, "x"), y = hn_trial_coordinate(&trial, "y");
         hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
         double way = 0;
         for (int k = 1; k <= 50; k++) {
-            const hn_sample s = at(run, 0.02 * k);
+            const hn_sample s = hn_motion_at(run, 0.02 * k);
             way = fmax(way, hypot(s.q[x] - 0.1, s.q[y] + 0.5));
             for (int i = 0; i < 3; i++) {
                 assert_near(s.q[turns[i]], 0, 1e-12);
@@ -429,13 +400,13 @@ static void the_torque_of_a_given_motion_does_the_work_that_the_energy_gains(voi
     const double w = 3, friction = 0.02, h = 1e-3;
     hn_trial trial;
     open_scene(&trial, "driven-crank", NULL, 0);
-    const int th1 = coordinate(&trial, "th1"), wp = coordinate(&trial, "wp");
+    const int th1 = hn_trial_coordinate(&trial, "th1"), wp = hn_trial_coordinate(&trial, "wp");
     const int drive = trial.info.nc - 1;
     assert_string_equal(hn_system_row_name(trial.sys, drive), "drive");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=5e-4");
     double work = 0;
     for (int k = 0; k <= N; k++) {
-        const hn_sample s = at(run, h * k);
+        const hn_sample s = hn_motion_at(run, h * k);
         const double weight = h / 3 * (k == 0 || k == N ? 1 : k % 2 ? 4 : 2);
         work += weight * (s.lambda[drive] * w - friction * s.v[wp] * s.v[wp]);
         assert_near(s.q[th1], w * s.t, 1e-13);
@@ -460,13 +431,13 @@ static void a_planetary_gear_turns_as_its_table_of_torque_says(void **state) {
     const double c = b * n * n / I;
     hn_trial trial;
     open_scene(&trial, "planetary-gear", NULL, 0);
-    const int ws = coordinate(&trial, "ws"), wc = coordinate(&trial, "wc");
+    const int ws = hn_trial_coordinate(&trial, "ws"), wc = hn_trial_coordinate(&trial, "wc");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
-    hn_sample s = at(run, 0.5);
+    hn_sample s = hn_motion_at(run, 0.5);
     const double first = T0 / (0.5 * I) * (0.5 / c - (1 - exp(-0.5 * c)) / (c * c));
     assert_near(s.v[ws], first, 1e-10); // (c h)^4
     assert_near(s.v[wc], n * s.v[ws], 1e-13);
-    s = at(run, 1.5);
+    s = hn_motion_at(run, 1.5);
     assert_near(s.v[ws], T0 / (c * I) + (first - T0 / (c * I)) * exp(-c), 1e-10);
     assert_int_equal(s.rank, 4);
     hn_run_free(run);
@@ -480,13 +451,13 @@ static void a_wheel_rolls_without_slip_and_starts_with_the_acceleration_of_theor
     const double al = 0.168, R = 0.4, m = 2, mp = 1, g = 9.81;
     hn_trial trial;
     open_scene(&trial, "rolling-wheel", NULL, 0);
-    const int x = coordinate(&trial, "x"), y = coordinate(&trial, "y"),
-              th = coordinate(&trial, "th");
+    const int x = hn_trial_coordinate(&trial, "x"), y = hn_trial_coordinate(&trial, "y"),
+              th = hn_trial_coordinate(&trial, "th");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
-    hn_sample s = at(run, 0);
+    hn_sample s = hn_motion_at(run, 0);
     assert_near(s.a[x] / cos(al), (m + mp) * g * sin(al) / (2 * m + mp * sin(al) * sin(al)), 1e-13);
     for (int k = 1; k <= 30; k++) {
-        s = at(run, 0.1 * k);
+        s = hn_motion_at(run, 0.1 * k);
         const double way = (s.q[x] - R * sin(al)) / cos(al);
         assert_near(way, -R * s.q[th], 1e-13); // right is clockwise
         assert_near(s.q[x] * sin(al) + s.q[y] * cos(al), R, 1e-14);
