@@ -221,7 +221,7 @@ static void an_oblique_four_bar_without_gravity_moves_as_one_in_the_plane(void *
     hn_run *a = hn_trial_run(&one, "projection@rk4:h=1e-3"),
            *b = hn_trial_run(&two, "projection@rk4:h=1e-3");
     for (int k = 1; k <= 20; k++) {
-        const hn_sample s = hn_motion_at(a, 0.1 * k), r = at(b, 0.1 * k);
+        const hn_sample s = hn_motion_at(a, 0.1 * k), r = hn_motion_at(b, 0.1 * k);
         for (int i = 0; i < one.info.n_user; i++) {
             assert_near(s.q[i], r.q[i], 1e-11); // rounding grown over 2000 steps
             assert_near(s.v[i], r.v[i], 1e-10);
