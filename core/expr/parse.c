@@ -351,7 +351,11 @@ static hn_ex parse_power(parser *p) {
     }
     if (c == '^' || (c == '*' && p->text[at + 1] == '*')) {
         p->at += c == '^' ? 1 : 2;
-        const hn_ex exponent = parse_signed(p);
+
+        // as deep as pow(base, exponent), which is how it is printed: what is read here can be
+        // read again
+        const hn_ex exponent = enter(p) ? parse_signed(p) : hn_num(0);
+        p->depth--;
         return p->status == HN_OK ? raise_to(p, base, exponent, at) : hn_num(0);
     }
     return base;

@@ -214,9 +214,12 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
         hn_terminal_be_wide();
     }
 
-    // no command writes over what it reads
+    // no command writes over what it reads, or computes what cannot be written
     hn_diags diags = {0};
-    const hn_status status = hn_cli_protect_inputs(args, &diags);
+    hn_status status = hn_cli_protect_inputs(args, &diags);
+    if (args->out && strcmp(args->out, "-") != 0) {
+        HN_THEN(status, hn_cli_check_folder(args->out, &diags));
+    }
     start_native(args);
     allow_programs(args);
     const hn_exit result =

@@ -388,10 +388,13 @@ class Memory(driver.ServerCase):
         threads = [threading.Thread(target=self.visit) for _ in range(20)]
         for t in threads:
             t.start()
+        # the histories stay until their comparisons expire: some 7 MB each, all of them for a while at least
+        most = 0
+        while any(t.is_alive() for t in threads):
+            most = max(most, self.memory())
+            time.sleep(0.05)
         for t in threads:
             t.join()
-        most = self.memory()
-        # the histories stay until their comparisons expire: some 7 MB each
         self.assertGreater(most, before + 40000)
         self.assertTrue(driver.until(lambda: not self.server.ask("GET", "/api/v1/comparisons").json()["comparisons"], 60))
         # what may stay: the stacks and heaps of the threads that serve, 100 kB each, and the pieces that lie between what is in use

@@ -80,9 +80,15 @@ class Files(Command):
             path = os.path.join(folder, "s.json")
             with open(path, "w") as f:
                 json.dump(SUBMISSION, f)
-            for words in (("grade", "p3", path, "-o", "/dev/full/v"), ("snapshot", "four-bar", "--time", "0.1", "-o", "/no/such/folder/a.png"),
-                          ("reference", "fb0", "--out", "/nowhere/x.json")):
-                self.assert_exit(call(*words), PROGRAM)
+            self.assert_exit(call("export", "four-bar", "--language", "c", "-o", "/dev/full"), PROGRAM)
+            # a folder that is not there is, and is told before anything is computed: this picture takes an hour
+            for words in (("grade", "p3", path, "-o", "/dev/full/v"), ("reference", "fb0", "--out", "/nowhere/x.json"),
+                          ("snapshot", "four-bar", "--method", "index1@rk4:h=1e-6", "--time", "3600", "-o", "/no/such/folder/a.png"),
+                          ("export", "four-bar", "--language", "c", "-o", path + "/a.c"), ("problem", "p3", "-o", "/nowhere/a.svg"),
+                          ("import", "tests/import/four-bar.urdf", "-o", "/nowhere/a.json"), ("program", "python", "-o", "/nowhere/a.py")):
+                done = call(*words)
+                self.assert_exit(done, INPUT)
+                self.assertRegex(done.stderr, b"no such folder|Not a directory")
             # rows that are printed as they are made, and a document
             for words in ((), ("--json",)):
                 with open("/dev/full", "w") as full:

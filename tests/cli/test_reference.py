@@ -9,7 +9,7 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(__file__))
 import studies  # noqa: E402
-from studies import DONE, ENDED, INPUT, PROGRAM  # noqa: E402
+from studies import DONE, ENDED, INPUT  # noqa: E402
 
 SCENE = os.path.join("lessons", "01-closed-loops", "scenes", "fb0-lagrangian.json")
 
@@ -128,7 +128,7 @@ class Reference(unittest.TestCase):
     def test_faults_are_told(self):
         for words, status, text in ((["fb0", "--time", "-1"], INPUT, "are allowed"), (["fbo"], INPUT, "did you mean"),
                                     (["fb0", "--recompute", "--time-limit", "1e-9"], ENDED, "takes more"),
-                                    (["fb0", "--out", "/nowhere/x.json"], PROGRAM, "cannot write")):
+                                    (["fb0", "--out", "/nowhere/x.json"], INPUT, "there is no such folder")):
             done = self.call(*words)
             self.assertEqual(done.returncode, status, (words, done.stderr))
             self.assertIn(text, done.stderr)

@@ -67,8 +67,7 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&b);
     hn_strbuf_init(&loops);
     hn_strbuf_init(&left_out);
-    hn_status status = hn_cli_check_folder(args->out, &diags);
-    HN_THEN(status, hn_cli_check_folder(args->loops, &diags));
+    hn_status status = hn_cli_check_folder(args->loops, &diags);
     HN_THEN(status, check_format(args, &diags));
     HN_THEN(status, check_loops(args, &diags));
     HN_THEN(status, check_style(args, &diags));

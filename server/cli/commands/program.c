@@ -40,8 +40,7 @@ hn_exit hn_command_program(const hn_library *lib, const hn_args *args) {
     char path[LONGEST_PATH];
     const char *suffix = "";
     hn_strbuf_init(&b);
-    hn_status status = hn_cli_check_folder(args->out, &diags);
-    HN_THEN(status, find_suffix(args->words.word[0], &suffix, &diags));
+    hn_status status = find_suffix(args->words.word[0], &suffix, &diags);
     if (status == HN_OK) {
         snprintf(path, sizeof path, "%.3900s/../core/export/start/mine.%s.txt",
                  hn_library_lessons(lib), suffix);

@@ -51,7 +51,7 @@ hn_status hn_forms_check(const hn_job_form *forms, const hn_args *args, hn_diags
         return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
                             "standard output cannot be JSON and CSV at once");
     }
-    return hn_cli_check_folder(args->out, diags);
+    return HN_OK;
 }
 
 hn_exit hn_forms_print(const hn_job_form *forms, hn_text_writer text, const hn_args *args,

@@ -99,17 +99,26 @@ void hn_cli_keep_other(const char *path, const hn_strbuf *picture) {
 }
 
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
-    const char *slash = path ? strrchr(path, '/') : NULL;
     char folder[4096] = "";
-    if (!slash || slash == path) {
+    size_t n = path ? strlen(path) : 0;
+    while (n > 1 && path[n - 1] == '/') {
+        n--; // a folder that the command makes: it is made in another one
+    }
+    while (n > 0 && path[n - 1] != '/') {
+        n--;
+    }
+
+    // the dot at the end tells a folder from a file
+    const bool fits = n + 2 < sizeof folder;
+    snprintf(folder, sizeof folder, "%.*s.", (int)n, path ? path : "");
+    if (fits && access(folder, W_OK) == 0) {
         return HN_OK;
     }
-    const int n = snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
-    if (n < (int)sizeof folder && access(folder, W_OK) == 0) {
-        return HN_OK;
-    }
-    return hn_diags_add(diags, HN_ERR_IO, "/out", NULL, "cannot write '%.200s': %s", path,
-                        n < (int)sizeof folder ? strerror(errno) : "its name is too long");
+    const char *why = !fits             ? "its name is too long"
+                      : errno == ENOENT ? "there is no such folder"
+                                        : strerror(errno);
+    return hn_diags_add(diags, HN_ERR_INPUT, "/out", "make the folder, or choose another name",
+                        "cannot write '%.200s': %s", path ? path : "", why);
 }
 
 /// Whether the file holds this text, to the byte.

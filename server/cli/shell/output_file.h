@@ -21,8 +21,8 @@ void hn_cli_keep_former(const char *path, const hn_strbuf *bytes);
 /// The same before a picture is written, but a picture that this program drew is replaced: it can
 /// be drawn again.
 void hn_cli_keep_other(const char *path, const hn_strbuf *picture);
-/// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its
-/// folder is not there or takes no files.
+/// Before anything is computed whose result goes to `path` (NULL: nowhere; "-" is fine too): fails
+/// with HN_ERR_INPUT where its folder is not there or takes no files.
 HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);
 /// Refuses an --out that is there and holds another text, unless --force is given: what is written
 /// is a beginning that somebody completes, and that work must not be lost. Fails: HN_ERR_INPUT.

@@ -173,6 +173,34 @@ static void nesting_and_length_are_bounded(void **state) {
     hn_graph_free(g);
 }
 
+/// Powers are printed as calls, which nest deeper than the signs ^ that were read.
+static void the_deepest_tower_of_powers_reads_back(void **state) {
+    (void)state;
+    char text[1024] = "x";
+    hn_status status = HN_OK;
+    int n = 0;
+    for (; status == HN_OK; n++) {
+        hn_graph *g = hn_graph_create();
+        const hn_parse_opts opts = opts_for(g);
+        hn_ex e, again;
+        hn_diag diag = {0};
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        status = hn_parse(g, text, &opts, &e, &diag);
+        if (status == HN_OK) {
+            hn_print(&b, g, e, HN_PRINT_TEXT, 0);
+            assert_int_equal(hn_parse(g, hn_strbuf_text(&b), &opts, &again, &diag), HN_OK);
+            assert_true(again.n == e.n);
+        } else {
+            assert_non_null(strstr(diag.message, "deep"));
+        }
+        hn_strbuf_reset(&b);
+        hn_graph_free(g);
+        strcat(text, "^x");
+    }
+    assert_true(n > 50 && n < 300);
+}
+
 /// A random formula as text, of nesting `depth`.
 static void write_formula(hn_strbuf *b, unsigned *seed, int depth) {
     static const char *const calls[] = {"sin", "cos", "tan", "sqrt", "exp", "tanh", "atan", "abs"};
@@ -367,6 +395,7 @@ int main(void) {
         cmocka_unit_test(powers_signs_and_products_bind_as_in_mathematics),
         cmocka_unit_test(every_fault_has_its_column_and_a_word_of_help),
         cmocka_unit_test(nesting_and_length_are_bounded),
+        cmocka_unit_test(the_deepest_tower_of_powers_reads_back),
         cmocka_unit_test(printed_formulas_read_back),
         cmocka_unit_test(numbers_at_the_ends_of_the_range_read_back),
         cmocka_unit_test(sums_beyond_the_range_are_refused),
