@@ -13,7 +13,7 @@ const GROWTH = 1.5;
 const FALLEN = 0.9;
 const EARLIEST = 6; // [frames] before it there is nothing to judge
 const OPEN = 1e-2; // of the scene's length: a gap that is the first thing to say
-const VISIBLE = 1e-3; // of the scene's length: a gap that can be seen
+const VISIBLE = 1e-3; // of the scene's length: a gap or a distance that can be seen
 const WRONG = 1e-2; // of the scene's length or energy: one digit is right at most
 const CLOSED = 1e-12; // of the scene's length: rounding
 const MOST_DIGITS = 15;
@@ -92,6 +92,21 @@ const besides = (size, second) => {
 };
 
 /**
+ * An open loop, and its distance from the reference where that can be seen. A gap that grows is
+ * said as it is now, one that does not as the largest so far.
+ * @param {ReturnType<typeof measure>} size
+ * @param {number} now [m] the gap of the frame shown
+ * @param {boolean} grows
+ */
+function openWords(size, now, grows) {
+  const far = size.known && size.offShare > VISIBLE ? quantity(size.off, "m") : "";
+  if (grows) {
+    return `open by ${quantity(now, "m")} and growing${far && `, ${far} off`}`;
+  }
+  return `open by ${quantity(size.gap, "m")}${far && ` and ${far} from the true motion`}`;
+}
+
+/**
  * Digits that are right, by the worse of motion and energy; no more than the reference has. `more`:
  * the reference bounds them, and the motion may have more.
  */
@@ -131,8 +146,7 @@ export function verdictAt(data, m, shown) {
   const size = measure(data, m, shown);
   const grows = trend.word === "growing";
   const open = () => {
-    const gap = grows ? history.columns[m].gap[shown] : size.gap;
-    const words = `open by ${quantity(gap, "m")}${grows ? " and growing" : ""}`;
+    const words = openWords(size, history.columns[m].gap[shown], grows);
     return { words, tone: /** @type {const} */ ("bad"), badness: 1000 + size.gapShare };
   };
   if (size.loops && size.gapShare > OPEN) {

@@ -13,7 +13,7 @@ static const double GROWTH = 1.5;
 /// A gap that has fallen below this share of its largest value does not grow any more.
 static const double FALLEN = 0.9;
 static const double OPEN = 1e-2;      // of the scene's length: a gap that is the first thing to say
-static const double VISIBLE = 1e-3;   // of the scene's length: a gap that can be seen
+static const double VISIBLE = 1e-3;   // of the scene's length: a gap or distance that can be seen
 static const double WRONG = 1e-2;     // of the scene's length or energy: one digit is right at most
 static const double CLOSED = 1e-12;   // of the scene's length: rounding
 static const double ROUNDING = 1e-13; // [m] some hundred roundings of coordinates of a metre or so
@@ -157,12 +157,17 @@ static void judge_right(hn_motion_verdict *v, const sizes *s) {
     put(v, tone, first, ", ", drift);
 }
 
-/// A gap that grows is said as it is now, one that does not as the largest so far.
+/// An open loop, and its distance from the reference where that can be seen. A gap that grows is
+/// said as it is now, one that does not as the largest so far.
 static void judge_open(hn_motion_verdict *v, const sizes *s) {
-    char text[96], gap[HN_SI_TEXT];
+    char open[96], far[96] = "", gap[HN_SI_TEXT], off[HN_SI_TEXT];
     quantity(s->grows ? s->gap_now : s->gap, "m", 2, gap);
-    snprintf(text, sizeof text, "open by %s%s", gap, s->grows ? " and growing" : "");
-    put(v, HN_TONE_BAD, text, "", "");
+    snprintf(open, sizeof open, "open by %s%s", gap, s->grows ? " and growing" : "");
+    if (s->off > VISIBLE * s->length) {
+        quantity(s->off, "m", 2, off);
+        snprintf(far, sizeof far, "%s %s", off, s->grows ? "off" : "from the true motion");
+    }
+    put(v, HN_TONE_BAD, open, s->grows ? ", " : " and ", far);
 }
 
 static void judge_sizes(hn_motion_verdict *v, const sizes *s) {
