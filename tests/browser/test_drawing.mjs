@@ -6,6 +6,7 @@ import { coincide } from "../../web/state/between.js";
 import { createHistory } from "../../web/state/history.js";
 import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
 import { createNamePlaces } from "../../web/widgets/name-places.js";
+import { moveToFreeRows } from "../../web/widgets/plot-labels.js";
 import { createPen, piecesOf } from "../../web/widgets/pieces.js";
 import { bar, circle, disc } from "../../web/widgets/shapes.js";
 import { anglesOf, lookFrom } from "../../web/state/look.js";
@@ -178,4 +179,19 @@ test("what coincides is told from what does not, and from what is not known", ()
   assert.ok(coincide([1, 2, 3], [1, 2.0009, 3], 1e-3));
   assert.ok(!coincide([1, 2, 3], [1, 2, 3.0011], 1e-3));
   assert.ok(!coincide([1, NaN], [1, NaN], 1e-3));
+});
+
+test("names on a plot move to the nearest rows without a curve or a name, and stay where none is", () => {
+  const room = { low: 7, high: 193, height: 14 };
+  const band = (from, to) => Array.from({ length: 200 }, (_, row) => row >= from && row < to);
+  const names = [{ y: 50 }, { y: 64 }, { y: 150 }];
+  moveToFreeRows(names, band(40, 80), room);
+  assert.deepEqual(
+    names.map(({ y }) => y),
+    [33, 87, 150],
+    "above and below the band of the curve; a name that is free stays",
+  );
+  const full = [{ y: 50 }];
+  moveToFreeRows(full, band(0, 200), room);
+  assert.deepEqual(full, [{ y: 50 }]);
 });

@@ -89,6 +89,16 @@ test("a scene in space is saved with its solids, as a film, and as a program", a
   const film = await fileOf(page, "WebM");
   assert.equal(film.bytes.subarray(0, 4).toString("hex"), "1a45dfa3", "the mark of a WebM file");
   assert.ok(film.bytes.length > 1000);
+  const [filmed, drawn] = await page.evaluate(async (base64) => {
+    const video = document.createElement("video");
+    video.src = `data:video/webm;base64,${base64}`;
+    await new Promise((resolve, reject) => {
+      video.onloadedmetadata = resolve;
+      video.onerror = () => reject(new Error("the film cannot be read"));
+    });
+    return [video.videoHeight, document.querySelector(".picture").clientHeight];
+  }, film.bytes.toString("base64"));
+  assert.ok(filmed >= 2 * (drawn + 22 * 4), `${filmed} of ${drawn}: the caption is under it`);
   await page.waitForSelector("#export-language option", { state: "attached" });
   await page.selectOption("#export-language", "python");
   const code = await fileOf(page, "Program");

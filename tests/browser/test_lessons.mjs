@@ -3,7 +3,7 @@
 // check, progress, print.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { formOf, matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
+import { flowing, formOf, matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
 import { violations } from "./axe.mjs";
 import { createBench, read, screenshot, soon, until } from "./support.mjs";
 
@@ -87,6 +87,17 @@ async function openLesson(t, options) {
   await page.waitForSelector(".lesson-text .katex");
   return page;
 }
+
+test("lines that were full flow into paragraphs; formulas, short lines and paragraphs stay", () => {
+  const full = "a sentence that goes on beyond the end of its line, as the terminal";
+  assert.equal(flowing(`${full}\nbreaks it\n\nnext`), `${full} breaks it\n\nnext`);
+  assert.equal(
+    flowing(`${full}:\n\n    phi = 0,\n    x = 1`),
+    `${full}:\n\n    phi = 0,\n    x = 1`,
+  );
+  assert.equal(flowing("a list:\n- one\n- two"), "a list:\n- one\n- two");
+  assert.equal(flowing(`${full}\n${full}\nends`), `${full} ${full} ends`);
+});
 
 test("what is asked is read from the exercise, what is typed is a value or a formula", () => {
   const form = '{"choice": "a", "reason": "b"}\n    (a) one\n    (b) two\n  because\n    (a) so';

@@ -38,6 +38,9 @@ test("a link says the same after it was read and written again", () => {
       show: pick(["labels", "traces", "reference", "arrows", "reactions"]),
       study: ["", "work-precision", "stability", "budget"][k % 4],
       map: ["", "baumgarte"][k % 2],
+      judged: ["", "th3", "theta_coupler"][k % 3],
+      until: [0, 1.25, 1e-3][k % 3],
+      step: [0, 0.0028][k % 2],
       look: pick([0.5]).flatMap(() => [0.5, -1.25]),
       camera: pick([1]).flatMap(() => [2.5, 0.1, -3, 1e-4]),
       upper: pick(["off", "energy_change,turned", "phase,of:th1", "work,table"])
@@ -76,10 +79,13 @@ test("what is shown goes into a link and comes back: plots, zoom, camera, panels
     zoom: [0.5, 1.5],
     study: "stability",
     map: "baumgarte",
+    judged: "th3",
+    split: { scene: "a", time: 1.25, step: 0.005 },
     panel: "lessons",
     lesson: "02",
   };
-  const data = { view, scene: { view: {} }, speed: 2, methods: [{}, {}], lessons: [{ id: "02" }] };
+  const scene = { id: "a", view: {}, coordinates: [{ name: "th1" }, { name: "th3" }] };
+  const data = { view, scene, speed: 2, methods: [{}, {}], lessons: [{ id: "02" }] };
   const { link, faults } = decodeLink(encodeLink({ scene: "a", ...shownOf(data) }));
   assert.deepEqual(faults, []);
   assert.equal(link.speed, 2);
@@ -87,9 +93,15 @@ test("what is shown goes into a link and comes back: plots, zoom, camera, panels
   assert.deepEqual(showLinked(other, link), []);
   assert.deepEqual(other.view, view);
 
+  // the budget of another scene is none of this one's, and a name that is not here is told
+  const elsewhere = { ...data, scene: { id: "b", view: {}, coordinates: [{ name: "x" }] } };
+  const { judged, until, step } = shownOf(elsewhere);
+  assert.deepEqual([judged, until, step], ["", 0, 0]);
+  assert.deepEqual(showLinked({ ...elsewhere, view: {} }, link), ["no coordinate is called 'th3'"]);
+
   const space = { camera: [2, 0.1, 0, -1], perspective: false, follow: true, frames: false };
   const look = { right: [0, 0, -1], up: [0, 1, 0] };
-  const solid = { ...data, scene: { view: { spatial: true, vertical: "y" } } };
+  const solid = { ...data, scene: { ...scene, view: { spatial: true, vertical: "y" } } };
   solid.view = { ...view, space, look };
   const again = { ...solid, view: {} };
   showLinked(again, decodeLink(encodeLink({ scene: "a", ...shownOf(solid) })).link);

@@ -272,7 +272,7 @@ test("the option of a coordinate says which number is which", async (t) => {
 });
 
 test("each curve has a table with the same numbers", async (t) => {
-  const page = await open(t);
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
   await playTo(page, 1);
   const plots = page.locator("figure.plot");
   await soon(async () => assert.equal(await plots.count(), 2));

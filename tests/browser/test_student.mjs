@@ -121,7 +121,7 @@ test("the card says what happens at a dead point, and a method that stops there 
   const page = await open(t, { hash: "#slider-crank" });
   await playTo(page, 1);
   await page.getByRole("button", { name: "Why? projection" }).click();
-  await page.getByText(/^Dead point of x at 0\.\d\d s$/).click();
+  await page.getByText(/^Dead point of x at 0\.\d\d s: what happens\?$/).waitFor();
   await page.getByText(/x turns back there while th1 moves on at \d+ rad\/s/).waitFor();
   await page.getByRole("button", { name: "reduced with x: it stops there" }).click();
   await until(page, (data) => data.methods.some((m) => /^reduced:coordinate=3@/.test(m.spelling)));

@@ -228,6 +228,14 @@ test("the heat of a map is that of the cells that ran, and its least is found in
   const map = { x: { values: [1, 2] }, y: { values: [3, 4] } };
   const said = heatSentences(map, { rows }, 2, (_, value) => String(value));
   assert.equal(said[0], "smallest worst loop gap: 20 µm at 1, 4");
+
+  // energy that is right beside a wrong motion is so by chance, or lost
+  const chance = [[{ class: "inaccurate", gap: 1e-5, error: 0.27, energy: 0 }]];
+  const one = { x: { values: [1] }, y: { values: [3] } };
+  assert.deepEqual(heatSentences(one, { rows: chance }, 2, (_, value) => String(value)).slice(1), [
+    "smallest error of velocity: 27 % at 1, 3",
+    "smallest energy gained: 1.0×10⁻¹⁵ % at 1, 3, where the velocity is 27 % off",
+  ]);
 });
 
 test("counts are said in words, and an error of a position as a length", () => {

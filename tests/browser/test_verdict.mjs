@@ -9,7 +9,7 @@ import { limits, readIndex } from "../../web/state/catalogue.js";
 import { deadPointAt, lastDeadPoint, singularWords } from "../../web/state/dead-point.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
-import { passageWords, predictionAt, stopReason } from "../../web/state/words.js";
+import { passedAt, predictionAt, stopReason } from "../../web/state/words.js";
 
 const frame = (k, gap, extra = {}) => ({
   frame: k,
@@ -336,8 +336,12 @@ test("what is seen coming is counted down until it is there, for the methods it 
   assert.equal(predictionAt(data, 30), "singular configuration in 0.25 s: J loses rank (raw)");
   assert.equal(predictionAt(data, 54), "");
   data.incidents.push({ code: "near-singular", method: 0, t: 0.76, value: 1e-5, message: "" });
-  assert.equal(predictionAt(data, 54), "the mechanism passed a singular configuration at 0.76 s");
-  assert.equal(passageWords(data, 54), "", "the engine does not say how");
+  assert.equal(predictionAt(data, 54), "", "it is not ahead any more");
+  assert.equal(
+    passedAt(data, 54),
+    "the mechanism passed a singular configuration at 0.76 s",
+    "the engine does not say how",
+  );
   data.incidents.push({ code: "rank-ahead", method: 1, t: 0.3, value: 0.4 });
   assert.equal(predictionAt(data, 30), "singular configuration in 0.20 s: J loses rank");
   data.view.hidden.add(1);
@@ -373,17 +377,18 @@ test("how the methods came through a singular configuration is said once for all
     incidents: [at(0, 0.6, straight), at(0, 0.76, straight), at(1, 0.76, straight)],
     view: { hidden: new Set() },
   };
-  assert.equal(
-    passageWords(data, 54),
-    "two branches of motion cross there; all methods went straight on",
-  );
+  const passed = "the mechanism passed a singular configuration at 0.76 s: two branches of motion";
+  assert.equal(passedAt(data, 54), `${passed} cross there; all methods went straight on`);
+  // another one that is ahead is a sentence of its own
+  data.incidents.push({ code: "rank-ahead", method: 0, t: 0.8, value: 0.2 });
+  assert.equal(predictionAt(data, 54), "singular configuration in 0.10 s: J loses rank (raw)");
+  assert.equal(passedAt(data, 54), `${passed} cross there; all methods went straight on`);
   data.incidents[2] = at(1, 0.76, "turned off there by 0.4 rad");
   assert.equal(
-    passageWords(data, 54),
-    "two branches of motion cross there; raw went straight on; " +
-      "projection turned off there by 0.4 rad",
+    passedAt(data, 54),
+    `${passed} cross there; raw went straight on; projection turned off there by 0.4 rad`,
   );
-  assert.equal(passageWords(data, 30), "", "it is not there yet");
+  assert.equal(passedAt(data, 30), "", "it is not there yet");
 });
 
 test("a dead point is a coordinate that turns back while another one moves on", () => {
@@ -414,7 +419,8 @@ test("a dead point is a coordinate that turns back while another one moves on", 
   const found = lastDeadPoint(data, 0, 40);
   assert.equal(found.coordinate, 1);
   assert.ok(Math.abs(found.t - (history.t[1] - history.t[0]) * 5 * Math.PI) < 1e-3);
-  const { title, words, tries } = deadPointAt(data, 0, 40);
+  const { title, words, tries, isNear } = deadPointAt(data, 0, 40);
+  assert.equal(isNear, history.t[40] - found.t < 0.5);
   assert.match(title, /^Dead point of x at 0\.26 s$/);
   assert.match(words, /^x turns back there while th1 moves on at 10 rad\/s\./);
   assert.deepEqual(

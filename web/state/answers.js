@@ -61,3 +61,14 @@ export function matrixOf(submission) {
     return null;
   }
 }
+
+/** A line as long as this was broken because it was full, not because a sentence ended there. */
+const FULL = 60; // [characters]
+
+/**
+ * A text whose lines were broken for a terminal, as paragraphs that take the width they have.
+ * Formulas, which are indented, keep their lines.
+ * @param {string} text
+ */
+export const flowing = (text) =>
+  text.replace(/^(\S.*)\n(?=\S)/gm, (whole, line) => (line.length < FULL ? whole : `${line} `));

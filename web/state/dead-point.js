@@ -10,6 +10,7 @@ import { sentenceCase } from "./words.js";
 const MOVES_ON = 0.05;
 /** A coordinate that never was faster [rad/s or m/s] does not move at all. */
 const MOVES = 1e-6;
+const NEAR = 0.5; // [s] before the moment shown: it is asked about
 const SINGULAR = ["near-singular", "rank-loss"];
 const UNIT = { angle: "rad/s", length: "m/s" };
 
@@ -80,9 +81,12 @@ function fateWords({ formulation, label }) {
 
 /**
  * What happens at dead points, and which coordinate loses its grip; null where there was none.
- * `tries`: a method that integrates the very coordinate that turned back, and stops there.
+ * `isNear`: it was passed a moment ago. `tries`: a method that integrates the very coordinate that
+ * turned back, and stops there.
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
- * @returns {{title: string, words: string, tries: import("./cards.js").Try[]} | null}
+ * @returns {{
+ *   title: string, words: string, isNear: boolean, tries: import("./cards.js").Try[],
+ * } | null}
  */
 export function deadPointAt(data, m, shown) {
   const point = lastDeadPoint(data, m, shown);
@@ -98,6 +102,7 @@ export function deadPointAt(data, m, shown) {
   const fits = cardOf(data.catalogue, "formulation", "reduced")?.integrators.includes(integrator);
   return {
     title: `Dead point of ${name} at ${seconds(point.t, data.duration)}`,
+    isNear: data.history.t[shown] - point.t < NEAR,
     words:
       `${name} turns back there while ${other.name} moves on at ${speed}. A force along ${name} ` +
       `moves nothing then, and ${name} does not determine the configuration; ${other.name} ` +

@@ -20,6 +20,7 @@ export const HEATS = [
 const RAN = ["stable", "inaccurate"];
 const LEAST_PLAIN = 1e-3; // [%] below it a power of ten is easier to read
 const LEAST = 1e-17; // smaller values are rounding
+const WRONG = 1e-2; // an error of velocity from which on a small gap or energy is no merit
 
 /** The value of a cell that ran to its end; NaN for any other. */
 export function heatOf(heat, cell, length) {
@@ -53,16 +54,20 @@ export function heatRange(heat, rows, length) {
   return { low, high, best };
 }
 
-/** "2.5 mm", or a share in percent. @param {Heat} heat @param {number} value */
-export function heatWords(heat, value) {
-  const percent = 100 * value;
-  const share = percent < LEAST_PLAIN ? scientific(percent) : plain(Number(percent.toPrecision(2)));
-  return heat.unit ? quantity(value, heat.unit) : `${share} %`;
+/** A share in percent. @param {number} share */
+function percents(share) {
+  const percent = 100 * share;
+  return `${percent < LEAST_PLAIN ? scientific(percent) : plain(Number(percent.toPrecision(2)))} %`;
 }
+
+/** "2.5 mm", or a share in percent. @param {Heat} heat @param {number} value */
+export const heatWords = (heat, value) =>
+  heat.unit ? quantity(value, heat.unit) : percents(value);
 
 /**
  * The best value of every quantity and where it is: closing the gap, the right motion and the right
- * energy rarely want the same constants.
+ * energy rarely want the same constants. A small gap or energy beside a wrong motion is said to be
+ * so: energy that crosses zero, or is lost, is not right.
  * @param {any} map document
  * @param {any} method of it
  * @param {number} length [m] of the scene
@@ -79,9 +84,13 @@ export function heatSentences(map, method, length, valueOf) {
       map.x && valueOf(map.x, map.x.values[best.i]),
       valueOf(map.y, map.y.values[best.j]),
     ];
-    return [
-      `smallest ${heat.word}: ${heatWords(heat, best.value)} at ${where.filter(Boolean).join(", ")}`,
-    ];
+    const { error } = method.rows[best.j][best.i];
+    const but =
+      heat.name !== "error" && error > WRONG
+        ? `, where the velocity is ${percents(error)} off`
+        : "";
+    const value = heatWords(heat, best.value);
+    return [`smallest ${heat.word}: ${value} at ${where.filter(Boolean).join(", ")}${but}`];
   });
 }
 

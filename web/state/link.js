@@ -18,13 +18,14 @@ const FARTHEST = 1e12;
  * `look`: azimuth and elevation [rad], or empty; `camera`: half the height that is
  * seen and the middle of it [m], or empty; `upper` and `lower`: a quantity and words on how it is drawn, or empty; `zoom` [s] of the
  * plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0 where none is said;
- * `study`, `map`, `panel`, `lesson`: what is open, or ""; `note`: what its author wrote; `pulls`:
+ * `study`, `map`, `panel`, `lesson`: what is open, or ""; `judged`, `until`, `step`: the coordinate
+ * whose error the budget splits, or "", its end and its step [s], or 0; `note`: what its author wrote; `pulls`:
  * what a hand did, as the server's log has it.
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
  *   selected: number, hidden: number[], show: string[], look: number[], camera: number[],
  *   upper: string[], lower: string[], zoom: number[], why: number, speed: number, study: string,
- *   map: string, panel: string, lesson: string, note: string, build: string,
- *   pulls: number[][]}} Linked
+ *   map: string, judged: string, until: number, step: number, panel: string, lesson: string,
+ *   note: string, build: string, pulls: number[][]}} Linked
  */
 
 /** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
@@ -47,6 +48,9 @@ const EMPTY = () => ({
   speed: 0,
   study: "",
   map: "",
+  judged: "",
+  until: 0,
+  step: 0,
   panel: "",
   lesson: "",
   note: "",
@@ -94,6 +98,9 @@ const OPTIONAL = /** @type {const} */ ([
   "speed",
   "study",
   "map",
+  "judged",
+  "until",
+  "step",
   "panel",
   "lesson",
   "note",
@@ -195,6 +202,12 @@ const FIELDS = {
   },
   study: oneOf("study", () => studyKinds().map(({ name }) => name)),
   map: oneOf("map", () => presets().map(({ name }) => name)),
+  judged: (out, value) => {
+    out.judged = PARAMETER.test(value) ? value : "";
+    return out.judged ? "" : "is no name of a coordinate";
+  },
+  until: (out, value) => putNumber(value, (number) => (out.until = number), 1e-12, FARTHEST),
+  step: (out, value) => putNumber(value, (number) => (out.step = number), 1e-12, FARTHEST),
   panel: oneOf("panel", () => PANELS),
   lesson: (out, value) => {
     out.lesson = NAME.test(value) ? value : "";

@@ -68,6 +68,15 @@ const plotOf = ([of, ...rest]) => ({
   coordinate: rest.find((word) => word.startsWith("of:"))?.slice(3) ?? "",
 });
 
+/** @param {import("./types.js").Scene} scene @param {string} name */
+const hasCoordinate = (scene, name) => scene?.coordinates?.some((one) => one.name === name);
+
+/** What of the error budget was asked for on the scene that is open. */
+const budgetOf = ({ judged, split: { scene: id, time, step } }, scene) => ({
+  judged: hasCoordinate(scene, judged) ? judged : "",
+  ...(id === scene?.id ? { until: time, step } : { until: 0, step: 0 }),
+});
+
 /**
  * The fields of a link that say what is shown.
  * @param {import("./store.js").Data} data
@@ -93,6 +102,7 @@ export function shownOf({ view, scene, speed }) {
     speed,
     study: view.study,
     map: view.map,
+    ...budgetOf(view, scene),
     panel: view.panel,
     lesson: view.panel === "lessons" ? view.lesson : "",
   };
@@ -136,6 +146,11 @@ export function showLinked(data, link) {
   view.why = link.why < data.methods.length ? link.why : -1;
   view.study = link.study;
   view.map = link.map;
+  view.judged = hasCoordinate(scene, link.judged) ? link.judged : "";
+  if (link.judged && !view.judged) {
+    faults.push(`no coordinate is called '${link.judged}'`);
+  }
+  view.split = { scene: scene.id, time: link.until, step: link.step };
   view.panel = link.panel;
   if (link.lesson && !lessons.some(({ id }) => id === link.lesson)) {
     faults.push(`no lesson is called '${link.lesson}'`);

@@ -22,23 +22,13 @@ const justPassed = ({ incidents, view }, now) =>
       !view.hidden.has(method),
   );
 
-/** @param {import("./store.js").Store["data"]} data @param {number} now [s] */
-function passedAt(data, now) {
-  const passed = justPassed(data, now);
-  const last = passed.reduce((latest, { t }) => Math.max(latest, t), -Infinity);
-  return passed.length
-    ? `the mechanism passed a singular configuration at ${seconds(last, data.duration)}`
-    : "";
-}
-
 /**
- * How the runs came through the singular configuration that was passed a moment ago: "two branches
- * of motion cross there; index-1 and reduced went straight on"; "" where the engine does not say.
+ * How the runs came through the singular configuration that was passed: "two branches of motion
+ * cross there; index-1 and reduced went straight on"; "" where the engine does not say.
  * @param {import("./store.js").Store["data"]} data
- * @param {number} shown
+ * @param {import("./store.js").Incident[]} passed
  */
-export function passageWords(data, shown) {
-  const passed = shown < 0 ? [] : justPassed(data, data.history.t[shown]);
+function passageWords(data, passed) {
   const newest = new Map(passed.map((incident) => [incident.method, incident]));
   /** @type {Map<string, string[]>} labels by what their runs did */
   const fates = new Map();
@@ -57,6 +47,22 @@ export function passageWords(data, shown) {
     ([fate, labels]) => `${labels.length === drawn ? "all methods" : listed(labels)} ${fate}`,
   );
   return [branches, ...runs].filter(Boolean).join("; ");
+}
+
+/**
+ * The singular configuration that was passed a moment ago, and how the runs came through it; "":
+ * there was none.
+ * @param {import("./store.js").Store["data"]} data
+ * @param {number} shown
+ */
+export function passedAt(data, shown) {
+  const passed = shown < 0 ? [] : justPassed(data, data.history.t[shown]);
+  if (passed.length === 0) {
+    return "";
+  }
+  const last = Math.max(...passed.map(({ t }) => t));
+  const where = `the mechanism passed a singular configuration at ${seconds(last, data.duration)}`;
+  return [where, passageWords(data, passed)].filter(Boolean).join(": ");
 }
 
 /**
@@ -82,7 +88,7 @@ export function predictionAt(data, shown) {
     .filter(([m, at]) => at > now && !view.hidden.has(m))
     .sort(([, a], [, b]) => a - b);
   if (coming.length === 0) {
-    return passedAt(data, now);
+    return "";
   }
   const drawn = methods.filter((_, m) => !view.hidden.has(m)).length;
   const names = listed(coming.map(([m]) => methods[m].label));

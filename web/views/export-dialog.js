@@ -71,6 +71,7 @@ export function createExportDialog(el, store, actions, mechanism) {
       return await makeFilm({
         svg: svg(),
         solids,
+        caption,
         duration: history.t[history.count - 1],
         show: (t) => {
           actions.show(history.indexAt(t));
@@ -129,7 +130,8 @@ export function createExportDialog(el, store, actions, mechanism) {
     {
       ending: "webm",
       word: "WebM",
-      about: "a film of the recording; it takes as long as it lasts, 20 s at most",
+      about:
+        "a film of the recording with time and verdicts; it takes as long as it lasts, 20 s at most",
       make: film,
     },
     {

@@ -105,6 +105,7 @@ export function createGuide(store, actions, open) {
     },
     open() {
       card.hidden = false;
+      actions.setView({ panel: "" }); // beside it there is no room for the card
       go(0);
       title.tabIndex = -1;
       title.focus({ preventScroll: true });

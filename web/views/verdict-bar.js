@@ -5,7 +5,7 @@
 import { shownIndex, listen } from "../state/store.js";
 import { sentences } from "../state/verdict.js";
 import { seconds } from "../state/format.js";
-import { beforeAndAfter, passageWords, predictionAt, stopReason } from "../state/words.js";
+import { beforeAndAfter, passedAt, predictionAt, stopReason } from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
 import { paintNoMore, paintSoon } from "../widgets/pace.js";
 
@@ -35,9 +35,8 @@ export function createVerdictBar(el, store) {
     if (now === 0) {
       return [{ text: "all methods start from the same closed configuration", tone: "calm" }];
     }
-    const ahead = [predictionAt(data, now), passageWords(data, now)].filter(Boolean).join(": ");
-    const list = sentences(data, now);
-    return ahead ? [{ text: ahead, tone: "warn" }, ...list] : list;
+    const singular = [predictionAt(data, now), passedAt(data, now)].filter(Boolean);
+    return [...singular.map((text) => ({ text, tone: "warn" })), ...sentences(data, now)];
   }
 
   /** Why methods have stopped until the frame shown. */

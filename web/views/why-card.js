@@ -52,13 +52,23 @@ export function createWhyCard(el, store, actions) {
     return lines.length ? [h("ul", { class: "reasons" }, ...lines)] : [];
   }
 
-  /** A part of the card that opens on a click. @param {string} title @param {string} text */
-  function fold(title, text, ...more) {
+  /**
+   * A part of the card that opens on a click.
+   * @param {string} title
+   * @param {string} text
+   * @param {{open?: boolean, more?: Node | string}} [how]
+   */
+  function fold(title, text, { open = false, more = "" } = {}) {
     const summary = h("summary", {}, title);
-    const part = h("details", { class: "fold" }, summary, h("p", {}, ...explained(text)), ...more);
+    const words = h("p", {}, ...explained(text));
+    const part = h("details", { class: "fold", open }, summary, words, more);
+    let wasOpen = open;
     part.addEventListener("toggle", () => {
-      place(data.view.why);
-      part.scrollIntoView({ block: "nearest" });
+      if (part.open !== wasOpen) {
+        wasOpen = part.open; // one that opens with the card is told as well
+        place(data.view.why);
+        part.scrollIntoView({ block: "nearest" });
+      }
     });
     return part;
   }
@@ -90,11 +100,10 @@ export function createWhyCard(el, store, actions) {
       h("p", { class: "rule" }, ...explained(`${card.rule}${drift}`)),
       tryButtons(tries, attempt),
       card.deadPoint
-        ? fold(
-            card.deadPoint.title,
-            card.deadPoint.words,
-            tryButtons(card.deadPoint.tries, attempt),
-          )
+        ? fold(`${card.deadPoint.title}: what happens?`, card.deadPoint.words, {
+            open: card.deadPoint.isNear,
+            more: tryButtons(card.deadPoint.tries, attempt),
+          })
         : "",
       card.figures ? fold("Cost of a step, and the error as estimated", card.figures) : "",
     );

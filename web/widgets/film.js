@@ -15,12 +15,13 @@ export const canFilm = () =>
   typeof MediaRecorder !== "undefined" && KINDS.some((kind) => MediaRecorder.isTypeSupported(kind));
 
 /**
- * One picture: solids below, the SVG over them.
+ * One picture: solids below, the SVG over them, its caption under both.
  * @param {SVGSVGElement} svg
  * @param {HTMLCanvasElement | null} solids drawn in this very task, or null
  * @param {CanvasRenderingContext2D} context
+ * @param {import("./picture.js").Caption} caption
  */
-export async function paint(svg, solids, context) {
+async function paint(svg, solids, context, caption) {
   const { width, height } = context.canvas;
   const below = document.createElement("canvas");
   if (solids) {
@@ -28,33 +29,36 @@ export async function paint(svg, solids, context) {
     below.height = solids.height;
     below.getContext("2d")?.drawImage(solids, 0, 0); // what WebGL drew is gone after this task
   }
-  const { text } = standAlone(svg, { paper: false });
+  const { text, height: whole } = standAlone(svg, { paper: false, caption });
   const image = new Image();
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
   await image.decode();
   context.fillStyle = getComputedStyle(document.body).backgroundColor;
   context.fillRect(0, 0, width, height);
   if (solids) {
-    context.drawImage(below, 0, 0, width, height);
+    context.drawImage(below, 0, 0, width, (height * svg.clientHeight) / whole);
   }
   context.drawImage(image, 0, 0, width, height);
 }
 
 /**
  * @param {{
- *   svg: SVGSVGElement, solids: () => HTMLCanvasElement | null, duration: number,
+ *   svg: SVGSVGElement, solids: () => HTMLCanvasElement | null,
+ *   caption: () => import("./picture.js").Caption, duration: number,
  *   show: (t: number) => void, told: (share: number) => void, stopped: () => boolean,
- * }} what duration [s]; show: the page draws this time at once; told: how much is done
+ * }} what caption: of the time that the page draws, always of as many lines; duration [s]; show:
+ *   the page draws this time at once; told: how much is done
  * @returns {Promise<Blob>}
  */
-export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
+export async function makeFilm({ svg, solids, caption, duration, show, told, stopped }) {
   const kind = KINDS.find((one) => MediaRecorder.isTypeSupported(one));
   const canvas = document.createElement("canvas");
-  canvas.width = 2 * Math.round(svg.clientWidth);
-  canvas.height = 2 * Math.round(svg.clientHeight);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   show(0);
-  await paint(svg, solids(), context);
+  const { width, height } = standAlone(svg, { caption: caption() });
+  canvas.width = 2 * Math.round(width);
+  canvas.height = 2 * Math.round(height);
+  await paint(svg, solids(), context, caption());
 
   const recorder = new MediaRecorder(canvas.captureStream(), {
     mimeType: kind,
@@ -76,7 +80,7 @@ export async function makeFilm({ svg, solids, duration, show, told, stopped }) {
     seconds = (performance.now() - began) / 1000;
     share = Math.min(1, seconds / length);
     show(share * duration);
-    await paint(svg, solids(), context);
+    await paint(svg, solids(), context, caption());
     told(share);
     await new Promise((resolve) => requestAnimationFrame(resolve));
   }

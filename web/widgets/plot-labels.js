@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Names beside the last point of each curve, pushed apart where they would touch: to the right of
-// it while there is room, from then on to the left.
+// it while there is room, from then on to the left, where no curve runs.
 
 const SWATCH = 10; // [px] of a curve before its name
 const HEIGHT = 14; // [px] between two names
@@ -47,6 +47,54 @@ function drawCross(ctx, x, y, colour) {
   ctx.moveTo(x - r, y + r);
   ctx.lineTo(x + r, y - r);
   ctx.stroke();
+}
+
+/**
+ * The rows of pixels through which curves run between two columns.
+ * @param {any} u the plot @param {any[]} series @param {number} from @param {number} to [px]
+ * @returns {boolean[]} by row
+ */
+function rowsOfCurves(u, series, from, to) {
+  const taken = Array(Math.ceil(u.bbox.top + u.bbox.height)).fill(false);
+  const [times] = u.data;
+  const x = (i) => u.valToPos(times[i], "x", true);
+  series.forEach((_, k) => {
+    const values = u.data[k + 1];
+    for (let i = 1; i < times.length; i++) {
+      const drawn = Number.isFinite(values[i - 1] ?? NaN) && Number.isFinite(values[i] ?? NaN);
+      if (drawn && x(i) >= from && x(i - 1) <= to) {
+        const ends = [values[i - 1], values[i]].map((value) => u.valToPos(value, "y", true));
+        taken.fill(true, Math.floor(Math.min(...ends)), Math.ceil(Math.max(...ends)) + 1);
+      }
+    }
+  });
+  return taken;
+}
+
+/**
+ * Names move to the nearest place where neither a curve nor another name is; those that find none
+ * stay.
+ * @param {{y: number}[]} names from the top @param {boolean[]} taken rows
+ * @param {{low: number, high: number, height: number}} room [px]
+ */
+export function moveToFreeRows(names, taken, { low, high, height }) {
+  const half = Math.ceil(height / 2);
+  const rows = taken.slice();
+  const isFree = (y) =>
+    y >= low && y <= high && !rows.slice(Math.max(0, y - half), y + half).some(Boolean);
+  for (const name of names) {
+    const wanted = Math.round(name.y);
+    for (let away = 0; away <= high - low; away++) {
+      const y = [wanted - away, wanted + away].find(isFree);
+      if (y !== undefined) {
+        name.y = y;
+        break;
+      }
+    }
+    for (let row = Math.max(0, Math.round(name.y) - half); row < name.y + half; row++) {
+      rows[row] = true;
+    }
+  }
 }
 
 export function createEndLabels() {
@@ -103,11 +151,22 @@ export function createEndLabels() {
       ctx.textAlign = "left";
       const list = place(u, series, how);
       const widest = Math.max(0, ...list.map(({ one }) => ctx.measureText(one.label).width));
-      for (const { one, x: end, y, at } of list) {
+      const width = widest + (SWATCH + 3) * ratio;
+      const fits = ({ x }) => x + AWAY * ratio + width <= right;
+      const leftOf = (x) => Math.max(u.bbox.left, x - AWAY * ratio - width);
+      const inside = list.filter((item) => !fits(item));
+      if (inside.length) {
+        const ends = inside.map(({ x }) => x);
+        const rows = rowsOfCurves(u, series, leftOf(Math.min(...ends)), Math.max(...ends));
+        const half = (HEIGHT * ratio) / 2;
+        const bottom = u.bbox.top + u.bbox.height;
+        const room = { low: u.bbox.top + half, high: bottom - half, height: HEIGHT * ratio };
+        moveToFreeRows(inside, rows, room);
+      }
+      for (const item of list) {
+        const { one, x: end, y, at } = item;
         const text = Number.isNaN(one.ended) ? one.label : `${one.label} ×`;
-        const width = widest + (SWATCH + 3) * ratio;
-        const fits = end + AWAY * ratio + width <= right;
-        const left = fits ? end + AWAY * ratio : Math.max(u.bbox.left, end - AWAY * ratio - width);
+        const left = fits(item) ? end + AWAY * ratio : leftOf(end);
         drawSample(ctx, left, y, one);
         drawText(ctx, text, left + (SWATCH + 3) * ratio, y, how.ink);
         if (!Number.isNaN(one.ended)) {

@@ -2,7 +2,7 @@
 // @ts-check
 // Sentences over the drawing: its description, and a singular configuration ahead.
 import { shownIndex } from "../../state/store.js";
-import { describeDrawing, predictionAt } from "../../state/words.js";
+import { describeDrawing, passedAt, predictionAt } from "../../state/words.js";
 import { h, say } from "../../widgets/dom.js";
 
 /** @param {import("../../state/store.js").Data} data */
@@ -13,7 +13,7 @@ export function createNotices(data) {
 
   /** @param {number} now index of the frame shown */
   function showAhead(now) {
-    const text = predictionAt(data, now);
+    const text = predictionAt(data, now) || passedAt(data, now).split(":")[0];
     ahead.hidden = text === "";
     say(ahead, text);
   }

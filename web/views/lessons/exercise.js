@@ -4,7 +4,7 @@
 // and the check. It is fetched when it is opened.
 import { sentenceOf } from "../../api/client.js";
 import { documents } from "../../api/documents.js";
-import { formOf, matrixOf, readAnswer, readChoice } from "../../state/answers.js";
+import { flowing, formOf, matrixOf, readAnswer, readChoice } from "../../state/answers.js";
 import { counted } from "../../state/format.js";
 import { h, say } from "../../widgets/dom.js";
 
@@ -224,7 +224,7 @@ export function createExercise({ id, about, progress, changed }) {
     }
 
     body.replaceChildren(
-      h("pre", { class: "statement", tabindex: "0" }, problem.statement),
+      h("pre", { class: "statement", tabindex: "0" }, flowing(problem.statement)),
       ...fields.flatMap(({ head, field }) => [...head, field.node]),
       problem.names ? h("p", { class: "about" }, `Names: ${problem.names.join(", ")}`) : "",
       h(
