@@ -15,12 +15,12 @@ export const LONGEST_NOTE = 20000; // [characters]
 const FARTHEST = 1e12;
 
 /**
- * `look`: azimuth and elevation [rad], or empty; `camera`: half the height that is
- * seen and the middle of it [m], or empty; `upper` and `lower`: a quantity and words on how it is drawn, or empty; `zoom` [s] of the
- * plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0 where none is said;
- * `study`, `map`, `panel`, `lesson`: what is open, or ""; `judged`, `until`, `step`: the coordinate
- * whose error the budget splits, or "", its end and its step [s], or 0; `note`: what its author wrote; `pulls`:
- * what a hand did, as the server's log has it.
+ * `look`: azimuth and elevation [rad], or empty; `camera`: half the height that is seen and the
+ * middle of it [m], or empty; `upper` and `lower`: a quantity and words on how it is drawn, or
+ * empty; `zoom` [s] of the plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0
+ * where none is said; `study`, `map`, `panel`, `lesson`: what is open, or ""; `judged`, `until`,
+ * `step`: the coordinate whose error the budget splits, or "", its end and its step [s], or 0;
+ * `note`: what its author wrote; `pulls`: what a hand did, as the server's log has it.
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
  *   selected: number, hidden: number[], show: string[], look: number[], camera: number[],
  *   upper: string[], lower: string[], zoom: number[], why: number, speed: number, study: string,

@@ -71,8 +71,13 @@ const plotOf = ([of, ...rest]) => ({
 /** @param {import("./types.js").Scene} scene @param {string} name */
 const hasCoordinate = (scene, name) => scene?.coordinates?.some((one) => one.name === name);
 
-/** What of the error budget was asked for on the scene that is open. */
-const budgetOf = ({ judged, split: { scene: id, time, step } }, scene) => ({
+/**
+ * What was asked for of the error budget of the scene that is open: the coordinate, or "", the end
+ * and the step [s], or 0.
+ * @param {import("./store.js").Data["view"]} view
+ * @param {import("./types.js").Scene} scene
+ */
+export const budgetOf = ({ judged, split: { scene: id, time, step } }, scene) => ({
   judged: hasCoordinate(scene, judged) ? judged : "",
   ...(id === scene?.id ? { until: time, step } : { until: 0, step: 0 }),
 });

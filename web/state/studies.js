@@ -5,6 +5,7 @@
 // document is that of the command line.
 import { Problem, addressOf, api, sentenceOf } from "../api/client.js";
 import { mostMethods, presets, variedBy } from "./catalogue.js";
+import { budgetOf } from "./shown.js";
 import { formatSpelling, parseSpelling, settingOf, withSetting } from "./spelling.js";
 
 /** @typedef {{formulations: any[], integrators: any[]}} Catalogue */
@@ -221,13 +222,12 @@ export function createStudyFeed(store) {
     const names = presetsOf(data).map(({ name }) => name);
     return names.includes(data.view.map) ? data.view.map : "";
   }
-  /** The coordinate that is asked for, where this scene has it. */
-  const judged = () =>
-    data.scene?.coordinates.some(({ name }) => name === data.view.judged) ? data.view.judged : "";
+  /** The coordinate whose error is split; "": each method's worst. */
+  const judged = () => budgetOf(data.view, data.scene).judged;
   /** End and step of the motion whose error is split; 0: its own. */
   const split = () => {
-    const { scene, time, step } = data.view.split;
-    return scene === data.scene?.id ? { time, step } : { time: 0, step: 0 };
+    const { until: time, step } = budgetOf(data.view, data.scene);
+    return { time, step };
   };
   const order = (kind) => orderOf(kind, data, preset(), { coordinate: judged(), ...split() });
 
