@@ -127,9 +127,10 @@ all: build/.packages-run
 	    echo 'holonom: the libraries of the page cannot be had now; the program is built without them')
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM) $(LIBRARY)
 
+# the HTTP library calls MHD_queue_response of the program: server/http/request/library_answer.h
 $(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(OUT)/generated/bundle.o $(LIBRARY)
 	$(call say,link $@)
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(CC) $(LDFLAGS) -Wl,--export-dynamic-symbol=MHD_queue_response -o $@ $^ $(LDLIBS)
 
 # what the program reads lies in it too, so that a copy of it alone has all of it
 SHIPPED = $$(find web lessons core -path '*/node_modules' -prune -o -type f \

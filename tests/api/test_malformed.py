@@ -306,6 +306,32 @@ class Malformed(driver.ServerCase):
             document = self.assert_problem(self.server.ask("GET", path), 400, "bad-request")
             self.assertIn("%00", document["detail"])
 
+    def test_a_raw_zero_byte_in_an_address_is_refused(self):
+        """The HTTP library reads it as the end of the address: '/' and a zero byte was the start page."""
+        for address in (b"/\0abc", b"/index.html\0.png", b"/healthz\0?x", b"/healthz?a\0b", b"/\0"):
+            reply = self.server.raw(b"GET " + address + b" HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
+            self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), (address, reply[:200]))
+
+    def test_a_request_that_the_http_library_cannot_read_gets_a_problem_document(self):
+        head = b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        for data, status, code in ((b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nno colon\r\n\r\n", 400, "bad-request"),
+                                   (b"GET /healthz\r\n\r\n", 400, "bad-request"),
+                                   (head + b"Content-Length: -5\r\n\r\n{}", 400, "bad-request"),
+                                   (head + b"Transfer-Encoding: chunked\r\n\r\nzz\r\n", 400, "bad-request"),
+                                   (head + b"Content-Length: 99999999999999999999\r\n\r\n{}", 413, "too-large"),
+                                   (b"GET /" + b"a" * 100000 + b" HTTP/1.1\r\nHost: localhost\r\n\r\n", 414, "address-too-long"),
+                                   (b"GET / HTTP/1.1\r\nHost: localhost\r\n" + b"X: y\r\n" * 20000 + b"\r\n", 431, "head-too-long"),
+                                   (b"GET / HTTP/9.9\r\nHost: localhost\r\n\r\n", 505, "http-version")):
+            with self.subTest(data=data[:60]):
+                reply = self.server.raw(data)
+                first, _, body = reply.partition(b"\r\n\r\n")
+                self.assertTrue(first.startswith(f"HTTP/1.1 {status} ".encode()), reply[:300])
+                self.assertIn(b"\r\nContent-Type: application/problem+json", first)
+                document = json.loads(body)
+                self.assertEqual((document["status"], document["type"]), (status, "/api/v1/errors/" + code))
+                self.assertTrue(document["detail"])
+                self.assertEqual(self.server.ask("GET", "/api/v1/errors/" + code).status, 200)
+
     def test_options_lists_the_verbs_and_allows_no_other_origin(self):
         answer = self.server.ask("OPTIONS", "/api/v1/comparisons")
         self.assertEqual((answer.status, answer.headers["allow"]), (204, "GET, HEAD, POST, OPTIONS"))

@@ -38,12 +38,16 @@
       "Each entry of `errors` names a field by JSON pointer, what is wrong and what to try.")      \
     X(HN_PROBLEM_BUSY, 429, "busy", "The server has as much to do as it allows itself",            \
       "Wait as long as the Retry-After header says, or delete a comparison.")                      \
+    X(HN_PROBLEM_HEAD, 431, "head-too-long", "The head of the request is too long",                \
+      "Request line and headers together may have 64 kB.")                                         \
     X(HN_PROBLEM_INTERNAL, 500, "internal", "The program is at fault",                             \
       "The request was sound; the program could not serve it.")                                    \
     X(HN_PROBLEM_STUDIES_BUSY, 503, "studies-busy", "Enough studies are running",                  \
       "Wait as long as the Retry-After header says, or stop a study that is running.")             \
     X(HN_PROBLEM_STOPPING, 503, "stopping", "The server is going down",                            \
-      "The server is stopping and takes on no new work.")
+      "The server is stopping and takes on no new work.")                                          \
+    X(HN_PROBLEM_VERSION, 505, "http-version", "This version of HTTP is not spoken here",          \
+      "HTTP/1.0 and HTTP/1.1 are; a proxy in front of the server may speak later ones.")
 
 typedef enum hn_http_problem {
 #define HN_PROBLEM_ENUM(kind, status, code, title, about) kind,

@@ -30,9 +30,18 @@ void hn_answer_early(hn_request *r) {
     r->stage = HN_STAGE_SENT;
 }
 
-void hn_request_drain(const hn_request *r) {
+static void drain(int fd) {
     char piece[4096];
-    const int fd = hn_request_socket(r);
     for (int i = 0; i < MAX_PIECES && recv(fd, piece, sizeof piece, MSG_DONTWAIT) > 0; i++) {}
     shutdown(fd, SHUT_RDWR);
+}
+
+void hn_request_drain(const hn_request *r) {
+    drain(hn_request_socket(r));
+}
+
+void hn_answer_last(int fd, const char *bytes, size_t n) {
+    const ssize_t sent = send(fd, bytes, n, MSG_DONTWAIT | MSG_NOSIGNAL);
+    (void)sent; // a client that has gone needs no answer
+    drain(fd);
 }

@@ -14,4 +14,7 @@
 void hn_answer_early(hn_request *r);
 /// Reads and drops what has come already, and ends the connection in both directions.
 void hn_request_drain(const hn_request *r);
+/// Writes a whole answer to a socket that sends nothing afterwards, and ends the connection in both
+/// directions.
+void hn_answer_last(int fd, const char *bytes, size_t n);
 #endif

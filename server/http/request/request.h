@@ -49,8 +49,9 @@ typedef struct hn_request {
     char parts[HN_MAX_PARTS][HN_HEADER_TEXT]; ///< what stood for {id} ... in the path
     char *body;
     size_t n_body, body_cap, body_dropped;
-    bool has_begun;     ///< the head is complete
-    bool has_zero;      ///< the address holds a zero byte
+    bool has_begun;          ///< the head is complete
+    bool has_zero;           ///< the address holds a zero byte
+    const char *address_end; ///< in the library's buffer, until the head is complete
     double drain_until; ///< stage SENT: the rest of the body is read until then [s, wall clock]
     cJSON *json;        ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue

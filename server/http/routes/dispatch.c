@@ -12,6 +12,7 @@
 #include "http/routes/static_files.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static void check_head(hn_request *r, const char *method) {
     }
     if (r->has_zero) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
-                         "the address holds a zero byte (%%00), which no address here has");
+                         "the address holds a zero byte (%%00 or a raw one), which none here has");
         return;
     }
 
@@ -301,10 +302,19 @@ void *hn_dispatch_address(void *cls, const char *uri, struct MHD_Connection *con
         r->connection = connection;
         r->watch = info ? info->socket_context : NULL;
         r->has_zero = strstr(uri, "%00") != NULL;
+        r->address_end = uri + strlen(uri);
         snprintf(r->path, sizeof r->path, "%.*s", (int)strcspn(uri, "?"), uri);
         check_address(r, uri);
     }
     return r;
+}
+
+/// Whether something stands between the end of the address, as a text of C, and the version: a zero
+/// byte has cut the address. Both lie in the library's buffer of the head, one byte apart; a
+/// library that keeps the version elsewhere is believed.
+static bool is_cut(const char *address_end, const char *version) {
+    const ptrdiff_t apart = address_end && version ? version - address_end : 0;
+    return apart > 1 && apart <= HN_HEAD_BYTES;
 }
 
 /// The head is complete. Returns 0 when the connection is to be closed.
@@ -336,12 +346,12 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
                                     const char *method, const char *version, const char *data,
                                     size_t *n_data, void **req_cls) {
     hn_request *r = *req_cls;
-    (void)version;
     (void)connection;
     if (!r) {
         return MHD_NO; // memory was out
     }
     if (!r->has_begun) {
+        r->has_zero = r->has_zero || is_cut(r->address_end, version);
         return begin_request(cls, r, url, method) ? MHD_YES : MHD_NO;
     }
 

@@ -22,8 +22,6 @@
 enum { LOOP_CONNECTIONS = 120 };
 /// Of an event loop itself, and of all that is not a connection: files, libraries, guests.
 enum { LOOP_DESCRIPTORS = 4, OTHER_DESCRIPTORS = 128 };
-/// For a head, and what the library makes of it: 72 bytes and more for each parameter and header.
-enum { HEAD_BYTES = 64 << 10 };
 enum { DRAIN_LOOKS = 30, DRAIN_NS = 10000000 }; // 0.3 s in all
 
 struct hn_server {
@@ -77,7 +75,7 @@ static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
         MHD_OPTION_NOTIFY_CONNECTION, hn_dispatch_connection, &s->dispatch,
         MHD_OPTION_THREAD_POOL_SIZE, (unsigned)loops, MHD_OPTION_CONNECTION_LIMIT,
         (unsigned)count_connections(&s->context.opts), MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-        (size_t)HEAD_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
+        (size_t)HN_HEAD_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
         (unsigned)s->context.opts.connection_timeout, MHD_OPTION_END);
     if (!s->daemon) {
         close(fd);
