@@ -109,6 +109,13 @@ class StartingPoints(unittest.TestCase):
     def test_what_the_starting_point_in_python_needs_is_said(self):
         self.assertIn("python3-numpy", call("program", "python").stdout)
         self.assertIn("needs numpy", " ".join(call("program", "--help").stdout.split()))
+        # a Python without it: a sentence in place of a traceback
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "mine.py"), "w", encoding="utf-8") as f:
+                f.write(call("program", "python").stdout.replace("import numpy as np", "import no_such_module as np"))
+            done = subprocess.run([sys.executable, "mine.py"], cwd=folder, input="", capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr.splitlines(), ["This program needs numpy (apt install python3-numpy): No module named 'no_such_module'"])
 
     def test_a_language_that_is_not_there_is_answered_with_those_that_are(self):
         done = call("program", "pyton")
