@@ -368,7 +368,7 @@ test("how the methods came through a singular configuration is said once for all
   }
   const at = (method, t, fate) => ({
     ...{ code: "near-singular", method, t, value: 1e-5 },
-    message: `J all but loses rank; two branches of motion cross; the run ${fate}`,
+    message: `J almost loses rank; two branches of motion cross; the run ${fate}`,
   });
   const straight = "went straight on";
   const data = {
@@ -383,10 +383,10 @@ test("how the methods came through a singular configuration is said once for all
   data.incidents.push({ code: "rank-ahead", method: 0, t: 0.8, value: 0.2 });
   assert.equal(predictionAt(data, 54), "singular configuration in 0.10 s: J loses rank (raw)");
   assert.equal(passedAt(data, 54), `${passed} cross there; all methods went straight on`);
-  data.incidents[2] = at(1, 0.76, "turned off there by 0.4 rad");
+  data.incidents[2] = at(1, 0.76, "left the smooth path there, by 0.4 rad");
   assert.equal(
     passedAt(data, 54),
-    `${passed} cross there; raw went straight on; projection turned off there by 0.4 rad`,
+    `${passed} cross there; raw went straight on; projection left the smooth path there, by 0.4 rad`,
   );
   assert.equal(passedAt(data, 30), "", "it is not there yet");
 });
@@ -452,7 +452,7 @@ test("one event has one time: a step that failed is named by its end, a repeated
     stopReason("th3 = 0.81 at t = 1.1 s: the loop went over to its other mode", 1, 10),
     "in the step to 1.10 s, th3 = 0.81: the loop went over to its other mode",
   );
-  assert.equal(stopReason("at t = 0.9 s the loops stand open", 0.9, 10), "the loops stand open");
+  assert.equal(stopReason("at t = 0.9 s the loops are open", 0.9, 10), "the loops are open");
   assert.equal(stopReason("the mass matrix is singular", 0.9, 10), "the mass matrix is singular");
 });
 

@@ -89,7 +89,7 @@ class Run(Command):
         result = call("run", "four-bar", "--method", "index3@rk4")
         said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
         self.assertEqual(result.returncode, 2)
-        self.assertIn("index3 hands over a differential-algebraic system", said)
+        self.assertIn("index3 makes a differential-algebraic system, which rk4 does not solve", said)
         self.assertIn("radau5", said)
         self.assertIn("rk4 serves index1", said)
 
@@ -163,11 +163,11 @@ class Run(Command):
         far = "projection@rk4:h=2"
         text = self.assert_exit(call("compare", "four-bar", "--methods", far, RK4, "--time", "1"), DONE)
         self.assertRegex(text, r"(?m)^projection@rk4\S* +WRONG +1.00 ")
-        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\.\de\+0\d \(angles in rad, lengths over the mechanism's\)$")
+        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\S* \(angles in rad, lengths over the mechanism's\)$")
         self.assertRegex(text, r"(?m)^index1@rk4\S* +right +1.00 ")
         self.assertNotRegex(text, r"index1@rk4\S* is wrong")
         told = call("run", "four-bar", "--method", far, "--time", "1", "--at", "1").stderr.decode()
-        self.assertRegex(told, r"coordinates 1\.9e\+01, .*; the motion is wrong\n")
+        self.assertRegex(told, r"coordinates 19, .*; the motion is wrong\n")
         near = call("run", "four-bar", "--method", "index1@rk4:h=0.05", "--time", "1", "--at", "1").stderr.decode()
         self.assertNotIn("the motion is wrong", near)
 
@@ -318,7 +318,7 @@ class Run(Command):
 
     def test_every_run_has_an_estimate_of_its_error(self):
         far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
-        self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8e\+00, .*; the motion is wrong; a smaller step may help\n")
+        self.assertRegex(far.stderr.decode(), r"error estimate up to t = 10 s: coordinates 1\.8, reactions [\d.]+ % of their largest; the motion is wrong; a smaller step may help\n")
         near = call("run", "four-bar", "--method", "projection@rk4:h=1e-3", "--at", "1", "--json")
         estimate = json.loads(near.stdout)["error_estimate"]
         self.assertEqual((estimate["t"], estimate["reason"]), (1, ""))
@@ -332,7 +332,7 @@ class Run(Command):
             verdicts.append(done["verdict"]["is"])
             estimate = done["error_estimate"]
             if estimate["q"] is not None:
-                self.assertIn(f"off by up to {estimate['q']:.1e} (rad", done["verdict"]["text"])
+                self.assertIn(f"off by up to {estimate['q']:.2g} (rad", done["verdict"]["text"])
         self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
         # a step longer than the run: its output is judged all the same
         long = ("four-bar", "--time", "1")

@@ -130,8 +130,9 @@ static void eval_loop(hn_chart *chart, hn_chart_point *p, double t) {
 }
 
 static const char FOLD[] = "its dead point: the other coordinates no longer follow from it";
-static const char SINGULAR[] = "a singular pose: closure rows depend on each other here, so no "
-                               "choice of coordinates is regular";
+static const char SINGULAR[] =
+    "a singular configuration: closure rows depend on each other here, so no "
+    "choice of coordinates is regular";
 
 /// J_d was singular at (t, q): of this chart, or of all of them.
 static hn_status fail_singular(hn_chart *chart, double t, const double *q) {
@@ -319,7 +320,7 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
         newton_step(chart, p);
     }
     return hn_chart_fail_end(
-        chart, t, q, "no pose closes the loops with this value: the end of its range was passed");
+        chart, t, q, "the loops cannot be closed with this value: the end of its range was passed");
 }
 
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q) {
@@ -399,7 +400,7 @@ hn_status hn_chart_solve_reduced(hn_chart *chart, double t, double *x) {
     if (status != HN_OK || !isfinite(largest)) {
         const hn_status told = isfinite(largest) ? status : HN_ERR_DIVERGED;
         return hn_chart_fail(chart, told, t, chart->here.q,
-                             "the mass left on the free motion is not positive");
+                             "the mass that the free motion moves is not positive");
     }
     hn_cholesky_solve(r, chart->A, r, x);
     return hn_all_finite(r, x) ? HN_OK

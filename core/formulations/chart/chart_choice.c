@@ -223,9 +223,10 @@ static hn_status improve(hn_chart *chart, double t, const double *q) {
         begin(chart);
     }
     const int full = hn_chart_has_full_rank(chart, t, q);
-    return hn_chart_fail(chart, HN_ERR_CHART, t, q,
-                         full ? "no choice of coordinates is regular enough here"
-                              : "a singular pose: no choice of coordinates is regular there");
+    return hn_chart_fail(
+        chart, HN_ERR_CHART, t, q,
+        full ? "no choice of coordinates is regular enough here"
+             : "a singular configuration: no choice of coordinates is regular there");
 }
 
 bool hn_chart_has_full_rank(hn_chart *chart, double t, const double *q) {
@@ -309,8 +310,9 @@ static hn_status choose_first(hn_chart *chart, double t, const double *q, int fi
     fill_scaled(chart);
     const int rank = choose_by_pivots(chart, &best);
     if (rank_before >= 0 && rank != rank_before) {
-        return hn_chart_fail(chart, HN_ERR_CHART, t, q,
-                             "the number of freedoms changed: the pose is singular");
+        return hn_chart_fail(
+            chart, HN_ERR_CHART, t, q,
+            "the number of degrees of freedom changed: the configuration is singular");
     }
     chart->rank = rank;
     chart->r = chart->nv - rank;

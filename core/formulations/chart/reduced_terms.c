@@ -396,8 +396,9 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
     hn_status status = hn_chart_choose(chart, t, q, HN_CHART_PREFERRED);
     if (status == HN_OK && freedoms >= 0 && chart->r != freedoms) {
         snprintf(chart->why, sizeof chart->why,
-                 "a singular pose: closure rows depend on each other here, and for a moment the "
-                 "mechanism has %d freedoms instead of %d",
+                 "a singular configuration: closure rows depend on each other here, and for a "
+                 "moment the "
+                 "mechanism has %d degrees of freedom instead of %d",
                  chart->r, freedoms);
         return HN_ERR_CHART;
     }
@@ -411,7 +412,7 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
     make_rates(w);
     if (!choose_coordinates(w) || rebase(w) != HN_OK) {
         return hn_chart_fail(chart, HN_ERR_CHART, t, q,
-                             "no choice of scene coordinates carries the motion here");
+                             "no choice of the scene's coordinates determines the motion here");
     }
     return HN_OK;
 }

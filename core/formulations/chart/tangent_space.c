@@ -170,8 +170,7 @@ hn_status hn_tspace_set_base(hn_tspace *ts, double t, const double *q, hn_tspace
     factor_rows(ts, t, q);
     if (ts->rank >= 0 && ts->base_qr.rank != ts->rank) {
         return fail(ts, HN_ERR_CHART, t,
-                    "the number of freedoms changed: the pose is singular, and the basis of the "
-                    "free speeds changes its width there");
+                    "the number of degrees of freedom changed: the configuration is singular");
     }
 
     ts->rank = ts->base_qr.rank;
@@ -221,8 +220,8 @@ static hn_status factor(hn_tspace *ts) {
         return HN_OK;
     }
     return fail(ts, HN_ERR_CHART, ts->t,
-                "the loops let other speeds pass than at the beginning of the step: a singular "
-                "pose, or too long a step");
+                "the directions of free motion changed within the step: the configuration is "
+                "singular, or the step is too long");
 }
 
 // x (rank) <- (J Y0)^-1 b, b (nc) spoiled
@@ -331,7 +330,7 @@ hn_status hn_tspace_close(hn_tspace *ts, double t, const double *from, double *d
         ts->cost.newton++;
     }
     return fail(ts, HN_ERR_CHART, t,
-                "no pose near the tangent of the step closes the loops: the step is too long");
+                "the loops cannot be closed near the end of the step: the step is too long");
 }
 
 // ---- speeds and accelerations ----

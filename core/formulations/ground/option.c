@@ -135,7 +135,8 @@ hn_status hn_option_parse(const hn_option *option, const char *text, double *val
     // a number with its unit
     const size_t length = too_long ? 0 : number_length(word);
     if (length == 0) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs a number, found '%s'",
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           word[0] ? "%s needs a number, found '%s'" : "%s needs a number%s",
                            option->key, word);
     }
     const char *unit = word + length;

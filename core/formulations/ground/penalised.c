@@ -153,8 +153,8 @@ hn_status hn_penalised_factor(hn_penalised *p, double t, double weight) {
     if (hn_sparse_spd_factor(p->spd, p->G, 4 * nv * DBL_EPSILON) != HN_OK) {
         snprintf(
             p->ode.base.why, sizeof p->ode.base.why,
-            "at t = %.6g s the penalty %.3g has drowned the masses in rounding, or a direction "
-            "has neither mass nor constraint",
+            "at t = %.6g s the penalty %.3g is too large: the masses are lost to rounding, or a "
+            "direction has neither mass nor constraint",
             t, weight);
         return HN_ERR_SINGULAR;
     }

@@ -126,13 +126,15 @@ static double correct(hn_stages *nw) {
 static hn_status give_up(hn_stages *nw, double t, double h, int n, double ratio) {
     if (ratio < 1) {
         snprintf(nw->why, sizeof nw->why,
-                 "Newton's method at t = %.6g s: after %d iterations each correction is still %.2g "
-                 "of the one before; the step of %.3g s is too large",
+                 "Newton's method at t = %.6g s converges too slowly: after %d iterations each "
+                 "correction is %.2g times the one before; the step of %.3g s is too long for it",
                  t, n, ratio, h);
     } else {
-        snprintf(nw->why, sizeof nw->why,
-                 "Newton's method at t = %.6g s: corrections grow; the step of %.3g s is too large",
-                 t, h);
+        snprintf(
+            nw->why, sizeof nw->why,
+            "Newton's method at t = %.6g s does not converge: its corrections grow; the step of "
+            "%.3g s is too long for it",
+            t, h);
     }
     return HN_ERR_NO_CONVERGENCE;
 }

@@ -127,7 +127,10 @@ static hn_status parse_option(piece p, const hn_option *table, int n, double *se
     const size_t equals = find_char(p, '=');
     const piece left = {p.text, p.from, equals};
     if (equals == p.to) {
-        hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "expected key=value");
+        copy_word(p, value);
+        hn_diag_set(
+            diag, HN_ERR_INPUT, NULL, "options are written key=value, as in index1@rk4:h=1e-3",
+            value[0] ? "the option '%s' has no value" : "an option is missing here%s", value);
         return at_column(diag, p, HN_ERR_INPUT);
     }
     const piece right = {p.text, equals + 1, p.to};
@@ -261,10 +264,11 @@ static hn_status check_pair(piece right, const hn_method_spec *spec, hn_diag *di
     snprintf(hint, sizeof hint, "%.40s serves %s", spec->stepper->name, served);
     const int n = list_fitting(spec, 1, list, sizeof list);
     const char *why = of_dae ? spec->stepper->unserved : NULL;
-    hn_diag_set(
-        diag, HN_ERR_INPUT, NULL, hint, "%s hands over %s; %s%s%s%s", spec->formulation->name,
-        of_dae ? "a differential-algebraic system" : "an ordinary differential equation",
-        n ? "take one of " : "no integrator serves it", list, why ? "; " : "", why ? why : "");
+    hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s makes %s, which %s does not solve; %s%s%s%s",
+                spec->formulation->name,
+                of_dae ? "a differential-algebraic system" : "an ordinary differential equation",
+                spec->stepper->name, n ? "choose one of " : "no integrator does", list,
+                why ? "; " : "", why ? why : "");
     return at_column(diag, right, HN_ERR_INPUT);
 }
 

@@ -48,9 +48,9 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
     if (e.known) {
         used = snprintf(
             text, sizeof text,
-            "up to t = %.4g s the coordinates are estimated to be off by up to %.1e (rad, or the "
-            "mechanism's length), reactions by %.1e of their largest",
-            e.t, e.q, e.reaction);
+            "up to t = %.4g s the coordinates are estimated to be off by up to %.2g (rad, or the "
+            "mechanism's length), reactions by %.3g %% of their largest",
+            e.t, e.q, 100 * e.reaction);
     }
     if (!(t_run > 0)) {
         snprintf(text, sizeof text, "nothing was computed beyond the start");

@@ -88,10 +88,10 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
 
     // kind and version of the document
     if (strcmp(text_of(p->root, "study"), HN_PART_STUDY) != 0) {
-        return refuse(g, p, "it does not say that it is one");
+        return refuse(g, p, "its field \"study\" does not say so");
     }
     if (!whole_of(p->root, "format", 1, 1000, &format) || format != HN_PART_FORMAT) {
-        return refuse(g, p, "its format is another version's");
+        return refuse(g, p, "its format is that of another version");
     }
 
     // which part it is, and its points
@@ -100,7 +100,7 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
         !hn_stored_number(p->root, "time_limit", &p->time_limit) ||
         !hn_stored_number(p->root, "elapsed", &p->elapsed) ||
         !cJSON_IsArray(member(p->root, "points"))) {
-        return refuse(g, p, "fields of it are missing");
+        return refuse(g, p, "some of its fields are missing");
     }
     return HN_OK;
 }
@@ -180,7 +180,7 @@ static hn_status load_scene(merging *g) {
     hn_hash_hex(hn_model_scene(g->study->model)->hash, hex);
     return strcmp(hex, text_of(p->root, "scene/hash")) == 0
                ? HN_OK
-               : refuse(g, p, "its scene is not the one that its hash is of");
+               : refuse(g, p, "its scene was changed: it does not have the hash beside it");
 }
 
 static hn_status load_reference(merging *g) {
@@ -191,7 +191,7 @@ static hn_status load_reference(merging *g) {
     }
     g->study->ref =
         hn_reference_take(member(p->root, "reference"), g->study->model, T, HN_REF_TIMES);
-    return g->study->ref ? HN_OK : refuse(g, p, "its reference does not fit its scene");
+    return g->study->ref ? HN_OK : refuse(g, p, "its reference solution belongs to another scene");
 }
 
 static hn_status read_methods(merging *g, hn_method_spec *specs, int *n) {
@@ -300,7 +300,7 @@ static hn_status take_record(merging *g, const part *p, const cJSON *o) {
     const record here = {p, o};
     int m, k;
     if (!whole_of(o, "m", 0, wp->n_methods - 1, &m) || !whole_of(o, "k", 0, wp->n_levels - 1, &k)) {
-        return refuse(g, p, "a point of it is no point of its request");
+        return refuse(g, p, "it holds a point that its request does not ask for");
     }
 
     // results of two complete runs must agree
@@ -326,11 +326,11 @@ static hn_status fill_point(merging *g, const record *r, hn_wp_point *p) {
     if (!hn_store_take_point(g->study, r->o, p) ||
         !hn_stored_number(r->o, "first_cpu", &p->first_cpu) ||
         !hn_stored_number(r->o, "busy", &busy) || !(busy >= 0 && busy <= HN_WP_SAMPLES)) {
-        return refuse(g, r->from, "a point of it is cut short or out of bounds");
+        return refuse(g, r->from, "one of its points is incomplete or out of bounds");
     }
     cJSON_ArrayForEach(item, member(r->o, "cpu")) {
         if (p->state != HN_WP_DONE || !hn_store_take_sample(p, item->valuedouble, busy)) {
-            return refuse(g, r->from, "a sample of time of it is none");
+            return refuse(g, r->from, "one of its measured times is not a positive number");
         }
     }
     return HN_OK;

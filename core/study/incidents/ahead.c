@@ -46,8 +46,7 @@ static void conclude(hn_watch *w) {
     if (!true_by_now) {
         hn_incident_append(
             &w->log, i,
-            "; withdrawn at t = %.4g s: the run did not get there, sigma_min was %.2g or "
-            "more",
+            "; withdrawn at t = %.4g s: the run did not get there, sigma_min stayed above %.2g",
             w->run->now.t, s->lowest);
     }
 }
@@ -69,13 +68,13 @@ static void check(hn_watch *w) {
     const hn_incident *i = hn_incident_report(
         w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
         s->info.lowest < LOST * s->largest
-            ? "the constraints become dependent (J loses rank) in %.3g s, at t = %.4g s: a robust "
-              "method run ahead from here (a pilot run) reaches a singular configuration then; "
-              "the smallest singular value of J (sigma_min) is %.2g now, the largest %.2g"
-            : "the constraints become all but dependent (J all but loses rank) in %.3g s, at "
-              "t = %.4g s: a robust method run ahead from here (a pilot run) passes close to a "
-              "singular configuration then; the smallest singular value of J (sigma_min) is %.2g "
-              "now, the largest %.2g",
+            ? "the constraints become dependent (J loses rank) in %.3g s, at t = %.4g s: a pilot "
+              "run, of a robust method, reaches a singular configuration then; the smallest "
+              "singular value of J (sigma_min) is %.2g now, the largest %.2g"
+            : "the constraints become almost dependent (J almost loses rank) in %.3g s, at "
+              "t = %.4g s: a pilot run, of a robust method, passes close to a singular "
+              "configuration then; the smallest singular value of J (sigma_min) is %.2g now, the "
+              "largest %.2g",
         s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
     if (i) {
         s->announced = 1 + (int)(i - w->log.list);

@@ -39,11 +39,13 @@ static void check_mode(hn_watch *w) {
     const bool named = !hn_system_scene(sys)->is_lagrangian; // formulas share their loops
     if (loop >= 0 && hn_motion_unexplained(w, 0) > HN_RUN_WARN_JUMP &&
         !hn_motion_is_followed(w, &w->run->before, &w->run->now)) {
-        hn_incident_report(
-            w, &hn_incident_branch_flip, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
-            "the loop%s%s went from one assembly mode to the other in one step (%.2g to %.2g)",
-            named ? " " : "", named ? hn_system_loop_name(sys, loop) : "", w->last_modes[loop],
-            w->modes[loop]);
+        hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[loop],
+                           HN_RUN_WARN_MODE,
+                           "the loop%s%s jumped to its other assembly mode in one step (from %.2g "
+                           "to %.2g: the sign "
+                           "tells the modes apart)",
+                           named ? " " : "", named ? hn_system_loop_name(sys, loop) : "",
+                           w->last_modes[loop], w->modes[loop]);
     } else {
         hn_incident_over(&w->log, HN_INCIDENT_BRANCH_FLIP);
     }
@@ -69,11 +71,11 @@ static void check_turn(hn_watch *w) {
     const double change = (s->now.t - s->before.t) * hn_norm2(n, w->a);
     if (back < HN_RUN_WARN_BACK * speed && change < HN_RUN_WARN_BACK * 2 * speed &&
         !hn_motion_is_followed(w, &s->before, &s->now)) {
-        hn_incident_report(w, &hn_incident_branch_flip, "change of speed", 2 * speed, change,
-                           "the velocities turned round within one step of %.3g s: by the "
-                           "accelerations they could change by %.2g of their size, and they "
-                           "changed by 2",
-                           s->now.t - s->before.t, change / speed);
+        hn_incident_report(
+            w, &hn_incident_branch_flip, "change of speed", 2 * speed, change,
+            "the velocities turned round within one step of %.3g s: the accelerations "
+            "explain a change of %.2g times their size, and turning round takes 2",
+            s->now.t - s->before.t, change / speed);
     }
 }
 
@@ -92,8 +94,9 @@ static void finish_passing(hn_watch *w, double angle) {
         hn_incident_append(&w->log, i, "; the steps are too long to say which way the run went on");
     } else if (angle > HN_RUN_WARN_TURN) {
         hn_incident_append(&w->log, i,
-                           w->heading.explained ? "; the motion turns there by %.2g rad"
-                                                : "; the run turned off there by %.2g rad",
+                           w->heading.explained
+                               ? "; the motion turns there by %.2g rad"
+                               : "; the run left the smooth path there, by %.2g rad",
                            angle);
     } else {
         hn_incident_append(&w->log, i, "; the run went straight on");
@@ -126,10 +129,9 @@ static void check_stay(hn_watch *w) {
     double way = 0;
     if (hn_heading_stays_singular(w, &way)) {
         hn_incident_report(w, &hn_incident_branch_flip, "way", way, w->length,
-                           "the run moves on and the constraints stay dependent (the smallest "
-                           "singular value of J is %.2g, its largest so far %.2g): it turned off "
-                           "at a singular configuration into a motion that has some links folded "
-                           "onto each other",
+                           "the run went on with some links folded onto each other: it left the "
+                           "motion at a singular configuration, and the constraints stay dependent "
+                           "(the smallest singular value of J is %.2g, its largest so far %.2g)",
                            w->singular.info.sigma_min, w->singular.largest);
     }
 }

@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 
 /// sigma_min / sigma_max above which multipliers are those of a regular configuration.
 static const double FAR = 0.1;
@@ -46,12 +47,13 @@ static void check_condition(hn_watch *w) {
         return;
     }
     const double digits = fmax(0, -log10(DBL_EPSILON) - log10(kappa));
-    hn_incident_report(
-        w, &hn_incident_ill_conditioned, "condition", kappa, HN_RUN_WARN_CONDITION,
-        kappa > HN_CONDITION_LOST
-            ? "the condition number is %.2g: no digit of the multipliers is left (%.0f)"
-            : "the condition number is %.2g: about %.0f digits of the multipliers are left",
-        kappa, digits);
+    char left[40] = "no digit";
+    if (kappa <= HN_CONDITION_LOST) {
+        snprintf(left, sizeof left, "about %.0f of 16 digits", digits);
+    }
+    hn_incident_report(w, &hn_incident_ill_conditioned, "condition", kappa, HN_RUN_WARN_CONDITION,
+                       "%s of the multipliers can be trusted: the condition number of K is %.2g",
+                       left, kappa);
 }
 
 static void check_solver(hn_watch *w) {
@@ -64,8 +66,8 @@ static void check_solver(hn_watch *w) {
         return;
     }
     hn_incident_report(w, &hn_incident_solver, "dense solves", (double)more, 0,
-                       "the sparse LDL' factorisation lost a pivot; the dense least-norm solver "
-                       "gave the answer, %lld times so far",
+                       "the dense least-norm solver took over %lld times so far: the sparse LDL' "
+                       "factorisation lost a pivot",
                        now);
 }
 

@@ -80,10 +80,10 @@ static void report(hn_watch *w, double x, double sigma) {
     const double h = s->now.t - s->before.t, t = s->before.t + x * h;
     hn_incident *i = hn_incident_report(
         w, &hn_incident_near_singular, "sigma_min", sigma, SINGULAR * r->largest,
-        "one step of %.3g s went across a configuration in which the constraints are all but "
-        "dependent (J all but loses rank), at about t = %.4g s: the smallest singular value of "
-        "J (sigma_min) is %.2g there, the largest %.2g",
-        h, t, sigma, r->info.sigma_max);
+        "one step of %.3g s went across a configuration in which the constraints are almost "
+        "dependent (J almost loses rank): the smallest singular value of J (sigma_min) is %.2g "
+        "there, the largest %.2g",
+        h, sigma, r->info.sigma_max);
     if (i) {
         i->t = t;
         hn_pose_describe(w, i, t, r->inside_q, sigma);

@@ -80,8 +80,8 @@ static void check_drift(hn_watch *w) {
     const int digits = hn_digits_apart(fabs(change), limit, 3);
     hn_incident_report(w, &hn_incident_energy_drift, "energy change", change, limit,
                        "the energy has changed by %.*g J since the start, more than %.*g J, and no "
-                       "load does work",
-                       digits, change, digits, limit);
+                       "load does work; the limit is %g %% of the largest energies so far",
+                       digits, change, digits, limit, 100 * HN_RUN_WARN_DRIFT);
 }
 
 static void check_jump(hn_watch *w) {
@@ -96,9 +96,11 @@ static void check_jump(hn_watch *w) {
         return;
     }
     const int digits = hn_digits_apart(fabs(e->change), limit, 3);
-    hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
-                       "the energy changed by %.*g J in one step, more than %.*g J", digits,
-                       e->change, digits, limit);
+    hn_incident_report(
+        w, &hn_incident_energy_jump, "energy change", e->change, limit,
+        "the energy changed by %.*g J in one step, more than %.*g J, and no load does "
+        "work",
+        digits, e->change, digits, limit);
 }
 
 /// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed

@@ -41,8 +41,8 @@ hn_status hn_gap_judge(const hn_watch *w, char why[256]) {
         return HN_OK;
     }
     snprintf(why, 256,
-             "at t = %.6g s the loops stand open by %.3g m, more than half the characteristic "
-             "length of %.3g m: what moves there is no longer this mechanism",
+             "at t = %.6g s the loops are open by %.3g m, more than half the mechanism's length of "
+             "%.3g m: the motion is no longer this mechanism's",
              w->run->now.t, gap, w->length);
     return HN_ERR_DIVERGED;
 }

@@ -22,9 +22,9 @@ static void check_gap(hn_watch *w, const hn_state_at *at, double gap) {
     if (gap > limit) {
         const int digits = hn_digits_apart(gap, limit, 3);
         set_time(hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
-                                    "the loop is open by %.*g m at t = %.6g s, inside a step; "
-                                    "the limit is %.*g m",
-                                    digits, gap, at->t, digits, limit),
+                                    "the loop has opened inside a step: the constraint "
+                                    "violation of %.*g m exceeds the limit of %.*g m",
+                                    digits, gap, digits, limit),
                  at->t);
     }
 }
@@ -41,9 +41,9 @@ static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m
         fabs(since_start) > limit) {
         const int digits = hn_digits_apart(fabs(change), limit, 3);
         set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
-                                    "the energy changes by %.*g J up to t = %.6g s, inside a step; "
-                                    "the limit is %.*g J",
-                                    digits, change, at->t, digits, limit),
+                                    "the energy changed by %.*g J inside a step, more than %.*g J, "
+                                    "and no load does work",
+                                    digits, change, digits, limit),
                  at->t);
     }
 }
@@ -59,9 +59,9 @@ static void check_branch(hn_watch *w, const hn_state_at *at) {
             !hn_motion_is_followed(w, from, at)) {
             set_time(hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[k],
                                         HN_RUN_WARN_MODE,
-                                        "the output at t = %.6g s, inside a step, is on another "
-                                        "branch (assembly mode %.2g to %.2g)",
-                                        at->t, w->last_modes[k], w->modes[k]),
+                                        "the loop jumped to its other assembly mode inside a step "
+                                        "(from %.2g to %.2g: the sign tells the modes apart)",
+                                        w->last_modes[k], w->modes[k]),
                      at->t);
             return;
         }

@@ -53,9 +53,10 @@ void hn_pose_explain(const hn_watch *w, char why[256]) {
     const hn_singular_record *s = &w->singular;
     const size_t used = strlen(why);
     if (w->run->info.nc > 0 && s->info.sigma_min < SINGULAR * s->largest) {
-        snprintf(why + used, 256 - used,
-                 "; the constraints are all but dependent there (smallest singular value of J %.2g "
-                 "of %.2g), and the step has to solve with them",
-                 s->info.sigma_min, s->largest);
+        snprintf(
+            why + used, 256 - used,
+            "; the constraints are almost dependent there: the smallest singular value of J is "
+            "%.2g, and was %.2g before",
+            s->info.sigma_min, s->largest);
     }
 }

@@ -14,6 +14,9 @@ static const double CLOSE = 0.1;
 /// twice this.
 static const double LONGEST = 0.01;
 
+/// The finest tolerance that is offered, some hundred roundings; over one that is finer.
+static const double FINEST = 5e-14, COARSER = 100;
+
 enum {
     CLOSED = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY,
     WRONG = HN_TRAIT_COUNTER_EXAMPLE
@@ -62,8 +65,10 @@ static bool write_formulation(const hn_watch *w, const hn_formulation *f, hn_rem
 
 bool hn_remedy_finer(const hn_watch *w, double factor, hn_remedy out) {
     const char *key = w->run->adaptive ? "rtol" : "h";
-    snprintf(out, sizeof(hn_remedy), "%s=%.4g", key,
-             hn_method_option(&w->run->spec, key, 0) * factor);
+    const double now = hn_method_option(&w->run->spec, key, 0);
+    // a tolerance near rounding fails because it is so fine: a coarser one is what may help
+    const bool too_fine = w->run->adaptive && now * factor < FINEST;
+    snprintf(out, sizeof(hn_remedy), "%s=%.4g", key, too_fine ? COARSER * now : now * factor);
     // where no chart is regular a shorter step does not help
     return w->failure != HN_ERR_UNSUPPORTED;
 }

@@ -22,11 +22,9 @@ static void report_stiff(hn_watch *w, double size, double h) {
     const hn_stepper *stepper = w->run->spec.stepper;
     hn_incident *i = hn_incident_report(
         w, &hn_incident_stiff, "|h lambda|", size, stepper->real_limit,
-        "stability, not accuracy, holds the steps at %.2g s: the fastest part of the motion, "
-        "damped "
-        "or vibrating, has a rate of %.3g 1/s, and "
-        "%s is stable up to |h lambda| = %.3g; an implicit method takes the steps that the motion "
-        "needs",
+        "stability, not accuracy, limits the steps to %.2g s: the fastest part of the motion, "
+        "damped or vibrating, has a rate of %.3g 1/s, and %s is stable up to |h lambda| = %.3g; "
+        "an implicit method may take longer steps",
         h, size / h, stepper->name, stepper->real_limit);
     if (i) {
         i->t = w->run->before.t; // the start of the step that showed it

@@ -154,8 +154,8 @@ static void tell_wrong_before(hn_run *run) {
     for (int k = 0; k < w->log.n - 1; k++) {
         const hn_incident *i = &w->log.list[k];
         if (hn_incident_kinds()[i->code]->is_wrong && i->t < last->t - w->run->h) {
-            hn_incident_append(&w->log, last, "; the motion was wrong before: at t = %.3g s %.120s",
-                               i->t, i->message);
+            hn_incident_append(&w->log, last, "; the motion was wrong before: at t = %.3g s, %.*s",
+                               i->t, (int)strcspn(i->message, ";"), i->message);
             hn_run_set_reason(run, last->message);
             return;
         }

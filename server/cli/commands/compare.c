@@ -160,7 +160,7 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 /// Says what WRONG stands for; i: number of the method in the summary.
 static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
     hn_strbuf_printf(b,
-                     "! %s is wrong: its coordinates are off by up to %.1e (angles in rad, lengths "
+                     "! %s is wrong: its coordinates are off by up to %.2g (angles in rad, lengths "
                      "over the mechanism's)%s\n",
                      hn_document_text(m, "method"),
                      hn_document_number(hn_document_get(m, "error_estimate"), "q"),

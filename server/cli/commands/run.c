@@ -122,9 +122,9 @@ static void tell_estimate(const cJSON *run) {
                      times);
         }
         hn_cli_note(
-            "holonom: error estimate up to t = %.4g s: coordinates %.1e%s, reactions %.1e of "
+            "holonom: error estimate up to t = %.4g s: coordinates %.2g%s, reactions %.3g %% of "
             "their largest%s%s\n",
-            hn_document_number(e, "t"), q, factor, reaction,
+            hn_document_number(e, "t"), q, factor, 100 * reaction,
             q >= HN_ACCURACY_WRONG ? "; the motion is wrong" : "",
             far ? hn_error_advice(run, hn_document_get(run, "incidents"), -1) : "");
     }

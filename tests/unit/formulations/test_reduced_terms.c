@@ -293,7 +293,7 @@ static void a_singular_pose_has_no_reduced_terms_and_says_why(void **state) {
     // all links along one line: the rows of the loop are parallel
     memset(p.q, 0, (size_t)p.model.info.nq * sizeof *p.q);
     assert_int_equal(hn_reduced_terms_eval(&p.terms, 0, p.q, p.v, 1), HN_ERR_CHART);
-    assert_non_null(strstr(hn_reduced_terms_why(&p.terms), "2 freedoms instead of 1"));
+    assert_non_null(strstr(hn_reduced_terms_why(&p.terms), "2 degrees of freedom instead of 1"));
     close_probe(&p);
 }
 

@@ -75,9 +75,9 @@ static void each_fault_has_its_column_and_its_hint(void **state) {
         {"index1@rk4:h=1e9", 14, "out of range", ""},
         {"index1@rk4:h=1e999", 14, "finite", ""},
         {"index1@rk4:h=1 m", 14, "'m'", ""},
-        {"index1@rk4:h", 12, "key=value", ""},
-        {"index1@rk4:h=1,,", 16, "key=value", ""},
-        {"index1@rk4:", 12, "key=value", ""},
+        {"index1@rk4:h", 12, "'h' has no value", "key=value"},
+        {"index1@rk4:h=1,,", 16, "missing", "key=value"},
+        {"index1@rk4:", 12, "missing", "key=value"},
         {"index1:alpha=1@rk4", 8, "'alpha'", ""},
         {"nullspace-as-printed:basis=unit@rk4", 28, "'unit'", ""},
         {"projection:what=positon@rk4", 17, "'positon'", "'position'"},
@@ -163,7 +163,8 @@ static void a_refused_pair_names_what_fits_on_either_side(void **state) {
     hn_method_spec s;
     hn_diag d;
     assert_int_equal(parse("index3@rk4:h=0.01", &s, &d), HN_ERR_INPUT);
-    assert_non_null(strstr(d.message, "index3 hands over a differential-algebraic system"));
+    assert_non_null(strstr(
+        d.message, "index3 makes a differential-algebraic system, which rk4 does not solve"));
     assert_non_null(strstr(d.hint, "rk4 serves index1, baumgarte"));
     assert_null(strstr(d.hint, "index3,"));
 }

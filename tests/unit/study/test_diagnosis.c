@@ -252,14 +252,30 @@ static void an_end_after_a_wrong_motion_says_since_when_it_was_wrong(void **stat
     assert_true(hn_run_advance(run, 10) != HN_OK);
     hn_run_diagnose(run);
     const hn_incident *end = last_of(run);
-    assert_non_null(strstr(end->message, "no pose closes the loops"));
-    assert_non_null(strstr(end->message, "the motion was wrong before: at t = 0.5 s the energy"));
+    assert_non_null(strstr(end->message, "the loops cannot be closed with this value"));
+    assert_non_null(strstr(end->message, "the motion was wrong before: at t = 0.5 s, the energy"));
     assert_string_equal(end->message, hn_run_get_summary(run).reason);
     assert_string_equal(end->remedy[0], "h=0.0025");
     assert_non_null(strstr(end->tried[0], "tried from t = "));
     hn_run_free(run);
     run = hn_motion_start(&m, "nullspace@rk4:h=0.0025");
     assert_int_equal(hn_run_advance(run, 10), HN_OK);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+// 45 roundings: no step of any size meets it, and a finer tolerance still less
+static void a_tolerance_near_rounding_is_answered_by_a_coarser_one(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "ggl@radau5:rtol=1e-14");
+    assert_int_equal(hn_run_advance(run, 5), HN_ERR_NO_CONVERGENCE);
+    hn_run_diagnose(run);
+    assert_string_equal(last_of(run)->remedy[0], "rtol=1e-12");
+    hn_run_free(run);
+    run = hn_motion_start(&m, "ggl@radau5:rtol=1e-12");
+    assert_int_equal(hn_run_advance(run, 5), HN_OK);
     hn_run_free(run);
     hn_model_close(&m);
 }
@@ -275,6 +291,7 @@ int main(void) {
         cmocka_unit_test(what_fails_at_the_start_is_no_remedy),
         cmocka_unit_test(an_end_after_a_wrong_motion_says_since_when_it_was_wrong),
         cmocka_unit_test(where_finer_steps_fail_an_implicit_method_is_left),
+        cmocka_unit_test(a_tolerance_near_rounding_is_answered_by_a_coarser_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -388,7 +388,7 @@ static void a_step_too_large_for_newton_is_told_in_words(void **unused) {
     assert_int_equal(hn_run_advance(run, 30), HN_ERR_NO_CONVERGENCE);
     const hn_run_summary s = hn_run_get_summary(run);
     assert_non_null(strstr(s.reason, "Newton's method at t = 0 s"));
-    assert_non_null(strstr(s.reason, "the step of 3 s is too large"));
+    assert_non_null(strstr(s.reason, "the step of 3 s is too long for it"));
     hn_run_free(run);
     hn_trial_close(&trial);
 }
