@@ -29,17 +29,28 @@ static int find_name(const hn_exercise *p, const char *name) {
     return -1;
 }
 
-static int lookup(void *user, const char *name, hn_ex *out) {
-    hn_exam *exam = user;
+/// The same, for the other spellings of a name too.
+static int find_answer_name(const hn_exercise *p, const char *name) {
     char joined[64], other[64];
-    int i = find_name(exam->problem, name);
+    int i = find_name(p, name);
     if (i < 0 && hn_spelling_join(name, joined, sizeof joined)) {
-        i = find_name(exam->problem, joined);
+        i = find_name(p, joined);
         name = joined;
     }
     for (int k = 0; i < 0 && hn_spelling_alias(name, k, other, sizeof other); k++) {
-        i = find_name(exam->problem, other);
+        i = find_name(p, other);
     }
+    return i;
+}
+
+const char *hn_exam_name(const hn_exam *exam, const char *name) {
+    const int i = find_answer_name(exam->problem, name);
+    return i >= 0 ? exam->problem->names[i].name : NULL;
+}
+
+static int lookup(void *user, const char *name, hn_ex *out) {
+    hn_exam *exam = user;
+    const int i = find_answer_name(exam->problem, name);
     if (i >= 0) {
         *out = hn_graph_symbol_expr(exam->graph, exam->symbol[i]);
     }

@@ -26,6 +26,8 @@ typedef struct hn_exam {
 HN_MUST_CHECK hn_status hn_exam_init(hn_exam *exam, const hn_exercise *problem, uint64_t seed,
                                      hn_diag *diag);
 void hn_exam_reset(hn_exam *exam);
+/// The problem's name that a name of an answer stands for, borrowed; NULL: none.
+const char *hn_exam_name(const hn_exam *exam, const char *name);
 /// One formula in the problem's names (aliases too).
 HN_MUST_CHECK hn_status hn_exam_parse(hn_exam *exam, const char *text, hn_ex *out, hn_diag *diag);
 double hn_exam_value(hn_exam *exam, hn_ex e, int state);

@@ -8,6 +8,7 @@
 #include "grade/variant.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -126,8 +127,26 @@ static hn_status try_faults(trial *t, const hn_part *p) {
     return status;
 }
 
+/// Every check of an example or a scene has a listed mistake that it finds: one that nothing
+/// triggers may be wrong itself.
+static void try_checks(trial *t, const hn_part *p) {
+    const cJSON *check, *fault;
+    cJSON_ArrayForEach(check, cJSON_GetObjectItemCaseSensitive(p->node, "checks")) {
+        const char *id = hn_part_text(check, "id");
+        bool listed = false;
+        cJSON_ArrayForEach(fault, cJSON_GetObjectItemCaseSensitive(p->node, "faults")) {
+            listed |= strcmp(hn_part_text(fault, "id"), id) == 0;
+        }
+        if (!listed) {
+            complain(t, p->id, "no listed mistake triggers the check '%s': add one to \"faults\"",
+                     id);
+        }
+    }
+}
+
 static hn_status try_part(trial *t, const hn_part *p) {
     hn_diag diag = {0};
+    try_checks(t, p);
     if (p->kind->prove && p->kind->prove(p, &diag) != HN_OK) {
         complain(t, p->id, "%s", diag.message);
     }

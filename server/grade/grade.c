@@ -8,6 +8,7 @@
 #include "grade/exam.h"
 #include "grade/mistakes.h"
 #include "grade/other_variant.h"
+#include "grade/parts/read_as.h"
 #include "grade/parts/spelling.h"
 #include "grade/repeated_member.h"
 #include "grade/rubric.h"
@@ -43,6 +44,10 @@ static void set_mistake(hn_verdict *v, hn_entry_verdict *e, const char *id) {
     e->points = e->max_points * partial_share(v->problem, id);
 }
 
+static const char *find_name(void *exam, const char *name) {
+    return hn_exam_name(exam, name);
+}
+
 /// Parses the formula in the parser's own spelling; what that was is said where it cannot be read.
 static hn_status parse_entry(hn_verdict *v, hn_exam *exam, const char *text, hn_entry_verdict *e,
                              hn_ex *given) {
@@ -54,7 +59,9 @@ static hn_status parse_entry(hn_verdict *v, hn_exam *exam, const char *text, hn_
     const char *formula = hn_strbuf_text(&plain);
     HN_THEN(status, hn_exam_parse(exam, formula, given, &diag));
 
-    if (status == HN_ERR_INPUT || status == HN_ERR_LIMIT) {
+    if (status == HN_OK) {
+        hn_read_as(text, formula, find_name, exam, e->read_as, sizeof e->read_as);
+    } else if (status == HN_ERR_INPUT || status == HN_ERR_LIMIT) {
         const bool same = !spelt || strcmp(formula, text) == 0;
         set_mistake(v, e, "unreadable");
         v->n_unreadable++;
@@ -327,6 +334,8 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
         HN_TRY(grade_entry(v, exam, node, &v->entry[k]));
         v->n_right += v->entry[k].right;
     }
+
+    hn_submission_remark_read_as(v);
 
     // one sentence on the whole, then the points
     if (refuse_unreadable(v)) {

@@ -259,9 +259,13 @@ static bool names_parameter(const place *at, hn_ex e) {
     return false;
 }
 
+static bool has_numbers_for_lengths(const place *at) {
+    return names_parameter(at, at->reference) && !names_parameter(at, at->given);
+}
+
 /// What no row explains. Numbers in place of the lengths are right for one mechanism alone.
 static hn_grade_mistake find_nothing(const place *at) {
-    const bool numbers = names_parameter(at, at->reference) && !names_parameter(at, at->given);
+    const bool numbers = has_numbers_for_lengths(at);
     return (hn_grade_mistake){
         .id = "other",
         .text = numbers
@@ -270,13 +274,16 @@ static hn_grade_mistake find_nothing(const place *at) {
                     : "no known mistake gives this: differentiate the row once more, term by term"};
 }
 
-/// Two mistakes at once: one of the rows, and a second on top of it.
+/// Two mistakes at once: one of the rows, and a second on top of it. Where numbers stand for the
+/// lengths, a missing length with a factor is no second mistake: the number is the length.
 static hn_grade_mistake find_pair(const place *at, const double *value) {
+    const bool numbers = has_numbers_for_lengths(at);
     for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
         variants v = {.n = 0};
         MISTAKES[k].make(at, &v);
         for (size_t m = 0; m < sizeof SECONDS / sizeof SECONDS[0]; m++) {
-            for (int i = 0; i < v.n; i++) {
+            const bool is_length = numbers && strcmp(SECONDS[m].id, "factor") == 0;
+            for (int i = 0; i < v.n && !is_length; i++) {
                 if (agrees_turned(at, v.e[i], value, &SECONDS[m])) {
                     hn_grade_mistake found = {.id = MISTAKES[k].id,
                                               .text = MISTAKES[k].text,

@@ -64,6 +64,24 @@ void hn_submission_remark_unread(hn_verdict *v, const cJSON *root, const char *c
     }
 }
 
+void hn_submission_remark_read_as(hn_verdict *v) {
+    const hn_entry_verdict *first = NULL;
+    int n = 0;
+    for (int k = v->n_entries; k-- > 0;) {
+        if (v->entry[k].read_as[0]) {
+            first = &v->entry[k];
+            n++;
+        }
+    }
+    if (first) {
+        char more[40] = "";
+        if (n > 1) {
+            snprintf(more, sizeof more, ", and %d more likewise", n - 1);
+        }
+        hn_submission_remark(v, "%s was read as %s%s", first->name, first->read_as, more);
+    }
+}
+
 int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const *fields) {
     for (; *fields; fields++) {
         if (hn_repeated_member_is(root, *fields)) {

@@ -14,6 +14,9 @@ void hn_submission_remark(hn_verdict *v, const char *format, ...) HN_PRINTF(2, 3
 /// Remarks on all members that are not read. `fields`: the names of those that are.
 void hn_submission_remark_unread(hn_verdict *v, const cJSON *root, const char *const *fields,
                                  int n);
+/// Remarks on formulas that were not written in the spelling of the exercise: the first one as it
+/// was read, and how many more there are.
+void hn_submission_remark_read_as(hn_verdict *v);
 /// Refuses a field that says which variant or exercise is answered, or what it cost, and is there
 /// twice with different values. `fields`: names of such fields, up to NULL.
 int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const *fields);

@@ -281,6 +281,7 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
         snprintf(e->explanation, sizeof e->explanation, "%s", r->explanation);
         snprintf(e->given, sizeof e->given, "%s", r->given);
         snprintf(e->expected, sizeof e->expected, "%s", r->expected);
+        snprintf(e->read_as, sizeof e->read_as, "%s", r->read_as);
         v->n_right += r->right;
         v->n_unreadable += r->unreadable;
         v->score += e->points;
@@ -506,6 +507,7 @@ hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v
         HN_TRY(grade_part(&x->part[i], submission, results, &n, diag));
         add_results(v, &x->part[i], results, n);
     }
+    hn_submission_remark_read_as(v);
     show_answer(x, submission, v);
     charge_hints(x, submission, v);
     summarise(v);

@@ -19,6 +19,7 @@ typedef struct hn_entry_verdict {
     char explanation[HN_GRADE_TEXT]; ///< a sentence for the student, "" when right
     char given[HN_GRADE_TEXT];       ///< the formula as handed in, cut
     char expected[HN_GRADE_TEXT];    ///< the reference formula
+    char read_as[HN_PART_READ_AS];   ///< the formula as it was read, cut; "": as it was written
     uint64_t likeness; ///< equal for equal wrong answers, whatever the variant; 0: says nothing
     int state;         ///< the state where it shows, -1 if right or unreadable
     double given_value, expected_value, allowed; ///< at that state; meaningless while state is -1

@@ -112,7 +112,7 @@ def forms(folder):
 
 def platforms(folder):
     """One score in the documents of all platforms, with the fields that each asks for."""
-    some = write(folder, "some.json", {"a": 1, "e": "l_2 l_3 sin(th2-th3)", "d": ["2,5", 1]})
+    some = write(folder, "some.json", {"a": 1, "e": "l_2 l_3 sin(th2-th3)", "d": ["2,500", 1]})
     told = {form: run("grade", "fourbar", some, "--format", form, "--student", "s7").stdout
             for form in ("json", "gradescope", "prairielearn", "autolab", "coderunner", "lti-score")}  # fmt: skip
     lines = told["autolab"].splitlines()
@@ -198,7 +198,7 @@ def for_teachers(folder):
     expect("a number says how exact it must be", "; right to 0.5 %" in asked, asked)
     counted = run("problem", "index").stdout
     expect("a count must be exact", 'answer "a": a number; exact\n' in counted, counted)
-    said = run("grade", "fourbar", write(folder, "unit.json", {"a": "3 furlongs", "d": ["1,5", 2]})).stdout
+    said = run("grade", "fourbar", write(folder, "unit.json", {"a": "3 furlongs", "d": ["1,500", 2]})).stdout
     expect("an unknown unit is named, with what is asked for", "'furlongs' at column 3 is no unit known here; asked for: kg m^2" in said, said)
     expect("a comma in a number is named", "a comma at column 2; write decimals with a point" in said, said)
     expect("a list of commands has help", run("help", "problems").returncode == 0)

@@ -135,6 +135,12 @@ hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex *out, hn_diag
     return hn_graph_failed(d->graph) ? HN_ERR_MEMORY : status;
 }
 
+const char *hn_draw_answer_name(hn_draw *d, const char *name) {
+    answer_names names = {.draw = d};
+    const int i = find_answer_name(&names, name);
+    return i >= 0 ? d->name[i] : NULL;
+}
+
 double hn_draw_eval(hn_draw *d, hn_ex e, int state) {
     return hn_graph_eval(d->graph, e, d->value[state]);
 }

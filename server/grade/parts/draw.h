@@ -50,6 +50,8 @@ HN_MUST_CHECK hn_status hn_draw_parse(hn_draw *d, const char *text, hn_ex *out, 
 /// names both), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex *out,
                                              hn_diag *diag);
+/// The name that a name of an answer stands for, borrowed; NULL: none, or more than one.
+const char *hn_draw_answer_name(hn_draw *d, const char *name);
 double hn_draw_eval(hn_draw *d, hn_ex e, int state);
 /// The value of a formula in the first state.
 HN_MUST_CHECK hn_status hn_draw_value(hn_draw *d, const char *text, double *out, hn_diag *diag);

@@ -25,21 +25,35 @@ static hn_status fault(parser *p, const char *what) {
                        (int)(p->at - p->start) + 1, what);
 }
 
-/// `sign` stands at `at`, as a whole: \cdot is not the start of \cdots, nor ^2 that of ^25 or ^2.5,
-/// nor .T that of a product with tau.
-static bool stands(const char *at, const char *sign) {
-    const size_t n = strlen(sign);
-    if (strncmp(at, sign, n) != 0) {
-        return false;
+/// How many characters `sign` takes at `at`, with blanks behind the mark of a power (^ 2, ** 2); 0
+/// when it does not stand there.
+static size_t match(const char *at, const char *sign) {
+    const char *start = at;
+    for (; *sign; sign++) {
+        if (*at++ != *sign) {
+            return 0;
+        }
+        const bool power = *sign == '^' || (*sign == '*' && at - start > 1 && at[-2] == '*');
+        at += power && sign[1] ? strspn(at, " ") : 0;
     }
-    const unsigned char last = (unsigned char)sign[n - 1], next = (unsigned char)at[n];
+    return (size_t)(at - start);
+}
+
+/// How many characters `sign` takes at `at`, as a whole: \cdot is not the start of \cdots, nor ^2
+/// that of ^25 or ^2.5, nor .T that of a product with tau; 0 when it does not stand there.
+static size_t stands(const char *at, const char *sign) {
+    const size_t n = match(at, sign);
+    if (n == 0) {
+        return 0;
+    }
+    const unsigned char last = (unsigned char)sign[strlen(sign) - 1], next = (unsigned char)at[n];
+    bool whole = !isalpha(last) || sign[0] != '\\' || !isalpha(next);
     if (isdigit(last)) {
-        return !isdigit(next) && !(next == '.' && isdigit((unsigned char)at[n + 1]));
+        whole = !isdigit(next) && !(next == '.' && isdigit((unsigned char)at[n + 1]));
+    } else if (isalpha(last) && sign[0] == '.') {
+        whole = !isalnum(next) && next != '_';
     }
-    if (isalpha(last) && sign[0] == '.') {
-        return !isalnum(next) && next != '_';
-    }
-    return !isalpha(last) || sign[0] != '\\' || !isalpha(next);
+    return whole ? n : 0;
 }
 
 static void skip(parser *p) {
@@ -47,23 +61,18 @@ static void skip(parser *p) {
         " ",      "\t",      "\n",    "\\,",   "\\;",    "\\:",    "\\!",    "$",
         "\\left", "\\right", "\\big", "\\Big", "\\bigl", "\\bigr", "\\quad", "\\qquad"};
     for (size_t i = 0; i < sizeof silent / sizeof *silent;) {
-        if (stands(p->at, silent[i])) {
-            p->at += strlen(silent[i]);
-            i = 0;
-        } else {
-            i++;
-        }
+        const size_t n = stands(p->at, silent[i]);
+        p->at += n;
+        i = n > 0 ? 0 : i + 1;
     }
 }
 
 /// Steps over `sign` when it stands here.
 static bool take(parser *p, const char *sign) {
     skip(p);
-    if (!stands(p->at, sign)) {
-        return false;
-    }
-    p->at += strlen(sign);
-    return true;
+    const size_t n = stands(p->at, sign);
+    p->at += n;
+    return n > 0;
 }
 
 static bool take_any(parser *p, const char *const *signs) {

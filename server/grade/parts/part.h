@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-enum { HN_PART_TEXT = 400, HN_PART_RESULTS = 16 };
+enum { HN_PART_TEXT = 400, HN_PART_RESULTS = 16, HN_PART_READ_AS = 100 };
 
 /// What became of one entry of an answer.
 typedef struct hn_part_result {
@@ -24,6 +24,7 @@ typedef struct hn_part_result {
     uint64_t likeness;   ///< equal for equal wrong answers, whatever the variant; 0: says nothing
     const char *mistake; ///< id: static, or borrowed from the exercise; "" when right
     char explanation[HN_PART_TEXT], given[HN_PART_TEXT], expected[HN_PART_TEXT];
+    char read_as[HN_PART_READ_AS]; ///< the formula as it was read; "": as it was written
 } hn_part_result;
 
 typedef struct hn_part {

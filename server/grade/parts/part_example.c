@@ -6,164 +6,34 @@
 //     "numbers": ["l1", "l2"]              or numbers
 //     "checks": [{"id": "symmetric", "test": "symmetric", "of": "M", "says": "..."}, ...]
 //
-// Tests: symmetric, definite, semidefinite, full-rank (columns), rows-independent, rows-nonzero
-// (none of its rows is zero), singular, nonsingular: of a formula of matrices; at-most-zero, zero,
-// nonzero: of a formula with one value; positive: of a formula of the numbers.
+//     "unit": "m"                          of the numbers, which may have it behind them
+//
+// Tests: the properties of matrix_property.h, of a formula of matrices; positive: of a formula of
+// the numbers.
+#include "grade/parts/matrix_property.h"
 #include "grade/parts/part_list.h"
+#include "grade/parts/unit_text.h"
 #include "grade/parts/world.h"
-
-#include "linalg/svd.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-
-enum { MAX_NUMBERS = 16 };
-static const double SMALL = 1e-9; // of the largest entry: what counts as zero in given numbers
-
-// ---- properties of a matrix ----
-
-static double largest(const hn_matrix *m) {
-    double size = 0;
-    for (int i = 0; i < m->rows * m->cols; i++) {
-        size = fmax(size, fabs(m->x[i]));
-    }
-    return size;
-}
-
-static int is_symmetric(const hn_matrix *m) {
-    double worst = 0;
-    for (int i = 0; i < m->rows && m->rows == m->cols; i++) {
-        for (int j = 0; j < i; j++) {
-            worst = fmax(worst, fabs(m->x[i * m->cols + j] - m->x[j * m->cols + i]));
-        }
-    }
-    return m->rows == m->cols && worst <= SMALL * largest(m);
-}
-
-/// Symmetric elimination: the smallest pivot, relative to the largest entry. With complete
-/// pivoting on the diagonal it is negative exactly when the matrix is not semidefinite.
-static double smallest_pivot(const hn_matrix *m) {
-    double a[HN_MATRIX_LARGEST * HN_MATRIX_LARGEST], least = HUGE_VAL;
-    const int n = m->rows;
-    const double size = fmax(largest(m), 1e-300);
-
-    // elimination on a copy
-    memcpy(a, m->x, sizeof(double) * (size_t)(n * n));
-    int done[HN_MATRIX_LARGEST] = {0};
-
-    // the largest diagonal entry that is left is the next pivot
-    for (int step = 0; step < n; step++) {
-        int k = -1;
-        for (int i = 0; i < n; i++) {
-            k = !done[i] && (k < 0 || a[i * n + i] > a[k * n + k]) ? i : k;
-        }
-        const double pivot = a[k * n + k] / size;
-        done[k] = 1;
-        least = fmin(least, pivot);
-
-        for (int i = 0; i < n && pivot <= SMALL; i++) { // nothing may be left beside a zero pivot
-            if (!done[i] && fabs(a[i * n + k]) > SMALL * size) {
-                least = fmin(least, -1);
-            }
-        }
-
-        // the rest, without the pivot's row and column
-        for (int i = 0; i < n && pivot > SMALL; i++) {
-            for (int j = 0; j < n && !done[i]; j++) {
-                a[i * n + j] -= a[i * n + k] * a[k * n + j] / a[k * n + k];
-            }
-        }
-    }
-    return least;
-}
-
-static int rank_of(const hn_matrix *m) {
-    double sigma[HN_MATRIX_LARGEST];
-    hn_arena *arena = hn_arena_create(0);
-    int rank = -1;
-    if (arena && hn_singular_values(m->rows, m->cols, m->x, sigma, arena) == HN_OK) {
-        rank = hn_rank_of(m->rows < m->cols ? m->rows : m->cols, sigma, SMALL);
-    }
-    hn_arena_free(arena);
-    return rank;
-}
-
-static int is_definite(const hn_matrix *m) {
-    return is_symmetric(m) && smallest_pivot(m) > SMALL;
-}
-
-static int is_semidefinite(const hn_matrix *m) {
-    return is_symmetric(m) && smallest_pivot(m) >= -SMALL;
-}
-
-static int has_full_rank(const hn_matrix *m) {
-    return rank_of(m) == m->cols;
-}
-
-static int has_independent_rows(const hn_matrix *m) {
-    return rank_of(m) == m->rows;
-}
-
-static int is_singular(const hn_matrix *m) {
-    return m->rows == m->cols && rank_of(m) < m->rows;
-}
-
-static int is_nonsingular(const hn_matrix *m) {
-    return m->rows == m->cols && rank_of(m) == m->rows;
-}
-
-static int is_at_most_zero(const hn_matrix *m) {
-    return m->rows == 1 && m->cols == 1 && m->x[0] <= 1e-12;
-}
-
-static int is_zero(const hn_matrix *m) {
-    return largest(m) <= SMALL;
-}
-
-static int is_nonzero(const hn_matrix *m) {
-    return largest(m) > SMALL;
-}
-
-/// A row is zero beside the largest entry, as a whole matrix is where all of them are.
-static int has_no_zero_row(const hn_matrix *m) {
-    const double size = largest(m);
-    for (int i = 0; i < m->rows; i++) {
-        const hn_matrix row = {.rows = 1, .cols = m->cols, .x = m->x + i * m->cols};
-        if (largest(&row) <= SMALL * size) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-static const struct {
-    const char *name;
-    int (*holds)(const hn_matrix *m);
-} TESTS[] = {
-    {"symmetric", is_symmetric},
-    {"definite", is_definite},
-    {"semidefinite", is_semidefinite},
-    {"full-rank", has_full_rank},
-    {"rows-independent", has_independent_rows},
-    {"singular", is_singular},
-    {"nonsingular", is_nonsingular},
-    {"at-most-zero", is_at_most_zero},
-    {"zero", is_zero},
-    {"nonzero", is_nonzero},
-    {"rows-nonzero", has_no_zero_row},
-};
-enum { N_TESTS = sizeof TESTS / sizeof *TESTS };
 
 // ---- reading ----
 
 /// Whether the matrix that was read last has the shape that is asked for; else the result says so.
-static int has_shape(const hn_part *p, const hn_world *w, hn_part_result *r) {
-    const hn_matrix *m = &w->matrix[w->n - 1];
+/// A list without rows is a column, or the one row that is asked for.
+static int has_shape(const hn_part *p, hn_world *w, bool list, hn_part_result *r) {
+    hn_matrix *m = &w->matrix[w->n - 1];
     const char *name = w->name[w->n - 1];
     const cJSON *shapes = cJSON_GetObjectItemCaseSensitive(p->node, "shapes");
     const cJSON *shape = cJSON_GetObjectItemCaseSensitive(shapes, name);
     const cJSON *rows = cJSON_GetArrayItem(shape, 0), *cols = cJSON_GetArrayItem(shape, 1);
+    if (list && rows && rows->valueint == 1) {
+        m->cols = m->rows;
+        m->rows = 1;
+    }
     if (!rows || !cols || (m->rows == rows->valueint && m->cols == cols->valueint)) {
         return 1;
     }
@@ -186,11 +56,41 @@ static int read_matrices(const hn_part *p, const cJSON *given, hn_world *w, hn_p
             hn_part_unreadable(r, "%s", why);
             return 0;
         }
-        if (!has_shape(p, w, r)) {
+        if (!has_shape(p, w, !cJSON_IsArray(rows->child), r)) {
             return 0;
         }
     }
     return 1;
+}
+
+/// A number, or text with one and the unit of the part behind it; false when it is neither.
+static bool read_number(const hn_part *p, const cJSON *node, double *x) {
+    *x = cJSON_IsNumber(node) ? node->valuedouble : 0;
+    const char *text = cJSON_GetStringValue(node);
+    if (!text) {
+        return cJSON_IsNumber(node);
+    }
+    char *end;
+    hn_unit own, given;
+    *x = strtod(text, &end);
+    const bool bare = !end[strspn(end, " ")];
+    const bool known = hn_unit_parse(hn_part_text(p->node, "unit"), &own) &&
+                       hn_unit_parse(bare ? hn_part_text(p->node, "unit") : end, &given);
+    *x *= known ? given.factor / own.factor : 1;
+    return end > text && isfinite(*x) && known && hn_unit_fits(&given, &own);
+}
+
+/// The reason why a number of an answer is not used.
+static void refuse_number(const hn_part *p, const char *name, bool given, hn_part_result *r) {
+    const char *unit = hn_part_text(p->node, "unit");
+    if (!given) {
+        hn_part_unreadable(r, "the number %.20s is missing", name);
+    } else if (unit[0]) {
+        hn_part_unreadable(r, "%.20s is no number in %s; write 1.2 or \"1.2 %s\"", name, unit,
+                           unit);
+    } else {
+        hn_part_unreadable(r, "%.20s is no number; write 1.2", name);
+    }
 }
 
 /// The numbers of an answer as names of a draw.
@@ -201,12 +101,13 @@ static hn_status read_numbers(const hn_part *p, const cJSON *given, hn_draw *d, 
     *good = 1;
     cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(p->node, "numbers")) {
         const cJSON *x = cJSON_GetObjectItemCaseSensitive(given, name->valuestring);
-        if (!cJSON_IsNumber(x) && *good) {
-            hn_part_unreadable(r, "the number %.20s is missing", name->valuestring);
+        double value;
+        if (!read_number(p, x, &value) && *good) {
+            refuse_number(p, name->valuestring, x != NULL, r);
             *good = 0;
         }
         cJSON *source = cJSON_AddObjectToObject(names, name->valuestring);
-        cJSON_AddNumberToObject(source, "value", cJSON_IsNumber(x) ? x->valuedouble : 0);
+        cJSON_AddNumberToObject(source, "value", value);
     }
     const hn_status status = hn_draw_init(d, names, NULL, p->draw, 1, 1, diag);
 
@@ -224,8 +125,25 @@ static hn_status read_numbers(const hn_part *p, const cJSON *given, hn_draw *d, 
 
 // ---- checking ----
 
-/// One check: 1 holds, 0 does not; fails when the exercise itself is at fault.
-static hn_status run_check(const cJSON *check, hn_world *w, hn_draw *d, int *holds, hn_diag *diag) {
+/// The same world with all numbers positive.
+static hn_status make_sizes(const hn_world *w, hn_world *sizes) {
+    *sizes = *w;
+    for (int i = 0; i < w->n; i++) {
+        const hn_matrix *m = &w->matrix[i];
+        sizes->matrix[i] = hn_matrix_new(w->arena, m->rows, m->cols);
+        if (!sizes->matrix[i].x) {
+            return HN_ERR_MEMORY;
+        }
+        for (int k = 0; k < m->rows * m->cols; k++) {
+            sizes->matrix[i].x[k] = fabs(m->x[k]);
+        }
+    }
+    return HN_OK;
+}
+
+/// One check; fails when the exercise itself is at fault.
+static hn_status run_check(const cJSON *check, hn_world *w, hn_draw *d, bool *holds,
+                           hn_diag *diag) {
     const char *test = hn_part_text(check, "test"), *of = hn_part_text(check, "of");
     double x;
     if (strcmp(test, "positive") == 0) {
@@ -233,15 +151,20 @@ static hn_status run_check(const cJSON *check, hn_world *w, hn_draw *d, int *hol
         *holds = x > 0;
         return HN_OK;
     }
-    for (int i = 0; i < N_TESTS; i++) {
-        if (strcmp(TESTS[i].name, test) == 0) {
-            hn_matrix m;
-            const hn_status status = hn_world_eval(w, of, &m, diag);
-            *holds = status == HN_OK && TESTS[i].holds(&m);
-            return status == HN_ERR_INPUT || status == HN_ERR_MEMORY ? status : HN_OK;
-        }
+    hn_matrix_property *property = hn_matrix_property_find(test);
+    if (!property) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/parts/checks", NULL, "there is no test '%.40s'",
+                           test);
     }
-    return hn_diag_set(diag, HN_ERR_INPUT, "/parts/checks", NULL, "there is no test '%.40s'", test);
+
+    // the matrix, and how large the terms of its entries are
+    hn_world sizes;
+    hn_matrix m, size;
+    HN_TRY(make_sizes(w, &sizes));
+    hn_status status = hn_world_eval(w, of, &m, diag);
+    HN_THEN(status, hn_world_eval(&sizes, of, &size, diag));
+    *holds = status == HN_OK && property(&m, &size);
+    return status == HN_ERR_INPUT || status == HN_ERR_MEMORY ? status : HN_OK;
 }
 
 static hn_status run_checks(const hn_part *p, hn_world *w, hn_draw *d, hn_part_result *r,
@@ -249,7 +172,7 @@ static hn_status run_checks(const hn_part *p, hn_world *w, hn_draw *d, hn_part_r
     const cJSON *check;
     hn_part_right(r);
     cJSON_ArrayForEach(check, cJSON_GetObjectItemCaseSensitive(p->node, "checks")) {
-        int holds = 0;
+        bool holds = false;
         HN_TRY(run_check(check, w, d, &holds, diag));
         if (!holds) {
             hn_part_wrong(r, hn_part_text(check, "id"), hn_part_number(check, "share", 0), "%s",
@@ -267,6 +190,15 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     int good = 1;
 
     const bool handed_in = hn_part_begin(r, n, given, "any example that passes every check");
+    const cJSON *names = cJSON_GetObjectItemCaseSensitive(p->node, "given");
+    cJSON *wrapped = NULL;
+
+    // the one matrix that is asked for needs no name
+    if (cJSON_GetArraySize(names) == 1 && cJSON_IsArray(given)) {
+        wrapped = cJSON_CreateObject();
+        cJSON_AddItemReferenceToObject(wrapped, names->child->valuestring, (cJSON *)given);
+        given = wrapped;
+    }
 
     // the numbers first, then the matrices, then the checks of both
     hn_status status = w.arena ? HN_OK : HN_ERR_MEMORY;
@@ -280,6 +212,7 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     }
 
     // both are closed on every path
+    cJSON_Delete(wrapped);
     hn_draw_reset(&d);
     hn_world_reset(&w);
     return status;
@@ -303,7 +236,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 
 const hn_part_kind hn_part_example = {
     .name = "example",
-    .fields = "given shapes numbers checks answer faults",
+    .fields = "given shapes numbers unit checks answer faults",
     .ask = ask,
     .grade = grade,
     .right = hn_part_right_answer,

@@ -22,13 +22,14 @@
 #include "grade/parts/value_entry.h"
 
 #include "base/clock.h"
+#include "base/file.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_COORDINATES = HN_CIRCUIT_COORDINATES };
+enum { MAX_COORDINATES = HN_CIRCUIT_COORDINATES, LARGEST_SCENE = 1 << 20 };
 static const double SECONDS = 4; // of computing, for a scene that was handed in
 
 static const cJSON *field(const hn_part *p, const char *name) {
@@ -227,10 +228,29 @@ static cJSON *right(const hn_part *p, hn_diag *diag) {
     return evaluate(p, field(p, "answer"), diag);
 }
 
+/// The scene of the exercise as it is shipped, handed in as a whole; NULL when it cannot be read.
+static cJSON *read_shipped(const hn_part *p, hn_diag *diag) {
+    const char *path =
+        p->lib ? hn_library_scene_path(p->lib, hn_part_text(p->node, "scene")) : NULL;
+    cJSON *out = NULL;
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    if (path && hn_file_read(path, LARGEST_SCENE, &text, diag) == HN_OK) {
+        out = cJSON_ParseWithLength(hn_strbuf_text(&text), text.n);
+    }
+    hn_strbuf_reset(&text);
+    return out;
+}
+
+/// A listed mistake: parameters, or the text "shipped" for the whole scene as it is.
 static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
     const cJSON *node = hn_part_fault_at(p, i);
+    const cJSON *answer = cJSON_GetObjectItemCaseSensitive(node, "answer");
     *id = hn_part_text(node, "id");
-    return node ? evaluate(p, cJSON_GetObjectItemCaseSensitive(node, "answer"), diag) : NULL;
+    if (cJSON_IsString(answer)) {
+        return read_shipped(p, diag);
+    }
+    return node ? evaluate(p, answer, diag) : NULL;
 }
 
 static void ask(hn_strbuf *b, const hn_part *p) {

@@ -9,6 +9,7 @@
 #include "grade/parts/value_entry.h"
 #include "grade/parts/value_likeness.h"
 #include "grade/parts/value_mistakes.h"
+#include "grade/parts/value_search.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -64,7 +65,15 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
         return HN_OK;
     }
     if (hn_value_is_right(s, k, x) || is_right_turned(s, k, x)) {
-        hn_part_right(r);
+        const char *stray = hn_value_search_stray_name(s, k, e);
+        if (stray) {
+            hn_part_wrong(
+                r, "stray-name", 0.5,
+                "right with the numbers of this variant alone: with another %.40s it is wrong",
+                stray);
+        } else {
+            hn_part_right(r);
+        }
         return HN_OK;
     }
     HN_TRY(hn_value_explain(s, k, x, e, r));

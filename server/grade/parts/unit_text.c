@@ -21,6 +21,7 @@ static const struct {
     {"um", {1e-6, {1, 0, 0, 0}}},
     {"µm", {1e-6, {1, 0, 0, 0}}},
     {"nm", {1e-9, {1, 0, 0, 0}}},
+    {"pm", {1e-12, {1, 0, 0, 0}}},
     {"kg", {1, {0, 1, 0, 0}}},
     {"g", {1e-3, {0, 1, 0, 0}}},
     {"t", {1e3, {0, 1, 0, 0}}},
@@ -68,7 +69,7 @@ static void multiply(hn_unit *u, const hn_unit *by, int power) {
 
 static const char MINUS[] = "⁻"; // superscript
 
-/// "^2", "²", "⁻¹", "^-1" behind a unit, else 1.
+/// "^2", "²", "2", "⁻¹", "^-1" behind a unit, else 1.
 static int read_power(const char **at) {
     int power = 1;
     char *end;
@@ -88,6 +89,8 @@ static int read_power(const char **at) {
         const char *digits = *at + (**at == '^' ? 1 : 2);
         power = (int)strtol(digits, &end, 10);
         *at = end;
+    } else if (strchr("234", **at) && **at && !isdigit((unsigned char)(*at)[1])) {
+        power = *(*at)++ - '0'; // kg m2
     }
     return power;
 }
@@ -107,6 +110,12 @@ static int read_one(const char **at, hn_unit *u, int sign) {
             multiply(u, &UNITS[i].unit, abs(power) > 9 ? 0 : sign * power);
             return abs(power) <= 9;
         }
+    }
+    static const hn_unit kilogram = {1, {0, 1, 0, 0}};
+    if (n > 2 && strncmp(*at, "kg", 2) == 0) { // kgm²
+        *at += 2;
+        multiply(u, &kilogram, sign);
+        return 1;
     }
     return 0;
 }

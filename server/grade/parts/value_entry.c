@@ -3,6 +3,7 @@
 
 #include "expr/construct.h"
 #include "expr/diff.h"
+#include "grade/parts/read_as.h"
 #include "grade/parts/spelling.h"
 
 #include <stdio.h>
@@ -35,6 +36,30 @@ static hn_status read_quantity(hn_value_sheet *s, const char *text, hn_ex *e, hn
         }
     }
     return status;
+}
+
+/// Copies a number without what students write before it ("= ", "x = ", "≈ "), and with a point
+/// for a decimal comma. A comma that may part thousands (1,234) stays: the number is refused.
+static void plain_number(const char *text, char *out, size_t size) {
+    static const char *const about[] = {"≈", "~", "="};
+    const char *equals = strrchr(text, '=');
+    const char *at = equals ? equals + 1 : text;
+    for (size_t i = 0; i < sizeof about / sizeof *about; i++) {
+        at += strspn(at, " ");
+        at += strncmp(at, about[i], strlen(about[i])) == 0 ? strlen(about[i]) : 0;
+    }
+    at += strspn(at, " ");
+    snprintf(out, size, "%s", at);
+
+    // one comma between digits, and no point
+    char *comma = strchr(out, ',');
+    if (!comma || comma == out || strpbrk(comma + 1, ",") || strchr(out, '.')) {
+        return;
+    }
+    const size_t before = strspn(out, "+-0123456789"), after = strspn(comma + 1, "0123456789");
+    const bool whole = out + before == comma && after > 0;
+    const bool thousands = after == 3 && strspn(out, "+-0") < before;
+    *comma = whole && !thousands ? '.' : ',';
 }
 
 /// 1 when a formula that should be a number has names in it.
@@ -70,6 +95,10 @@ static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_res
     }
 }
 
+static const char *find_name(void *draw, const char *name) {
+    return hn_draw_answer_name(draw, name);
+}
+
 /// Reads text as the student wrote it; 0 after it has said why it cannot be read.
 static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *unit,
                      hn_part_result *r) {
@@ -79,16 +108,25 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
     hn_status status = HN_ERR_INPUT;
 
     // a number with its unit, as it stands or in the parser's own spelling; or a formula
+    char number[MAX_CHARS];
+    const char *own = text;
     if (!s->symbolic && strlen(text) < MAX_CHARS) {
-        status = read_quantity(s, text, e, unit, &diag);
+        plain_number(text, number, sizeof number);
+        own = number;
+        status = read_quantity(s, own, e, unit, &diag);
     }
     if (status != HN_OK) {
-        status = hn_spelling_normalise(&plain, text, &diag);
+        status = hn_spelling_normalise(&plain, own, &diag);
         if (status == HN_OK && s->symbolic) {
             status = hn_draw_parse_answer(s->draw, hn_strbuf_text(&plain), e, &diag);
+            hn_read_as(text, hn_strbuf_text(&plain), find_name, s->draw, r->read_as,
+                       sizeof r->read_as);
         } else if (status == HN_OK) {
             status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
         }
+    }
+    if (status == HN_OK && !s->symbolic && strchr(text, ',')) {
+        snprintf(r->read_as, sizeof r->read_as, "%.*s", HN_PART_READ_AS - 1, own);
     }
     if (status != HN_OK && s->symbolic) {
         refuse_formula(text, &diag, r);
@@ -111,7 +149,11 @@ bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_
     if (cJSON_IsNumber(node)) {
         *e = hn_num(node->valuedouble);
     } else if (!cJSON_IsString(node)) {
-        hn_part_unreadable(r, "expected %s", s->symbolic ? "a formula in quotes" : "a number");
+        hn_part_unreadable(r, "this is %s; write %s",
+                           cJSON_IsObject(node)  ? "an object"
+                           : cJSON_IsArray(node) ? "a list"
+                                                 : "true or false",
+                           s->symbolic ? "a formula in quotes" : "a number: 1.2 or \"1.2 m\"");
         return false;
     } else if (!read_text(s, node->valuestring, e, &unit, r)) {
         return false;

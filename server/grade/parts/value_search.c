@@ -114,10 +114,36 @@ static void add_second(hn_value_search *f, double share, const char *text) {
     f->n_found = 2;
 }
 
+const char *hn_value_search_stray_name(hn_value_sheet *sheet, int k, hn_ex formula) {
+    hn_draw *d = sheet->draw;
+    const hn_ex reference = sheet->reference.e[k];
+    const hn_value_search f = {.sheet = sheet, .entry = k, .formula = formula};
+    if (!sheet->symbolic || weigh(&f, reference, 1) != EVIDENCE_AGAINST) {
+        return NULL;
+    }
+    for (int i = 0; i < d->n_outer; i++) {
+        const hn_ex name = hn_graph_symbol_expr(d->graph, i);
+        if (d->origin[i] == HN_DRAW_DRAWN && hn_depends_on(d->graph, formula, i) &&
+            is_same(&f, formula, 1, reference, 1, &name) == 0) {
+            return d->name[i];
+        }
+    }
+    return NULL;
+}
+
+/// Whether a candidate is the right answer itself, which explains nothing.
+static bool is_reference(const hn_value_search *f, hn_ex e, double factor) {
+    double x[HN_DRAW_STATES];
+    for (int i = 0; i < f->sheet->draw->n_states; i++) {
+        x[i] = factor * hn_draw_eval(f->sheet->draw, e, i);
+    }
+    return hn_value_is_right(f->sheet, f->entry, x);
+}
+
 bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char *id, double share,
                          const char *format, ...) {
     bool close;
-    if (hn_value_search_is_done(f) || !agrees(f, e, factor, &close)) {
+    if (hn_value_search_is_done(f) || !agrees(f, e, factor, &close) || is_reference(f, e, factor)) {
         return false;
     }
     const evidence found = weigh(f, e, factor);

@@ -31,6 +31,9 @@ void hn_value_search_begin(hn_value_search *f, hn_value_sheet *sheet, int k, con
 /// Returns true when the values agree and the changed numbers do not speak against it.
 bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char *id, double share,
                          const char *format, ...) HN_PRINTF(6, 7);
+/// The name in a formula with the right values that makes it wrong once its number is another one,
+/// as t1 in place of l1 where both are 0.77. NULL: none, or its number cannot be changed by itself.
+const char *hn_value_search_stray_name(hn_value_sheet *sheet, int k, hn_ex formula);
 /// Whether further candidates cannot change the result: one is certain, or two agree.
 bool hn_value_search_is_done(const hn_value_search *f);
 #endif

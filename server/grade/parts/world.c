@@ -170,6 +170,19 @@ static int measure(const cJSON *rows, int *n, int *m) {
     return *n > 0 && *m > 0 && *n <= HN_MATRIX_LARGEST && *m <= HN_MATRIX_LARGEST;
 }
 
+/// A number, or a formula of numbers in quotes: "1/3".
+static bool read_entry(hn_world *w, const cJSON *entry, double *x) {
+    hn_matrix m;
+    hn_diag diag;
+    const char *text = cJSON_GetStringValue(entry);
+    if (text && hn_world_eval(w, text, &m, &diag) == HN_OK && m.number) {
+        *x = m.x[0];
+        return true;
+    }
+    *x = cJSON_IsNumber(entry) ? entry->valuedouble : 0;
+    return cJSON_IsNumber(entry);
+}
+
 int hn_world_add(hn_world *w, const char *name, const cJSON *rows, char why[HN_PART_TEXT]) {
     // rows of one length
     int n, m, i = 0;
@@ -186,11 +199,11 @@ int hn_world_add(hn_world *w, const char *name, const cJSON *rows, char why[HN_P
         const cJSON *first = cJSON_IsArray(row) ? row->child : row;
         for (entry = first; entry && out.x && i < n * m;
              entry = cJSON_IsArray(row) ? entry->next : NULL) {
-            if (!cJSON_IsNumber(entry)) {
-                snprintf(why, HN_PART_TEXT, "%.20s has an entry that is no number", name);
+            if (!read_entry(w, entry, &out.x[i++])) {
+                snprintf(why, HN_PART_TEXT,
+                         "%.20s has an entry that is no number; write 0.5 or \"1/3\"", name);
                 return 0;
             }
-            out.x[i++] = entry->valuedouble;
         }
     }
 

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Answers that only look right, and right ones in unusual spelling; the checks that an exercise must prove. Speaks TAP."""
+
+import json
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(__file__))
+from exercise import expect, run, speak_tap, write  # noqa: E402
+
+
+def verdict(folder, exercise, answers, *more):
+    done = run("grade", exercise, write(folder, "answer.json", answers), "--json", "--no-pictures", *more)
+    return json.loads(done.stdout)
+
+
+def entry(folder, exercise, part, answer, *more):
+    return next(e for e in verdict(folder, exercise, {part: answer}, *more)["entries"] if e["name"] == part)
+
+
+def told(folder, exercise, part, answer, *more):
+    found = entry(folder, exercise, part, answer, *more)
+    return found["mistake"] or ("right" if found["right"] else "wrong")
+
+
+UNIT, ALIKE = [[1, 0], [0, 1]], [[1, 1], [1, 1]]
+
+
+def examples(folder):
+    """What is nearly singular or nearly zero is neither; what is exactly so is, with decimals and fractions too."""
+    cases = (
+        ("p4", "b", {"M": UNIT, "Phi": [[1, 0], [0, 1e-9]], "v": [0, 1]}, "not-a-counter-example"),
+        ("p4", "b", {"M": UNIT, "Phi": [[1, 1], [1, 1.0000001]], "v": [1, -1]}, "phi-full-rank"),
+        ("p4", "b", {"M": ALIKE, "Phi": ALIKE, "v": [1, -1]}, "not-definite"),
+        ("p4", "b", {"M": [[1, 2], [2, 1]], "Phi": ALIKE, "v": [1, -1]}, "not-definite"),
+        ("p4", "b", {"M": [[1, 1], [1, 1 + 1e-10]], "Phi": ALIKE, "v": [1, -1]}, "right"),
+        ("p4", "b", {"M": UNIT, "Phi": [[0.1, 0.2], [0.3, 0.6]], "v": [2, -1]}, "right"),
+        ("p4", "b", {"M": UNIT, "Phi": [["1/3", 1], [1, "3"]], "v": [3, -1]}, "right"),
+        ("p4", "c", {"M": [[1, 0], [0, 1e-14]], "Phi": [0, 1]}, "not-singular"),
+        ("p4", "c", {"M": ALIKE, "Phi": [[1], [-1]]}, "mr-not-positive"),
+        ("p4", "c", {"M": [[1, 0], [0, 0]], "Phi": [[1], [5]]}, "right"),
+        ("singular", "a", {"J": [[1, 2, 3], [2, 4, 6.000001]]}, "independent"),
+        ("singular", "a", {"J": [[1, 0, 0], [0, 1e-7, 0]]}, "independent"),
+        ("singular", "a", {"J": [[0.1, 0.2, 0.3], [0.3, 0.6, 0.9]]}, "right"),
+        ("singular", "a", [[1, 2, 3], [2, 4, 6]], "right"),
+        ("singular", "b", {"J": [[1, 0]], "M": [[1, 0], [0, 1e-9]], "x": [0, 1]}, "has-mass"),
+        ("singular", "b", {"J": [1, 0], "M": [[1, 0], [0, 0]], "x": [0, 1e-20]}, "right"),
+        ("singular", "c", {"l1": "1 m", "l2": "110 cm", "l3": 1.2, "d": "2"}, "right"),
+        ("singular", "c", {"l1": "1 kg", "l2": 1.1, "l3": 1.2, "d": 2}, "unreadable"),
+    )
+    for exercise, part, answer, expected in cases:
+        if expected == "unreadable":
+            answer = dict(answer)
+            done = run("grade", exercise, write(folder, "answer.json", {part: answer}))
+            expect(f"{exercise} {part} {json.dumps(answer)} cannot be read", done.returncode == 2 and "l1 is no number in m" in done.stdout, done.stdout)
+        else:
+            found = told(folder, exercise, part, answer)
+            expect(f"{exercise} {part} {json.dumps(answer)} is {expected}", found == expected, found)
+
+
+def formulas(folder):
+    """A rate may be negative; a name with the right number by chance is no right answer; a right formula explains no mistake."""
+    found = told(folder, "closure", "a", "-l1*sin(th1)*abs(u1)-l2*sin(th2)*u2")
+    expect("the size of a rate is not the rate", found != "right", found)
+    found = told(folder, "loops", "e", "-l1*cos(th1)*w1*abs(w1)-l2*cos(th2)*w2^2+l3*cos(th3)*w3^2")
+    expect("nor is its signed square its square", found != "right", found)
+
+    # an exercise whose two lengths are the same number
+    part = {"id": "a", "ask": "?", "kind": "formula", "points": 1, "states": {"x": {"range": [1, 2]}, "y": {"range": [1, 2], "unit": "rad"}},
+            "answer": "l1*x*cos(y)", "second": "x*l1*cos(y)"}  # fmt: skip
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"l1": {"choose": [0.5]}, "l2": {"choose": [0.5]}}, "parts": [part]}  # fmt: skip
+    mine = write(folder, "mine.json", exercise)
+    expect("a name with the same number by chance is named", told(folder, mine, "a", "l2*x*cos(y)") == "stray-name")
+    expect("the name itself is right", told(folder, mine, "a", "l1*x*cos(y)") == "right")
+    expect("and so is its number", told(folder, mine, "a", "0.5*x*cos(y)") == "right")
+    found = entry(folder, "code", "d", "(m2/2*(l1^2*w1^2+l2^2*w2^2/3+l1*l2*cos(th1-th2)*w1*w2))*(1+1e-5)")
+    expect("what is nearly right has no exchanged sines", found["mistake"] == "rounded", found["explanation"])
+    expect("blanks about a power are read", told(folder, "drift", "e", "-gamma - 2*alpha*J*v - beta ^ 2 * phi") == "right")
+    said = run("grade", "p3", write(folder, "answer.json", {"J": [["-0.5*sin(th1)", "1", "1", "1"], ["1", "1", "1", "1"]]})).stdout
+    expect("a number for a length is no missing length with a factor", "write lengths by their names" in said and "is missing" not in said, said)
+
+
+def spellings(folder):
+    """The note says how a formula was read that is spelt otherwise; numbers and units in their usual spellings."""
+    row = ["-l1*np.sin(θ1)", "-l_2 \\sin\\theta_2", "l3*sin(q3)", "l4*Sin[th4]"]
+    plain = ["l1*cos(th1)", "l2 * cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)**1"]
+    found = verdict(folder, "p3", {"J": [row, plain]})
+    expect("p3 in four spellings is right", found["score"] == 8, found["summary"])
+    expect("and the note says how it was read", found["note"] == "J11 was read as -l1*sin(th1), and 3 more likewise", found["note"])
+    found = verdict(folder, "p3", {"J": [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], plain]})
+    expect("without another spelling there is no note", found["note"] == "", found["note"])
+    found = verdict(folder, "fourbar", {"b": "np.cos(θ1-θ2)*m2*l1*l2/2"})
+    expect("in a part too", found["note"] == "b was read as cos(th1-th2)*m2*l1*l2/2", found["note"])
+
+    # one value in many spellings
+    right = float(entry(folder, "fourbar", "a", 1e150, "--show-expected")["expected"].split()[0])
+    comma = f"{right:.4f}".replace(".", ",")
+    for text in (f"{right:.4f} kgm²", f"{right:.4f} kg m2", f"{right * 1000:.1f} g m^2", f"M11 = {right:.4f} kg m^2", f"≈ {right:.4f}", comma):
+        expect(f"fourbar a = {text} is right", told(folder, "fourbar", "a", text) == "right")
+    found = verdict(folder, "fourbar", {"a": comma})
+    expect("a decimal comma is told", found["note"] == f"a was read as {right:.4f}", found["note"])
+    done = run("grade", "fourbar", write(folder, "answer.json", {"a": "1,234"}))
+    expect("a comma that may part thousands is not read", done.returncode == 2 and "comma at column 2" in done.stdout, done.stdout)
+    for text, expected in ((f"{right:.4f} kg m", "unit"), (f"{right:.4f} g m^2", "kilo")):
+        expect(f"fourbar a = {text} is {expected}", told(folder, "fourbar", "a", text) == expected, told(folder, "fourbar", "a", text))
+
+    # a question that names the unit takes it
+    for exercise, part, unit in (("forecast", "a", "µm"), ("forecast", "c", "s"), ("energy-drift", "a", "mJ"), ("checks", "b", "mrad"), ("differences", "a", "pm")):
+        right = float(entry(folder, exercise, part, 1e150, "--show-expected")["expected"].split()[0])
+        expect(f"{exercise} {part} takes its number in {unit}", told(folder, exercise, part, f"{right:.6g} {unit}") == "right")
+
+
+def quaternions(folder):
+    """-p is named, as what it is."""
+    right = float(entry(folder, "quaternion", "a", 1e150, "--show-expected")["expected"].split()[0])
+    found = entry(folder, "quaternion", "a", -right)
+    expect("the scalar part of -p is not called a wrong sign", found["mistake"] == "other-sign" and "the same orientation" in found["explanation"], str(found))
+
+
+def proofs(folder):
+    """A check that no listed mistake triggers is a fault of the exercise."""
+    part = {"id": "a", "ask": "?", "kind": "example", "points": 1, "given": ["M"], "shapes": {"M": [2, 2]}, "answer": {"M": UNIT},
+            "checks": [{"id": "singular", "test": "nonsingular", "of": "M", "says": "M is singular"}]}  # fmt: skip
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "parts": [part]}
+    done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..2", "--check")
+    expect("it is named", done.returncode != 0 and "no listed mistake triggers the check 'singular'" in done.stdout, done.stdout)
+    part["faults"] = [{"id": "singular", "answer": {"M": ALIKE}}]
+    done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..2", "--check")
+    expect("with the mistake the exercise is sound", done.returncode == 0, done.stdout)
+
+
+if __name__ == "__main__":
+    sys.exit(speak_tap([examples, formulas, spellings, quaternions, proofs]))
