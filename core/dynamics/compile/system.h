@@ -86,7 +86,8 @@ double hn_system_next_corner(const hn_system *sys, double t);
 hn_graph *hn_system_graph(const hn_system *sys);
 /// Returns whether the interrupt ended the making of equations since the last hn_graph_go_on().
 bool hn_system_was_stopped(const hn_system *sys);
-/// Returns HN_ERR_STOPPED, told in diag, where that is so, whatever failed for it; else `status`.
+/// The status of a call that makes equations: HN_ERR_STOPPED, told in diag, where the interrupt
+/// ended it, since the call then fails for lack of its equations; else `status`.
 hn_status hn_system_stopped(const hn_system *sys, hn_status status, hn_diag *diag);
 typedef struct hn_system_exprs {
     const hn_ex *f;      ///< nv

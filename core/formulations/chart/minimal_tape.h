@@ -30,7 +30,7 @@ HN_MUST_CHECK hn_status hn_minimal_tape_begin(hn_minimal_tape *w, const hn_chart
                                               hn_arena *arena);
 void hn_minimal_tape_free(hn_minimal_tape *w);
 /// Closes the loops at y = (q_i, u) to `tol` as hn_chart_close() does. Returns false where the tape
-/// does not serve there; nothing has then changed. Allocates nothing.
+/// does not serve there; of the chart only the cost has then changed. Allocates nothing.
 bool hn_minimal_tape_close(hn_minimal_tape *w, hn_chart *chart, double t, const double *y,
                            double tol);
 /// Writes u' (r) at the state closed last. Returns false where it is not finite.

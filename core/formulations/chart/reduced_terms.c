@@ -397,8 +397,7 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
     if (status == HN_OK && freedoms >= 0 && chart->r != freedoms) {
         snprintf(chart->why, sizeof chart->why,
                  "a singular configuration: closure rows depend on each other here, and for a "
-                 "moment the "
-                 "mechanism has %d degrees of freedom instead of %d",
+                 "moment the mechanism has %d degrees of freedom instead of %d",
                  chart->r, freedoms);
         return HN_ERR_CHART;
     }

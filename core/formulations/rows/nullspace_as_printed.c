@@ -23,7 +23,7 @@ static const char *const bases[] = {"first-entry-1", "unit-length"};
 
 const hn_formulation hn_formulation_nullspace_as_printed = {
     .name = "nullspace-as-printed",
-    .title = "null-space, as printed in the lesson that these put right",
+    .title = "null-space, with the printed lesson's mistake",
     .short_name = "as printed",
     .rule = "Section 3 of the source lesson omits the rate of the basis. The loop stays "
             "closed to rounding while the energy is wrong; halving the step does not help.",

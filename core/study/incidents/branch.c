@@ -39,13 +39,12 @@ static void check_mode(hn_watch *w) {
     const bool named = !hn_system_scene(sys)->is_lagrangian; // formulas share their loops
     if (loop >= 0 && hn_motion_unexplained(w, 0) > HN_RUN_WARN_JUMP &&
         !hn_motion_is_followed(w, &w->run->before, &w->run->now)) {
-        hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[loop],
-                           HN_RUN_WARN_MODE,
-                           "the loop%s%s jumped to its other assembly mode in one step (from %.2g "
-                           "to %.2g: the sign "
-                           "tells the modes apart)",
-                           named ? " " : "", named ? hn_system_loop_name(sys, loop) : "",
-                           w->last_modes[loop], w->modes[loop]);
+        hn_incident_report(
+            w, &hn_incident_branch_flip, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
+            "the loop%s%s jumped to its other assembly mode in one step (from %.2g to "
+            "%.2g: the sign tells the modes apart)",
+            named ? " " : "", named ? hn_system_loop_name(sys, loop) : "", w->last_modes[loop],
+            w->modes[loop]);
     } else {
         hn_incident_over(&w->log, HN_INCIDENT_BRANCH_FLIP);
     }

@@ -96,11 +96,10 @@ static void check_jump(hn_watch *w) {
         return;
     }
     const int digits = hn_digits_apart(fabs(e->change), limit, 3);
-    hn_incident_report(
-        w, &hn_incident_energy_jump, "energy change", e->change, limit,
-        "the energy changed by %.*g J in one step, more than %.*g J, and no load does "
-        "work",
-        digits, e->change, digits, limit);
+    hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
+                       "the energy changed by %.*g J in one step, more than %.*g J, and no "
+                       "load does work",
+                       digits, e->change, digits, limit);
 }
 
 /// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed
