@@ -8,9 +8,10 @@
 // One service for the process, off until hn_native_start(): it owns a thread and a queue. The
 // interpreter serves until then, and for ever where there is no compiler, the compilation fails or
 // takes too long, or the folder cannot be used. A tape is looked up in the folder after 2 ms of
-// interpretation and compiled after 20 ms, so short runs start nothing. Code stays loaded: a
-// later tape that is equal uses it from its first evaluation. Before compiled code is taken it is
-// run beside the interpreter at several states, and dropped where one bit differs.
+// interpretation and compiled after 20 ms, so short runs start nothing. A tape of more than 40,000
+// instructions stays with the interpreter, which is quicker there. Code stays loaded: a later tape
+// that is equal uses it from its first evaluation. Before compiled code is taken it is run beside
+// the interpreter at several states, and dropped where one bit differs.
 
 #include "base/diag.h"
 #include "expr/native_build.h"
@@ -67,8 +68,9 @@ typedef struct hn_native_costs {
     double break_even;      ///< evaluations after which compilation has paid; inf: never
 } hn_native_costs;
 
-/// Compiles a tape now, waiting for it, and measures. Fails as the compilation does, and with
-/// HN_ERR_UNSUPPORTED while the service is off or cannot work; `diag` says why.
+/// Compiles a tape now, waiting for it, and measures. Fails as the compilation does, with
+/// HN_ERR_LIMIT where the tape is too long for machine code to pay, and with HN_ERR_UNSUPPORTED
+/// while the service is off or cannot work; `diag` says why.
 HN_MUST_CHECK hn_status hn_native_measure(const struct hn_tape *tape, hn_native_costs *costs,
                                           hn_diag *diag);
 

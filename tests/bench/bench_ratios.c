@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run costs beside hand-written C, all in one process: evaluation and Runge-Kutta step of
 // the reference four-bar FB0, interpreted and native, without and with the watch that every run
-// has, whole runs of the course's four-bar, and the ladder of 40 loops. Prints CSV: medians of
-// batches that take turns, their quartiles, ratios.
+// has, whole runs of the course's four-bar, and the ladder of 40, 200 and 1,000 loops beside a
+// sweep along its loops by hand. Prints CSV: medians of batches that take turns, their quartiles,
+// ratios.
 #include "hand_fourbar.h"
+#include "hand_ladder.h"
 
 #include "base/clock.h"
 #include "dynamics/assembly/assemble.h"
@@ -18,7 +20,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { BATCHES = 21, EVALS = 10000, STEPS = 500, LADDER = 40, SWEEP = 10000, SWEEP_STEPS = 50 };
+enum { BATCHES = 21, EVALS = 10000, STEPS = 500, SWEEP = 10000, SWEEP_STEPS = 50 };
 static const double H = 1e-4;   // [s] step; BATCHES * STEPS of them stay clear of any dead point
 static const double WHOLE = 10; // [s] whole runs
 static const double START[6] = {1, 0.498324904142577, 1.516841745037813, 2, -0.3, 0.9};
@@ -43,6 +45,18 @@ typedef struct subject {
     int n, evals;
     double t, sample[BATCHES];
 } subject;
+
+static double time_hand_ladder(subject *s) {
+    const int loops = s->n / 2;
+    const double start = hn_clock_thread();
+    for (int k = 0; k < s->evals; k++) {
+        hn_hand_ladder(loops, s->q, s->v, s->a, s->lambda);
+        for (int i = 0; i < s->n; i++) {
+            s->v[i] += 1e-12 * s->a[i];
+        }
+    }
+    return (hn_clock_thread() - start) / s->evals;
+}
 
 static double time_hand(subject *s) {
     static double q[3] = {1, 0.498324904142577, 1.516841745037813}, v[3] = {2, -0.3, 0.9};
@@ -197,14 +211,21 @@ static void make_arrays(subject *s) {
     s->lambda = hn_arena_doubles(s->arena, (size_t)info.nc + 1);
 }
 
+/// Arrays and a state: that of FB0; the bars of a ladder lean, each at an angle of its own.
+static void make_state(subject *s) {
+    make_arrays(s);
+    const int loops = s->n / 2;
+    for (int i = 0; i < s->n; i++) {
+        s->q[i] = s->n == 3 ? START[i] : (i <= loops ? 1.2 : 0.2) + 1e-3 * (i % 100);
+        s->v[i] = s->n == 3 ? START[3 + i] : i <= loops ? -1 : 0.5;
+    }
+    s->evals = s->n == 3 ? EVALS : EVALS / loops;
+}
+
 /// Tapes compiled natively are those made while the service is not suspended.
 static void make_accel(subject *s, int native) {
     const hn_accel_opts opts = {.want_lambda = 1};
-    make_arrays(s);
-    for (int i = 0; i < s->n; i++) { // the ladder's verticals lean, its couplers lie: not flat
-        s->q[i] = s->n == 3 ? START[i] : i <= LADDER ? 1.2 : 0;
-        s->v[i] = s->n == 3 ? START[3 + i] : i <= LADDER ? -1 : 0;
-    }
+    make_state(s);
     if (!native) {
         hn_native_suspend();
     }
@@ -214,7 +235,6 @@ static void make_accel(subject *s, int native) {
     if (!native) {
         hn_native_resume();
     }
-    s->evals = s->n == 3 ? EVALS : EVALS / LADDER;
 }
 
 static void make_lanes(subject *s, hn_lanes_set set) {
@@ -372,13 +392,45 @@ static void bench_whole(hn_system *sys) {
     print(s, N, 0);
 }
 
-static void bench_ladder(hn_system *sys) {
-    subject s[] = {{.name = "ladder of 40", .code = "interpreter", .batch = time_accel, .sys = sys},
-                   {.name = "ladder of 40", .code = "native", .batch = time_accel, .sys = sys}};
-    make_accel(&s[0], 0);
-    make_accel(&s[1], 1);
-    measure(s, 2);
-    print(s, 2, 0);
+/// By hand, and through the engine: the same accelerations and multipliers.
+static void compare_ladders(const subject *hand, subject *ours) {
+    static double a[2 * HN_HAND_LADDER_MOST + 1], lambda[2 * HN_HAND_LADDER_MOST];
+    const int loops = hand->n / 2;
+    double most = 0, apart = 0;
+    hn_hand_ladder(loops, ours->q, ours->v, a, lambda);
+    if (hn_accel_eval(ours->accel, 0, ours->q, ours->v, 0, 0, ours->a, ours->lambda, NULL) !=
+        HN_OK) {
+        give_up(ours->name, "there is no answer");
+    }
+    for (int i = 0; i < hand->n; i++) {
+        most = fmax(most, fabs(a[i]));
+        apart = fmax(apart, fabs(a[i] - ours->a[i]));
+    }
+    for (int i = 0; i < 2 * loops; i++) {
+        most = fmax(most, fabs(lambda[i]));
+        apart = fmax(apart, fabs(lambda[i] - ours->lambda[i]));
+    }
+    if (!(apart <= 1e-9 * most)) { // rounding grows with the number of loops
+        give_up(ours->name, "it differs from the one by hand");
+    }
+}
+
+static void bench_ladder(int loops) {
+    char name[32];
+    snprintf(name, sizeof name, "ladder of %d", loops);
+    hn_system *sys =
+        compile("lessons/01-closed-loops/scenes/n-four-bar.json", &(hn_setting){"N", loops});
+    subject s[] = {{.name = name, .code = "hand", .batch = time_hand_ladder, .sys = sys},
+                   {.name = name, .code = "interpreter", .batch = time_accel, .sys = sys},
+                   {.name = name, .code = "native", .batch = time_accel, .sys = sys}};
+    const int n = loops < HN_HAND_LADDER_MOST ? 3 : 2; // the longest stays with the interpreter
+    make_state(&s[0]);
+    for (int i = 1; i < n; i++) {
+        make_accel(&s[i], i == 2);
+    }
+    compare_ladders(&s[0], &s[1]);
+    measure(s, n);
+    print(s, n, 0);
 }
 
 int main(void) {
@@ -386,19 +438,20 @@ int main(void) {
     glob_t files;
     hn_native_opts opts = hn_native_opts_default(mkdtemp(folder));
     opts.look_after = opts.build_after = 0;
+    opts.time_limit = 600; // on a busy machine
     hn_native_start(&opts);
     hn_system *sys = compile("lessons/01-closed-loops/scenes/fb0.json", NULL),
-              *four_bar = compile("lessons/01-closed-loops/scenes/four-bar.json", NULL),
-              *ladder = compile("lessons/01-closed-loops/scenes/n-four-bar.json",
-                                &(hn_setting){"N", LADDER});
+              *four_bar = compile("lessons/01-closed-loops/scenes/four-bar.json", NULL);
     printf("case,code,ns_median,ns_quartile_1,ns_quartile_3,ratio_to_first_row\n");
     bench_evaluation(sys);
     bench_steps(sys);
     bench_whole(four_bar);
-    bench_ladder(ladder);
+    for (int k = 0; k < 3; k++) {
+        bench_ladder((const int[]){40, 200, HN_HAND_LADDER_MOST}[k]);
+    }
     hn_native_reason(why);
     if (why[0]) {
-        fprintf(stderr, "native: %s\n", why);
+        give_up("native code", why);
     }
 
     // what was compiled for this table goes

@@ -42,6 +42,8 @@ struct hn_singularity {
     const double *J, *M; // entries of `rows`
     double *d, *r;       // scales: nv, nc
     double *w, *top;     // nc: left vectors of the smallest and the largest singular value
+    double both, half;   // of two rows: both vectors by their products, where `pending`
+    bool pending;        // w and top are still to be found from these
     double *x, *y;       // nv, nc scratch
     double *v, *basis;   // nv, 2 nv
     double *kept[3];     // nc: r, w and top of the last look, while a probe uses them
@@ -117,6 +119,7 @@ void hn_singularity_free(hn_singularity *r) {
 void hn_singularity_reset(hn_singularity *r) {
     r->first = 1;
     r->wait = 0;
+    r->pending = false;
     r->next_pilot = -HUGE_VAL;
     hn_lookout_reset(r->lookout);
     hn_round_trip_reset(r->round);
@@ -226,16 +229,28 @@ static void look_densely(hn_singularity *r, hn_singularity_info *info) {
     }
 }
 
+/// The left vectors of two rows, where they are still to be found.
+static void find_vectors(hn_singularity *r) {
+    if (r->pending) {
+        const double phi = 0.5 * atan2(r->both, r->half);
+        r->top[0] = r->w[1] = cos(phi);
+        r->top[1] = sin(phi);
+        r->w[0] = -sin(phi);
+        r->pending = false;
+    }
+}
+
 static void look_sparsely(hn_singularity *r, int sweeps, hn_singularity_info *info) {
+    find_vectors(r);
     for (int i = 0; i < sweeps; i++) {
         info->sigma_max = sweep_top(r);
         info->sigma_min = sweep_bottom(r);
     }
 }
 
-/// Two rows, as every planar loop has: singular values and left vectors in closed form, sigma_min
-/// from the part of one row across the other, which loses no digits. False where the rows are as
-/// good as dependent.
+/// Two rows, as every planar loop has: singular values in closed form, sigma_min from the part of
+/// one row across the other, which loses no digits. The left vectors wait until they are asked for.
+/// False where the rows are as good as dependent.
 static bool look_at_two(hn_singularity *r, hn_singularity_info *info) {
     fill_qr(r);
     const int n = r->nv;
@@ -255,13 +270,13 @@ static bool look_at_two(hn_singularity *r, hn_singularity_info *info) {
     }
 
     // the symmetric 2x2 matrix of the products of rows
-    const double half = (size[0] - size[1]) / 2, phi = 0.5 * atan2(both, half);
+    const double half = (size[0] - size[1]) / 2;
     const double largest = (size[0] + size[1]) / 2 + sqrt(half * half + both * both);
     info->sigma_max = sqrt(largest);
     info->sigma_min = sqrt(size[base] * across / largest);
-    r->top[0] = r->w[1] = cos(phi);
-    r->top[1] = sin(phi);
-    r->w[0] = -sin(phi);
+    r->both = both;
+    r->half = half;
+    r->pending = true;
     return info->sigma_min > RANK_TOL * info->sigma_max;
 }
 
@@ -358,6 +373,11 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
 
 /// What the looks know of the rows: kept, or given back.
 static void keep(hn_singularity *r, int back) {
+    if (back) {
+        r->pending = false; // those of the probe
+    } else {
+        find_vectors(r);
+    }
     double *const known[] = {r->r, r->w, r->top};
     for (int i = 0; i < 3; i++) {
         memcpy(back ? known[i] : r->kept[i], back ? r->kept[i] : known[i],
@@ -504,6 +524,7 @@ void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double
     find_lost_rows(r, pose);
     const int simple = pose->mobility == 2 && pose->mobility_before == 1 && r->start_rank == r->nc;
     if (simple && !hn_system_get_info(r->sys).has_time) {
+        find_vectors(r);
         double *w = r->w; // scaled rows: R w belongs to J
         for (int i = 0; i < r->nc; i++) {
             w[i] = r->y[i] * r->r[i];

@@ -63,6 +63,11 @@ static void check_turn(hn_watch *w) {
     if (!s->has_step || w->accel_status != HN_OK || s->info.nc == 0) {
         return;
     }
+
+    // along each other: |v + u| is above |v| and |u|, whatever the accelerations are
+    if (hn_dot(n, s->now.v, s->before.v) >= 0) {
+        return;
+    }
     for (int i = 0; i < n; i++) {
         back = hypot(back, s->now.v[i] + s->before.v[i]);
     }

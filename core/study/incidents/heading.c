@@ -62,10 +62,11 @@ static bool take_heading(hn_watch *w, hn_heading *h) {
     for (int i = 0; i < n; i++) {
         h->e[i] = w->run->now.v[i] / scale[i];
     }
-    r->fastest = fmax(r->fastest, hn_norm2(n, h->e));
+    const double speed = hn_norm2(n, h->e);
+    r->fastest = fmax(r->fastest, speed);
     h->e[n] = hn_motion_dof(w) == 0 ? r->fastest : 0;
 
-    const double size = hn_norm2(n + 1, h->e);
+    const double size = h->e[n] == 0 ? speed : hn_norm2(n + 1, h->e);
     for (int i = 0; i <= n && size > 0; i++) {
         h->e[i] /= size;
     }

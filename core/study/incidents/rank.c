@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/rank.h"
 
-#include "study/incidents/motion.h"
 #include "study/incidents/pose.h"
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
@@ -65,7 +64,7 @@ static void check_near(hn_watch *w) {
 
     // J M^-1 J' has singular values squared. A pivot that is lost where J is not says only that the
     // order of elimination does not suit the configuration
-    const double row = hn_motion_shortest_row(w), ratio = w->singular.info.ratio;
+    const double row = w->shortest_row, ratio = w->singular.info.ratio;
     const double pivot = w->accel_status == HN_OK && w->accel_info.fallback
                              ? ratio * ratio
                              : row * row * w->accel_info.pivot_ratio;

@@ -91,9 +91,13 @@ hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double
                         .potential = w->energies[1]};
 }
 
+/// The largest length of each row so far, and the shortest row against its own.
 static void measure_rows(hn_watch *w) {
+    w->shortest_row = 1;
     for (int i = 0; i < w->run->info.nc; i++) {
-        w->row_size[i] = fmax(w->row_size[i], hn_closure_rows_length(&w->rows, i));
+        const double size = hn_closure_rows_length(&w->rows, i);
+        const double largest = w->row_size[i] = fmax(w->row_size[i], size);
+        w->shortest_row = fmin(w->shortest_row, largest > 0 ? size / largest : 1);
     }
 }
 
@@ -166,7 +170,7 @@ static bool is_prediction_due(const hn_watch *w) {
 
 static bool is_calm(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
-    const double row = hn_motion_shortest_row(w);
+    const double row = w->shortest_row;
     return !s->passing && !is_prediction_due(w) && w->accel_status == HN_OK &&
            !w->accel_info.fallback && w->accel_info.rank == w->start_rank &&
            s->info.sigma_min > WELL * s->largest &&
@@ -252,6 +256,7 @@ static void forget(hn_watch *w) {
     w->failure = HN_OK;
     w->diagnosed = 0;
     w->start_rank = 0;
+    w->shortest_row = 1;
 }
 
 void hn_watch_start(hn_watch *w) {

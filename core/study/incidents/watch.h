@@ -114,6 +114,7 @@ struct hn_watch {
 
     // of the state checked in full last
     double *checked_q;                                    ///< nq
+    double shortest_row;                                  ///< hn_motion_shortest_row() there
     const hn_incident_kind *each_step[HN_INCIDENT_COUNT]; ///< those checked after every step
     int n_each_step;
     unsigned own_pace; ///< incidents that end without one, as bits of hn_incident_log.active

@@ -192,6 +192,26 @@ static void costs_are_measured(void **state) {
     hn_tape_free(tape);
 }
 
+static void a_tape_too_long_for_the_caches_stays_with_the_interpreter(void **state) {
+    (void)state;
+    hn_native_costs costs;
+    hn_diag diag = {0};
+    start(NULL);
+    hn_tape *tape = long_tape(14000);
+    const int n = hn_tape_get_info(tape).n_outputs * STATES;
+    double *out = malloc((size_t)n * sizeof *out);
+    assert_true(hn_tape_get_info(tape).instructions > 40000);
+    eval_all(tape, out);
+    hn_native_wait();
+    assert_int_equal(hn_native_get_counts().ready, 0);
+    assert_int_equal(hn_native_get_counts().failed, 0);
+    assert_int_equal(hn_native_measure(tape, &costs, &diag), HN_ERR_LIMIT);
+    assert_non_null(strstr(diag.message, "slower than the interpreter"));
+    assert_true(costs.instructions > 40000);
+    free(out);
+    hn_tape_free(tape);
+}
+
 static void two_tapes_at_once_have_each_its_own_code(void **state) {
     (void)state;
     hn_native_start_eager(NULL);
@@ -285,6 +305,7 @@ int main(void) {
         ROW(a_suspended_thread_compiles_no_native_tapes),
         ROW(a_short_run_asks_for_nothing),
         ROW(costs_are_measured),
+        ROW(a_tape_too_long_for_the_caches_stays_with_the_interpreter),
         ROW(two_tapes_at_once_have_each_its_own_code),
         ROW(a_tape_may_be_freed_while_it_is_compiled),
     };
