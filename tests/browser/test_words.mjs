@@ -94,6 +94,7 @@ test("one is one, and a gap of rounding has one digit", () => {
   assert.equal(counted(0, "note"), "0 notes");
   assert.equal(counted(1.5, "point"), "1.5 points");
   assert.equal(gapWords(1.1e-16), "1×10⁻¹⁶ m");
+  assert.equal(gapWords(-3.2e-13, "J"), "−3×10⁻¹³ J");
   assert.equal(gapWords(0.0123), "12 mm");
 });
 

@@ -117,8 +117,12 @@ export function quantity(value, unit, digits = 2) {
   return `${value < 0 ? "−" : ""}${text} ${prefix}${unit}`.trimEnd();
 }
 
-/** A gap of rounding has one digit: more of them mean nothing. @param {number} gap [m] */
-export const gapWords = (gap) => quantity(gap, "m", gap < ROUNDING ? 1 : 2);
+/**
+ * A gap, or an energy change; near rounding it has one digit: more of them mean nothing.
+ * @param {number} value @param {string} [unit]
+ */
+export const gapWords = (value, unit = "m") =>
+  quantity(value, unit, Math.abs(value) < SMALLEST_PREFIXED ? 1 : 2);
 
 /** "1 point", "3 points" @param {number} n @param {string} noun */
 export const counted = (n, noun) => `${plain(n)} ${noun}${n === 1 ? "" : "s"}`;

@@ -123,7 +123,7 @@ export function createReferenceFeed(store) {
     }
     const changed = Object.keys(changedSettings(data));
     if (data.pulled) {
-      tell(without(key, "none", "those that are stored have no hand that pulls"));
+      tell(without(key, "none", "it is known only for the motion that nobody pulls"));
     } else if (data.document) {
       tell(without(key, "none", "only shipped scenes have one"));
     } else if (changed.length > 0 && changed.every(isStart)) {

@@ -275,10 +275,11 @@ export function createMethods(el, store, actions, openDialog) {
   const workWords = (work) =>
     `Energy error, with the work of drives, dampers and loads taken off; that work is ${quantity(work, "J")} so far.`;
 
-  /** Unit of an error of the coordinates: the largest of them all. */
-  function unitOf({ coordinates }) {
-    const lengths = coordinates.filter(({ kind }) => kind === "length").length;
-    return lengths === 0 ? "rad" : lengths === coordinates.length ? "m" : "rad, m";
+  /** The largest error of all coordinates; it has no unit where these have several. */
+  function estimateOf(error) {
+    const kinds = new Set(data.scene.coordinates.map(({ kind }) => kind));
+    const unit = { angle: "rad", length: "m" }[kinds.size === 1 ? [...kinds][0] : ""];
+    return `≈ ${unit ? quantity(error, unit, 1) : scientific(error, 1)}`;
   }
 
   /** Error of position, as a bound where the reference itself says no more. */
@@ -288,7 +289,7 @@ export function createMethods(el, store, actions, openDialog) {
     const value = off[lastKnown(off, now)];
     if (Number.isNaN(value) || !reference) {
       const estimate = data.latest?.methods[m]?.error_estimate?.q ?? NaN;
-      return Number.isFinite(estimate) ? `≈ ${scientific(estimate, 1)} ${unitOf(data.scene)}` : "–";
+      return Number.isFinite(estimate) ? estimateOf(estimate) : "–";
     }
     return value <= reference.own ? `< ${bound(value, "m")}` : quantity(value, "m", 2);
   }
@@ -302,7 +303,7 @@ export function createMethods(el, store, actions, openDialog) {
     row.dataset.tone = verdict.tone;
     say(parts.gap, data.scene?.m > 0 ? gapWords(column.gap[last]) : "no loop");
     say(parts.off, errorWords(m, last));
-    say(parts.energy, quantity(column.energy_change[last], "J"));
+    say(parts.energy, gapWords(column.energy_change[last], "J"));
     const ops = column.ops[last]; // nobody counts those of a program
     say(parts.cost, steps > 0 && ops > 0 ? `${Math.round(ops / steps)}/step` : "–");
     set(parts.off, { "data-tip": estimateWords(data, m) || null });
