@@ -196,12 +196,12 @@ static void a_tape_too_long_for_the_caches_stays_with_the_interpreter(void **sta
     (void)state;
     hn_native_costs costs;
     hn_diag diag = {0};
-    start(NULL);
-    hn_tape *tape = long_tape(14000);
-    const int n = hn_tape_get_info(tape).n_outputs * STATES;
+    hn_native_start_eager(NULL);
+    hn_tape *tape = hn_tape_long(14000);
+    const int n = hn_tape_get_info(tape).n_outputs * HN_NATIVE_STATES;
     double *out = malloc((size_t)n * sizeof *out);
     assert_true(hn_tape_get_info(tape).instructions > 40000);
-    eval_all(tape, out);
+    hn_tape_eval_states(tape, out);
     hn_native_wait();
     assert_int_equal(hn_native_get_counts().ready, 0);
     assert_int_equal(hn_native_get_counts().failed, 0);
