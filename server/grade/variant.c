@@ -348,11 +348,11 @@ static int check_hints(const hn_variant *x, const cJSON *submission, hn_verdict 
     return 0;
 }
 
-/// Whether a list of names in an exercise's part has this one.
-static bool has_name(const hn_part *p, const char *list, const char *name) {
+/// Whether a member of an answer is read as a name of a list in the exercise's part.
+static bool is_read(const hn_part *p, const char *list, const cJSON *answer, const cJSON *member) {
     const cJSON *m;
     cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, list)) {
-        if (cJSON_IsString(m) && strcmp(m->valuestring, name) == 0) {
+        if (cJSON_IsString(m) && hn_part_member(answer, m->valuestring) == member) {
             return true;
         }
     }
@@ -362,15 +362,16 @@ static bool has_name(const hn_part *p, const char *list, const char *name) {
 /// Remarks on what the answer to a part holds beside the names that the part asks for. A whole
 /// scene has fields of its own.
 static void remark_unread_names(const hn_part *p, const cJSON *answer, hn_verdict *v) {
-    static const char *const lists[] = {"free", "given", "numbers"};
+    static const char *const lists[] = {"free", "given", "numbers", "asked"};
     const bool scene = cJSON_GetObjectItemCaseSensitive(answer, "holonom") != NULL;
     const char *kind = hn_part_text(p->node, "kind");
-    const bool named = strcmp(kind, "scene") == 0 || strcmp(kind, "example") == 0;
+    const bool named = strcmp(kind, "scene") == 0 || strcmp(kind, "example") == 0 ||
+                       strcmp(kind, "configuration") == 0;
     for (const cJSON *m = cJSON_IsObject(answer) && named && !scene ? answer->child : NULL; m;
          m = m->next) {
         bool known = false;
         for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
-            known |= has_name(p, lists[i], m->string);
+            known |= is_read(p, lists[i], answer, m);
         }
         if (!known) {
             hn_submission_remark(v, "in part %.20s the field '%.50s' was not read", p->id,

@@ -111,6 +111,19 @@ def spellings(folder):
         expect(f"{exercise} {part} takes its number in {unit}", told(folder, exercise, part, f"{right:.6g} {unit}") == "right")
 
 
+def names(folder):
+    """The members of an answer may be spelt otherwise; those that are not read are told."""
+    asked = verdict(folder, "assemble", {"a": {"th2": 1e150, "th3": 1e150}}, "--show-expected")["entries"]
+    right = [float(e["expected"].split()[0]) for e in asked if e["name"].startswith("a.")]
+    for second, third in (("θ2", "theta_3"), ("th_2", "th3")):
+        found = verdict(folder, "assemble", {"a": {second: right[0], third: right[1]}})
+        expect(f"{second} and {third} are read", found["score"] == 4 and found["note"] == "", str(found["entries"][:2]) + found["note"])
+    found = verdict(folder, "assemble", {"a": {"th2": right[0], "th4": right[1]}})
+    expect("another name is told", found["score"] == 2 and "the field 'th4' was not read" in found["note"], found["note"])
+    found = entry(folder, "turning", "a", {"l_1": 0.1, "l₃": 0.1})
+    expect("an open loop has no number without unit", found["mistake"] == "not-assembled" and "off by" not in found["explanation"], found["explanation"])
+
+
 def quaternions(folder):
     """-p is named, as what it is."""
     right = float(entry(folder, "quaternion", "a", 1e150, "--show-expected")["expected"].split()[0])
@@ -131,4 +144,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, spellings, quaternions, proofs]))
+    sys.exit(speak_tap([examples, formulas, spellings, names, quaternions, proofs]))

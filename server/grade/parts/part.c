@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/part.h"
 
+#include "grade/parts/spelling.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,6 +59,33 @@ void hn_part_qualify(hn_part_result *results, int n) {
             snprintf(r->explanation, sizeof r->explanation, "%s: %.380s", says, text);
         }
     }
+}
+
+/// Whether a member's name is another spelling of `name`.
+static bool is_spelt(const char *spelt, const char *name) {
+    char joined[64], other[64];
+    hn_strbuf plain;
+    hn_strbuf_init(&plain);
+    bool is = hn_spelling_normalise(&plain, spelt, NULL) == HN_OK;
+    if (is) {
+        const char *word = hn_strbuf_text(&plain);
+        word = hn_spelling_join(word, joined, sizeof joined) ? joined : word;
+        is = strcmp(word, name) == 0;
+        for (int i = 0; !is && hn_spelling_alias(word, i, other, sizeof other); i++) {
+            is = strcmp(other, name) == 0;
+        }
+    }
+    hn_strbuf_reset(&plain);
+    return is;
+}
+
+const cJSON *hn_part_member(const cJSON *answer, const char *name) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(answer, name);
+    for (const cJSON *other = cJSON_IsObject(answer) ? answer->child : NULL; other && !m;
+         other = other->next) {
+        m = is_spelt(other->string, name) ? other : NULL;
+    }
+    return m;
 }
 
 const cJSON *hn_part_fault_at(const hn_part *p, int i) {

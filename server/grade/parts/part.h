@@ -87,6 +87,9 @@ bool hn_part_begin(hn_part_result *r, int *n, const cJSON *given, const char *ex
 /// Begins the sentence of a mistake that chance may explain with "this looks like", unless two
 /// entries show the same mistake.
 void hn_part_qualify(hn_part_result *results, int n);
+/// The member of an answer with this name, or else the first one in another spelling of it (θ2,
+/// theta_2 for th2); NULL: none.
+const cJSON *hn_part_member(const cJSON *answer, const char *name);
 /// The i-th object of "faults"; NULL after the last.
 const cJSON *hn_part_fault_at(const hn_part *p, int i);
 const char *hn_part_text(const cJSON *node, const char *key); ///< "" when there is none

@@ -300,9 +300,9 @@ static const char *unit_of(const sheet *s, int k) {
 
 /// The entry of the k-th coordinate: by its name, or by its place in a list.
 static const cJSON *entry_of(const sheet *s, const cJSON *given, int k) {
-    return cJSON_IsArray(given) ? cJSON_GetArrayItem(given, k)
-                                : cJSON_GetObjectItemCaseSensitive(
-                                      given, hn_part_coordinate(s->model, s->asked[k])->name);
+    return cJSON_IsArray(given)
+               ? cJSON_GetArrayItem(given, k)
+               : hn_part_member(given, hn_part_coordinate(s->model, s->asked[k])->name);
 }
 
 /// Reads all entries; results say which cannot be read. Returns whether all can.

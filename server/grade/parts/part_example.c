@@ -47,7 +47,7 @@ static int read_matrices(const hn_part *p, const cJSON *given, hn_world *w, hn_p
     const cJSON *name;
     char why[HN_PART_TEXT];
     cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(p->node, "given")) {
-        const cJSON *rows = cJSON_GetObjectItemCaseSensitive(given, name->valuestring);
+        const cJSON *rows = hn_part_member(given, name->valuestring);
         if (!rows) {
             hn_part_unreadable(r, "the matrix %.20s is missing", name->valuestring);
             return 0;
@@ -100,7 +100,7 @@ static hn_status read_numbers(const hn_part *p, const cJSON *given, hn_draw *d, 
     cJSON *names = cJSON_CreateObject();
     *good = 1;
     cJSON_ArrayForEach(name, cJSON_GetObjectItemCaseSensitive(p->node, "numbers")) {
-        const cJSON *x = cJSON_GetObjectItemCaseSensitive(given, name->valuestring);
+        const cJSON *x = hn_part_member(given, name->valuestring);
         double value;
         if (!read_number(p, x, &value) && *good) {
             refuse_number(p, name->valuestring, x != NULL, r);

@@ -50,7 +50,7 @@ static bool read_parameter(const hn_part *p, const char *name, const cJSON *give
     double x[HN_DRAW_STATES];
     hn_ex e;
     hn_part_result own = {.mistake = ""};
-    const cJSON *entry = cJSON_GetObjectItemCaseSensitive(given, name);
+    const cJSON *entry = hn_part_member(given, name);
     const cJSON *limits = cJSON_GetObjectItemCaseSensitive(field(p, "limits"), name);
     hn_unit_parse(cJSON_IsString(entry) ? "m" : "", &reader.unit);
     if (!entry) {
@@ -101,9 +101,13 @@ static hn_status load(const hn_part *p, const hn_setting *settings, int n, const
         if (changes) {
             *changes = '\0';
         }
+        // nor does the gap of constraints that are formulas: it has no unit
+        static const char formulas[] = "the constraints cannot all be met";
+        const char *why = diags.item[0].message;
+        why = open && strncmp(why, formulas, strlen(formulas)) == 0 ? "no pose has these lengths"
+                                                                    : why;
         hn_part_wrong(r, open ? "not-assembled" : "no-scene", 0, "%s: %.250s",
-                      open ? "the loop cannot be closed" : "the scene cannot be used",
-                      diags.item[0].message);
+                      open ? "the loop cannot be closed" : "the scene cannot be used", why);
         r->unreadable = !open;
         status = HN_OK;
     }
