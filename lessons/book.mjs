@@ -126,11 +126,18 @@ function page(nodes) {
   return runs.map((run) => (run.length > 1 ? side(run) : all(run))).join("");
 }
 
+/** The headings that the contents list under each lesson, by its id; those of every lesson are left out. */
+const EVERYWHERE = ["Exercises", "Summary", "Sources", "Pictures"];
+const sections = new Map();
+
 function chapter(id) {
   lesson = ask("lesson", id);
   figures = 0;
   answers = [];
   const text = page(lesson.blocks);
+  const headings = lesson.blocks.filter((n) => n.kind === "heading" && n.level === 2);
+  const words = headings.map((n) => all(n.children).replace(/^\d+\. /, ""));
+  sections.set(lesson.id, words.filter((w) => !EVERYWHERE.includes(w)).join(" · "));
   if (answers.length) {
     seen.push(`<h3>${plain(lesson.title)}</h3><ol class="answers">${answers.join("")}</ol>`);
   }
@@ -154,6 +161,7 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
 .gallery { grid-template-columns: 1fr 1fr 1fr; } .gallery figure { margin: .5em 0; }
+.contents > li { margin: .7em 0; } .contents div { font-size: 9.5pt; color: #444; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
 figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; max-height: 100mm; }
 figcaption { font-size: 9pt; color: #444; }
@@ -170,12 +178,13 @@ function formulaStyle() {
 
 const lessons = ask("list", "lessons").lessons;
 const chapters = lessons.map((l) => chapter(l.id));
-const contents = lessons.map((l) => `<li><a href="#${l.id}">${plain(l.title.replace(/^\d+\. /, ""))}</a></li>`).join("");
+const entry = (l) => `<li><a href="#${l.id}">${plain(l.title.replace(/^\d+\. /, ""))}</a><div>${sections.get(l.id)}</div></li>`;
+const contents = lessons.map(entry).join("");
 writeFileSync(
   out,
   `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Mechanisms with closed loops</title><style>${formulaStyle()}${STYLE}</style>
 <h1>Mechanisms with closed loops</h1><p>A course with the workbench holonom: text, exhibits to run, and exercises that are marked.</p>
-<ol>${contents}<li><a href="#answers">Answers to the predictions</a></li></ol>${chapters.join("\n")}
+<ol class="contents">${contents}<li><a href="#answers">Answers to the predictions</a></li></ol>${chapters.join("\n")}
 <section id="answers"><h2>Answers to the predictions</h2>${seen.join("")}</section></html>\n`,
 );
 for (const fault of faults) {

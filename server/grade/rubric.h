@@ -9,6 +9,7 @@
 //      "shares": {"sign": 0.5, "degrees": 0}, "hints": [0.5, 1],
 //      "visibility": {"b": "after_due_date"}}
 //
+// In a file whose name ends with .toml the same stands as TOML: rubric = 1, [points], a = 1.
 // All but the first two fields may be left out; the exercise's own values then hold. A part has the
 // name of the exercise's file; an exercise with one matrix has one part, of the matrix's name.
 // "visibility" says when Gradescope shows the verdict on a part, in Gradescope's words; other forms
@@ -17,6 +18,7 @@
 #include "base/diag.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct hn_rubric hn_rubric;
@@ -26,6 +28,8 @@ typedef struct hn_rubric hn_rubric;
 /// exercise).
 /// Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags);
+/// Whether a file's name says that it holds TOML.
+bool hn_rubric_is_toml(const char *path);
 void hn_rubric_free(hn_rubric *rubric);             ///< NULL is legal
 const char *hn_rubric_exercise(const hn_rubric *r); ///< id of the exercise that it is for
 uint64_t hn_rubric_hash(const hn_rubric *r);        ///< of the file's text; 0 for NULL

@@ -121,5 +121,43 @@ def other_maximum(folder):
     expect("and in JSON", (report["same"], report["max_score_before"], report["max_score"]) == (False, 6, 12), str(report))
 
 
+def rubrics_in_toml(folder):
+    """The same rubric as TOML: what write makes is what check reads; faults have the lines of the file."""
+    path, json_path = os.path.join(folder, "r.toml"), os.path.join(folder, "r.json")
+    for out in (path, json_path):
+        run("rubric", "write", "fourbar", "-o", out)
+    told = [run("rubric", "check", p).stdout for p in (path, json_path)]
+    expect("a rubric written as TOML means what the one in JSON means", told[0] == told[1] and "8 points" in told[0], str(told))
+    text = """# mine
+rubric = 1
+exercise = 'fourbar'
+hints = [
+  0.5,  # the first
+  1,
+]
+[tolerance.a]
+relative = 0.01
+[tolerance.b]
+relative = %s
+[shares]
+"gravity-sign" = 0.25  # half of it
+[visibility]
+b = "after_due_date"
+"""
+    said = run("rubric", "check", write(folder, "r.toml", text % "1e-4")).stdout
+    expect("lists, comments, tables in tables and both quotes are read",
+           all(w in said for w in ("1 %: passes", "0.0001 of the largest", "hint 2 costs 1 point")), said)  # fmt: skip
+    answer = write(folder, "a.json", {"a": 1, "hints": 1})
+    said = run("grade", "fourbar", answer, "--rubric", path, "--json").stdout
+    expect("grade takes it", len(json.loads(said)["entries"]) == 6, said)
+    faults = (("1e-12", "line 10: the relative tolerance 1e-12 of part b"), ("x", "line 11: a number, a text in quotes"),
+              ("1 2", "line 11: something stands behind the value"), ("{absolute = 1", "line 11: ',' or '}' was expected"),
+              ("0.1\n[tolerance.a]\nabsolute = 1", "'a' is there more than once"), ("0.1\nzz = 1", "line 12: a tolerance has no 'zz'"),
+              ("0.1\n[[points]]", "line 12: a name was expected"), ("0.1\na.b = 1", "line 12: a name with a point is not read here"))  # fmt: skip
+    for value, expected in faults:
+        done = run("rubric", "check", write(folder, "r.toml", text % value))
+        expect(f"relative = {value!r} is told: {expected}", done.returncode == 2 and expected in done.stderr, done.stderr)
+
+
 if __name__ == "__main__":
-    sys.exit(speak_tap([rubrics, whole_check, other_maximum]))
+    sys.exit(speak_tap([rubrics, whole_check, other_maximum, rubrics_in_toml]))

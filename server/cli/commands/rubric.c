@@ -8,6 +8,7 @@
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "grade/rubric_apply.h"
+#include "grade/toml_text.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -59,6 +60,15 @@ static hn_exit refuse_overwriting(const hn_args *args) {
     return hn_report_diag(args, &diag);
 }
 
+/// Puts TOML in the place of a rubric in JSON.
+static void write_as_toml(hn_strbuf *b) {
+    cJSON *root = cJSON_ParseWithLength(hn_strbuf_text(b), b->n);
+    hn_strbuf_clear(b);
+    b->failed |= !root;
+    hn_toml_write(b, root);
+    cJSON_Delete(root);
+}
+
 static hn_exit write_rubric(const hn_library *lib, const hn_args *args, const char *id) {
     hn_exercise *e = NULL;
     hn_diags diags = {0};
@@ -70,6 +80,9 @@ static hn_exit write_rubric(const hn_library *lib, const hn_args *args, const ch
     hn_strbuf_init(&b);
     hn_rubric_write(&b, e);
     hn_exercise_free(e);
+    if (args->out && hn_rubric_is_toml(args->out)) {
+        write_as_toml(&b);
+    }
     if (is_someones(args, &b)) {
         hn_strbuf_reset(&b);
         return refuse_overwriting(args);
