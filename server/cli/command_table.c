@@ -25,14 +25,15 @@ static const hn_command COMMANDS[] = {
     {"inspect", "SCENE", "degrees of freedom, loops, rank, and how the equations are solved",
      MODEL_OPTIONS " --wide", 1, 1, hn_command_inspect},
     {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
-     MODEL_OPTIONS " --format --wide", 1, 1, hn_command_equations},
+     MODEL_OPTIONS " --format=text|latex|json --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
      "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
      "julia, wolfram or modelica (for Julia, Wolfram and Modelica the equations are tested, but no "
      "exported program was run); latex: its equations to read; or as a model: --format mjcf or "
      "urdf",
-     MODEL_OPTIONS " --language --method --style --solver --blanks --format --loops --out -o "
-                   "--force",
+     MODEL_OPTIONS
+     " --language=python|c|cpp|java|octave|julia|wolfram|modelica|latex --method --style --solver "
+     "--blanks --format=mjcf|urdf --loops --out -o --force",
      1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java|julia",
      "a starting point for a solver of your own, run as program:FILE; the one in Python needs "
@@ -42,7 +43,7 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
     {"run", "SCENE", "one method; samples as --format csv, ndjson or json, with a verdict",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
-                   "--raw-lambda --reactions --format --plot",
+                   "--raw-lambda --reactions --format=csv|ndjson|json --plot",
      1, 1, hn_command_run},
     {"compare", "SCENE", "several methods at the same times: which are right, what they cost",
      MODEL_OPTIONS
@@ -92,7 +93,8 @@ static const hn_command COMMANDS[] = {
      "student, whose name chooses the variant unless --seed does; --out FILE.ndjson or .csv. ID is "
      "an exercise, or a scene whose program (export --blanks) was filled in",
      MODEL_OPTIONS
-     " --format --out -o --seed --student --rubric --plot --show-expected --no-pictures "
+     " --format=text|json|gradescope|prairielearn|autolab|coderunner|lti-score|junit|csv|html "
+     "--out -o --seed --student --rubric --plot --show-expected --no-pictures "
      "--wide --jobs --shard --merge",
      2, HN_CLI_MAX_WORDS, hn_command_grade},
     {"rubric", "check|write FILE|ID",

@@ -4,9 +4,12 @@
 #include "cli/command_table.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
+#include "dynamics/compile/coordinates.h"
 #include "integrators/method/catalogue.h"
+#include "session/extreme/extreme_files.h"
 #include "session/model/lists.h"
 #include "session/model/model.h"
+#include "session/model/model_json.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
@@ -77,21 +80,17 @@ static void offer_methods(completing c) {
 
 // ---- scenes and their parameters ----
 
-static void offer_scenes(const completing *c, const hn_library *lib) {
-    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
-        offer(c, hn_library_scene_id(lib, i), "", NULL);
-    }
-}
-
-static void offer_lessons(const completing *c, const hn_library *lib) {
+/// The ids of a list of the library, each with its title.
+static void offer_documents(const completing *c, const hn_library *lib, const char *key,
+                            void (*write)(hn_strbuf *b, const hn_library *lib)) {
     hn_strbuf text;
     hn_strbuf_init(&text);
-    hn_lessons_json(&text, lib);
+    write(&text, lib);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&text));
-    const cJSON *lesson;
-    cJSON_ArrayForEach(lesson, cJSON_GetObjectItem(document, "lessons")) {
-        offer(c, cJSON_GetStringValue(cJSON_GetObjectItem(lesson, "id")), "",
-              cJSON_GetStringValue(cJSON_GetObjectItem(lesson, "title")));
+    const cJSON *row;
+    cJSON_ArrayForEach(row, cJSON_GetObjectItem(document, key)) {
+        offer(c, cJSON_GetStringValue(cJSON_GetObjectItem(row, "id")), "",
+              cJSON_GetStringValue(cJSON_GetObjectItem(row, "title")));
     }
     cJSON_Delete(document);
     hn_strbuf_reset(&text);
@@ -100,6 +99,31 @@ static void offer_lessons(const completing *c, const hn_library *lib) {
 static void offer_problems(const completing *c, const hn_library *lib) {
     for (int i = 0; i < hn_library_n_problems(lib); i++) {
         offer(c, hn_library_problem_id(lib, i), "", NULL);
+    }
+}
+
+static void offer_extreme_cases(const completing *c, const hn_library *lib) {
+    hn_extreme *x = NULL;
+    hn_diags diags = {0};
+    if (hn_extreme_load(lib, NULL, 0, &x, &diags) == HN_OK) {
+        for (int i = 0; i < x->n_cases; i++) {
+            offer(c, x->cases[i].id, "", x->cases[i].title);
+        }
+    }
+    hn_extreme_free(x);
+}
+
+/// Where coordinates and rates start, those of joints that close a loop left out: "start.th1=".
+static void offer_starts(const completing *c, const hn_model *model) {
+    const hn_system *sys = hn_model_system(model);
+    for (int i = 0; i < hn_system_get_info(sys).n_user; i++) {
+        const hn_coordinate *q =
+            &hn_model_scene(model)->coordinates[hn_system_user_coordinate(sys, i)];
+        char name[96];
+        snprintf(name, sizeof name, "start.%.80s", q->name);
+        offer(c, name, "=", "where it starts");
+        snprintf(name, sizeof name, "start.%.80s", q->rate);
+        offer(c, name, "=", "its rate at the start");
     }
 }
 
@@ -119,6 +143,7 @@ static void offer_parameters(const completing *c, const hn_library *lib, const c
                  s->params[i].about ? s->params[i].about : "");
         offer(c, s->params[i].name, "=", about);
     }
+    offer_starts(c, model);
     hn_model_free(model);
 }
 
@@ -137,12 +162,12 @@ static void offer_listed(const completing *c, const char *words) {
     }
 }
 
-/// The values of an option whose argument lists them: "light|dark".
+/// The values of an option that has a list of them: "light|dark".
 static void offer_choices(const completing *c, const hn_command *command, const char *option) {
     hn_option_row o;
     for (int i = 0; hn_args_option(command, i, &o); i++) {
-        if (strcmp(o.name, option) == 0 && o.argument && strchr(o.argument, '|')) {
-            offer_listed(c, o.argument);
+        if (strcmp(o.name, option) == 0) {
+            offer_listed(c, o.choices);
         }
     }
 }
@@ -150,16 +175,23 @@ static void offer_choices(const completing *c, const hn_command *command, const 
 /// A word that is no option's value; `first`: the one behind the command.
 static void offer_word(const completing *c, const hn_library *lib, const hn_command *command,
                        bool first) {
-    if (first && strstr(command->words, "SCENE")) {
-        offer_scenes(c, lib);
+    const bool many = strstr(command->words, "...]") != NULL; // "[SCENE...]"
+    if ((first || many) && strstr(command->words, "SCENE")) {
+        offer_documents(c, lib, "scenes", hn_scenes_json);
     }
     if (strcmp(command->name, "help") == 0) {
         for (int i = 0; i < hn_command_count(); i++) {
             offer(c, hn_command_at(i)->name, "", hn_command_at(i)->about);
         }
     }
-    if (first && strstr(command->words, "ID")) {
-        (strcmp(command->name, "lesson") == 0 ? offer_lessons : offer_problems)(c, lib);
+    if (strcmp(command->name, "extreme") == 0) {
+        offer_extreme_cases(c, lib);
+    } else if (first && strstr(command->words, "ID")) {
+        if (strcmp(command->name, "lesson") == 0) {
+            offer_documents(c, lib, "lessons", hn_lessons_json);
+        } else {
+            offer_problems(c, lib);
+        }
     }
     if (!first || !strstr(command->words, "SCENE")) {
         offer_listed(c, command->words);
@@ -235,14 +267,26 @@ static const char BASH[] =
     "    [[ $breaks ]] && kept=${cur%\"${cur##*[$breaks]}\"} kept=${kept%@}\n"
     "    COMPREPLY=(\"${COMPREPLY[@]#\"$kept\"}\")\n"
     "}\ncomplete -o default -F _holonom holonom\n";
-// a blank follows what is complete; works from a folder of functions and when it is sourced
+// what each candidate is about stands beside it; a blank follows what is complete; works from a
+// folder of functions and when it is sourced
 static const char ZSH[] =
     "#compdef holonom\n_holonom() {\n"
-    "    local -a found open whole\n"
-    "    found=(${(f)\"$(holonom complete -- ${words[2,CURRENT]} 2>/dev/null | cut -f1)\"})\n"
-    "    open=(${(M)found:#*[=@]}) whole=(${found:#*[=@]})\n"
-    "    (( $#open )) && compadd -S '' -Q -- $open\n"
-    "    (( $#whole )) && compadd -Q -- $whole\n"
+    "    local -a found open whole says_open says_whole rows\n"
+    "    local one name says\n"
+    "    found=(${(f)\"$(holonom complete -- \"${(@)words[2,CURRENT]}\" 2>/dev/null)\"})\n"
+    "    for one in $found; do\n"
+    "        name=${one%%$'\\t'*} says=$name\n"
+    "        if [[ $one == *$'\\t'* ]]; then\n"
+    "            rows=(-l)\n"
+    "            (( $#name < 20 )) && says=${(r:20:)name}\n"
+    "            says+=\"  ${one#*$'\\t'}\"\n"
+    "        fi\n"
+    "        says=${says[1,COLUMNS - 1]}\n"
+    "        if [[ $name == *[=@] ]]; then open+=($name) says_open+=($says)\n"
+    "        else whole+=($name) says_whole+=($says); fi\n"
+    "    done\n"
+    "    (( $#open )) && compadd $rows -d says_open -S '' -Q -- $open\n"
+    "    (( $#whole )) && compadd $rows -d says_whole -Q -- $whole\n"
     "    (( $#found )) || _files\n"
     "}\n"
     "if [[ $funcstack[1] == _holonom ]]; then _holonom \"$@\"; else compdef _holonom holonom; fi\n";

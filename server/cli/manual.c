@@ -40,7 +40,12 @@ static void put_command(hn_strbuf *b, const hn_command *command) {
             hn_strbuf_add(b, "\\fR");
         }
         hn_strbuf_add(b, "\n");
-        put_text(b, o.about);
+        hn_strbuf about;
+        hn_strbuf_init(&about);
+        hn_args_about(&about, &o);
+        put_text(b, hn_strbuf_text(&about));
+        b->failed |= about.failed;
+        hn_strbuf_reset(&about);
         hn_strbuf_add(b, "\n");
     }
 

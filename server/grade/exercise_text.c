@@ -2,6 +2,7 @@
 #include "grade/exercise_text.h"
 
 #include "base/hash.h"
+#include "base/paragraphs.h"
 #include "grade/exam.h"
 #include "linalg/dense.h"
 
@@ -101,7 +102,7 @@ static void put_numbers(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
     for (int i = 0; i < p->n_names; i++) {
         hn_strbuf_printf(b, "%s %s = %.6f", i ? "," : "", p->names[i].name, own.value[i]);
     }
-    hn_strbuf_printf(b, "\nthe loop is closed, and %s v = 0 to six digits for v = (", p->answer);
+    hn_strbuf_printf(b, " the loop is closed, and %s v = 0 to six digits for v = (", p->answer);
     for (int j = 0; j < p->n_columns; j++) {
         hn_strbuf_printf(b, "%s%.6f", j ? ", " : "", own.velocity[j]);
     }
@@ -109,9 +110,11 @@ static void put_numbers(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
 }
 
 void hn_exercise_text(hn_strbuf *b, const hn_exercise *p, uint64_t seed, const char *student) {
-    hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g points; seed %llu)\n\n%s\n", p->id,
+    hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g points; seed %llu)\n\n", p->id,
                      p->title, p->lesson, p->section, hn_exercise_points(p),
-                     (unsigned long long)(seed ? seed : p->seed), p->statement);
+                     (unsigned long long)(seed ? seed : p->seed));
+    hn_paragraphs_join(b, p->statement);
+    hn_strbuf_add(b, "\n");
     put_numbers(b, p, seed);
     hn_strbuf_add(b, "\nHand in a JSON file: ");
     submission_form(b, p, student);

@@ -2,6 +2,7 @@
 #include "grade/variant.h"
 
 #include "base/hash.h"
+#include "base/paragraphs.h"
 #include "grade/exercise_text.h"
 #include "grade/repeated_member.h"
 #include "grade/rubric.h"
@@ -81,7 +82,8 @@ bool hn_variant_check_names(const hn_exercise *exercise, const cJSON *submission
 
 // ---- text ----
 
-static void put_statement(hn_strbuf *b, hn_variant *x) {
+static void put_statement(hn_strbuf *b, hn_variant *x, const hn_part *p) {
+    (void)p;
     const cJSON *line;
     cJSON_ArrayForEach(line, cJSON_GetObjectItemCaseSensitive(x->exercise->root, "statement")) {
         hn_draw_text(b, &x->draw, cJSON_IsString(line) ? line->valuestring : "");
@@ -99,6 +101,17 @@ static void put_question(hn_strbuf *b, hn_variant *x, const hn_part *p) {
         hn_draw_text(b, &x->draw, cJSON_IsString(line) ? line->valuestring : "");
         hn_strbuf_add(b, line->next ? "\n" : "");
     }
+}
+
+/// What `put` writes, as paragraphs for a reader of any width.
+static void put_joined(hn_strbuf *b, hn_variant *x, const hn_part *p,
+                       void (*put)(hn_strbuf *b, hn_variant *x, const hn_part *p)) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    put(&text, x, p);
+    hn_paragraphs_join(b, hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
 }
 
 /// The member that says which variant is answered; nothing for the exercise's own.
@@ -161,12 +174,12 @@ void hn_variant_text(hn_strbuf *b, hn_variant *x) {
     hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g point%s; seed %llu)\n\n", p->id,
                      p->title, p->lesson, p->section, hn_exercise_points(p),
                      hn_exercise_points(p) == 1 ? "" : "s", (unsigned long long)x->seed);
-    put_statement(b, x);
+    put_joined(b, x, NULL, put_statement);
     for (int i = 0; i < x->n_parts; i++) {
         const hn_part *part = &x->part[i];
         hn_strbuf_printf(b, "\n%s) [%g point%s] ", part->id, part->points,
                          part->points == 1 ? "" : "s");
-        put_question(b, x, part);
+        put_joined(b, x, part, put_question);
         hn_strbuf_printf(b, "\n  answer \"%s\": ", part->id);
         part->kind->ask(b, part);
         hn_strbuf_add(b, "\n");
@@ -232,7 +245,7 @@ void hn_variant_json(hn_strbuf *b, hn_variant *x) {
     hn_json_put_number(b, "points", hn_exercise_points(p));
     hn_json_put_string(b, "hash", hash);
     hn_json_put_string(b, "seed", seed);
-    put_statement(&text, x);
+    put_statement(&text, x, NULL);
     hn_json_put_string(b, "statement", hn_strbuf_text(&text));
     b->failed |= text.failed;
     hn_strbuf_reset(&text);

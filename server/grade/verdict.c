@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /// "at l1 = 1.2, ..., th4 = -0.3"
@@ -24,6 +25,13 @@ static void add_number(hn_strbuf *b, double x) {
     }
 }
 
+/// Whether an answer is a number as it stands, and no formula that has a value.
+static bool is_number(const char *given) {
+    char *end;
+    strtod(given, &end);
+    return end != given && !end[strspn(end, " ")];
+}
+
 void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
                            const char *indent) {
     if (e->explanation[0]) {
@@ -36,14 +44,16 @@ void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_ver
     if (e->state < 0 && e->expected[0] && e->max_points > 0 && v->show_expected) {
         hn_strbuf_printf(b, "\n%sexpected  %s", indent, e->expected);
     }
-    if (e->state >= 0) {
+    if (e->state >= 0 && !is_number(e->given)) {
         hn_strbuf_add(b, " = ");
         add_number(b, e->given_value);
-        if (v->show_expected) {
-            hn_strbuf_printf(b, "\n%sexpected  ", indent);
-            add_number(b, e->expected_value);
-        }
-        hn_strbuf_printf(b, " (a difference of %.2g is allowed)", e->allowed);
+    }
+    if (e->state >= 0 && v->show_expected) {
+        hn_strbuf_printf(b, "\n%sexpected  ", indent);
+        add_number(b, e->expected_value);
+        hn_strbuf_printf(b, ", a difference of %.2g is allowed", e->allowed);
+    } else if (e->state >= 0) {
+        hn_strbuf_printf(b, ", off by more than the %.2g allowed", e->allowed);
     }
     hn_strbuf_add(b, "\n");
 }

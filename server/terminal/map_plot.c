@@ -5,10 +5,12 @@
 #include "session/stability/stability_frame.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { LABEL_COLUMNS = 12, FOOT_ROWS = 4, SHADES = 4 };
+enum { LABEL_COLUMNS = 12, AXIS_ROWS = 2, FOOT_ROWS = 4, SHADES = 4 };
+enum { LEGEND_COLUMNS = 17, LEGEND_ROWS = 11, MOST_ENTRIES = 12, ENTRY = 64 };
 
 static const char PREDICTED[] = "━";
 static const char *const SHADE[SHADES] = {"░", "▒", "▓", "█"};
@@ -115,10 +117,6 @@ static const char *glyph_of(const hn_map_plot *p, range r, const hn_map_plot_cel
 
 // ---- drawing ----
 
-int hn_map_plot_rows(const hn_map_plot *p) {
-    return p->y.n + FOOT_ROWS;
-}
-
 /// A cell takes two columns where there is room: the outcome, then the predicted limit.
 static void draw_cell(hn_cells *c, hn_area area, const hn_map_plot *p, range r, int column, int row,
                       bool wide) {
@@ -161,21 +159,70 @@ static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, int width
                     other, title);
 }
 
-static void add_legend(hn_strbuf *b, const hn_map_plot *p, range r) {
+typedef struct legend {
+    int n;
+    char entry[MOST_ENTRIES][ENTRY];
+} legend;
+
+static void HN_PRINTF(2, 3) add_entry(legend *l, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    if (l->n < MOST_ENTRIES) {
+        vsnprintf(l->entry[l->n++], ENTRY, format, list);
+    }
+    va_end(list);
+}
+
+static void fill_legend(legend *l, const hn_map_plot *p, range r) {
     char low[HN_SI_TEXT], high[HN_SI_TEXT];
     for (int k = HN_STABILITY_FINE; k < HN_STABILITY_CLASS_COUNT; k++) {
         const hn_map_class_look *look = hn_map_class_look_get((hn_stability_class)k);
         if (!p->heat || !hn_stability_is_stable((hn_stability_class)k)) {
-            hn_strbuf_printf(b, "%s %s   ", look->glyph, look->words);
+            add_entry(l, "%s %s", look->glyph, look->words);
         }
     }
     if (p->heat && r.high > r.low) {
         hn_si_format(pow(10, r.low), "m", 2, low);
         hn_si_format(pow(10, r.high), "m", 2, high);
-        hn_strbuf_printf(b, "%s to %s worst loop gap, %s to %s   ", SHADE[0], SHADE[SHADES - 1],
-                         low, high);
+        add_entry(l, "%s to %s worst loop gap, %s to %s", SHADE[0], SHADE[SHADES - 1], low, high);
     }
-    hn_strbuf_printf(b, "%s predicted limit", PREDICTED);
+    add_entry(l, "%s predicted limit", PREDICTED);
+}
+
+static bool is_wide(const hn_map_plot *p, int columns) {
+    return LABEL_COLUMNS + 2 * p->x.n <= columns;
+}
+
+/// Where a legend beside the map stands; no columns: it has no room there and goes below.
+static hn_area beside_map(const hn_map_plot *p, hn_area area) {
+    const int x = LABEL_COLUMNS + p->x.n * (is_wide(p, area.columns) ? 2 : 1) + 1;
+    const int room = area.columns - x;
+    return room >= LEGEND_COLUMNS ? (hn_area){area.x + x, area.y, room, area.rows} : (hn_area){0};
+}
+
+/// An entry a line, what is folded set in behind its sign.
+static void draw_legend_beside(hn_cells *c, hn_area area, const legend *l) {
+    int y = 0;
+    for (int i = 0; i < l->n; i++) {
+        const char *words = l->entry[i] + strcspn(l->entry[i], " ") + 1;
+        const hn_area rest = {area.x + 2, area.y, area.columns - 2, area.rows};
+        hn_cells_printf(c, area, 0, y, HN_CELL_MUTED, 0, "%.*s", (int)(words - l->entry[i]),
+                        l->entry[i]);
+        y = hn_cells_fold(c, rest, y, HN_CELL_MUTED, words);
+    }
+}
+
+/// One entry after the other; none is broken over two lines.
+static void draw_legend_below(hn_cells *c, hn_area area, int y, const legend *l) {
+    int x = 0;
+    for (int i = 0; i < l->n; i++) {
+        const int width = hn_text_columns(l->entry[i]);
+        if (x > 0 && x + width > area.columns) {
+            x = 0;
+            y++;
+        }
+        x += hn_cells_put(c, area, x, y, HN_CELL_MUTED, 0, l->entry[i]) + 3;
+    }
 }
 
 static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place at, bool wide,
@@ -188,9 +235,9 @@ static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place a
 
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
                       hn_map_place cursor) {
-    const bool wide = LABEL_COLUMNS + 2 * p->x.n <= area.columns;
+    const bool wide = is_wide(p, area.columns);
     const range r = find_range(p);
-    hn_strbuf legend;
+    legend entries = {0};
     for (int row = 0; row < p->y.n; row++) {
         for (int column = 0; column < p->x.n; column++) {
             draw_cell(c, area, p, r, column, row, wide);
@@ -199,10 +246,21 @@ void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_pl
     draw_axes(c, area, p, p->x.n * (wide ? 2 : 1));
     mark(c, area, p, present, wide, HN_CELL_BOLD, "★");
     mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "◆");
-    hn_strbuf_init(&legend);
-    add_legend(&legend, p, r);
-    hn_cells_fold(c, area, p->y.n + 2, HN_CELL_MUTED, hn_strbuf_text(&legend));
-    hn_strbuf_reset(&legend);
+
+    // the legend beside it where there is room
+    const hn_area beside = beside_map(p, area);
+    fill_legend(&entries, p, r);
+    if (beside.columns > 0) {
+        draw_legend_beside(c, beside, &entries);
+    } else {
+        draw_legend_below(c, area, p->y.n + AXIS_ROWS, &entries);
+    }
+}
+
+int hn_map_plot_rows(const hn_map_plot *p, int columns) {
+    const bool beside = beside_map(p, (hn_area){0, 0, columns, 1}).columns > 0;
+    const int rows = p->y.n + (beside ? AXIS_ROWS : FOOT_ROWS);
+    return beside && rows < LEGEND_ROWS ? LEGEND_ROWS : rows;
 }
 
 // ---- words ----
@@ -232,7 +290,7 @@ void hn_map_plot_words(hn_strbuf *b, const hn_map_plot *p, hn_map_place at) {
 void hn_map_plot_text(hn_strbuf *b, const hn_map_plot *p, int columns, bool colours) {
     const hn_map_place none = {-1, -1};
     hn_cells cells = {0};
-    const int rows = hn_map_plot_rows(p) + FOOT_ROWS; // a legend folds in narrow terminals
+    const int rows = p->y.n + AXIS_ROWS + 2 * MOST_ENTRIES; // of a legend that is folded
     if (!hn_cells_resize(&cells, columns, rows)) {
         hn_strbuf_add(b, "no memory for the map\n");
         return;

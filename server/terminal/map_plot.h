@@ -31,8 +31,9 @@ typedef struct hn_map_place {
 void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m);
 /// The cell whose values are nearest.
 hn_map_place hn_map_plot_place(const hn_map_plot *p, double x, double y);
-/// Rows that the map takes, with its axis and its legend.
-int hn_map_plot_rows(const hn_map_plot *p);
+/// Rows that the map takes in `columns`, with its axis and its legend, which stands
+/// beside it where there is room.
+int hn_map_plot_rows(const hn_map_plot *p, int columns);
 /// Draws the map, its axes and its legend at the top left of the area. present, cursor: cells to
 /// mark.
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,

@@ -2,6 +2,7 @@
 #include "tui/exercise.h"
 
 #include "base/file.h"
+#include "base/paragraphs.h"
 #include "grade/exercise_shelf.h"
 #include "grade/exercise_text.h"
 #include "grade/grade.h"
@@ -313,8 +314,9 @@ static void add_field(hn_strbuf *b, const hn_tui_exercise *x, const field *f, bo
                       int *line) {
     if (f->part) {
         const double points = cJSON_GetNumberValue(cJSON_GetObjectItem(f->part, "points"));
-        hn_strbuf_printf(b, "%s) [%g point%s] %s\n", f->name, points, points == 1 ? "" : "s",
-                         text_of(f->part, "ask"));
+        hn_strbuf_printf(b, "%s) [%g point%s] ", f->name, points, points == 1 ? "" : "s");
+        hn_paragraphs_join(b, text_of(f->part, "ask"));
+        hn_strbuf_add(b, "\n");
         add_form(b, f);
     }
     *line = count_lines(b);
@@ -386,7 +388,8 @@ void hn_tui_exercise_text(const hn_tui_exercise *x, int chosen, hn_strbuf *b, in
                           int *last) {
     hn_strbuf_printf(b, "Exercise %s: %s (%g points)\n\n", hn_exercise_id(x->exercise),
                      hn_exercise_title(x->exercise), hn_exercise_points(x->exercise));
-    hn_strbuf_printf(b, "%s\n", text_of(x->document, "statement"));
+    hn_paragraphs_join(b, text_of(x->document, "statement"));
+    hn_strbuf_add(b, "\n");
     for (int i = 0; i < x->n_fields; i++) {
         const int begin = count_lines(b);
         int answer;

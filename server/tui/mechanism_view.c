@@ -23,11 +23,12 @@ typedef struct placing {
     double scale, x, y; ///< dots per metre; dot of the view's origin
 } placing;
 
-// a dot of braille is about as wide as it is high
+/// The whole motion above the row of the scale bar. A dot of braille is about as wide as it is
+/// high.
 static hn_placing fit(const hn_envelope *envelope, hn_area area) {
     const double *box = envelope->box;
     const double wide = fmax(box[2] - box[0], 1e-12), tall = fmax(box[3] - box[1], 1e-12);
-    const double columns = area.columns * ACROSS, rows = area.rows * DOWN;
+    const double columns = area.columns * ACROSS, rows = (area.rows - 1) * DOWN;
     const double scale = fmin((columns - 4) / wide, (rows - 4) / tall);
     return (hn_placing){.across = scale,
                         .down = scale,

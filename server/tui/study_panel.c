@@ -251,7 +251,7 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
         return;
     }
     const hn_map_place here = hn_map_plot_place(&map, w->present[0], w->present[1]);
-    const int rows = hn_map_plot_rows(&map);
+    const int rows = hn_map_plot_rows(&map, in.columns);
     char shown[HN_SPEC_MAX];
     hn_short_spelling(map.name, shown, sizeof shown);
     const int used = 1 + hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);

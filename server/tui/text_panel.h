@@ -15,6 +15,7 @@ void hn_text_panel_key(hn_workbench *w, int key);
 /// Shows the text from this line on, but never less than its last page.
 void hn_text_panel_scroll(hn_workbench *w, int line);
 enum { HN_TUI_WORDS = 16 };
+enum { HN_TUI_PARAGRAPH = 8192 }; ///< bytes of a line, which is a paragraph, that are shown
 /// Runs `holonom` with these words, and with the settings of the scene, and shows its text.
 void hn_text_panel_run(hn_workbench *w, const char *title, const char *const *words, int n);
 #endif

@@ -8,13 +8,14 @@
 #include "tui/mechanism_view.h"
 #include "tui/reactions_view.h"
 #include "tui/study_panel.h"
+#include "tui/text_panel.h"
 #include "tui/why_view.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
+enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
 enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
@@ -225,7 +226,7 @@ static const double *evaluations_of(const hn_track *t) {
     return t->evaluations;
 }
 
-static const number_column NUMBERS[] = {{"gap", "m", gap_of},
+static const number_column NUMBERS[] = {{"now: gap", "m", gap_of},
                                         {"error", "m", error_of},
                                         {"energy", "J", energy_of},
                                         {"evals", "", evaluations_of}};
@@ -264,7 +265,7 @@ static void name_row(const hn_workbench *w, int m, char out[ROW_NAME]) {
 
 /// Gap and error are shown even where the verdict is cut; the others while it has room.
 static table_columns lay_out(const hn_workbench *w, int width) {
-    int longest = 4;
+    int longest = LEAST_NAME;
     for (int m = 0; m < w->n_methods; m++) {
         char name[ROW_NAME];
         name_row(w, m, name);
@@ -322,7 +323,8 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
                calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);
 }
 
-/// The heads of the numbers stand in the upper edge.
+/// The heads stand in the upper edge: numbers are those of the present frame, the verdict is about
+/// all frames up to it.
 static void draw_table(hn_cells *c, const hn_workbench *w) {
     const hn_area table = table_area(c->columns, c->rows, w);
     const hn_area inside = hn_cells_frame(c, table, "methods");
@@ -332,6 +334,7 @@ static void draw_table(hn_cells *c, const hn_workbench *w) {
         const int left = number_end(at, i) - (int)strlen(NUMBERS[i].head);
         hn_cells_printf(c, edge, left - 1, 0, HN_CELL_MUTED, 0, " %s ", NUMBERS[i].head);
     }
+    hn_cells_put(c, edge, at.verdict + 1, 0, HN_CELL_MUTED, 0, " worst so far ");
     const int frame = hn_workbench_frame(w);
     for (int m = 0; m < w->n_methods; m++) {
         draw_row(c, inside, w, m, frame);
@@ -431,7 +434,7 @@ static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
     int line = 0, y = 0;
     for (const char *at = text; *at && y < in.rows; line++) {
         const size_t n = strcspn(at, "\n");
-        char row[1024];
+        char row[HN_TUI_PARAGRAPH];
         snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), at);
         if (line >= w->scroll) {
             const hn_area rest = {in.x + 1, in.y + y, in.columns - 2, in.rows - y};

@@ -218,10 +218,10 @@ class Keys(unittest.TestCase):
         terminal = self.open("four-bar", columns=80, rows=24)
         terminal.type(" \x7f")
         self.assertTrue(terminal.wait_for(rb"t 0\.000 s|0\.000"))
-        # the joint between crank and coupler stands at column 13 of row 7
-        terminal.type("\033[<0;13;7M\033[<32;11;7M\033[<32;9;8M")
+        # the joint between crank and coupler stands at column 14 of row 6
+        terminal.type("\033[<0;14;6M\033[<32;12;6M\033[<32;10;7M")
         self.assertTrue(terminal.wait_for(rb"let go: the methods start here"))
-        terminal.type("\033[<0;9;8m")
+        terminal.type("\033[<0;10;7m")
         self.assertTrue(terminal.wait_for(rb"all methods start here now"))
         self.assertIn("&set.start.th1=", self.copied(terminal))
         terminal.type("z")

@@ -45,6 +45,18 @@ class Table(unittest.TestCase):
         self.assertRegex(out, r"index-1 20 ms +[^\n]*\n[^\n]*index-1 10 ms ")
         self.assertRegex(out, r"projection  +\S")
 
+    def test_the_mechanism_lies_above_its_scale_bar(self):
+        # at the end the crank of the unstabilised run hangs lowest
+        for size in ("80x24", "120x40"):
+            _, out, _ = once("four-bar", "--once", "--t", "10", "--size", size)
+            bar = next(line for line in out.split("\n") if "├──" in line and " mm" in line)
+            self.assertRegex(bar, r"^│ ├─+┤ \d+ mm +│", size)
+
+    def test_the_heads_say_what_is_now_and_what_the_worst(self):
+        for columns in (80, 120):
+            _, out, _ = once("four-bar", "--once", "--t", "1", "--size", f"{columns}x24")
+            self.assertRegex(out, r"methods ─* now: gap ─+ error ─.* worst so far ─", columns)
+
     def test_a_window_without_room_for_the_views_says_so(self):
         for size, wanted in (("40x12", True), ("80x24", False)):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", size)
@@ -167,6 +179,16 @@ class Studies(unittest.TestCase):
         self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>w"))
         self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>p<Right><Esc>w"))
 
+    def test_the_legend_of_a_map_stands_beside_it_or_below_unbroken(self):
+        out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
+        rows = out.split("\n")
+        first = next(row for row in rows if "▲ unstable" in row)
+        self.assertRegex(first, r"│ +[0-9.]+ │▲")
+        done = subprocess.run([PROGRAM, "study", "four-bar", "stability", "--preset", "baumgarte", "--grid", "24x4", "--time", "0.2", "--plot",
+                               "--methods", "baumgarte@rk4:h=0.02"], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "60", "LC_ALL": "C.UTF-8"})
+        for entry in ("▲ unstable: the error grew", "× stopped with a reason", "━ predicted limit"):
+            self.assertTrue(any(entry in row for row in done.stdout.split("\n")), done.stdout)
+
     def test_the_map_says_what_alpha_and_beta_are(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
         self.assertIn("the gap e obeys e'' + 2 alpha e' + beta² e = 0", out)
@@ -206,12 +228,18 @@ class Scores(unittest.TestCase):
         listed = json.loads(subprocess.run([PROGRAM, "list", "problems", "--json"], capture_output=True, check=True).stdout)["problems"]
         lessons = [one["id"] for one in json.loads(subprocess.run([PROGRAM, "list", "lessons", "--json"], capture_output=True, check=True).stdout)["lessons"]]
         rows = [row for lesson in lessons for row in [lesson] + [one["id"] for one in listed if one["lesson"] == lesson]]
-        self.ring, self.closure = ("t" + "<Down>" * rows.index(name) for name in ("ring", "closure"))
+        self.keys_to = lambda name: "t" + "<Down>" * rows.index(name)
+        self.ring, self.closure = self.keys_to("ring"), self.keys_to("closure")
 
     def frame(self, keys, **environment):
         status, out, err = once("pendulum", "--once", "--t", "0.1", "--size", "160x60", "--keys", keys, **{"XDG_STATE_HOME": self.state, **environment})
         self.assertEqual((status, err), (0, ""))
         return out
+
+    def lines(self, name, wide):
+        """The first page of an exercise in a window of 80 columns."""
+        _, out, _ = once("pendulum", "--once", "--t", "0.1", "--size", "80x24", "--keys", self.keys_to(name) + "<Enter>")
+        return [row[2:wide].rstrip() for row in out.split("\n")[2:21]]
 
     def kept(self):
         with open(self.file, encoding="utf-8") as file:
@@ -250,6 +278,19 @@ class Scores(unittest.TestCase):
         self.assertIn("holds no scores", " ".join(self.frame(answer).split()))
         with open(self.file, encoding="ascii") as file:
             self.assertEqual(file.read(), "[not scores")
+
+    def test_paragraphs_are_folded_to_the_window(self):
+        rows = self.lines("p3", 78)
+        # no line ends where the next word had room, except at a paragraph's end
+        for row, after in zip(rows, rows[1:]):
+            if row and after and row[0] != " " and after[0] != " " and not after.startswith(">"):
+                self.assertGreater(len(row) + 1 + len(after.split()[0]), 76, (row, after))
+        self.assertIn("    phi_1 = l1 cos th1 + l2 cos th2 - l3 cos th3 - l4 cos th4 = 0,", rows)
+
+    def test_a_wrong_number_is_not_said_to_equal_itself(self):
+        out = self.frame(self.keys_to("p3") + "<Enter><Enter>2.5<Enter>c")
+        self.assertNotIn("2.5 = 2.5", out)
+        self.assertRegex(out, r"given +2\.5, off by more than the [0-9.e-]+ allowed")
 
     def test_answers_and_points_are_told_apart(self):
         out = self.frame(self.closure + "<Enter><Enter>1<Enter><Enter>l3 sin(th3) u3<Enter>c")

@@ -24,7 +24,14 @@ CASES = (("holonom sna", "holonom snapshot "), ("holonom run slider-c", "holonom
          ("holonom run four-bar --method baumgarte:alpha=5,be", "holonom run four-bar --method baumgarte:alpha=5,beta="),
          ("holonom run four-bar --met", "holonom run four-bar --method "), ("holonom study four-bar stab", "holonom study four-bar stability "),
          ("holonom tui four-bar --pictures si", "holonom tui four-bar --pictures sixel "), ("holonom lesson 06", "holonom lesson 06-drift "),
-         ("holonom problem clos", "holonom problem closure "), ("holonom grade p3 my-ans", "holonom grade p3 my-answer.json "))
+         ("holonom problem clos", "holonom problem closure "), ("holonom grade p3 my-ans", "holonom grade p3 my-answer.json "),
+         ("holonom export four-bar --language jav", "holonom export four-bar --language java "),
+         ("holonom equations four-bar --format la", "holonom equations four-bar --format latex "),
+         ("holonom study four-bar stability --preset baum", "holonom study four-bar stability --preset baumgarte "),
+         ("holonom run four-bar --set start.th3", "holonom run four-bar --set start.th3="), ("holonom extreme X25", "holonom extreme X25 "),
+         ("holonom report four-bar slider-c", "holonom report four-bar slider-crank "))
+# what Tab lists where nothing is typed yet, and what zsh and fish say of it
+LISTS = (("holonom export four-bar --language ", r"wolfram", r"wolfram"), ("holonom run four-bar --set ", r"start\.w1", r"length of the crank"))
 
 
 class Completion(Tmux):
@@ -44,6 +51,13 @@ class Completion(Tmux):
             self.wait_for(rf"> {re.escape(typed)}\s*\n")
             self.keys("Tab")
             self.assertTrue(self.stands(wanted), f"{shell}: after '{typed}' and Tab there is\n{self.screen()}")
+        for typed, name, says in LISTS:
+            self.keys("C-c")
+            self.keys("C-l")
+            self.keys("-l", typed)
+            self.wait_for(rf"> {re.escape(typed)}?\s*\n")
+            self.keys(*("Tab", "Tab")[:2 if shell.startswith("bash") else 1])
+            self.wait_for(name if shell.startswith("bash") else f"(?s)(?=.*{name})(?=.*{says})")
 
     def stands(self, line):
         """Whether the line of the cursor is this one, the cursor behind it."""

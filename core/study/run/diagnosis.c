@@ -360,7 +360,8 @@ static void try_remedies(hn_run *run, hn_incident *i) {
 /// Says why the remedies of a report that is about no error are offered without a trial.
 static void leave_untried(hn_watch *w, hn_incident *i) {
     for (int k = 0; k < HN_REMEDIES && i->remedy[k][0]; k++) {
-        snprintf(i->tried[k], sizeof i->tried[k], "not tried: this is a warning, not an error");
+        snprintf(i->tried[k], sizeof i->tried[k],
+                 "not tried, as nothing is wrong here; take it if the run goes wrong from here on");
     }
     i->revision = ++w->log.revision;
 }

@@ -73,8 +73,7 @@ static const option OPTIONS[] = {
      "coordinates that differ from the assembled start"},
     {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
      "rates that differ from the assembled start"},
-    {"--language", "NAME", OPTION_TEXT, AT(language),
-     "of the program: python, c, cpp, java, octave, julia, wolfram, modelica or latex"},
+    {"--language", "NAME", OPTION_TEXT, AT(language), "language of the program"},
     {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
     {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
     {"--force", NULL, OPTION_FLAG, AT(force), "replace a file that is there"},
@@ -113,15 +112,15 @@ static const option OPTIONS[] = {
      "print the contents of the picture, in words and as a list of everything drawn (JSON)"},
     {"--theme", "light|dark", OPTION_TEXT, AT(theme),
      "paper or slate; in the workbench the terminal says which"},
-    {"--view", "VIEW", OPTION_TEXT, AT(view),
-     "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
+    {"--view", "front|side|top|space|A,E", OPTION_TEXT, AT(view),
+     "where the mechanism is seen from; A,E: azimuth and elevation in degrees, as 35,22"},
     {"--jobs", "N", OPTION_COUNT, AT(jobs),
      "processes that work at once; all processors when left out"},
     {"--shard", "I/N", OPTION_TEXT, AT(shard), "every N-th submission from the I-th on"},
     {"--merge", NULL, OPTION_FLAG, AT(merge), "put the parts together that --shard made"},
     {"--style", "full|skeleton", OPTION_TEXT, AT(style),
      "skeleton: the functions alone, without self-check; full when left out"},
-    {"--solver", "NAME", OPTION_TEXT, AT(solver),
+    {"--solver", "scipy|petsc|own|eigen|ejml|ode45|ode15s", OPTION_TEXT, AT(solver),
      "scipy or petsc (python), own or eigen (cpp), own or ejml (java), ode45 or ode15s (octave)"},
     {"--blanks", NULL, OPTION_FLAG, AT(blanks),
      "leave out mass, force, jacobian and bias, for students to fill in; grade takes the file"},
@@ -160,23 +159,22 @@ static const option OPTIONS[] = {
 };
 enum { N_OPTIONS = sizeof OPTIONS / sizeof *OPTIONS };
 
-/// 1 when `name` is one of the words of `list`.
-static bool lists(const char *list, const char *name) {
-    size_t n = strlen(name);
+/// What follows `name` in a list of options: "=csv|json ...", or " ..."; NULL: it is not in it.
+static const char *find_listed(const char *list, const char *name) {
+    const size_t n = strlen(name);
     for (const char *p = list; *p;) {
-        size_t length = strcspn(p, " ");
-        if (length == n && memcmp(p, name, n) == 0) {
-            return true;
+        if (strcspn(p, " =") == n && memcmp(p, name, n) == 0) {
+            return p + n;
         }
-        p += length;
+        p += strcspn(p, " ");
         p += strspn(p, " ");
     }
-    return false;
+    return NULL;
 }
 
 static bool is_offered(const hn_command *command, const option *o) {
     return strcmp(o->name, "--json") == 0 || strcmp(o->name, "--help") == 0 ||
-           strcmp(o->name, "--no-native") == 0 || lists(command->options, o->name);
+           strcmp(o->name, "--no-native") == 0 || find_listed(command->options, o->name);
 }
 
 static const option *find_option(const hn_command *command, const char *name, size_t n) {
@@ -494,6 +492,27 @@ void hn_args_reset(hn_args *args) {
     args->fields = NULL;
 }
 
+/// The choices of a table's option: those that the command lists behind its name, or those that its
+/// argument lists.
+static void take_choices(hn_option_row *row, const hn_command *command, const option *o) {
+    const char *listed = find_listed(command->options, o->name);
+    if (listed && listed[0] == '=') {
+        snprintf(row->choices, sizeof row->choices, "%.*s", (int)strcspn(listed + 1, " "),
+                 listed + 1);
+    } else if (o->argument && strchr(o->argument, '|')) {
+        snprintf(row->choices, sizeof row->choices, "%s", o->argument);
+    }
+}
+
+/// The same of a field of a job.
+static void take_field_choices(hn_option_row *row, const hn_field *f) {
+    size_t n = 0;
+    for (int i = 0; f->choices && f->choices[i] && n < sizeof row->choices; i++) {
+        n += (size_t)snprintf(row->choices + n, sizeof row->choices - n, "%s%s", i ? "|" : "",
+                              f->choices[i]);
+    }
+}
+
 bool hn_args_option(const hn_command *command, int i, hn_option_row *out) {
     const hn_field *fields[MOST_FIELDS];
     for (int k = 0; k < N_OPTIONS; k++) {
@@ -501,6 +520,7 @@ bool hn_args_option(const hn_command *command, int i, hn_option_row *out) {
         if (is_offered(command, o) && i-- == 0) {
             *out = (hn_option_row){.argument = o->argument, .about = o->about};
             snprintf(out->name, sizeof out->name, "%s", o->name);
+            take_choices(out, command, o);
             return true;
         }
     }
@@ -510,11 +530,34 @@ bool hn_args_option(const hn_command *command, int i, hn_option_row *out) {
     if (i < n) {
         *out = (hn_option_row){.argument = fields[i]->argument, .about = fields[i]->about};
         name_option(fields[i], out->name);
+        take_field_choices(out, fields[i]);
         if (fields[i]->type == HN_FIELD_BOOL) {
             out->argument = NULL;
         }
     }
     return i < n;
+}
+
+void hn_args_about(hn_strbuf *b, const hn_option_row *o) {
+    const bool listed = o->argument && strchr(o->argument, '|');
+    for (const char *at = listed ? "" : o->choices; *at;) {
+        const size_t n = strcspn(at, "|");
+        const char *next = at + n + (at[n] == '|');
+        const char *joint = !*next ? ": " : strchr(next, '|') ? ", " : " or ";
+        hn_strbuf_printf(b, "%.*s%s", (int)n, at, joint);
+        at = next;
+    }
+    hn_strbuf_add(b, o->about);
+}
+
+/// The right column of the help, from the first line's place on.
+static void put_about(hn_strbuf *b, const char *about) {
+    for (const char *rest = about; *rest;) {
+        const size_t n = hn_fold_line(rest, HELP_WIDTH - HELP_HEAD - 3);
+        hn_strbuf_printf(b, "%*s%.*s\n", rest == about ? 0 : HELP_HEAD + 3, "", (int)n, rest);
+        rest += n;
+        rest += strspn(rest, " ");
+    }
 }
 
 void hn_args_describe(hn_strbuf *b, const hn_command *command) {
@@ -529,12 +572,11 @@ void hn_args_describe(hn_strbuf *b, const hn_command *command) {
         } else {
             hn_strbuf_printf(b, "  %-*s ", HELP_HEAD, head);
         }
-        const int room = HELP_WIDTH - HELP_HEAD - 3;
-        for (const char *rest = o.about; *rest;) {
-            const size_t n = hn_fold_line(rest, room);
-            hn_strbuf_printf(b, "%*s%.*s\n", rest == o.about ? 0 : HELP_HEAD + 3, "", (int)n, rest);
-            rest += n;
-            rest += strspn(rest, " ");
-        }
+        hn_strbuf about;
+        hn_strbuf_init(&about);
+        hn_args_about(&about, &o);
+        put_about(b, hn_strbuf_text(&about));
+        b->failed |= about.failed;
+        hn_strbuf_reset(&about);
     }
 }

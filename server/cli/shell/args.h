@@ -56,9 +56,12 @@ void hn_args_describe(hn_strbuf *b, const hn_command *command);
 typedef struct hn_option_row {
     char name[32];
     const char *argument, *about;
+    char choices[128]; ///< what its value may be for this command, "csv|json"; "": anything
 } hn_option_row;
 /// The i-th option that a command reads; false: there are no more.
 bool hn_args_option(const hn_command *command, int i, hn_option_row *out);
+/// What an option is about; before that its choices, where its argument does not list them.
+void hn_args_about(hn_strbuf *b, const hn_option_row *o);
 /// A finite number and nothing behind it; 0 otherwise.
 int hn_number_parse(const char *text, double *out);
 #endif

@@ -17,7 +17,7 @@ struct hn_args;
 
 typedef struct hn_command {
     const char *name, *words, *about; ///< words: as in the usage line, "SCENE"
-    const char *options;              ///< names, separated by spaces
+    const char *options; ///< names, separated by spaces; "--format=csv|json" where it has choices
     int min_words, max_words;
     /// NULL: a command that speaks of the commands themselves (cli.c)
     hn_exit (*run)(const hn_library *lib, const struct hn_args *args);

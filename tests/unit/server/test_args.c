@@ -110,6 +110,37 @@ static void faults_are_told_with_a_near_miss(void **state) {
     }
 }
 
+static void choices_of_an_option_are_those_of_its_command(void **state) {
+    (void)state;
+    static const struct {
+        const char *command, *option, *choices, *about;
+    } rows[] = {
+        {"run", "--format", "csv|ndjson|json", "csv, ndjson or json: form of the output"},
+        {"equations", "--format", "text|latex|json", "text, latex or json: form of the output"},
+        {"snapshot", "--theme", "light|dark",
+         "paper or slate; in the workbench the terminal says which"},
+        {"study", "--preset", "stiffness|mass-ratio|baumgarte|limits", NULL},
+        {"run", "--time", "", "end of the run [s]; the scene's when left out"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const hn_command *command = hn_command_find(rows[i].command);
+        hn_option_row o;
+        int k = 0;
+        while (hn_args_option(command, k, &o) && strcmp(o.name, rows[i].option) != 0) {
+            k++;
+        }
+        assert_string_equal(o.name, rows[i].option);
+        assert_string_equal(o.choices, rows[i].choices);
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_args_about(&b, &o);
+        if (rows[i].about) {
+            assert_string_equal(hn_strbuf_text(&b), rows[i].about);
+        }
+        hn_strbuf_reset(&b);
+    }
+}
+
 static void every_option_of_the_table_is_described(void **state) {
     (void)state;
     for (int i = 0; i < hn_command_count(); i++) {
@@ -120,7 +151,7 @@ static void every_option_of_the_table_is_described(void **state) {
         for (const char *p = command->options; *p; p += strspn(p, " ")) {
             char name[64];
             size_t n = strcspn(p, " ");
-            snprintf(name, sizeof name, "  %.*s ", (int)n, p);
+            snprintf(name, sizeof name, "  %.*s ", (int)strcspn(p, " ="), p);
             if (!strstr(hn_strbuf_text(&b), name)) {
                 fail_msg("%s has no such option: '%s'", command->name, name);
             }
@@ -137,6 +168,7 @@ int main(void) {
         cmocka_unit_test(negative_numbers_are_values_and_a_dash_is_a_word),
         cmocka_unit_test(times_are_separated_by_commas),
         cmocka_unit_test(faults_are_told_with_a_near_miss),
+        cmocka_unit_test(choices_of_an_option_are_those_of_its_command),
         cmocka_unit_test(every_option_of_the_table_is_described),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
