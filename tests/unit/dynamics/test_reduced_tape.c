@@ -23,7 +23,7 @@ typedef struct fixture {
     hn_reduced_split split;
 } fixture;
 
-/// Opens a scene whose independent coordinates are the first ones of its motors or of its list.
+/// Opens a scene and makes its tape with the r independent velocities `ind`.
 static void begin(fixture *f, const char *name, const int *ind, int r) {
     const unsigned terms = HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_GAMMA;
     memset(f, 0, sizeof *f);
@@ -152,6 +152,7 @@ static void a_closed_configuration_stays_as_it_is(void **state) {
             hn_reduced_tape_run(f.tape, 0, q, f.m.v);
             hn_reduced_tape_get_position(f.tape, q);
         } while (!(hn_reduced_tape_gap(f.tape) < CLOSED) && ++runs < 20);
+        assert_true(runs < 20);
         memcpy(again, q, sizeof q);
         hn_reduced_tape_run(f.tape, 0, again, f.m.v);
         hn_reduced_tape_get_position(f.tape, again);
