@@ -303,8 +303,8 @@ static int find_massless(const hn_accel *s) {
 static void refuse_massless(hn_accel *s) {
     const int massless = find_massless(s);
     snprintf(s->refusal, sizeof s->refusal,
-             "the loops leave a motion free that moves no mass%s%.60s: no acceleration of it "
-             "follows from forces",
+             "the loops allow a motion that moves no mass%s%.60s: forces do not determine its "
+             "acceleration; give its bodies a mass",
              massless >= 0 ? ", such as that of " : "",
              massless >= 0 ? name_of_speed(s, massless) : "");
 }
@@ -320,8 +320,8 @@ static hn_status refuse(hn_accel *s, hn_solver solver, hn_status status, int mas
     }
     if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO && solver != HN_SOLVER_LEAST_NORM) {
         snprintf(s->refusal, sizeof s->refusal,
-                 "solver=%s needs closure rows that do not depend on each other; solver=auto, "
-                 "proximal or least-norm serve this",
+                 "solver=%s needs independent constraint equations; solver=auto, proximal or "
+                 "least-norm serve this",
                  name);
     } else if (status == HN_ERR_SINGULAR) {
         refuse_massless(s);
