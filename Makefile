@@ -82,6 +82,11 @@ CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
 CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -isystem /usr/include/suitesparse -MMD -MP
 LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
 LDLIBS   := -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lbtf -lpng -lz -lmd4c -lncursesw -ldl -lm
+# The program takes these from their archives where Debian has them: each shared library that a start need not find and
+# bind saves it some 60 microseconds.
+ARCHIVED := gsl gslcblas sundials_ida sundials_sunlinsolklu sundials_sunmatrixsparse klu btf amd colamd suitesparseconfig png
+PROGRAM_LDLIBS := -lcjson $(foreach l,$(ARCHIVED),$(if $(wildcard /usr/lib/lib$(l).a /usr/lib/*/lib$(l).a),-l:lib$(l).a,-l$(l))) \
+                  -lz -lmd4c -lncursesw -ldl -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)
@@ -130,7 +135,7 @@ all: build/.packages-run
 # the HTTP library calls MHD_queue_response of the program: server/http/request/library_answer.h
 $(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(OUT)/generated/bundle.o $(LIBRARY)
 	$(call say,link $@)
-	$(Q)$(CC) $(LDFLAGS) -Wl,--export-dynamic-symbol=MHD_queue_response -o $@ $^ $(LDLIBS)
+	$(Q)$(CC) $(LDFLAGS) -Wl,--export-dynamic-symbol=MHD_queue_response -o $@ $^ $(PROGRAM_LDLIBS)
 
 # what the program reads lies in it too, so that a copy of it alone has all of it
 SHIPPED = $$(find web lessons core -path '*/node_modules' -prune -o -type f \

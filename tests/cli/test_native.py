@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Native tapes in the program: what they cost is reported, switching them off works, bits stay, a bad folder does no harm."""
 
+import glob
 import json
 import os
 import shutil
@@ -70,6 +71,12 @@ class Start(unittest.TestCase):
         self.assertIn("libc.so", needed)
         for library in "OSMesa", "LLVM":
             self.assertNotIn(library, needed)
+
+    def test_a_start_does_not_load_what_lies_in_the_program(self):
+        needed = subprocess.run(["ldd", driver.PROGRAM], capture_output=True, text=True).stdout
+        for library in "gsl", "sundials_ida", "klu", "png":
+            if glob.glob(f"/usr/lib/*/lib{library}.a") or glob.glob(f"/usr/lib/lib{library}.a"):
+                self.assertNotIn(f"lib{library}", needed)
 
     def test_a_start_takes_little_memory(self):
         child = subprocess.Popen([driver.PROGRAM, "version"], stdout=subprocess.DEVNULL)
