@@ -214,6 +214,24 @@ int hn_import_count(const hn_import *import, hn_import_outcome outcome) {
     return n;
 }
 
+void hn_import_put_notes(hn_strbuf *b, const hn_import *import) {
+    hn_json_key(b, "notes");
+    hn_json_array(b);
+    for (int i = 0; i < hn_import_note_count(import); i++) {
+        const hn_import_note *note = hn_import_note_at(import, i);
+        hn_json_object(b);
+        hn_json_put_string(b, "outcome", hn_import_outcome_name(note->outcome));
+        if (note->file) {
+            hn_json_put_string(b, "file", note->file);
+        }
+        hn_json_put_int(b, "line", note->line);
+        hn_json_put_string(b, "where", note->where);
+        hn_json_put_string(b, "what", note->what);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
 hn_import_info hn_import_get_info(const hn_import *import) {
     return import->info;
 }

@@ -72,6 +72,9 @@ const char *hn_import_scene(const hn_import *import, size_t *n); ///< JSON text
 int hn_import_note_count(const hn_import *import);
 const hn_import_note *hn_import_note_at(const hn_import *import, int i);
 int hn_import_count(const hn_import *import, hn_import_outcome outcome);
+/// Writes "notes": all of them as [{"outcome", "file", "line", "where", "what"}]; "file" where an
+/// element stands in another file than the first.
+void hn_import_put_notes(hn_strbuf *b, const hn_import *import);
 
 /// What is in the scene.
 typedef struct hn_import_info {

@@ -135,24 +135,6 @@ static void put_counts(hn_strbuf *b, const hn_import *im) {
     hn_json_put_numbers(b, "com", info.com, 3);
 }
 
-static void put_notes(hn_strbuf *b, const hn_import *im) {
-    hn_json_key(b, "notes");
-    hn_json_array(b);
-    for (int i = 0; i < hn_import_note_count(im); i++) {
-        const hn_import_note *note = hn_import_note_at(im, i);
-        hn_json_object(b);
-        hn_json_put_string(b, "outcome", hn_import_outcome_name(note->outcome));
-        if (note->file) {
-            hn_json_put_string(b, "file", note->file);
-        }
-        hn_json_put_int(b, "line", note->line);
-        hn_json_put_string(b, "where", note->where);
-        hn_json_put_string(b, "what", note->what);
-        hn_json_end_object(b);
-    }
-    hn_json_end_array(b);
-}
-
 /// With --json: everything in one object; the scene itself unless it went into a file.
 static hn_exit print_json(const hn_args *args, const hn_import *im, const hn_model *model,
                           const hn_diags *why) {
@@ -163,7 +145,7 @@ static hn_exit print_json(const hn_args *args, const hn_import *im, const hn_mod
     hn_json_put_string(&b, "format", hn_import_format(im));
     put_counts(&b, im);
     put_assembly(&b, model, why);
-    put_notes(&b, im);
+    hn_import_put_notes(&b, im);
     if (args->out) {
         hn_json_put_string(&b, "written", args->out);
     } else {

@@ -69,21 +69,6 @@ void hn_handle_lesson_picture(hn_request *r) {
     reply_file(r, path, MAX_PICTURE, type);
 }
 
-static void put_notes(hn_strbuf *b, const hn_import *im) {
-    hn_json_key(b, "notes");
-    hn_json_array(b);
-    for (int i = 0; i < hn_import_note_count(im); i++) {
-        const hn_import_note *note = hn_import_note_at(im, i);
-        hn_json_object(b);
-        hn_json_put_string(b, "outcome", hn_import_outcome_name(note->outcome));
-        hn_json_put_int(b, "line", note->line);
-        hn_json_put_string(b, "where", note->where);
-        hn_json_put_string(b, "what", note->what);
-        hn_json_end_object(b);
-    }
-    hn_json_end_array(b);
-}
-
 void hn_handle_import(hn_request *r) {
     const char *text = hn_fields_text(r->json, "text"), *loops = hn_fields_text(r->json, "loops");
     const hn_import_source source = {.text = text,
@@ -106,7 +91,7 @@ void hn_handle_import(hn_request *r) {
     hn_json_object(&b);
     hn_json_put_string(&b, "format", hn_import_format(im));
     hn_json_put_string(&b, "document", hn_import_scene(im, &n));
-    put_notes(&b, im);
+    hn_import_put_notes(&b, im);
     hn_json_end_object(&b);
     hn_import_free(im);
     hn_reply_json(r, MHD_HTTP_OK, &b);
