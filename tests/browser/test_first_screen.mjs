@@ -39,47 +39,51 @@ const FIRST = {
   sentence: "#verdict",
 };
 
+const SECTIONS = {
+  mechanism: "#mechanism",
+  plots: "#plots",
+  methods: "#methods",
+  verdict: "#verdict",
+  transport: "#transport",
+};
+
+/** All of the first screen is in the window, apart, and in full. */
+async function checkFirstScreen(page, width, height) {
+  const boxes = await boxesOf(page, FIRST);
+  for (const [name, { top, bottom, left, right }] of Object.entries(boxes)) {
+    assert.ok(top >= 0 && bottom <= height && right <= width, `${name}: ${top} to ${bottom}`);
+    assert.ok(bottom - top >= 16 && right - left >= 40, `${name} is ${bottom - top} px high`);
+  }
+  assert.ok(boxes.gap.bottom - boxes.gap.top > 120, "the plot of the gap can be read");
+  const sections = Object.values(await boxesOf(page, SECTIONS));
+  const overlap = (a, b) =>
+    a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+  sections.forEach((a, i) =>
+    sections.slice(i + 1).forEach((b) => assert.ok(!overlap(a, b), JSON.stringify([a, b]))),
+  );
+  const clipped = await page.evaluate(() =>
+    [...document.querySelectorAll(".method-table .number, .method-table .words")]
+      .filter((node) => node.scrollWidth > node.clientWidth + 1 && node.clientWidth > 0)
+      .map((node) => node.textContent),
+  );
+  assert.deepEqual(clipped, [], "every number and verdict is there in full");
+}
+
 for (const [width, height] of [
   [1366, 768],
   [1920, 1080],
   [1024, 768],
 ]) {
-  for (const colorScheme of ["light", "dark"]) {
-    test(`${width}x${height} ${colorScheme}: nothing of the first screen is below the fold, nothing overlaps`, async (t) => {
-      const page = await open(t, { viewport: { width, height }, colorScheme });
-      await playTo(page, 3);
-      const boxes = await boxesOf(page, FIRST);
-      for (const [name, { top, bottom, left, right }] of Object.entries(boxes)) {
-        assert.ok(top >= 0 && bottom <= height && right <= width, `${name}: ${top} to ${bottom}`);
-        assert.ok(bottom - top >= 16 && right - left >= 40, `${name} is ${bottom - top} px high`);
-      }
-      assert.ok(boxes.gap.bottom - boxes.gap.top > 120, "the plot of the gap can be read");
-      const sections = Object.values(
-        await boxesOf(page, {
-          mechanism: "#mechanism",
-          plots: "#plots",
-          methods: "#methods",
-          verdict: "#verdict",
-          transport: "#transport",
-        }),
-      );
-      const overlap = (a, b) =>
-        a.left < b.right - 1 &&
-        b.left < a.right - 1 &&
-        a.top < b.bottom - 1 &&
-        b.top < a.bottom - 1;
-      sections.forEach((a, i) =>
-        sections.slice(i + 1).forEach((b) => assert.ok(!overlap(a, b), JSON.stringify([a, b]))),
-      );
-      const clipped = await page.evaluate(() =>
-        [...document.querySelectorAll(".method-table .number, .method-table .words")]
-          .filter((node) => node.scrollWidth > node.clientWidth + 1 && node.clientWidth > 0)
-          .map((node) => node.textContent),
-      );
-      assert.deepEqual(clipped, [], "every number and verdict is there in full");
+  test(`${width}x${height}, both themes: nothing of the first screen is below the fold, nothing overlaps`, async (t) => {
+    const page = await open(t, { viewport: { width, height } });
+    await playTo(page, 3);
+    for (const colorScheme of ["light", "dark"]) {
+      await page.emulateMedia({ colorScheme });
+      await until(page, `(data) => data.theme === "${colorScheme}"`);
+      await soon(() => checkFirstScreen(page, width, height));
       await screenshot(page, `first-${width}-${colorScheme}`, { seen: true });
-    });
-  }
+    }
+  });
 }
 
 test("the card that says why opens in sight, under its row, takes the focus and moves nothing", async (t) => {
@@ -113,29 +117,32 @@ test("the card that says why opens in sight, under its row, takes the focus and 
 });
 
 test("a notice covers no verdict, no curve of the widest layout and no button to play", async (t) => {
+  const page = await open(t, { hash: "#scene=four-bar&zzz=1" });
+  await page.locator(".note:not([hidden]) .notice").waitFor();
   for (const [width, height] of [
     [1366, 768],
     [1024, 768],
     [768, 1024],
     [360, 740],
   ]) {
-    const page = await open(t, { viewport: { width, height }, hash: "#scene=four-bar&zzz=1" });
-    await page.locator(".note:not([hidden]) .notice").waitFor();
-    const { note, ...boxes } = await boxesOf(page, {
-      note: ".note:not([hidden])",
-      verdict: "#verdict",
-      play: "#play",
-      scrubber: ".scrubber",
-      ...(width > 1199 ? { curve: "figure.plot:nth-child(2) .curve" } : {}),
+    await page.setViewportSize({ width, height });
+    await soon(async () => {
+      const { note, ...boxes } = await boxesOf(page, {
+        note: ".note:not([hidden])",
+        verdict: "#verdict",
+        play: "#play",
+        scrubber: ".scrubber",
+        ...(width > 1199 ? { curve: "figure.plot:nth-child(2) .curve" } : {}),
+      });
+      for (const [name, box] of Object.entries(boxes)) {
+        const apart =
+          note.bottom <= box.top ||
+          note.top >= box.bottom ||
+          note.right <= box.left ||
+          note.left >= box.right;
+        assert.ok(apart, `${width}: ${name} is free`);
+      }
     });
-    for (const [name, box] of Object.entries(boxes)) {
-      const apart =
-        note.bottom <= box.top ||
-        note.top >= box.bottom ||
-        note.right <= box.left ||
-        note.left >= box.right;
-      assert.ok(apart, `${width}: ${name} is free`);
-    }
   }
 });
 

@@ -341,6 +341,24 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
   await soon(async () => assert.equal(await page.getByRole("dialog").count(), 0));
   await page.keyboard.press("w");
   await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
+
+  // a budget with its fields, which the next link holds as well
+  const fields = "study=budget&judged=th&until=0.5&step=0.005";
+  await page.evaluate(
+    (hash) => (location.hash = hash),
+    `#scene=pendulum&method=index1@rk4:h=0.01&${fields}`,
+  );
+  await until(
+    page,
+    ({ studies: { budget } }) =>
+      budget.state === "finished" && /h=0\.005$/.test(budget.document.methods[0].method),
+    LONG,
+  );
+  const { time, methods } = await read(page, (data) => data.studies.budget.document);
+  assert.deepEqual([time, methods[0].error.coordinate], [0.5, "th"]);
+  await soon(async () => assert.equal(await page.inputValue("#budget-time"), "0.5 s"));
+  await page.getByRole("dialog").getByRole("button", { name: "link" }).click();
+  await soon(async () => assert.ok(new URL(page.url()).hash.includes(fields), page.url()));
 });
 
 test("the dialog fits 360 pixels in both themes, and the page does not scroll sideways", async (t) => {
