@@ -57,12 +57,15 @@ function drawCross(ctx, x, y, colour) {
 function rowsOfCurves(u, series, from, to) {
   const taken = Array(Math.ceil(u.bbox.top + u.bbox.height)).fill(false);
   const [times] = u.data;
-  const x = (i) => u.valToPos(times[i], "x", true);
+  const [earliest, latest] = [from, to].map((x) => u.posToVal(x, "x", true));
+  const first = Math.max(
+    1,
+    times.findIndex((t) => t >= earliest),
+  );
   series.forEach((_, k) => {
     const values = u.data[k + 1];
-    for (let i = 1; i < times.length; i++) {
-      const drawn = Number.isFinite(values[i - 1] ?? NaN) && Number.isFinite(values[i] ?? NaN);
-      if (drawn && x(i) >= from && x(i - 1) <= to) {
+    for (let i = first; i < times.length && times[i - 1] <= latest; i++) {
+      if (Number.isFinite(values[i - 1] ?? NaN) && Number.isFinite(values[i] ?? NaN)) {
         const ends = [values[i - 1], values[i]].map((value) => u.valToPos(value, "y", true));
         taken.fill(true, Math.floor(Math.min(...ends)), Math.ceil(Math.max(...ends)) + 1);
       }
