@@ -25,12 +25,14 @@ const ENTRIES = [
   "method=projection@rk4:h=0.02",
   "frame=12",
   "selected=1",
-  "hide=2",
+  "hidden=2",
   "show=labels,arrows",
   "upper=energy_change,turned",
   "zoom=0.05,0.2",
   "why=1",
   "speed=2",
+  "judged=th3",
+  "until=1.5",
   "note=say%20why",
 ];
 /** All that has to be of one run: what the page knows, and what it shows. */
