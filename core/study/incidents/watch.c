@@ -161,13 +161,13 @@ static const double PIVOT_MARGIN = 1e2; // times the pivot ratio that is reporte
 static const double NEAR_DUE = 10;      // steps before a predicted time: near it
 static const double UNEXPLAINED = 0.1;  // of a step's motion
 
-/// Whether the full check that has just been made is far from everything that is reported.
 /// Whether a prediction is open and its time near or past; before that it needs no full checks.
 static bool is_prediction_due(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     return s->announced && w->run->now.t > s->due - NEAR_DUE * w->run->h;
 }
 
+/// Whether the full check that has just been made is far from everything that is reported.
 static bool is_calm(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     const double row = w->shortest_row;
