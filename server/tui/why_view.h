@@ -8,7 +8,7 @@
 
 enum { HN_WHY_WORDS = 320 };
 
-/// Writes remedy k of an incident: "try h=0.005 (tried to t = 3.6 s: largest gap 0.3 mm, ...)"
+/// Writes remedy k of an incident: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)"
 /// where a trial removed the incident, "not tried yet: ..." while the recording is under way, else
 /// "not tried: ...".
 void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,

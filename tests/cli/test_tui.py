@@ -390,11 +390,11 @@ class Keys(unittest.TestCase):
         # a loop that opens is tried against; a restart of the integrator or a long step is not
         _, out, _ = once("four-bar", "--once", "--t", "4", "--size", "150x40", *METHODS[:2], "--keys", "i")
         card = " ".join("".join(line[67:149] for line in out.split("\n")[2:20]).split())
-        self.assertRegex(card, r"try projection@rk4:h=0\.02 \(tried to t = [\d.]+ s: largest gap")
+        self.assertRegex(card, r"try projection@rk4:h=0\.02 \(tried until t = [\d.]+ s: largest gap")
         self.assertNotIn("not tried", card)
         _, out, _ = once("triple-rocker", "--once", "--t", "1", "--size", "150x60", "--methods", "nullspace@rk4:h=0.02", "--keys", "i")
         card = " ".join("".join(line[67:149] for line in out.split("\n")[2:50]).split())
-        self.assertNotRegex(card, r"(?<!\() try (?!\S+ \(tried to)")
+        self.assertNotRegex(card, r"(?<!\() try (?!\S+ \(tried until)")
 
     def test_the_cheapest_method_for_an_error_keeps_that_error(self):
         methods = ("--methods", "index1@rk4:h=0.02", "index1@euler:h=0.02")

@@ -170,13 +170,13 @@ static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side
 }
 
 /// The smallest changes that would close the polygon: one side longer or shorter by the missing
-/// length. A side of several bodies has no length to set.
+/// length, where that is no more than its own. A side of several bodies has no length to set.
 static void list_remedies(const side *sides, int n, int longest, double missing, char *text,
                           size_t size) {
     size_t used = 0;
     text[0] = '\0';
     for (int k = 0; k < n && used + 1 < size; k++) {
-        if (sides[k].n_bodies > 1) {
+        if (sides[k].n_bodies > 1 || missing > sides[k].length) {
             continue;
         }
         double to = sides[k].length + (k == longest ? -missing : missing);
@@ -200,9 +200,10 @@ static void explain_polygon(const hn_assembler *s, const side *sides, int n, cha
     if (missing <= 1e-9 * s->length) {
         return;
     }
-    (void)snprintf(text, size,
-                   "; %s spans %.6g m, the other sides together reach %.6g m: %.6g m are missing",
-                   sides[longest].name, sides[longest].length, others, missing);
+    (void)snprintf(
+        text, size,
+        "; %s spans %.6g m and the other sides together reach %.6g m, so %.6g m are missing",
+        sides[longest].name, sides[longest].length, others, missing);
     list_remedies(sides, n, longest, missing, hint, hint_size);
 }
 
@@ -308,8 +309,15 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
         return;
     }
 
+    // the missing length is the gap that is left
+    if (reason[0]) {
+        hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer, hint,
+                     "loop %s cannot be closed%s%s%s%s", hn_system_loop_name(s->sys, loop), with,
+                     pins, held, reason);
+        return;
+    }
     hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer, hint,
-                 "loop %s cannot be closed: a gap of %.6g%s is left%s%s%s%s",
+                 "loop %s cannot be closed: a gap of %.6g%s is left%s%s%s",
                  hn_system_loop_name(s->sys, loop), gap, loop_has_lengths(s, loop) ? " m" : "",
-                 with, pins, held, reason);
+                 with, pins, held);
 }

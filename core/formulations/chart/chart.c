@@ -129,10 +129,9 @@ static void eval_loop(hn_chart *chart, hn_chart_point *p, double t) {
     p->t = t;
 }
 
-static const char FOLD[] = "its dead point: the other coordinates no longer follow from it";
-static const char SINGULAR[] =
-    "a singular configuration: closure rows depend on each other here, so no "
-    "choice of coordinates is regular";
+static const char FOLD[] = "a dead point of this coordinate, from which the others do not follow";
+static const char SINGULAR[] = "a singular configuration; closure equations depend on each other "
+                               "here, so no choice of coordinates is regular";
 
 /// J_d was singular at (t, q): of this chart, or of all of them.
 static hn_status fail_singular(hn_chart *chart, double t, const double *q) {
@@ -182,8 +181,8 @@ hn_status hn_chart_check_mode(hn_chart *chart) {
         chart->here.valid = 0;
         return hn_chart_fail_end(
             chart, chart->here.t, chart->here.q,
-            "the loop went over to its other assembly mode: a dead point was passed, or "
-            "the step is too long");
+            "the loop went over to its other assembly mode, past a dead point or because the "
+            "step is too long");
     }
     return HN_OK;
 }
@@ -243,7 +242,7 @@ static hn_status fail_torn(hn_chart *chart, double t, const double *q, int step)
     char name[HN_CHART_TEXT], text[HN_CHART_TEXT];
     name_dyad(chart, step, name);
     snprintf(text, sizeof text,
-             "%.120s cannot be closed with this value: the end of its range was passed", name);
+             "%.120s cannot be closed with this value, which is beyond the end of its range", name);
     return hn_chart_fail_end(chart, t, q, text);
 }
 
@@ -251,7 +250,7 @@ hn_status hn_chart_fail_dyad(hn_chart *chart, int step) {
     char name[HN_CHART_TEXT], text[HN_CHART_TEXT];
     name_dyad(chart, step, name);
     snprintf(text, sizeof text,
-             "%.120s went over to its other assembly mode: a dead point was passed, or the step "
+             "%.120s went over to its other assembly mode, past a dead point or because the step "
              "is too long",
              name);
     chart->here.valid = 0;
@@ -320,7 +319,8 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
         newton_step(chart, p);
     }
     return hn_chart_fail_end(
-        chart, t, q, "the loops cannot be closed with this value: the end of its range was passed");
+        chart, t, q,
+        "no configuration closes the loops with this value, which is beyond the end of its range");
 }
 
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q) {

@@ -295,9 +295,8 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
     if (jumped_a_dead_point(s, h)) {
         chart->here.valid = 0;
-        return hn_chart_fail_end(
-            chart, t, chart->here.q,
-            "a dead point lies inside this step: the coordinate turns back there");
+        return hn_chart_fail_end(chart, t, chart->here.q,
+                                 "the coordinate turns back at a dead point inside this step");
     }
 
     // the velocities, for the next step's check

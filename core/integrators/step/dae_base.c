@@ -312,13 +312,13 @@ double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *mov
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what) {
     const char *reason = hn_status_text(status);
     if (status == HN_ERR_SINGULAR) {
-        reason = "the equations of this step have no unique answer: the loop is at, or has been "
-                 "thrown to, a pose where its rows depend on each other";
+        reason = "its equations have no unique solution; the loop is at, or has been thrown to, a "
+                 "configuration where its constraint equations depend on each other";
     } else if (status == HN_ERR_NO_CONVERGENCE) {
-        reason = "Newton's iteration does not converge: the step is too long for it, or the pose "
-                 "is close to one where the loop loses rank";
+        reason = "Newton's iteration does not converge; the step is too long for it, or the "
+                 "configuration is close to one where the loop loses rank";
     }
-    snprintf(b->why, sizeof b->why, "%s at t = %.6g s: %s", what, t, reason);
+    snprintf(b->why, sizeof b->why, "%s at t = %.6g s failed: %s", what, t, reason);
     return status;
 }
 

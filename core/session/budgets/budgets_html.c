@@ -110,8 +110,9 @@ static void put_legend(hn_strbuf *b) {
         hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_energy_item_name((hn_energy_item)i),
                          hn_energy_item_about((hn_energy_item)i));
     }
-    hn_strbuf_add(b, "</dl><p class=\"quiet\">A formulation without equations of its own has its "
-                     "part in truncation; \xe2\x80\x93: it cannot be determined.</p>");
+    hn_strbuf_add(b, "</dl><p class=\"quiet\">Where formulation and integrator are one, as in "
+                     "ggl@radau5, truncation is the error of both; \xe2\x80\x93: it cannot be "
+                     "determined.</p>");
 }
 
 void hn_budgets_html(hn_strbuf *b, const hn_budgets *a) {

@@ -55,7 +55,7 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
     if (!(t_run > 0)) {
         snprintf(text, sizeof text, "nothing was computed beyond the start");
     } else if (!e.known || e.t < WHOLE * t_run) {
-        snprintf(text + used, sizeof text - (size_t)used, "%s: %s",
+        snprintf(text + used, sizeof text - (size_t)used, "%s (%s)",
                  e.known ? "; the error beyond that is not known" : "the error is not known",
                  e.reason[0] ? e.reason : "nothing was compared");
     }

@@ -63,21 +63,31 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
                               source->n_settings, scene, diags);
 }
 
-/// Writes what was changed of the scene: "; changed: l1 = 50 m, in the scene 0.4", or "" where
-/// nothing was. The reason of a loop that stands open names bodies and starts; the cause is often
-/// here.
-static void put_changes(const hn_scene *scene, char *out, size_t size) {
-    size_t used = 0;
-    out[0] = '\0';
+/// Puts what was changed of the scene before the reason of a loop that stands open, which names
+/// bodies and starts: "with l1 = 50 m (0.5 in the scene), loop B ..."; and its undoing before what
+/// else to try. Nothing where nothing was changed.
+static void put_changes(const hn_scene *scene, hn_diag *why) {
+    char changes[HN_DIAG_MESSAGE] = "", back[HN_DIAG_HINT] = "";
+    size_t used = 0, used_back = 0;
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
-        if (p->value != p->initial && used < size) {
-            const char *space = p->unit[0] ? " " : "", *lead = used ? "; " : "; changed: ";
-            const int digits = hn_digits_apart(p->value, p->initial, 6);
-            used += (size_t)snprintf(out + used, size - used,
-                                     "%s%.40s = %.*g%s%s, in the scene %.*g", lead, p->name, digits,
-                                     p->value, space, p->unit, digits, p->initial);
+        if (p->value == p->initial || used >= sizeof changes || used_back >= sizeof back) {
+            continue;
         }
+        const char *space = p->unit[0] ? " " : "";
+        const int digits = hn_digits_apart(p->value, p->initial, 6);
+        used += (size_t)snprintf(changes + used, sizeof changes - used,
+                                 "%s%.40s = %.*g%s%s (%.*g in the scene)", used ? ", " : "with ",
+                                 p->name, digits, p->value, space, p->unit, digits, p->initial);
+        used_back +=
+            (size_t)snprintf(back + used_back, sizeof back - used_back, "%s%.40s = %.*g",
+                             used_back ? ", " : "go back towards ", p->name, digits, p->initial);
+    }
+    if (used > 0) {
+        const hn_diag said = *why;
+        snprintf(why->message, sizeof why->message, "%.250s, %.250s", changes, said.message);
+        snprintf(why->hint, sizeof why->hint, "%.90s%s%.90s", back, said.hint[0] ? ", or " : "",
+                 said.hint);
     }
 }
 
@@ -94,9 +104,7 @@ static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
         hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, &why);
     int open = status == HN_ERR_UNREACHABLE || status == HN_ERR_INCONSISTENT;
     if (open) {
-        hn_diag *first = &why.item[0];
-        const size_t used = strlen(first->message);
-        put_changes(model->scene, first->message + used, sizeof first->message - used);
+        put_changes(model->scene, &why.item[0]);
     }
     if (open && allow_open) {
         model->open = why.item[0];

@@ -33,12 +33,12 @@
 #include <stdbool.h>
 
 #define HN_CAUSE_LIST(X)                                                                       \
-    X(HN_CAUSE_TRUNCATION, "truncation", "steps of the integrator")                            \
+    X(HN_CAUSE_TRUNCATION, "truncation", "error of the integrator's steps")                    \
     X(HN_CAUSE_FORMULATION, "formulation", "terms that the formulation adds to the equations") \
-    X(HN_CAUSE_PROJECTION, "projection", "moves of the projection along the motion")           \
-    X(HN_CAUSE_DRIFT, "drift", "what opens the loops and is not projected back")               \
-    X(HN_CAUSE_SOLVE, "solve", "rounding of the linear solve: against another solver")         \
-    X(HN_CAUSE_ROUNDING, "rounding", "rounding of the sums: against compensated ones")
+    X(HN_CAUSE_PROJECTION, "projection", "displacement by the projection along the motion")    \
+    X(HN_CAUSE_DRIFT, "drift", "error that opens the loops and that no projection removes")    \
+    X(HN_CAUSE_SOLVE, "solve", "rounding in the linear solve, against another solver")         \
+    X(HN_CAUSE_ROUNDING, "rounding", "rounding in the sums, against compensated sums")
 
 typedef enum hn_cause {
 #define HN_CAUSE_ENUM(code, name, about) code,
@@ -50,12 +50,12 @@ typedef enum hn_cause {
 const char *hn_cause_name(hn_cause cause);
 const char *hn_cause_about(hn_cause cause);
 
-#define HN_ENERGY_LIST(X)                                                               \
-    X(HN_ENERGY_TRUNCATION, "truncation", "steps of the integrator")                    \
-    X(HN_ENERGY_FORMULATION, "formulation", "terms that the formulation adds")          \
-    X(HN_ENERGY_PROJECTION, "projection", "projection")                                 \
-    X(HN_ENERGY_LOOPS, "loops", "loop forces, where the loops are not closed in speed") \
-    X(HN_ENERGY_OUTSIDE, "outside", "dampers, drives and loads: work that is meant")
+#define HN_ENERGY_LIST(X)                                                             \
+    X(HN_ENERGY_TRUNCATION, "truncation", "error of the integrator's steps")          \
+    X(HN_ENERGY_FORMULATION, "formulation", "terms that the formulation adds")        \
+    X(HN_ENERGY_PROJECTION, "projection", "work of the projection")                   \
+    X(HN_ENERGY_LOOPS, "loops", "constraint forces, where velocities open the loops") \
+    X(HN_ENERGY_OUTSIDE, "outside", "work of dampers, drives and loads: no error")
 
 typedef enum hn_energy_item {
 #define HN_ENERGY_ENUM(code, name, about) code,

@@ -65,16 +65,22 @@ static bool is_large(const hn_watch *w, double change, double limit) {
     return w->energy.conservative && limit != 0 && fabs(change) > (limit > noise ? limit : noise);
 }
 
-// a method can lose all energy little by little, without a jump
+/// The change in one step that is reported [J].
+static double jump_limit(const hn_watch *w) {
+    const hn_energy_record *e = &w->energy;
+    return HN_RUN_WARN_ENERGY * (w->measure.kinetic + (e->v_max - e->v_min)) * w->every;
+}
+
+// A method can lose all energy little by little, without a jump. One report of a run says it: the
+// limit grows with the energies of the motion, and a change near it passes it many times. What one
+// step has changed is reported as a jump.
 static void check_drift(hn_watch *w) {
     const hn_energy_record *e = &w->energy;
+    const int *reported = w->log.reported;
     const double change = e->last - e->start;
     const double limit = HN_RUN_WARN_DRIFT * (e->t_max + (e->v_max - e->v_min));
-    if (!is_large(w, change, limit)) {
-        hn_incident_over(&w->log, HN_INCIDENT_ENERGY_DRIFT);
-        return;
-    }
-    if (!hn_incident_is_taken(&w->log, HN_INCIDENT_ENERGY_DRIFT)) { // before its text is made
+    if (!is_large(w, change, limit) || is_large(w, e->change, jump_limit(w)) ||
+        reported[HN_INCIDENT_ENERGY_DRIFT] > 0 || reported[HN_INCIDENT_ENERGY_JUMP] > 0) {
         return;
     }
     const int digits = hn_digits_apart(fabs(change), limit, 3);
@@ -86,8 +92,7 @@ static void check_drift(hn_watch *w) {
 
 static void check_jump(hn_watch *w) {
     const hn_energy_record *e = &w->energy;
-    const double size = w->measure.kinetic + (e->v_max - e->v_min);
-    const double limit = HN_RUN_WARN_ENERGY * size * w->every;
+    const double limit = jump_limit(w);
     if (!is_large(w, e->change, limit)) {
         hn_incident_over(&w->log, HN_INCIDENT_ENERGY_JUMP);
         return;
@@ -97,9 +102,9 @@ static void check_jump(hn_watch *w) {
     }
     const int digits = hn_digits_apart(fabs(e->change), limit, 3);
     hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
-                       "the energy changed by %.*g J in one step, more than %.*g J, and no "
-                       "load does work",
-                       digits, e->change, digits, limit);
+                       "the energy changed by %.*g J in one step, more than %.*g J, and no load "
+                       "does work; since the start it has changed by %.3g J",
+                       digits, e->change, digits, limit, e->last - e->start);
 }
 
 /// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed

@@ -42,7 +42,7 @@ hn_status hn_gap_judge(const hn_watch *w, char why[256]) {
     }
     snprintf(why, 256,
              "at t = %.6g s the loops are open by %.3g m, more than half the mechanism's length of "
-             "%.3g m: the motion is no longer this mechanism's",
+             "%.3g m, so the motion is no longer this mechanism's",
              w->run->now.t, gap, w->length);
     return HN_ERR_DIVERGED;
 }

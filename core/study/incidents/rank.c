@@ -9,7 +9,7 @@
 static void report_redundant(hn_watch *w) {
     const int nc = w->run->info.nc, rank = w->accel_info.rank;
     hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
-                                        "%d of %d constraint equations depend on the others: the "
+                                        "%d of %d constraint equations depend on the others; the "
                                         "motion is unique, single multipliers are not",
                                         nc - rank, nc);
     if (i) {
@@ -39,7 +39,7 @@ static void check_rank(hn_watch *w) {
 
     hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
                                         "%d of %d constraint equations depend on the others in "
-                                        "this configuration: branches may cross here",
+                                        "this configuration, where branches may cross",
                                         nc - rank, nc);
     if (i) {
         hn_pose_describe(w, i, w->run->now.t, w->run->now.q, w->singular.info.sigma_min);
@@ -78,7 +78,7 @@ static void check_near(hn_watch *w) {
     }
     hn_incident *i = hn_incident_report(
         w, &hn_incident_near_singular, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
-        "the constraint equations are almost dependent: their smallest pivot is %.2g of the "
+        "the constraint equations are almost dependent, with a smallest pivot of %.2g of the "
         "largest (pivot ratio), less than %.0e",
         pivot, HN_RUN_WARN_PIVOT);
     if (i) {

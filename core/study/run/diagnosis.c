@@ -112,8 +112,9 @@ static bool explain_instability(const hn_stepping *s, double *limit, char *out, 
     describe_part(&part, what, sizeof what);
     const bool decays = is_decay(part.value);
     const int digits = hn_digits_apart(h, part.limit, 3);
-    snprintf(out, size, "h = %.*g s is above the stability limit of %s here, %.*g s: %s at %.2g %s",
-             digits, h, s->spec.stepper->name, digits, part.limit, what,
+    snprintf(out, size,
+             "h = %.*g s is above the stability limit of %s here, %.*g s (%s at %.2g %s)", digits,
+             h, s->spec.stepper->name, digits, part.limit, what,
              decays ? fabs(part.value.re) : fabs(part.value.im), decays ? "1/s" : "rad/s");
     return true;
 }
@@ -154,8 +155,8 @@ static void tell_wrong_before(hn_run *run) {
     for (int k = 0; k < w->log.n - 1; k++) {
         const hn_incident *i = &w->log.list[k];
         if (hn_incident_kinds()[i->code]->is_wrong && i->t < last->t - w->run->h) {
-            hn_incident_append(&w->log, last, "; the motion was wrong before: at t = %.3g s, %.*s",
-                               i->t, (int)strcspn(i->message, ";"), i->message);
+            hn_incident_append(&w->log, last, "; the motion was wrong from t = %.3g s on (%s)",
+                               i->t, hn_incident_kinds()[i->code]->name);
             hn_run_set_reason(run, last->message);
             return;
         }
@@ -285,7 +286,7 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
         snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
     }
     snprintf(said, sizeof(hn_remedy),
-             TRIED "%sto t = %.*g s: %s gap %.2g m, energy changed by %.2g J", begun,
+             TRIED "%suntil t = %.*g s: %s gap %.2g m, energy changed by %.2g J", begun,
              begun[0] ? 4 : 3, sum.t, begun[0] ? "last" : "largest",
              begun[0] ? last_gap : sum.worst_gap, sum.worst_energy_change);
     return right ? REMOVES : FAILS;

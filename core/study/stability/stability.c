@@ -333,9 +333,10 @@ static void tell_growth(hn_stability_trial *o, double energy) {
                  o->t_reached);
         return;
     }
-    snprintf(o->reason, sizeof o->reason,
-             "the energy stands above that of the motion by %.3g times its range, at t = %.4g s",
-             energy, o->t_reached);
+    snprintf(
+        o->reason, sizeof o->reason,
+        "the energy grew beyond that of the true motion by %.3g times its range, at t = %.4g s",
+        energy, o->t_reached);
 }
 
 // 1 when there is no need to go on. An energy that swings widely is no growth yet: symplectic

@@ -103,21 +103,23 @@ static const char *status_of(const cJSON *method) {
                                         : is;
 }
 
-/// The larger of the estimates of coordinates and reactions, and where it ends before the run, or
-/// how many times the tolerance the coordinates are off.
+/// The estimated errors of coordinates and of reactions: the first with the time where it ends
+/// before the run, or with how many times the tolerance it is.
 static void put_estimate(hn_table *t, const cJSON *e) {
-    const double q = hn_document_number(e, "q");
+    const double q = hn_document_number(e, "q"), times = hn_document_number(e, "over_rtol");
     if (!isfinite(q)) {
         hn_table_cell(t, "-");
-    } else if (hn_document_text(e, "reason")[0]) {
-        hn_table_cell(t, "%.1e to %.3g s", fmax(q, hn_document_number(e, "reaction")),
-                      hn_document_number(e, "t"));
-    } else if (hn_document_number(e, "over_rtol") > HN_TOLERANCE_KEPT) {
-        hn_table_cell(t, "%.1e, %.0f rtol", fmax(q, hn_document_number(e, "reaction")),
-                      hn_document_number(e, "over_rtol"));
-    } else {
-        hn_table_cell(t, "%.1e", fmax(q, hn_document_number(e, "reaction")));
+        hn_table_cell(t, "-");
+        return;
     }
+    if (hn_document_text(e, "reason")[0]) {
+        hn_table_cell(t, "%.1e up to %.3g s", q, hn_document_number(e, "t"));
+    } else if (times > HN_TOLERANCE_KEPT) {
+        hn_table_cell(t, "%.1e, %.0f rtol", q, times);
+    } else {
+        hn_table_cell(t, "%.1e", q);
+    }
+    hn_table_cell(t, "%.1e", hn_document_number(e, "reaction"));
 }
 
 static void put_row(hn_table *t, const cJSON *m, const char *unit) {
@@ -230,14 +232,15 @@ static bool is_at_fault(const cJSON *summary) {
 static void put_measure(hn_strbuf *b, const cJSON *summary) {
     if (is_at_fault(summary)) {
         hn_strbuf_printf(b,
-                         "status, by the error estimate of coordinates and reactions over the "
-                         "whole run: right up to %g, inaccurate above, WRONG from %g on (the "
-                         "workbench and the page judge by the way of drawn points and by energy)\n",
+                         "status: right where the estimated errors of motion and reactions are at "
+                         "most %g, WRONG where that of the motion is %g or more, else inaccurate "
+                         "(the workbench and the page have another measure: how far drawn points "
+                         "and the energy are from a reference motion)\n",
                          HN_ACCURACY_WARN, HN_ACCURACY_WRONG);
     }
 }
 
-/// `own`: the methods are those of the scene.
+/// `own`: methods and parameters are those of the scene.
 static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary, double duration,
                       bool own) {
     // the order in which columns are left out: what can be computed from others goes first
@@ -250,7 +253,8 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary,
                    {"worst gap", 1, 0},
                    {"velocity gap", 1, 6},
                    {"energy change", 1, 0},
-                   {"error estimate", 1, 9},
+                   {"motion error", 1, 10},
+                   {"reaction error", 1, 9},
                    {"steps", 1, 7},
                    {"evals", 1, 4},
                    {"ops", 1, 3},
@@ -338,7 +342,8 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
     cJSON *summary = cJSON_Parse(hn_strbuf_text(&b));
     if (!args->json) {
         hn_strbuf_clear(&b);
-        put_table(&b, model, summary, hn_comparison_duration(c), args->methods.n == 0);
+        put_table(&b, model, summary, hn_comparison_duration(c),
+                  args->methods.n == 0 && args->set.n == 0);
         if (args->plot) {
             hn_motion_plot_text(&b, &plot, hn_terminal_columns(), hn_terminal_colours());
         }

@@ -17,7 +17,7 @@ static bool removed_by_finer(const cJSON *incident) {
     const cJSON *tried = hn_document_get(incident, "tried")->child, *remedy;
     cJSON_ArrayForEach(remedy, hn_document_get(incident, "remedies")) {
         const char *said = tried ? tried->valuestring : "";
-        if (is_finer(remedy->valuestring) && strncmp(said, "tried to", 8) == 0) {
+        if (is_finer(remedy->valuestring) && strncmp(said, "tried until", 11) == 0) {
             return true;
         }
         tried = tried ? tried->next : NULL;

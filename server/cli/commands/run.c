@@ -13,7 +13,6 @@
 #include "session/compare/comparison.h"
 #include "session/compare/estimate.h"
 #include "session/compare/run_doc.h"
-#include "study/truth/accuracy.h"
 #include "terminal/motion_plot.h"
 #include "terminal/width.h"
 
@@ -44,21 +43,26 @@ static void take_row(void *user, const hn_strbuf *names, const double *values, i
     hn_run_rows_put(rows, values, n);
 }
 
+/// What a mark says of multipliers, as the end of a sentence.
+static const char *const marked[HN_N_MULTIPLIER_MARKS] = {
+    [HN_MULTIPLIERS_ONE_OF_MANY] = "are one of many possible sets",
+    [HN_MULTIPLIERS_LOST] = "have no correct digit",
+    [HN_MULTIPLIERS_NONE] = "do not exist",
+    [HN_MULTIPLIERS_OPEN] = "are those of open loops",
+};
+
 /// Says how many samples have multipliers that are not determined, by mark.
 static void tell_marks(const cJSON *run) {
     const cJSON *marks = hn_document_get(hn_document_get(run, "samples"), "lambda_mark"), *entry;
-    const cJSON *word = hn_document_get(run, "lambda_marks");
-    word = word && word->child ? word->child->next : NULL; // the first is as it should be
-    for (int mark = 1; word; mark++, word = word->next) {
+    for (int mark = 1; mark < HN_N_MULTIPLIER_MARKS; mark++) {
         int n = 0;
         cJSON_ArrayForEach(entry, marks) {
             n += (int)cJSON_GetNumberValue(entry) == mark;
         }
         if (n > 0) {
-            hn_cli_note(
-                "holonom: multipliers, and reactions that rest on them: %s in %d of %d samples "
-                "(lambda_mark %d)\n",
-                word->valuestring, n, cJSON_GetArraySize(marks), mark);
+            hn_cli_note("holonom: in %d of %d samples the multipliers, and the joint forces "
+                        "computed from them, %s (lambda_mark %d)\n",
+                        n, cJSON_GetArraySize(marks), marked[mark], mark);
         }
     }
 }
@@ -104,33 +108,24 @@ static void tell_incidents(const hn_incident_list *list) {
     }
 }
 
-/// Says how far the motion may be from the true one, and up to when that is known: to people, and
-/// in any case where it is far, or much further than the tolerance says.
-static void tell_estimate(const cJSON *run) {
-    const cJSON *e = hn_document_get(run, "error_estimate");
-    const double q = hn_document_number(e, "q"), reaction = hn_document_number(e, "reaction");
-    const char *reason = hn_document_text(e, "reason");
-    const double times = hn_document_number(e, "over_rtol");
-    const bool far = fmax(q, reaction) > HN_ACCURACY_WARN, off = times > HN_TOLERANCE_KEPT;
-    if (!far && !off && !isatty(STDERR_FILENO)) {
-        return;
+/// Says whether the motion is right, by its error estimate, and what is meant to go wrong: on
+/// standard error wherever that leads, because samples show no error.
+static void tell_verdict(const cJSON *run, const char *exhibit) {
+    const cJSON *verdict = hn_document_get(run, "verdict");
+    const char *is = hn_document_text(verdict, "is");
+    const bool unknown = strcmp(is, "unknown") == 0, right = strcmp(is, "right") == 0;
+    const double times = hn_document_number(hn_document_get(run, "error_estimate"), "over_rtol");
+    char factor[96] = "";
+    if (times > HN_TOLERANCE_KEPT) {
+        snprintf(factor, sizeof factor,
+                 "; that is %.0f times rtol, which bounds the error of a step", times);
     }
-    if (isfinite(q)) {
-        char factor[96] = "";
-        if (off) {
-            snprintf(factor, sizeof factor, " (%.0f times rtol, which bounds the error of a step)",
-                     times);
-        }
-        hn_cli_note(
-            "holonom: error estimate up to t = %.4g s: coordinates %.2g%s, reactions %.3g %% of "
-            "their largest%s%s\n",
-            hn_document_number(e, "t"), q, factor, 100 * reaction,
-            q >= HN_ACCURACY_WRONG ? "; the motion is wrong" : "",
-            far ? hn_error_advice(run, hn_document_get(run, "incidents"), -1) : "");
-    }
-    if (reason[0]) {
-        hn_cli_note("holonom: no error estimate%s: %s\n", isfinite(q) ? " beyond that" : "",
-                    reason);
+    hn_cli_note("holonom: the motion is %s: %s%s%s\n", unknown ? "not judged" : is,
+                hn_document_text(verdict, "text"), factor,
+                right || unknown ? ""
+                                 : hn_error_advice(run, hn_document_get(run, "incidents"), -1));
+    if (!right && !unknown && exhibit[0]) {
+        hn_cli_note("holonom: meant to go wrong: %s\n", exhibit);
     }
 }
 
@@ -139,9 +134,21 @@ static int tell_progress(void *user, double share) {
     return 1;
 }
 
+/// What the scene's own methods are meant to show going wrong, where the run is by one of them.
+static void take_exhibit(const hn_model *model, const char *method, hn_strbuf *exhibit) {
+    int n = 0;
+    const char *const *own = hn_model_methods(model, &n);
+    for (int i = 0; i < n; i++) {
+        if (strcmp(own[i], method) == 0) {
+            hn_strbuf_add(exhibit, hn_model_scene(model)->exhibit);
+            return;
+        }
+    }
+}
+
 /// `rows`: prints them as they are made; NULL: the document alone.
 static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_rows *rows,
-                           hn_strbuf *b, hn_status *ended, hn_diags *diags) {
+                           hn_strbuf *b, hn_strbuf *exhibit, hn_status *ended, hn_diags *diags) {
     hn_model *model = NULL;
     hn_progress progress = {0};
     hn_status status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, diags);
@@ -169,6 +176,9 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_ro
             status = hn_model_run_json(b, model, &request, ended, diags);
         }
         hn_progress_end(&progress);
+        if (args->set.n == 0) { // of another mechanism the scene says nothing
+            take_exhibit(model, request.method, exhibit);
+        }
 
         // the method that was chosen, once the question has turned out to be one
         if (status == HN_OK && !args->method && !args->json) {
@@ -235,10 +245,10 @@ static void tell_ending(const cJSON *run, const hn_incident_list *incidents) {
 /// Tells people what was noticed, and leaves in `b` what goes to standard output after the rows: a
 /// plot, or the end of NDJSON.
 static void tell_run(const hn_args *args, cJSON *run, const hn_incident_list *incidents,
-                     const hn_run_rows *rows, hn_strbuf *b) {
+                     const hn_run_rows *rows, const char *exhibit, hn_strbuf *b) {
     tell_marks(run);
     tell_incidents(incidents);
-    tell_estimate(run);
+    tell_verdict(run, exhibit);
     if (args->plot) {
         put_plot(b, run);
     } else if (rows->ndjson) {
@@ -253,15 +263,18 @@ static void tell_run(const hn_args *args, cJSON *run, const hn_incident_list *in
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     hn_diags diags = {0};
     hn_status ended = HN_OK;
-    hn_strbuf b;
+    hn_strbuf b, exhibit;
     hn_strbuf_init(&b);
+    hn_strbuf_init(&exhibit);
     const char *format = choose_format(args, &diags);
     hn_run_rows rows = {.ndjson = format && strcmp(format, "ndjson") == 0};
     const bool streams = format && strcmp(format, "json") != 0 && !args->plot;
     hn_status status =
-        format ? run_scene(lib, args, streams ? &rows : NULL, &b, &ended, &diags) : HN_ERR_INPUT;
+        format ? run_scene(lib, args, streams ? &rows : NULL, &b, &exhibit, &ended, &diags)
+               : HN_ERR_INPUT;
     if (status != HN_OK) {
         hn_strbuf_reset(&b);
+        hn_strbuf_reset(&exhibit);
         return hn_report_diags(args, status, &diags);
     }
 
@@ -275,7 +288,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         if (streams && !rows.begun) {
             hn_run_rows_begin(&rows, run); // no sample was made
         }
-        tell_run(args, run, &incidents, &rows, &b);
+        tell_run(args, run, &incidents, &rows, hn_strbuf_text(&exhibit), &b);
     }
 
     // a run that ended early has an exit status of its own
@@ -288,5 +301,6 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         tell_ending(run, &incidents);
     }
     cJSON_Delete(run);
+    hn_strbuf_reset(&exhibit);
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }

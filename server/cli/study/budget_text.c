@@ -181,8 +181,9 @@ static void put_legend(hn_strbuf *b) {
         hn_strbuf_printf(b, "  %-12s %s\n", hn_energy_item_name((hn_energy_item)i),
                          hn_energy_item_about((hn_energy_item)i));
     }
-    hn_strbuf_add(b, "  A formulation without equations of its own has its part in truncation; "
-                     "\"-\": it cannot be determined.\n");
+    hn_strbuf_add(b,
+                  "  Where formulation and integrator are one, as in ggl@radau5, truncation is the "
+                  "error of both; \"-\": it cannot be determined.\n");
 }
 
 void hn_budgets_text(hn_strbuf *b, const hn_budgets *a) {

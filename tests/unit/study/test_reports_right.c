@@ -43,11 +43,26 @@ static void rounding_of_the_energy_is_no_drift(void **state) {
     hn_run_free(run);
     hn_model_close(&rods);
 
-    // a loss that is real is reported
+    // a loss that is real is reported, and once: the energy is lost from then on
     m.q[0] = 1;
-    run = hn_motion_start(&m, "projection@rk4:h=0.4");
+    run = hn_motion_start(&m, "projection@rk4:h=0.2");
     (void)hn_run_advance(run, 40);
     assert_non_null(find(run, HN_INCIDENT_ENERGY_DRIFT));
+    const hn_incident *list = NULL;
+    int reports = 0;
+    for (int i = 0, n = hn_run_incidents(run, &list); i < n; i++) {
+        reports += list[i].code == HN_INCIDENT_ENERGY_DRIFT;
+    }
+    assert_int_equal(reports, 1);
+    hn_run_free(run);
+
+    // where one step loses it the jump alone is reported, with the change since the start
+    run = hn_motion_start(&m, "projection@rk4:h=0.4");
+    (void)hn_run_advance(run, 40);
+    assert_null(find(run, HN_INCIDENT_ENERGY_DRIFT));
+    const hn_incident *jump = find(run, HN_INCIDENT_ENERGY_JUMP);
+    assert_non_null(jump);
+    assert_non_null(strstr(jump->message, "; since the start it has changed by "));
     hn_run_free(run);
     hn_model_close(&m);
 }
