@@ -100,10 +100,10 @@ test("one is one, and a gap of rounding has one digit", () => {
 
 test("a remedy stands beside what its trial gave", () => {
   const remedies = ["h=0.01", "ggl@radau5:rtol=1e-06"];
-  const incident = { remedies, tried: ["", "tried to t = 2 s: gap 7e-16 m"] };
+  const incident = { remedies, tried: ["", "tried until t = 2 s: gap 7e-16 m"] };
   assert.deepEqual(
     triesOfIncident(incident).map(({ said }) => said),
-    ["", "tried to t = 2 s: gap 7e-16 m"],
+    ["", "tried until t = 2 s: gap 7e-16 m"],
   );
 });
 

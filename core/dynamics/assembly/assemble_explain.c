@@ -169,14 +169,18 @@ static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side
     return count;
 }
 
+/// A side is not made longer by more than this many times its length.
+static const double MOST_LONGER = 2;
+
 /// The smallest changes that would close the polygon: one side longer or shorter by the missing
-/// length, where that is no more than its own. A side of several bodies has no length to set.
+/// length, where that is a change of this mechanism and not another one. A side of several bodies
+/// has no length to set.
 static void list_remedies(const side *sides, int n, int longest, double missing, char *text,
                           size_t size) {
     size_t used = 0;
     text[0] = '\0';
     for (int k = 0; k < n && used + 1 < size; k++) {
-        if (sides[k].n_bodies > 1 || missing > sides[k].length) {
+        if (sides[k].n_bodies > 1 || missing > MOST_LONGER * sides[k].length) {
             continue;
         }
         double to = sides[k].length + (k == longest ? -missing : missing);
