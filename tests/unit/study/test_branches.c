@@ -244,7 +244,7 @@ static void loops_that_stand_open_by_half_the_mechanism_end_a_run(void **state) 
     hn_run *run = hn_motion_start(&m, "index2@ida:rtol=1e-6");
     assert_int_equal(hn_run_advance(run, 2), HN_ERR_DIVERGED);
     const hn_run_summary s = hn_run_get_summary(run);
-    assert_non_null(strstr(s.reason, "no longer that of this mechanism"));
+    assert_non_null(strstr(s.reason, "no longer this mechanism's"));
     assert_true(s.worst_gap > 0.5 * hn_system_length(m.sys) && s.worst_gap < 0.6);
     assert_non_null(find(run, HN_INCIDENT_DIVERGED, "the loops are open"));
     hn_run_free(run);
