@@ -252,8 +252,8 @@ class NearMisses(unittest.TestCase):
                              (["run", "four-bar", "--method", "baumgarte:alpa=3@rk4"], "alpha"), (["problem", "p33"], "p3"),
                              (["grade", "p33", "x.json"], "p3"), (["export", "four-bar", "--language", "pyton"], "python"),
                              (["run", "four-bar", "--format", "cvs"], "csv"), (["equations", "four-bar", "--format", "latx"], "latex"),
-                             (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--view", "fornt"], "front"),
-                             (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
+                             (["snapshot", "four-bar", "-o", "/tmp/a.png", "--view", "fornt"], "front"),
+                             (["snapshot", "four-bar", "-o", "/tmp/a.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
                              (["terms", "four-bar", "--q", "ht1=1"], "th1"), (["extreme", "xx1"], "x1"),
                              (["run", "four-bar.json"], "the shipped scene is called 'four-bar'"),
                              (["run", "nosuch.json"], "there is no file 'nosuch.json'")):
