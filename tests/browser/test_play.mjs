@@ -492,12 +492,12 @@ test("a singular pose is counted down, and then told with what became of each me
     [0, 1, 2],
   );
   for (const { message } of met) {
-    assert.match(message, /two branches of motion cross; the run (went straight on|turned off)/);
+    assert.match(message, /two branches of motion cross; the run (went straight on|left the smooth path)/);
   }
   await page.waitForFunction(
     () =>
       [...document.querySelectorAll(".incidents .message")].filter((node) =>
-        /the run (went straight on|turned off)/.test(node.textContent),
+        /the run (went straight on|left the smooth path)/.test(node.textContent),
       ).length === 3,
   );
 });
