@@ -53,6 +53,17 @@ static void end_trial(const trial *t) {
     }
 }
 
+/// Notes how the right answers of a part differ from variant to variant.
+static void note_answer(trial *t, const hn_part *p, const cJSON *answer) {
+    hn_answer_spread *s = &t->report->spread[p - t->variant.part];
+    if (cJSON_IsNumber(answer)) {
+        const double x = answer->valuedouble;
+        s->low = s->n > 0 ? fmin(s->low, x) : x;
+        s->high = s->n > 0 ? fmax(s->high, x) : x;
+        s->n++;
+    }
+}
+
 /// The right answer of a part gets every point.
 static hn_status try_right(trial *t, const hn_part *p) {
     hn_part_result results[HN_PART_RESULTS];
@@ -66,6 +77,7 @@ static hn_status try_right(trial *t, const hn_part *p) {
         return HN_OK;
     }
     t->report->rights++;
+    note_answer(t, p, answer);
 
     // graded as a student's, it must pass in every entry
     const hn_status status = p->kind->grade(p, answer, results, &n, &diag);
@@ -282,6 +294,9 @@ static hn_status try_seed(const hn_exercise *exercise, uint64_t seed, uint64_t *
     hn_status status = hn_variant_init(&t.variant, exercise, seed, &diag);
     if (status == HN_OK) {
         *hash = hash_of(&t.variant);
+        for (int k = 0; k < HN_DRAW_CONDITIONS; k++) {
+            out->refused[k] += t.variant.draw.refused[k];
+        }
         for (int i = 0; i < t.variant.n_parts && status == HN_OK; i++) {
             status = try_part(&t, &t.variant.part[i]);
         }

@@ -6,10 +6,19 @@
 
 #include "grade/exercise.h"
 
+/// The right answers of one part that are numbers.
+typedef struct hn_answer_spread {
+    long long n; ///< 0: the part asks for something else
+    double low, high;
+} hn_answer_spread;
+
 typedef struct hn_exercise_report {
     long long variants, bad;
-    long long distinct;            ///< variants with numbers of their own
-    long long rights, faults;      ///< right answers and wrong answers that were graded
+    long long distinct;       ///< variants with numbers of their own
+    long long rights, faults; ///< right answers and wrong answers that were graded
+    hn_answer_spread spread[HN_GRADE_MAX_PARTS]; ///< by part
+    /// draws that were refused, by the first condition that did not hold
+    long long refused[HN_DRAW_CONDITIONS];
     char first[2 * HN_GRADE_TEXT]; ///< the first fault found, "" if none: seed, part, what happened
     /// for each bad variant, as long as there is room: its seed, part, and the first thing that
     /// happened; one a line

@@ -138,6 +138,10 @@ def proofs(folder):
     exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "parts": [part]}
     done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..2", "--check")
     expect("it is named", done.returncode != 0 and "no listed mistake triggers the check 'singular'" in done.stdout, done.stdout)
+    done = run("problem", "loops", "--seeds", "1..20", "--check")
+    expect("draws that were refused are listed with their condition", "drawn again" in done.stdout and "for not 3*b-2*j+0.5 > 0" in done.stdout, done.stdout)
+    spread = [line for line in done.stdout.splitlines() if "right answers of part b" in line]
+    expect("the spread of right answers is told, and is one", len(spread) == 1 and spread[0].split()[-3] != spread[0].split()[-1], done.stdout)
     part["faults"] = [{"id": "singular", "answer": {"M": ALIKE}}]
     done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..2", "--check")
     expect("with the mistake the exercise is sound", done.returncode == 0, done.stdout)

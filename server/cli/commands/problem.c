@@ -35,6 +35,26 @@ static int read_seeds(const char *text, uint64_t *from, uint64_t *to) {
     return 1;
 }
 
+/// The draws that a condition refused, and how far apart right answers are.
+static void put_spread(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r) {
+    const cJSON *conditions = cJSON_GetObjectItemCaseSensitive(e->root, "conditions");
+    for (int k = 0; k < HN_DRAW_CONDITIONS; k++) {
+        const char *condition = cJSON_GetStringValue(cJSON_GetArrayItem(conditions, k));
+        if (condition && r->refused[k] > 0) {
+            hn_strbuf_printf(b, "  drawn again %lld times, for not %s > 0\n", r->refused[k],
+                             condition);
+        }
+    }
+    for (int i = 0; i < e->n_parts; i++) {
+        const hn_answer_spread *s = &r->spread[i];
+        const char *unit = hn_part_text(e->parts[i].node, "unit");
+        if (s->n > 0) {
+            hn_strbuf_printf(b, "  right answers of part %s: %.6g to %.6g%s%s\n", e->parts[i].id,
+                             s->low, s->high, *unit ? " " : "", unit);
+        }
+    }
+}
+
 static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r, int json) {
     if (json) {
         hn_json_object(b);
@@ -61,6 +81,7 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
     if (listed < r->bad) {
         hn_strbuf_printf(b, "  and %lld more\n", r->bad - listed);
     }
+    put_spread(b, e, r);
     hn_rubric_put_mistakes(b, e);
 }
 

@@ -184,6 +184,12 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     hn_model_free(s.model);
     if (status == HN_OK && s.exercise) {
         note_start(s.exercise);
+        if (request.n_entries > 0 && (args->at.n > 0 || !isnan(args->time))) {
+            hn_cli_note(
+                "holonom: the one configuration that '%s' gives is drawn; it has no motion, "
+                "so --time and --at are not used\n",
+                hn_exercise_id(s.exercise));
+        }
     }
     hn_exercise_free(s.exercise);
 

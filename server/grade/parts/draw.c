@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_DRAWS = 4000, MAX_CONDITIONS = 24, MAX_CHARS = 2000, MAX_WORD = 200 };
+enum { MAX_DRAWS = 4000, MAX_CHARS = 2000, MAX_WORD = 200 };
 
 double hn_draw_random(uint64_t seed, uint64_t k) {
     return (double)(hn_hash_mix(seed + 0x9E3779B97F4A7C15ull * (k + 1)) >> 11) * 0x1p-53;
@@ -229,7 +229,9 @@ static hn_status draw_states(hn_draw *d, int first, const source *sources, const
             }
             fits = 1;
             for (int c = 0; c < n_conditions; c++) {
-                fits &= hn_draw_eval(d, conditions[c], s) > 0;
+                const int holds = hn_draw_eval(d, conditions[c], s) > 0;
+                d->refused[c] += fits && !holds;
+                fits &= holds;
             }
             if (!fits && ++draws > MAX_DRAWS) {
                 return hn_diag_set(diag, HN_ERR_INPUT, "/conditions", "widen the ranges",
@@ -259,7 +261,7 @@ static void copy_outer(hn_draw *d, const hn_draw *outer) {
 hn_status hn_draw_init(hn_draw *d, const cJSON *names, const cJSON *conditions,
                        const hn_draw *outer, int n_states, uint64_t seed, hn_diag *diag) {
     source sources[HN_DRAW_NAMES];
-    hn_ex positive[MAX_CONDITIONS];
+    hn_ex positive[HN_DRAW_CONDITIONS];
     int n_conditions = 0;
     memset(d, 0, sizeof *d);
     d->n_states = n_states < HN_DRAW_STATES ? n_states : HN_DRAW_STATES;
@@ -278,7 +280,7 @@ hn_status hn_draw_init(hn_draw *d, const cJSON *names, const cJSON *conditions,
         sources[d->n_names - 1 - first] = s;
     }
     cJSON_ArrayForEach(node, conditions) {
-        if (!cJSON_IsString(node) || n_conditions == MAX_CONDITIONS) {
+        if (!cJSON_IsString(node) || n_conditions == HN_DRAW_CONDITIONS) {
             return refuse("conditions", "takes at most 24 formulas", diag);
         }
         HN_TRY(hn_draw_parse(d, node->valuestring, &positive[n_conditions++], diag));

@@ -16,7 +16,7 @@
 #include <cjson/cJSON.h>
 #include <stdint.h>
 
-enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16 };
+enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16, HN_DRAW_CONDITIONS = 24 };
 
 /// Where the number of a name comes from.
 typedef enum hn_draw_origin {
@@ -31,7 +31,8 @@ typedef struct hn_draw {
     int n_outer; ///< the first names, which are given; the others are the part's own
     const char *name[HN_DRAW_NAMES], *unit[HN_DRAW_NAMES]; ///< borrowed from the JSON
     hn_draw_origin origin[HN_DRAW_NAMES];
-    int digits[HN_DRAW_NAMES]; ///< decimals of a drawn number; -1: as many as it has
+    int refused[HN_DRAW_CONDITIONS]; ///< draws for which this condition was the first not to hold
+    int digits[HN_DRAW_NAMES];       ///< decimals of a drawn number; -1: as many as it has
     double value[HN_DRAW_STATES][HN_DRAW_NAMES];
 } hn_draw;
 
