@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The card that says why a method behaves as it does, and incidents grouped by their cause.
-import { niceBelow, quantity, scientific, seconds, withPowers } from "./format.js";
+import { gapWords, niceBelow, quantity, scientific, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 import { deadPointAt, singularWords } from "./dead-point.js";
 import { errorsOf } from "./errors.js";
@@ -177,7 +177,7 @@ function happenedWords(data, m, shown) {
   }
   const parts = [
     data.scene?.m > 0
-      ? `the loop gap is ${quantity(history.columns[m].gap[shown], "m")} (${trend.word})`
+      ? `the loop gap is ${gapWords(history.columns[m].gap[shown])} (${trend.word})`
       : "",
     Number.isNaN(off[at])
       ? ""

@@ -2,7 +2,7 @@
 // @ts-check
 // Sentences about the moment that is shown: a singular configuration ahead, before and after a
 // change, the drawing.
-import { ROUNDING, quantity, seconds } from "./format.js";
+import { ROUNDING, gapWords, quantity, seconds } from "./format.js";
 import { listed, verdictAt } from "./verdict.js";
 
 const SAID_AFTER = 0.5; // [s] that a passed configuration is still reported: some come quickly
@@ -174,7 +174,7 @@ export function describeDrawing(data, shown) {
     .filter(Boolean)
     .slice(0, 8);
   const gap = scene.drawing.tears.length
-    ? `; loop gap ${quantity(history.columns[view.selected].gap[shown], "m")}`
+    ? `; loop gap ${gapWords(history.columns[view.selected].gap[shown])}`
     : "";
   const verdict = verdictAt(data, view.selected, shown).words;
   return (
