@@ -13,7 +13,7 @@ import { chromium } from "playwright-core";
 export const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../..");
 export const PROGRAM = join(ROOT, process.env.HOLONOM || "build/holonom");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const START_LIMIT = 10000; // [ms]
+const START_LIMIT = 30000; // [ms] on a busy machine
 const FLAGS = [
   "--headless",
   "--no-sandbox",
@@ -46,10 +46,10 @@ export async function startServer(options = []) {
   });
   let text = "";
   const url = await new Promise((resolve, reject) => {
-    const timer = setTimeout(
-      () => reject(new Error(`no address within ${START_LIMIT} ms: ${text}`)),
-      START_LIMIT,
-    );
+    const timer = setTimeout(() => {
+      child.kill("SIGKILL"); // or the program of the tests would wait for it
+      reject(new Error(`no address within ${START_LIMIT} ms: ${text}`));
+    }, START_LIMIT);
     const read = (chunk) => {
       text += chunk;
       const address =
@@ -122,7 +122,13 @@ export function createBench() {
   const faultsOf = new WeakMap();
 
   before(async () => {
-    [server, browser] = await Promise.all([startServer(), startBrowser()]);
+    // where one of them fails, the other is there to be ended
+    const started = await Promise.allSettled([startServer(), startBrowser()]);
+    [server, browser] = started.map((one) => one.value);
+    const failed = started.find(({ status }) => status === "rejected");
+    if (failed) {
+      throw failed.reason;
+    }
   });
   after(async () => {
     await browser?.close();
