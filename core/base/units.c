@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SMALLEST = -5, LARGEST = 4, MAX_UNIT = 16 };
@@ -58,6 +59,13 @@ void hn_si_format(double value, const char *unit, int digits, char out[HN_SI_TEX
     const int decimals = digits - 1 - before_point;
     snprintf(out, HN_SI_TEXT, "%.*f%s%s%.*s", decimals > 0 ? decimals : 0,
              value / pow(10, 3 * group), space, prefixes[group - SMALLEST], MAX_UNIT, unit);
+}
+
+double hn_round_digits(double value, int digits) {
+    HN_ASSERT(digits >= 1 && digits <= 9);
+    char text[32];
+    snprintf(text, sizeof text, "%.*e", digits - 1, value);
+    return isfinite(value) ? strtod(text, NULL) : value;
 }
 
 int hn_digits_apart(double a, double b, int least) {

@@ -14,6 +14,10 @@ enum { HN_SI_TEXT = 48 };
 /// longer than 16 bytes.
 void hn_si_format(double value, const char *unit, int digits, char out[HN_SI_TEXT]);
 
+/// Returns `value` rounded to `digits` (1..9) significant digits: 253 to 2 digits is 250. Values
+/// that are not finite are returned as they are.
+double hn_round_digits(double value, int digits);
+
 /// Returns the number of significant digits, `least` (1..17) or more, with which printf's %.*g
 /// writes two numbers as different texts: "0.001201 exceeds 0.0012", not "0.0012 exceeds 0.0012".
 /// Equal numbers get `least`.

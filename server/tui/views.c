@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { NUMBER_DIGITS = 2 }; // significant, as in the page
 enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
@@ -295,7 +296,7 @@ static void put_number(hn_cells *c, hn_area area, int right, int y, double value
     } else if (fabs(value) < SMALLEST_PREFIXED && value != 0) {
         snprintf(text, sizeof text, "%.0e %s", value, unit);
     } else {
-        hn_si_format(value, unit, 2, text);
+        hn_si_format(hn_round_digits(value, NUMBER_DIGITS), unit, NUMBER_DIGITS, text);
     }
     hn_cells_put(c, area, right - hn_text_columns(text), y, HN_CELL_INK, 0, text);
 }

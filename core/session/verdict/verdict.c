@@ -89,7 +89,7 @@ static void quantity(double value, const char *unit, int digits, char out[HN_SI_
         const size_t used = strlen(out);
         snprintf(out + used, HN_SI_TEXT - used, " %s", unit);
     } else {
-        hn_si_format(value, unit, digits, out);
+        hn_si_format(hn_round_digits(value, digits), unit, digits, out);
     }
 }
 

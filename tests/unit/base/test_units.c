@@ -66,11 +66,22 @@ static void two_different_numbers_get_the_digits_that_tell_them_apart(void **sta
     assert_int_equal(hn_digits_apart((double)NAN, (double)NAN, 4), 4);
 }
 
+static void values_are_rounded_to_significant_digits(void **state) {
+    (void)state;
+    assert_true(hn_round_digits(0.253, 2) == 0.25);
+    assert_true(hn_round_digits(-253, 2) == -250);
+    assert_true(hn_round_digits(0.0996, 2) == 0.1);
+    assert_true(hn_round_digits(0, 2) == 0);
+    assert_true(isnan(hn_round_digits((double)NAN, 2)));
+    assert_true(isinf(hn_round_digits(HUGE_VAL, 2)));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_to_three_digits_stand_before_the_point),
         cmocka_unit_test(round_numbers_are_one_two_or_five),
         cmocka_unit_test(two_different_numbers_get_the_digits_that_tell_them_apart),
+        cmocka_unit_test(values_are_rounded_to_significant_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
