@@ -274,21 +274,25 @@ static hn_grade_mistake find_nothing(const place *at) {
                     : "no known mistake gives this: differentiate the row once more, term by term"};
 }
 
-/// Two mistakes at once: one of the rows, and a second on top of it. Where numbers stand for the
-/// lengths, a missing length with a factor is no second mistake: the number is the length.
+/// Two mistakes at once: one of the rows, and a second on top of it. Where no length is named, a
+/// factor may be a length that was written as a number.
 static hn_grade_mistake find_pair(const place *at, const double *value) {
+    static const char TWO[] = "a factor of 2 is wrong as well; if it is a length, write its name";
+    static const char HALF[] =
+        "a factor of 1/2 is wrong as well; if it is a length, write its name";
     const bool numbers = has_numbers_for_lengths(at);
     for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
         variants v = {.n = 0};
         MISTAKES[k].make(at, &v);
         for (size_t m = 0; m < sizeof SECONDS / sizeof SECONDS[0]; m++) {
             const bool is_length = numbers && strcmp(SECONDS[m].id, "factor") == 0;
-            for (int i = 0; i < v.n && !is_length; i++) {
+            const char *also = !is_length ? SECONDS[m].text : SECONDS[m].factor > 1 ? TWO : HALF;
+            for (int i = 0; i < v.n; i++) {
                 if (agrees_turned(at, v.e[i], value, &SECONDS[m])) {
                     hn_grade_mistake found = {.id = MISTAKES[k].id,
                                               .text = MISTAKES[k].text,
                                               .second = SECONDS[m].id,
-                                              .also = SECONDS[m].text};
+                                              .also = also};
                     memcpy(found.by, v.by[i], sizeof found.by);
                     return found;
                 }

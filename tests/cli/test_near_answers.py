@@ -78,7 +78,9 @@ def formulas(folder):
     expect("what is nearly right has no exchanged sines", found["mistake"] == "rounded", found["explanation"])
     expect("blanks about a power are read", told(folder, "drift", "e", "-gamma - 2*alpha*J*v - beta ^ 2 * phi") == "right")
     said = run("grade", "p3", write(folder, "answer.json", {"J": [["-0.5*sin(th1)", "1", "1", "1"], ["1", "1", "1", "1"]]})).stdout
-    expect("a number for a length is no missing length with a factor", "write lengths by their names" in said and "is missing" not in said, said)
+    expect("a factor may be a length in numbers", "a factor of 1/2 is wrong as well; if it is a length, write its name" in said, said)
+    said = run("grade", "p3", write(folder, "answer.json", {"J": [["-0.8081*sin(th1)", "1", "1", "1"], ["1", "1", "1", "1"]]})).stdout
+    expect("a number for a length is told", "write lengths by their names" in said, said)
 
 
 def spellings(folder):

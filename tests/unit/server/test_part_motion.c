@@ -52,11 +52,13 @@ static const char MADE[] =
          "\"answer\":{\"l4\":\"x/2\",\"l1\":\"1.2*x\",\"l2\":\"1.1*x\",\"l3\":\"1.3*x\"},"
          "\"faults\":[{\"id\":\"type\",\"answer\":{\"l1\":0.5,\"l2\":1.2,\"l3\":0.8,\"l4\":1}}]},"
          "{\"id\":\"b\",\"ask\":\"curve\",\"kind\":\"scene\",\"points\":3,"
-         "\"scene\":\"four-bar\",\"free\":[\"l1\"],\"checks\":[{\"id\":\"misses\","
-         "\"test\":\"curve\",\"point\":\"A\",\"through\":[[\"0\",\"0.45\"],[\"-0.45\",\"0\"],"
-         "[\"0.27\",\"-0.36\"]],\"within\":0.005,\"says\":\"off\"},"
-         "{\"id\":\"flat\",\"test\":\"stays\",\"of\":\"abs(sin(th3-th1-a2))-0.2\","
-         "\"says\":\"too flat\"}],\"answer\":{\"l1\":0.45}}]}";
+         "\"scene\":\"four-bar\",\"free\":[\"l1\"],\"checks\":[{\"id\":\"flat\","
+         "\"test\":\"stays\",\"of\":\"abs(sin(th3-th1-a2))-0.2\",\"says\":\"too flat\"},"
+         "{\"id\":\"misses\",\"test\":\"curve\",\"point\":\"A\","
+         "\"through\":[[\"0\",\"0.45\"],[\"-0.45\",\"0\"],[\"0.27\",\"-0.36\"]],"
+         "\"within\":0.005,\"says\":\"off\"}],\"answer\":{\"l1\":0.45},"
+         "\"faults\":[{\"id\":\"flat\",\"answer\":{\"l1\":0.59}},"
+         "{\"id\":\"misses\",\"answer\":{\"l1\":0.5}}]}]}";
 
 // a scene that can be used, without the links that are compared
 #define PENDULUM                                                                                  \
