@@ -23,7 +23,9 @@ static const hn_term TERMS[] = {
      "the mechanism can have one more degree of freedom, the motion may branch or lock, and single "
      "multipliers are not determined."},
     {"singular configuration",
-     "A configuration in which J loses rank: a dead point, a change point, a flat linkage."},
+     "A configuration in which J loses rank: a change point, a flat linkage. At a dead point J "
+     "keeps "
+     "its rank; there only one coordinate no longer determines the others."},
     {"sigma_min",
      "The smallest singular value of J: how close the constraints are to dependent. It is 0 in a "
      "singular configuration, and is compared with the largest one, sigma_max."},

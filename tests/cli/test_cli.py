@@ -108,7 +108,7 @@ class CommandLine(Command):
         # crank 3 at 1 rad and ground 1 are sqrt(3^2 + 1^2 - 2*3*cos(1)) = 2.59965 apart, coupler and rocker reach 1.2 + 0.8
         text = self.assert_exit(call("inspect", "four-bar", "--set", "l1=3"), INPUT)
         self.assertIn("0.599651 m are missing", text)
-        self.assertIn("make rocker 1.39965 m", text)
+        self.assertIn("make rocker longer than 1.39965 m", text)
         start = strict(self.assert_exit(call("inspect", "four-bar", "--set", "l1=3", "--json"), INPUT))["start"]
         self.assertFalse(start["ok"])
         self.assertIn("loop B cannot be closed", start["reason"])

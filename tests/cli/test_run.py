@@ -210,6 +210,13 @@ class Run(Command):
         late = call("run", "four-bar", "--time", "1", "--at", "1.00000001").stderr.decode()
         self.assertIn("output time 1.00000001 s lies after the end, 1 s", late)
 
+    def test_the_last_report_of_a_kind_says_that_later_ones_are_not_listed(self):
+        # flat twelve times in 5 s: five are announced, five are reported
+        done = call("run", "parallelogram", "--method", "projection@rk4:h=1e-3", "--time", "5", "--json")
+        for code in "rank-ahead", "near-singular":
+            told = [i["message"] for i in json.loads(done.stdout)["incidents"] if i["code"] == code]
+            self.assertEqual([("; later reports of this kind are not listed" in m) for m in told], [False] * 4 + [True])
+
     def test_a_status_that_finds_fault_says_by_which_measure(self):
         done = call("compare", "four-bar", "--methods", "nullspace@rk4:h=0.01", "--time", "3").stdout.decode()
         self.assertRegex(done, r"(?m)^nullspace\S+ +inaccurate ")

@@ -69,7 +69,7 @@ export const GLOSSARY = {
     word: "singular configuration",
     match: /\bsingular (configurations?|pose)\b|\bdead points?\b/i,
     means:
-      "Singular configuration (dead point, change point): links are collinear and J loses rank. Multipliers grow without bound there, and the motion may branch.",
+      "Singular configuration (change point, flat linkage): links are collinear and J loses rank. Multipliers grow without bound there, and the motion may branch. At a dead point J keeps its rank; there only one coordinate no longer determines the others.",
   },
   multipliers: {
     word: "multipliers",

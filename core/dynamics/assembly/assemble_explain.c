@@ -184,8 +184,9 @@ static void list_remedies(const side *sides, int n, int longest, double missing,
             continue;
         }
         double to = sides[k].length + (k == longest ? -missing : missing);
-        int wrote = snprintf(text + used, size - used, "%s%s %.6g m", used ? " or " : "make ",
-                             sides[k].name, to);
+        int wrote =
+            snprintf(text + used, size - used, "%s%s %s than %.6g m", used ? " or " : "make ",
+                     sides[k].name, k == longest ? "shorter" : "longer", to);
         used += wrote > 0 ? (size_t)wrote : 0;
     }
 }

@@ -5,9 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Reports of one kind, so that a condition that comes and goes leaves room for others.
-enum { MOST_OF_ONE_KIND = 5 };
-
 void hn_incident_log_clear(hn_incident_log *log) {
     log->n = 0;
     log->active = 0;
@@ -23,7 +20,7 @@ void hn_incident_over(hn_incident_log *log, hn_incident_code code) {
 }
 
 bool hn_incident_is_taken(const hn_incident_log *log, hn_incident_code code) {
-    return !hn_incident_holds(log, code) && log->reported[code] < MOST_OF_ONE_KIND &&
+    return !hn_incident_holds(log, code) && log->reported[code] < HN_INCIDENT_MOST_OF_ONE_KIND &&
            log->n < HN_RUN_MAX_INCIDENTS;
 }
 

@@ -7,6 +7,9 @@
 #include "base/status.h"
 #include "study/incidents/incident.h"
 
+/// Reports of one kind, so that a condition that comes and goes leaves room for others.
+enum { HN_INCIDENT_MOST_OF_ONE_KIND = 5 };
+
 typedef struct hn_incident_log {
     hn_incident list[HN_RUN_MAX_INCIDENTS];
     int n;

@@ -46,6 +46,9 @@ void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, do
                            pose.mobility, pose.mobility == 1 ? "" : "s", pose.mobility_before);
     }
     hn_incident_append(&w->log, i, "%s", branches[pose.branches]);
+    if (w->measure.gap > w->warn_gap * w->length) {
+        hn_incident_append(&w->log, i, "; all this of the open loop, not of the mechanism");
+    }
     w->singular.passing = 1 + (int)(i - w->log.list);
 }
 

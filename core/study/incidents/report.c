@@ -44,6 +44,9 @@ hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const
     va_start(args, format);
     vsnprintf(i->message, sizeof i->message, format, args);
     va_end(args);
+    if (w->log.reported[kind->code] == HN_INCIDENT_MOST_OF_ONE_KIND) {
+        hn_incident_append(&w->log, i, "; later reports of this kind are not listed");
+    }
     offer_remedies(w, kind, i);
     keep_before(w, i);
     return i;
