@@ -51,13 +51,13 @@ static void put_command(hn_strbuf *b, const hn_command *command) {
 
     // its examples, line by line
     const char *const *examples = hn_examples_of(command->name);
-    hn_strbuf_add(b, ".PP\nExamples:\n.nf\n");
+    hn_strbuf_add(b, ".PP\nExamples:\n.nf\n.in 2n\n"); // the longest have room in 80 columns
     for (int i = 0; examples && i < HN_CLI_EXAMPLES; i++) {
-        hn_strbuf_add(b, "    holonom ");
+        hn_strbuf_add(b, "holonom ");
         put_text(b, examples[i]);
         hn_strbuf_add(b, "\n");
     }
-    hn_strbuf_add(b, ".fi\n");
+    hn_strbuf_add(b, ".in\n.fi\n");
 }
 
 static void put_sections(hn_strbuf *b) {
@@ -70,10 +70,10 @@ static void put_sections(hn_strbuf *b) {
         ".TP\n.B 2\nthe input is at fault\n.TP\n.B 3\nthe program is at fault\n"
         ".TP\n.B 4\na run ended early and said why, or a prediction of extreme failed\n"
         ".TP\n.B 130\nCtrl\\-C ended the workbench in the terminal (tui)\n"
-        ".SH EXAMPLES\n.nf\nholonom serve\nholonom tui four\\-bar\n"
+        ".SH EXAMPLES\n.nf\n.in 2n\nholonom serve\nholonom tui four\\-bar\n"
         "holonom compare four\\-bar \\-\\-methods index1@rk4:h=1e\\-2 projection@rk4:h=1e\\-2\n"
         "holonom run four\\-bar \\-\\-method reduced@dop853:rtol=1e\\-10 \\-\\-time 2 \\-\\-json\n"
-        "holonom grade p3 answer.json\n.fi\n"
+        "holonom grade p3 answer.json\n.in\n.fi\n"
         ".SH ENVIRONMENT\n.TP\n.B HOLONOM_HOME\nfolder with lessons/ and web/\n"
         ".TP\n.B HOLONOM_CACHE\nfolder for computed references and unfinished studies\n"
         ".TP\n.B XDG_STATE_HOME\nfolder in which the workbench in the terminal keeps the best "

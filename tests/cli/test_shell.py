@@ -359,13 +359,14 @@ class Manual(unittest.TestCase):
                 self.assertIn(f".B {option}", text)
 
     def test_groff_sets_it_without_a_warning(self):
-        done = subprocess.run(["groff", "-ww", "-man", "-Tascii", "-P-cbou"], input=call("manual").stdout, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["groff", "-ww", "-man", "-Tascii", "-P-cbou", "-rLL=80n"], input=call("manual").stdout, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.stderr, "")
         self.assertIn("SYNOPSIS", done.stdout)
+        self.assertEqual([line for line in done.stdout.splitlines() if len(line) > 80], [])
 
     def test_no_line_is_a_request_that_roff_does_not_know(self):
         requests = set(re.findall(r"^\.(\w+)", call("manual").stdout, re.M))
-        self.assertLessEqual(requests, {"TH", "SH", "SS", "TP", "PP", "B", "nf", "fi"})
+        self.assertLessEqual(requests, {"TH", "SH", "SS", "TP", "PP", "B", "nf", "fi", "in"})
 
 
 if __name__ == "__main__":
