@@ -161,7 +161,7 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
 .gallery { grid-template-columns: 1fr 1fr 1fr; } .gallery figure { margin: .5em 0; }
-.contents > li { margin: .7em 0; } .contents div { font-size: 9.5pt; color: #444; }
+.contents > li { margin: .45em 0; } .contents div { font-size: 9pt; color: #444; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
 figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; max-height: 100mm; }
 figcaption { font-size: 9pt; color: #444; }
