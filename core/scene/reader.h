@@ -122,7 +122,8 @@ bool hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what); ///< abse
 void hn_rd_list(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item);
 
 // ---- values ----
-/// Returns a text unchanged (title, about); NULL if it is absent.
+/// Returns a text unchanged (title, about); NULL if it is absent, or holds a control character that
+/// is no line break and no tab: a terminal would obey it.
 const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, bool required);
 /// Returns a name with its {formulas} filled in, checked for length. NULL when it is absent: a
 /// fault only if `required`.

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "base/strbuf.h"
+#include "base/visible.h"
 #include "expr/construct.h"
 #include "expr/diff.h"
 
@@ -358,6 +359,10 @@ const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, bool 
                        hn_rd_kind(node));
         return NULL;
     }
+    if (hn_has_control(node->valuestring, false)) {
+        hn_rd_fault_at(r, key, "leave it out", "the text holds a control character");
+        return NULL;
+    }
     return hn_rd_keep(r, node->valuestring);
 }
 
@@ -377,12 +382,9 @@ const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, bool 
     }
 
     // names appear in tables and links: no line breaks in them
-    for (const char *c = name; c && *c; c++) {
-        if ((unsigned char)*c < 0x20) {
-            hn_rd_fault(r, NULL, "a name holds a control character");
-            name = NULL;
-            break;
-        }
+    if (name && hn_has_control(name, true)) {
+        hn_rd_fault(r, NULL, "a name holds a control character");
+        name = NULL;
     }
     hn_rd_leave(r, mark);
     return name;

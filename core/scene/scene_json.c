@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "base/units.h"
+#include "base/visible.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -320,11 +321,12 @@ hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n
                              hn_scene **out, hn_diags *diags) {
     HN_ASSERT(path && out);
     *out = NULL;
-    hn_strbuf text;
+    hn_strbuf text, visible;
     hn_strbuf_init(&text);
+    hn_strbuf_init(&visible);
     hn_status status = hn_file_load(path, HN_SCENE_MAX_BYTES, &text, diags);
 
-    // id: the file's name without folder and .json
+    // id: the file's name without folder and .json, with '?' for what a terminal would obey
     const char *base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     size_t length = strlen(base);
     char id[HN_RD_MAX_NAME + 1];
@@ -332,9 +334,11 @@ hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n
         length -= 5;
     }
     snprintf(id, sizeof id, "%.*s", (int)(length < HN_RD_MAX_NAME ? length : HN_RD_MAX_NAME), base);
+    hn_visible_add(&visible, id, true);
 
-    HN_THEN(status, hn_scene_load_json(hn_strbuf_text(&text), text.n, id, settings, n_settings, out,
-                                       diags));
+    HN_THEN(status, hn_scene_load_json(hn_strbuf_text(&text), text.n, hn_strbuf_text(&visible),
+                                       settings, n_settings, out, diags));
+    hn_strbuf_reset(&visible);
     hn_strbuf_reset(&text);
     return status;
 }

@@ -65,13 +65,23 @@ static void describe_one(hn_strbuf *b, const hn_command *command) {
     }
 }
 
-static void describe_words(hn_strbuf *b) {
+/// The terms that answer best to a word; "": all. Returns whether there is one.
+static bool describe_words(hn_strbuf *b, const char *word) {
     int n;
     const hn_term *terms = hn_glossary(&n);
+    hn_term_match best = HN_TERM_OTHER;
     for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(b, "%s\n%*s", terms[i].word, HELP_INDENT, "");
-        add_folded(b, HELP_INDENT, terms[i].means);
+        const hn_term_match match = hn_term_matches(&terms[i], word);
+        best = match > best ? match : best;
     }
+    for (int i = 0; i < n; i++) {
+        const bool meant = best > HN_TERM_OTHER && hn_term_matches(&terms[i], word) == best;
+        if (!word[0] || meant) {
+            hn_strbuf_printf(b, "%s\n%*s", terms[i].word, HELP_INDENT, "");
+            add_folded(b, HELP_INDENT, terms[i].means);
+        }
+    }
+    return !word[0] || best > HN_TERM_OTHER;
 }
 
 /// What `holonom` alone says: the first three things to do.
@@ -103,6 +113,37 @@ static hn_diag unknown_command(const char *name) {
     return diag;
 }
 
+/// The words of the command line from `first` on as one, with blanks between.
+static void join_words(hn_strbuf *b, const hn_words *words, int first) {
+    for (int i = first; i < words->n; i++) {
+        hn_strbuf_printf(b, "%s%s", i > first ? " " : "", words->word[i]);
+    }
+}
+
+/// A term where there is no command of this name, or behind 'words'; all terms for 'words' alone.
+static hn_exit print_terms(const hn_args *args) {
+    hn_strbuf b, word;
+    hn_strbuf_init(&b);
+    hn_strbuf_init(&word);
+    const bool of_words = strcmp(args->words.word[0], "words") == 0;
+    join_words(&word, &args->words, of_words);
+    const bool found = describe_words(&b, hn_strbuf_text(&word));
+    hn_exit result = HN_EXIT_DONE;
+    if (found) {
+        result = hn_cli_print(&b);
+    } else if (of_words) {
+        hn_diag diag;
+        hn_diag_set(&diag, HN_ERR_INPUT, NULL, "'holonom help words' lists the terms",
+                    "the terms do not hold '%.60s'", hn_strbuf_text(&word));
+        result = hn_report_diag(args, &diag);
+    } else {
+        hn_diag diag = unknown_command(hn_strbuf_text(&word));
+        result = hn_report_diag(args, &diag);
+    }
+    hn_strbuf_reset(&word);
+    return result;
+}
+
 /// "scenes", "methods", "lessons" and "problems" are short for "list scenes" ...
 static bool is_list(const char *word) {
     static const char *const kinds[] = {"scenes", "methods", "lessons", "problems"};
@@ -123,14 +164,10 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
         return hn_cli_print(&b);
     }
     const char *word = args->words.word[0];
-    if (strcmp(word, "words") == 0) {
-        describe_words(&b);
-        return hn_cli_print(&b);
-    }
-    const hn_command *command = hn_command_find(is_list(word) ? "list" : word);
+    const hn_command *command =
+        args->words.n > 1 ? NULL : hn_command_find(is_list(word) ? "list" : word);
     if (!command) {
-        hn_diag diag = unknown_command(word);
-        return hn_report_diag(args, &diag);
+        return print_terms(args);
     }
     describe_one(&b, command);
     return hn_cli_print(&b);
@@ -218,7 +255,7 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
     hn_diags diags = {0};
     hn_status status = hn_cli_protect_inputs(args, &diags);
     if (args->out && strcmp(args->out, "-") != 0 && strcmp(command->name, "grade") != 0) {
-        HN_THEN(status, hn_cli_check_folder(args->out, &diags)); // grade makes its folders
+        HN_THEN(status, hn_cli_check_file(args->out, &diags)); // grade makes its folders
     }
     start_native(args);
     allow_programs(args);

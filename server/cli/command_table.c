@@ -105,9 +105,9 @@ static const hn_command COMMANDS[] = {
     {"manual", "", "the manual page in roff, for 'man -l -'", "", 0, 0, NULL},
     {"completion", "bash|zsh|fish", "what a shell needs to complete commands of this program", "",
      1, 1, NULL},
-    {"help", "[COMMAND|words]",
-     "this text, a command's options, or what the terms of messages and tables mean", "", 0, 1,
-     NULL},
+    {"help", "[COMMAND|words|TERM...]",
+     "this text, a command's options, or what the terms of messages and tables mean: all, or one",
+     "", 0, HN_CLI_MAX_WORDS, NULL},
     {"version", "", "what this program is", "", 0, 0, NULL},
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof *COMMANDS };

@@ -63,7 +63,7 @@ static const struct {
     {"completion",
      {"completion bash >~/.local/share/bash-completion/completions/holonom", "completion zsh",
       "completion fish"}},
-    {"help", {"help", "help run", "help words"}},
+    {"help", {"help run", "help words", "help dead point"}},
     {"version", {"version", "version --json", "--version"}},
 };
 

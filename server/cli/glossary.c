@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/glossary.h"
 
+#include <ctype.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+#include <strings.h>
+
 static const hn_term TERMS[] = {
     // loops
     {"loop gap, constraint violation",
@@ -12,6 +18,12 @@ static const hn_term TERMS[] = {
     {"lambda, multipliers",
      "One number for each closure equation: the force or moment that holds the loop closed. "
      "J' lambda are these forces along the coordinates."},
+    {"alpha, beta",
+     "The constants [1/s] of Baumgarte's method: it asks for phi'' + 2 alpha phi' + beta^2 phi = "
+     "0, "
+     "so that a loop gap dies away as a damped vibration does. With alpha = beta it falls about "
+     "as exp(-alpha t); with alpha below beta it swings meanwhile; with alpha above beta it falls "
+     "more slowly in the end, as exp(-(alpha - sqrt(alpha^2 - beta^2)) t)."},
     {"degrees of freedom", "Velocities less independent constraints: nv - rank J."},
     {"branch, assembly mode",
      "One of the ways in which the same links can be put together, as 'open' and 'crossed' of a "
@@ -77,4 +89,31 @@ static const hn_term TERMS[] = {
 const hn_term *hn_glossary(int *n) {
     *n = (int)(sizeof TERMS / sizeof *TERMS);
     return TERMS;
+}
+
+/// Whether `text` holds the word, not as a part of a longer one.
+static bool holds_word(const char *text, const char *word) {
+    const size_t n = strlen(word);
+    for (const char *at = text; n > 0 && *at; at++) {
+        const bool begins = at == text || !isalnum((unsigned char)at[-1]);
+        if (begins && strncasecmp(at, word, n) == 0 && !isalnum((unsigned char)at[n])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+hn_term_match hn_term_matches(const hn_term *term, const char *word) {
+    // the names stand in one text with commas between
+    for (const char *name = term->word; *name;) {
+        const size_t n = strcspn(name, ",");
+        if (strlen(word) == n && strncasecmp(name, word, n) == 0) {
+            return HN_TERM_IS;
+        }
+        name += n;
+        name += strspn(name, ", ");
+    }
+    return holds_word(term->word, word)    ? HN_TERM_HOLDS
+           : holds_word(term->means, word) ? HN_TERM_TELLS
+                                           : HN_TERM_OTHER;
 }

@@ -11,4 +11,13 @@ typedef struct hn_term {
 
 /// Returns the terms, those of one subject beside each other; *n: how many.
 const hn_term *hn_glossary(int *n);
+/// How a term answers to a word, letter case aside, and where several terms do: those of the best
+/// kind are meant.
+typedef enum hn_term_match {
+    HN_TERM_OTHER, ///< it does not
+    HN_TERM_TELLS, ///< what it means holds the word, as "dead point"
+    HN_TERM_HOLDS, ///< one of its names holds the word, as "violation"
+    HN_TERM_IS     ///< the word is one of its names, as "multipliers"
+} hn_term_match;
+hn_term_match hn_term_matches(const hn_term *term, const char *word);
 #endif

@@ -3,7 +3,10 @@
 
 import json
 import os
+import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -69,12 +72,68 @@ class Files(Command):
             missing = subprocess.run([os.path.abspath(driver.PROGRAM), "inspect", "nothing.json"], cwd=folder, capture_output=True)
             self.assertIn(b"there is no file 'nothing.json'", missing.stderr)
 
-    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
     def test_a_name_cannot_command_the_terminal(self):
         done = call("inspect", "no\x1b[31m\nfile.json")
         self.assert_exit(done, INPUT)
         self.assertIn(b"'no?[31m?file.json'", done.stderr)
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "\x1b[31mred\x07\nblue.json")
+            with open("lessons/01-closed-loops/scenes/four-bar.json") as f:
+                document = json.load(f)
+            with open(scene, "w") as f:
+                json.dump({k: v for k, v in document.items() if k != "title"}, f)
+            for words in (("inspect", scene), ("equations", scene), ("terms", scene), ("compare", scene, "--time", "0.05"),
+                          ("study", scene, "budget", "--time", "0.05"), ("reference", scene, "--time", "0.05"), ("run", scene, "--time", "0.05", "--plot")):
+                done = call(*words)
+                self.assert_exit(done, DONE)
+                self.assertIsNone(re.search(rb"[\x00-\x08\x0b-\x1f\x7f]|\nblue", done.stdout + done.stderr), words)
+            self.assertIn("scene                          ?[31mred??blue\n", call("inspect", scene).stdout.decode())
+            # what a student's file is called, and the note about a file that is kept
+            handed_in, kept = os.path.join(folder, "\x1b[31mp3\x07.json"), os.path.join(folder, "\x1b[31mkept\x07.svg")
+            for path in (handed_in, kept):
+                with open(path, "w") as f:
+                    json.dump(SUBMISSION, f)
+            for words in (("grade", "p3", handed_in, "-o", os.path.join(folder, "verdicts")), ("snapshot", "four-bar", "-o", kept)):
+                done = call(*words)
+                self.assert_exit(done, DONE)
+                self.assertNotRegex(done.stdout + done.stderr, b"[\x07\x1b]")
+                self.assertIn(b"?[31m", done.stdout + done.stderr)
 
+    def test_a_folder_in_place_of_a_file_is_told_before_anything_is_computed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, words in (("d.svg", ("snapshot", "four-bar", "--method", "index1@rk4:h=1e-6", "--time", "3600")),
+                                ("d.json", ("reference", "fb0")), ("d.c", ("export", "four-bar", "--language", "c"))):
+                path = os.path.join(folder, name)
+                os.mkdir(path)
+                done = call(*words, "-o", path)
+                self.assert_exit(done, INPUT)
+                self.assertIn(b"it is a folder", done.stderr)
+                self.assertEqual(os.listdir(path), [])
+
+    def test_a_picture_that_cannot_be_written_leaves_the_old_file_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "x.svg")
+            with open(path, "w") as f:
+                f.write("somebody's work")
+
+            def no_room():
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+            done = subprocess.run([driver.PROGRAM, "snapshot", "four-bar", "--no-native", "-o", path], capture_output=True, preexec_fn=no_room,
+                                  restore_signals=False, timeout=120 * driver.SLOW)
+            self.assert_exit(done, PROGRAM)
+            self.assertIn(b"cannot write", done.stderr)
+            self.assertNotIn(b"is kept", done.stderr)
+            self.assertEqual(os.listdir(folder), ["x.svg"])
+            self.assertEqual(open(path).read(), "somebody's work")
+            # with room it is kept
+            done = call("snapshot", "four-bar", "-o", path)
+            self.assert_exit(done, DONE)
+            self.assertIn(b"that is kept in", done.stderr)
+            self.assertEqual(open(path + ".1").read(), "somebody's work")
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
     def test_an_output_that_cannot_be_written_is_no_fault_of_the_input(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "s.json")

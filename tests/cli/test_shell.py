@@ -122,6 +122,19 @@ class Help(unittest.TestCase):
         for term in terms | {"pilot run", "right", "inaccurate", "WRONG", "error estimate"}:
             self.assertIn(term, heads)
 
+    def test_a_term_is_found_by_its_name(self):
+        everything = call("help", "words").stdout
+        for words, head in ((["words", "lambda"], "lambda, multipliers"), (["lambda"], "lambda, multipliers"), (["Multipliers"], "lambda, multipliers"),
+                            (["dead point"], "singular configuration"), (["dead", "point"], "singular configuration"),
+                            (["alpha"], "alpha, beta"), (["words", "beta"], "alpha, beta")):
+            done = call("help", *words)
+            self.assertEqual((done.returncode, done.stdout.splitlines()[0]), (0, head), done.stderr)
+            self.assertEqual(len(re.findall(r"(?m)^\S", done.stdout)), 1, words)
+            self.assertIn(done.stdout, everything)
+        self.assertTrue(call("help", "run").stdout.startswith("holonom run "))  # a command comes first
+        done = call("help", "words", "nonsense")
+        self.assertEqual((done.returncode, "'nonsense'" in done.stderr), (2, True))
+
     def test_holonom_alone_says_what_to_do_first(self):
         done = call()
         self.assertEqual((done.returncode, done.stdout), (2, ""))

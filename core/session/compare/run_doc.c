@@ -98,10 +98,10 @@ static hn_status check_at(const hn_run_request *r, hn_diags *diags) {
 }
 
 static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags) {
-    if (!(r->time > 0) || !(r->time <= 1e7)) {
+    if (!(r->time > 0) || !(r->time <= 1e6)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %.*g s; it must be above 0 and at most 1e7 s",
-                            hn_digits_apart(r->time, 1e7, 6), r->time);
+                            "the end time is %.*g s; it must be above 0 and at most 1e6 s",
+                            hn_digits_apart(r->time, 1e6, 6), r->time);
     }
     if (!(r->every >= 0) || !isfinite(r->every)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
@@ -118,9 +118,9 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     // limit of the caller
     long long allowed = r->max_samples > 0 ? r->max_samples : 1000000;
     if (n > (double)allowed) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, r->at ? "/at" : "/every",
-                            "ask for fewer output times",
-                            "%.0f samples were asked for; at most %lld are given", n, allowed);
+        return hn_diags_add(
+            diags, HN_ERR_LIMIT, r->at ? "/at" : "/every", "ask for fewer output times",
+            "%.*g samples were asked for; at most %lld are given", n < 1e15 ? 15 : 3, n, allowed);
     }
     s->n = (long long)n;
     return r->at ? check_at(r, diags) : HN_OK;

@@ -103,10 +103,10 @@ const char *hn_job_text(const hn_job_request *r, const char *name) {
 
 static hn_status check_times(const hn_job_request *r, hn_diags *diags) {
     const double limit = r->limits.time_limit;
-    if (r->n_models == 1 && !(r->time > 0 && r->time <= 1e7)) {
+    if (r->n_models == 1 && !(r->time > 0 && r->time <= 1e6)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %.*g s; it must be above 0 and at most 1e7 s",
-                            hn_digits_apart(r->time, 1e7, 6), r->time);
+                            "the end time is %.*g s; it must be above 0 and at most 1e6 s",
+                            hn_digits_apart(r->time, 1e6, 6), r->time);
     }
     if (!(limit >= 0) || !isfinite(limit)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time_limit", NULL,

@@ -102,10 +102,10 @@ void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit);
         .name = "methods", .type = HN_FIELD_TEXTS, .min = 1, .max = (most),                        \
         .served_max = (served), .about = "spellings of methods; a choice of methods when left out" \
     }
-#define HN_JOB_TIME_FIELD                                                                    \
-    {                                                                                        \
-        .name = "time", .type = HN_FIELD_NUMBER, .min = 1e-9, .max = 1e7, .served_max = 1e6, \
-        .about = "end of the motion [s]; the scene's when left out"                          \
+#define HN_JOB_TIME_FIELD                                                 \
+    {                                                                     \
+        .name = "time", .type = HN_FIELD_NUMBER, .min = 1e-9, .max = 1e6, \
+        .about = "end of the motion [s]; the scene's when left out"       \
     }
 #define HN_JOB_TIME_LIMIT_FIELD(default_words)                                                   \
     {                                                                                            \

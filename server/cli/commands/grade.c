@@ -3,6 +3,7 @@
 // cannot be read, or a word that is wrong; 3 an exercise that does not load, an output that cannot
 // be written.
 #include "base/clock.h"
+#include "base/visible.h"
 #include "cli/commands/rubric_file.h"
 #include "cli/commands/exercise_word.h"
 #include "cli/commands/grade_folder.h"
@@ -80,18 +81,22 @@ static hn_exit write_files(const task *t, const hn_verdict *v, hn_strbuf *b, hn_
     hn_strbuf_printf(&path, "%s.%s", t->target, t->form->ending);
     const bool inside = t->form->pictures && !t->form->results;
     const bool drawn = png->n > 0 && !inside;
-    if (!t->form->results) { // what a platform reads is its own
-        hn_cli_keep_former(hn_strbuf_text(&path), b);
-    }
-    hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), b);
+    // what a platform reads is its own
+    hn_exit result = (t->form->results ? hn_cli_write_file
+                                       : hn_cli_write_beside)(t->args, hn_strbuf_text(&path), b);
     if (result == HN_EXIT_DONE && drawn) {
         hn_strbuf_clear(&path);
         hn_strbuf_printf(&path, "%s.png", t->target);
-        hn_cli_keep_former(hn_strbuf_text(&path), png);
-        result = hn_cli_write_file(t->args, hn_strbuf_text(&path), png);
+        result = hn_cli_write_beside(t->args, hn_strbuf_text(&path), png);
     }
     hn_strbuf_reset(&path);
-    printf("%s: %s\n", t->submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
+    hn_strbuf line;
+    hn_strbuf_init(&line);
+    hn_visible_add(&line, t->submission, true);
+    hn_strbuf_add(&line, ": ");
+    hn_visible_add(&line, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary, true);
+    puts(hn_strbuf_text(&line));
+    hn_strbuf_reset(&line);
     return result;
 }
 

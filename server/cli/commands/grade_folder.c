@@ -3,6 +3,7 @@
 #include "cli/commands/grade_folder.h"
 
 #include "base/file.h"
+#include "base/visible.h"
 #include "class/class_grading.h"
 #include "class/class_summary.h"
 #include "cli/shell/diagnostics.h"
@@ -38,15 +39,25 @@ static void tell(void *user, const char *line) {
     }
     cJSON *o = cJSON_Parse(line);
     const char *remark = hn_document_text(o, "remark");
+    hn_strbuf words, visible;
+    hn_strbuf_init(&words);
+    hn_strbuf_init(&visible);
+    hn_strbuf_printf(&words, "%s: ", hn_document_text(o, "student"));
     if (is_graded(o)) {
-        printf("%s: %g of %g, %s", hn_document_text(o, "student"), hn_document_number(o, "score"),
-               hn_document_number(o, "max_score"), hn_document_text(o, "summary"));
+        hn_strbuf_printf(&words, "%g of %g, %s", hn_document_number(o, "score"),
+                         hn_document_number(o, "max_score"), hn_document_text(o, "summary"));
     } else {
-        printf("%s: %s, %s", hn_document_text(o, "student"), hn_document_text(o, "status"),
-               hn_document_text(o, "reason"));
+        hn_strbuf_printf(&words, "%s, %s", hn_document_text(o, "status"),
+                         hn_document_text(o, "reason"));
     }
-    printf("%s%s\n", remark[0] ? "; " : "", remark);
+    hn_strbuf_printf(&words, "%s%s", remark[0] ? "; " : "", remark);
+
+    // a student's file, and what is quoted of it, commands no terminal
+    hn_visible_add(&visible, hn_strbuf_text(&words), true);
+    puts(hn_strbuf_text(&visible));
     fflush(stdout);
+    hn_strbuf_reset(&visible);
+    hn_strbuf_reset(&words);
     cJSON_Delete(o);
 }
 
@@ -108,10 +119,7 @@ static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
             hn_strbuf_add(&b, r->line[i] ? "\n" : "");
         }
     }
-    if (!b.failed) {
-        hn_cli_keep_former(args->out, &b);
-    }
-    return hn_cli_write_file(args, args->out, &b);
+    return hn_cli_write_beside(args, args->out, &b);
 }
 
 /// The result into --out, and its summary to the terminal.

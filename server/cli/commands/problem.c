@@ -175,8 +175,7 @@ static hn_exit write_figures(const hn_args *args, const hn_exercise *e, const hn
             hn_strbuf_add_n(&path, args->out, strlen(args->out) - 4);
             hn_strbuf_printf(&path, n > 1 ? "-%s.svg" : ".svg", part->id);
             part->kind->figure(&svg, part, true);
-            hn_cli_keep_other(hn_strbuf_text(&path), &svg);
-            result = hn_cli_write_file(args, hn_strbuf_text(&path), &svg);
+            result = hn_cli_write_picture(args, hn_strbuf_text(&path), &svg);
             if (result == HN_EXIT_DONE) {
                 printf("the plot of part %s: %s\n", part->id, hn_strbuf_text(&path));
             }

@@ -199,8 +199,7 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&description);
         return hn_report_diags(args, status, &diags);
     }
-    hn_cli_keep_other(args->out, &png);
-    hn_exit result = hn_cli_write_file(args, args->out, &png);
+    hn_exit result = hn_cli_write_picture(args, args->out, &png);
     if (result == HN_EXIT_DONE && (args->json || args->describe) && strcmp(args->out, "-") != 0) {
         result = hn_cli_print(&description);
     }

@@ -190,7 +190,7 @@ static const option *find_option(const hn_command *command, const char *name, si
 int hn_number_parse(const char *text, double *out) {
     char *end;
     double value = strtod(text, &end);
-    if (end == text || *end || !isfinite(value)) {
+    if (end == text || *end || !isfinite(value) || strpbrk(text, "xX")) {
         return 0;
     }
     *out = value;
@@ -200,8 +200,8 @@ int hn_number_parse(const char *text, double *out) {
 static hn_status bad_number(const option *o, const char *text, hn_diag *diag) {
     return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes %s, not '%.60s'", o->name,
                        o->kind == OPTION_COUNT     ? "a whole number from 0"
-                       : o->kind == OPTION_NUMBERS ? "finite numbers separated by commas"
-                                                   : "a finite number",
+                       : o->kind == OPTION_NUMBERS ? "finite decimal numbers separated by commas"
+                                                   : "a finite decimal number",
                        text);
 }
 
@@ -321,7 +321,7 @@ static hn_status read_numbers(hn_numbers *numbers, const option *o, const char *
     for (const char *p = text;; p++) {
         char *end;
         double value = strtod(p, &end);
-        if (end == p || (*end && *end != ',') || !isfinite(value)) {
+        if (end == p || (*end && *end != ',') || !isfinite(value) || strpbrk(text, "xX")) {
             return bad_number(o, text, diag);
         }
         numbers->value[numbers->n++] = value;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/diagnostics.h"
 
+#include "base/visible.h"
 #include "cli/shell/args.h"
 #include "cli/shell/notes.h"
 #include "cli/shell/print.h"
@@ -20,22 +21,14 @@ static hn_exit exit_of(hn_status status, const hn_diags *diags) {
     return ours ? HN_EXIT_PROGRAM : HN_EXIT_INPUT;
 }
 
-/// Adds a text that may quote a file's name or content: control characters, which a terminal would
-/// obey, stand as '?'.
-static void add_quoted(hn_strbuf *b, const char *text) {
-    for (; *text; text++) {
-        const unsigned char c = (unsigned char)*text;
-        hn_strbuf_printf(b, "%c", c < 0x20 || c == 0x7f ? '?' : c);
-    }
-}
-
 static void tell(const hn_diag *d) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_strbuf_add(&b, "holonom: ");
-    add_quoted(&b, d->message);
+    hn_visible_add(&b, d->message, true);
     if (d->pointer[0]) {
-        hn_strbuf_printf(&b, " (at %s", d->pointer);
+        hn_strbuf_add(&b, " (at ");
+        hn_visible_add(&b, d->pointer, true);
         if (d->column > 0) {
             hn_strbuf_printf(&b, ", column %d", d->column);
         }
@@ -44,7 +37,7 @@ static void tell(const hn_diag *d) {
     hn_strbuf_add(&b, "\n");
     if (d->hint[0]) {
         hn_strbuf_add(&b, "         ");
-        add_quoted(&b, d->hint);
+        hn_visible_add(&b, d->hint, true);
         hn_strbuf_add(&b, "\n");
     }
     hn_cli_note_lines(&b);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/document.h"
 
+#include "base/visible.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -57,7 +59,7 @@ static void format_scalar(const cJSON *item, char out[HN_TABLE_CELL]) {
 static void put_scalar(hn_strbuf *b, const cJSON *item) {
     char text[HN_TABLE_CELL];
     if (cJSON_IsString(item)) {
-        hn_strbuf_add(b, item->valuestring);
+        hn_visible_add(b, item->valuestring, true);
         return;
     }
     format_scalar(item, text);

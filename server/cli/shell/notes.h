@@ -5,7 +5,8 @@
 
 #include "base/strbuf.h"
 
-/// Writes whole lines on standard error, folded to the terminal behind it.
+/// Writes whole lines on standard error, folded to the terminal behind it; control characters, as
+/// of a file's name, stand as '?'.
 void hn_cli_note(const char *format, ...) HN_PRINTF(1, 2);
 /// The same for lines that are there already.
 void hn_cli_note_lines(const hn_strbuf *lines);

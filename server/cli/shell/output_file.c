@@ -48,26 +48,49 @@ bool hn_cli_is_content(const char *path, const hn_strbuf *bytes) {
     return same;
 }
 
-void hn_cli_keep_former(const char *path, const hn_strbuf *bytes) {
-    struct stat st;
-    char name[1100];
-    if (lstat(path, &st) != 0 || !S_ISREG(st.st_mode) || hn_cli_is_content(path, bytes)) {
-        return;
-    }
+enum { FORMER_NAME = 1100 };
+
+/// Links the file at `path` to the first free name FILE.1, FILE.2, ..., which is written to `name`.
+static bool keep_former(const char *path, char name[FORMER_NAME]) {
     for (int k = 1; k <= MOST_FORMER; k++) {
-        snprintf(name, sizeof name, "%.1000s.%d", path, k);
+        snprintf(name, FORMER_NAME, "%.1000s.%d", path, k);
 
         // a link is made only where there is no file, and the old name is replaced afterwards
         if (link(path, name) == 0) {
-            hn_cli_note("holonom: '%s' held something else: that is kept in '%s'\n", path, name);
-            return;
+            return true;
         }
         if (errno != EEXIST) {
             break;
         }
     }
-    hn_cli_note("holonom: '%s' held something else: that is replaced, a copy could not be kept\n",
-                path);
+    return false;
+}
+
+hn_exit hn_cli_write_beside(const hn_args *args, const char *path, hn_strbuf *bytes) {
+    struct stat st;
+    char name[FORMER_NAME];
+    if (bytes->failed || lstat(path, &st) != 0 || !S_ISREG(st.st_mode) ||
+        hn_cli_is_content(path, bytes)) {
+        return hn_cli_write_file(args, path, bytes);
+    }
+
+    // the old file stays under its own name where the new one cannot be written
+    const bool kept = keep_former(path, name);
+    const hn_exit result = hn_cli_write_file(args, path, bytes);
+    if (result != HN_EXIT_DONE) {
+        if (kept) {
+            unlink(name);
+        }
+        return result;
+    }
+    if (kept) {
+        hn_cli_note("holonom: '%s' held something else: that is kept in '%s'\n", path, name);
+    } else {
+        hn_cli_note("holonom: '%s' held something else: that is replaced, a copy could not be "
+                    "kept\n",
+                    path);
+    }
+    return result;
 }
 
 /// Whether the file begins as a picture of this program does: a PNG of 8 bits with the chunk sRGB
@@ -92,10 +115,10 @@ static bool is_own_picture(const char *path) {
     return strncmp(begins, svg, sizeof svg - 1) == 0 && role && end == role + 10;
 }
 
-void hn_cli_keep_other(const char *path, const hn_strbuf *picture) {
-    if (strcmp(path, "-") != 0 && !is_own_picture(path)) {
-        hn_cli_keep_former(path, picture);
-    }
+hn_exit hn_cli_write_picture(const hn_args *args, const char *path, hn_strbuf *picture) {
+    return strcmp(path, "-") == 0 || is_own_picture(path)
+               ? hn_cli_write_file(args, path, picture)
+               : hn_cli_write_beside(args, path, picture);
 }
 
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
@@ -119,6 +142,16 @@ hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
                                         : strerror(errno);
     return hn_diags_add(diags, HN_ERR_INPUT, "/out", "make the folder, or choose another name",
                         "cannot write '%.200s': %s", path ? path : "", why);
+}
+
+hn_status hn_cli_check_file(const char *path, hn_diags *diags) {
+    struct stat st;
+    HN_TRY(hn_cli_check_folder(path, diags));
+    if (stat(path, &st) != 0 || !S_ISDIR(st.st_mode)) {
+        return HN_OK;
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, "/out", "name a file in it, or choose another name",
+                        "cannot write '%.200s': it is a folder", path);
 }
 
 /// Whether the file holds this text, to the byte.

@@ -14,16 +14,18 @@
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 /// Whether the file holds these bytes.
 bool hn_cli_is_content(const char *path, const hn_strbuf *bytes);
-/// Before a result is written whose file may hold something else: marks that a teacher changed by
-/// hand, or a file of the user's. Where it differs from `bytes`, it is kept under the first free
-/// name FILE.1, FILE.2, ..., and a note says so.
-void hn_cli_keep_former(const char *path, const hn_strbuf *bytes);
-/// The same before a picture is written, but a picture that this program drew is replaced: it can
-/// be drawn again.
-void hn_cli_keep_other(const char *path, const hn_strbuf *picture);
+/// Writes a result whose file may hold something else: marks that a teacher changed by hand, or a
+/// file of the user's. Where it differs from `bytes`, it is kept under the first free name FILE.1,
+/// FILE.2, ..., and a note says so; where the result cannot be written, nothing is left beside it.
+/// Otherwise as hn_cli_write_file().
+hn_exit hn_cli_write_beside(const hn_args *args, const char *path, hn_strbuf *bytes);
+/// The same of a picture, but a picture that this program drew is replaced: it can be drawn again.
+hn_exit hn_cli_write_picture(const hn_args *args, const char *path, hn_strbuf *picture);
 /// Before anything is computed whose result goes to `path` (NULL: nowhere; "-" is fine too): fails
 /// with HN_ERR_INPUT where its folder is not there or takes no files.
 HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);
+/// The same of a command that writes one file: also fails where `path` is a folder.
+HN_MUST_CHECK hn_status hn_cli_check_file(const char *path, hn_diags *diags);
 /// Refuses an --out that is there and holds another text, unless --force is given: what is written
 /// is a beginning that somebody completes, and that work must not be lost. Fails: HN_ERR_INPUT.
 HN_MUST_CHECK hn_status hn_cli_protect_work(const hn_args *args, const hn_strbuf *text,
