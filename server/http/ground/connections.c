@@ -2,6 +2,8 @@
 #include "http/ground/connections.h"
 
 #include "base/clock.h"
+#include "base/strbuf.h"
+#include "http/ground/problem_document.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -10,6 +12,8 @@
 #include <time.h>
 
 enum { LOOK_MS = 250 };
+/// The part of the library's own limit after which a request that stands still is answered.
+static const double QUIET = 0.9;
 
 /// What a connection does; one whose place is needed is looked for in this order.
 typedef enum connection_state {
@@ -25,6 +29,8 @@ struct hn_connection_watch {
     connection_state state;
     double since;    ///< it has been in this state since then [s, wall clock]
     double deadline; ///< it is closed then [s, wall clock]
+    bool asks;       ///< a request has begun that has no answer yet
+    double last;     ///< something of that request came then [s, wall clock]
     hn_connection_watch *next, *before;
 };
 
@@ -34,6 +40,7 @@ struct hn_connections {
     const hn_http_opts *opts;
     hn_connection_watch *first;
     hn_shares *places;
+    hn_strbuf late; ///< the answer to a request that comes too slowly
     pthread_t thread;
     int has_thread, stop;
 };
@@ -49,14 +56,46 @@ static void end(hn_connections *all, hn_connection_watch *w) {
     }
 }
 
-/// Ends what is beyond its deadline. With the lock held.
+/// Tells a client that its request comes too slowly. What it is sent fits into what the system keeps
+/// for a socket; a client that has gone needs none. With the lock held.
+static void tell_late(hn_connections *all, const hn_connection_watch *w) {
+    const ssize_t sent = all->late.failed ? 0
+                                          : send(w->fd, hn_strbuf_text(&all->late), all->late.n,
+                                                 MSG_DONTWAIT | MSG_NOSIGNAL);
+    (void)sent;
+}
+
+/// Ends what is beyond its deadline, and what stands still in the midst of a request. With the lock
+/// held: an answer is announced under it before it is sent, so that none is on its way here.
 static void look(hn_connections *all) {
-    const double now = hn_clock_wall();
+    const double now = hn_clock_wall(), quiet = QUIET * all->opts->connection_timeout;
     for (hn_connection_watch *w = all->first; w; w = w->next) {
-        if (now > w->deadline) {
-            end(all, w);
+        const bool reads = w->asks && w->state == STATE_IDLE;
+        if (now <= w->deadline && !(reads && now > w->last + quiet)) {
+            continue;
         }
+        if (reads && w->deadline < HUGE_VAL) {
+            tell_late(all, w);
+        }
+        w->asks = false;
+        end(all, w);
     }
+}
+
+/// The whole answer to a request that comes too slowly.
+static void write_late(hn_strbuf *b) {
+    hn_strbuf document;
+    hn_strbuf_init(&document);
+    hn_http_problem_json(&document, HN_PROBLEM_LATE, "the request stopped coming in", NULL, NULL,
+                         -1, NULL);
+    hn_strbuf_printf(b,
+                     "HTTP/1.1 %u \r\nContent-Type: application/problem+json\r\n"
+                     "Content-Length: %zu\r\nConnection: close\r\n"
+                     "X-Content-Type-Options: nosniff\r\nCache-Control: no-store\r\n\r\n%s",
+                     hn_http_problem_get_info(HN_PROBLEM_LATE)->status, document.n,
+                     hn_strbuf_text(&document));
+    b->failed |= document.failed;
+    hn_strbuf_reset(&document);
 }
 
 static void *watch(void *arg) {
@@ -87,6 +126,8 @@ hn_connections *hn_connections_create(const hn_http_opts *opts) {
     pthread_condattr_destroy(&attr);
     pthread_mutex_init(&all->lock, NULL);
     all->opts = opts;
+    hn_strbuf_init(&all->late);
+    write_late(&all->late);
     all->places =
         hn_shares_create(opts->max_connections, hn_http_opts_share(opts, opts->max_connections));
 
@@ -112,6 +153,7 @@ void hn_connections_free(hn_connections *all) {
     pthread_cond_destroy(&all->ending);
     pthread_mutex_destroy(&all->lock);
     hn_shares_free(all->places);
+    hn_strbuf_reset(&all->late);
     free(all);
 }
 
@@ -213,5 +255,32 @@ void hn_connection_sends(hn_connections *all, hn_connection_watch *w) {
 }
 
 void hn_connection_is_idle(hn_connections *all, hn_connection_watch *w) {
+    hn_connection_is_answered(all, w);
     set_state(all, w, STATE_IDLE, all->opts->request_deadline);
+}
+
+void hn_connection_asks(hn_connections *all, hn_connection_watch *w) {
+    if (w) {
+        pthread_mutex_lock(&all->lock);
+        w->asks = true;
+        w->last = hn_clock_wall();
+        w->deadline = fmin(w->deadline, w->last + all->opts->head_deadline);
+        pthread_mutex_unlock(&all->lock);
+    }
+}
+
+void hn_connection_goes_on(hn_connections *all, hn_connection_watch *w) {
+    if (w) {
+        pthread_mutex_lock(&all->lock);
+        w->last = hn_clock_wall();
+        pthread_mutex_unlock(&all->lock);
+    }
+}
+
+void hn_connection_is_answered(hn_connections *all, hn_connection_watch *w) {
+    if (w) {
+        pthread_mutex_lock(&all->lock);
+        w->asks = false;
+        pthread_mutex_unlock(&all->lock);
+    }
 }

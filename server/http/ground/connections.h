@@ -29,6 +29,13 @@ hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client c
 void hn_connections_remove(hn_connections *all, hn_connection_watch *w);
 
 // what the connection is doing; NULL is legal
+/// A request has begun: it is told when it is too late, and a head has its deadline.
+void hn_connection_asks(hn_connections *all, hn_connection_watch *w);
+/// A piece of the body has come: one that stands still is told that it is late before the library
+/// closes the connection.
+void hn_connection_goes_on(hn_connections *all, hn_connection_watch *w);
+/// The request has its answer, whatever else it sends.
+void hn_connection_is_answered(hn_connections *all, hn_connection_watch *w);
 void hn_connection_reads_body(hn_connections *all, hn_connection_watch *w);
 void hn_connection_is_served(hn_connections *all, hn_connection_watch *w); ///< no deadline
 /// The answer goes out, one with an end.

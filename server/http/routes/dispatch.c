@@ -27,6 +27,16 @@ enum { MOST_ZIPPED = 32 << 20, MOST_ZIPPED_AT_ONCE = 256 << 10 };
 
 // ---- the head ----
 
+/// The verbs that an address takes, to a request by another one.
+static void reply_verb(hn_request *r, const char *method, const char *allow) {
+    if (strcmp(method, "OPTIONS") == 0) {
+        hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
+    } else {
+        hn_reply_problem(r, HN_PROBLEM_METHOD, NULL, "%.20s is not among: %s", method, allow);
+    }
+    hn_reply_header_add(r, "Allow", "%s", allow);
+}
+
 /// Where an address lies off the API: a redirect to its front door, a file of the page, or nothing.
 static void reply_off_routes(hn_request *r, const char *method, const hn_route_match *match) {
     // relative: a proxy may serve them below a prefix
@@ -40,20 +50,18 @@ static void reply_off_routes(hn_request *r, const char *method, const hn_route_m
         }
     }
 
-    // an address of the API by a verb that it does not take
-    if (match->allow[0]) {
-        const int options = strcmp(method, "OPTIONS") == 0;
-        if (options) {
-            hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
-        } else {
-            hn_reply_problem(r, HN_PROBLEM_METHOD, NULL, "%.20s is not among: %s", method,
-                             match->allow);
-        }
-        hn_reply_header_add(r, "Allow", "%s", match->allow);
-        return;
-    }
+    // a file of the page
     if ((strcmp(method, "GET") == 0 || r->is_head) &&
         hn_static_files_reply(r->context->files, r, r->path)) {
+        return;
+    }
+
+    // an address by a verb that it does not take
+    const char *allow = match->allow[0]                                   ? match->allow
+                        : hn_static_files_has(r->context->files, r->path) ? "GET, HEAD, OPTIONS"
+                                                                          : NULL;
+    if (allow) {
+        reply_verb(r, method, allow);
         return;
     }
 
@@ -113,7 +121,8 @@ static bool is_too_long_to_drain(const hn_request *r) {
            r->body_dropped > MAX_DRAINED;
 }
 
-static void answer_and_drain(hn_request *r) {
+static void answer_and_drain(hn_dispatch *d, hn_request *r) {
+    hn_connection_is_answered(d->connections, r->watch);
     hn_answer_early(r);
     r->drain_until = hn_clock_wall() + DRAIN_SECONDS;
 }
@@ -305,6 +314,9 @@ void *hn_dispatch_address(void *cls, const char *uri, struct MHD_Connection *con
         r->address_end = uri + strlen(uri);
         snprintf(r->path, sizeof r->path, "%.*s", (int)strcspn(uri, "?"), uri);
         check_address(r, uri);
+        if (r->stage != HN_STAGE_SENT) {
+            hn_connection_asks(d->connections, r->watch);
+        }
     }
     return r;
 }
@@ -317,6 +329,25 @@ static bool is_cut(const char *address_end, const char *version) {
     return apart > 1 && apart <= HN_HEAD_BYTES;
 }
 
+/// Keeps the path of an address; one in absolute form ("http://HOST/PATH", as clients send that take
+/// the server for a proxy) must name the host of the header, and is refused otherwise.
+static bool take_path(hn_request *r, const char *url) {
+    const size_t scheme = strncasecmp(url, "http://", 7) == 0    ? 7
+                          : strncasecmp(url, "https://", 8) == 0 ? 8
+                                                                 : 0;
+    const char *authority = url + scheme, *host = hn_request_header(r, "Host");
+    const size_t n = scheme ? strcspn(authority, "/") : 0;
+    const char *path = scheme && !authority[n] ? "/" : authority + n;
+    snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, path);
+    if (scheme && (!host || strlen(host) != n || strncasecmp(authority, host, n) != 0)) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                         "the address names the host '%.*s', the Host header '%.100s'",
+                         (int)(n < 100 ? n : 100), authority, host ? host : "");
+        return false;
+    }
+    return true;
+}
+
 /// The head is complete. Returns 0 when the connection is to be closed.
 static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const char *method) {
     if (r->stage == HN_STAGE_SENT) {
@@ -325,9 +356,10 @@ static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const 
     r->has_begun = true;
     hn_request_identify(r);
     r->is_head = strcmp(method, "HEAD") == 0;
-    snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, url);
     hn_connection_reads_body(d->connections, r->watch);
-    check_head(r, method);
+    if (take_path(r, url)) {
+        check_head(r, method);
+    }
     if (r->stage != HN_STAGE_ANSWERED) {
         return true;
     }
@@ -337,7 +369,7 @@ static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const 
         return send_reply(d, r) == MHD_YES;
     }
     if (is_too_long_to_drain(r)) {
-        answer_and_drain(r);
+        answer_and_drain(d, r);
     }
     return true;
 }
@@ -357,10 +389,11 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
 
     // a piece of the body
     if (*n_data > 0) {
+        hn_connection_goes_on(((hn_dispatch *)cls)->connections, r->watch);
         take_body(r, data, *n_data);
         *n_data = 0;
         if (r->stage == HN_STAGE_ANSWERED && is_too_long_to_drain(r)) {
-            answer_and_drain(r);
+            answer_and_drain(cls, r);
         }
         return r->stage == HN_STAGE_SENT && hn_clock_wall() > r->drain_until ? MHD_NO : MHD_YES;
     }

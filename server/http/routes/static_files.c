@@ -395,11 +395,20 @@ static bool open_file(const file *f, int *fd, struct stat *st) {
     return true;
 }
 
-int hn_static_files_reply(hn_static_files *s, hn_request *r, const char *address) {
+/// The file of an address, also one that has come since the start; NULL: there is none.
+static file *find_any(hn_static_files *s, const char *address) {
     file *f = find_file(s, strcmp(address, "/") == 0 ? "/index.html" : address);
+    return f ? f : find_later(s, address);
+}
+
+bool hn_static_files_has(hn_static_files *s, const char *address) {
+    return find_any(s, address) != NULL;
+}
+
+int hn_static_files_reply(hn_static_files *s, hn_request *r, const char *address) {
+    file *f = find_any(s, address);
     struct stat st;
     int fd;
-    f = f ? f : find_later(s, address);
     if (!f || !open_file(f, &fd, &st)) {
         return 0;
     }
