@@ -3,6 +3,7 @@
 
 import json
 import signal
+import socket
 import unittest
 
 import driver
@@ -122,7 +123,9 @@ WRONG_REQUESTS = [
     ("GET", "/api/v1/comparisons/0123456789abcdef/events", {}, None, 404, "not-found"),
     ("DELETE", "/api/v1/comparisons/0123456789abcdef", {}, None, 404, "not-found"),
     ("PATCH", "/api/v1/comparisons/0123456789abcdef", {"Content-Type": "application/json"}, "{}", 404, "not-found"),
-    ("POST", "/", {}, "x", 404, "not-found"),
+    ("POST", "/nothing", {}, "x", 404, "not-found"),
+    ("POST", "/", {}, "x", 405, "method-not-allowed"),
+    ("DELETE", "/index.html", {}, None, 405, "method-not-allowed"),
     ("POST", "/api/v1/scenes", {}, "x", 405, "method-not-allowed"),
     ("PUT", "/api/v1/comparisons", {}, "x", 405, "method-not-allowed"),
     ("GET", "/api/v1/terms", {}, None, 405, "method-not-allowed"),
@@ -331,6 +334,53 @@ class Malformed(driver.ServerCase):
                 self.assertEqual((document["status"], document["type"]), (status, "/api/v1/errors/" + code))
                 self.assertTrue(document["detail"])
                 self.assertEqual(self.server.ask("GET", "/api/v1/errors/" + code).status, 200)
+
+    def test_an_address_in_absolute_form_is_taken_with_its_own_host(self):
+        host = f"localhost:{self.server.port}".encode()
+        for address, named, status in ((b"http://" + host + b"/healthz", host, 200), (b"HTTP://" + host.upper() + b"/api/v1/scenes/four-bar?set=l1:0.6", host, 200),
+                                       (b"http://" + host, host, 200), (b"http://evil.example/healthz", host, 400),
+                                       (b"http://evil.example/healthz", b"evil.example", 421), (b"http://" + host + b"/nothing", host, 404)):
+            reply = self.server.raw(b"GET " + address + b" HTTP/1.1\r\nHost: " + named + b"\r\nConnection: close\r\n\r\n")
+            self.assertTrue(reply.startswith(f"HTTP/1.1 {status} ".encode()), (address, reply[:200]))
+
+    def test_a_head_that_stops_coming_in_is_told_so(self):
+        with socket.create_connection(("127.0.0.1", self.server.port), timeout=60 * driver.SLOW) as half, \
+                socket.create_connection(("127.0.0.1", self.server.port), timeout=60 * driver.SLOW) as silent:
+            half.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-A: ")
+            reply = b""
+            while piece := half.recv(65536):
+                reply += piece
+            first, _, body = reply.partition(b"\r\n\r\n")
+            self.assertTrue(first.startswith(b"HTTP/1.1 408 "), reply[:300])
+            self.assertEqual(json.loads(body)["type"], "/api/v1/errors/timeout")
+            self.assertEqual(silent.recv(65536), b"")  # no request began: browsers open connections ahead
+        self.assertEqual(self.server.ask("GET", "/api/v1/errors/timeout").status, 200)
+
+    def test_the_page_takes_the_verbs_that_its_allow_header_lists(self):
+        for method in ("FOO", "POST", "DELETE", "PUT"):
+            answer = self.server.ask(method, "/")
+            self.assert_problem(answer, 405, "method-not-allowed")
+            self.assertEqual(answer.headers["allow"], "GET, HEAD, OPTIONS")
+        answer = self.server.ask("OPTIONS", "/")
+        self.assertEqual((answer.status, answer.headers["allow"]), (204, "GET, HEAD, OPTIONS"))
+
+    def test_a_fault_in_the_scene_of_a_request_is_told_by_its_place_in_the_body(self):
+        with open("lessons/01-closed-loops/scenes/four-bar.json") as f:
+            scene = json.load(f)
+
+        def told(**fields):
+            document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", {"scene": scene, "method": "index1@rk4:h=1e-3", "time": 0.1, **fields}), 422)
+            return [e["pointer"] for e in document["errors"]]
+
+        scene["parameters"]["l1"] = {"value": 0.4, "min": 2, "max": 1}
+        self.assertEqual(told(), ["/scene/parameters/l1/min"])
+        self.assertEqual(told(parameters={"l1": 0.5}), ["/scene/parameters/l1/min"])
+        scene["parameters"]["l1"] = 0.4
+        self.assertEqual(told(parameters={"none": 1}), ["/parameters"])
+        scene["parameters"]["l1"] = {"value": 0.4, "min": 0.3, "max": "a"}
+        self.assertEqual(told(), ["/scene/parameters/l1/max"])
+        scene["parameters"] = 7
+        self.assertEqual(told(), ["/scene/parameters"])
 
     def test_options_lists_the_verbs_and_allows_no_other_origin(self):
         answer = self.server.ask("OPTIONS", "/api/v1/comparisons")

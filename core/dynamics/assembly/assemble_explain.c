@@ -6,12 +6,14 @@
 #include "linalg/dense.h"
 #include "linalg/small3.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-static const double PARALLEL = 1e-9; // sine of the angle between axes that count as parallel
+static const double MANY_TURNS = 1e6; // [rad] up to here an angle has digits enough to close a loop
+static const double PARALLEL = 1e-9;  // sine of the angle between axes that count as parallel
 
 /// One body of the ring with the joints through which the ring enters and leaves it.
 typedef struct ring_part {
@@ -282,7 +284,39 @@ static bool loop_has_lengths(const hn_assembler *s, int loop) {
     return false;
 }
 
+/// Tells of a starting angle so large that the gap is the rounding of its double; false where the
+/// gap is more than that. An angle is exact to half of its DBL_EPSILON, at an arm as long as the
+/// mechanism, and some of them add up around a loop.
+static bool tell_digits(hn_assembler *s, int loop, double gap) {
+    const hn_coordinate *largest = NULL;
+    for (int k = 0; k < s->n; k++) {
+        const hn_coordinate *c = &s->scene->coordinates[hn_system_user_coordinate(s->sys, k)];
+        if (c->kind == HN_ANGLE && (!largest || fabs(c->q0) > fabs(largest->q0))) {
+            largest = c;
+        }
+    }
+
+    // the distance of two doubles of that size
+    const double apart = largest ? DBL_EPSILON * fabs(largest->q0) : 0;
+    if (!largest || gap > apart * fmax(1, hn_system_length(s->sys)) ||
+        fabs(largest->q0) <= MANY_TURNS) {
+        return false;
+    }
+    hn_diags_add(
+        s->diags, HN_ERR_UNREACHABLE, largest->q0_pointer,
+        "leave whole turns of 2 pi out of it: up to 1e6 rad it has digits enough",
+        "%s = %.6g rad has run out of digits: numbers of that size are %.2g rad apart, and "
+        "loop %s keeps a gap of %.6g%s",
+        largest->name, largest->q0, apart, hn_system_loop_name(s->sys, loop), gap,
+        loop_has_lengths(s, loop) ? " m" : "");
+    return true;
+}
+
 void hn_assemble_explain(hn_assembler *s, int loop) {
+    if (tell_digits(s, loop, hn_assemble_gap(s, loop))) {
+        return;
+    }
+
     // what is pinned, and what lengths are missing
     char pins[128], reason[256] = "", hint[HN_DIAG_HINT] = "";
     list_pins(s, loop, pins, sizeof pins);

@@ -86,7 +86,8 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
                                hn_model_v(c->model), &run_opts, &c->entries[c->n].run, &diag);
     }
     if (status != HN_OK) {
-        return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
+        const char *place = diag.pointer[0] ? diag.pointer : pointer;
+        return hn_diags_add(diags, status, place, diag.hint, "%s", diag.message);
     }
 
     // step and colour; the entry counts only from here on

@@ -324,7 +324,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     if (status == HN_OK) {
         status = create_run(model, request, &spec, &run, &diag);
         if (status != HN_OK) {
-            hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
+            const char *place = diag.pointer[0] ? diag.pointer : "/method";
+            hn_diags_add(diags, status, place, diag.hint, "%s", diag.message);
         }
     }
 

@@ -394,7 +394,7 @@ hn_status hn_stepping_create(const hn_system *sys, const hn_method_spec *spec, d
     memcpy(s->start.q, q, (size_t)s->info.nq * sizeof *q);
     memcpy(s->start.v, v, (size_t)s->info.nv * sizeof *v);
     if (!hn_stepping_is_sane(s->info.nq, q) || !hn_stepping_is_sane(s->info.nv, v)) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+        return hn_diag_set(diag, HN_ERR_INPUT, "/scene/start", NULL,
                            "the starting coordinates and velocities must be finite and below %g",
                            HN_STEPPING_BOUND);
     }

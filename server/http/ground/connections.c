@@ -56,8 +56,8 @@ static void end(hn_connections *all, hn_connection_watch *w) {
     }
 }
 
-/// Tells a client that its request comes too slowly. What it is sent fits into what the system keeps
-/// for a socket; a client that has gone needs none. With the lock held.
+/// Tells a client that its request comes too slowly. What it is sent fits into what the system
+/// keeps for a socket; a client that has gone needs none. With the lock held.
 static void tell_late(hn_connections *all, const hn_connection_watch *w) {
     const ssize_t sent = all->late.failed ? 0
                                           : send(w->fd, hn_strbuf_text(&all->late), all->late.n,

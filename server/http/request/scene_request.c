@@ -125,12 +125,31 @@ hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *fr
     return HN_OK;
 }
 
+/// Whether a place is a member of the request, not of the scene in it: both have "parameters".
+static bool is_of_request(const hn_scene_request *order, const char *pointer) {
+    static const char parameters[] = "/parameters/";
+    if (strncmp(pointer, "/scene", 6) == 0 || strncmp(pointer, "/pull", 5) == 0) {
+        return true;
+    }
+    if (strcmp(pointer, "/parameters") == 0) {
+        return order->n > 0; // a name among them that the scene does not know
+    }
+    if (strncmp(pointer, parameters, sizeof parameters - 1) != 0) {
+        return false;
+    }
+    for (int i = 0; i < order->n; i++) {
+        if (strcmp(pointer + sizeof parameters - 1, order->names[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// Faults inside a scene object are told by their place in the body.
-static void prefix_pointers(hn_diags *diags, int first) {
+static void prefix_pointers(const hn_scene_request *order, hn_diags *diags, int first) {
     for (int i = first; i < diags->n; i++) {
         char *p = diags->item[i].pointer;
-        if (strncmp(p, "/parameters", 11) != 0 && strncmp(p, "/scene", 6) != 0 &&
-            strncmp(p, "/pull", 5) != 0) {
+        if (!is_of_request(order, p)) {
             char longer[HN_DIAG_POINTER + 8];
             snprintf(longer, sizeof longer, "/scene%s", p);
             snprintf(p, HN_DIAG_POINTER, "%.*s", HN_DIAG_POINTER - 1, longer);
@@ -152,7 +171,7 @@ hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library 
                               .allow_open = allow_open,
                               .interrupt = interrupt};
     hn_status status = hn_model_load(lib, &source, out, diags);
-    prefix_pointers(diags, first);
+    prefix_pointers(order, diags, first);
     return status;
 }
 

@@ -329,8 +329,8 @@ static bool is_cut(const char *address_end, const char *version) {
     return apart > 1 && apart <= HN_HEAD_BYTES;
 }
 
-/// Keeps the path of an address; one in absolute form ("http://HOST/PATH", as clients send that take
-/// the server for a proxy) must name the host of the header, and is refused otherwise.
+/// Keeps the path of an address; one in absolute form ("http://HOST/PATH", as clients send that
+/// take the server for a proxy) must name the host of the header, and is refused otherwise.
 static bool take_path(hn_request *r, const char *url) {
     const size_t scheme = strncasecmp(url, "http://", 7) == 0    ? 7
                           : strncasecmp(url, "https://", 8) == 0 ? 8
