@@ -53,6 +53,39 @@ test("an entry belongs to the bodies of its velocities and to its loop", () => {
   assert.deepEqual(partsOf({ term: "phi", row: 1 }, speeds, scene).curves, ["gap"]);
 });
 
+/** M a - J'λ - f, row by row, with the accelerations and multipliers that the table shows. */
+const restOfRows = (page) =>
+  page.evaluate(async () => {
+    const { evaluate, valuesAt } = await import(new URL("state/formula.js", location.href).href);
+    const { data } = globalThis.holonom;
+    const shown = (row) =>
+      document
+        .querySelector(`.notation-table tbody tr:nth-child(${row}) td.number`)
+        .textContent.split(", ")
+        .map((text) => parseFloat(text.replace("−", "-")));
+    const [a, lambda] = [shown(6), shown(7)];
+    const answer = await fetch("api/v1/equations", {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify({ scene: data.scene.id, format: "json" }),
+    }).then((response) => response.json());
+    const state = { t: 0, ...data.history.stateAt(data.view.selected, 0) };
+    const values = valuesAt(answer, data.scene, state);
+    const rest = a.map(() => 0);
+    for (const { term, row, column, text } of answer.entries) {
+      const value = evaluate(text, values);
+      if (term === "M") {
+        rest[row - 1] += value * a[column - 1];
+        rest[column - 1] += row === column ? 0 : value * a[row - 1];
+      } else if (term === "J") {
+        rest[column - 1] -= value * lambda[row - 1];
+      } else if (term === "f") {
+        rest[row - 1] -= value;
+      }
+    }
+    return rest;
+  });
+
 test("terms light up links and curves, links light up terms; numbers follow the state", async (t) => {
   const page = await open(t, { viewport: { width: 1366, height: 1200 } });
   await page.click(".equation-panel summary");
@@ -64,6 +97,13 @@ test("terms light up links and curves, links light up terms; numbers follow the 
   const first = await page.textContent(".notation-table tbody tr:nth-child(6) td.number");
   // -15.47 rad/s² at the start: the accelerations that POST /terms gives
   assert.match(first, /^−15\.47 rad\/s²/);
+  assert.match(
+    await page.textContent(".notation-table tbody tr:nth-child(6) td:nth-child(3)"),
+    /time derivatives of w1, omega_coupler, w3, the order of M's rows/,
+  );
+  for (const rest of await restOfRows(page)) {
+    assert.ok(Math.abs(rest) < 2e-2, `M a - J'λ - f = ${rest} with four digits of each`);
+  }
   await soon(async () =>
     assert.match(await page.innerHTML(".terms"), /M_\{21\} = M_\{12\} = [^<]*\\cos\(/),
   );

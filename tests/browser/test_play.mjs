@@ -492,7 +492,10 @@ test("a singular pose is counted down, and then told with what became of each me
     [0, 1, 2],
   );
   for (const { message } of met) {
-    assert.match(message, /two branches of motion cross; the run (went straight on|left the smooth path)/);
+    assert.match(
+      message,
+      /two branches of motion cross; the run (went straight on|left the smooth path)/,
+    );
   }
   await page.waitForFunction(
     () =>

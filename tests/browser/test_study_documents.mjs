@@ -27,7 +27,7 @@ import {
   valueOnAxis,
 } from "../../web/state/heat.js";
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
-import { cheapestFor, sizeToRun, wantedError } from "../../web/state/wanted.js";
+import { cheapestFor, rankingOf, sizeToRun, wantedError } from "../../web/state/wanted.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 import { CATALOGUE } from "./catalogue.mjs";
 
@@ -96,6 +96,25 @@ test("the cheapest method for an accuracy lies between its measured points", () 
   assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
   const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
   assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
+});
+
+test("times that cannot be told apart are not ranked, counts are", () => {
+  const reach = (m, cost, range, halves) => ({
+    m,
+    cost,
+    size: 1,
+    atMost: false,
+    dot: /** @type {any} */ (range ? { range, halves } : {}),
+  });
+  const steady = [0.99, 1.01];
+  const close = (list) => rankingOf(list).close.map(({ m }) => m);
+  assert.deepEqual(close([reach(0, 1, steady, 1), reach(1, 1.05, steady, 1)]), [0, 1]);
+  assert.deepEqual(close([reach(0, 1, steady, 1), reach(1, 1.14, steady, 1)]), [0]);
+  assert.deepEqual(close([reach(0, 1, [0.9, 1.2], 1), reach(1, 1.14, steady, 1)]), [0, 1]);
+  assert.deepEqual(close([reach(0, 1), reach(1, 1.01)]), [0], "counts are exact");
+  const shaken = { ...reach(0, 1, steady, 1), coarser: reach(0, 1, steady, 1.3).dot };
+  assert.deepEqual(rankingOf([shaken, reach(1, 2, steady, 1)]).unsteady, true);
+  assert.deepEqual(rankingOf([reach(0, 1, steady, 1), reach(1, 2, steady, 1)]).unsteady, false);
 });
 
 test("a method of a document keeps its name where the page has others before it", () => {

@@ -106,6 +106,22 @@ const namesIn = (text) =>
   tokensOf(text).filter((token) => /^[A-Za-z_]/.test(token) && !(token in FUNCTIONS));
 
 /**
+ * Accelerations of the velocities that the equations are written in, from those of the coordinates:
+ * a velocity of the world is a sum of velocities of coordinates with constant factors, and its
+ * acceleration is the same sum.
+ * @param {{coordinates?: {name: string, is: string}[], speeds: string[]}} answer
+ * @param {import("./types.js").Scene} scene
+ * @param {number[]} a by coordinate
+ * @returns {number[] | null} in the order of `speeds`; null where the relation is not such a sum
+ */
+export function accelerationsOf(answer, scene, a) {
+  const zero = a.map(() => 0);
+  const values = valuesAt(answer, scene, { t: 0, q: zero, v: a });
+  const found = answer.speeds.map((name) => values.get(name) ?? NaN);
+  return found.every(Number.isFinite) ? found : null;
+}
+
+/**
  * Values of all names at a state: parameters, coordinates, velocities, and the angles in the world
  * that the equations use in place of relative ones ("a2 = -th1 + theta_coupler").
  * @param {{coordinates?: {name: string, is: string}[], speeds: string[]}} answer

@@ -3,6 +3,7 @@
 // Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
 import { counted, quantity, withPowers } from "./format.js";
 import { parseSpelling } from "./spelling.js";
+import { steadinessOf } from "./wanted.js";
 
 /** @typedef {{length: number, coordinates: {kind: string}[]}} Measured of a scene */
 const shareOfLength = ({ length }) => `share of ${quantity(length, "m")}`;
@@ -81,7 +82,9 @@ export const NOT_RUN = ["pending", "skipped", "left out"];
 /**
  * @typedef {{m: number, k: number, spelling: string, size: number, sizeName: string, cost: number,
  *   error: number, state: string,
- *   reason: string, bound: boolean}} Dot
+ *   reason: string, bound: boolean, range?: number[], halves?: number}} Dot
+ *   range: least and largest measured time over the median; halves: how far apart the medians of
+ *   the two halves of the samples are, as a ratio; both only where the cost is a time
  */
 
 /** What a point that failed would have cost: as its neighbour, by the ratio of the sizes. */
@@ -125,6 +128,7 @@ export function dotsOf(study, error, cost) {
                 error: Math.max(value, LEAST),
                 reason: "",
                 bound: p.bounds.includes(error),
+                ...(cost === "time" ? steadinessOf(p.cpu) : {}),
               },
             ]
           : [];

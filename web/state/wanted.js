@@ -43,7 +43,8 @@ export function wantedError(text, error, length) {
 
 /**
  * @typedef {import("./study-documents.js").Dot} Dot
- * @typedef {{m: number, cost: number, size: number, dot: Dot, atMost: boolean}} Reach
+ * @typedef {{m: number, cost: number, size: number, dot: Dot, atMost: boolean, coarser?: Dot}}
+ *   Reach
  *   atMost: the coarsest run is already accurate enough
  */
 
@@ -73,6 +74,7 @@ function reachOf(dots, wanted) {
   const share = Math.log(wanted / last.error) / Math.log(coarse.error / last.error);
   return {
     ...reach,
+    coarser: coarse,
     cost: between(last.cost, coarse.cost, share),
     size: between(last.size, coarse.size, share),
   };
@@ -92,3 +94,50 @@ export const sizeToRun = ({ size, atMost }) =>
  */
 export const cheapestFor = (dots, wanted) =>
   dots.flatMap((list) => reachOf(list, wanted) ?? []).sort((a, b) => a.cost - b.cost);
+
+/**
+ * How steady the time of a point was measured, as the engine's own ranking reads it: quartiles and
+ * medians of the halves count.
+ * @param {{median: number, low: number, high: number, halves: number[]}} cpu
+ */
+export const steadinessOf = ({ median, low, high, halves }) => ({
+  range: [Math.min(low, ...halves) / median, Math.max(high, ...halves) / median],
+  halves: Math.max(...halves) / Math.min(...halves),
+});
+
+/** Whether costs of this kind are ranked at all: times of hurried runs are not. */
+export const isRanked = (study, error, cost) =>
+  cost !== "time" ||
+  (study.pareto.find((one) => one.error === error && one.cost === cost)?.ranked ?? true);
+
+/** Times this close, or whose halves are this far apart, are not ranked: as in the engine. */
+const CLOSE = 1.1;
+
+/** The range of a time, from the one or two points that it comes from. @param {Reach} reach */
+function rangeOf({ dot, coarser, cost }) {
+  const ranges = [dot, coarser].flatMap((one) => (one?.range ? [one.range] : []));
+  return [
+    cost * Math.min(1, ...ranges.map(([low]) => low)),
+    cost * Math.max(1, ...ranges.map(([, high]) => high)),
+  ];
+}
+
+/**
+ * Those that share the first place, because their times cannot be told apart: by the rule of the
+ * engine's sentences. Counts are exact, so that one of them is the first.
+ * @param {Reach[]} list the cheapest first
+ * @returns {{close: Reach[], unsteady: boolean}} close: with the first; unsteady: the two halves of
+ *   a timing of the first or the next disagree
+ */
+export function rankingOf(list) {
+  const [first, ...others] = list;
+  if (!first?.dot.range) {
+    return { close: list.slice(0, 1), unsteady: false };
+  }
+  const [, high] = rangeOf(first);
+  const close = others.filter((one) => one.cost < CLOSE * first.cost || rangeOf(one)[0] <= high);
+  const apart = list
+    .slice(0, 2)
+    .flatMap(({ dot, coarser }) => [dot.halves ?? 1, coarser?.halves ?? 1]);
+  return { close: [first, ...close], unsteady: !close.length && !(Math.max(...apart) <= CLOSE) };
+}

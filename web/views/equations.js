@@ -114,7 +114,7 @@ export function createEquations(el, store, actions) {
       h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
       reduced.node,
     );
-    notation.make(formula);
+    notation.make(formula, answer);
     reduced.give(answer.position);
     showNumbers();
   }

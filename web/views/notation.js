@@ -4,6 +4,7 @@
 // shown: accelerations, multipliers, rank and condition.
 import { sentenceOf } from "../api/client.js";
 import { scientific } from "../state/format.js";
+import { accelerationsOf } from "../state/formula.js";
 import { markWords, namedState } from "../state/reactions.js";
 import { shownIndex } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
@@ -44,8 +45,15 @@ export function createNotation(store, actions) {
   let busy = false;
   let last = 0;
 
-  /** @param {(latex: string, display: boolean) => Node} formula */
-  function make(formula) {
+  /** the equations that the table stands beside */
+  let equations = /** @type {any} */ (null);
+
+  /**
+   * @param {(latex: string, display: boolean) => Node} formula
+   * @param {{coordinates?: {name: string, is: string}[], speeds: string[]}} answer the equations
+   */
+  function make(formula, answer) {
+    equations = answer;
     const value = { a: numbers, "\\lambda": multipliers };
     const heads = ["The lesson's", "Here", "Meaning", "Now"];
     node.replaceChildren(
@@ -76,7 +84,11 @@ export function createNotation(store, actions) {
 
   /** @param {any} answer */
   function show({ a = [], lambda = [], rank, rows = [], condition, lambda_mark: mark }) {
-    const units = data.scene.coordinates.map(({ kind }) => UNITS[kind] ?? "");
+    const { coordinates } = data.scene;
+    // in the velocities of M and J where they follow from those of the coordinates
+    const same = accelerationsOf(equations, data.scene, a);
+    const names = same ? equations.speeds : coordinates.map(({ rate }) => rate);
+    const units = coordinates.map(({ kind }) => UNITS[kind] ?? "");
     const list = (values, unitOf) =>
       values
         .slice(0, MOST)
@@ -84,10 +96,11 @@ export function createNotation(store, actions) {
         .join(", ") + (values.length > MOST ? " ..." : "");
     say(
       numbers,
-      list(a, (i) => units[i] ?? ""),
+      list(same ?? a, (i) => units[i] ?? ""),
     );
-    const names = data.scene.coordinates.map(({ name }) => name);
-    say(meanings.a, names.length > MOST ? "accelerations" : `accelerations of ${names.join(", ")}`);
+    const order = same ? ", the order of M's rows" : "; M below has other velocities";
+    const whose = names.length > MOST ? "the velocities" : names.join(", ");
+    say(meanings.a, `accelerations: time derivatives of ${whose}${order}`);
     say(
       multipliers,
       lambda.length

@@ -15,6 +15,7 @@ import {
   meaningOf,
   sentencesOf,
 } from "../state/study-documents.js";
+import { isRanked } from "../state/wanted.js";
 import { h, s, say } from "../widgets/dom.js";
 import { isOpen, markerOf } from "../widgets/markers.js";
 import { explained } from "../widgets/term.js";
@@ -370,7 +371,7 @@ export function createStudyCost(store, onPick) {
     });
     draw();
     fillTable();
-    wanted.show(dots, view.error);
+    wanted.show(dots, view.error, isRanked(study(), view.error, view.cost));
     const lines = sentencesOf(study(), view.error, view.cost);
     say(meaning, meaningOf(view.error, data.scene.length));
     say(leftOut, leftOutOf(study(), labelOf));

@@ -3,7 +3,7 @@
 // A field for the accuracy that is wanted, and the method that reaches it for the least.
 import { plain, quantity } from "../state/format.js";
 import { withSetting } from "../state/spelling.js";
-import { cheapestFor, sizeToRun, wantedError } from "../state/wanted.js";
+import { cheapestFor, rankingOf, sizeToRun, wantedError } from "../state/wanted.js";
 import { listed } from "../state/verdict.js";
 import { h, say } from "../widgets/dom.js";
 
@@ -44,8 +44,8 @@ export function createWanted(data, { labelOf, costText, onPick }) {
     said,
     run,
   );
-  /** @type {{dots: import("../state/wanted.js").Dot[][], error: string}} */
-  let now = { dots: [], error: "q" };
+  /** @type {{dots: import("../state/wanted.js").Dot[][], error: string, ranked: boolean}} */
+  let now = { dots: [], error: "q", ranked: true };
   /** @type {import("../state/wanted.js").Reach | null} */
   let best = null;
 
@@ -67,6 +67,16 @@ export function createWanted(data, { labelOf, costText, onPick }) {
     const without = others.length ? ` ${listed(others)}: not reached in this study.` : "";
     if (!first) {
       return `For ${words}: no run of this study is so accurate.`;
+    }
+    const { close, unsteady } = rankingOf(list);
+    if (close.length > 1 || unsteady || !now.ranked) {
+      const shown = close.length > 1 ? close : list.slice(0, 2);
+      const times = shown.map(
+        (one) => `${labelOf(one.m)} with ${sizeWords(one)} ${costText(one.cost)}`,
+      );
+      const near = close.length > 1 ? "too close to rank" : "the halves of a timing disagree";
+      const why = now.ranked ? near : "this study ranks no times";
+      return `For ${words}: not ranked by time: ${listed(times)}, ${why}.${without}`;
     }
     const about = first.atMost ? "at most" : "about";
     const more = next
@@ -91,9 +101,12 @@ export function createWanted(data, { labelOf, costText, onPick }) {
 
   return {
     el,
-    /** @param {import("../state/wanted.js").Dot[][]} dots @param {string} error its name */
-    show(dots, error) {
-      now = { dots, error };
+    /**
+     * @param {import("../state/wanted.js").Dot[][]} dots @param {string} error its name
+     * @param {boolean} ranked false: the study ranks none of its times
+     */
+    show(dots, error, ranked) {
+      now = { dots, error, ranked };
       answer();
     },
   };
