@@ -368,14 +368,7 @@ static hn_status prove_parts(const hn_variant *x, hn_diag *diag) {
 }
 
 /// An exercise of form 2.
-static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
-    // the file's own variant where the caller leaves it open
-    const uint64_t said = chosen ? 0 : hn_variant_seed_said(v->problem, root);
-    v->seed = said ? said : v->seed;
-    if (!chosen && !hn_variant_check_names(v->problem, root, v)) {
-        return HN_OK;
-    }
-
+static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
     hn_variant *x = malloc(sizeof *x);
     hn_diag diag = {0};
     hn_status status = x ? hn_variant_init(x, v->problem, v->seed, &diag) : HN_ERR_MEMORY;
@@ -403,8 +396,15 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root, bool chosen) {
 static hn_status grade_tree(hn_verdict *v, const cJSON *root, bool chosen) {
     const char *student = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(root, "student"));
     snprintf(v->student, sizeof v->student, "%s", student ? student : "");
+
+    // the file's own variant where the caller leaves it open
+    const uint64_t said = chosen ? 0 : hn_variant_seed_said(v->problem, root);
+    v->seed = said ? said : v->seed;
+    if (!chosen && !hn_variant_check_names(v->problem, root, v)) {
+        return HN_OK;
+    }
     if (v->problem->n_parts) {
-        return grade_parts(v, root, chosen);
+        return grade_parts(v, root);
     }
     const cJSON *answer;
     int transposed;

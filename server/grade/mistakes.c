@@ -55,6 +55,20 @@ static hn_ex replace_names(const place *at, hn_ex e, int from, int to, double a,
     return out;
 }
 
+/// 1 if the formula has the values of the entry at all states, within the tolerance.
+static bool agrees(const place *at, hn_ex e, const double *value) {
+    double worst = 0, size = 0;
+    for (int s = 0; s < at->exam->n_states; s++) {
+        const double x = hn_exam_value(at->exam, e, s), difference = fabs(x - value[s]);
+        if (!isfinite(difference)) {
+            return false;
+        }
+        worst = fmax(worst, difference);
+        size = fmax(size, fabs(x));
+    }
+    return worst <= hn_exam_allowed(at->exam, size);
+}
+
 // ---- the rows ----
 
 static void make_zero(const place *at, variants *v) {
@@ -88,6 +102,22 @@ static void make_row(const place *at, variants *v) {
         entry_name(at, i, at->column, name, sizeof name);
         if (i != at->row) {
             add(v, reference_at(at, i, at->column), name);
+        }
+    }
+}
+
+/// Those entries of other rows whose derivative is the right entry.
+static void make_undifferentiated_row(const place *at, variants *v) {
+    variants all = {.n = 0};
+    const hn_exercise *p = at->exam->problem;
+    const double *right = at->exam->expected[at->row * p->n_columns + at->column];
+    const int coordinate = at->exam->symbol[p->n_params + at->column];
+    make_row(at, &all);
+    for (int i = 0; i < all.n; i++) {
+        hn_ex slope;
+        hn_diff(at->exam->graph, all.e[i], &coordinate, 1, &slope);
+        if (agrees(at, slope, right)) {
+            add(v, all.e[i], all.by[i]);
         }
     }
 }
@@ -175,7 +205,8 @@ static const struct {
     {"sign", "the sign is wrong", make_sign},
     {"row",
      "this is the entry of the other row; a term that was not differentiated looks like that too",
-     make_row},
+     make_undifferentiated_row},
+    {"row", "this is the entry of the other row", make_row},
     {"swapped", "sine and cosine are exchanged", make_swapped},
     {"degrees", "this looks like degrees; angles are in radians", make_degrees},
     {"length", "a length is missing", make_length},
@@ -188,8 +219,8 @@ static const struct {
 /// Not in the table, for no formula shows it: the right one with a rounded number in it.
 static const hn_grade_mistake ROUNDED = {
     .id = "rounded",
-    .text = "nearly right: a number in it was rounded; write it with seven digits or more, pi by "
-            "its name"};
+    .text = "nearly right: write a number that was rounded with seven digits or more, pi by its "
+            "name; if none was, a small term is wrong"};
 static const double NEARLY = 5e-3; // relative to the entry's size: numbers of three digits
 
 bool hn_grade_is_mistake(const char *id) {
@@ -199,20 +230,6 @@ bool hn_grade_is_mistake(const char *id) {
         known |= strcmp(id, MISTAKES[k].id) == 0;
     }
     return known;
-}
-
-/// 1 if the formula has the values of the entry at all states, within the tolerance.
-static bool agrees(const place *at, hn_ex e, const double *value) {
-    double worst = 0, size = 0;
-    for (int s = 0; s < at->exam->n_states; s++) {
-        const double x = hn_exam_value(at->exam, e, s), difference = fabs(x - value[s]);
-        if (!isfinite(difference)) {
-            return false;
-        }
-        worst = fmax(worst, difference);
-        size = fmax(size, fabs(x));
-    }
-    return worst <= hn_exam_allowed(at->exam, size);
 }
 
 /// Second mistakes that go with any other: a factor, or coordinates that are turned into others.

@@ -65,6 +65,9 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         if (v->hint[0]) {
             hn_strbuf_printf(b, "  %s\n", v->hint);
         }
+        if (v->note[0]) {
+            hn_strbuf_printf(b, "note: %s\n", v->note);
+        }
         return;
     }
 

@@ -117,6 +117,15 @@ static void put_figure(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) 
     hn_strbuf_printf(b, "\"><figcaption>%s %s.</figcaption></figure>\n", what, e->name);
 }
 
+/// A sentence below the outcome; nothing for an empty one.
+static void put_remark(hn_strbuf *b, const char *text) {
+    if (text[0]) {
+        hn_strbuf_add(b, "<p class=\"muted\">");
+        hn_verdict_escape(b, text);
+        hn_strbuf_add(b, ".</p>\n");
+    }
+}
+
 /// The sum, or why there is none.
 static void put_outcome(hn_strbuf *b, const hn_verdict *v, bool graded) {
     hn_strbuf_add(b, "<p class=\"score\">");
@@ -127,12 +136,8 @@ static void put_outcome(hn_strbuf *b, const hn_verdict *v, bool graded) {
     }
     hn_verdict_escape(b, graded ? v->summary : v->reason);
     hn_strbuf_add(b, ".</p>\n");
-    const char *more = graded ? v->note : v->hint;
-    if (more[0]) {
-        hn_strbuf_add(b, "<p class=\"muted\">");
-        hn_verdict_escape(b, more);
-        hn_strbuf_add(b, ".</p>\n");
-    }
+    put_remark(b, graded ? "" : v->hint);
+    put_remark(b, v->note);
 }
 
 void hn_verdict_html(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) {

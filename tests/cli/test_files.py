@@ -140,8 +140,9 @@ class Files(Command):
             with open(path, "w") as f:
                 json.dump(SUBMISSION, f)
             self.assert_exit(call("export", "four-bar", "--language", "c", "-o", "/dev/full"), PROGRAM)
-            # grade makes its folder: one that it cannot make is no fault of the submission
-            self.assert_exit(call("grade", "p3", path, "-o", "/dev/full/v"), PROGRAM)
+            # a file where a folder should be is the fault of the name
+            self.assertIn(b"the folder '/dev/full' is no folder", call("grade", "p3", path, "-o", "/dev/full/v").stderr)
+            self.assert_exit(call("grade", "p3", path, "-o", "/dev/full/v"), INPUT)
             # a folder that is not there is, and is told before anything is computed: this picture takes an hour
             for words in (("reference", "fb0", "--out", "/nowhere/x.json"),
                           ("snapshot", "four-bar", "--method", "index1@rk4:h=1e-6", "--time", "3600", "-o", "/no/such/folder/a.png"),

@@ -58,6 +58,53 @@ def examples(folder):
             expect(f"{exercise} {part} {json.dumps(answer)} is {expected}", found == expected, found)
 
 
+def told_truly(folder):
+    """The nearest mistake is named, one slip is one mistake, and a sentence says what is so."""
+    ada = "Ada Lovelace"
+    found = entry(folder, "forces", "a", 9.3669812279571154, "--student", ada)
+    expect("an angle in degrees is named before what is near it", (found["mistake"], " or: " in found["explanation"]) == ("degrees", False), found["explanation"])
+    found = entry(folder, "joint-shaft", "d", 37, "--student", "Chén 3")
+    expect("the rate of the input is no angle in degrees", (found["mistake"], "degrees" in found["explanation"]) == ("cancelled", False), found["explanation"])
+    for exercise, part, answer, mistake in (
+            ("forces", "a", -0.0841174420034223, "weight-sign"), ("p2", "c", "N' M Ndot u - N' h", "h-sign"),
+            ("p2", "c", "N' h - N' M Ndot u", "ndot-sign"), ("drift", "e", "gamma-2*alpha*J*v-beta^2*phi", "sign-gamma"),
+            ("drift", "e", "-gamma+2*alpha*J*v-beta^2*phi", "sign-rate"), ("drift", "e", "-gamma-2*alpha*J*v+beta^2*phi", "sign-gap")):  # fmt: skip
+        found = entry(folder, exercise, part, answer, "--student", ada)
+        expect(f"{exercise} {part} = {answer} is one mistake", found["mistake"] == mistake and "as well" not in found["explanation"], found["explanation"])
+
+    # the exercise of a matrix
+    right = [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
+    swapped = {e["name"]: "not differentiated" in e["explanation"] for e in verdict(folder, "p3", {"J": right[::-1]})["entries"]}
+    expect("a term that was not differentiated is told where it may be one", swapped == {f"J{i}{j}": i == 1 for i in (1, 2) for j in (1, 2, 3, 4)}, str(swapped))
+    near = verdict(folder, "p3", {"J": [[e + "+0.001*l1" for e in row] for row in right]})["entries"][0]
+    expect("a small term may be wrong where no number was rounded", near["mistake"] == "rounded" and "a small term is wrong" in near["explanation"], near["explanation"])
+    named, path = verdict(folder, "p3", {"J": right, "student": ada}), os.path.join(folder, "ada.html")
+    seed = str(verdict(folder, "p3", {"J": right}, "--student", ada)["seed"])
+    run("grade", "p3", write(folder, "answer.json", {"J": right, "student": ada}), "-o", path)
+    with open(path, encoding="utf-8") as page:
+        said = f"handed in by {ada}; variant of seed {seed}" in page.read()
+    expect("a matrix takes the variant of the student whom the file names", (str(named["seed"]), said) == (seed, True), f"{named['seed']} {seed}")
+    chosen = verdict(folder, "p3", {"J": right, "student": ada}, "--seed", "7")
+    expect("a seed on the command line goes first", str(chosen["seed"]) == "7", str(chosen["seed"]))
+
+    # what is allowed, what was read, what was not
+    told_allowed = entry(folder, "newton-step", "a", -0.25, "--student", ada)["explanation"]
+    expect("one of two tolerances is enough, as the question says", "must be right to 0.5 %" in told_allowed, told_allowed)
+    note = verdict(folder, "gears", {"b": "$0.85967\\,\\mathrm{kg\\,m^2}$"}, "--student", ada)["note"]
+    expect("a number is told as it was read", note == "b was read as 0.85967*(kg*m^2)", note)
+    note = verdict(folder, "gears", {"b": "0,85967"}, "--student", ada)["note"]
+    expect("with its decimal comma too", note == "b was read as 0.85967", note)
+    flat = entry(folder, "turning", "b", {"l2": 2.0, "l3": 1.8}, "--student", ada)["explanation"]
+    expect("a value is told with its name", "(abs(sin(th2-th3))-0.6442 must stay above 0 on the way round and falls to -0.0203)" in flat, flat)
+    for exercise, answer, field in (("gears", {"answers": {"a": 1}}, "answers"), ("p3", {"j": right}, "j")):
+        answer = write(folder, "answer.json", answer)
+        path = os.path.join(folder, exercise + ".html")
+        said = run("grade", exercise, answer).stdout
+        run("grade", exercise, answer, "-o", path)
+        with open(path, encoding="utf-8") as page:
+            expect(f"{exercise}: what was not read is told without a grade", f"note: the field '{field}' was not read" in said and "was not read" in page.read(), said)
+
+
 def formulas(folder):
     """A rate may be negative; a name with the right number by chance is no right answer; a right formula explains no mistake."""
     found = told(folder, "closure", "a", "-l1*sin(th1)*abs(u1)-l2*sin(th2)*u2")
@@ -150,4 +197,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, spellings, names, quaternions, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, quaternions, proofs]))

@@ -91,6 +91,11 @@ static bool find_pair(const hn_verdict_names *names, int *first, int *second) {
     return false;
 }
 
+static bool is_folder(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
 /// Makes the folders of a path, the last part being a file.
 static hn_status make_folders(const char *path, hn_diags *diags) {
     char part[PATH_MAX];
@@ -102,9 +107,14 @@ static hn_status make_folders(const char *path, hn_diags *diags) {
     for (size_t i = 1; i < n; i++) {
         if (path[i] == '/') {
             snprintf(part, sizeof part, "%.*s", (int)i, path);
-            if (mkdir(part, 0777) != 0 && errno != EEXIST) {
+            const int made = mkdir(part, 0777), why = errno;
+            if (made != 0 && why == EEXIST && !is_folder(part)) {
+                return hn_diags_add(diags, HN_ERR_INPUT, "/out", "choose another name",
+                                    "the folder '%.200s' is no folder", part);
+            }
+            if (made != 0 && why != EEXIST) {
                 return hn_diags_add(diags, HN_ERR_IO, "/out", NULL,
-                                    "cannot make the folder '%.200s': %s", part, strerror(errno));
+                                    "cannot make the folder '%.200s': %s", part, strerror(why));
             }
         }
     }

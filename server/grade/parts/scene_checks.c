@@ -373,7 +373,7 @@ static hn_status test_stays(hn_scene_check *c, const cJSON *node, hn_part_result
     hn_ex e;
     bool good;
     double least = HUGE_VAL;
-    char detail[80];
+    char detail[160];
     HN_TRY(hn_draw_parse(&c->draw, hn_part_text(node, "of"), &e, diag));
     HN_TRY(need_circuit(c, r, &good));
     for (int k = 0; k < c->n_path && good; k++) {
@@ -384,7 +384,9 @@ static hn_status test_stays(hn_scene_check *c, const cJSON *node, hn_part_result
         least = fmin(least, hn_draw_eval(&c->draw, e, 0));
     }
     if (good && !(least > 0)) {
-        snprintf(detail, sizeof detail, "it falls to %.3g on the way round", least);
+        snprintf(detail, sizeof detail,
+                 "%.80s must stay above 0 on the way round and falls to %.3g",
+                 hn_part_text(node, "of"), least);
         fail_check(node, r, detail);
     }
     return HN_OK;

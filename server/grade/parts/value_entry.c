@@ -125,8 +125,9 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
             status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
         }
     }
-    if (status == HN_OK && !s->symbolic && strchr(text, ',')) {
-        snprintf(r->read_as, sizeof r->read_as, "%.*s", HN_PART_READ_AS - 1, own);
+    const char *read = plain.n > 0 ? hn_strbuf_text(&plain) : own;
+    if (status == HN_OK && !s->symbolic && strchr(text, ',') && strcmp(read, text) != 0) {
+        snprintf(r->read_as, sizeof r->read_as, "%.*s", HN_PART_READ_AS - 1, read);
     }
     if (status != HN_OK && s->symbolic) {
         refuse_formula(text, &diag, r);

@@ -20,11 +20,11 @@ void hn_value_search_begin(hn_value_search *f, hn_value_sheet *sheet, int k, con
 }
 
 bool hn_value_search_is_done(const hn_value_search *f) {
-    return f->n_found == 2 || (f->n_found == 1 && !f->result->likely);
+    return (f->n_found == 2 && f->close == 2) || (f->n_found == 1 && !f->result->likely);
 }
 
-/// Whether the values agree at all states; `close`: ten times better than is asked for.
-static bool agrees(const hn_value_search *f, hn_ex e, double factor, bool *close) {
+/// Whether the values agree at all states, and how closely: as in hn_value_search.
+static bool agrees(const hn_value_search *f, hn_ex e, double factor, int *close) {
     const hn_value_sheet *s = f->sheet;
     double worst = 0, size = 0;
     for (int i = 0; i < s->draw->n_states; i++) {
@@ -40,7 +40,7 @@ static bool agrees(const hn_value_search *f, hn_ex e, double factor, bool *close
     const double own = fmax(fabs(s->reference.x[f->entry][0]), 1e-300);
     const double allowed = s->symbolic ? s->allowed[f->entry] + 1e-6 * size
                                        : s->allowed[f->entry] * fmax(size, 1e-300) / own;
-    *close = worst <= 0.1 * allowed;
+    *close = (worst <= 0.1 * allowed) + (worst <= 1e-3 * allowed);
     return worst <= allowed;
 }
 
@@ -97,7 +97,7 @@ static evidence weigh(const hn_value_search *f, hn_ex e, double factor) {
 
 // ---- the result ----
 
-static void keep_first(hn_value_search *f, hn_ex e, double factor, bool close, bool certain) {
+static void keep_first(hn_value_search *f, hn_ex e, double factor, int close, bool certain) {
     f->n_found = 1;
     f->first = e;
     f->first_factor = factor;
@@ -142,7 +142,7 @@ static bool is_reference(const hn_value_search *f, hn_ex e, double factor) {
 
 bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char *id, double share,
                          const char *format, ...) {
-    bool close;
+    int close;
     if (hn_value_search_is_done(f) || !agrees(f, e, factor, &close) || is_reference(f, e, factor)) {
         return false;
     }
@@ -157,12 +157,12 @@ bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char 
     va_end(list);
 
     // the better of two, or both where they are equally good
-    const bool better = close && !f->close;
-    if (f->n_found == 0 || better || (found == EVIDENCE_FOR && f->result->likely)) {
+    const bool better = close > f->close, proven = found == EVIDENCE_FOR && f->result->likely;
+    if (f->n_found == 0 || better || (proven && f->n_found == 1)) {
         hn_part_wrong(f->result, id, share, "%s", text);
         f->result->alone = f->alone > 0 ? f->alone : share;
         keep_first(f, e, factor, close, found == EVIDENCE_FOR);
-    } else if (close == f->close && strcmp(id, f->result->mistake) != 0 &&
+    } else if (f->n_found == 1 && close == f->close && strcmp(id, f->result->mistake) != 0 &&
                is_same(f, f->first, f->first_factor, e, factor, NULL) == 0) {
         add_second(f, share, text);
     }

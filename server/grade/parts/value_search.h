@@ -16,7 +16,8 @@ typedef struct hn_value_search {
     hn_ex formula;       ///< the answer
     hn_part_result *result;
     int n_found; ///< candidates that explain the answer equally well: 0, 1, 2
-    bool close;  ///< the first of them agrees ten times better than is asked for
+    int close;   ///< how closely the first of them agrees: 0 as is asked for, 1 ten times better,
+                 ///< 2 a thousand times better
     hn_ex first; ///< its formula, and the factor of it
     double first_factor;
     double alone; ///< of the candidates tried next: the share of the mistake that is named, where
@@ -34,6 +35,7 @@ bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char 
 /// The name in a formula with the right values that makes it wrong once its number is another one,
 /// as t1 in place of l1 where both are 0.77. NULL: none, or its number cannot be changed by itself.
 const char *hn_value_search_stray_name(hn_value_sheet *sheet, int k, hn_ex formula);
-/// Whether further candidates cannot change the result: one is certain, or two agree.
+/// Whether further candidates cannot change the result: one is certain, or two agree as closely as
+/// is told apart.
 bool hn_value_search_is_done(const hn_value_search *f);
 #endif

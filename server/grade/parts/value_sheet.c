@@ -98,7 +98,7 @@ static hn_status set_tolerance(hn_value_sheet *s) {
             }
             size = fmax(size, fabs(s->reference.x[k][i]));
         }
-        s->allowed[k] = absolute + relative * size;
+        s->allowed[k] = fmax(absolute, relative * size);
     }
     return HN_OK;
 }

@@ -30,7 +30,7 @@ typedef struct hn_value_sheet {
 
 /// 1 for the kinds formula and formulas.
 int hn_value_is_symbolic(const hn_part *p);
-/// The difference that is allowed: absolute + relative * size of the entry.
+/// The difference that is allowed: the larger of absolute and relative * size of the entry.
 void hn_value_tolerance(const hn_part *p, double *relative, double *absolute);
 /// The states and the reference. hn_draw_reset(s->draw) and free afterwards in any case.
 /// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.
