@@ -62,20 +62,20 @@ typedef struct hn_singularity hn_singularity;
 HN_MUST_CHECK hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena,
                                               hn_singularity **out);
 void hn_singularity_free(hn_singularity *r); ///< NULL is legal
-/// Forgets all looks.
+/// Forgets all checks.
 void hn_singularity_reset(hn_singularity *r);
 /// Checks a state; times should rise. Allocates nothing.
 void hn_singularity_check(hn_singularity *r, double t, const double *q, const double *v,
                           hn_singularity_info *info);
-/// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look,
-/// and where one costs so much that not every state gets it. Allocates nothing.
+/// sigma_min at a pose; the record of the checks stays as it is. HUGE_VAL before the first check,
+/// and where a check costs so much that not every state gets one. Allocates nothing.
 double hn_singularity_probe(hn_singularity *r, double t, const double *q);
-/// D of the last look (nv): velocities divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
+/// D of the last check (nv): velocities divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_singularity_scale(const hn_singularity *r);
 /// The pilot run that the monitor uses during its checks; free for others between them.
 hn_pilot *hn_singularity_pilot(hn_singularity *r);
-/// What is known of the pose that the last look or probe saw with this `sigma_min`, from all
-/// singular values (dense: for poses that are reported).
+/// Describes the pose of the last check or probe, from all singular values (dense: for poses that
+/// are reported); `sigma_min` is the value that it returned.
 void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double sigma_min,
                             hn_singularity_pose *pose);
 

@@ -74,7 +74,7 @@ typedef struct hn_heading_record {
     bool explained;
     bool driven;     ///< the constraints move with time
     double *entered; ///< nq: where J all but lost rank, as long as it stays so
-    int inside;      ///< it does: 1, 2 once that has been reported
+    int inside;      ///< 0: J has full rank; 1: it has all but lost rank; 2: that was reported
 } hn_heading_record;
 
 /// Singular configurations that the run has met or is predicted to meet.
@@ -117,7 +117,7 @@ struct hn_watch {
     double shortest_row;                                  ///< hn_motion_shortest_row() there
     const hn_incident_kind *each_step[HN_INCIDENT_COUNT]; ///< those checked after every step
     int n_each_step;
-    unsigned own_pace; ///< incidents that end without one, as bits of hn_incident_log.active
+    unsigned own_pace; ///< incidents that end without a full check: bits of hn_incident_log.active
     long long checks;  ///< full checks so far
     bool calm;         ///< it found nothing that the next step has to be compared with
     hn_status accel_status;
@@ -135,10 +135,11 @@ struct hn_watch {
     hn_heading_record heading;
     hn_singular_record singular;
     double *modes, *last_modes; ///< per loop: assembly modes now and at the last check
-    int held, released; ///< steps at the stability limit lately, and since then others in a row
-    long long restarts; ///< steps after which a multistep integrator had to start again
-    char *beyond;       ///< per limit: it is passed at present
-    double *limited;    ///< values of the coordinates with limits
+    int held;                   ///< recent steps at the stability limit
+    int released;               ///< steps since the last of them
+    long long restarts;         ///< steps after which a multistep integrator had to start again
+    char *beyond;               ///< per limit: it is passed at present
+    double *limited;            ///< values of the coordinates with limits
 
     hn_eval *eval;                        ///< phi, phi_t, J, energy
     const double *phi, *phi_t, *energies; ///< its values
