@@ -50,8 +50,8 @@ typedef struct hn_http_opts {
     double orphan_expiry;    ///< one whose readers have all left [s]
     double keep_alive;       ///< between comment lines of a quiet stream [s]
     int connection_timeout;  ///< without any progress [s]
-    double head_deadline;    ///< for the first head of a connection, in all [s]
-    double request_deadline; ///< for a later head, and for a body, in all [s]
+    double head_deadline;    ///< for a head, in all; a later one counts from its first line [s]
+    double request_deadline; ///< for a body, in all, and between two requests [s]
 } hn_http_opts;
 hn_http_opts hn_http_opts_default(void);
 

@@ -24,7 +24,7 @@
     X(HN_PROBLEM_NOT_ACCEPTABLE, 406, "not-acceptable", "The answer has another media type",       \
       "The Accept header rules out what this address offers; the detail names what it offers.")    \
     X(HN_PROBLEM_LATE, 408, "timeout", "The request came too slowly",                              \
-      "A head has 10 s, a body 60 s, and none of them may stand still for half a minute.")         \
+      "A head has 10 s, a body 60 s, and neither may stand still for half a minute.")              \
     X(HN_PROBLEM_CONFLICT, 409, "conflict", "Its present state does not allow that",               \
       "What was asked does not fit the state of the comparison, run or study; nothing was "        \
       "changed.")                                                                                  \
