@@ -69,7 +69,7 @@ static void add_classes(hn_strbuf *b, const hn_study *study) {
     }
     hn_pareto p;
     hn_wp_pareto(wp, hn_study_classes(study), hn_wp_ranked_error(wp), HN_COST_OPS, &p);
-    hn_strbuf_add(b, "\nCheapest by operations\n");
+    hn_strbuf_printf(b, "\nCheapest by operations, for errors up to t = %.4g s\n", wp->ref->T);
     hn_pareto_sentences(b, wp, &p);
 }
 

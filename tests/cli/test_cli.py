@@ -84,6 +84,15 @@ class CommandLine(Command):
         moved = self.assert_exit(call("terms", "four-bar", "--q", "th1=1"), DONE)
         self.assertIn("four-bar at its start, changed by --q and --v: ", moved)
 
+    def test_terms_name_the_velocities_and_show_rounding_as_zero(self):
+        text = self.assert_exit(call("terms", "four-bar", "--set", "th1_0=0"), DONE)
+        self.assertRegex(text, r"\nv, velocities, to which M, f, J and a belong\n  w1 +4\n  wa2 +-8\n  w3 +-4\n"
+                               r"M, mass matrix of the velocities v\n +w1 +wa2 +w3\n  w1 ")
+        # -2.84217e-15 beside -16
+        self.assertRegex(text, r"\ngamma = Jdot v\n  B: x +-16\n  B: y +0\n")
+        exact = strict(self.assert_exit(call("terms", "four-bar", "--set", "th1_0=0", "--json"), DONE))
+        self.assertEqual(exact["rates"], ["w1", "wa2", "w3"])
+
     def test_the_equations_name_the_mirror_of_a_symmetric_matrix(self):
         text = self.assert_exit(call("equations", "four-bar"), DONE)
         self.assertRegex(text, r"M \(mass matrix; each entry stands for its mirror too, M\[i,j\] = M\[j,i\]; others that are not listed are zero\)")

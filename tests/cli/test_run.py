@@ -194,6 +194,28 @@ class Run(Command):
             text = call("compare", "four-bar", "--methods", method, "--time", "1").stdout.decode()
             self.assertIn(f"a smaller {word} does not help", text)
 
+    def test_what_ends_a_run_is_an_error_and_what_ends_there_too_no_remedy(self):
+        # no motion goes on from a mass of zero
+        done = call("run", "four-bar", "--method", "reduced@rk4:h=1e-2", "--set", "l1=5e-324", "--json")
+        end = json.loads(done.stdout)["incidents"][-1]
+        self.assertEqual((end["code"], end["t"], end["remedies"]), ("rank-loss", 0, []))
+        self.assertIn("; tried in vain: projection@rk4:h=0.01, h=0.005", end["message"])
+
+    def test_a_trial_stops_at_the_end_of_the_run_unless_the_event_is_near_it(self):
+        # the energy is reported at 9.18 s
+        def told(time):
+            done = call("run", "four-bar", "--method", "index1@rk4:h=0.01", "--time", time, "--json")
+            last = json.loads(done.stdout)["incidents"][-1]
+            self.assertAlmostEqual(last["t"], 9.18, places=6)
+            return re.match(r"tried until t = (\S+) s(.*?): ", last["tried"][0])
+        whole = told("10")
+        self.assertEqual((float(whole[1]), whole[2]), (10, ""))
+        near = told("9.2")
+        self.assertEqual(near[2], ", past the near end of the run")
+        # a tenth of the way to the event
+        self.assertGreater(float(near[1]), 9.2)
+        self.assertLess(float(near[1]), 9.18 * 1.11)
+
     def test_remedies_of_wrong_equations_are_tried_from_the_start(self):
         # 1615 steps in: a trial from a state of this motion would begin with its error, 0.27 J there
         done = call("run", "four-bar", "--method", "nullspace-as-printed@rk4:h=0.001", "--time", "10", "--json")

@@ -211,6 +211,7 @@ static hn_status put_terms(hn_strbuf *b, const terms *w) {
     hn_json_put_string(b, "scene", hn_model_scene(w->model)->id);
     hn_json_put_string(b, "equations", "M a = f + J' lambda, J a + gamma = 0, f = Q - h");
     hn_columns_put_coordinates(b, hn_model_system(w->model));
+    hn_columns_put_rates(b, hn_model_system(w->model));
     hn_columns_put_rows(b, hn_model_system(w->model));
 
     // state, terms and constraint values

@@ -2,6 +2,7 @@
 #include "session/precision/wanted.h"
 
 #include "base/units.h"
+#include "session/model/model.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -130,7 +131,12 @@ void hn_wanted_text(hn_strbuf *b, const hn_study *study, const hn_wanted *wanted
     }
 
     // the cheapest, the next, and who does not get there
-    hn_strbuf_printf(b, "For %s up to t = %.4g s: ", wanted->words, wp->ref->T);
+    const double whole = hn_model_scene(hn_study_model(study))->duration;
+    hn_strbuf_printf(b, "For %s up to t = %.4g s", wanted->words, wp->ref->T);
+    if (whole > wp->ref->T) {
+        hn_strbuf_printf(b, " of the scene's %.4g s", whole);
+    }
+    hn_strbuf_add(b, ": ");
     put_method(b, wp, &band.best, size_at(wp, &band.best, error, wanted->error), spelling);
     hn_strbuf_printf(b, " is the cheapest, %s ", band.best.from < 0 ? "at most" : "about");
     put_operations(b, band.best.cost);

@@ -2,6 +2,7 @@
 #include "study/run/diagnosis.h"
 
 #include "base/units.h"
+#include "dynamics/compile/coordinates.h"
 #include "study/incidents/energy.h"
 #include "study/spectrum/load_share.h"
 #include "study/spectrum/region.h"
@@ -41,7 +42,13 @@ typedef struct fastest_part {
     double limit; ///< largest stable step [s]; HUGE_VAL: none, or none that can be computed
     hn_eigenvalue value;
     const hn_load *load; ///< that makes it fast; NULL: none alone
+    bool at_rest;        ///< the mechanism would be as fast at rest: no matter of its velocities
 } fastest_part;
+
+/// At rest the fastest part has another rate: by this share where velocities are what makes it.
+static const double SLOWER_AT_REST = 0.5;
+/// A link turns this many times as fast as the one whose speed is given only near a dead point.
+static const double FAR_ABOVE = 50;
 
 static bool is_decay(hn_eigenvalue s) {
     return fabs(s.re) > fabs(s.im);
@@ -59,11 +66,21 @@ static const hn_load *find_load(const hn_stepping *s, hn_spectrum *spectrum, hn_
     return hn_load_share_find(s->sys, &mode, is_decay(value) ? size : size * size);
 }
 
+/// Whether the mechanism at rest in this configuration has a part as fast as `rate` [1/s].
+static bool is_fast_at_rest(const hn_stepping *s, hn_spectrum *spectrum, hn_arena *arena,
+                            const hn_state_at *at, double rate) {
+    const double *rest = hn_arena_doubles(arena, (size_t)s->info.nv); // zeros
+    const hn_eigenvalue *found = NULL;
+    int n = 0;
+    return !rest || hn_spectrum_calc(spectrum, at->t, at->q, rest, &found, &n) != HN_OK ||
+           (n > 0 && hypot(found[0].re, found[0].im) > SLOWER_AT_REST * rate);
+}
+
 static fastest_part find_fastest(const hn_stepping *s, const hn_state_at *at) {
     hn_arena *arena = hn_arena_create(0);
     hn_spectrum *spectrum = NULL;
     const hn_eigenvalue *found = NULL;
-    fastest_part out = {.limit = HUGE_VAL};
+    fastest_part out = {.limit = HUGE_VAL, .at_rest = true};
     int n = 0;
     if (arena && hn_spectrum_create(s->sys, arena, &spectrum) == HN_OK &&
         hn_spectrum_calc(spectrum, at->t, at->q, at->v, &found, &n) == HN_OK && n > 0) {
@@ -71,19 +88,78 @@ static fastest_part find_fastest(const hn_stepping *s, const hn_state_at *at) {
         const double limit = hn_stability_limit(s->spec.stepper, found, n);
         out.limit = isfinite(limit) ? limit : HUGE_VAL;
         out.load = find_load(s, spectrum, arena, at, out.value);
+        out.at_rest =
+            out.load || is_fast_at_rest(s, spectrum, arena, at, hypot(out.value.re, out.value.im));
     }
     hn_spectrum_free(spectrum);
     hn_arena_free(arena);
     return out;
 }
 
-/// "the damping of load 'left motor' decays", "a vibration of the mechanism oscillates".
-static void describe_part(const fastest_part *part, char *out, size_t size) {
+/// The coordinate of an angle that turns fastest at a state, *rate [rad/s]; NULL where none turns.
+static const hn_coordinate *find_fastest_turn(const hn_stepping *s, const hn_state_at *at,
+                                              double *rate) {
+    const hn_scene *scene = hn_system_scene(s->sys);
+    const hn_coordinate *fastest = NULL;
+    double rates[MOST_SPEEDS];
+    *rate = 0;
+    hn_system_rates_to_user(s->sys, at->v, rates);
+    for (int i = 0; i < s->info.n_user; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(s->sys, i)];
+        if (c->kind == HN_ANGLE && fabs(rates[i]) > fabs(*rate)) {
+            *rate = rates[i];
+            fastest = c;
+        }
+    }
+    return fastest;
+}
+
+/// The angle of a mechanism with one freedom whose speed the scene gives, where a link turns
+/// FAR_ABOVE times as fast at the start: the mechanism starts near a dead point of it. Else NULL.
+static const hn_coordinate *find_dead_start(const hn_stepping *s) {
+    const hn_scene *scene = hn_system_scene(s->sys);
+    double most = 0;
+    if (s->info.nc == 0 || s->info.nv - s->info.nc != 1 ||
+        !find_fastest_turn(s, &s->start, &most)) {
+        return NULL;
+    }
+    for (int i = 0; i < s->info.n_user; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(s->sys, i)];
+        if (c->kind == HN_ANGLE && c->v0_pinned && c->v0 != 0) {
+            return fabs(most) > FAR_ABOVE * fabs(c->v0) ? c : NULL;
+        }
+    }
+    return NULL;
+}
+
+/// "the links turn fast, w3 = 3.3e+03 rad/s, as the start is near a dead point of th1 (w1 =
+/// 4)". Returns false where nothing turns.
+static bool describe_speed(const hn_stepping *s, const hn_state_at *at, char *out, size_t size) {
+    double rate;
+    const hn_coordinate *fastest = find_fastest_turn(s, at, &rate), *dead = find_dead_start(s);
+    char why[96] = "";
+    if (!fastest) {
+        return false;
+    }
+    if (dead) {
+        snprintf(why, sizeof why, ", as the start is near a dead point of %.16s (%.16s = %.3g)",
+                 dead->name, dead->rate, dead->v0);
+    }
+    snprintf(out, size, "the links turn fast, %.16s = %.2g rad/s%s", fastest->rate, rate, why);
+    return true;
+}
+
+/// "the damping of load 'left motor' decays", "a vibration of the mechanism oscillates"; where the
+/// motion itself is what is fast: how fast the links turn.
+static void describe_part(const hn_stepping *s, const fastest_part *part, char *out, size_t size) {
+    char speed[160];
     const bool decays = is_decay(part->value);
     const char *verb = decays ? "decays" : "oscillates";
     if (part->load) {
         snprintf(out, size, "the %s of '%.60s' %s", decays ? "damping" : "stiffness",
                  part->load->name, verb);
+    } else if (!part->at_rest && describe_speed(s, &s->earlier, speed, sizeof speed)) {
+        snprintf(out, size, "%s; a deviation from this motion %s", speed, verb);
     } else {
         snprintf(out, size, "a %s of the mechanism %s", decays ? "damped motion" : "vibration",
                  verb);
@@ -95,7 +171,7 @@ static void describe_part(const fastest_part *part, char *out, size_t size) {
 static bool explain_instability(const hn_stepping *s, double *limit, char *out, size_t size) {
     const double h = hn_method_option(&s->spec, "h", 0);
     const bool is_ode = hn_method_form(s->spec.formulation, s->spec.stepper) == HN_FORM_ODE;
-    char what[128];
+    char what[208];
 
     // methods and mechanisms for which a limit cannot be computed
     if (s->adaptive || !is_ode || s->info.nv > MOST_SPEEDS ||
@@ -109,7 +185,7 @@ static bool explain_instability(const hn_stepping *s, double *limit, char *out, 
         return false;
     }
     *limit = part.limit;
-    describe_part(&part, what, sizeof what);
+    describe_part(s, &part, what, sizeof what);
     const bool decays = is_decay(part.value);
     const int digits = hn_digits_apart(h, part.limit, 3);
     snprintf(out, size,
@@ -121,7 +197,7 @@ static bool explain_instability(const hn_stepping *s, double *limit, char *out, 
 
 static void name_cause(hn_run *run) {
     hn_watch *w = hn_run_watching(run);
-    char cause[256], message[400];
+    char cause[360], message[400];
     double limit;
     const bool ended = w->failure == HN_ERR_DIVERGED || w->failure == HN_ERR_NO_CONVERGENCE ||
                        w->failure == HN_ERR_INCONSISTENT || w->failure == HN_ERR_SINGULAR;
@@ -216,12 +292,16 @@ static const hn_state_at *pilot_start(const hn_watch *w, int k) {
 }
 
 /// How long a pilot run is: past the event, as far as *most steps reach where they are fixed. Large
-/// mechanisms get fewer steps.
-static double pilot_end(const hn_stepping *s, const hn_method_spec *spec, double from, double event,
+/// mechanisms get fewer steps. Not beyond the end of the run, unless the event is so near it that
+/// what comes after tells whether the remedy removes it.
+static double pilot_end(const hn_watch *w, const hn_method_spec *spec, double from, double event,
                         long long *most) {
+    const hn_stepping *s = w->run;
     const int size = s->info.nv > PILOT_SIZE ? s->info.nv : PILOT_SIZE;
     const double own = fmax(s->h, hn_method_option(&s->spec, "h", 0));
-    const double wanted = event + BEYOND * (event - from) + BEYOND_STEPS * own;
+    const double whole = event + BEYOND * (event - from) + BEYOND_STEPS * own;
+    const double least = event + 2 * LEAST_PAST * (event - from) + own;
+    const double wanted = w->t_end > 0 ? fmin(whole, fmax(w->t_end, least)) : whole;
     const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
     *most = *most * PILOT_SIZE / size;
     const double reached = from + h * (double)(*most - 1);
@@ -256,7 +336,7 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
         return UNKNOWN;
     }
     opts.max_steps = pilot_start(w, k) == from ? PILOT_STEPS : START_STEPS;
-    const double end = pilot_end(s, &spec, from->t, event, &opts.max_steps);
+    const double end = pilot_end(w, &spec, from->t, event, &opts.max_steps);
     opts.t0 = from->t;
     if (hn_run_create(s->sys, &spec, from->q, from->v, &opts, &pilot, &diag) != HN_OK) {
         return FAILS;
@@ -280,15 +360,20 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
                  sum.steps, sum.t);
         return UNKNOWN;
     }
+    // an adaptive method steps past the end that was asked for; past that of the run is said
+    const double reached = status == HN_OK ? fmin(sum.t, end) : sum.t;
+    const bool beyond = w->t_end > 0 && reached > w->t_end + s->h;
+
     // a loop that is open where the trial begins is no fault of the remedy
     char begun[40] = "";
     if (from != &s->start) {
         snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
     }
     snprintf(said, sizeof(hn_remedy),
-             TRIED "%suntil t = %.*g s: %s gap %.2g m, energy changed by %.2g J", begun,
-             begun[0] ? 4 : 3, sum.t, begun[0] ? "last" : "largest",
-             begun[0] ? last_gap : sum.worst_gap, sum.worst_energy_change);
+             TRIED "%suntil t = %.*g s%s: %s gap %.2g m, energy changed by %.2g J", begun,
+             begun[0] ? 4 : 3, reached, beyond ? ", past the near end of the run" : "",
+             begun[0] ? "last" : "largest", begun[0] ? last_gap : sum.worst_gap,
+             sum.worst_energy_change);
     return right ? REMOVES : FAILS;
 }
 
@@ -356,6 +441,12 @@ static void try_remedies(hn_run *run, hn_incident *i) {
     if (n > 0 && kept == 0) {
         tell_in_vain(w, i, texts, trials, n);
     }
+}
+
+/// Whether a report tells of an error: its kind does, or it is the reason why the run ended.
+static bool tells_error(const hn_watch *w, const hn_incident *i) {
+    const bool ended = w->failure != HN_OK && w->failure != HN_ERR_STOPPED;
+    return hn_incident_kinds()[i->code]->is_wrong || (ended && i == &w->log.list[w->log.n - 1]);
 }
 
 /// Says why the remedies of a report that is about no error are offered without a trial.
@@ -436,7 +527,7 @@ void hn_run_diagnose(hn_run *run) {
     }
     for (; w->diagnosed < w->log.n; w->diagnosed++) {
         hn_incident *i = &w->log.list[w->diagnosed];
-        if (i->remedy[0][0] && hn_incident_kinds()[i->code]->is_wrong) {
+        if (i->remedy[0][0] && tells_error(w, i)) {
             try_remedies(run, i);
         } else if (i->remedy[0][0]) {
             leave_untried(w, i);
@@ -444,7 +535,7 @@ void hn_run_diagnose(hn_run *run) {
     }
     for (int k = 0; k < w->log.n; k++) {
         hn_incident *i = &w->log.list[k];
-        if (hn_incident_kinds()[i->code]->is_wrong && strstr(i->message, IN_VAIN)) {
+        if (tells_error(w, i) && strstr(i->message, IN_VAIN)) {
             share_remedies(w, i);
         }
     }

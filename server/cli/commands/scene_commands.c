@@ -114,12 +114,28 @@ static hn_status see_entry(void *user, const char *name, double value) {
     return HN_OK;
 }
 
+/// An entry this share of the largest in its vector is rounding: some tens of units in the last
+/// place.
+static const double ROUNDING = 1e-14;
+
+/// Writes a vector, one row an entry; what is rounding beside its largest entry is shown as 0.
 static void put_vector(hn_strbuf *b, const char *title, const cJSON *document, const char *key,
                        const cJSON *names) {
     const cJSON *values = hn_document_get(document, key);
-    if (cJSON_GetArraySize(values) > 0) {
-        hn_document_matrix(b, title, values, names, NULL);
+    cJSON *shown = cJSON_Duplicate(values, true), *number;
+    double largest = 0;
+    cJSON_ArrayForEach(number, shown) {
+        largest = fmax(largest, fabs(cJSON_GetNumberValue(number)));
     }
+    cJSON_ArrayForEach(number, shown) {
+        if (fabs(cJSON_GetNumberValue(number)) <= ROUNDING * largest) {
+            cJSON_SetNumberValue(number, 0);
+        }
+    }
+    if (cJSON_GetArraySize(shown) > 0) {
+        hn_document_matrix(b, title, shown, names, NULL);
+    }
+    cJSON_Delete(shown);
 }
 
 /// Largest entry of `key` in the list.
@@ -263,10 +279,10 @@ static void put_terms_heading(hn_strbuf *b, const cJSON *d, const hn_args *args)
 static void put_terms(hn_strbuf *b, const cJSON *d, const hn_args *args) {
     static const struct {
         const char *title, *key;
-        int matrix, by_row;
-    } parts[] = {{"q", "q", 0, 0},
-                 {"v", "v", 0, 0},
-                 {"M, mass matrix", "M", 1, 0},
+        int matrix, by_row; // 2: rows are the velocities
+    } parts[] = {{"q, coordinates", "q", 0, 0},
+                 {"v, velocities, to which M, f, J and a belong", "v", 0, 2},
+                 {"M, mass matrix of the velocities v", "M", 1, 2},
                  {"f = Q - h, forces", "f", 0, 0},
                  {"J, Jacobian of the loops", "J", 1, 1},
                  {"gamma = Jdot v", "gamma", 0, 1},
@@ -274,16 +290,17 @@ static void put_terms(hn_strbuf *b, const cJSON *d, const hn_args *args) {
                  {"a, accelerations", "a", 0, 0},
                  {"lambda, multipliers", "lambda", 0, 1}};
     const cJSON *names = hn_document_get(d, "coordinates"), *rows = hn_document_get(d, "rows");
+    const cJSON *rates = hn_document_get(d, "rates");
     put_terms_heading(b, d, args);
 
     // matrices where they have rows, vectors always
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-        const cJSON *row_names = parts[i].by_row ? rows : names;
+        const cJSON *row_names[] = {names, rows, rates};
+        const cJSON *own = row_names[parts[i].by_row];
         if (parts[i].matrix && cJSON_GetArraySize(hn_document_get(d, parts[i].key)) > 0) {
-            hn_document_matrix(b, parts[i].title, hn_document_get(d, parts[i].key), row_names,
-                               names);
+            hn_document_matrix(b, parts[i].title, hn_document_get(d, parts[i].key), own, rates);
         } else if (!parts[i].matrix) {
-            put_vector(b, parts[i].title, d, parts[i].key, row_names);
+            put_vector(b, parts[i].title, d, parts[i].key, own);
         }
     }
     put_reduced(b, hn_document_get(d, "reduced"), names);

@@ -127,8 +127,9 @@ static void put_front(hn_strbuf *b, const hn_study *study) {
     for (int cost = hn_cost_plot_has_times(wp) ? HN_COST_TIME : HN_COST_OPS; cost <= HN_COST_OPS;
          cost++) {
         hn_wp_pareto(wp, hn_study_classes(study), error, (hn_cost_kind)cost, &p);
-        hn_strbuf_printf(b, "\nCheapest by %s%s\n", hn_cost_name((hn_cost_kind)cost),
-                         error == HN_ERROR_Q ? "" : ", for the error of the energy");
+        hn_strbuf_printf(b, "\nCheapest by %s, for %s up to t = %.4g s\n",
+                         hn_cost_name((hn_cost_kind)cost),
+                         error == HN_ERROR_Q ? "errors" : "the error of the energy", wp->ref->T);
         put_sentences(b, wp, &p);
     }
     if (error != HN_ERROR_Q) {
