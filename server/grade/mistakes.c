@@ -288,7 +288,8 @@ static hn_grade_mistake find_nothing(const place *at) {
         .text = numbers
                     ? "no length is named here: write lengths by their names, not as numbers, for "
                       "the formula is tried with other lengths too"
-                    : "no known mistake gives this: differentiate the row once more, term by term"};
+                    : "wrong; the cause is none of the known mistakes: differentiate the row once "
+                      "more, term by term"};
 }
 
 /// Two mistakes at once: one of the rows, and a second on top of it. Where no length is named, a

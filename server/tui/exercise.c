@@ -9,6 +9,7 @@
 #include "grade/variant.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -184,10 +185,25 @@ static cJSON *read_choice(const char *text) {
     return both;
 }
 
-/// Typed text as a value: JSON where it begins as JSON does and is JSON, else the text itself.
+/// Whether a number of the value is beyond the largest one: written again it would be null.
+static bool has_infinite(const cJSON *value) {
+    bool has = cJSON_IsNumber(value) && !isfinite(value->valuedouble);
+    const cJSON *child;
+    cJSON_ArrayForEach(child, value) {
+        has = has || has_infinite(child);
+    }
+    return has;
+}
+
+/// Typed text as a value: JSON where it begins as JSON does and is JSON, else the text itself, as
+/// the grader reads it.
 static cJSON *read_value(const char *text) {
     const bool like_json = strchr("[{\"+-.", text[0]) || isdigit((unsigned char)text[0]);
     cJSON *value = like_json ? cJSON_ParseWithOpts(text, NULL, true) : NULL;
+    if (has_infinite(value)) {
+        cJSON_Delete(value);
+        value = NULL;
+    }
     return value ? value : cJSON_CreateString(text);
 }
 

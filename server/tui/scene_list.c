@@ -61,8 +61,15 @@ static void write_title(hn_workbench *w, int of) {
 static void list_scene(hn_workbench *w, const cJSON *scene) {
     hn_item *item = hn_list_add(w, text_of(scene, "id"), text_of(scene, "title"));
     if (item) {
-        snprintf(item->more, sizeof item->more, "%s. %s", text_of(scene, "caption"),
-                 text_of(scene, "about"));
+        static const char ellipsis[] = "…";
+        const int n = snprintf(item->more, sizeof item->more, "%s. %s", text_of(scene, "caption"),
+                               text_of(scene, "about"));
+        // cut at a blank, so that no character is cut
+        if (n >= (int)sizeof item->more) {
+            item->more[sizeof item->more - sizeof ellipsis] = '\0';
+            char *blank = strrchr(item->more, ' ');
+            snprintf(blank, sizeof ellipsis, "%s", ellipsis);
+        }
     }
     if (item && w->n_search == 0 && strcmp(item->name, w->scene) == 0) {
         w->cursor = w->n_items - 1;

@@ -30,8 +30,8 @@ enum { KEY_ANSWER = KEY_MAX + 1, KEY_NAME, KEY_PIXELS, KEY_GRAPHICS, KEY_BACKGRO
 /// Between the bytes of a key, of an answer, and of one that has a string.
 enum { ESCAPE_MS = 25, ANSWER_MS = 300, STRING_MS = 1000 };
 
-static const double UNKNOWN = 3.0;  // [s] a terminal that is silent so long does not answer at all
-static const double SPARSE = 0.5;   // [s] between two pictures until that is known
+static const double UNKNOWN = 8.0;  // [s] a terminal that is silent so long does not answer at all
+static const double SPARSE = 0.5;   // [s] to the second picture until that is known; then doubled
 static const double LOST = 10.0;    // [s] an answer that comes later is not waited for
 static const double FAREWELL = 1.5; // [s] for the last answer, or the shell would read it
 
@@ -194,7 +194,8 @@ static void choose_patience(void) {
 }
 
 bool hn_screen_ready(void) {
-    static double drawn = 0; // [s] while it is not known whether the terminal answers
+    // while it is not known whether the terminal answers
+    static double drawn = 0, pause = 0; // [s]
     const double now = hn_clock_wall();
     if (!screen.asked) {
         return true;
@@ -207,10 +208,12 @@ bool hn_screen_ready(void) {
     }
 
     // a terminal that never answers is not asked again
-    if (now - screen.first_asked < UNKNOWN && now - fmax(drawn, screen.first_asked) < SPARSE) {
+    pause = fmax(pause, SPARSE);
+    if (now - screen.first_asked < UNKNOWN && now - fmax(drawn, screen.first_asked) < pause) {
         return false;
     }
     drawn = now;
+    pause *= 2;
     return true;
 }
 

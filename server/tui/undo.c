@@ -33,8 +33,10 @@ void hn_undo_go(hn_workbench *w, int by) {
         hn_workbench_go_to(w, t);
     }
     if (good) {
+        char change[HN_TUI_LINE];
         v->now = to;
-        hn_workbench_say(w, "%s: change %d of %d", by < 0 ? "undone" : "done again",
-                         by < 0 ? to + 1 : to, v->n - 1);
+        hn_versions_change(v, by < 0 ? to : to - 1, change, sizeof change);
+        hn_workbench_say(w, "%s: change %d of %d (%s)", by < 0 ? "undone" : "done again",
+                         by < 0 ? to + 1 : to, v->n - 1, change);
     }
 }

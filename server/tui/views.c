@@ -17,6 +17,7 @@
 
 enum { NUMBER_DIGITS = 2 }; // significant, as in the page
 enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
+enum { MESSAGE_LINES = 6 };                                    // at most
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
 enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
@@ -165,6 +166,31 @@ static void put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int 
     }
 }
 
+/// Folds text into an area; where it does not fit, its last line ends in an ellipsis.
+static void fold_fitted(hn_cells *c, hn_area area, int colour, const char *text) {
+    hn_cells_fold(c, area, 0, colour, text);
+    if (hn_text_rows(text, area.columns) > area.rows) {
+        int x = area.columns - 1;
+        const hn_cell *row = &c->at[(area.y + area.rows - 1) * c->columns + area.x];
+        while (x > 0 && (row[x - 1].glyph[0] == '\0' || row[x - 1].glyph[0] == ' ')) {
+            x--;
+        }
+        hn_cells_put(c, area, x, area.rows - 1, colour, 0, "…");
+    }
+}
+
+/// Text that ends in row `last`, in as many lines as it needs; what they cover is wiped.
+static void draw_lines(hn_cells *c, hn_area area, int last, int colour, const char *text) {
+    const int needed = hn_text_rows(text, area.columns);
+    const int rows = needed < MESSAGE_LINES ? needed : MESSAGE_LINES;
+    const hn_area lines = {area.x, last - rows + 1, area.columns, rows};
+    for (int y = lines.y; y <= last; y++) {
+        hn_cells_printf(c, (hn_area){0, y, c->columns, 1}, 0, 0, HN_CELL_INK, 0, "%*s", c->columns,
+                        "");
+    }
+    fold_fitted(c, lines, colour, text);
+}
+
 /// Whether an incident is worth the line: it has just happened, or its method is the selected one,
 /// which is still not well (`ill`).
 static bool is_news(const hn_workbench *w, const hn_incident *incident, int method, bool ill) {
@@ -179,9 +205,8 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     static int whose[MOST_INCIDENTS];
     const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
     if (w->message[0]) {
-        // a long one takes the place of the keys
-        hn_cells_fold(c, (hn_area){area.x, area.y, area.columns, 1 + needs_two_lines(c, w)}, 0,
-                      HN_CELL_INK, w->message);
+        // a long one takes the place of the keys, and of rows above
+        draw_lines(c, area, area.y + needs_two_lines(c, w), HN_CELL_INK, w->message);
         return;
     }
 
@@ -401,6 +426,17 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
 
 // ---- panels ----
 
+/// The column of names is as wide as the longest one, within bounds.
+static int name_width(const hn_workbench *w) {
+    enum { LEAST = 20, MOST = 28 };
+    int width = LEAST;
+    for (int i = 0; i < w->n_items; i++) {
+        const int n = hn_text_columns(w->items[i].name);
+        width = n > width && n <= MOST ? n : width;
+    }
+    return width;
+}
+
 /// The items; below them what the chosen one is about, and of scenes a picture to the right.
 static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_area frame = hn_cells_frame(c, area, w->title);
@@ -408,13 +444,13 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const bool pictured = hn_views_mechanism(c->columns, c->rows, w, &picture);
     const hn_area in = {frame.x, frame.y, pictured ? picture.x - 1 - frame.x : frame.columns,
                         frame.rows};
-    enum { NAME_WIDTH = 20 };
+    const int width = name_width(w);
     const int below = pictured ? 3 + in.rows / 6 : 3, rows = in.rows - below;
     const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
     for (int i = first; i < w->n_items && i - first < rows; i++) {
         const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;
         const int used = hn_text_columns(w->items[i].name);
-        const int x = used > NAME_WIDTH ? used : NAME_WIDTH;
+        const int x = used > width ? used : width;
         hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%s%*s", w->items[i].name,
                         x - used, "");
         put_fitted(c, in, x + 3, i - first, HN_CELL_MUTED, 0, w->items[i].about);
@@ -422,7 +458,7 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     if (w->n_items > 0) {
         const hn_area foot = {in.x + 1, in.y + in.rows - below + 1, in.columns - 2, below - 1};
         const hn_item *item = &w->items[w->cursor];
-        hn_cells_fold(c, foot, 0, HN_CELL_INK, item->more[0] ? item->more : item->about);
+        fold_fitted(c, foot, HN_CELL_INK, item->more[0] ? item->more : item->about);
     }
     if (pictured) {
         hn_mechanism_preview(c, picture, w);

@@ -45,7 +45,7 @@ typedef enum hn_prompt_kind {
 } hn_prompt_kind;
 typedef enum hn_tui_plot { HN_TUI_GAP, HN_TUI_ERROR, HN_TUI_ENERGY, HN_TUI_PLOTS } hn_tui_plot;
 
-enum { HN_TUI_LINE = 256, HN_TUI_ITEMS = 400, HN_TUI_MESSAGE = 400, HN_TUI_SETTINGS = 64 };
+enum { HN_TUI_LINE = 256, HN_TUI_ITEMS = 400, HN_TUI_MESSAGE = 800, HN_TUI_SETTINGS = 64 };
 
 typedef struct hn_item {
     char name[HN_TUI_LINE], about[HN_TUI_LINE];

@@ -301,6 +301,14 @@ class Keys(unittest.TestCase):
             self.assertIn(said, out, name)
             self.assertGreater(verdict["max_score"], verdict["score"], name)
 
+    def test_a_number_beyond_the_largest_one_is_called_so(self):
+        for part, down in (("b", "<Down>"), ("d", "<Down><Down><Down>")):
+            out = " ".join(self.exercise("ring", f"{down}<Enter>1e999<Enter>c", "160x60").split())
+            self.assertIn("'1e999' is beyond the largest number, 1.8e+308", out, part)
+        # in a list of numbers as well
+        out = " ".join(self.exercise("ring", "<Down><Enter>[1e999]<Enter>c", "160x60").split())
+        self.assertNotIn("nothing was handed in here given null", out)
+
     def test_a_choice_with_its_reason_is_two_letters_and_a_file_answers_too(self):
         out = self.exercise("p1", "", "100x100")
         self.assertIn("a letter, a blank, the letter of the reason", out)

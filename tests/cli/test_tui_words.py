@@ -70,10 +70,29 @@ class Messages(unittest.TestCase):
             self.assertEqual((status, err), (0, ""))
             return out
         undone = after("d0.01<Enter>z")
-        self.assertIn("undone: change 1 of 1", undone)
+        self.assertIn("undone: change 1 of 1 (method 1 is index1@rk4:h=0.01)", undone)
         self.assertIn("t 0.500 s", undone)
         self.assertIn("done again: change 1 of 1", after("d0.01<Enter>zy"))
-        self.assertIn("undone: change 1 of 2", after("d0.01<Enter>d0.005<Enter>zz"))
+        self.assertIn("undone: change 1 of 2 (method 1 is index1@rk4:h=0.01)", after("d0.01<Enter>d0.005<Enter>zz"))
+        self.assertIn("undone: change 1 of 1 (l = 0.5)", after("p<Enter>0.5<Enter><Esc>z"))
+
+    def test_a_long_message_keeps_its_values_and_its_end(self):
+        for size in ("120x40", "80x24"):
+            _, out, _ = once("four-bar", "--once", "--t", "0.5", "--size", size, "--methods", "index1@rk4:h=0.02", "--keys", "p<Enter>2.5<Enter>")
+            self.assertIn("make rocker longer than 0.932719 m or coupler longer than 1.33272 m, or", " ".join(out.split()), size)
+
+    def test_why_says_how_the_gap_decays_where_alpha_is_above_beta(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "200x40", "--methods", "baumgarte:alpha=13.61,beta=7.462@rk4", "--keys", "i")
+        text = " ".join(re.sub("[│┌┐└┘─⠀-⣿]", " ", out).split())
+        self.assertIn("alpha above beta", text)
+        self.assertIn("sqrt(alpha^2 - beta^2)", text)
+
+    def test_names_of_scenes_have_one_column_and_a_cut_text_says_so(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "120x40", "--keys", "s")
+        rows = [line for line in out.split("\n") if re.match(r"│ (four-bar|four-angles-as-printed|pendulum)  ", line)]
+        self.assertEqual(len(rows), 3)
+        self.assertEqual({re.match(r"│ \S+ +", row).end() for row in rows}, {len("│ four-angles-as-printed  ")})
+        self.assertRegex(out, r"swings to and fro[\s\S]*…[^│]*│\n")
 
     def test_a_new_step_says_whose_it_is(self):
         def after(*methods):

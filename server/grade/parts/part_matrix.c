@@ -70,7 +70,7 @@ static void explain(const hn_part *p, hn_world *worlds, const char *given, hn_pa
             return;
         }
     }
-    hn_part_wrong(r, "other", 0, "no known mistake gives this");
+    hn_part_wrong(r, "other", 0, "wrong; the cause is none of the known mistakes");
 }
 
 /// Reads the answer in the first world; 0 after the result has said why it cannot be used.

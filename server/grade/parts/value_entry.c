@@ -6,6 +6,8 @@
 #include "grade/parts/read_as.h"
 #include "grade/parts/spelling.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,13 +79,22 @@ static void refuse_formula(const char *text, const hn_diag *diag, hn_part_result
                        diag->hint[0] ? "; " : "", diag->hint);
 }
 
+/// Whether the text begins with a number in digits that no double holds.
+static bool is_beyond_largest(const char *text) {
+    const char *digits = text + strspn(text, " +-.");
+    return *digits >= '0' && *digits <= '9' && isinf(strtod(text, NULL));
+}
+
 /// The reason why a number cannot be read, with the slip that is most frequent.
 static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_result *r) {
     const char *unit = hn_part_text(s->p->node, "unit");
     char *end;
     strtod(text, &end);
     const char *tail = end + strspn(end, " ");
-    if (end == text || !*tail) {
+    if (is_beyond_largest(text)) {
+        hn_part_unreadable(r, "'%.60s' is beyond the largest number, %.2g; write a smaller one",
+                           text, DBL_MAX);
+    } else if (end == text || !*tail) {
         hn_part_unreadable(r, "'%.60s' is no number; a number is asked for%s%s", text,
                            unit[0] ? ", if you like with its unit: 1.2 " : "", unit);
     } else if (*tail == ',') {

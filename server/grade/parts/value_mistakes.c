@@ -345,7 +345,7 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
         HN_TRY(try_two_listed(&f));
     }
     if (f.n_found == 0) {
-        hn_part_wrong(r, "other", 0, "no known mistake gives this");
+        hn_part_wrong(r, "other", 0, "wrong; the cause is none of the known mistakes");
     }
     return hn_graph_failed(s->draw->graph) ? HN_ERR_MEMORY : HN_OK;
 }

@@ -193,7 +193,7 @@ static void two_mistakes_at_once_are_named(void **state) {
         {"l1*cos(th1)/2", "row", "a factor of 1/2 is wrong as well", 0},
         {"l2*cos(th1)", "variable", "sine and cosine are exchanged as well", 0},
         {"-l1*sin(th2*pi/180)", "variable", "degrees as well", 0.125},
-        {"-l1*sin(th1)^2", "other", "no known mistake", 0},
+        {"-l1*sin(th1)^2", "other", "wrong; the cause is none of the known mistakes", 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         hn_verdict v;
