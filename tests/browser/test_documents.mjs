@@ -11,6 +11,7 @@ import { fitsSearch } from "../../web/state/gallery.js";
 import { parseQuantity } from "../../web/state/format.js";
 import { addBar, addMotor, addPin, addSlider, writeScene } from "../../web/state/scene-parts.js";
 import { violations } from "./axe.mjs";
+import { decodeLink, encodeLink } from "../../web/state/link.js";
 import { createBench, read, ROOT, screenshot, soon, until } from "./support.mjs";
 
 const { open } = createBench();
@@ -294,4 +295,24 @@ test("a model of another program can be pasted, and what it leaves out is counte
     assert.equal(await read(page, (data) => data.scene.bodies.length), 3, "the last good one runs"),
   );
   assert.doesNotMatch(String(await state.textContent()), /JSON/);
+});
+
+test("undo in the editor brings back the shipped scene, its parameters and the step", async (t) => {
+  const methods = ["index1@rk4:h=0.005"];
+  const settings = { l1: 0.55 };
+  const { link } = decodeLink("four-bar");
+  const hash = `#${encodeLink({ ...link, methods, settings })}`;
+  const page = await open(t, { hash, viewport: { width: 1366, height: 900 } });
+  const now = () =>
+    read(page, (data) => ({
+      methods: data.methods.map(({ spelling }) => spelling),
+      settings: data.settings,
+    }));
+  assert.deepEqual(await now(), { methods, settings });
+  await edit(page);
+  await page.getByRole("button", { name: "new", exact: true }).click();
+  await until(page, (data) => data.document?.name === "mine");
+  await page.getByRole("button", { name: "undo", exact: true }).first().click();
+  await until(page, (data) => data.document === null && data.scene.id === "four-bar");
+  assert.deepEqual(await now(), { methods, settings });
 });

@@ -30,16 +30,14 @@ export function createSession(store) {
 
   const scenes = createSceneActions(store, exchange, notice);
 
-  const undo = createUndo(
-    store,
-    ({ scene, settings, methods, pulls }) =>
-      JSON.stringify(scene) === JSON.stringify(sourceOf(store.data))
-        ? exchange.restart({ parameters: settings, methods, pulls })
-        : typeof scene === "string"
-          ? scenes.loadScene(scene, { settings, methods, pulls })
-          : scenes.loadDocument(scene, { settings, methods, pulls }),
-    notice,
-  );
+  /** Runs what ran before: scene, parameters, methods with their steps, pulls. */
+  const bringBack = ({ scene, settings, methods, pulls }) =>
+    JSON.stringify(scene) === JSON.stringify(sourceOf(store.data))
+      ? exchange.restart({ parameters: settings, methods, pulls })
+      : typeof scene === "string"
+        ? scenes.loadScene(scene, { settings, methods, pulls })
+        : scenes.loadDocument(scene, { settings, methods, pulls });
+  const undo = createUndo(store, bringBack, notice);
   const pulls = createPullActions(store, exchange, notice);
   /** A hand lets go first: what it did is the last change. @param {() => Promise<void>} move */
   const afterHand = (move) => pulls.letGo().then(move);
@@ -48,6 +46,7 @@ export function createSession(store) {
     ...scenes,
     ...createDragActions(store, exchange, notice),
     ...pulls,
+    bringBack,
     undo: () => afterHand(undo.undo),
     redo: () => afterHand(undo.redo),
     ...createPlayback(store, exchange),

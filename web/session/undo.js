@@ -3,7 +3,7 @@
 // Undo and redo of changes that start the runs anew (methods, parameters, the start, the scene) and
 // of what a hand pulled.
 import { sentenceOf } from "../api/client.js";
-import { sourceOf } from "../state/store.js";
+import { madeOf } from "../state/store.js";
 
 const MOST = 100; // changes that are remembered
 const TOGETHER = 1000; // [ms] between changes of one value, as by a slider: they are one change
@@ -37,13 +37,7 @@ export function createUndo(store, apply, notice) {
   let busy = false;
   let last = { what: "", at: 0 };
 
-  const snapshot = () =>
-    JSON.stringify({
-      scene: sourceOf(data),
-      settings: data.settings,
-      methods: data.methods.map(({ spelling }) => spelling),
-      pulls: data.pulls,
-    });
+  const snapshot = () => JSON.stringify(madeOf(data));
 
   function tell() {
     data.undo = { past: past.length, future: future.length };

@@ -52,8 +52,9 @@ export function createHand(layer, data, stage, actions) {
       class: "quiet",
       "aria-pressed": "false",
       "data-tip":
-        "while the methods run, drag a joint or a link: a hand pulls it by a spring. This opens " +
-        "the way by keys",
+        "while the methods run, drag a joint or a link: a hand pulls it by a spring with a damper. " +
+        "The arrow is the force of both, so it is along the spring only at rest. This opens the " +
+        "way by keys",
       onclick: () => open(panel.hidden),
     },
     "pull",

@@ -7,7 +7,7 @@ import { documents } from "../../api/documents.js";
 import { offersAt } from "../../state/completion.js";
 import { caretIn, lineOf, parseText, placeOf, placesOf } from "../../state/json-text.js";
 import { writeScene } from "../../state/scene-parts.js";
-import { listen } from "../../state/store.js";
+import { listen, madeOf } from "../../state/store.js";
 import { counted } from "../../state/format.js";
 import { h, say, set } from "../../widgets/dom.js";
 import { saveFile } from "../../widgets/save.js";
@@ -46,7 +46,7 @@ export function createEditor(el, store, actions, drawing) {
   let lastGood = /** @type {any} */ (null);
   let timer = 0;
   let asked = 0;
-  /** texts before changes by the mouse @type {string[]} */
+  /** texts before changes by the mouse, and what ran then @type {{text: string, ran: any}[]} */
   const before = [];
 
   const field = h("textarea", {
@@ -237,7 +237,7 @@ export function createEditor(el, store, actions, drawing) {
 
   /** @param {string} text */
   function put(text) {
-    before.push(field.value);
+    before.push({ text: field.value, ran: madeOf(data) });
     before.splice(0, before.length - MOST_UNDONE);
     field.value = text;
     field.scrollTop = 0;
@@ -245,15 +245,21 @@ export function createEditor(el, store, actions, drawing) {
     return run();
   }
 
-  function undo() {
-    const text = before.pop();
-    if (text === undefined) {
-      say(state, "nothing to take back");
-      return;
+  /** The text before, and what ran with it: the shipped scene, its parameters and the steps. */
+  async function undo() {
+    const last = before.pop();
+    if (!last) {
+      return say(state, "nothing to take back");
     }
-    field.value = text;
-    showLines();
-    run();
+    clearTimeout(timer); // what was typed last is no longer wanted
+    field.value = last.text;
+    showFaults([]);
+    try {
+      await actions.bringBack(last.ran);
+      say(state, `taken back; it runs as before: ${data.scene.caption}`);
+    } catch (error) {
+      say(state, sentenceOf(error));
+    }
   }
 
   /** A part added with the mouse. @param {(scene: any) => any} make */
