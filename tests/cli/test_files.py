@@ -15,7 +15,7 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 sys.path.insert(0, os.path.dirname(__file__))
 import driver  # noqa: E402
-from command import DONE, INPUT, PROGRAM, SUBMISSION, Command, call, strict  # noqa: E402
+from command import DONE, ENDED, INPUT, PROGRAM, SUBMISSION, Command, call, strict  # noqa: E402
 
 
 class Files(Command):
@@ -59,6 +59,100 @@ class Files(Command):
                 self.assert_exit(done, INPUT)
                 self.assertIn(b"would be overwritten", done.stderr)
                 self.assertEqual(open(path, "rb").read(), before)
+
+    # what each command with --out writes, and the name of its file; {folder} holds submissions and a part of a study
+    SHORT = ("--time", "0.05", "--methods", "index1@rk4:h=1e-2", "--levels", "2", "--samples", "0")
+    WRITES = (
+        (("export", "four-bar", "--language", "python"), "own.py"),
+        (("export", "four-bar", "--language", "c"), "own.c"),
+        (("export", "four-bar", "--language", "latex"), "own.tex"),
+        (("export", "four-bar", "--format", "mjcf"), "own.xml"),
+        (("study", "four-bar", "work-precision", *SHORT), "w.html"),
+        (("study", "four-bar", "work-precision", *SHORT, "--shard", "1/2"), "part.json"),
+        (("study", "four-bar", "budget", "--time", "0.05", "--methods", "index1@rk4:h=1e-2"), "f.html"),
+        (("study", "four-bar", "stability", "--grid", "2x2"), "map.svg"),
+        (("report", "fb0", *SHORT[2:]), "r.json"),
+        (("reference", "fb0", "--time", "0.05"), "g.json"),
+        (("merge", "{folder}/study.json"), "m.csv"),
+        (("extreme", "x3"), "e.json"),
+        (("snapshot", "four-bar"), "s.svg"),
+        (("snapshot", "four-bar"), "s.png"),
+        (("import", "tests/import/four-bar.xml"), "i.json"),
+        (("problem", "gap-plot"), "p-a.svg"),
+        (("grade", "p3", "{folder}/ann.json"), "v.json"),
+        (("grade", "p3", "{folder}/ann.json", "--format", "gradescope"), "results.json"),
+        (("grade", "p3", "{folder}/class"), "scores.csv"),
+    )
+    REFUSE = (
+        (("program", "python"), "mine.py"),
+        (("rubric", "write", "gears"), "rubric.json"),
+        (("export", "four-bar", "--language", "c", "--blanks"), "blanks.c"),
+    )
+
+    def test_no_command_destroys_the_file_that_is_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "class"))
+            for name in ("ann.json", "class/ann.json"):
+                with open(os.path.join(folder, name), "w") as f:
+                    json.dump(SUBMISSION, f)
+            environment = {"HOLONOM_CACHE": os.path.join(folder, "cache")}
+            part = call("study", "four-bar", "work-precision", *self.SHORT, "--shard", "1/1", "-o", os.path.join(folder, "study.json"), environment=environment)
+            self.assert_exit(part, DONE)
+            for option in ("-o", "--out"):
+                for words, name in self.WRITES + self.REFUSE:
+                    with self.subTest(words=words, option=option):
+                        place = tempfile.mkdtemp(dir=folder)
+                        path = os.path.join(place, name)
+                        with open(path, "w") as f:
+                            f.write("mine\n")
+                        given = path.replace("p-a.svg", "p.svg")  # a file for each part that has a plot
+                        done = call(*(word.format(folder=folder) for word in words), option, given, environment=environment)
+                        if (words, name) in self.REFUSE:
+                            self.assert_exit(done, INPUT)
+                            self.assertEqual((os.listdir(place), open(path).read()), ([name], "mine\n"))
+                            continue
+                        self.assertIn(done.returncode, (DONE, ENDED), done.stderr)
+                        self.assertEqual(open(path + ".1").read(), "mine\n")
+                        self.assertNotEqual(open(path, "rb").read(), b"mine\n")
+                        told = " ".join(done.stderr.decode().split())
+                        self.assertIn(f"'{path}' held something else: that is kept in '{path}.1'", told)
+                if option == "-o":
+                    # every command that has the option is in the tables
+                    names = {line.split()[1] for line in call("help").stdout.decode().splitlines() if line.startswith("  holonom ")}
+                    self.assertEqual({name for name in names if b"--out FILE" in call("help", name).stdout}, {words[0] for words, _ in self.WRITES + self.REFUSE})
+
+    def test_what_stands_beside_the_output_is_kept_too(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = {name: os.path.join(folder, name) for name in ("a.urdf", "loops.json", "real.py", "link.py")}
+            for name in ("loops.json", "real.py"):
+                with open(path[name], "w") as f:
+                    f.write("mine\n")
+            self.assert_exit(call("export", "four-bar", "--format", "urdf", "--loops", path["loops.json"], "-o", path["a.urdf"]), DONE)
+            self.assertEqual(open(path["loops.json"] + ".1").read(), "mine\n")
+            # what a link leads to
+            os.symlink("real.py", path["link.py"])
+            self.assert_exit(call("export", "four-bar", "-o", path["link.py"]), DONE)
+            self.assertEqual(open(path["link.py"] + ".1").read(), "mine\n")
+            self.assertTrue(os.path.islink(path["link.py"]))
+            # the same once more changes nothing, --force keeps nothing
+            before = sorted(os.listdir(folder))
+            self.assertEqual(call("export", "four-bar", "-o", path["link.py"]).stderr, b"")
+            self.assert_exit(call("export", "four-bar", "--language", "c", "--force", "-o", path["link.py"]), DONE)
+            self.assertEqual(sorted(os.listdir(folder)), before)
+
+    def test_plots_of_a_report_keep_what_is_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            words = ("report", "fb0", *self.SHORT[2:], "--plots", folder)
+            self.assertIn(call(*words).returncode, (DONE, ENDED))
+            names = os.listdir(folder)
+            self.assertTrue(any(name.endswith(".svg") for name in names), names)
+            for name in names:
+                with open(os.path.join(folder, name), "w") as f:
+                    f.write("mine\n")
+            self.assertIn(call(*words).returncode, (DONE, ENDED))
+            for name in names:
+                self.assertEqual(open(os.path.join(folder, name + ".1")).read(), "mine\n", name)
+                self.assertNotEqual(open(os.path.join(folder, name), "rb").read(), b"mine\n", name)
 
     def test_a_link_that_leads_nowhere_is_called_a_link(self):
         with tempfile.TemporaryDirectory() as folder:

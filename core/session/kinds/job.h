@@ -57,9 +57,9 @@ typedef struct hn_job_kind {
     /// NULL: a run is the only one.
     void (*set_time_limit)(void *work, double time_limit);
     void (*release)(void *work);
-    /// Writes the file that --out names, whatever its ending. Fails: HN_ERR_IO, reported in diag.
-    /// NULL: its ending chooses a form.
-    hn_status (*save)(const void *work, const char *path, hn_diag *diag);
+    /// Appends what the file that --out names holds, whatever its ending. NULL: the ending chooses
+    /// a form.
+    void (*save)(hn_strbuf *b, const void *work);
 } hn_job_kind;
 
 /// Returns kind i of the registry; NULL beyond the last.

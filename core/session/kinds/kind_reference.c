@@ -82,9 +82,10 @@ static void write_json(hn_strbuf *b, const hn_reference_work *w) {
 HN_JOB_FORM(json, hn_reference_work, write_json)
 
 /// The form in which scenes ship their references.
-static hn_status save(const void *work, const char *path, hn_diag *diag) {
+static void save(hn_strbuf *b, const void *work) {
     const hn_reference_work *w = work;
-    return hn_reference_save(path, w->model, w->ref, diag);
+    hn_reference_put(b, w->model, w->ref);
+    hn_strbuf_add(b, "\n");
 }
 
 const hn_job_kind hn_kind_reference = {

@@ -170,19 +170,6 @@ void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
     hn_json_end_object(b);
 }
 
-hn_status hn_reference_save(const char *path, const hn_model *model, const hn_ref *ref,
-                            hn_diag *diag) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_reference_put(&b, model, ref);
-    hn_strbuf_add(&b, "\n");
-    const hn_status status =
-        b.failed ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to write '%.200s'", path)
-                 : hn_file_write(path, hn_strbuf_text(&b), b.n, diag);
-    hn_strbuf_reset(&b);
-    return status;
-}
-
 /// Writes a reference into the cache.
 static hn_status keep(const char *path, const hn_model *model, const hn_ref *ref, hn_diag *diag) {
     hn_strbuf b, sealed;

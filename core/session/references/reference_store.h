@@ -16,13 +16,10 @@ HN_MUST_CHECK hn_status hn_reference_get(const hn_model *model, const hn_ref_req
 /// digits of the coordinates; its end time when it has them throughout, 0 when it lacks them at its
 /// first time.
 double hn_reference_horizon(const hn_ref *ref, double digits);
-/// Writes the reference to a file, as one compact JSON object. Fails: HN_ERR_IO, HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_reference_save(const char *path, const hn_model *model,
-                                          const hn_ref *ref, hn_diag *diag);
 /// Reads such an object. The result is owned by the caller; NULL unless the object belongs to this
 /// model and has n intervals to the end time T (NaN: any end time).
 hn_ref *hn_reference_take(const struct cJSON *o, const hn_model *model, double T, int n);
 hn_ref_request hn_ref_request_default(void);
-/// Appends the reference to a document, as the object that hn_reference_save() writes to its file.
+/// Appends the reference to a document, as one compact JSON object.
 void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref);
 #endif

@@ -81,13 +81,11 @@ static hn_exit write_files(const task *t, const hn_verdict *v, hn_strbuf *b, hn_
     hn_strbuf_printf(&path, "%s.%s", t->target, t->form->ending);
     const bool inside = t->form->pictures && !t->form->results;
     const bool drawn = png->n > 0 && !inside;
-    // what a platform reads is its own
-    hn_exit result = (t->form->results ? hn_cli_write_file
-                                       : hn_cli_write_beside)(t->args, hn_strbuf_text(&path), b);
+    hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), b);
     if (result == HN_EXIT_DONE && drawn) {
         hn_strbuf_clear(&path);
         hn_strbuf_printf(&path, "%s.png", t->target);
-        result = hn_cli_write_beside(t->args, hn_strbuf_text(&path), png);
+        result = hn_cli_write_file(t->args, hn_strbuf_text(&path), png);
     }
     hn_strbuf_reset(&path);
     hn_strbuf line;

@@ -119,7 +119,7 @@ static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
             hn_strbuf_add(&b, r->line[i] ? "\n" : "");
         }
     }
-    return hn_cli_write_beside(args, args->out, &b);
+    return hn_cli_write_file(args, args->out, &b);
 }
 
 /// The result into --out, and its summary to the terminal.

@@ -74,7 +74,7 @@ static const option OPTIONS[] = {
     {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
      "rates that differ from the assembled start"},
     {"--language", "NAME", OPTION_TEXT, AT(language), "language of the program"},
-    {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
+    {"--out", "FILE", OPTION_TEXT, AT(out), "where to write; an old FILE is kept as FILE.1"},
     {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
     {"--force", NULL, OPTION_FLAG, AT(force), "replace a file that is there"},
     {"--loops", "FILE", OPTION_TEXT, AT(loops),

@@ -8,6 +8,7 @@
 #include "cli/shell/print.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,7 +16,7 @@
 
 enum { MOST_FORMER = 1000 };
 
-hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
+hn_exit hn_cli_replace_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
     if (!path || strcmp(path, "-") == 0) {
         return hn_cli_print(bytes);
     }
@@ -48,48 +49,65 @@ bool hn_cli_is_content(const char *path, const hn_strbuf *bytes) {
     return same;
 }
 
-enum { FORMER_NAME = 1100 };
+enum { FORMER_NAME = 4200 };
 
-/// Links the file at `path` to the first free name FILE.1, FILE.2, ..., which is written to `name`.
-static bool keep_former(const char *path, char name[FORMER_NAME]) {
+/// Copies a file of `size` bytes to a name that is free.
+static bool copy_former(const char *path, const char *name, size_t size) {
+    hn_strbuf old;
+    hn_strbuf_init(&old);
+    const bool copied = hn_file_read(path, size + 1, &old, NULL) == HN_OK &&
+                        hn_file_write(name, hn_strbuf_text(&old), old.n, NULL) == HN_OK;
+    hn_strbuf_reset(&old);
+    return copied;
+}
+
+/// Keeps the file at `path` under the first free name FILE.1, FILE.2, ..., which is written to
+/// `name`.
+static bool keep_former(const char *path, size_t size, char name[FORMER_NAME]) {
     for (int k = 1; k <= MOST_FORMER; k++) {
-        snprintf(name, FORMER_NAME, "%.1000s.%d", path, k);
+        if (snprintf(name, FORMER_NAME, "%s.%d", path, k) >= FORMER_NAME) {
+            return false;
+        }
 
         // a link is made only where there is no file, and the old name is replaced afterwards
-        if (link(path, name) == 0) {
+        if (linkat(AT_FDCWD, path, AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0) {
             return true;
         }
         if (errno != EEXIST) {
-            break;
+            // a file system without such links
+            return copy_former(path, name, size);
         }
     }
     return false;
 }
 
-hn_exit hn_cli_write_beside(const hn_args *args, const char *path, hn_strbuf *bytes) {
+static hn_exit fail_to_keep(const hn_args *args, const char *path, hn_strbuf *bytes) {
+    hn_diag diag = {0};
+    hn_strbuf_reset(bytes);
+    hn_diag_set(&diag, HN_ERR_IO, "/out", "choose another name",
+                "'%.200s' holds something else that cannot be kept: it is left as it was", path);
+    hn_report_diag(args, &diag);
+    return HN_EXIT_PROGRAM;
+}
+
+hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
     struct stat st;
     char name[FORMER_NAME];
-    if (bytes->failed || lstat(path, &st) != 0 || !S_ISREG(st.st_mode) ||
-        hn_cli_is_content(path, bytes)) {
-        return hn_cli_write_file(args, path, bytes);
+    if (bytes->failed || args->force || !path || strcmp(path, "-") == 0 || stat(path, &st) != 0 ||
+        !S_ISREG(st.st_mode) || hn_cli_is_content(path, bytes)) {
+        return hn_cli_replace_file(args, path, bytes);
+    }
+    if (!keep_former(path, (size_t)st.st_size, name)) {
+        return fail_to_keep(args, path, bytes);
     }
 
     // the old file stays under its own name where the new one cannot be written
-    const bool kept = keep_former(path, name);
-    const hn_exit result = hn_cli_write_file(args, path, bytes);
+    const hn_exit result = hn_cli_replace_file(args, path, bytes);
     if (result != HN_EXIT_DONE) {
-        if (kept) {
-            unlink(name);
-        }
+        unlink(name);
         return result;
     }
-    if (kept) {
-        hn_cli_note("holonom: '%s' held something else: that is kept in '%s'\n", path, name);
-    } else {
-        hn_cli_note("holonom: '%s' held something else: that is replaced, a copy could not be "
-                    "kept\n",
-                    path);
-    }
+    hn_cli_note("holonom: '%s' held something else: that is kept in '%s'\n", path, name);
     return result;
 }
 
@@ -116,9 +134,8 @@ static bool is_own_picture(const char *path) {
 }
 
 hn_exit hn_cli_write_picture(const hn_args *args, const char *path, hn_strbuf *picture) {
-    return strcmp(path, "-") == 0 || is_own_picture(path)
-               ? hn_cli_write_file(args, path, picture)
-               : hn_cli_write_beside(args, path, picture);
+    const bool own = strcmp(path, "-") != 0 && is_own_picture(path);
+    return own ? hn_cli_replace_file(args, path, picture) : hn_cli_write_file(args, path, picture);
 }
 
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {

@@ -10,16 +10,17 @@
 #include <stdbool.h>
 
 /// Writes and frees the buffer's text: into a file, which is replaced as a whole or left as it was,
-/// or to standard output ("-" or NULL). Returns HN_EXIT_PROGRAM when it cannot be written.
+/// or to standard output ("-" or NULL). Every result of --out goes this way: a file that is there
+/// and differs from `bytes` is kept under the first free name FILE.1, FILE.2, ..., and a note says
+/// so; --force replaces it. Where the result cannot be written, nothing is left beside it. Returns
+/// HN_EXIT_PROGRAM when it cannot be written, or the old file cannot be kept.
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
+/// The same without keeping what was there: for a file that is this program's own.
+hn_exit hn_cli_replace_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 /// Whether the file holds these bytes.
 bool hn_cli_is_content(const char *path, const hn_strbuf *bytes);
-/// Writes a result whose file may hold something else: marks that a teacher changed by hand, or a
-/// file of the user's. Where it differs from `bytes`, it is kept under the first free name FILE.1,
-/// FILE.2, ..., and a note says so; where the result cannot be written, nothing is left beside it.
-/// Otherwise as hn_cli_write_file().
-hn_exit hn_cli_write_beside(const hn_args *args, const char *path, hn_strbuf *bytes);
-/// The same of a picture, but a picture that this program drew is replaced: it can be drawn again.
+/// Writes a picture as hn_cli_write_file() does, but one that this program drew is replaced: it
+/// can be drawn again.
 hn_exit hn_cli_write_picture(const hn_args *args, const char *path, hn_strbuf *picture);
 /// Before anything is computed whose result goes to `path` (NULL: nowhere; "-" is fine too): fails
 /// with HN_ERR_INPUT where its folder is not there or takes no files.

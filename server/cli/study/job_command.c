@@ -10,6 +10,7 @@
 #include "cli/study/budget_text.h"
 #include "cli/shell/cache_folder.h"
 #include "cli/shell/notes.h"
+#include "cli/shell/output_file.h"
 #include "cli/study/extreme_text.h"
 #include "cli/study/interrupt.h"
 #include "cli/study/reference_text.h"
@@ -234,10 +235,12 @@ static hn_exit write_job(const command *c, const hn_job *job) {
 
     // a kind with a file of its own, whatever the name ends in
     if (args->out && c->kind->save) {
-        hn_diag diag = {0};
-        if (c->kind->save(work, args->out, &diag) != HN_OK) {
-            hn_report_diag(args, &diag);
-            return HN_EXIT_PROGRAM; // the output is at fault, not the scene
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        c->kind->save(&b, work);
+        const hn_exit saved = hn_cli_write_file(args, args->out, &b);
+        if (saved != HN_EXIT_DONE) {
+            return saved;
         }
         return hn_forms_print(c->kind->forms, text_of(c->kind, args), args, work);
     }

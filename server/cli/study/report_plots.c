@@ -12,22 +12,49 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 extern char **environ;
 
 #define PNG_ZOOM "2" // pixels a unit of the drawing: sharp in print and on dense screens
 
-/// Converts a file with rsvg-convert. Returns 1: done; 0: it failed; -1: no such program.
-static int convert(const char *svg, const char *png) {
-    char *const words[] = {"rsvg-convert", "-z", PNG_ZOOM, "-o", (char *)png, (char *)svg, NULL};
+/// Starts rsvg-convert and waits for it; the PNG goes to `out`. Returns 1: done; 0: it failed; -1:
+/// no such program.
+static int run_converter(const char *svg, int out) {
+    char *const words[] = {"rsvg-convert", "-z", PNG_ZOOM, (char *)svg, NULL};
+    posix_spawn_file_actions_t actions;
     pid_t pid;
     int status = 0;
-    const int error = posix_spawnp(&pid, words[0], NULL, NULL, words, environ);
+    if (posix_spawn_file_actions_init(&actions) != 0) {
+        return 0;
+    }
+    int error = posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
+    error = error ? error : posix_spawnp(&pid, words[0], &actions, NULL, words, environ);
+    posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
         return error == ENOENT ? -1 : 0;
     }
     while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {}
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Converts a file to a PNG. Returns as run_converter() does.
+static int convert(const char *svg, hn_strbuf *png) {
+    char part[4096];
+    size_t n;
+    FILE *f = tmpfile();
+    int converted = f ? run_converter(svg, fileno(f)) : 0;
+    if (converted > 0) {
+        rewind(f);
+        while ((n = fread(part, 1, sizeof part, f)) > 0) {
+            hn_strbuf_add_n(png, part, n);
+        }
+        converted = !ferror(f) && png->n > 0;
+    }
+    if (f) {
+        fclose(f);
+    }
+    return converted;
 }
 
 static hn_exit fail(const hn_args *args, const char *path, const char *why) {
@@ -57,7 +84,7 @@ static hn_exit write_plot(const hn_args *args, const hn_report_plot *plot, int *
     }
 
     // the SVG
-    const hn_exit done = hn_cli_write_file(args, svg, &b);
+    const hn_exit done = hn_cli_write_picture(args, svg, &b);
     if (done != HN_EXIT_DONE) {
         return done;
     }
@@ -65,11 +92,15 @@ static hn_exit write_plot(const hn_args *args, const hn_report_plot *plot, int *
 
     // the PNG; if the converter is missing, later plots skip this step
     if (*converts) {
-        const int converted = convert(svg, png);
+        const int converted = convert(svg, &b);
+        if (converted <= 0) {
+            hn_strbuf_reset(&b);
+        }
         if (converted == 0) {
             return fail(args, png, "rsvg-convert failed");
         }
         *converts = converted > 0;
+        return converted > 0 ? hn_cli_write_file(args, png, &b) : HN_EXIT_DONE;
     }
     return HN_EXIT_DONE;
 }
