@@ -201,8 +201,9 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
         }
         cJSON_Delete(o);
     }
-    hn_strbuf_printf(b, "%d submissions: %d graded, %d not gradable, %d failed in the grader\n",
-                     r->n - r->others, t.graded, t.ungradable, t.failed);
+    const int n = r->n - r->others;
+    hn_strbuf_printf(b, "%d submission%s: %d graded, %d not gradable, %d failed in the grader\n", n,
+                     n == 1 ? "" : "s", t.graded, t.ungradable, t.failed);
     if (t.graded > 0) {
         hn_strbuf_printf(b, "mean of the %d graded: %.2f of %g\n", t.graded, t.sum / t.graded,
                          t.most);

@@ -252,6 +252,35 @@ class Files(Command):
                                           stderr=subprocess.PIPE, timeout=60)
                 self.assertEqual((done.returncode, b"cannot write to standard output: No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
 
+    def test_what_somebody_wrote_is_kept_beside_an_export(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, words in (("own.py", ("export", "four-bar", "--language", "python")), ("own.xml", ("export", "four-bar", "--format", "mjcf")),
+                                ("own.json", ("import", "tests/import/four-bar.urdf"))):
+                path = os.path.join(folder, name)
+                with open(path, "w") as f:
+                    f.write("mine\n")
+                done = call(*words, "-o", path)
+                self.assert_exit(done, DONE)
+                self.assertIn(b"that is kept in", done.stderr)
+                self.assertEqual(open(path + ".1").read(), "mine\n")
+                # the same once more changes nothing
+                self.assertNotIn(b"kept", call(*words, "-o", path).stderr)
+                self.assertFalse(os.path.exists(path + ".2"))
+            path = os.path.join(folder, "forced.py")
+            with open(path, "w") as f:
+                f.write("mine\n")
+            self.assert_exit(call("export", "four-bar", "--language", "python", "-o", path, "--force"), DONE)
+            self.assertFalse(os.path.exists(path + ".1"))
+
+    def test_a_setting_that_an_exercise_does_not_have_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "s.json")
+            with open(path, "w") as f:
+                json.dump(SUBMISSION, f)
+            done = call("grade", "p3", path, "--set", "l3=1")
+            self.assert_exit(done, INPUT)
+            self.assertIn(b"--set is for the program of a scene", done.stderr)
+
     def test_a_submission_that_is_a_pipe_does_not_hang(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "pipe.json")

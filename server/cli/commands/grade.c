@@ -277,7 +277,7 @@ static hn_exit grade_files(task t) {
 }
 
 /// Refuses options that would say nothing here, and two that say different things.
-static hn_status check_options(const hn_args *args, bool class, hn_diags *diags) {
+static hn_status check_options(const hn_args *args, bool class, bool programs, hn_diags *diags) {
     const bool text = !args->json && (!args->format || strcmp(args->format, "text") == 0);
     const struct {
         bool given;
@@ -294,6 +294,9 @@ static hn_status check_options(const hn_args *args, bool class, hn_diags *diags)
         {args->shard && args->merge, "/merge",
          "--shard grades a part of a class, --merge puts graded parts together",
          "leave one of them out"},
+        {!programs && args->set.n > 0, "/set",
+         "--set is for the program of a scene; an exercise has the numbers of its variant",
+         "leave --set out, or choose the variant with --seed or --student"},
         {!class && !isnan(args->jobs), "/jobs", "--jobs is for a folder of submissions",
          "leave --jobs out, or name the folder"},
     };
@@ -316,7 +319,7 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     const bool class = folder || args->shard || args->merge;
     hn_status status = find_subject(lib, args, &own, &t.subject, &diags);
     const bool found = status == HN_OK;
-    HN_THEN(status, check_options(args, class, &diags));
+    HN_THEN(status, check_options(args, class, t.subject.programs, &diags));
     HN_THEN(status, apply_rubric(args, &own, &diags));
     if (status != HN_OK) {
         result = found ? hn_report_diags(args, status, &diags)
