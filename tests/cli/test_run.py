@@ -250,6 +250,9 @@ class Run(Command):
     def test_a_scene_whose_methods_are_meant_to_go_wrong_says_so(self):
         own = " ".join(call("compare", "four-bar").stdout.decode().split())
         self.assertIn("meant to go wrong: The step of 0.01 s is long on purpose", own)
+        # the figure of the note is the one of the run
+        self.assertIn("within 10 s the angles are wrong by up to 1.8 rad", own)
+        self.assertIn("index1@rk4:h=0.01 is wrong: its coordinates are off by up to 1.8 (", own)
         for words in ("--methods", "index1@rk4:h=0.01"), ("--time", "1"), ("--set", "l1=0.45"):
             # methods of somebody else; nothing has gone wrong; another mechanism
             self.assertNotIn("meant to go wrong", call("compare", "four-bar", *words).stdout.decode())
