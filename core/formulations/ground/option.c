@@ -21,8 +21,9 @@ hn_status hn_option_check(const hn_option *option, double value, hn_diag *diag) 
                            option->key);
     }
     if (value <= 0 && option->min > 0) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be > 0, found %g", option->key,
-                           value);
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "%s must be greater than 0%s%s; it is %g", option->key, unit ? " " : "",
+                           unit ? unit : "", value);
     }
     if (value < option->min || value > option->max) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s = %g is out of range: %g to %g%s%s",
