@@ -317,7 +317,8 @@ static void put_solver(hn_strbuf *b, const hn_system *sys, const counts *c) {
     hn_json_key(b, "solver");
     hn_json_object(b);
     hn_json_put_string(b, "answers",
-                       c->factor.available ? "sparse LDL' on the tape" : "dense least-norm");
+                       c->factor.available ? "sparse LDL' in the compiled instructions"
+                                           : "dense least-norm");
     hn_json_put_string(b, "why",
                        c->factor.available
                            ? "an order of elimination without a zero pivot was found when compiling"

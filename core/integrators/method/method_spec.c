@@ -289,9 +289,10 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     const bool guest = hn_guest_is_named(text);
     const size_t at = find_char(all, '@');
     if (at == n && !guest) {
-        hn_diag_set(diag, HN_ERR_INPUT, NULL, "write for example index1@rk4:h=1e-3",
-                    "'%.60s' names no method: a formulation, '@' and an integrator are needed",
-                    text);
+        hn_diag_set(
+            diag, HN_ERR_INPUT, NULL,
+            "write for example projection@rk4:h=1e-3; 'holonom list methods' names them all",
+            "'%.60s' names no method: a formulation, '@' and an integrator are needed", text);
         if (diag) {
             diag->column = (int)n + 1;
         }
