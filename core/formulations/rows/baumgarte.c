@@ -122,7 +122,7 @@ const hn_formulation hn_formulation_baumgarte = {
     .title = "Baumgarte stabilisation",
     .short_name = "Baumgarte",
     .rule = "Replace zero acceleration error by a damped oscillator: the gap decays like "
-            "exp(-alpha t) instead of growing (for alpha above beta slower: like "
+            "exp(-alpha t) (alpha above beta: slower, like "
             "exp(-(alpha - sqrt(alpha^2 - beta^2)) t)), but the force that closes it also "
             "disturbs the motion.",
     .drift = "bounded: truncation error opens the gap, alpha and beta close it; alpha = "

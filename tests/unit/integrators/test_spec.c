@@ -60,8 +60,8 @@ static void each_fault_has_its_column_and_its_hint(void **state) {
         int column;
         const char *message, *hint;
     } faults[] = {
-        {"", 1, "'@'", "index1@rk4"},
-        {"index1", 7, "'@'", "index1@rk4"},
+        {"", 1, "'@'", "projection@rk4"},
+        {"index1", 7, "'@'", "list methods"},
         {"projecton@rk4", 1, "'projecton'", "'projection'"},
         {"index1@rk5:h=1", 8, "'rk5'", "'rk4'"},
         {"baumgarte:alpa=1@rk4", 11, "'alpa'", "'alpha'"},
@@ -70,8 +70,8 @@ static void each_fault_has_its_column_and_its_hint(void **state) {
         {"index1@rk4:h=nan", 14, "number", ""},
         {"index1@rk4:h=inf", 14, "number", ""},
         {"index1@rk4:h=0x10", 14, "x10", ""},
-        {"index1@rk4:h=0", 14, "> 0", ""},
-        {"index1@rk4:h=-1e-3", 14, "> 0", ""},
+        {"index1@rk4:h=0", 14, "than 0 s; it is 0", ""},
+        {"index1@rk4:h=-1e-3", 14, "than 0 s; it is -0.001", ""},
         {"index1@rk4:h=1e9", 14, "out of range", ""},
         {"index1@rk4:h=1e999", 14, "finite", ""},
         {"index1@rk4:h=1 m", 14, "'m'", ""},
