@@ -43,20 +43,23 @@ static const char *verdict_of(const hn_estimate *e, double t_run) {
 void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
                              const hn_accuracy_track *track, double t_run) {
     const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
-    char text[480];
+    char text[560], reactions[64] = "more than their largest value";
     int used = 0;
+    if (e.reaction <= 1) {
+        snprintf(reactions, sizeof reactions, "%.3g %% of their largest", 100 * e.reaction);
+    }
     if (e.known) {
         used = snprintf(
             text, sizeof text,
-            "up to t = %.4g s the coordinates are estimated to be off by up to %.2g (rad, or the "
-            "mechanism's length), reactions by %.3g %% of their largest",
-            e.t, e.q, 100 * e.reaction);
+            "up to t = %.4g s the coordinates are estimated to be off by up to %.2g (angles in "
+            "rad, lengths over the mechanism's length), reactions by %s",
+            e.t, e.q, reactions);
     }
     if (!(t_run > 0)) {
         snprintf(text, sizeof text, "nothing was computed beyond the start");
     } else if (!e.known || e.t < WHOLE * t_run) {
         snprintf(text + used, sizeof text - (size_t)used, "%s (%s)",
-                 e.known ? "; the error beyond that is not known" : "the error is not known",
+                 e.known ? "; after that no error was estimated" : "the error is not known",
                  e.reason[0] ? e.reason : "nothing was compared");
     }
     hn_json_key(b, "verdict");

@@ -133,7 +133,7 @@ static bool step_to(hn_accuracy *a, hn_run *run, double t, double ops) {
         const bool used_up = hn_accuracy_ops(a) > allowed;
         if (used_up) {
             snprintf(a->reason, sizeof a->reason,
-                     "it would take more than a tenth of the run's own operations");
+                     "the estimate would take more than a tenth of the run's own operations");
         } else if (hn_run_step_towards(run, t) != HN_OK) {
             snprintf(a->reason, sizeof a->reason, HN_ACCURACY_METHOD " ended: %.150s",
                      hn_run_get_summary(run).reason);

@@ -115,12 +115,17 @@ static void tell_verdict(const cJSON *run, const char *exhibit) {
     const char *is = hn_document_text(verdict, "is");
     const bool unknown = strcmp(is, "unknown") == 0, right = strcmp(is, "right") == 0;
     const double times = hn_document_number(hn_document_get(run, "error_estimate"), "over_rtol");
+    const double until = hn_document_number(hn_document_get(run, "error_estimate"), "t");
+    const bool in_part = unknown && until > 0;
     char factor[96] = "";
     if (times > HN_TOLERANCE_KEPT) {
         snprintf(factor, sizeof factor,
                  "; that is %.0f times rtol, which bounds the error of a step", times);
     }
-    hn_cli_note("holonom: the motion is %s: %s%s%s\n", unknown ? "not judged" : is,
+    hn_cli_note("holonom: the motion is %s: %s%s%s\n",
+                in_part   ? "right as far as it was judged"
+                : unknown ? "not judged"
+                          : is,
                 hn_document_text(verdict, "text"), factor,
                 right || unknown ? ""
                                  : hn_error_advice(run, hn_document_get(run, "incidents"), -1));
