@@ -20,7 +20,7 @@ PATIENCE = 60 * driver.SLOW  # [s] until something that must appear has appeared
 class Tmux(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        self.addCleanup(self.remove_folder)
         self.starts = 0
         self.addCleanup(self.stop)
 
@@ -41,6 +41,17 @@ class Tmux(unittest.TestCase):
 
     def stop(self):
         self.tmux("kill-server", check=False)
+
+    def remove_folder(self):
+        """A shell that was told to end may still write its history, or a compiler its cache: the folder is emptied again until it is gone."""
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return self.folder.cleanup()
+            except OSError:
+                if time.monotonic() > deadline:
+                    raise
+            time.sleep(0.05)
 
     def screen(self):
         return self.tmux("capture-pane", "-p")
