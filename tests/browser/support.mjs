@@ -268,6 +268,14 @@ export async function soon(check, timeout = 20000) {
   }
 }
 
+/** Until no colour fades into another one any more. */
+export function settled(page) {
+  return page.evaluate(() => {
+    const fading = document.getAnimations().filter((change) => change instanceof CSSTransition);
+    return Promise.allSettled(fading.map((change) => change.finished)).then(() => undefined);
+  });
+}
+
 /** Until what was told is drawn as well. */
 export function drawn(page) {
   return page.evaluate(

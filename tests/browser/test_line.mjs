@@ -30,6 +30,16 @@ async function stateOnServer(id, state) {
   }
 }
 
+/** The server closes a page's comparison, once the page listens to it; returns its id. */
+async function closeOnServer(page) {
+  await until(page, (data) => data.stream.state === "live");
+  const id = await read(page, (data) => data.id);
+  const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
+  assert.equal(answer.status, 204);
+  await until(page, (data) => data.stream.state === "ended");
+  return id;
+}
+
 async function type(page, field, text) {
   await page.fill(field, text);
   await page.press(field, "Enter");
@@ -190,10 +200,7 @@ test("a page that was hidden after the end of a run has nothing to reconnect to"
 
 test("a comparison that the server has forgotten is made again, and said so", async (t) => {
   const page = await open(t);
-  const id = await read(page, (data) => data.id);
-  const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
-  assert.equal(answer.status, 204);
-  await until(page, (data) => data.stream.state === "ended");
+  const id = await closeOnServer(page);
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "running" && data.latest?.t > 0.3);
   await soon(async () => assert.notEqual(await read(page, (data) => data.id), id));
@@ -207,9 +214,7 @@ test("a comparison that the server has forgotten is made again, and said so", as
 
 test("another scene opens although the server has closed the comparison before it, and nothing is said of that", async (t) => {
   const page = await open(t);
-  const id = await read(page, (data) => data.id);
-  await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
-  await until(page, (data) => data.stream.state === "ended");
+  const id = await closeOnServer(page);
   await Promise.all([
     page.waitForResponse((answer) => answer.request().method() === "DELETE"),
     page.evaluate(() => (location.hash = "#pendulum")),
@@ -229,9 +234,7 @@ test("a speed that is chosen for a comparison that the server has forgotten stay
       asked.push(JSON.parse(request.postData()).speed);
     }
   });
-  const id = await read(page, (data) => data.id);
-  await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
-  await until(page, (data) => data.stream.state === "ended");
+  const id = await closeOnServer(page);
   await page.selectOption("#speed", "0.1");
   await until(page, `(data) => data.id !== "" && data.id !== "${id}"`);
   await soon(async () => assert.equal(await page.inputValue("#speed"), "0.1"));

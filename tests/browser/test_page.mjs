@@ -10,6 +10,7 @@ import {
   playTo,
   read,
   screenshot,
+  settled,
   soon,
   stood,
   until,
@@ -80,6 +81,7 @@ test("all text has a contrast of 4.5 at least, in both themes", async (t) => {
     await page.emulateMedia({ colorScheme: theme });
     await until(page, `(data) => data.theme === "${theme}"`);
     await drawn(page);
+    await settled(page);
     const poor = await page.evaluate((least) => {
       const parse = (colour) => colour.match(/[\d.]+/g).map(Number);
       const luminance = ([r, g, b]) => {

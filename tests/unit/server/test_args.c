@@ -83,7 +83,7 @@ static void faults_are_told_with_a_near_miss(void **state) {
         {"run", "s --tiem 1", "--time"},
         {"run", "s --time", "--time needs"},
         {"run", "s --time --json", "needs"},
-        {"run", "s --time one", "finite number"},
+        {"run", "s --time one", "finite decimal number"},
         {"run", "s --time nan", "finite"},
         {"run", "s --time inf", "finite"},
         {"run", "s --time 1x", "finite"},
