@@ -228,6 +228,7 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     hn_snapshot_ground(c, &sheet, drawing, selected);
     draw_poses(c, &sheet, drawing, poses, n_poses);
     hn_snapshot_markers(c, &sheet, drawing, poses, n_poses);
+    hn_label_keep_off_loads(&sheet, selected, opts, &placed);
     if (opts->dimensions) {
         hn_snapshot_dimensions(c, &sheet, drawing, selected, &placed);
     }

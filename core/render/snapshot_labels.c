@@ -7,22 +7,18 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LABEL_TEXT = 96, MAX_ARROWS = 64 };
+enum { LABEL_TEXT = 96 };
 static const double LONGEST_LOAD = 0.20; // of the view
 static const double SAME_PLACE = 2;      // [px]
 static const double VALUE_SIZE = 0.9;    // letters of a force's value, of the body text
 static const double HALO = 0.8;          // how far the paper behind a text covers what is there
-
-/// An arrow: its tail and its tip [px].
-typedef struct arrow {
-    double tail[2], tip[2];
-    double half; ///< of the width of its text [px]
-    char value[HN_SI_TEXT];
-} arrow;
+static const double BESIDE = 0.6;        // [letters] farther from its arrow a value has a leader
+static const double DOUBT = 1.5;         // [px] of room that a place loses which another arrow has
+static const double ENOUGH = 2;          // [px] of room: more is no better
 
 typedef struct arrows {
     int n;
-    arrow at[MAX_ARROWS];
+    hn_load_mark *at;
 } arrows;
 
 void hn_label_remember(hn_label_places *placed, const double xy[2], double half) {
@@ -101,6 +97,16 @@ static double room_of_text(const double xy[2], double half, double height, const
     return room;
 }
 
+double hn_label_room(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
+                     double half) {
+    double room = room_beside(s, placed, xy, half);
+    for (int i = 0; i < placed->n_arrows; i++) {
+        const double(*arrow)[2] = placed->arrow[i];
+        room = fmin(room, room_of_text(xy, half, s->font, arrow[0], arrow[1]));
+    }
+    return room;
+}
+
 /// How far a text lies inside the part of the sheet that is the drawing's; below 0: beyond it.
 static double room_on_sheet(const hn_sheet *s, const double xy[2], double half) {
     const hn_box *box = &s->drawing;
@@ -128,7 +134,7 @@ double hn_snapshot_longest_load(const hn_sheet *s, const hn_snapshot_opts *opts)
 /// One that would begin off the sheet begins at its point in place of ending there. False: it has
 /// no length in this view.
 static bool lay_arrow(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
-                      int i, arrow *out) {
+                      int i, hn_load_mark *out) {
     const hn_snapshot_load *load = &opts->loads[i];
     double largest = 0, seen[2];
     for (int k = 0; k < opts->n_loads; k++) {
@@ -173,12 +179,53 @@ static double room_for_value(const hn_sheet *s, const hn_drawing *d, const doubl
     return fmin(room, room_beside(s, placed, xy, half));
 }
 
-/// Of places behind the tail, and on both sides of the arrow, the nearest with room enough; the one
-/// with the most room where none has.
+/// The point of an arrow that is nearest to a text.
+static void nearest_on(const hn_load_mark *w, const double xy[2], double out[2]) {
+    const double dx = w->tip[0] - w->tail[0], dy = w->tip[1] - w->tail[1];
+    const double along = (xy[0] - w->tail[0]) * dx + (xy[1] - w->tail[1]) * dy;
+    const double t = fmin(1, fmax(0, along / (dx * dx + dy * dy)));
+    out[0] = w->tail[0] + t * dx;
+    out[1] = w->tail[1] + t * dy;
+}
+
+/// On which side of the line from a to b a point lies: positive, negative or 0.
+static double side_of(const double a[2], const double b[2], const double p[2]) {
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+}
+
+static bool do_cross(const double a[2], const double b[2], const double p[2], const double q[2]) {
+    return side_of(a, b, p) * side_of(a, b, q) < 0 && side_of(p, q, a) * side_of(p, q, b) < 0;
+}
+
+/// How doubtful it is that a value at `xy` belongs to its arrow: 1 where another arrow is nearer,
+/// and 1 where the mechanism lies between.
+static int doubt_of(const hn_sheet *s, const hn_drawing *d, const double *points, const arrows *all,
+                    int own, const double xy[2]) {
+    const double half = all->at[own].half, tall = 1.1 * s->font;
+    const double nearest = room_of_text(xy, half, tall, all->at[own].tail, all->at[own].tip);
+    bool taken = false, crossed = false;
+    for (int i = 0; i < all->n; i++) {
+        taken |= i != own && room_of_text(xy, half, tall, all->at[i].tail, all->at[i].tip) <
+                                 nearest + 0.3 * s->font;
+    }
+
+    // the way to the arrow but for its end: an arrow may lie on a bar
+    double end[2], a[2], b[2];
+    nearest_on(&all->at[own], xy, end);
+    const double way[2] = {xy[0] + 0.8 * (end[0] - xy[0]), xy[1] + 0.8 * (end[1] - xy[1])};
+    for (int i = 0; i < d->n_shapes; i++) {
+        segment_of(s, &d->shapes[i], points, a, b);
+        crossed |= do_cross(xy, way, a, b);
+    }
+    return taken + crossed;
+}
+
+/// Of places behind the tail, and on both sides of the arrow, the nearest with room enough and no
+/// doubt whose value it is; the best where none is.
 static void place_value(const hn_sheet *s, const hn_drawing *d, const double *points,
                         const arrows *all, int own, const hn_label_places *placed, double out[2]) {
     enum { ALONG = 5, SIDES = 3, RINGS = 4 };
-    const arrow *w = &all->at[own];
+    const hn_load_mark *w = &all->at[own];
     const double length = hypot(w->tip[0] - w->tail[0], w->tip[1] - w->tail[1]);
     const double u[2] = {(w->tip[0] - w->tail[0]) / length, (w->tip[1] - w->tail[1]) / length};
     double most = -HUGE_VAL;
@@ -193,7 +240,8 @@ static void place_value(const hn_sheet *s, const hn_drawing *d, const double *po
             const double xy[2] = {w->tail[0] + t * u[0] + wide * (n[0] - back * u[0]),
                                   w->tail[1] + t * u[1] + off * (n[1] - back * u[1])};
             const double room = room_for_value(s, d, points, all, own, placed, xy);
-            const double worth = fmin(room, 2) - 0.02 * (ring * ALONG * SIDES + k);
+            const double worth = fmin(room, ENOUGH) - 0.02 * (ring * ALONG * SIDES + k) -
+                                 DOUBT * doubt_of(s, d, points, all, own, xy);
             if ((side || back > 0) && worth > most) {
                 most = worth;
                 memcpy(out, xy, sizeof xy);
@@ -210,10 +258,23 @@ static void draw_halo(hn_canvas *c, const hn_sheet *s, const double xy[2], doubl
     hn_canvas_polygon(c, box, 4, (hn_paint){hn_surface_get(hn_canvas_theme(c))->paper, HALO});
 }
 
-static void draw_value(hn_canvas *c, const hn_sheet *s, const double xy[2], const arrow *w) {
+/// The line that ties a value to its arrow where it stands away from it.
+static void draw_leader(hn_canvas *c, const hn_sheet *s, const hn_load_mark *w) {
+    const double away = room_of_text(w->text, w->half, 1.1 * s->font, w->tail, w->tip);
+    const hn_stroke thin =
+        hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->muted, 0.5 * s->line);
+    double end[2];
+    if (away > BESIDE * s->font) {
+        nearest_on(w, w->text, end);
+        hn_canvas_segment(c, w->text[0], w->text[1], end[0], end[1], &thin);
+    }
+}
+
+static void draw_value(hn_canvas *c, const hn_sheet *s, const hn_load_mark *w) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
-    draw_halo(c, s, xy, w->half);
-    hn_canvas_text(c, xy[0], xy[1] + 0.3 * s->font, VALUE_SIZE * s->font, HN_ALIGN_CENTRE,
+    draw_leader(c, s, w);
+    draw_halo(c, s, w->text, w->half);
+    hn_canvas_text(c, w->text[0], w->text[1] + 0.3 * s->font, VALUE_SIZE * s->font, HN_ALIGN_CENTRE,
                    hn_paint_solid(surface->ink), w->value);
 }
 
@@ -230,26 +291,47 @@ static void remember_corners(const hn_sheet *s, hn_label_places *placed) {
     }
 }
 
-static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                       const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
-                       hn_label_places *placed) {
-    const hn_stroke stroke = hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->ink, s->line);
-    arrows all = {0};
-    for (int i = 0; i < opts->n_loads && all.n < MAX_ARROWS; i++) {
-        all.n += lay_arrow(s, pose, opts, i, &all.at[all.n]);
+void hn_label_keep_off_loads(const hn_sheet *s, const hn_snapshot_pose *pose,
+                             const hn_snapshot_opts *opts, hn_label_places *placed) {
+    hn_load_mark w;
+    for (int i = 0; i < opts->n_loads && placed->n_arrows < HN_LABEL_ARROWS; i++) {
+        if (lay_arrow(s, pose, opts, i, &w)) {
+            double(*to)[2] = placed->arrow[placed->n_arrows++];
+            memcpy(to[0], w.tail, sizeof w.tail);
+            memcpy(to[1], w.tip, sizeof w.tip);
+        }
     }
-    for (int i = 0; i < all.n; i++) {
-        const arrow *w = &all.at[i];
-        hn_canvas_arrow(c, w->tail[0], w->tail[1], w->tip[0], w->tip[1], 0.8 * s->font, &stroke);
+}
+
+int hn_load_marks_place(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
+                        const hn_snapshot_opts *opts, hn_label_places *placed,
+                        hn_load_mark out[HN_LABEL_ARROWS]) {
+    arrows all = {.at = out};
+    for (int i = 0; i < opts->n_loads && all.n < HN_LABEL_ARROWS; i++) {
+        all.n += lay_arrow(s, pose, opts, i, &out[all.n]);
     }
     if (all.n > 0) {
         remember_corners(s, placed);
     }
     for (int i = 0; i < all.n; i++) {
-        double xy[2];
-        place_value(s, d, pose->points, &all, i, placed, xy);
-        draw_value(c, s, xy, &all.at[i]);
-        hn_label_remember(placed, xy, all.at[i].half);
+        place_value(s, d, pose->points, &all, i, placed, out[i].text);
+        hn_label_remember(placed, out[i].text, out[i].half);
+    }
+    return all.n;
+}
+
+static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                       const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
+                       hn_label_places *placed) {
+    const hn_stroke stroke = hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->ink, s->line);
+    hn_load_mark marks[HN_LABEL_ARROWS];
+    const int n = hn_load_marks_place(s, d, pose, opts, placed, marks);
+    for (int i = 0; i < n; i++) {
+        const hn_load_mark *w = &marks[i];
+        hn_canvas_arrow(c, w->tail[0], w->tail[1], w->tip[0], w->tip[1], 0.8 * s->font, &stroke);
+    }
+    for (int i = 0; i < n; i++) {
+        draw_value(c, s, &marks[i]);
     }
 }
 
@@ -267,7 +349,8 @@ static void place_label(const hn_sheet *s, const hn_drawing *d, const double *po
     for (int k = 0; k < PLACES; k++) {
         const double angle = 2 * 3.14159265358979324 * k / PLACES;
         const double place[2] = {xy[0] + (off + wider) * cos(angle), xy[1] - off * sin(angle)};
-        const double room = fmin(room_at(s, d, points, place), room_beside(s, placed, place, half));
+        const double room =
+            fmin(room_at(s, d, points, place), hn_label_room(s, placed, place, half));
         if (room > most + 0.5) {
             most = room;
             memcpy(out, place, sizeof place);

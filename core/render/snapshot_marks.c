@@ -97,6 +97,22 @@ static void draw_value(hn_canvas *c, const hn_sheet *s, double x, double y, cons
                    text);
 }
 
+/// The place for a value on a dimension line: the middle, or the nearest to it that no force and no
+/// other text crosses; the one with the most room where all are crossed.
+static void place_on_line(const hn_sheet *s, const hn_label_places *placed, const double middle[2],
+                          const double along[2], double half, double out[2]) {
+    static const double shares[] = {0, 0.15, -0.15, 0.3, -0.3};
+    double most = -HUGE_VAL;
+    for (size_t i = 0; i < sizeof shares / sizeof *shares && most < 0; i++) {
+        const double at[2] = {middle[0] + shares[i] * along[0], middle[1] + shares[i] * along[1]};
+        const double room = hn_label_room(s, placed, at, half);
+        if (room > most) {
+            most = room;
+            memcpy(out, at, sizeof at);
+        }
+    }
+}
+
 static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], const double b[2],
                            const double middle[2], const char *text, hn_label_places *placed) {
     const double length = hypot(b[0] - a[0], b[1] - a[1]);
@@ -118,15 +134,18 @@ static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], c
                           e[0] + (off + beyond) * side[0], e[1] + (off + beyond) * side[1], &thin);
     }
 
-    // arrows from the middle to both ends, and the value over them
+    // arrows from the middle to both ends, and the value on them
     const double x = (a[0] + b[0]) / 2 + off * side[0], y = (a[1] + b[1]) / 2 + off * side[1];
     for (int i = 0; i < 2; i++) {
         hn_canvas_arrow(c, x, y, ends[i][0] + off * side[0], ends[i][1] + off * side[1],
                         0.6 * s->font, &thin);
     }
-    const double at[2] = {x, y};
-    draw_value(c, s, x, y, text);
-    hn_label_remember(placed, at, 0.5 * hn_canvas_text_width(0.85 * s->font, text));
+    const double half = 0.5 * hn_canvas_text_width(0.85 * s->font, text);
+    const double middle_at[2] = {x, y}, along[2] = {b[0] - a[0], b[1] - a[1]};
+    double at[2];
+    place_on_line(s, placed, middle_at, along, half, at);
+    draw_value(c, s, at[0], at[1], text);
+    hn_label_remember(placed, at, half);
 }
 
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,

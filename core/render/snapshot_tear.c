@@ -93,14 +93,12 @@ static void draw_half_joints(const glass *g, const int tear[2]) {
     hn_canvas_segment(g->c, eye[0], eye[1], pin[0], pin[1], &red);
 }
 
-/// "×200" or, raised, "×5·10^8", with its end at x; "closed" where there is nothing to magnify.
+/// "×200" or, raised, "×5·10^8", with its end at x.
 static void draw_magnification(hn_canvas *c, const hn_sheet *s, double x, double y, double size) {
     const hn_paint ink = hn_paint_solid(hn_surface_get(hn_canvas_theme(c))->ink);
     const double power = floor(log10(s->magnification) + 1e-9);
     char text[TEXT];
-    if (s->is_closed) {
-        snprintf(text, sizeof text, "closed");
-    } else if (power < 5) {
+    if (power < 5) {
         snprintf(text, sizeof text, "\xc3\x97%.0f", s->magnification);
     } else {
         const double first = round(s->magnification / pow(10, power));
@@ -126,11 +124,16 @@ static void draw_words(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
              pose->name != NULL ? pose->name : "");
     hn_canvas_text(c, x, box->y + 1.3 * s->font, size, HN_ALIGN_LEFT, hn_paint_solid(surface->ink),
                    text);
+
+    // of a closed joint the legend gives the number; that of the drawn points is another rounding
     hn_si_format(s->widest.gap, "m", 2, gap);
-    snprintf(text, sizeof text, "gap %s", gap);
+    snprintf(text, sizeof text, "%s%s", s->is_closed ? "closed to rounding" : "gap ",
+             s->is_closed ? "" : gap);
     const double bottom = box->y + box->height - 0.7 * s->font;
     hn_canvas_text(c, x, bottom, size, HN_ALIGN_LEFT, hn_paint_solid(surface->ink), text);
-    draw_magnification(c, s, box->x + box->width - 0.6 * s->font, bottom, size);
+    if (!s->is_closed) {
+        draw_magnification(c, s, box->x + box->width - 0.6 * s->font, bottom, size);
+    }
 }
 
 static void draw_inset(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,

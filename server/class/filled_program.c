@@ -178,6 +178,12 @@ static double upper_at(const part_view *p, int k, int i) {
     return i % n < i / n ? 0 : expected_at(p, k, i);
 }
 
+/// The matrix written column by column, as its transpose is.
+static double transposed_at(const part_view *p, int k, int i) {
+    const int columns = p->exam->columns[p->part], rows = p->exam->size[p->part] / columns;
+    return expected_at(p, k, i % rows * columns + i / rows);
+}
+
 static double size_of(const part_view *p) {
     double size = 1;
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
@@ -232,6 +238,11 @@ static const struct {
                  {true, true, true, true},
                  zero_at},
                 {"sign", "every entry has the wrong sign", {true, true, true, true}, negative_at},
+                {"transposed",
+                 "the matrix is transposed: one row for each constraint, one column for each "
+                 "velocity",
+                 {false, false, true, false},
+                 transposed_at},
                 {"velocity",
                  "the terms of the velocities, C v, are missing",
                  {false, true, false, false},
@@ -280,8 +291,8 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     if (!e->mistake[0]) {
         e->mistake = "other";
         snprintf(e->explanation, sizeof e->explanation,
-                 "the entry that differs most, at the state %d of %d (t = %.4g s)", state + 1,
-                 HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
+                 "no known mistake; %s differs most, at state %d of %d (t = %.4g s)", e->given,
+                 state + 1, HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
     }
 }
 

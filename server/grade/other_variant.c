@@ -4,10 +4,19 @@
 #include "base/hash.h"
 #include "grade/parts/part_list.h"
 
+#include <ctype.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { SMALL_SEEDS = 8, LEAST = 2, MAX_WRONG = 16, BYSTANDERS = 100 };
+enum {
+    SMALL_SEEDS = 8,
+    SPELLINGS = 3,
+    LONGEST_NAME = 128,
+    LEAST = 2,
+    MAX_WRONG = 16,
+    BYSTANDERS = 100
+};
 
 /// Two numbers that no bystander shares are below it, (1 / 101)^2; one such number beside one of a
 /// hundred small counts is not.
@@ -101,16 +110,54 @@ static int count_fits(const hn_exercise *exercise, uint64_t seed, const cJSON *s
     return enough && find_chance(exercise, submission, list, n, right) <= MOST_CHANCE ? count : 0;
 }
 
-/// Looks for the variant among the owners and a few small seeds; writes how many numbers are wrong,
-/// and returns how many of them are its numbers.
+/// The name with other capitals, of ASCII letters: "Ada Lovelace", "ada lovelace", "ADA LOVELACE".
+static void respell(const char *name, int way, char out[LONGEST_NAME]) {
+    bool begins = true;
+    size_t n = 0;
+    for (; name[n] && n < LONGEST_NAME - 1; n++) {
+        const unsigned char c = (unsigned char)name[n];
+        out[n] = (char)(way == 2 || (way == 0 && begins) ? toupper(c) : tolower(c));
+        begins = c == ' ' || c == '-';
+    }
+    out[n] = 0;
+}
+
+/// Who submitted: the name in the file, else the one whose variant this is; "": nobody is named.
+static const char *student_of(const hn_variant *x, const hn_verdict *v) {
+    const char *name = v->student;
+    for (int i = 0; i < x->exercise->n_owners && !name[0]; i++) {
+        const hn_variant_owner *owner = &x->exercise->owners[i];
+        name = owner->seed == x->seed && owner->name ? owner->name : name;
+    }
+    return name;
+}
+
+/// Whose numbers they may be: the owner i of the exercise, then the student with other capitals
+/// (written to `spelt`), then a few small seeds.
+static hn_variant_owner candidate_at(const hn_variant *x, const char *student, int i,
+                                     char spelt[LONGEST_NAME]) {
+    const hn_exercise *e = x->exercise;
+    if (i < e->n_owners) {
+        return e->owners[i];
+    }
+    i -= e->n_owners;
+    if (i < SPELLINGS) {
+        respell(student, i, spelt);
+        return (hn_variant_owner){.name = spelt,
+                                  .seed = student[0] ? hn_variant_seed(e, spelt) : x->seed};
+    }
+    return (hn_variant_owner){.seed = (uint64_t)(i - SPELLINGS + 1)};
+}
+
+/// Looks for the variant among the candidates; writes how many numbers are wrong, and returns how
+/// many of them are its numbers.
 static int find_owner(const hn_variant *x, const cJSON *submission, const hn_verdict *v,
-                      hn_variant_owner *out, int *n) {
+                      char spelt[LONGEST_NAME], hn_variant_owner *out, int *n) {
     const hn_exercise *e = x->exercise;
     wrong_number list[MAX_WRONG];
     *n = list_wrong(x, v, list);
-    for (int i = 0; i < e->n_owners + SMALL_SEEDS && *n >= LEAST; i++) {
-        const hn_variant_owner seed = {.seed = (uint64_t)(i - e->n_owners + 1)};
-        *out = i < e->n_owners ? e->owners[i] : seed;
+    for (int i = 0; i < e->n_owners + SPELLINGS + SMALL_SEEDS && *n >= LEAST; i++) {
+        *out = candidate_at(x, student_of(x, v), i, spelt);
         const int fits = out->seed == x->seed ? 0 : count_fits(e, out->seed, submission, list, *n);
         if (fits > 0) {
             return fits;
@@ -121,8 +168,10 @@ static int find_owner(const hn_variant *x, const cJSON *submission, const hn_ver
 
 void hn_other_variant_say(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
     hn_variant_owner owner;
+    char spelt[LONGEST_NAME];
     int n = 0;
-    const int fits = v->n_right == v->n_entries ? 0 : find_owner(x, submission, v, &owner, &n);
+    const int fits =
+        v->n_right == v->n_entries ? 0 : find_owner(x, submission, v, spelt, &owner, &n);
     if (fits == 0) {
         return;
     }
@@ -132,8 +181,9 @@ void hn_other_variant_say(const hn_variant *x, const cJSON *submission, hn_verdi
                              "; %d of the %d wrong numbers agree with the numbers of ", fits, n);
     if (used < sizeof v->summary && owner.name) {
         snprintf(v->summary + used, sizeof v->summary - used,
-                 "the variant of '%.60s' (seed %llu), and this is seed %llu", owner.name,
-                 (unsigned long long)owner.seed, (unsigned long long)x->seed);
+                 "the variant of '%.60s' (seed %llu), and this is seed %llu%s", owner.name,
+                 (unsigned long long)owner.seed, (unsigned long long)x->seed,
+                 owner.name == spelt ? ": capital letters in a name count" : "");
     } else if (used < sizeof v->summary) {
         snprintf(v->summary + used, sizeof v->summary - used, "seed %llu%s, and this is seed %llu",
                  (unsigned long long)owner.seed,

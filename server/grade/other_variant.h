@@ -9,6 +9,7 @@
 #include "grade/variant.h"
 
 /// Says in the summary of a graded submission whose numbers were handed in: those of an owner of
-/// the exercise (exercise.h), or of a small seed. Nothing where no variant fits.
+/// the exercise (exercise.h), of the student's name with other capital letters, or of a small seed.
+/// Nothing where no variant fits.
 void hn_other_variant_say(const hn_variant *x, const cJSON *submission, hn_verdict *v);
 #endif

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_NAMES = 160 };
+enum { MAX_NAMES = 160, FEW_NAMES = 16 };
 
 /// Names of the parts, or of the one matrix. Returns how many.
 static int list_parts(const hn_exercise *e, const char *names[HN_GRADE_MAX_PARTS]) {
@@ -97,6 +97,25 @@ static bool is_listed(const char *const *names, int n, const char *name) {
     return false;
 }
 
+/// What to write in the place of a name that is not known: the nearest one, else all where they are
+/// few.
+static void suggest_name(const char *word, const char *const *names, int n, char *out,
+                         size_t size) {
+    const char *near = strlen(word) > 1 ? hn_nearest_name(word, names, n) : NULL;
+    size_t used = 0;
+    if (near) {
+        snprintf(out, size, "did you mean '%s'?", near);
+        return;
+    }
+    if (n > FEW_NAMES) {
+        snprintf(out, size, "'holonom rubric check' lists those of a rubric without faults");
+        return;
+    }
+    for (int i = 0; i < n && used < size; i++) {
+        used += (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "one of: ", names[i]);
+    }
+}
+
 /// Every member of a section has one of these names.
 static hn_status check_names(const hn_rubric *r, const char *section, const char *what,
                              const char *const *names, int n, hn_diags *diags) {
@@ -106,9 +125,11 @@ static hn_status check_names(const hn_rubric *r, const char *section, const char
         const bool known = is_listed(names, n, m->string) ||
                            (strcmp(section, "shares") == 0 && hn_grade_is_mistake(m->string));
         if (!known) {
-            status = hn_rubric_fault(
-                r, diags, section, m->string, hn_nearest_name(m->string, names, n),
-                "exercise %s has no %s '%.40s'", hn_rubric_exercise(r), what, m->string);
+            char hint[160];
+            suggest_name(m->string, names, n, hint, sizeof hint);
+            status =
+                hn_rubric_fault(r, diags, section, m->string, hint, "exercise %s has no %s '%.40s'",
+                                hn_rubric_exercise(r), what, m->string);
         }
     }
     return status;

@@ -59,6 +59,11 @@ static hn_status copy_text(reader *r) {
         if (quote == '\'' && strchr("\\\"", *r->at)) {
             hn_strbuf_add(r->out, "\\");
         }
+        if (*r->at == '\t') {
+            hn_strbuf_add(r->out, "\\t"); // JSON has no tabs in texts
+            r->at++;
+            continue;
+        }
         hn_strbuf_add_n(r->out, r->at, escape ? 2 : 1);
         r->at += escape ? 2 : 1;
     }
@@ -82,6 +87,9 @@ static hn_status read_name(reader *r, char name[MAX_NAME]) {
         name[n++] = *r->at++;
     }
     name[n] = 0;
+    if (n == MAX_NAME - 1) {
+        return fault(r, "a name is too long");
+    }
     if (n == 0 || (quoted && *r->at++ != quote)) {
         return fault(r, "a name was expected");
     }
@@ -141,7 +149,7 @@ static hn_status copy_number(reader *r) {
     char word[40], *end;
     snprintf(word, sizeof word, "%.*s", (int)(n < sizeof word ? n : sizeof word - 1), r->at);
     const double x = strtod(word, &end);
-    const bool digits = strspn(word, "+-.eE0123456789") == strlen(word);
+    const bool digits = strspn(word, "+-.eE0123456789") == n; // false for one that was cut
     const bool truth = strcmp(word, "true") == 0 || strcmp(word, "false") == 0;
     if (truth) {
         hn_strbuf_add(r->out, word);
@@ -178,14 +186,17 @@ static void close_tables(reader *r, int keep) {
 static hn_status open_table(reader *r) {
     char name[MAX_NAME];
     int depth = 0;
-    bool shared = true;
-    for (r->at++; *r->at != ']' || depth == 0; depth++) {
+    bool shared = true, more = true;
+    if (*++r->at == '[') {
+        return fault(r, "a list of tables, [[name]], is not read here: write name = [{...}]");
+    }
+    for (; more; depth++) {
         skip(r, false);
         HN_TRY(read_name(r, name));
         if (depth == MAX_NESTING || (*r->at != '.' && *r->at != ']')) {
             return fault(r, "a table is [name] or [name.name]");
         }
-        r->at += *r->at == '.';
+        more = *r->at++ == '.';
         shared = shared && depth < r->n_tables && strcmp(r->table[depth], name) == 0;
         if (!shared) {
             close_tables(r, depth);
@@ -195,7 +206,6 @@ static hn_status open_table(reader *r) {
             snprintf(r->table[r->n_tables++], MAX_NAME, "%s", name);
         }
     }
-    r->at++;
     close_tables(r, depth);
     return HN_OK;
 }
@@ -216,6 +226,15 @@ hn_status hn_toml_to_json(hn_strbuf *out, const char *text, hn_diag *diag) {
 
 static void put_value(hn_strbuf *out, const cJSON *value);
 
+/// A name as it stands where TOML allows it, else in quotes.
+static void put_key(hn_strbuf *out, const char *name) {
+    bool bare = name[0] != 0;
+    for (const char *at = name; *at; at++) {
+        bare &= isalnum((unsigned char)*at) || *at == '_' || *at == '-';
+    }
+    hn_strbuf_printf(out, bare ? "%s" : "\"%s\"", name);
+}
+
 static void put_members(hn_strbuf *out, const cJSON *value) {
     const cJSON *m;
     const bool list = cJSON_IsArray(value);
@@ -223,7 +242,8 @@ static void put_members(hn_strbuf *out, const cJSON *value) {
     cJSON_ArrayForEach(m, value) {
         hn_strbuf_add(out, m == value->child ? "" : ", ");
         if (!list) {
-            hn_strbuf_printf(out, "%s = ", m->string);
+            put_key(out, m->string);
+            hn_strbuf_add(out, " = ");
         }
         put_value(out, m);
     }
@@ -246,7 +266,8 @@ static void put_lines(hn_strbuf *out, const cJSON *object, bool tables) {
     const cJSON *m;
     cJSON_ArrayForEach(m, object) {
         if (tables || !cJSON_IsObject(m)) {
-            hn_strbuf_printf(out, "%s = ", m->string);
+            put_key(out, m->string);
+            hn_strbuf_add(out, " = ");
             put_value(out, m);
             hn_strbuf_add(out, "\n");
         }
@@ -258,7 +279,9 @@ void hn_toml_write(hn_strbuf *out, const cJSON *object) {
     put_lines(out, object, false);
     cJSON_ArrayForEach(m, object) {
         if (cJSON_IsObject(m)) {
-            hn_strbuf_printf(out, "\n[%s]\n", m->string);
+            hn_strbuf_add(out, "\n[");
+            put_key(out, m->string);
+            hn_strbuf_add(out, "]\n");
             put_lines(out, m, true);
         }
     }

@@ -314,6 +314,25 @@ static void name_variant(const hn_variant *x, char *out, size_t size) {
     snprintf(out, size, "seed %llu", (unsigned long long)x->seed);
 }
 
+/// The variant that a submission says it answers, by its seed or else its student, and how it is
+/// graded. said = 0: its seed is no number of a variant.
+static void name_said(const cJSON *seed, const cJSON *student, uint64_t said, char *out,
+                      size_t size, char *hint, size_t hint_size) {
+    const bool by_seed = cJSON_IsNumber(seed) || cJSON_IsString(seed);
+    if (!by_seed) {
+        snprintf(out, size, "student '%.60s'", student->valuestring);
+        snprintf(hint, hint_size, "grade it with --student '%.60s'", student->valuestring);
+    } else if (said) {
+        snprintf(out, size, "seed %llu", (unsigned long long)said);
+        snprintf(hint, hint_size, "grade it with --seed %llu", (unsigned long long)said);
+    } else {
+        char number[24];
+        snprintf(number, sizeof number, "%.17g", cJSON_IsNumber(seed) ? seed->valuedouble : 0);
+        snprintf(out, size, "seed '%.20s'", cJSON_IsNumber(seed) ? number : seed->valuestring);
+        snprintf(hint, hint_size, "a seed is a whole number from 1; 'holonom problem' prints it");
+    }
+}
+
 /// Refuses a submission that says it answers another variant.
 static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
     const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
@@ -328,21 +347,11 @@ static int check_seed(const hn_variant *x, const cJSON *submission, hn_verdict *
         return 1;
     }
 
-    // by its number, or by its name
-    char own[120], other[80];
+    char own[120], other[80], hint[100];
     name_variant(x, own, sizeof own);
-    if (cJSON_IsNumber(seed)) {
-        snprintf(other, sizeof other, "seed %.17g", seed->valuedouble);
-    } else if (cJSON_IsString(seed)) {
-        snprintf(other, sizeof other, "seed '%.20s'", seed->valuestring);
-    } else {
-        snprintf(other, sizeof other, "student '%.60s'", student->valuestring);
-    }
+    name_said(seed, student, said, other, sizeof other, hint, sizeof hint);
     return hn_submission_refuse(
-        v,
-        cJSON_IsNumber(seed) || cJSON_IsString(seed) ? "grade it with --seed of that number"
-                                                     : "grade it with --student of that name",
-        "the submission answers the variant of %s, this is that of %s", other, own);
+        v, hint, "the submission answers the variant of %s, this is that of %s", other, own);
 }
 
 /// The hints that a submission says were used: a whole number of those that there are.

@@ -102,6 +102,16 @@ def other_numbers(folder):
     plain, bobs = numbers(), numbers("--student", "bob")
     said = run("grade", path, write(folder, "plain.json", dict(plain, student="ada"))).stdout
     expect("numbers of the exercise without a name are named", "numbers of seed 1 (the exercise without a name or seed)" in said, said)
+    adas = numbers("--student", "Ada Lovelace")
+    for who in ("ada lovelace", "ADA LOVELACE", "Ada LoveLace"):
+        said = run("grade", path, write(folder, "small.json", dict(adas, student=who))).stdout
+        expect(f"numbers of Ada Lovelace under the name {who} are named", "of the variant of 'Ada Lovelace'" in said and "capital letters in a name count" in said, said)
+    said = run("grade", path, write(folder, "small.json", adas), "--student", "ada lovelace").stdout
+    expect("they are named under --student too", "of the variant of 'Ada Lovelace'" in said, said)
+    done = run("grade", path, write(folder, "seed.json", {"seed": 7, "a": 1}), "--seed", "8")
+    expect("the way to grade another variant names its seed", "grade it with --seed 7" in done.stdout, done.stdout)
+    done = run("grade", path, write(folder, "seed.json", {"seed": 0.5, "a": 1}))
+    expect("a seed that is none is told", done.returncode == 2 and "seed '0.5'" in done.stdout and "a whole number from 1" in done.stdout, done.stdout)
     said = run("grade", path, write(folder, "one.json", {"student": "ada", "a": plain["a"], "b": 1, "c": 1})).stdout
     expect("one number alone is not enough", "agree with the numbers" not in said, said)
     os.mkdir(os.path.join(folder, "class"))
@@ -169,6 +179,12 @@ def what_looks_like_an_answer(folder):
     done = run("grade", write(folder, "wrong.json", exercise), write(folder, "answer.json", {"a": 0.4932}))
     expect("an exercise that its second way contradicts grades nobody", done.returncode == 3 and "the exercise is wrong in its part a" in done.stdout + done.stderr,
            done.stdout + done.stderr)  # fmt: skip
+    said = run("grade", "method", write(folder, "method.json", {"a": "projecton@rk4:h=0.01"})).stdout
+    expect("an unknown formulation is told with the nearest one, and without a list that is cut",
+           "formulation 'projecton' is not known; did you mean 'projection'?" in said and ",;" not in said, said)  # fmt: skip
+    ids = [p["id"] for p in json.loads(run("problems", "--json").stdout)["problems"]]
+    blanks = [(i, line) for i in ids for line in run("problem", i).stdout.split("\n") if line != line.rstrip()]
+    expect("no line of an exercise ends in a blank", len(ids) > 60 and not blanks, str(blanks[:3]))
     told = run("rubric", "check", write(folder, "gears.json", run("rubric", "write", "gears").stdout)).stdout
     expect("a tolerance of a count is told as exact", "exact: passes the right number alone" in told and "10 digits" not in told, told)
 

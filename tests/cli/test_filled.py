@@ -102,6 +102,7 @@ class Filled(unittest.TestCase):
         # after every statement of the right answer, one that spoils a part
         cases = {"sign": ("jacobian", "for (int i = 0; i < NC * NV; i++) jacobian[i / NV][i % NV] *= -1;"),
                  "factor": ("mass", "for (int i = 0; i < NV * NV; i++) mass[i / NV][i % NV] *= 0.5;"),
+                 "transposed": ("jacobian", "{ double t[NV * NC]; for (int i = 0; i < NC * NV; i++) t[i % NV * NC + i / NV] = jacobian[i / NV][i % NV]; memcpy(jacobian, t, sizeof t); }"),
                  "symmetry": ("mass", "mass[0][1] = 0;"),
                  "empty": ("bias", "bias[0] = bias[1] = 0;"),
                  "velocity": ("force", "{ double still[NV] = {-0.5*g*l1*(m1 + 2*m2)*cos(th1), -0.5*g*l2*m2*cos(theta_coupler), -0.5*g*l3*m3*cos(th3)}; "
@@ -113,7 +114,12 @@ class Filled(unittest.TestCase):
             entries = {e["name"]: e for e in verdict["entries"]}
             self.assertEqual((status, verdict["score"], entries[part]["mistake"]), (0, POINTS - 2, mistake), verdict)
             self.assertTrue(entries[part]["explanation"])
+            self.assertEqual("no known mistake; force[2] differs most" in entries[part]["explanation"], mistake == "other")
             self.assertNotIn("expected_value", entries[part])
+
+    def test_a_program_has_no_variant_to_choose(self):
+        done = call("grade", "four-bar", self.put("any.py", "x"), "--seed", "7")
+        self.assertEqual((done.returncode, "the program of a scene has none" in done.stderr), (2, True), done.stderr)
 
     def test_a_parameter_that_was_set_for_the_export_is_set_for_the_grade(self):
         text = call("export", "four-bar", "--language", "c", "--blanks", "--set", "l1=0.45").stdout

@@ -103,6 +103,11 @@ def whole_check(folder):
         f.write('{"rubric": 1, "exercise": "gears", "shares": [1], "shares": [2], "points": [1], "points": 3, "visibility": 1, "visibility": ["x"]}')
     twice = run("rubric", "check", shapeless)
     expect("a field of another shape that is there twice is refused twice", twice.returncode == 2 and twice.stderr.count('"shares" is an object') == 2, twice.stderr)
+    for name, said in (("q", "one of: a, b, c"), ("points", "one of: a, b, c")):
+        told = run("rubric", "check", write(folder, "part.json", {"rubric": 1, "exercise": "gears", "points": {name: 1}})).stderr
+        expect(f"the parts are listed beside the unknown part {name}", said in told, told)
+    told = run("rubric", "check", write(folder, "part.json", {"rubric": 1, "exercise": "gears", "shares": {"sgn": 1}})).stderr
+    expect("the nearest mistake is asked for", "did you mean 'sign'?" in told, told)
     told = run("problem", "closure", "--seeds", "1..2", "--check").stdout
     expect("the mistakes that an exercise names are listed", "mistakes of part a: along-y coupler-sign" in told, told)
 
@@ -131,6 +136,7 @@ def rubrics_in_toml(folder):
     text = """# mine
 rubric = 1
 exercise = 'fourbar'
+about = "two\twords"
 hints = [
   0.5,  # the first
   1,
@@ -150,10 +156,11 @@ b = "after_due_date"
     answer = write(folder, "a.json", {"a": 1, "hints": 1})
     said = run("grade", "fourbar", answer, "--rubric", path, "--json").stdout
     expect("grade takes it", len(json.loads(said)["entries"]) == 6, said)
-    faults = (("1e-12", "line 10: the relative tolerance 1e-12 of part b"), ("x", "line 11: a number, a text in quotes"),
-              ("1 2", "line 11: something stands behind the value"), ("{absolute = 1", "line 11: ',' or '}' was expected"),
-              ("0.1\n[tolerance.a]\nabsolute = 1", "'a' is there more than once"), ("0.1\nzz = 1", "line 12: a tolerance has no 'zz'"),
-              ("0.1\n[[points]]", "line 12: a name was expected"), ("0.1\na.b = 1", "line 12: a name with a point is not read here"))  # fmt: skip
+    faults = (("1e-12", "line 11: the relative tolerance 1e-12 of part b"), ("x", "line 12: a number, a text in quotes"),
+              ("1 2", "line 12: something stands behind the value"), ("{absolute = 1", "line 12: ',' or '}' was expected"),
+              ("0.1\n[tolerance.a]\nabsolute = 1", "'a' is there more than once"), ("0.1\nzz = 1", "line 13: a tolerance has no 'zz'"),
+              ("0.1\n[[points]]", "line 13: a list of tables, [[name]], is not read here"),
+              ("0.1\n[points.]", "line 13: a name was expected"), ("1." + "0" * 40 + "e5", "line 12: a number, a text"), ("0.1\n" + "n" * 90 + " = 1", "line 13: a name is too long"), ("0.1\na.b = 1", "line 13: a name with a point is not read here"))  # fmt: skip
     for value, expected in faults:
         done = run("rubric", "check", write(folder, "r.toml", text % value))
         expect(f"relative = {value!r} is told: {expected}", done.returncode == 2 and expected in done.stderr, done.stderr)

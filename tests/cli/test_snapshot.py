@@ -146,7 +146,7 @@ class Snapshot(Command):
             self.assertEqual(sorted(os.listdir(folder)), ["k.png", "k.png.1", "k.svg", "k.svg.1"])
 
     def test_options_that_say_two_things_are_refused(self):
-        for words, said in ((["--time", "1", "--at", "0,0.5"], b"both say which time"), (["--at", "0,1", "--ghosts", "--animate", "9"], b"--ghosts draws all times into one")):
+        for words, said in ((["--ghosts"], b"--at names their times"), (["--ghosts", "--at", "1"], b"two or more"), (["--time", "1", "--at", "0,0.5"], b"both say which time"), (["--at", "0,1", "--ghosts", "--animate", "9"], b"--ghosts draws all times into one")):
             done = call("snapshot", "four-bar", *words, "-o", os.path.join(tempfile.gettempdir(), "never.png"))
             self.assert_exit(done, INPUT)
             self.assertIn(said, done.stderr)

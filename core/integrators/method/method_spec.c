@@ -57,12 +57,15 @@ static hn_status unknown_name(hn_diag *diag, piece p, const char *what, const ch
     if (near) {
         snprintf(hint, sizeof hint, "did you mean '%s'?", near);
     }
-    char list[HN_DIAG_MESSAGE / 2] = "";
+    char list[HN_DIAG_MESSAGE - 128] = ""; // the rest of the message is shorter
     size_t used = 0;
-    for (int i = 0; i < n && used < sizeof list; i++) {
-        const int wrote =
-            snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
-        used += wrote > 0 ? (size_t)wrote : 0;
+    for (int i = 0; i < n; i++) {
+        const bool fits = used + strlen(", ") + strlen(names[i]) + sizeof ", ..." <= sizeof list;
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "",
+                                 fits ? names[i] : "...");
+        if (!fits) {
+            break;
+        }
     }
     hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s '%s' is not known; there are: %s", what, word,
                 n > 0 ? list : "none");

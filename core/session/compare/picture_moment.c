@@ -11,9 +11,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_FRAMES = 1000 };
+enum { MAX_FRAMES = 1000, FORCES_NAMED = 6 };
 static const double FRAME = 0.05, TRACE_FRAME = 0.01; // [s] at most, without and with traces
 static const double SMALLEST_FORCE = 1e-6;            // of the largest: a smaller one is no arrow
+static const double SAME_GAP = 0.01;                  // relative: two digits are shown
+static const double ROUNDING = 1e-12; // [m] a gap below it has other digits wherever it is computed
 
 static hn_status check_time(double time, hn_diags *diags) {
     if (!(time >= 0) || !(time <= 1e6)) {
@@ -141,13 +143,26 @@ static hn_status run_methods(hn_picture_moment *p, hn_diags *diags) {
     return status;
 }
 
+/// Whether the gap, a norm over all constraints, is not the one that the drawing shows at a joint.
+static bool is_over_all(const hn_picture_moment *p, const hn_sample *sample) {
+    const hn_drawing d = hn_system_drawing(hn_model_system(p->model));
+    double widest = 0;
+    for (int k = 0; k < d.n_tears && sample->points; k++) {
+        const double *a = sample->points + 3 * d.tears[k][0];
+        const double *b = sample->points + 3 * d.tears[k][1];
+        widest = fmax(widest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+    }
+    return widest > ROUNDING && fabs(sample->gap - widest) > SAME_GAP * widest;
+}
+
 static void note_method(hn_picture_moment *p, int i, const hn_sample *sample, int good) {
     const hn_run_summary s = hn_run_get_summary(hn_comparison_run(p->comparison, i));
     char gap[HN_SI_TEXT], t[HN_SI_TEXT];
     hn_si_format(sample->gap, "m", 2, gap);
     hn_si_format(s.t, "s", 3, t);
     if (good) {
-        snprintf(p->notes[i], HN_PICTURE_NOTE, "gap %s", gap);
+        snprintf(p->notes[i], HN_PICTURE_NOTE, "gap %s%s", gap,
+                 is_over_all(p, sample) ? " over all constraints" : "");
     } else {
         snprintf(p->notes[i], HN_PICTURE_NOTE, "stopped at %s: %s", t, hn_status_text(s.status));
     }
@@ -241,6 +256,23 @@ static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
 
 // ---- forces ----
 
+/// Says in the legend at which joint each arrow acts, and on which body: "forces: A on coupler".
+static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w) {
+    char *note = p->notes[0];
+    double force[3], place[3];
+    size_t used = strlen(note);
+    if (p->n_loads > FORCES_NAMED) {
+        snprintf(note + used, HN_PICTURE_NOTE - used,
+                 "; arrows: forces, each on the second body of its joint");
+        return;
+    }
+    for (int i = 0; i < hn_reaction_writer_count(w) && used < HN_PICTURE_NOTE; i++) {
+        const char *name = hn_reaction_writer_force(w, i, force, place);
+        used += (size_t)snprintf(note + used, HN_PICTURE_NOTE - used, "%s %.20s on %.20s",
+                                 i ? "," : "; forces:", name, hn_reaction_writer_body(w, i));
+    }
+}
+
 /// The forces in the joints of the first method's state, where they can be computed.
 static hn_status gather_forces(hn_picture_moment *p, hn_diags *diags) {
     hn_reaction_writer *w = NULL;
@@ -278,6 +310,9 @@ static hn_status gather_forces(hn_picture_moment *p, hn_diags *diags) {
                 p->loads[p->n_loads++] = load;
             }
         }
+    }
+    if (status == HN_OK && p->n_loads > 0) {
+        note_forces(p, w);
     }
     hn_reaction_writer_free(w);
     return status;

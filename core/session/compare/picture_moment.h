@@ -9,7 +9,7 @@
 #include "session/compare/comparison.h"
 #include "session/compare/picture.h"
 
-enum { HN_PICTURE_NOTE = 160 };
+enum { HN_PICTURE_NOTE = 240 };
 
 typedef struct hn_picture_moment {
     const hn_model *model;

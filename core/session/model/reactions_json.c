@@ -125,13 +125,22 @@ const char *hn_reaction_writer_force(const hn_reaction_writer *w, int i, double 
     return name_of(w, w->carrier[i]);
 }
 
+static const char *body_of(const hn_reaction_writer *w, int k) {
+    const int body = w->wrenches[k].body;
+    return body < 0 ? "ground" : w->scene->bodies[body].name;
+}
+
+const char *hn_reaction_writer_body(const hn_reaction_writer *w, int i) {
+    return body_of(w, w->carrier[i]);
+}
+
 static void put_wrench(hn_strbuf *b, const hn_reaction_writer *w, int k) {
     const hn_wrench *wrench = &w->wrenches[k];
     const int joint = k < w->scene->n_joints;
     hn_json_object(b);
     hn_json_put_string(b, "name", name_of(w, k));
     hn_json_put_string(b, "kind", joint ? "joint" : "constraint");
-    hn_json_put_string(b, "on", wrench->body < 0 ? "ground" : w->scene->bodies[wrench->body].name);
+    hn_json_put_string(b, "on", body_of(w, k));
     hn_json_put_numbers(b, "force", wrench->force, 3);
     hn_json_put_numbers(b, "moment", wrench->moment, 3);
     hn_json_put_numbers(b, "place", wrench->place, 3);

@@ -32,6 +32,8 @@ void hn_reaction_writer_rows(const hn_reaction_writer *w, double *force, double 
 /// name.
 const char *hn_reaction_writer_force(const hn_reaction_writer *w, int i, double force[3],
                                      double place[3]);
+/// The name of the body on which this force acts; "ground" for the ground.
+const char *hn_reaction_writer_body(const hn_reaction_writer *w, int i);
 /// Writes the results of the last state. "reactions": a list of
 /// {"name","kind","on","force","moment","place","joint_force","joint_moment","determined"};
 /// "efforts": a list of {"name","kind","coordinate","unit","value","determined"}.

@@ -297,6 +297,9 @@ static hn_status check_options(const hn_args *args, bool class, bool programs, h
         {!programs && args->set.n > 0, "/set",
          "--set is for the program of a scene; an exercise has the numbers of its variant",
          "leave --set out, or choose the variant with --seed or --student"},
+        {programs && !isnan(args->seed), "/seed",
+         "--seed chooses a variant, and the program of a scene has none",
+         "leave --seed out; --set NAME=VALUE changes the scene"},
         {!class && !isnan(args->jobs), "/jobs", "--jobs is for a folder of submissions",
          "leave --jobs out, or name the folder"},
     };

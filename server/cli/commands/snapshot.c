@@ -29,6 +29,11 @@ static hn_status choose_form(const hn_args *args, hn_picture_request *request, h
                             "'%.200s' is no name for a picture: snapshots are PNG or SVG",
                             args->out);
     }
+    if (args->ghosts && args->at.n < 2) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/ghosts", "--at 0,0.2,0.4 --ghosts",
+                            "--ghosts draws earlier poses beneath the last one; --at names their "
+                            "times, two or more");
+    }
     if (!isnan(args->animate) && args->ghosts) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/animate", "leave one of them out",
                             "--ghosts draws all times into one picture, --animate one after the "

@@ -9,6 +9,7 @@
 #include "study/run/run.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -123,10 +124,13 @@ static hn_status grade_word(const hn_part *p, const char *word, hn_part_result *
         if (tried == HN_OK) {
             judge(p, &found, &reference, r);
         } else {
-            // the options that allow programs are not those of a student
-            const char *hint =
-                hn_guest_is_named(word) ? "choose one of 'holonom list methods'" : why.hint;
-            hn_part_unreadable(r, "%.250s%s%.100s", why.message, hint[0] ? "; " : "", hint);
+            // the options that allow programs are not those of a student, and a list of all names
+            // is longer than a verdict
+            const char *list = strstr(why.message, "; there are: ");
+            const int length = list ? (int)(list - why.message) : 250;
+            const bool named = why.hint[0] && !hn_guest_is_named(word);
+            hn_part_unreadable(r, "%.*s; %.100s", length, why.message,
+                               named ? why.hint : "choose one of 'holonom list methods'");
             status = tried == HN_ERR_MEMORY ? tried : status;
         }
     }

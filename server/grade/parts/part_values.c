@@ -233,7 +233,7 @@ static void put_tolerance(hn_strbuf *b, const hn_part *p) {
     }
     hn_strbuf_printf(b, "; right to %.3g %%", 100 * relative);
     if (absolute > 1e-9) {
-        hn_strbuf_printf(b, " or %.3g %s", absolute, unit);
+        hn_strbuf_printf(b, " or %.3g%s%s", absolute, unit[0] ? " " : "", unit);
     }
 }
 

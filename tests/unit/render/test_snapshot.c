@@ -2,6 +2,8 @@
 #include "support/near.h"
 
 #include "render/snapshot.h"
+#include "render/snapshot_labels.h"
+#include "render/snapshot_marks.h"
 #include "support/alloc.h"
 
 #include <math.h>
@@ -98,6 +100,23 @@ static void a_closed_joint_is_not_magnified_into_its_rounding(void **state) {
     const hn_snapshot_opts opts = hn_snapshot_opts_default();
     assert_near(described(&pose, 1, &opts, "magnification"), 1, 0);
     assert_near(described(&pose, 1, &opts, "gap"), 0, 0);
+}
+
+// the legend gives its number; that of the drawn points is another rounding of the same zero
+static void a_closed_joint_has_no_number_of_its_own_in_the_inset(void **state) {
+    (void)state;
+    double closed[15], rounding[15];
+    set_points(closed, 0);
+    set_points(rounding, 0);
+    rounding[13] += 4e-16; // two units in the last place of 1.7
+    const hn_snapshot_pose exact = {.points = closed}, near = {.points = rounding};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    assert_true(described(&near, 1, &opts, "gap") > 0);
+    unsigned char *one = draw(&four_bar, &exact, 1, &opts);
+    unsigned char *two = draw(&four_bar, &near, 1, &opts);
+    assert_int_equal(differing_pixels(one, two), 0);
+    free(one);
+    free(two);
 }
 
 static void the_widest_tear_of_all_poses_is_the_one_shown(void **state) {
@@ -398,6 +417,78 @@ static void values_of_forces_stay_on_the_sheet_and_apart(void **state) {
     free(two);
 }
 
+/// From the box of a value to an arrow [px]; 0 inside.
+static double away_from(const hn_load_mark *value, const hn_load_mark *arrow, double font) {
+    double least = HUGE_VAL;
+    for (int k = 0; k <= 100; k++) {
+        const double t = k / 100.0;
+        const double x = arrow->tail[0] + t * (arrow->tip[0] - arrow->tail[0]);
+        const double y = arrow->tail[1] + t * (arrow->tip[1] - arrow->tail[1]);
+        const double across = fmax(0, fabs(x - value->text[0]) - value->half);
+        const double down = fmax(0, fabs(y - value->text[1]) - 0.55 * font);
+        least = fmin(least, hypot(across, down));
+    }
+    return least;
+}
+
+// forces in the middle of a bar and in its joint, in all directions: the nearest arrow to a value
+// is its own
+static void a_value_stands_nearest_to_its_own_arrow(void **state) {
+    (void)state;
+    enum { TURNS = 12 };
+    double points[15];
+    set_points(points, 0);
+    const hn_snapshot_pose pose = {.points = points, .selected = 1};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    hn_snapshot_load loads[2] = {{.point = -1, .place = {0.2, 0.45, 0}, .unit = "N"},
+                                 {.point = 1, .unit = "N"}};
+    opts.loads = loads;
+    opts.n_loads = 2;
+    int taken = 0;
+    for (int k = 0; k < TURNS * TURNS; k++) {
+        const double a = 2 * M_PI * (k / TURNS) / TURNS, b = 2 * M_PI * (k % TURNS) / TURNS;
+        loads[0].force[0] = 44.1 * cos(a);
+        loads[0].force[1] = 44.1 * sin(a);
+        loads[1].force[0] = 26.0 * cos(b);
+        loads[1].force[1] = 26.0 * sin(b);
+        hn_sheet sheet;
+        hn_label_places placed = {0};
+        hn_load_mark marks[HN_LABEL_ARROWS];
+        assert_int_equal(hn_sheet_make(&sheet, WIDTH, HEIGHT, &four_bar, &pose, 1, &opts, NULL),
+                         HN_OK);
+        assert_int_equal(hn_load_marks_place(&sheet, &four_bar, &pose, &opts, &placed, marks), 2);
+        for (int i = 0; i < 2; i++) {
+            taken += away_from(&marks[i], &marks[1 - i], sheet.font) <=
+                     away_from(&marks[i], &marks[i], sheet.font);
+        }
+    }
+    assert_int_equal(taken, 0);
+}
+
+// a force that crosses the middle of a dimension line: the length moves along the line
+static void a_length_keeps_off_the_arrow_of_a_force(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 0);
+    const hn_snapshot_pose pose = {.points = points, .selected = 1};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    hn_sheet sheet;
+    assert_int_equal(hn_sheet_make(&sheet, WIDTH, HEIGHT, &four_bar, &pose, 1, &opts, NULL), HN_OK);
+    hn_canvas *c = create();
+    hn_label_places free_places = {0}, crossed = {0};
+    hn_snapshot_dimensions(c, &sheet, &four_bar, &pose, &free_places);
+    assert_true(free_places.n == 3);
+    crossed.n_arrows = 1; // straight through the first length
+    crossed.arrow[0][0][0] = crossed.arrow[0][1][0] = free_places.at[0][0];
+    crossed.arrow[0][0][1] = free_places.at[0][1] - 40;
+    crossed.arrow[0][1][1] = free_places.at[0][1] + 40;
+    assert_true(hn_label_room(&sheet, &crossed, free_places.at[0], free_places.half[0]) < 0);
+    hn_snapshot_dimensions(c, &sheet, &four_bar, &pose, &crossed);
+    hn_canvas_free(c);
+    crossed.n = 0; // the arrow alone counts
+    assert_true(hn_label_room(&sheet, &crossed, crossed.at[0], crossed.half[0]) >= 0);
+}
+
 static void the_reference_lies_beneath_and_is_thin(void **state) {
     (void)state;
     double points[15];
@@ -462,6 +553,7 @@ int main(void) {
         cmocka_unit_test(a_long_note_is_told_in_lines_and_not_cut_to_one),
         cmocka_unit_test(many_poses_with_long_notes_all_fit),
         cmocka_unit_test(a_closed_joint_is_not_magnified_into_its_rounding),
+        cmocka_unit_test(a_closed_joint_has_no_number_of_its_own_in_the_inset),
         cmocka_unit_test(the_widest_tear_of_all_poses_is_the_one_shown),
         cmocka_unit_test(with_a_fixed_view_the_scale_does_not_depend_on_the_pose),
         cmocka_unit_test(in_space_what_is_nearer_covers_what_is_farther),
@@ -472,6 +564,8 @@ int main(void) {
             names_of_points_at_one_place_are_joined_and_no_name_is_written_over_another),
         cmocka_unit_test(a_trace_and_a_load_are_drawn),
         cmocka_unit_test(values_of_forces_stay_on_the_sheet_and_apart),
+        cmocka_unit_test(a_value_stands_nearest_to_its_own_arrow),
+        cmocka_unit_test(a_length_keeps_off_the_arrow_of_a_force),
         cmocka_unit_test(the_reference_lies_beneath_and_is_thin),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
     };
