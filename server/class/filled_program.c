@@ -282,16 +282,18 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     e->given_value = given_at(p, state, entry);
     e->expected_value = expected_at(p, state, entry);
     e->allowed = ALLOWED * size_of(p);
+    char place[64];
     if (columns) {
-        snprintf(e->given, sizeof e->given, "%s[%d, %d]", name, entry / columns + first,
+        snprintf(place, sizeof place, "%s[%d, %d]", name, entry / columns + first,
                  entry % columns + first);
     } else {
-        snprintf(e->given, sizeof e->given, "%s[%d]", name, entry + first);
+        snprintf(place, sizeof place, "%s[%d]", name, entry + first);
     }
+    snprintf(e->given, sizeof e->given, "%s", place);
     if (!e->mistake[0]) {
         e->mistake = "other";
         snprintf(e->explanation, sizeof e->explanation,
-                 "no known mistake; %s differs most, at state %d of %d (t = %.4g s)", e->given,
+                 "no known mistake; %s differs most, at state %d of %d (t = %.4g s)", place,
                  state + 1, HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
     }
 }
