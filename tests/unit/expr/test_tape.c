@@ -6,6 +6,7 @@
 #include "expr/diff.h"
 #include "expr/parse.h"
 #include "expr/tape.h"
+#include "expr/tape_interpret.h"
 #include "expr/tape_long.h"
 #include "support/alloc.h"
 
@@ -387,6 +388,66 @@ static void equal_outputs_are_compiled_once_and_outlive_the_graph(void **state) 
     hn_tape_free(swapped);
 }
 
+/// Fills the inputs of two workspaces with the same numbers.
+static void fill_both(unsigned *s, double *x, double *y) {
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        x[i] = y[i] = random_between(s, -20, 20);
+    }
+}
+
+static void both_forms_of_the_interpreter_give_the_same_bits(void **state) {
+    (void)state;
+    for (unsigned seed = 1; seed <= 200; seed++) {
+        unsigned s = seed;
+        hn_graph *g = hn_graph_create();
+        hn_ex pool[N_POOL];
+        grow_pool(g, &s, pool);
+        hn_tape *tape = compile(g, pool, N_POOL);
+        const size_t size = hn_tape_work_size(tape) * sizeof(double);
+        double *x = workspace(tape), *y = workspace(tape);
+        for (int k = 0; k < 3; k++) {
+            fill_both(&s, x, y);
+            hn_tape_interpret_by(HN_TAPE_JUMPS, tape, x);
+            hn_tape_interpret_by(HN_TAPE_SWITCH, tape, y);
+            assert_memory_equal(x, y, size);
+        }
+        free(x);
+        free(y);
+        hn_tape_free(tape);
+        hn_graph_free(g);
+    }
+}
+
+// which form is quicker is the processor's affair; that one is chosen, and that no value changes
+// in the run that compares them, is not
+static void the_forms_are_compared_after_a_while_and_values_stay(void **state) {
+    (void)state;
+    unsigned s = 23;
+    hn_graph *g = hn_graph_create();
+    hn_ex pool[N_POOL];
+    grow_pool(g, &s, pool);
+    hn_tape *tape = compile(g, pool, N_POOL);
+    const int length = hn_tape_get_info(tape).instructions;
+    const size_t size = hn_tape_work_size(tape) * sizeof(double);
+    double *x = workspace(tape), *y = workspace(tape);
+    hn_tape_dispatch serves;
+    assert_true(length >= HN_TAPE_COMPARED_LENGTH);
+
+    // each run beside one by jumps alone, past the one that compares
+    for (int k = 0; k <= HN_TAPE_COMPARED_AFTER / length + 1; k++) {
+        fill_both(&s, x, y);
+        hn_tape_run(tape, x);
+        hn_tape_interpret_by(HN_TAPE_JUMPS, tape, y);
+        assert_memory_equal(x, y, size);
+    }
+    assert_true(hn_tape_is_compared(&serves));
+    assert_true(serves == HN_TAPE_JUMPS || serves == HN_TAPE_SWITCH);
+    free(x);
+    free(y);
+    hn_tape_free(tape);
+    hn_graph_free(g);
+}
+
 static void out_of_memory_is_told_and_leaks_nothing(void **state) {
     (void)state;
     const int symbols[N_SYMBOLS] = {0, 1, 2, 3, 4};
@@ -432,6 +493,8 @@ int main(void) {
         cmocka_unit_test(a_listing_shows_what_runs),
         cmocka_unit_test(a_chain_of_a_hundred_thousand_nodes_compiles_and_runs),
         cmocka_unit_test(equal_outputs_are_compiled_once_and_outlive_the_graph),
+        cmocka_unit_test(both_forms_of_the_interpreter_give_the_same_bits),
+        cmocka_unit_test(the_forms_are_compared_after_a_while_and_values_stay),
         cmocka_unit_test(out_of_memory_is_told_and_leaks_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
