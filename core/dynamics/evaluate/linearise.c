@@ -15,11 +15,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// One term: dense values, and which entries are not identically zero.
+/// One term: its entries that are not identically zero. A vector's values are all its entries; a
+/// matrix's are those of the list, or all of them row by row.
 typedef struct term_values {
     double *values;
+    bool listed;
     int n_entries;
     int *rows, *cols;
+    int first, end; ///< of the tape's outputs, those of this term
 } term_values;
 
 struct hn_linear {
@@ -28,7 +31,7 @@ struct hn_linear {
     hn_tape *tape;
     double *x; ///< the tape's workspace: q, v, t, a, lambda, parameters, pulls first
     double **target;
-    int *source;
+    int *source, *entry; ///< where in the workspace, and which entry of its term, each comes from
     int n_scatter;
     term_values terms[HN_LINEAR_COUNT];
     long long count;
@@ -104,11 +107,8 @@ static hn_status make_sums(builder *b) {
 }
 
 static int index_of(hn_linear_term term) {
-    int k = 0;
-    while (k < HN_LINEAR_COUNT && (1u << k) != (unsigned)term) {
-        k++;
-    }
-    HN_ASSERT(k < HN_LINEAR_COUNT);
+    const int k = __builtin_ctz((unsigned)term);
+    HN_ASSERT(k < HN_LINEAR_COUNT && (1u << k) == (unsigned)term);
     return k;
 }
 
@@ -249,10 +249,14 @@ static void list_symbols(const builder *b, int *symbols) {
     }
 }
 
-static int count_cols(const hn_linear *l, int term) {
+static bool is_matrix(int term) {
     const unsigned matrices = HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_V |
                               HN_LINEAR_GAMMA_Q | HN_LINEAR_GAMMA_V;
-    return 1u << term & matrices ? l->nv : 1;
+    return (1u << term & matrices) != 0;
+}
+
+static int count_cols(const hn_linear *l, int term) {
+    return is_matrix(term) ? l->nv : 1;
 }
 
 static int count_rows(const hn_linear *l, int term) {
@@ -267,8 +271,9 @@ static hn_status allocate(builder *b, unsigned terms, int *n_entries) {
     for (int k = 0; k < HN_LINEAR_COUNT; k++) {
         if (terms & 1u << k) {
             const size_t n = (size_t)b->terms[k].n;
-            const size_t size = (size_t)count_rows(l, k) * (size_t)count_cols(l, k);
-            l->terms[k].values = hn_arena_doubles(b->arena, size);
+            l->terms[k].listed = is_matrix(k);
+            l->terms[k].values =
+                hn_arena_doubles(b->arena, is_matrix(k) ? n : (size_t)count_rows(l, k));
             l->terms[k].rows = hn_arena_ints(b->arena, n);
             l->terms[k].cols = hn_arena_ints(b->arena, n);
             *n_entries += (int)n;
@@ -276,7 +281,16 @@ static hn_status allocate(builder *b, unsigned terms, int *n_entries) {
     }
     l->target = hn_arena_get(b->arena, ((size_t)*n_entries + 1) * sizeof *l->target);
     l->source = hn_arena_ints(b->arena, (size_t)*n_entries + 1);
+    l->entry = hn_arena_ints(b->arena, (size_t)*n_entries + 1);
     return hn_arena_failed(b->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+/// Where entry i of a term is kept.
+static double *place_of(const hn_linear *l, int term, int i) {
+    const term_values *of = &l->terms[term];
+    return of->listed ? &of->values[i]
+                      : &of->values[(size_t)of->rows[i] * (size_t)count_cols(l, term) +
+                                    (size_t)of->cols[i]];
 }
 
 /// Each entry has its place; numbers are written once, the others are outputs of the tape.
@@ -284,20 +298,22 @@ static int scatter(builder *b, hn_ex *outputs) {
     hn_linear *l = b->l;
     for (int k = 0; k < HN_LINEAR_COUNT; k++) {
         term_values *term = &l->terms[k];
+        term->first = l->n_scatter;
         for (int i = 0; i < b->terms[k].n; i++) {
             const hn_entry *e = &b->terms[k].at[i];
-            double value,
-                *place = &term->values[(size_t)e->row * (size_t)count_cols(l, k) + (size_t)e->col];
+            double value;
             term->rows[i] = e->row;
             term->cols[i] = e->col;
             if (hn_is_number(e->e, &value)) {
-                *place = value;
+                *place_of(l, k, i) = value;
             } else {
-                l->target[l->n_scatter] = place;
+                l->target[l->n_scatter] = place_of(l, k, i);
+                l->entry[l->n_scatter] = i;
                 outputs[l->n_scatter++] = e->e;
             }
         }
         term->n_entries = b->terms[k].n;
+        term->end = l->n_scatter;
     }
     return l->n_scatter;
 }
@@ -341,7 +357,8 @@ static hn_status compile(builder *b, unsigned terms) {
     return HN_OK;
 }
 
-hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_linear **out) {
+hn_status hn_linear_create_listed(const hn_system *sys, unsigned terms, hn_arena *arena,
+                                  hn_linear **out) {
     HN_ASSERT(sys && arena && out);
     hn_linear *l = hn_arena_get(arena, sizeof *l);
     *out = NULL;
@@ -379,6 +396,44 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     return HN_OK;
 }
 
+/// A matrix from its list to all of its entries; the tape's outputs go there from now on.
+static void spread(hn_linear *l, int term, double *dense) {
+    term_values *of = &l->terms[term];
+    const double *const list = of->values;
+    of->values = dense;
+    of->listed = false;
+    for (int i = 0; i < of->n_entries; i++) {
+        *place_of(l, term, i) = list[i];
+    }
+    for (int k = of->first; k < of->end; k++) {
+        l->target[k] = place_of(l, term, l->entry[k]);
+    }
+}
+
+hn_status hn_linear_spread(hn_linear *l, hn_arena *arena) {
+    for (int k = 0; k < HN_LINEAR_COUNT; k++) {
+        if (l->terms[k].values && l->terms[k].listed) {
+            const size_t size = (size_t)count_rows(l, k) * (size_t)count_cols(l, k);
+            double *dense = hn_arena_doubles(arena, size);
+            if (!dense) {
+                return HN_ERR_MEMORY;
+            }
+            spread(l, k, dense);
+        }
+    }
+    return HN_OK;
+}
+
+hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_linear **out) {
+    HN_TRY(hn_linear_create_listed(sys, terms, arena, out));
+    const hn_status status = hn_linear_spread(*out, arena);
+    if (status != HN_OK) {
+        hn_linear_free(*out);
+        *out = NULL;
+    }
+    return status;
+}
+
 void hn_linear_free(hn_linear *l) {
     if (l) {
         hn_tape_free(l->tape);
@@ -411,9 +466,19 @@ void hn_linear_run(hn_linear *l, double t, const double *q, const double *v, con
 }
 
 const double *hn_linear_get(const hn_linear *l, hn_linear_term term) {
-    const double *values = l->terms[index_of(term)].values;
-    HN_ASSERT(values != NULL);
-    return values;
+    const term_values *of = &l->terms[index_of(term)];
+    HN_ASSERT(of->values != NULL && !of->listed);
+    return of->values;
+}
+
+double hn_linear_entry(const hn_linear *l, hn_linear_term term, int k) {
+    return *place_of(l, index_of(term), k);
+}
+
+const double *hn_linear_list(const hn_linear *l, hn_linear_term term) {
+    const term_values *of = &l->terms[index_of(term)];
+    HN_ASSERT(of->values != NULL && of->listed);
+    return of->values;
 }
 
 int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows, const int **cols) {
@@ -432,12 +497,12 @@ int hn_linear_entries(const hn_linear *l, hn_linear_term term) {
 /// out += X x, or X' x.
 static void add_product(const hn_linear *l, hn_linear_term term, bool transposed, const double *x,
                         double *out) {
-    const term_values *of = &l->terms[index_of(term)];
-    const size_t cols = (size_t)count_cols(l, index_of(term));
+    const int at = index_of(term);
+    const term_values *of = &l->terms[at];
     HN_ASSERT(of->values != NULL);
     for (int k = 0; k < of->n_entries; k++) {
         const int i = of->rows[k], j = of->cols[k];
-        const double e = of->values[(size_t)i * cols + (size_t)j];
+        const double e = *place_of(l, at, k);
         out[transposed ? j : i] += e * x[transposed ? i : j];
     }
 }
@@ -454,10 +519,9 @@ void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const d
 }
 
 bool hn_linear_is_finite(const hn_linear *l, hn_linear_term term) {
-    const term_values *of = &l->terms[index_of(term)];
-    const size_t cols = (size_t)count_cols(l, index_of(term));
-    for (int k = 0; k < of->n_entries; k++) {
-        if (!isfinite(of->values[(size_t)of->rows[k] * cols + (size_t)of->cols[k]])) {
+    const int at = index_of(term);
+    for (int k = 0; k < l->terms[at].n_entries; k++) {
+        if (!isfinite(*place_of(l, at, k))) {
             return false;
         }
     }

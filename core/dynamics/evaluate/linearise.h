@@ -35,14 +35,26 @@ typedef struct hn_linear hn_linear;
 /// Memory from `arena`, the tape owned by it (hn_linear_free). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena,
                                          hn_linear **out);
+/// The same with matrices as lists of the entries that are not identically zero: in a large
+/// mechanism few of them are, and one of each row would be fetched from a page of its own.
+HN_MUST_CHECK hn_status hn_linear_create_listed(const hn_system *sys, unsigned terms,
+                                                hn_arena *arena, hn_linear **out);
+/// Turns lists into whole matrices, as those of hn_linear_create() are. Fails: HN_ERR_MEMORY; each
+/// matrix is then of one kind or the other.
+HN_MUST_CHECK hn_status hn_linear_spread(hn_linear *l, hn_arena *arena);
 void hn_linear_free(hn_linear *l); ///< NULL is legal
 /// a (nv) and lambda (nc) may be NULL: zero. Allocates nothing.
 void hn_linear_run(hn_linear *l, double t, const double *q, const double *v, const double *a,
                    const double *lambda);
+/// The values of a term as last evaluated: a vector, or a whole matrix row by row.
 const double *hn_linear_get(const hn_linear *l, hn_linear_term term);
+/// Those of a matrix that is a list, in the order of hn_linear_pattern().
+const double *hn_linear_list(const hn_linear *l, hn_linear_term term);
 /// Entries of a matrix term that are not identically zero: their number, rows and columns
 /// (borrowed).
 int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows, const int **cols);
+/// Entry k of hn_linear_pattern() of a matrix of either kind.
+double hn_linear_entry(const hn_linear *l, hn_linear_term term, int k);
 int hn_linear_entries(const hn_linear *l, hn_linear_term term); ///< their number alone
 /// out = X x, or X' x, for a matrix term as last evaluated; out and x must not overlap. Costs two
 /// operations an entry.

@@ -144,7 +144,7 @@ static void sort_choice(hn_chart *chart) {
 
 static void scale_columns(hn_chart *chart, double t, const double *q, const double *no_speed) {
     hn_eval_run(chart->full, t, q, no_speed);
-    hn_unit_scales(chart->sys, hn_eval_get(chart->full, HN_TERM_M), chart->scale);
+    hn_unit_scales(chart->sys, hn_eval_get(chart->full, HN_TERM_M), chart->nv + 1, chart->scale);
 }
 
 // 1 when all speeds of balls are dependent, or may be independent

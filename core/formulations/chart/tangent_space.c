@@ -97,7 +97,7 @@ static double smallest_pivot(const hn_qr *qr) {
 
 static void measure(hn_tspace *ts, double t, const double *q) {
     hn_eval_run(ts->mass, t, q, NULL);
-    hn_unit_scales(ts->sys, hn_eval_get(ts->mass, HN_TERM_M), ts->new_scale);
+    hn_unit_scales(ts->sys, hn_eval_get(ts->mass, HN_TERM_M), ts->nv + 1, ts->new_scale);
 }
 
 // QR of W^1/2 J' at (t, q)

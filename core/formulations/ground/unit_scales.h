@@ -11,7 +11,8 @@
 
 #include "dynamics/compile/system.h"
 
-/// scale (nv) for a system with mass matrix M (nv x nv, row-major) at the present configuration.
-void hn_unit_scales(const hn_system *sys, const double *M, double *scale);
+/// scale (nv) for a system whose mass matrix has M_jj = mass[j * apart] on its diagonal at the
+/// present configuration: `apart` is nv + 1 where `mass` is the matrix itself, 1 where it is a list.
+void hn_unit_scales(const hn_system *sys, const double *mass, int apart, double *scale);
 
 #endif

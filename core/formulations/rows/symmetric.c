@@ -286,7 +286,7 @@ static hn_status begin(symmetric *s, double t, const double *y) {
     HN_TRY(look(s, t, y));
     memcpy(s->L0, s->L, (size_t)nv * nv * sizeof *s->L);
     memcpy(s->J0, s->J, (size_t)nc * nv * sizeof *s->J);
-    hn_unit_scales(s->ode.base.sys, s->M, s->unit);
+    hn_unit_scales(s->ode.base.sys, s->M, nv + 1, s->unit);
     memset(s->mu, 0, (size_t)nc * sizeof *s->mu);
     memset(s->nu, 0, (size_t)nc * sizeof *s->nu);
     memset(s->N0_mu, 0, (size_t)nv * sizeof *s->N0_mu);

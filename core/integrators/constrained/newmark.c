@@ -289,7 +289,7 @@ hn_status hn_newmark_step(hn_newmark *s, double t, double h, const double *y, do
     hn_dae_choose_rows(b);
     memset(s->pushed, 0, (size_t)b->nv * sizeof *s->pushed);
     if (s->stabilised && !is_extended(s) && prepare_stabiliser(s) != HN_OK) {
-        hn_dae_tell_massless(b->sys, b->M, t, b->why, sizeof b->why);
+        hn_dae_tell_massless(b->sys, b->M, b->nv + 1, t, b->why, sizeof b->why);
         return HN_ERR_MASS;
     }
 

@@ -498,8 +498,7 @@ static hn_status begin(implicit_dae *s, double t, const double *y) {
         hn_implicit_linear_at(&s->lin, t, s->q0, s->v0, s->a_start, s->lambda_start);
     if (status != HN_OK) {
         if (s->form == HN_FORM_GGL && status != HN_ERR_DIVERGED) {
-            hn_dae_tell_massless(s->sys, hn_linear_get(s->lin.terms, HN_LINEAR_M), t, s->why,
-                                 sizeof s->why);
+            hn_dae_tell_massless(s->sys, s->lin.diagonal, 1, t, s->why, sizeof s->why);
             return HN_ERR_MASS;
         }
         snprintf(s->why, sizeof s->why, "the equations at t = %.6g s: %s", t,

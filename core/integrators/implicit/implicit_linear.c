@@ -63,7 +63,7 @@ static bool create_mass_factor(hn_implicit_linear *l, hn_arena *arena) {
         if (rows[k] >= cols[k]) {
             row[l->n_lower] = rows[k];
             col[l->n_lower] = cols[k];
-            l->lower[l->n_lower++] = rows[k] * l->nv + cols[k];
+            l->lower[l->n_lower++] = k;
         }
     }
     l->mass_factor = hn_sparse_spd_create(arena, l->nv, l->n_lower, row, col);
@@ -76,6 +76,7 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     l->place = hn_arena_ints(arena, nc);
     l->unit = hn_arena_doubles(arena, nc);
     l->mass_unit = hn_arena_doubles(arena, nv);
+    l->diagonal = hn_arena_doubles(arena, nv);
     l->seen = hn_arena_doubles(arena, nc);
     l->column_unit = hn_arena_doubles(arena, nv);
 
@@ -106,6 +107,17 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
+/// Small or full ones are read row by row.
+static hn_status take_whole_matrices(hn_implicit_linear *l, hn_arena *arena) {
+    HN_TRY(hn_linear_spread(l->terms, arena));
+    l->M = hn_linear_get(l->terms, HN_LINEAR_M);
+    l->K = hn_linear_get(l->terms, HN_LINEAR_K);
+    l->C = hn_linear_get(l->terms, HN_LINEAR_C);
+    l->J = hn_linear_get(l->terms, HN_LINEAR_J);
+    l->V = hn_linear_get(l->terms, HN_LINEAR_V);
+    return HN_OK;
+}
+
 hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, hn_dae_form form,
                                   hn_arena *arena) {
     const hn_system_info info = hn_system_get_info(sys);
@@ -114,15 +126,11 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     *l = (hn_implicit_linear){
         .form = form, .stabilised = form == HN_FORM_GGL, .nv = info.nv, .nc = info.nc};
     l->sys = sys;
-    HN_TRY(hn_linear_create(sys, terms, arena, &l->terms));
-    l->M = hn_linear_get(l->terms, HN_LINEAR_M);
-    l->K = hn_linear_get(l->terms, HN_LINEAR_K);
-    l->C = hn_linear_get(l->terms, HN_LINEAR_C);
-    l->J = hn_linear_get(l->terms, HN_LINEAR_J);
-    l->V = hn_linear_get(l->terms, HN_LINEAR_V);
+    HN_TRY(hn_linear_create_listed(sys, terms, arena, &l->terms));
     l->has_damping = hn_linear_entries(l->terms, HN_LINEAR_C) > 0;
     l->sparse = wants_sparse(l);
-    hn_status status = allocate(l, arena);
+    hn_status status = l->sparse ? HN_OK : take_whole_matrices(l, arena);
+    HN_THEN(status, allocate(l, arena));
     const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_J, &rows, &cols);
     return status == HN_OK ? hn_row_check_create(arena, l->nc, l->nv, n, rows, cols, &l->check)
                            : status;
@@ -153,6 +161,27 @@ static void keep_all(hn_implicit_linear *l) {
     note_places(l);
 }
 
+/// J row by row, in units in which its rows can be compared, to where the QR takes it from.
+static void fill_rows(hn_implicit_linear *l) {
+    const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_J, &rows, &cols);
+    memset(l->qr.a, 0, (size_t)l->nc * (size_t)l->nv * sizeof *l->qr.a);
+    for (int k = 0; k < n; k++) {
+        l->qr.a[(size_t)rows[k] * (size_t)l->nv + (size_t)cols[k]] =
+            hn_linear_entry(l->terms, HN_LINEAR_J, k) * l->column_unit[cols[k]] /
+            hn_system_row_unit(l->sys, rows[k]);
+    }
+}
+
+/// Whether the quick check finds that all rows count.
+static bool all_count(hn_implicit_linear *l) {
+    if (!l->check) {
+        return false;
+    }
+    return l->sparse ? hn_row_check_run_list(l->check, hn_linear_list(l->terms, HN_LINEAR_J),
+                                             l->column_unit)
+                     : hn_row_check_run(l->check, l->J, l->column_unit);
+}
+
 // by pivoted QR of J' with rows of length 1
 double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *q,
                                  const double *v) {
@@ -160,20 +189,16 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
     hn_linear_run(l->terms, t, q, v, NULL, NULL);
 
     // the quick check: all rows count
-    if (l->check && hn_row_check_run(l->check, l->J, l->column_unit)) {
+    if (all_count(l)) {
         keep_all(l);
         return 1;
     }
 
     // lengths of the rows, not below those of earlier poses and of the longest
     double longest = 0;
+    fill_rows(l);
     for (int i = 0; i < nc; i++) {
-        double *row = l->qr.a + (size_t)i * (size_t)nv;
-        const double row_unit = hn_system_row_unit(l->sys, i);
-        for (int j = 0; j < nv; j++) {
-            row[j] = l->J[(size_t)i * (size_t)nv + (size_t)j] * l->column_unit[j] / row_unit;
-        }
-        l->unit[i] = hn_norm2(nv, row);
+        l->unit[i] = hn_norm2(nv, l->qr.a + (size_t)i * (size_t)nv);
         longest = fmax(longest, l->unit[i]);
     }
     for (int i = 0; i < nc; i++) {
@@ -181,7 +206,7 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
         const double size = fmax(fmax(l->unit[i], OWN_FLOOR * l->seen[i]), ROW_FLOOR * longest);
         l->unit[i] = size > 0 ? 1 / size : 0;
         for (int j = 0; j < nv; j++) {
-            l->qr.a[i * nv + j] *= l->unit[i];
+            l->qr.a[(size_t)i * (size_t)nv + (size_t)j] *= l->unit[i];
         }
     }
 
@@ -200,18 +225,21 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
 // lengths of the mechanism. Whether a coordinate moves no mass is then the same question at any
 // size; scaling by powers of two is exact.
 static void find_units(hn_implicit_linear *l) {
-    hn_unit_scales(l->sys, l->M, l->mass_unit);
+    hn_unit_scales(l->sys, l->diagonal, 1, l->mass_unit);
     for (int i = 0; i < l->nv; i++) {
         l->mass_unit[i] = exp2(rint(log2(l->mass_unit[i])));
     }
 }
 
 static hn_status factor_mass(hn_implicit_linear *l) {
+    const double *M = hn_linear_list(l->terms, HN_LINEAR_M);
+    const int *rows, *cols;
     double largest = 0;
+    hn_linear_pattern(l->terms, HN_LINEAR_M, &rows, &cols);
     find_units(l);
     for (int k = 0; k < l->n_lower; k++) {
-        const int i = l->lower[k] / l->nv, j = l->lower[k] % l->nv;
-        l->lower_values[k] = l->M[l->lower[k]] * l->mass_unit[i] * l->mass_unit[j];
+        const int at = l->lower[k];
+        l->lower_values[k] = M[at] * l->mass_unit[rows[at]] * l->mass_unit[cols[at]];
         largest = fmax(largest, fabs(l->lower_values[k]));
     }
     l->ops += hn_sparse_spd_factor_ops(l->mass_factor);
@@ -286,6 +314,16 @@ static void find_damped(hn_implicit_linear *l) {
     }
 }
 
+/// The masses that move with each velocity alone.
+static void take_diagonal(hn_implicit_linear *l) {
+    const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_M, &rows, &cols);
+    for (int k = 0; k < n; k++) {
+        if (rows[k] == cols[k]) {
+            l->diagonal[rows[k]] = hn_linear_entry(l->terms, HN_LINEAR_M, k);
+        }
+    }
+}
+
 hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q, const double *v,
                                 const double *a, const double *lambda) {
     hn_linear_run(l->terms, t, q, v, a, lambda);
@@ -296,6 +334,7 @@ hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q
     if (!l->stabilised) {
         return HN_OK;
     }
+    take_diagonal(l);
     if (l->sparse) {
         return factor_mass(l);
     }
@@ -313,10 +352,9 @@ static hn_complex product(hn_complex a, hn_complex b) {
 // w times a square term, its first entry at (row, col)
 static void put_term(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linear_term term,
                      hn_complex w, int row, int col) {
-    const double *values = hn_linear_get(l->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(l->terms, term, &rows, &cols);
     for (int k = 0; k < n; k++) {
-        const double e = values[(size_t)rows[k] * (size_t)l->nv + (size_t)cols[k]];
+        const double e = hn_linear_entry(l->terms, term, k);
         hn_newton_matrix_put(to, row + rows[k], col + cols[k], w.re * e, w.im * e);
     }
 }
@@ -324,12 +362,11 @@ static void put_term(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linea
 // w times the kept rows of J or V, or of their transpose
 static void put_rows(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linear_term term,
                      bool transposed, hn_complex w, int row, int col) {
-    const double *values = hn_linear_get(l->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(l->terms, term, &rows, &cols);
     for (int k = 0; k < n; k++) {
         const int at = l->place[rows[k]];
         if (at >= 0) {
-            const double e = values[(size_t)rows[k] * (size_t)l->nv + (size_t)cols[k]];
+            const double e = hn_linear_entry(l->terms, term, k);
             hn_newton_matrix_put(to, row + (transposed ? cols[k] : at),
                                  col + (transposed ? at : cols[k]), w.re * e, w.im * e);
         }

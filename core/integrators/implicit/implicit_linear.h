@@ -41,9 +41,9 @@ typedef struct hn_implicit_linear {
     hn_dae_form form;
     bool stabilised; ///< GGL: mu holds the velocities
     int nv, nc;
-    hn_linear *terms; ///< M K C J V R at the start of the step
-    const double *M, *K, *C, *J, *V;
-    bool has_damping; ///< C is not identically zero
+    hn_linear *terms;            ///< M K C J V R at the start of the step
+    const double *M, *K, *C, *J, *V; ///< whole matrices; NULL where it is sparse and they are lists
+    bool has_damping;            ///< C is not identically zero
     bool sparse;
     int n_kept, *kept;
     int *place;          ///< nc: which of the kept rows this is; -1: left out
@@ -55,9 +55,10 @@ typedef struct hn_implicit_linear {
     double *Y, *S, *damped; ///< GGL, dense: nv x nc; n_kept x n_kept factored; C Y S^-1 V (nv x nv)
     const hn_system *sys;
     double *mass_unit;          ///< nv: powers of two, see implicit_linear.c
+    double *diagonal;           ///< nv: of M
     double *mass;               ///< nv x nv factored
     hn_sparse_spd *mass_factor; ///< GGL, sparse
-    int *lower;                 ///< entries of M's pattern in its lower triangle
+    int *lower;                 ///< which entries of M's pattern are in its lower triangle
     int n_lower;
     double *lower_values;
     hn_newton_matrix *matrix[2]; ///< real, complex

@@ -322,16 +322,17 @@ hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *wh
     return status;
 }
 
-void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char *why, size_t size) {
+void hn_dae_tell_massless(const hn_system *sys, const double *mass, int apart, double t, char *why,
+                          size_t size) {
     const double massless = 1e-14; // of the largest mass, as in the dense solves
     const hn_system_info info = hn_system_get_info(sys);
     double heaviest = 0;
     int found = -1;
     for (int i = 0; i < info.nv; i++) {
-        heaviest = fmax(heaviest, M[(size_t)i * info.nv + i]);
+        heaviest = fmax(heaviest, mass[(size_t)i * (size_t)apart]);
     }
     for (int i = info.nv - 1; i >= 0; i--) {
-        found = M[(size_t)i * info.nv + i] > massless * heaviest ? found : i;
+        found = mass[(size_t)i * (size_t)apart] > massless * heaviest ? found : i;
     }
     const int named = found >= 0 && found < info.n_user;
     const char *name =

@@ -93,9 +93,10 @@ double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *mov
 /// Records that `what` failed at time t, for the reason of the run, and returns `status`.
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);
 
-/// Why a step of the ggl form has no answer at an M (nv x nv) that has no inverse: names the first
-/// coordinate without mass.
-void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char *why, size_t size);
+/// Why a step of the ggl form has no answer where the mass matrix has no inverse: names the first
+/// coordinate without mass. M_jj is mass[j * apart], as in hn_unit_scales().
+void hn_dae_tell_massless(const hn_system *sys, const double *mass, int apart, double t, char *why,
+                          size_t size);
 
 /// After how many steps integrators of the index-2 form project the position onto the constraints:
 /// a number of steps, or one of these.
