@@ -148,11 +148,13 @@ static void note_live(const emitter *e, int32_t k) {
 
 /// Adds a function for instructions first .. end - 1; afterwards `live` is that before `first`.
 static void put_piece(emitter *e, int32_t first, int32_t end) {
+    const bool is_all = first == 0 && end == e->tape->info.instructions;
     hn_strbuf_printf(e->b,
-                     "static __attribute__((noinline)) TARGET void piece%d(lanes *all, const "
+                     "static %s TARGET void piece%d(lanes *all, const "
                      "hn_call *call, const double *sine, const double *cosine) {\n(void)call, "
                      "(void)sine, (void)cosine;\nfor (int k = 0; k < %d; k++) {\n"
                      "lanes *const w = all + k;\n",
+                     is_all ? "inline __attribute__((always_inline))" : "__attribute__((noinline))",
                      first, e->width ? HN_LANES / e->width : 1);
     memset(e->definition, 0xff, (size_t)e->tape->info.slots * sizeof *e->definition);
     for (int32_t k = first; k < end; k++) {
@@ -180,10 +182,12 @@ static void put_head(const emitter *e) {
                         "double *);\n"
                         "extern double sin(double), cos(double);\n");
     if (!e->width) {
-        hn_strbuf_add(e->b, "extern double sqrt(double);\n"
-                            "extern void sincos(double, double *, double *);\n"
-                            "typedef double lanes;\n"
-                            "#define TARGET\n");
+        hn_strbuf_printf(e->b,
+                         "extern double sqrt(double);\n"
+                         "extern void sincos(double, double *, double *);\n"
+                         "typedef double lanes;\n"
+                         "#define TARGET %s\n",
+                         targets[e->set]);
         return;
     }
     hn_strbuf_printf(e->b,
