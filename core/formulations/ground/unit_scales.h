@@ -12,7 +12,8 @@
 #include "dynamics/compile/system.h"
 
 /// scale (nv) for a system whose mass matrix has M_jj = mass[j * apart] on its diagonal at the
-/// present configuration: `apart` is nv + 1 where `mass` is the matrix itself, 1 where it is a list.
+/// present configuration: `apart` is nv + 1 where `mass` is the matrix itself, and 1 where it is
+/// the diagonal alone.
 void hn_unit_scales(const hn_system *sys, const double *mass, int apart, double *scale);
 
 #endif

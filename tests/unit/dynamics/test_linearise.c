@@ -252,6 +252,35 @@ static void a_run_allocates_nothing_and_is_counted(void **state) {
     close_bench(&b);
 }
 
+// what an entry is does not depend on whether its matrix is a list
+static void lists_hold_the_entries_of_whole_matrices(void **state) {
+    (void)state;
+    static const hn_linear_term matrices[] = {HN_LINEAR_M, HN_LINEAR_K, HN_LINEAR_C, HN_LINEAR_J,
+                                              HN_LINEAR_V};
+    for (int s = 0; s < N_SCENES; s++) {
+        bench b;
+        hn_linear *listed = NULL;
+        open_bench(&b, scenes[s]);
+        assert_int_equal(hn_linear_create_listed(b.model.sys, ALL, b.model.arena, &listed), HN_OK);
+        hn_linear_run(b.linear, b.t, b.q, b.v, b.a, b.lambda);
+        hn_linear_run(listed, b.t, b.q, b.v, b.a, b.lambda);
+        for (size_t m = 0; m < sizeof matrices / sizeof matrices[0]; m++) {
+            const int *rows, *cols, n = hn_linear_pattern(listed, matrices[m], &rows, &cols);
+            const double *whole = hn_linear_get(b.linear, matrices[m]),
+                         *list = hn_linear_list(listed, matrices[m]);
+            for (int k = 0; k < n; k++) {
+                const double here[] = {list[k], hn_linear_entry(listed, matrices[m], k),
+                                       hn_linear_entry(b.linear, matrices[m], k)};
+                for (int i = 0; i < 3; i++) {
+                    assert_memory_equal(&here[i], &whole[rows[k] * b.nv + cols[k]], sizeof *here);
+                }
+            }
+        }
+        hn_linear_free(listed);
+        close_bench(&b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_by_position_are_those_of_motions_along_the_speeds),
@@ -260,6 +289,7 @@ int main(void) {
         cmocka_unit_test(gamma_of_a_fixed_loop_is_its_speed_derivative_along_the_motion),
         cmocka_unit_test(stiffness_at_rest_of_a_conservative_scene_is_symmetric),
         cmocka_unit_test(a_pattern_covers_every_entry_that_is_not_zero),
+        cmocka_unit_test(lists_hold_the_entries_of_whole_matrices),
         cmocka_unit_test(a_run_allocates_nothing_and_is_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
