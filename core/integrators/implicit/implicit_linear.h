@@ -41,9 +41,9 @@ typedef struct hn_implicit_linear {
     hn_dae_form form;
     bool stabilised; ///< GGL: mu holds the velocities
     int nv, nc;
-    hn_linear *terms;            ///< M K C J V R at the start of the step
+    hn_linear *terms;                ///< M K C J V R at the start of the step
     const double *M, *K, *C, *J, *V; ///< whole matrices; NULL where it is sparse and they are lists
-    bool has_damping;            ///< C is not identically zero
+    bool has_damping;                ///< C is not identically zero
     bool sparse;
     int n_kept, *kept;
     int *place;          ///< nc: which of the kept rows this is; -1: left out
