@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BUILD_H
 #define HN_BUILD_H
-// What this program calls itself.
+// Name and version of this program.
 
 #define HN_VERSION "0.1.0"
 

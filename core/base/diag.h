@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_DIAG_H
 #define HN_BASE_DIAG_H
-// What went wrong, told so that a person can mend it: where (a JSON pointer or a column),
-// what was found, what is allowed, what to try. Plain data; a list holds the first few.
+// The report of a fault, for the person who mends it: where (a JSON pointer or a column), what was
+// found, what is allowed, what to try. Plain data; a list holds the first few.
 
 #include "base/status.h"
 

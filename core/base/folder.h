@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_FOLDER_H
 #define HN_BASE_FOLDER_H
-// What a folder holds, on the disk or inside the program (bundle.h).
+// Lists the files of a folder, on the disk or inside the program (bundle.h).
 
 #include "base/status.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_INTERRUPT_H
 #define HN_BASE_INTERRUPT_H
-// How long work is told to end early: it asks a question now and then, and stops when the answer
-// is yes. The caller owns what the question reads (a flag, a clock).
+// Stops long work early: the work calls a function of the caller now and then, and stops when it
+// returns true. The caller owns what the function reads (a flag, a clock).
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_STATUS_H
 #define HN_BASE_STATUS_H
-// What a function that can fail on its data hands back. One list gives the enum, its name and its
-// sentence.
+// The return value of a function that can fail on its data. One list gives the enumerator, its name
+// and its sentence.
 
 #include <stdlib.h>
 

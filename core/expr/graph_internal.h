@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_GRAPH_INTERNAL_H
 #define HN_EXPR_GRAPH_INTERNAL_H
-// How the graph stores its nodes; for the files of expr/ alone.
+// Storage of the graph's nodes; for the files of expr/ alone.
 //
 // A node's key is what makes two of them equal: a product's key is its sorted list of factors with
 // powers, so that a (b c) and (a b) c are one node; any other node's key is its operator and

@@ -22,39 +22,39 @@
 struct hn_tape;
 
 typedef struct hn_native_opts {
-    const char *folder;   ///< where compiled tapes are kept
+    const char *folder;   ///< where compiled tapes are kept; NULL: nothing is kept
     const char *compiler; ///< NULL: the first of gcc, clang, tcc in PATH
     double time_limit;    ///< [s] for one compilation, and again for each megabyte of C text; 60
     double look_after;    ///< [s] of interpretation before the folder is searched; 0.002
     double build_after;   ///< [s] of interpretation before the compiler is started; 0.02
 } hn_native_opts;
 
-/// The options that the program uses; `folder` (borrowed) keeps compiled code; NULL: nothing is
-/// kept.
+/// Returns the options that the program uses. `folder` is borrowed.
 hn_native_opts hn_native_opts_default(const char *folder);
 
 /// Switches the service on for tapes compiled from now on. Call it once, before other threads
-/// exist. The folder, the compiler and the thread are looked for when the first tape asks; where
-/// one is missing, everything goes on without, and hn_native_reason() says why.
+/// exist. The first tape that is long in use makes the service look for the folder and the compiler
+/// and start its thread. Where one of these is missing, the interpreter goes on, and
+/// hn_native_reason() says why.
 void hn_native_start(const hn_native_opts *opts);
 /// Stops the thread and a compilation under way. Tapes keep the code they have.
 void hn_native_stop(void);
-/// Tapes that this thread compiles between these two stay with the interpreter: for work that
-/// compares the times of methods, which must all run the same way. May be nested.
+/// Keep the tapes that this thread compiles between the two calls with the interpreter, for work
+/// that compares the times of methods: these must all run the same way. The calls may be nested.
 void hn_native_suspend(void);
 void hn_native_resume(void);
 /// Waits until nothing is queued or under way.
 void hn_native_wait(void);
 
-/// What the service has done so far; all zero while it is off.
+/// Counts of the service so far; all zero while it is off.
 typedef struct hn_native_counts {
     int ready;      ///< tapes that run natively
     int from_cache; ///< of these, found in the folder
     int failed;     ///< tapes that stay with the interpreter
 } hn_native_counts;
 hn_native_counts hn_native_get_counts(void);
-/// Why the last tape stayed with the interpreter, or why the service cannot work; "" if nothing
-/// went wrong. Copied to `out`.
+/// Copies to `out` why the last tape stayed with the interpreter, or why the service cannot work;
+/// "" if nothing went wrong.
 void hn_native_reason(char out[HN_DIAG_MESSAGE]);
 
 /// Costs of one tape, measured here and now.
@@ -78,14 +78,14 @@ HN_MUST_CHECK hn_status hn_native_measure(const struct hn_tape *tape, hn_native_
 
 typedef struct hn_native_loaded hn_native_loaded;
 
-/// What a tape has of the service, for single states or for lanes. Shared by its owner and the
-/// queue.
+/// The part of a tape that belongs to the service, for single states or for lanes. Shared by the
+/// tape and the queue.
 typedef struct hn_native_state {
     hn_native_form form;
     _Atomic(hn_native_code) code; ///< NULL: the interpreter serves
     const hn_native_call *calls;  ///< the functions of the operator table, as the code takes them
-    atomic_int runs;              ///< interpreted so far; loses some where threads share the tape
-    int look_at, build_at;        ///< numbers of runs at which the queue is asked
+    atomic_int runs;              ///< evaluations by the interpreter; too few where threads race
+    int look_at, build_at;        ///< `runs` at which to search the folder, and to compile
     atomic_int refs;
     struct hn_native_loaded *loaded; ///< what the code belongs to
 } hn_native_state;
@@ -93,7 +93,7 @@ typedef struct hn_native_state {
 /// Returns the state of a new tape, or NULL while the service is off or memory is out.
 hn_native_state *hn_native_state_create(const struct hn_tape *tape, hn_native_form form);
 void hn_native_state_release(hn_native_state *s); ///< NULL is legal
-/// Counts a run of the interpreter; at two numbers of runs the tape is queued (a copy of what is
-/// needed). Nothing happens where memory is out.
+/// Counts an evaluation by the interpreter. At `look_at` and at `build_at` evaluations the tape is
+/// queued, as a copy. Does nothing where memory is out.
 void hn_native_count(const struct hn_tape *tape, hn_native_state *s);
 #endif

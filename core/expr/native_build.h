@@ -14,8 +14,8 @@
 
 enum { HN_NATIVE_PATH = 512 };
 
-/// Where `call` of compiled code holds an hn_lanes_sincos for each instruction set, and behind them
-/// the hn_lanes_sincos_four, if there is one; before them, hn_op_info.value by operator.
+/// Places in `call` of compiled code: first hn_op_info.value by operator, then an hn_lanes_sincos
+/// for each instruction set, then the hn_lanes_sincos_four, if there is one.
 enum {
     HN_NATIVE_SINCOS = HN_OP_COUNT,
     HN_NATIVE_FOUR = HN_NATIVE_SINCOS + HN_LANES_SETS,

@@ -16,7 +16,7 @@
 /// The name of the function that the C text defines: hn_native_code.
 #define HN_NATIVE_SYMBOL "hn_tape_native"
 
-/// What the code evaluates: one state, or HN_LANES of them (expr/lanes.h) by vectors of the
+/// The states that the code evaluates: one, or HN_LANES of them (expr/lanes.h) by vectors of the
 /// instruction set `form - HN_NATIVE_LANES`.
 typedef int hn_native_form;
 enum { HN_NATIVE_SINGLE, HN_NATIVE_LANES };

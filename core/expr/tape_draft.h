@@ -16,7 +16,7 @@ typedef struct hn_draft {
     int32_t op;             ///< operator of a call
 } hn_draft;
 
-/// What the nodes of a list share. All zero is a legal empty one.
+/// Common data of the nodes of a list. All zero is a legal empty one.
 typedef struct hn_drafter {
     const hn_ir *ir;   ///< borrowed
     uint8_t *absorbed; ///< computed inside the instruction of its one user

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_IR_H
 #define HN_EXPR_TAPE_IR_H
-// What lies between graph and tape: operations without coefficients, interned like the graph's
+// The form between graph and tape: operations without coefficients, interned like the graph's
 // nodes.
 //
 // A graph node n is represented by {k, i}: n = k * (value of IR node i). The factor k travels on

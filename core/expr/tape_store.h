@@ -10,7 +10,7 @@
 /// All tapes that have been compiled from one graph.
 typedef struct hn_tape_store hn_tape_store;
 
-/// What makes two tapes equal: outputs and inputs, in their order.
+/// The key of a tape: outputs and inputs, in their order. Tapes with equal keys are equal.
 typedef struct hn_tape_key {
     const hn_ex *outputs;
     int n_out;

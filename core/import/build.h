@@ -113,7 +113,8 @@ const char *hn_im_text(hn_build *b, const char *format, ...) HN_PRINTF(2, 3); //
 /// Room for one more item; the list, moved if need be, or NULL.
 void *hn_im_grow(hn_build *b, void *list, int n, int *cap, size_t size);
 
-/// Where the joint sits in its parent and in its child: z is its axis, x its reference direction.
+/// Sets the frames of the joint in its parent and in its child: z is its axis, x its reference
+/// direction.
 void hn_im_set_sides(hn_im_joint *joint, const hn_im_frame *in_parent, const hn_im_frame *in_child);
 /// The frame at a place with a given axis (length 1), x across it.
 hn_im_frame hn_im_axis_frame(const double at[3], const double axis[3]);

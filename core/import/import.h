@@ -68,7 +68,8 @@ void hn_import_free(hn_import *import); ///< NULL is legal
 
 const char *hn_import_format(const hn_import *import);           ///< "MJCF" or "URDF"
 const char *hn_import_scene(const hn_import *import, size_t *n); ///< JSON text
-/// What was said about elements of the file: how many notes, note i, and how many of this outcome.
+/// Notes about elements of the file: their number, note i, and the number of notes with this
+/// outcome.
 int hn_import_note_count(const hn_import *import);
 const hn_import_note *hn_import_note_at(const hn_import *import, int i);
 int hn_import_count(const hn_import *import, hn_import_outcome outcome);
@@ -76,7 +77,7 @@ int hn_import_count(const hn_import *import, hn_import_outcome outcome);
 /// element stands in another file than the first.
 void hn_import_put_notes(hn_strbuf *b, const hn_import *import);
 
-/// What is in the scene.
+/// The content of the scene.
 typedef struct hn_import_info {
     int n_bodies, n_carriers; ///< carriers: bodies without mass between several joints of one body
     int n_joints, n_closing, n_constraints, n_loads, n_params;

@@ -31,7 +31,7 @@ int hn_im_flag(hn_build *b, const xmlNode *node, const char *attribute, int othe
 /// 1 when `word` is among the words of `list`, separated by spaces.
 bool hn_im_lists(const char *list, const char *word);
 
-/// What a reader does with an attribute: rows {attributes, outcome, why}; the last has NULL.
+/// The treatment of attributes by a reader: rows {attributes, outcome, why}; the last has NULL.
 /// Attributes of rows with outcome HN_IMPORT_OUTCOME_COUNT are used.
 typedef struct hn_im_rule {
     const char *attributes;

@@ -30,7 +30,7 @@ void hn_compressed_put(hn_compressed *c, int row, int col, double re, double im)
 /// Sums what was put into `values` (`parts` for each of start[n] places: re, or re and im). Returns
 /// Whether the places are those of the last time; false when they are new. Allocates nothing.
 bool hn_compressed_end(hn_compressed *c, int parts, double *values);
-/// What was put so far, real parts, as n x n row-major.
+/// Copies the real parts of the entries put so far, as n x n row-major.
 void hn_compressed_copy(const hn_compressed *c, double *out);
 
 #endif

@@ -35,7 +35,8 @@ void hn_newton_matrix_free(hn_newton_matrix *m); ///< NULL is legal
 void hn_newton_matrix_begin(hn_newton_matrix *m, int n);
 /// Adds to entry (row, col). Of a real matrix only `re` counts.
 void hn_newton_matrix_put(hn_newton_matrix *m, int row, int col, double re, double im);
-/// What was put (n x n, row-major), before it is factored; real ones only, for reports.
+/// Copies the entries that were put (n x n, row-major), before the matrix is factored. For real
+/// matrices, for reports.
 void hn_newton_matrix_copy(const hn_newton_matrix *m, double *out);
 /// Factors what was put. Fails: HN_ERR_SINGULAR, HN_ERR_DIVERGED (an entry is not finite),
 /// HN_ERR_MEMORY. Allocates only when sparse and the places or the pivots are new.

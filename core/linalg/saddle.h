@@ -54,8 +54,8 @@ typedef struct hn_saddle_opts {
     bool want_cond;         ///< estimate the condition number too, about five more solves
 } hn_saddle_opts;
 
-/// What happened. rank and pivot_ratio are set unless an input was not finite or M has a negative
-/// diagonal entry.
+/// The result of a factorisation or a solution. rank and pivot_ratio are set unless an input was
+/// not finite or M has a negative diagonal entry.
 typedef struct hn_saddle_info {
     int rank;              ///< numerical rank of J, 0..nc
     double pivot_ratio;    ///< smallest kept pivot / largest [-]; 1e-10..1e-6: nearly singular

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_CANVAS_RECORD_H
 #define HN_RENDER_CANVAS_RECORD_H
-// What a canvas has recorded; shared by the files of the canvas, not for others.
+// The recorded strokes and texts of a canvas. For the files of the canvas alone.
 
 #include "render/canvas.h"
 

@@ -51,7 +51,7 @@ int hn_look_slot(int i);
 enum { HN_LOOK_GLYPHS = 13 };
 const char *hn_look_glyph(int i);
 
-/// What is not a method: surfaces and inks.
+/// Colours of everything but methods: surfaces and inks.
 typedef struct hn_surface {
     uint32_t paper;    ///< behind everything
     uint32_t raised;   ///< the second level: insets, panels

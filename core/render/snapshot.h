@@ -71,7 +71,7 @@ HN_MUST_CHECK hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing
                                          const hn_snapshot_pose *poses, int n_poses,
                                          const hn_snapshot_opts *opts, hn_diag *diag);
 
-/// Where a place in the plane of the view is: pixel (x + scale right, y - scale up).
+/// The map from the plane of the view to the picture: pixel (x + scale right, y - scale up).
 typedef struct hn_snapshot_place {
     double scale; ///< [px/m]
     double x, y;  ///< [px] of the world's origin
@@ -82,7 +82,7 @@ HN_MUST_CHECK hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width
                                                const hn_snapshot_pose *poses, int n_poses,
                                                const hn_snapshot_opts *opts, hn_diag *diag);
 
-/// What the picture shows, for readers who cannot see it and for tests:
+/// Describes the content of the picture, for readers who cannot see it and for tests:
 /// {"view","metres_per_pixel","poses":[{"name",
 /// "slot","drawn","selected","note"}],"tears":[{"name","pose","gap"}],"inset":null or
 /// {"tear","pose","gap", "magnification"},"scale_bar"}. The same arguments as hn_snapshot_draw().

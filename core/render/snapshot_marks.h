@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_SNAPSHOT_MARKS_H
 #define HN_RENDER_SNAPSHOT_MARKS_H
-// What explains the mechanism on a sheet: the marker of each method, dimension lines, and the list
-// of everything that is drawn. Inside render/ only.
+// Explanations on a sheet: the marker of each method, dimension lines, and the list of everything
+// that is drawn. Inside render/ only.
 
 #include "render/snapshot_labels.h"
 #include "render/snapshot_sheet.h"

@@ -18,7 +18,7 @@ typedef struct hn_tear {
     double gap;      ///< [m]
 } hn_tear;
 
-/// Where everything goes. Made once from sizes and views, then only read.
+/// The layout of a sheet. Made once from sizes and views, then only read.
 typedef struct hn_sheet {
     int width, height;
     double line; ///< width of an outline [px]

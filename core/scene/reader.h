@@ -25,7 +25,7 @@ enum {
     HN_RD_MAX_DEPTH = 24      ///< levels of JSON
 };
 
-/// Which names a formula may use, each including those before it.
+/// The names that a formula may use; each scope includes those before it.
 typedef enum hn_rd_scope {
     HN_RD_CONST, ///< parameters (and the repetition's name)
     HN_RD_TIME,  ///< and t
@@ -33,7 +33,7 @@ typedef enum hn_rd_scope {
     HN_RD_STATE  ///< and rates
 } hn_rd_scope;
 
-/// What a name in formulas stands for.
+/// The kinds of names in formulas.
 typedef enum hn_rd_meaning {
     HN_RD_NOTHING,
     HN_RD_PARAM,

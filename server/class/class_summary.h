@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLASS_CLASS_SUMMARY_H
 #define HN_CLASS_CLASS_SUMMARY_H
-// What a teacher reads after a class was graded.
+// The summary of a graded class, for its teacher.
 
 #include "class/class_grading.h"
 

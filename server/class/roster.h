@@ -17,7 +17,7 @@
 
 enum { HN_ROSTER_NAME = 80, HN_ROSTER_PATH = 1024, HN_ROSTER_BYTES = 1 << 20 };
 
-/// What a class hands in.
+/// The kind of submissions of a class.
 typedef enum hn_roster_kind {
     HN_ROSTER_ANSWERS, ///< .json
     HN_ROSTER_PROGRAMS ///< .py, .c, .cpp, .java, .m, .jl

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_COMPLETION_H
 #define HN_CLI_COMPLETION_H
-// What may stand next on a command line: the shells ask the program itself, so completion knows
-// every command, option, scene, parameter, method and option of a method that the program knows.
+// Lists the words that may come next on a command line. The shells ask the program itself, so
+// completion knows every command, option, scene, parameter, method and option of a method that the
+// program knows.
 
 #include "cli/shell/commands.h"
 

@@ -38,7 +38,7 @@ typedef struct hn_grade_pair {
     double value;
 } hn_grade_pair;
 
-/// Who has which variant of an exercise.
+/// A student and the variant of an exercise that this student has.
 typedef struct hn_variant_owner {
     uint64_t seed;
     const char *name; ///< borrowed; NULL: nobody in particular

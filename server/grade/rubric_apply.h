@@ -15,7 +15,7 @@ void hn_rubric_put_mistakes(hn_strbuf *b, const hn_exercise *exercise);
 /// Puts the rubric's points and tolerances into the exercise, which owns the rubric from then on.
 /// Fails as hn_rubric_check(); the rubric then stays the caller's.
 HN_MUST_CHECK hn_status hn_rubric_apply(hn_rubric *r, hn_exercise *exercise, hn_diags *diags);
-/// What points and tolerances mean, part by part, after hn_rubric_apply().
+/// Writes points and tolerances in words, part by part, after hn_rubric_apply().
 void hn_rubric_text(hn_strbuf *b, const hn_exercise *exercise);
 /// The exercise's own values as a rubric to start from.
 void hn_rubric_write(hn_strbuf *b, const hn_exercise *exercise);

@@ -7,7 +7,7 @@
 
 enum { HN_VERDICT_KEPT = 16384 };
 
-/// What became of one entry.
+/// The verdict on one entry.
 typedef struct hn_entry_verdict {
     char name[32]; ///< "J11", or a part with its entry: "b.2"
     int row, column;
@@ -60,7 +60,7 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v);
 void hn_verdict_json(hn_strbuf *b, const hn_verdict *v);
 /// Gradescope's results.json. execution_time [s] is written if >= 0.
 void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_time);
-/// What is to be said under one entry, each line after `indent`; nothing for one that is right.
+/// Writes the lines under one entry, each after `indent`; nothing for an entry that is right.
 void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
                            const char *indent);
 #endif

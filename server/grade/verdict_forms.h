@@ -5,7 +5,7 @@
 
 #include "grade/verdict.h"
 
-/// What a form may need besides the verdict.
+/// Data that a form may need besides the verdict.
 typedef struct hn_verdict_extra {
     double seconds;         ///< [s] that grading took
     bool first;             ///< of several verdicts on one output

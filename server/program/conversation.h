@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_PROGRAM_CONVERSATION_H
 #define HN_PROGRAM_CONVERSATION_H
-// What the workbench and a student's program say to each other: JSON, one object a line, on the
+// The protocol between the workbench and a student's program: JSON, one object a line, on the
 // program's standard input and output.
 //
 //   > {"holonom":1,"scene":...,"coordinates":[...],"rows":[...],"parameters":{...},"limits":{...}}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_PROGRAM_LIMITS_H
 #define HN_PROGRAM_LIMITS_H
-// What a student's program may use.
+// Limits of a student's program: time, memory, files.
 
 typedef struct hn_program_limits {
     double start, answer; ///< [s] of wall clock until the first answer, and until any other

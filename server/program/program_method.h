@@ -14,7 +14,8 @@ typedef struct hn_program_opts {
 
 /// Allows programs from now on. Call it once, before other threads exist.
 void hn_programs_allow(const hn_program_opts *opts);
-/// What the programs of this process used, a line each on standard error; nothing where none ran.
+/// Prints the resources that the programs of this process used, a line each, on standard error;
+/// nothing where none ran.
 void hn_programs_report(void);
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TERMINAL_WIDTH_H
 #define HN_TERMINAL_WIDTH_H
-// What standard output is.
+// Properties of standard output: is it a terminal, and how wide.
 
 #include <stdbool.h>
 

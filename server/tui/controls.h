@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_CONTROLS_H
 #define HN_TUI_CONTROLS_H
-// What keys do: to the clock and the selection here, to panels and the typed line in panels.h.
+// Carries out the keys of the clock and of the selection; panels.h has those of panels and of the
+// typed line.
 
 #include "tui/workbench.h"
 

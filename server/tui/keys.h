@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-/// What a terminal sends, apart from characters: the loop translates to these.
+/// Keys other than characters; the loop translates what a terminal sends to these.
 enum {
     HN_KEY_LEFT = 0x110000,
     HN_KEY_RIGHT,

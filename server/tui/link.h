@@ -9,7 +9,7 @@
 /// The address of the page's link to what is shown: "http://127.0.0.1:8080/#scene=...".
 void hn_workbench_link(const hn_workbench *w, hn_strbuf *b);
 
-/// What a link of the page opens.
+/// The content of a link of the page.
 typedef struct hn_tui_link {
     char scene[HN_TUI_LINE];
     hn_setting settings[HN_TUI_SETTINGS]; ///< their names are those in `names`

@@ -12,8 +12,8 @@ void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w);
 /// The scene of w->preview as it stands at its start; likewise.
 void hn_mechanism_preview(hn_cells *c, hn_area area, const hn_workbench *w);
 
-/// Where the mechanism is in an area: as the picture has it, or as the envelope of the motion fills
-/// the area.
+/// Returns the place of the mechanism in an area: that of the picture, or the one where the
+/// envelope of the motion fills the area.
 hn_placing hn_mechanism_place(const hn_workbench *w, hn_area area);
 enum { HN_DOTS_ACROSS = 2, HN_DOTS_DOWN = 4 }; ///< of a cell
 #endif

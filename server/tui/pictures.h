@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_PICTURES_H
 #define HN_TUI_PICTURES_H
-// Whether the terminal shows pictures of pixels, and which kind is used. The terminal is asked:
+// Finds out whether the terminal shows pictures of pixels, and of which kind. It asks the terminal:
 //
 //   ESC [ 14 t          how large is the window?    ESC [ 4 ; height ; width t
 //   ESC [ c             who are you?                ESC [ ? 62 ; 4 c    4: it shows sixels

@@ -48,7 +48,8 @@ void hn_screen_rewrite(int first, int rows);
 void hn_screen_ask(const char *question);
 /// The last answer.
 const char *hn_screen_answer(void);
-/// What is sent before the terminal is left, after a crash too; static. NULL: nothing.
+/// Sets the text that is sent before the terminal is left, after a crash too. It must be static.
+/// NULL: nothing.
 void hn_screen_farewell(const char *sequence);
 /// The next key within the time [s]: a character, HN_KEY_* of keys.h or of this file; HN_KEY_NONE:
 /// none came. HN_KEY_RESIZE: the size has changed, or the terminal was another program's meanwhile.

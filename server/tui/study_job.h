@@ -9,7 +9,7 @@
 
 typedef enum hn_tui_study_kind { HN_TUI_COST, HN_TUI_STABILITY, HN_TUI_STUDIES } hn_tui_study_kind;
 
-/// What a study is made of; copied.
+/// The request of a study; copied.
 typedef struct hn_tui_study_request {
     const hn_library *library;
     const hn_model_source *source;
@@ -42,7 +42,7 @@ void hn_tui_study_map(hn_tui_study *s, hn_map_plot *out);
 /// text is no error.
 bool hn_tui_study_wanted(const hn_tui_study *s, const char *wanted, hn_strbuf *b,
                          char spelling[HN_SPEC_MAX]);
-/// What there is to read: classes and the cheapest methods, the agreement of a map, or the fault;
-/// "" before the end. Adds to b.
+/// Appends the result in words: classes and the cheapest methods, the agreement of a map, or the
+/// fault; nothing before the end.
 void hn_tui_study_words(hn_tui_study *s, hn_strbuf *b);
 #endif

@@ -14,7 +14,7 @@ typedef struct hn_true_motion {
     double energy_scale; ///< scale of its energies [J]
 } hn_true_motion;
 
-/// What it is made for.
+/// The request of a reference motion.
 typedef struct hn_true_motion_request {
     const hn_model *model;
     double frame_dt; ///< [s]

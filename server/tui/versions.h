@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_VERSIONS_H
 #define HN_TUI_VERSIONS_H
-// What was open before: scene, settings and methods after every change.
+// The history for undo and redo: scene, settings and methods after every change.
 
 #include "tui/workbench.h"
 
@@ -27,6 +27,6 @@ void hn_versions_free(hn_versions *v); ///< NULL is legal
 /// Keeps what is open now as the newest version; those that were undone are forgotten. What equals
 /// the present version is not kept again.
 void hn_versions_keep(hn_workbench *w);
-/// What the change from version i to the next one was: "l1 = 2.5".
+/// Writes the change from version i to the next one: "l1 = 2.5".
 void hn_versions_change(const hn_versions *v, int i, char *out, size_t size);
 #endif

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_WORKBENCH_H
 #define HN_TUI_WORKBENCH_H
-// What the terminal workbench knows: a model, its recording, what is shown, and the panel that lies
-// over it. Keys and the mouse change it, time moves it on, views (views.h) draw it; it knows
-// neither a screen nor a clock.
+// The data of the terminal workbench: a model, its recording, the selection, and the open panel.
+// Keys and the mouse change it, time advances it, views (views.h) draw it; it knows neither a
+// screen nor a clock.
 
 #include "session/model/envelope.h"
 #include "terminal/dots.h"
@@ -166,7 +166,7 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
                          int n_settings, const char *const *methods, int n_methods);
 /// The same scene with other settings and the same methods.
 bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings);
-/// Where the present model comes from; borrowed.
+/// Returns the source of the present model; borrowed.
 hn_model_source hn_workbench_source(const hn_workbench *w);
 /// Begins a line to type, with `initial` in it (prompt.h).
 void hn_workbench_ask(hn_workbench *w, hn_prompt_kind kind, const char *initial);

@@ -54,7 +54,7 @@ const char *hn_dyad_kind_about(hn_dyad_kind kind);
 
 /// Analyses the position problem for the dependent columns `dep` (n of them, ascending). Adds nodes
 /// to the graph, as an evaluator does. The tape is owned (hn_dyads_free), the rest from `arena`.
-/// Where there is no closed form, the object says why (hn_dyads_refusal) and solves nothing.
+/// The object of loops without a closed form says why (hn_dyads_refusal) and solves nothing.
 /// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_dyads_create(const hn_system *sys, const int *dep, int n,
                                         hn_arena *arena, hn_dyads **out);

@@ -14,7 +14,8 @@
 
 typedef struct hn_lookout hn_lookout;
 
-/// What is looked for: sigma_min below `reached`; `probe` gives it at a configuration (nq).
+/// The aim of a pilot run: sigma_min below `reached`. `probe` returns sigma_min at a configuration
+/// (nq).
 typedef struct hn_lookout_aim {
     double (*probe)(void *user, double t, const double *q);
     void *user;

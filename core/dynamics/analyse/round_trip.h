@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ROUND_TRIP_H
 #define HN_DYNAMICS_ROUND_TRIP_H
-// Whether a motion goes round and round. A mechanism with one degree of freedom that no time moves
-// runs along one curve of configurations. Once a joint has turned right round and all coordinates
-// are back where they were, angles by full turns, the whole curve has been passed, whatever the
-// loads do: nothing ahead is new, and no pilot run has to look there (lookout.h).
+// Detects a motion that repeats its closed curve of configurations. A mechanism with one degree of
+// freedom that no time moves runs along one curve of configurations. Once a joint has made a full
+// turn and all coordinates have their first values again, angles up to full turns, the mechanism
+// has passed the whole curve, whatever the loads do: no new configuration lies ahead, and no pilot
+// run is needed (lookout.h).
 //
 // A mechanism that swings to and fro is no such case: with more energy it swings further.
 

@@ -49,7 +49,7 @@ typedef struct hn_singularity_info {
     double predicted; ///< time of the last one that was announced, -HUGE_VAL: none so far
 } hn_singularity_info;
 
-/// What a pose where rows are nearly lost looks like.
+/// The description of a configuration where rows nearly depend on each other.
 typedef struct hn_singularity_pose {
     int mobility_before, mobility; ///< degrees of freedom off the pose, and at it
     hn_branches branches;

@@ -19,8 +19,8 @@ typedef struct hn_mode_watch hn_mode_watch;
 HN_MUST_CHECK hn_status hn_mode_watch_create(const hn_system *sys, hn_arena *arena,
                                              hn_mode_watch **out);
 void hn_mode_watch_free(hn_mode_watch *w); ///< NULL is legal
-/// Of the first loop: -det J_d over the product of its column lengths, in [-1, 1]; 0 when
-/// undefined. Allocates nothing.
+/// Returns the mode value of the first loop: -det J_d over the product of its column lengths, in
+/// [-1, 1]; 0 when undefined. Allocates nothing.
 double hn_mode_watch_value(hn_mode_watch *w, double t, const double *q);
 /// The same of all loops (joints that close one; of formulas, sets of constraints on the same
 /// coordinates): their number, and their values.

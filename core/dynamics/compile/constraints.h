@@ -14,7 +14,7 @@ bool hn_constraint_has_points(const hn_constraint *k);
 void hn_constraints_name_loops(hn_system *sys);
 /// Adds the rows of every constraint.
 HN_MUST_CHECK hn_status hn_mech_trace_constraints(hn_mech *m);
-/// Where point p of a constraint with points should be, in the world: it lies there when the
+/// Computes the place in the world where point p of a constraint with points lies when the
 /// constraint holds.
 HN_MUST_CHECK hn_status hn_mech_constraint_foot(hn_mech *m, const hn_constraint *k, hn_vec3 *out);
 

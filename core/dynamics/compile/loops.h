@@ -12,7 +12,7 @@ HN_MUST_CHECK hn_status hn_mech_trace_loops(hn_mech *m);
 /// Writes the scene coordinates of cut joints as expressions, where they have one.
 HN_MUST_CHECK hn_status hn_mech_cut_coordinates(hn_mech *m);
 
-/// Which directions of its two halves a cut joint keeps parallel and pointing the same way.
+/// The directions of its two halves that a cut joint keeps parallel, pointing the same way.
 typedef struct hn_joint_ties {
     bool axes, refs;
 } hn_joint_ties;

@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-/// Of a rotation vector (axis times angle [rad]).
+/// Computes the unit quaternion q of a rotation vector r (axis times angle [rad]).
 void hn_quat_exp(const double r[3], double q[4]);
 /// The rotation vector, no longer than pi; q need not have length 1. Zero quaternions give zero.
 void hn_quat_log(const double q[4], double r[3]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_RATE_TREE_H
 #define HN_DYNAMICS_RATE_TREE_H
-// How the system's velocities are made of the user's rates, as a tree:
+// The system's velocities as sums of the user's rates, in the form of a tree:
 //
 //     v_i = sign_i user_i + v_base(i)                                                        (1)
 //

@@ -49,8 +49,8 @@ hn_system_info hn_system_get_info(const hn_system *sys);
 
 /// Index into scene->coordinates of user coordinate i (0..n_user-1).
 int hn_system_user_coordinate(const hn_system *sys, int i);
-/// Of a row: its name, e.g. "C: x"; the loop it belongs to; 1 when it is in metres, 0 when it is an
-/// angle or has another unit.
+/// Properties of a row: its name, such as "C: x"; the number of its loop; 1 where it is in metres,
+/// 0 where it is an angle or has another unit.
 const char *hn_system_row_name(const hn_system *sys, int row);
 int hn_system_row_loop(const hn_system *sys, int row);
 bool hn_system_row_is_length(const hn_system *sys, int row);
@@ -59,8 +59,8 @@ double hn_system_row_unit(const hn_system *sys, int row);
 /// The unit in which velocities are compared: the characteristic length for one of a length, else
 /// 1. With both, J is the same matrix for similar mechanisms of any size.
 double hn_system_velocity_unit(const hn_system *sys, int i);
-/// Of a loop: the joint (scene index) that closes it, -1 where a constraint or a formula does; its
-/// name.
+/// Properties of a loop: the joint (scene index) that closes it, -1 where a constraint or a formula
+/// does; its name.
 int hn_system_loop_joint(const hn_system *sys, int loop);
 const char *hn_system_loop_name(const hn_system *sys, int loop);
 /// The characteristic length [m] for relative tolerances: the largest distance between joint

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_SYSTEM_BUILD_H
 #define HN_DYNAMICS_SYSTEM_BUILD_H
-// What scenes of bodies and scenes of formulas are both compiled with: memory, symbols, rows.
+// Common part of compiling scenes of bodies and scenes of formulas: memory, symbols, rows.
 
 #include "dynamics/compile/system_impl.h"
 
@@ -14,8 +14,8 @@ hn_ex *hn_system_get_zeros(hn_system *sys, size_t n);
 /// underscores), then of t and the gains.
 HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
                                                const char *const *rates);
-/// Where faults of the scene are reported. NULL once the graph has run out of memory: it then hands
-/// out zeros, which the checks would take for faults of the scene.
+/// Returns the list for faults of the scene. NULL once the graph has run out of memory: it then
+/// returns zeros, which the checks would take for faults of the scene.
 hn_diags *hn_system_faults(const hn_system *sys);
 
 typedef struct hn_new_row {

@@ -48,7 +48,7 @@ typedef struct hn_ball {
     int position, speed;
 } hn_ball;
 
-/// What of a scene coordinate has an expression: nothing, position and rate, the rate alone.
+/// The expressions that a scene coordinate has: none, position and rate, the rate alone.
 enum { HN_KNOWN_NOTHING, HN_KNOWN_BOTH, HN_KNOWN_RATE };
 
 enum { HN_SYSTEM_LDLS = 3 }; ///< one for each hn_factor_weight

@@ -116,7 +116,8 @@ typedef struct hn_primitive {
 enum { HN_MAX_PRIMITIVES = 4 };
 /// The chain of primitives of a joint type, from the joint's parent to its child; returns how many.
 int hn_joint_primitives(hn_joint_type type, const hn_primitive **out);
-/// Where a tree joint sits on the link itself, and on its parent: 3 quantities in the body's frame.
+/// Returns the place of a tree joint on the link itself, and on its parent: 3 quantities in the
+/// body's frame.
 const hn_quantity *hn_link_at_own(const hn_scene *scene, const hn_link *link);
 const hn_quantity *hn_link_at_parent(const hn_scene *scene, const hn_link *link);
 #endif

@@ -52,8 +52,8 @@ hn_sym3 hn_sym3_add(hn_graph *g, const hn_sym3 *a, const hn_sym3 *b);
 hn_sym3 hn_sym3_rotate(hn_graph *g, const hn_mat3 *R, const hn_sym3 *m);
 /// The same for a rotation about z.
 hn_sym3 hn_sym3_turn_z(hn_graph *g, hn_ex c, hn_ex s, const hn_sym3 *m);
-/// What the inertia of a set with mass m and first moment s about its own point gains when it is
-/// referred to a point from which its own point lies at r:
+/// The increment of the inertia of a set of bodies (mass m, first moment s about its own point)
+/// when it is referred to another point; r is its own point, seen from the other one:
 ///     2 (r.s) 1 - (r s' + s r') + m (r^2 1 - r r')
 /// `only_zz`: the other entries are left zero.
 hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz);

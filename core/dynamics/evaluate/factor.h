@@ -47,8 +47,8 @@ hn_factor_info hn_factor_get_info(const hn_factor *f);
 HN_MUST_CHECK hn_status hn_factor_update(hn_factor *f, double t, const double *q,
                                          double *pivot_ratio);
 
-/// Of the last update: the shortest row of J against the longest of its loop, squared lengths
-/// (row_groups.h); 1 where there is no static order.
+/// Returns, for the last update, the shortest row of J over the longest of its loop, in squared
+/// lengths (row_groups.h); 1 where there is no static order.
 double hn_factor_row_ratio(hn_factor *f);
 
 /// Solves K [x; -y] = [r1; r2] with the last successful factor: x (nv), y (nc); y may be NULL. The

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_H
 #define HN_FORMULATIONS_CHART_H
-// A chart of the closed mechanism: speeds split into independent and dependent ones, J = [J_i J_d]
-// P, so that
+// A chart of the closed mechanism: velocities split into independent and dependent ones, J = [J_i
+// J_d] P, so that
 //
 //  q_d by Newton on phi = 0,    v = N u + s,   N = [I; -J_d^-1 J_i],   s = [0; -J_d^-1 phi_t]  (1)
 //  a = N udot + c,                 c = [0; -J_d^-1 gamma]                                  (2)
 //  (N^T M N) udot = N^T (f - M c)                                                          (3)
 //
-// where u are the independent speeds. The rate of the basis needs no differentiation: with this N,
-// Ndot u + sdot is exactly c. A chart ends where J_d loses rank (a dead point of the chosen
+// where u are the independent velocities. The rate of the basis needs no differentiation: with this
+// N, Ndot u + sdot is exactly c. A chart ends where J_d loses rank (a dead point of the chosen
 // coordinates); the motion may go on in another chart.
 //
 // A square J_d (no redundant rows) is factored sparse, in an order chosen where the chart was
@@ -17,9 +17,9 @@
 // linearly for a chain of loops. With redundant rows J_d holds rank J columns and is solved in the
 // least-squares sense by dense QR, which for consistent rows is exact.
 //
-// Positions move along speeds (hn_system_move), so ball joints need no chart for their position.
-// Their speeds are not the derivatives of coordinates and cannot be integrated alone: minimal
-// coordinates keep ball joints dependent (see minimal_state.h).
+// Positions move along velocities (hn_system_move), so ball joints need no chart for their
+// position. Their velocities are not the derivatives of coordinates and cannot be integrated alone:
+// minimal coordinates keep ball joints dependent (see minimal_state.h).
 //
 // Null-space, partitioning and reduced coordinates are built on this. Source: Wehage & Haug 1982;
 // for which columns to take, Goreinov, Tyrtyshnikov & Zamarashkin 1997 (submatrices of locally
@@ -31,44 +31,45 @@
 
 #include <stdbool.h>
 
-/// Compiles what the chart needs; with_rate: the rate of its basis as well. The memory is in the
-/// arena, the rest is freed by hn_chart_destroy(). Fails: HN_ERR_MEMORY, reported in diag.
+/// Makes a chart: compiles its terms, with the rate of its basis where `with_rate` is set. Its
+/// memory is in the arena; hn_chart_destroy() frees the rest. Fails: HN_ERR_MEMORY, reported in
+/// diag.
 HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate,
                                       hn_arena *arena, hn_diag *diag);
 void hn_chart_destroy(hn_chart *chart);
 
 /// Closes the loops at `point` for given independent entries of q (nq; the dependent ones are a
-/// guess, overwritten). The point then holds q, J, N, s and the factor. HN_ERR_CHART: no pose, or
-/// det J_d vanished on the way.
+/// guess, overwritten). The point then holds q, J, N, s and the factor. Fails: HN_ERR_CHART (no
+/// closed configuration was found, or det J_d vanished on the way).
 HN_MUST_CHECK hn_status hn_chart_close(hn_chart *chart, hn_chart_point *point, double t, double *q,
                                        double tol);
 /// Whether a configuration with this gap counts as closed to `tol`; `last` is the gap before the
 /// last step of Newton's method.
 bool hn_chart_is_closed(const hn_chart *chart, double gap, double last, double tol);
-/// `here` becomes the accepted state. HN_ERR_CHART when det J_d changed its sign since the last
-/// one: the loop went over to its other assembly mode.
+/// Accepts the state in chart->here. Fails: HN_ERR_CHART (det J_d has changed its sign since the
+/// last accepted state: the loop went over to its other assembly mode).
 HN_MUST_CHECK hn_status hn_chart_settle(hn_chart *chart);
-/// The check of hn_chart_settle() alone.
+/// Checks the sign of det J_d as hn_chart_settle() does, and accepts nothing. Fails: HN_ERR_CHART.
 HN_MUST_CHECK hn_status hn_chart_check_mode(hn_chart *chart);
 /// Whether `point` is at (t, q) already: q (nq).
 bool hn_chart_is_at(const hn_chart *chart, const hn_chart_point *point, double t, const double *q);
 
-/// The point at q as it is, closed or not: J, N, s and the factor.
+/// Fills the point at q, closed or not: J, N, s and the factor.
 HN_MUST_CHECK hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *point, double t,
                                         const double *q);
-/// q (nq) from independent entries q_ind (r, plain coordinates), the others predicted along the
-/// tangent at `base`.
+/// Computes q (nq) from its independent entries q_ind (r, plain coordinates); predicts the
+/// dependent entries along the tangent at chart->base.
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q);
 /// The same along the tangent at another point.
 void hn_chart_predict_from(const hn_chart *chart, const hn_chart_point *from, double t,
                            const double *q_ind, double *q);
-/// A step went through the pose where the two ways of assembling step `step` of chart.dyads meet;
-/// `here` is no longer valid.
+/// Fails with HN_ERR_CHART: a step went through the configuration where the two assembly modes of
+/// step `step` of chart.dyads meet. chart->here is no longer valid.
 hn_status hn_chart_fail_dyad(hn_chart *chart, int step);
-/// v = N u + s at the point.
+/// Computes v = N u + s at the point.
 void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *point, const double *u,
                      double *v);
-/// u' of equation (3) at `here` with speeds v.
+/// Computes u' of equation (3) at chart->here with velocities v.
 HN_MUST_CHECK hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot);
 /// x <- A^-1 x with the r x r matrix of (3) left in chart->A (lower triangle, spoiled).
 HN_MUST_CHECK hn_status hn_chart_solve_reduced(hn_chart *chart, double t, double *x);

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-/// Which column has to be independent: the number of one, or
+/// A column that must be independent: its number, or
 enum {
     /// the actuated coordinates and then the first ones, as long as |det J_d| is at least
     /// HN_CHART_TAU times the best found by pivoting, otherwise the pivots decide

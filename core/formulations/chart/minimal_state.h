@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_MINIMAL_STATE_H
 #define HN_FORMULATIONS_MINIMAL_STATE_H
-// What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many
-// entries as the mechanism has freedoms. Which entry of q an independent speed moves must be plain,
-// so the speeds of balls are always dependent; where that cannot be, the scene is refused. Every
-// right-hand side closes the loops first, by Newton from a tangent prediction (in one tape with the
-// accelerations, minimal_tape.h, where that serves) or, where the loops fall apart into dyads, in
-// closed form, so no gap can open.
+// Common part of coordinate partitioning and reduced coordinates: the state y = (q_i, v_i), with
+// one entry each for every degree of freedom. An independent velocity must be the derivative of one
+// entry of q, so the velocities of ball joints are always dependent; a scene where that is
+// impossible is refused. Every right-hand side closes the loops first, by Newton from a tangent
+// prediction (in one tape with the accelerations, minimal_tape.h, where that serves) or, where the
+// loops fall apart into dyads, in closed form, so no gap can open.
 
 #include "formulations/chart/chart.h"
 #include "formulations/chart/chart_jacobian.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_TANGENT_STATE_H
 #define HN_FORMULATIONS_TANGENT_STATE_H
-// What both null-space formulations share: the state y = (q, u) with v = N(q) u + s, so that J v +
-// phi_t = 0 holds exactly at any q. Positions drift inside a step only: at its end the dependent
-// coordinates are closed by Newton.
+// Common part of both null-space formulations: the state y = (q, u) with v = N(q) u + s, so that J
+// v + phi_t = 0 holds exactly at any q. Positions drift inside a step only: at its end the
+// dependent coordinates are closed by Newton.
 
 #include "formulations/chart/chart.h"
 #include "formulations/chart/chart_jacobian.h"

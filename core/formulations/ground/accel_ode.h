@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_ACCEL_ODE_H
 #define HN_FORMULATIONS_ACCEL_ODE_H
-// What index-1, Baumgarte and projection share: the state y = (q, v) in system coordinates and the
-// right-hand side
+// Common part of index-1, Baumgarte and projection: the state y = (q, v) in system coordinates and
+// the right-hand side
 //
 //  q' = G(q) v, v' = a from K [a; -lambda] = [f; -gamma - 2 alpha (J v + phi_t) - beta^2 phi] (1)
 //

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_DENSE_ODE_H
 #define HN_FORMULATIONS_DENSE_ODE_H
-// What the formulations share that get their acceleration from M, f, J and gamma as dense arrays,
-// by their own formula: the state y = (q, v) in system coordinates and
+// Common part of the formulations that compute the acceleration from M, f, J and gamma as dense
+// arrays, each by its own formula: the state y = (q, v) in system coordinates and
 //
 //     q' = G(q) v,    v' = accelerate(M, f, J, gamma, ...)                                    (1)
 //

@@ -44,8 +44,8 @@ enum { HN_AUGMENTED_WEIGHT, HN_AUGMENTED_PROJECTIONS, HN_AUGMENTED_OPTIONS };
 enum { HN_BAUMGARTE_GIVEN, HN_BAUMGARTE_AUTO };
 enum { HN_PROJECTIONS_ON, HN_PROJECTIONS_OFF };
 
-/// What a formulation does and needs: bits of hn_formulation.traits. Remedies and studies choose by
-/// them, never by a name.
+/// Traits of a formulation, its effects and its needs: bits of hn_formulation.traits. Remedies and
+/// studies choose by them, never by a name.
 typedef enum hn_trait {
     HN_TRAIT_CLOSES_POSITION = 1 << 0,    ///< phi = 0 after each step, to rounding
     HN_TRAIT_CLOSES_VELOCITY = 1 << 1,    ///< J v + phi_t = 0 after each step, to rounding

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_PENALISED_H
 #define HN_FORMULATIONS_PENALISED_H
-// What penalty and augmented Lagrangian share: the matrix M + a J' J, which is positive definite
-// however many rows depend on each other, as long as no direction is both massless and free. It is
-// factored sparse: two coordinates meet in it where a body or a closure row touches both.
+// Common part of penalty and augmented Lagrangian: the matrix M + a J' J, which is positive
+// definite however many rows depend on each other, as long as no direction is both massless and
+// free. It is factored sparse: two coordinates meet in it where a body or a closure row touches
+// both.
 
 #include "linalg/sparse_spd.h"
 #include "formulations/ground/dense_ode.h"

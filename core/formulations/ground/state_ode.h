@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_STATE_ODE_H
 #define HN_FORMULATIONS_STATE_ODE_H
-// What the formulations share whose state is y = (q, v) in system coordinates:
+// Common part of the formulations whose state is y = (q, v) in system coordinates:
 //
 //     q' = G(q) v,    v' = the accelerations that obey a law (accel_jacobian.h)               (1)
 //

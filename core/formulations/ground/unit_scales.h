@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_UNIT_SCALES_H
 #define HN_FORMULATIONS_UNIT_SCALES_H
-// What counts as one for each velocity, so that metres and radians can be compared: a radian, the
-// characteristic length of the mechanism, and 1 / sqrt(M_jj) for a coordinate that is neither. The
-// same mechanism in other units of length, mass and time then has the same numbers.
+// The unit of each velocity, by which metres and radians can be compared: a radian, the
+// characteristic length of the mechanism, and 1 / sqrt(M_jj) for a coordinate that is neither an
+// angle nor a length. The same mechanism in other units of length, mass and time then has the same
+// numbers.
 //
-// Masses would be no measure for the others: of a light crank and a heavy slider the slider would
-// be kept as independent coordinate up to the very neighbourhood of its dead points, where the
-// crank follows from it a hundred times as fast.
+// Masses are no such unit: with a light crank and a heavy slider, the slider would stay the
+// independent coordinate until close to its dead points, where the crank turns a hundred times as
+// fast as it.
 
 #include "dynamics/compile/system.h"
 

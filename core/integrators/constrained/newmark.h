@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_NEWMARK_H
 #define HN_INTEGRATORS_NEWMARK_H
-// What generalised-alpha and HHT share: Newmark's formulas for the motion and Newton's method on
-// the equilibrium at the end.
+// Common part of generalised-alpha and HHT: Newmark's formulas for the motion and Newton's method
+// on the equilibrium at the end.
 //
 //     q1 = q0 + D,  D = h v0 + h^2 ((1/2 - beta) a0 + beta a1) [+ M0^-1 J0' eta]              (1)
 //     v1 = v0 + h ((1 - gamma) a0 + gamma a1)                                                 (2)
 //     M(q1) e = f(q1, v1) + J(q1)' lambda - carry,    e = weight a1 + past                    (3)
 //     phi(q1) = 0   [and J(q1) v1 + phi_t = 0 with eta: the stabilised index-2 form]          (4)
 //
-// a is an auxiliary that approximates accelerations; what e, past and carry are makes the method. D
-// is taken along the speeds (hn_system_move), so that balls turn about their own axes. Newton's
-// unknowns are D, eta and beta h^2 lambda: with (3) times beta h^2 the matrix stays well
+// a is an auxiliary that approximates accelerations; each method has its own e, past and carry. D
+// is taken along the velocities (hn_system_move), so that ball joints turn about their own axes.
+// Newton's unknowns are D, eta and beta h^2 lambda: with (3) times beta h^2 the matrix stays well
 // conditioned for every h. Of a large mechanism M0^-1 J0' eta is an unknown of its own. Source:
 // Arnold, Bruls & Cardona 2015; Bottasso, Dopico & Trainelli 2008 (scaling).
 

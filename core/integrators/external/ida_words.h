@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IDA_WORDS_H
 #define HN_INTEGRATORS_IDA_WORDS_H
-// What SUNDIALS IDA's flags mean.
+// The flags of SUNDIALS IDA in words.
 
 #include "base/status.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IMPLICIT_STEPPERS_H
 #define HN_INTEGRATORS_IMPLICIT_STEPPERS_H
-// What the cards of collocation methods share: with the nodes of a method as data, its slots are
-// three lines each.
+// Common part of the collocation methods' cards. The nodes of a method are data, so that its
+// functions are three lines each.
 
 #include "integrators/implicit/implicit_dae.h"
 #include "integrators/implicit/implicit_ode.h"

@@ -37,11 +37,12 @@ typedef struct hn_collocation {
 
 /// From 1 to 3 different nodes in (0, 1].
 void hn_collocation_init(hn_collocation *col, int stages, int order, const double *c);
-/// What an error estimate of order 4 in h is multiplied by, so that the solution, of order 5, is as
-/// accurate as asked for and no more: rtol over 0.1 rtol^(2/3), not above 1. Source: Hairer &
+/// Returns the factor for an error estimate of order 4 in h by which the solution, of order 5, is
+/// as accurate as asked for and no more: rtol over 0.1 rtol^(2/3), not above 1. Source: Hairer &
 /// Wanner 1996, the program RADAU5.
 double hn_collocation_estimate_weight(double rtol);
-/// What Newton's method may leave, of the tolerance so widened (same source).
+/// Returns the share of the tolerance, widened by that factor, that Newton's method may leave as an
+/// error (same source).
 double hn_collocation_newton_share(double rtol);
 /// Values of the Lagrange polynomials of the nodes at x (stages entries).
 void hn_collocation_basis(const hn_collocation *col, double x, double *l);

@@ -30,10 +30,10 @@ HN_MUST_CHECK hn_status hn_method_parse(const char *text, hn_method_spec *out, h
 /// The normal spelling: only options that differ from their defaults, plus h or rtol (what the step
 /// is taken or chosen by) always. Reads back to the same spec.
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]);
-/// Where the value of a setting stands, of the formulation or else of the integrator, and its entry
-/// in *info (may be NULL). NULL: neither has it.
+/// Returns the place of an option's value, in the formulation or else in the integrator, and its
+/// entry in *info (may be NULL). NULL: neither has the option.
 double *hn_method_find_option(hn_method_spec *spec, const char *key, const hn_option **info);
-/// The value of a setting by key; `otherwise` when neither has it.
+/// Returns the value of an option by key; `otherwise` where neither has it.
 double hn_method_option(const hn_method_spec *spec, const char *key, double otherwise);
 /// The form in which this pair takes the constraints: the formulation's own, or else the one it has
 /// also.

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_DAE_BASE_H
 #define HN_INTEGRATORS_DAE_BASE_H
-// What integrators of the differential-algebraic system share: evaluators of its terms, consistent
-// accelerations and multipliers to begin from, and the constraint rows that count.
+// Common part of the integrators of the differential-algebraic system: evaluators of its terms,
+// consistent accelerations and multipliers to begin from, and the constraint rows that count.
 //
-// Redundant rows. A Newton matrix with dependent rows of J has no inverse, and away from the closed
-// poses, where Newton's iterates are, dependent rows are dependent no longer. So each step begins
-// by choosing independent rows at its closed first pose, by column-pivoted QR of J', and goes on
-// with those alone; the others follow, because every motion that keeps the chosen rows closed keeps
-// them closed. The multipliers of rows left out are 0 inside a scheme.
+// Redundant rows. A Newton matrix with dependent rows of J has no inverse. Newton's iterates are
+// not closed, and there rows that depend on each other at closed configurations are independent. So
+// each step begins by choosing independent rows at its closed first configuration, by
+// column-pivoted QR of J', and goes on with those alone; the other rows follow, because every
+// motion that keeps the chosen rows closed keeps them closed. The multipliers of rows left out are
+// 0 inside a scheme.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"

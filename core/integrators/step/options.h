@@ -29,7 +29,7 @@
     { .key = "h0", .max = 100, .unit = "s", .about = "first step; 0: chosen from the first slopes" }
 #define HN_OPTION_LARGEST_STEP \
     { .key = "hmax", .max = 100, .unit = "s", .about = "largest step; 0: no limit" }
-/// Of adaptive integrators that can also run at a fixed step.
+/// The option of adaptive integrators that can also run at a fixed step.
 #define HN_OPTION_FIXED_STEP \
     { .key = "h", .max = 100, .unit = "s", .about = "fixed step; 0: chosen from rtol and atol" }
 

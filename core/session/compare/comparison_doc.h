@@ -9,7 +9,7 @@
 /// "velocity_gap","energy","work","energy_change","steps","evals","ops","cpu","step_cpu":{"median",
 /// "low","high","frames"},"worst_gap",...}]}; step_cpu as hn_step_cost
 void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
-/// What a frame may say beside: an array with an entry for each method.
+/// Optional members of a frame: an array each, with an entry for each method.
 typedef enum hn_frame_extra {
     HN_FRAME_SIGMA_MIN, ///< hn_run_sigma_min() at the last step that was checked
     HN_FRAME_LAMBDA,    ///< multipliers of the sample, an array

@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-/// What the hand did at a frame: `pull` holds from then on.
+/// A change of the hand at a frame: `pull` holds from then on.
 typedef struct hn_pull_event {
     long long frame;
     hn_pull pull;

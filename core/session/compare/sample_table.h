@@ -12,7 +12,7 @@
 
 typedef struct hn_sample_table hn_sample_table;
 
-/// What a table holds besides the columns that every run has.
+/// Optional columns of a table of samples.
 typedef struct hn_sample_columns {
     bool raw_lambda;       ///< the multipliers that the integrator itself computes
     bool reactions;        ///< forces and moments of joints and constraints, efforts of motors

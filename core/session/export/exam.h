@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXPORT_EXAM_H
 #define HN_SESSION_EXPORT_EXAM_H
-// What the parts of an exported program must give when a student has filled them in (export
-// --blanks): mass, force, jacobian and bias at states of the motion.
+// Expected values of the parts of an exported program that a student fills in (export --blanks):
+// mass, force, jacobian and bias at states of the motion.
 
 #include "base/arena.h"
 #include "session/model/model.h"

@@ -32,8 +32,8 @@
 
 #include <stdbool.h>
 
-/// What is asked for. The last three are answers: the ending of a file's name, and what
-/// begins and ends a comment.
+/// The request of an export. The last three members are answers: the ending of a file's name, and
+/// the marks that begin and end a comment.
 typedef struct hn_export_request {
     const char *language; ///< a row of export/language.h
     /// index1@... or baumgarte:alpha=...,beta=...@...: how the program holds its loops; its

@@ -48,9 +48,10 @@ HN_MUST_CHECK hn_status hn_start_poses_find(const hn_model *model, hn_arena *are
                                             hn_start_poses *out);
 /// The pose of a body, or of the ground.
 hn_im_frame hn_start_poses_world(const hn_start_poses *poses, int body);
-/// What the coordinates of a joint do, one after the other from its parent; `n` gets their number.
+/// Returns the motions of a joint's coordinates, in order from its parent; `n` gets their number.
 const hn_joint_step *hn_joint_steps(hn_joint_type type, int *n);
-/// Where a joint sits in its parent (side 0) or its child (side 1): z is its axis, x its reference.
+/// Returns the frame of a joint in its parent (side 0) or in its child (side 1): z is its axis, x
+/// its reference.
 hn_im_frame hn_joint_side(const hn_joint *joint, int side);
 
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_XML_ATTRIBUTE_H
 #define HN_SESSION_XML_ATTRIBUTE_H
-// What the writers of MJCF and URDF share: attributes of an element, and notes of what is left out.
+// Common part of the writers of MJCF and URDF: attributes of an element, and notes of what is left
+// out.
 
 #include "base/strbuf.h"
 

@@ -26,7 +26,7 @@ typedef enum hn_extreme_verdict {
         HN_EXTREME_VERDICTS
 } hn_extreme_verdict;
 
-/// What is predicted: a band for a number, or a word for an outcome.
+/// A prediction: a band for a number, or a word for an outcome.
 typedef struct hn_extreme_expect {
     const char *word; ///< NULL: a number
     const char *says; ///< text that the reason of the outcome must contain, or NULL

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_EXTREME_MEASURE_H
 #define HN_SESSION_EXTREME_EXTREME_MEASURE_H
-// How the quantities of a sweep become one number or one word.
+// Reduces the quantities of a sweep to one number or one word.
 
 #include "session/extreme/extreme_internal.h"
 

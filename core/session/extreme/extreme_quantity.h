@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_EXTREME_QUANTITY_H
 #define HN_SESSION_EXTREME_EXTREME_QUANTITY_H
-// What can be read off a run, a model or a solver's answer: one number each.
+// Quantities of a run, of a model or of a solver's answer: one number each.
 
 #include "session/extreme/extreme_internal.h"
 

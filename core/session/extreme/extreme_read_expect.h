@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_EXTREME_READ_EXPECT_H
 #define HN_SESSION_EXTREME_EXTREME_READ_EXPECT_H
-// What a trial predicts: a band for a number, or a word for an outcome.
+// Reads the prediction of a trial: a band for a number, or a word for an outcome.
 
 #include "session/extreme/extreme_reader.h"
 

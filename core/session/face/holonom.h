@@ -31,7 +31,7 @@ typedef enum holonom_status {
     HOLONOM_ENDED = 4    ///< a run ended early and says why: singular, diverged, step too small
 } holonom_status;
 
-/// What went wrong. Filled whenever a call does not return HOLONOM_OK; a NULL pointer is legal.
+/// A fault. Filled whenever a call does not return HOLONOM_OK; a NULL pointer is legal.
 typedef struct holonom_fault {
     char where[192];   ///< JSON pointer into the scene ("/joints/2/axis"), or ""
     char message[512]; ///< what was found and what is allowed
@@ -102,7 +102,7 @@ typedef struct holonom_sample {
     double energy_change, work;
 } holonom_sample;
 
-/// What a run has cost and how well it has kept the constraints, so far.
+/// The cost of a run and its constraint violation, so far.
 typedef struct holonom_result {
     holonom_status status; ///< HOLONOM_ENDED when it ended early
     char reason[480];      ///< why, or ""

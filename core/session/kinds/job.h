@@ -28,7 +28,7 @@ typedef struct hn_job_end {
     bool lost;        ///< what is done could not be written into the journal: it is not kept
 } hn_job_end;
 
-/// What the words after the command name, on the command line.
+/// The meaning of the words after the command, on the command line.
 typedef enum hn_job_words {
     HN_JOB_WORDS_SCENES, ///< scenes; none: those of the standard report
     HN_JOB_WORDS_SCENE,  ///< one scene, and the kind's name

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_KIND_REFERENCE_H
 #define HN_SESSION_KIND_REFERENCE_H
-// What a job of kind "reference" holds, for writers that need more than its JSON.
+// The content of a job of kind "reference", for writers that need more than its JSON.
 
 #include "session/references/references.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_POSITION_JSON_H
 #define HN_SESSION_POSITION_JSON_H
-// How the reduced method computes the configuration from its independent coordinates, as a part of
-// the report of `inspect`.
+// Writes how the reduced method computes the configuration from its independent coordinates: a part
+// of the report of `inspect`.
 
 #include "base/strbuf.h"
 #include "session/model/model.h"

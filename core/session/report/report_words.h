@@ -9,7 +9,7 @@ extern const double hn_report_accuracy[HN_REPORT_BANDS]; ///< 1e-3, 1e-6, 1e-9
 /// The cheapest method of a scene at this relative error: by time where times rank clearly, else by
 /// operations. Method -1: none reaches it.
 hn_report_answer hn_report_find_answer(const hn_report_scene *scene, double accuracy);
-/// What method m reaches there.
+/// Returns the verdict on method m of a scene.
 hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);
 /// Writes the report in a few lines, one sentence each: how often each method is cheapest, which
 /// methods are dependable, what fails where, what is ranked by time.

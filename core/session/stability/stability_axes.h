@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_STABILITY_AXES_H
 #define HN_SESSION_STABILITY_STABILITY_AXES_H
-// What a map is asked for: axes from text or from a preset, methods, and how long a trial lasts.
+// Reads the request of a map: axes from text or from a preset, methods, and how long a trial lasts.
 
 #include "session/stability/stability.h"
 #include "session/stability/stability_internal.h"

@@ -26,7 +26,7 @@ typedef struct hn_map_class_look {
 const hn_map_class_look *hn_map_class_look_get(hn_stability_class kind);
 uint32_t hn_map_class_colour(hn_stability_class kind, hn_theme theme);
 
-/// Of the whole picture [px].
+/// Returns the height of the whole picture [px].
 int hn_map_height(const hn_map *map);
 /// Returns the top of method m's field.
 double hn_map_field_top(int m);
@@ -41,8 +41,8 @@ double hn_map_column_edge(const hn_map *map, int i);
 double hn_map_row_edge(const hn_map *map, int m, int j);
 /// Height of a value on the vertical axis: rows stand for their values at their middle.
 double hn_map_height_of(const hn_map *map, int m, double value);
-/// Where the predicted boundary passes between columns i and i + 1 of row j, on maps whose vertical
-/// axis is no step; 0: it does not.
+/// Computes the x at which the predicted boundary passes between columns i and i + 1 of row j, on
+/// maps whose vertical axis is no step. Returns 0 where it does not pass there.
 int hn_map_crossing_x(const hn_map *map, int m, int i, int j, double *x);
 /// Ticks: values at rows or columns that label an axis; at most 8, returns how many. `at` is the
 /// index.

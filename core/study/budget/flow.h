@@ -17,8 +17,8 @@ HN_MUST_CHECK hn_status hn_flow_create(int n_pos, int n_vel, hn_arena *arena, hn
 HN_MUST_CHECK hn_status hn_flow_run(hn_flow *flow, const hn_ode *ode, double tol, double t,
                                     double h, const double *y, double *y_end);
 
-/// What carries derivatives of a flow back: out (n) = A' w, A being the derivative of y' by y,
-/// along n displacements of the unknowns, at (t, y).
+/// Carries derivatives of a flow back: out (n) = A' w, A being the derivative of y' by y, along n
+/// displacements of the unknowns, at (t, y).
 /// Fails as it has to.
 typedef struct hn_flow_slopes {
     int n;

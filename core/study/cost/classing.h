@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CLASSING_H
 #define HN_STUDY_CLASSING_H
-// What a ladder of sizes says about a method: model error or discretisation error?
+// Classes a method by its ladder of steps or tolerances: model error or discretisation error.
 //
-// A method that converges to something else is caught by comparing two numbers of its finest
-// points: how far they are from the reference, and how far they are from each other. Where the
-// second falls and the first stays, the method has a limit, and the limit is not the motion of the
-// scene. Where both stay, rounding or an inner tolerance is the floor.
+// Two distances of its finest points tell: that from the reference, and that from each other. Where
+// only the second falls, the method converges, but not to the motion of the scene. Where neither
+// falls, rounding or an inner tolerance is the floor.
 
 #include "study/cost/workprecision.h"
 
@@ -52,6 +51,7 @@ typedef struct hn_class {
     char text[480];      ///< in words
 } hn_class;
 
-/// Of the coordinates' largest error over the run; beyond the horizon nothing is said.
+/// Classes method m by the largest error of the coordinates over the run; nothing is said beyond
+/// the horizon.
 void hn_wp_classify(const hn_wp *wp, int m, hn_class *out);
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PARETO_H
 #define HN_STUDY_PARETO_H
-// Which method for which accuracy: the cheapest finished point per band, the front over all points,
-// and what each method reaches for the same cost. A method that converges to something else takes
-// no part.
+// Finds the cheapest method for an accuracy: the cheapest finished point per band, the front over
+// all points, and the accuracy of each method at equal cost. A method that converges to a different
+// solution takes no part.
 //
 // Counts are exact; times are ranked only where a second measurement would say the same: the two
 // halves of the samples of both methods agree, and the methods differ by more than 10 % and by more
-// than all that was met in either. Otherwise the sentence says why, and ranks by operations.
+// than the spread of either. Otherwise the sentence says why, and ranks by operations.
 //
 // Where neighbouring motions part exponentially and the study ends beyond the horizon (chaos.h), no
 // error along the motion is ranked: only gaps and energy, which every motion nearby keeps too,
@@ -46,9 +46,9 @@ typedef enum hn_ranking {
 } hn_ranking;
 const char *hn_ranking_name(hn_ranking ranking);
 
-/// Who reaches an accuracy for the least. What just reaching it costs is read off between the
-/// points around it, by a straight line in the logarithms, so that the grain of a ladder decides
-/// nothing; the coarsest point of a method is never undercut.
+/// The method that reaches an accuracy for the least. The cost of just reaching it is interpolated
+/// between the points around it, by a straight line in the logarithms, so that the grain of a
+/// ladder decides nothing; the coarsest point of a method is never undercut.
 typedef struct hn_band {
     double accuracy;
     hn_place best; ///< -1: no method reaches it
@@ -91,9 +91,9 @@ void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
 int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
                    int m, int k);
 
-/// What each method reaches for the same number of operations: between two of its points by a
-/// straight line in the logarithms, never before them (NaN). Behind the dearest point the smallest
-/// error so far is a bound.
+/// The error of each method for the same number of operations: between two of its points by a
+/// straight line in the logarithms, NaN before its first point. Beyond its dearest point the
+/// smallest error so far is a bound.
 typedef struct hn_race {
     int n;
     double cost[HN_RACE_COSTS]; ///< operations

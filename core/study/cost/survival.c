@@ -9,25 +9,14 @@
 
 static const double LEAST_STEP = 2.2, MOST_STEP = 20; // times the usual one
 
-static const char *const names[] = {
-#define HN_SURVIVAL_NAME(code, name, about) name,
-    HN_SURVIVAL_LIST(HN_SURVIVAL_NAME)
-#undef HN_SURVIVAL_NAME
-};
-static const char *const abouts[] = {
-#define HN_SURVIVAL_ABOUT(code, name, about) about,
-    HN_SURVIVAL_LIST(HN_SURVIVAL_ABOUT)
-#undef HN_SURVIVAL_ABOUT
-};
-
 const char *hn_survival_name(hn_survival_end end) {
+    static const char *const names[HN_SURVIVAL_ENDS] = {
+        [HN_SURVIVAL_SURVIVED] = "survived", [HN_SURVIVAL_OFF] = "off",
+        [HN_SURVIVAL_STOPPED] = "stopped",   [HN_SURVIVAL_TOLD] = "told",
+        [HN_SURVIVAL_SILENT] = "silent",
+    };
     HN_ASSERT((int)end >= 0 && end < HN_SURVIVAL_ENDS);
     return names[end];
-}
-
-const char *hn_survival_about(hn_survival_end end) {
-    HN_ASSERT((int)end >= 0 && end < HN_SURVIVAL_ENDS);
-    return abouts[end];
 }
 
 double hn_survival_step(double usual, int k, int n) {

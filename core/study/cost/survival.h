@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SURVIVAL_H
 #define HN_STUDY_SURVIVAL_H
-// What becomes of a run that has to come through poses where the loops lose rank and could fold
-// over: it stays with the exact motion, or it does not, and then says so, or not. Counted over many
-// steps this is "survived n of m", which no single run shows.
+// Survival of runs through singular configurations, where a loop can fold over into its other
+// assembly mode. A run stays with the exact motion, ends early, or leaves the motion with or
+// without an incident that says so. Counted over many step sizes this gives "survived n of m".
 
 #include "study/truth/errors.h"
 #include "study/truth/reference.h"
@@ -11,42 +11,38 @@
 
 #include <stdbool.h>
 
-#define HN_SURVIVAL_LIST(X)                                                                  \
-    X(HN_SURVIVAL_SURVIVED, "survived", "stayed with the exact motion throughout")           \
-    X(HN_SURVIVAL_OFF, "off", "left the exact motion, no loop seen folded over: inaccurate") \
-    X(HN_SURVIVAL_STOPPED, "stopped", "ended early and said why")                            \
-    X(HN_SURVIVAL_TOLD, "told", "went wrong, and an incident says so")                       \
-    X(HN_SURVIVAL_SILENT, "silent", "a loop folded over, and nothing was reported")
+/// How a run ended beside the exact motion.
 typedef enum hn_survival_end {
-#define HN_SURVIVAL_ENUM(code, name, about) code,
-    HN_SURVIVAL_LIST(HN_SURVIVAL_ENUM)
-#undef HN_SURVIVAL_ENUM
-        HN_SURVIVAL_ENDS
+    HN_SURVIVAL_SURVIVED, ///< it stayed with the exact motion throughout
+    HN_SURVIVAL_OFF,      ///< it left the exact motion, and no loop was seen folded over
+    HN_SURVIVAL_STOPPED,  ///< it ended early and said why
+    HN_SURVIVAL_TOLD,     ///< it went wrong, and an incident says so
+    HN_SURVIVAL_SILENT,   ///< a loop folded over, and nothing was reported
+    HN_SURVIVAL_ENDS
 } hn_survival_end;
-/// Columns 2 and 3 of HN_SURVIVAL_LIST.
+/// Returns the name in tables: "survived", "off", "stopped", "told", "silent".
 const char *hn_survival_name(hn_survival_end end);
-const char *hn_survival_about(hn_survival_end end);
 
-/// How far a sample is from the exact motion, and whether a loop has folded over. `k` counts the
-/// looks from 1.
+/// The distance of a sample from the exact motion, and whether a loop has folded over.
 typedef struct hn_survival_seen {
     double distance;
     int folded;
 } hn_survival_seen;
+/// Compares sample k (from 1) with the exact motion.
 typedef hn_survival_seen (*hn_survival_look)(void *user, int k, const hn_sample *sample);
 
 typedef struct hn_survival_judge {
     hn_survival_look look;
     void *user;
     double T;      ///< [s]
-    int n;         ///< looks, at T (k - before) / n, k = 1..n
-    double before; ///< 0: the last look is at T
-    bool at_steps; ///< at the run's own times just behind these
+    int n;         ///< samples, at T (k - before) / n, k = 1..n
+    double before; ///< 0: the last sample is at T
+    bool at_steps; ///< at the ends of the run's own steps just behind these times
     /// 1: a run that left the motion counts as told where an incident says that it is wrong, folded
     /// or not
     int ask_incidents;
     double limit; ///< of the distance, in its unit
-    /// computing time of one run, and `stop`, asked between looks; NULL: none
+    /// computing time of one run, and `stop`, asked between samples; NULL: none
     const hn_walk_limits *limits;
 } hn_survival_judge;
 

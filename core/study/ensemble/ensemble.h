@@ -5,10 +5,11 @@
 // Every thread steps HN_LANES runs side by side by vector instructions
 // (integrators/explicit/rk_lanes.h); a lane whose run has ended takes up the next one.
 //
-// A run's state is bit for bit that of a run by itself without a watch (study/run/run.h), whatever
-// the number of threads, the instruction set and the runs beside it: where the pivots of a lane are
-// too small to be sure, its step is made by the ordinary stepping. Serves explicit Runge-Kutta
-// methods with a fixed step and a plain sum on index-1 and Baumgarte with given alpha and beta.
+// A run's state is bit for bit that of a single run without a watch (study/run/run.h), whatever the
+// number of threads, the instruction set and the runs beside it. Where a pivot of a lane is so
+// small that its rank is in doubt, the ordinary stepping makes the step. Serves explicit
+// Runge-Kutta methods with a fixed step and a plain sum on index-1 and Baumgarte with given alpha
+// and beta.
 
 #include "expr/lanes.h"
 #include "integrators/method/method_spec.h"
@@ -23,33 +24,34 @@ typedef struct hn_ensemble_opts {
 /// All processors, the best instruction set, 50,000,000 steps.
 hn_ensemble_opts hn_ensemble_opts_default(void);
 
-/// Where one run starts, at time 0, and how it steps.
+/// The start of one run, at time 0, and its options.
 typedef struct hn_ensemble_start {
     const double *q, *v; ///< nq, nv: a state in system coordinates
     double h;            ///< [s] above 0
-    double alpha, beta;  ///< [1/s]; looked at by Baumgarte only
+    double alpha, beta;  ///< [1/s]; used by Baumgarte only
 } hn_ensemble_start;
 
 /// How one run ended.
 typedef struct hn_ensemble_end {
-    hn_status
-        status; ///< HN_OK: it reached the end; else as hn_run_advance(), at the last good state
-    double t;   ///< reached [s]: the first grid point at or beyond the end asked for
+    /// HN_OK: it reached the end; else as hn_run_advance(), at the last good state
+    hn_status status;
+    double t;           ///< reached [s]: the first grid point at or beyond the end asked for
     long long steps;    ///< made
-    long long in_doubt; ///< of these, made by the ordinary stepping
+    long long in_doubt; ///< of these, the steps that the ordinary stepping made
 } hn_ensemble_end;
 
-/// Whether runs of this method on this system can step side by side; fails with the reason:
-/// HN_ERR_UNSUPPORTED.
+/// Checks that runs of this method on this system can step side by side. Fails: HN_ERR_UNSUPPORTED,
+/// with the reason.
 HN_MUST_CHECK hn_status hn_ensemble_check(const hn_system *sys, const hn_method_spec *spec,
                                           hn_diag *diag);
-/// Makes room for the threads; the system must outlive it. The step and the options of `spec` are
-/// those of hn_ensemble_start_of(). Fails: as hn_ensemble_check(), HN_ERR_MEMORY.
+/// Makes an ensemble with memory for its threads; the system must outlive it.
+/// hn_ensemble_start_of() takes the step and the options of `spec`. Fails: as hn_ensemble_check(),
+/// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_ensemble_create(const hn_system *sys, const hn_method_spec *spec,
                                            const hn_ensemble_opts *opts, hn_ensemble **out,
                                            hn_diag *diag);
 void hn_ensemble_free(hn_ensemble *e); ///< NULL is legal
-/// A start from this state by the method as it is spelled.
+/// Returns a start from this state with the options of the method as it is spelled.
 hn_ensemble_start hn_ensemble_start_of(const hn_ensemble *e, const double *q, const double *v);
 /// Runs n members to t_end [s]. The last good state of member i goes to q (n x nq) and v (n x nv),
 /// row i, its end to ends[i]. One call at a time; allocates nothing but threads.

@@ -11,8 +11,8 @@ bool hn_remedy_finer(const hn_watch *w, double factor, hn_remedy out);
 /// A formulation that closes the loops after every step without a chart; not where the run has it
 /// already.
 bool hn_remedy_close(const hn_watch *w, double factor, hn_remedy out);
-/// What goes through singular configurations: such a formulation with a fixed step like the present
-/// one.
+/// A remedy for singular configurations: a formulation that passes through them, with a fixed step
+/// like the present one.
 bool hn_remedy_robust(const hn_watch *w, double factor, hn_remedy out);
 /// The same, only where the run is close to a singular configuration.
 bool hn_remedy_robust_near(const hn_watch *w, double factor, hn_remedy out);

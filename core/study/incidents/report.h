@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_REPORT_INCIDENT_H
 #define HN_STUDY_REPORT_INCIDENT_H
-// How a check reports: the message, and the remedies of the kind.
+// Adds the report of a check to the log: its message, and the remedies of its kind.
 
 #include "study/incidents/watch.h"
 

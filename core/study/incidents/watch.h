@@ -38,7 +38,7 @@
 /// Least change of the assembly-mode value that counts as a jump to the other branch.
 #define HN_RUN_WARN_MODE 0.1
 
-/// What was measured of one state.
+/// The measurements at one state.
 typedef struct hn_measure {
     double gap, velocity_gap;  ///< ||phi||, ||J v + phi_t||
     double kinetic, potential; ///< [J]
@@ -103,7 +103,8 @@ struct hn_watch {
     double length;       ///< characteristic length [m]
     hn_incident_log log;
     int every; ///< a check every so many steps
-    /// Of each report that may be tried: a state shortly before it, and the steps made by then.
+    /// For each report whose remedies may be tried: a state shortly before it, and the number of
+    /// steps by then.
     hn_state_at *before;  ///< HN_RUN_MAX_INCIDENTS
     long long *before_at; ///< HN_RUN_MAX_INCIDENTS
     int diagnosed;        ///< reports whose cause was looked for and whose remedies were tried

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ENDING_H
 #define HN_STUDY_ENDING_H
-// How a run ended early, as data that outlives the run: the code and the figures of the incident
-// that ended it, and what the incident offers. Sentence and time stand beside it.
+// The early end of a run, as data that outlives the run: the code, the figures and the remedies of
+// the incident that ended it. Its sentence and its time are kept beside it.
 
 #include "study/run/run.h"
 

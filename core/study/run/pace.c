@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 enum { MOST_BETWEEN = 512 };
-static const double SOON = 1e-3, LATE = 1e-2; // between two looks [s]
+static const double SOON = 1e-3, LATE = 1e-2; // between two checks [s]
 
 hn_pace hn_pace_begin(void) {
     return (hn_pace){.last = hn_clock_thread(), .every = 1};

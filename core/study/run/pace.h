@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PACE_H
 #define HN_STUDY_PACE_H
-// When a loop of steps checks its limits (time used, request to stop): after each step of a
+// Decides when a loop of steps checks its limits (time used, request to stop): after each step of a
 // mechanism of hundreds of bodies, seldom where a step takes a microsecond. Checks are about one to
 // ten milliseconds apart; steps do not depend on them. One pace serves a whole run: if it started
 // again at each output, it would never check where outputs are few steps apart.
@@ -9,9 +9,9 @@
 #include <stdbool.h>
 
 typedef struct hn_pace {
-    double last; ///< CPU time of this thread at the last look [s]
-    int every;   ///< steps between looks
-    int n;       ///< steps since the last one
+    double last; ///< CPU time of this thread at the last check [s]
+    int every;   ///< steps between checks
+    int n;       ///< steps since the last check
 } hn_pace;
 
 /// Begins now, on the thread that will step.

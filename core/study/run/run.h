@@ -76,8 +76,8 @@ double hn_run_ops(const hn_run *run);
 /// there is none, ahead of the present time, and for raw multipliers it makes a step of the same
 /// integrator aside, which leaves the run as it was.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
-/// What the multipliers of the last sample are worth; near a singular configuration at the cost of
-/// a dense solve. Allocates nothing.
+/// Returns how far the multipliers of the last sample are determined; near a singular configuration
+/// at the cost of a dense solve. Allocates nothing.
 hn_multiplier_mark hn_run_sample_mark(hn_run *run);
 /// Why the last sample that failed could not be taken, in words. Borrowed, until the run goes on.
 const char *hn_run_sample_why(const hn_run *run, hn_status status);

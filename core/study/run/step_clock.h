@@ -24,7 +24,7 @@ void hn_step_clock_create(hn_step_clock *c);
 /// Starts from zero; keeps the grain.
 void hn_step_clock_clear(hn_step_clock *c);
 
-/// What lies between a start and the next stop is counted.
+/// The clock counts the time between a start and the next stop.
 void hn_step_clock_start(hn_step_clock *c);
 void hn_step_clock_stop(hn_step_clock *c);
 

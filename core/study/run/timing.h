@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_TIMING_H
 #define HN_STUDY_TIMING_H
-// What a run costs by the clock: samples that are batches above the clock's grain, and what a few
-// of them say.
+// The CPU time of a run: samples, each a batch of runs that is long against the resolution of the
+// clock, and their statistics.
 
 #include "study/run/walk.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_LOAD_SHARE_H
 #define HN_STUDY_LOAD_SHARE_H
-// Which load makes a mode of the motion fast: a motor's damping, a stiff spring.
+// Finds the load that makes a mode of the motion fast: a motor's damping, a stiff spring.
 
 #include "dynamics/compile/system.h"
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SPECTRUM_H
 #define HN_STUDY_SPECTRUM_H
-// What an integrator will meet at a state, before a step is taken: the spectrum of the motion on
-// the loops.
+// The spectrum of the motion on the loops at one state: it decides which steps are stable, before
+// any is taken.
 //
 //     N spans ker J, N'N = 1
 //     (s^2 M_r + s C_r + K_r) x = 0,   M_r = N'M N,   C_r = N'C N,
 //     K_r = N'((M a)_q - f_q - (J'lambda)_q) N    at the a and lambda of the saddle system  (1)
 //
-// It is the spectrum on the loops that limits a step, not that of the free links: a stiff spring
-// may be softened, or made stiffer, by what the loops allow.
+// The spectrum on the loops limits a step, not that of the free links: the loops can make a stiff
+// spring act softer or stiffer.
 // Source: Hairer and Wanner 1996, Solving Ordinary Differential Equations II, section IV.2, for the
 // regions.
 

@@ -35,7 +35,7 @@ enum {
 
 typedef struct hn_accuracy hn_accuracy;
 
-/// What has been seen of one run: largest differences, not yet divided by scales.
+/// Largest differences of one run so far, not yet divided by scales.
 typedef struct hn_accuracy_track {
     double worst[HN_ERROR_COUNT];
     double t; ///< last time compared [s]

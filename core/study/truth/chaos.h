@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CHAOS_H
 #define HN_STUDY_CHAOS_H
-// How fast neighbouring motions of a mechanism part. Where they part exponentially no method can
-// follow the motion for long, and errors beyond a horizon say nothing about methods.
+// Measures how fast neighbouring motions of a mechanism part. Where they part exponentially, no
+// method can follow the motion for long, and errors after a horizon say nothing about methods.
 //
 // Two motions, d0 apart, are followed for a window; the twin is then brought back to d0 from the
 // other along the line between them, and so on. With d_k the distance at the end of window k,

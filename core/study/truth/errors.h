@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ERRORS_H
 #define HN_STUDY_ERRORS_H
-// How far a state is from the reference solution, in six numbers without units that are never
+// The error of a state against the reference solution, in six numbers without units that are never
 // mixed: closed is not correct, and correct positions do not promise correct reactions.
 //
 //     q             max |q - q_ref|, lengths over the scene's length L, angles as they are, never
@@ -35,7 +35,7 @@ typedef enum hn_error_kind {
 const char *hn_error_name(hn_error_kind kind);  ///< "q", as in JSON
 const char *hn_error_title(hn_error_kind kind); ///< "coordinates", for people
 
-/// What errors are divided by.
+/// The scales of errors.
 typedef struct hn_scales {
     double length;   ///< L [m]
     double rate;     ///< largest |v| of the reference, length rates over L [1/s]
@@ -43,7 +43,7 @@ typedef struct hn_scales {
     double energy;   ///< [J]
 } hn_scales;
 
-/// What is compared at one time, in user coordinates.
+/// A state to be compared, in user coordinates.
 typedef struct hn_state_seen {
     double t;
     const double *q, *v, *lambda; ///< n_user, n_user, nc

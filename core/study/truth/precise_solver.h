@@ -9,7 +9,8 @@
 typedef struct hn_precise_solver {
     const char *name; ///< first half of a computation's name
     HN_MUST_CHECK hn_status (*create)(hn_precise_model *m, hn_arena *arena, void **ws);
-    /// Which rows of J count at this pose; before anything else, and at the start of each step.
+    /// Chooses the rows of J that count at this configuration; called first, and at the start of
+    /// each step.
     void (*choose_rows)(void *ws, hn_real t, const hn_real *q);
     /// a (nv) and lambda (nc, NULL: not wanted) at a state. Fails: HN_ERR_SINGULAR.
     HN_MUST_CHECK hn_status (*accelerate)(void *ws, hn_real t, const hn_real *q, const hn_real *v,

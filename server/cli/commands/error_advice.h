@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_ERROR_ADVICE_H
 #define HN_CLI_ERROR_ADVICE_H
-// What a run and a comparison say of an error that is too large.
+// Advice of a run and of a comparison where the error is too large.
 
 #include <cjson/cJSON.h>
 

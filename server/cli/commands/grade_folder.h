@@ -6,7 +6,7 @@
 #include "class/class_grading.h"
 #include "cli/shell/commands.h"
 
-/// What is graded: an exercise of formulas, or the program of a scene.
+/// The subject of a grading: an exercise of formulas, or the program of a scene.
 typedef struct hn_grade_subject {
     const hn_exercise *exercise;    ///< for a program: that of `programs`
     const hn_filled_exam *programs; ///< NULL: formulas

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_INSPECT_WORDS_H
 #define HN_CLI_INSPECT_WORDS_H
-// How `inspect` names the members of its document for people.
+// The words for the members of the document of `inspect`.
 
 #include "cli/shell/document.h"
 

@@ -60,7 +60,7 @@ typedef struct hn_option_row {
 } hn_option_row;
 /// The i-th option that a command reads; false: there are no more.
 bool hn_args_option(const hn_command *command, int i, hn_option_row *out);
-/// What an option is about; before that its choices, where its argument does not list them.
+/// Appends the description of an option, after its choices where its argument does not list them.
 void hn_args_about(hn_strbuf *b, const hn_option_row *o);
 /// A finite number and nothing behind it; 0 otherwise.
 int hn_number_parse(const char *text, double *out);

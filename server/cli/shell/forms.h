@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_FORMS_H
 #define HN_CLI_FORMS_H
-// What a job can be written as: a file whose name ends in a form's suffix (--out), JSON or CSV on
-// standard output (--json, --csv), or text for people.
+// Writes a job in one of its forms: a file whose name ends in a form's suffix (--out), JSON or CSV
+// on standard output (--json, --csv), or text for people.
 
 #include "cli/shell/args.h"
 #include "session/kinds/job.h"

@@ -6,6 +6,6 @@
 
 #include "session/kinds/kind_reference.h"
 
-/// What was computed and how far it can be trusted, for people.
+/// Writes a reference solution for people: its result, and how far it can be trusted.
 void hn_reference_text(hn_strbuf *b, const hn_reference_work *work);
 #endif

@@ -18,7 +18,7 @@
 
 enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16, HN_DRAW_CONDITIONS = 24 };
 
-/// Where the number of a name comes from.
+/// The origin of the number of a name.
 typedef enum hn_draw_origin {
     HN_DRAW_FIXED,  ///< the same in every variant
     HN_DRAW_DRAWN,  ///< from a range or a list

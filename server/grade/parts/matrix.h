@@ -15,7 +15,7 @@ typedef struct hn_matrix {
     double *x; ///< borrowed from the arena
 } hn_matrix;
 
-/// Where results live, and where a reason goes.
+/// The memory for results, and the place for a reason.
 typedef struct hn_matrix_desk {
     hn_arena *arena;
     hn_diag *diag;

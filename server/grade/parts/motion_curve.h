@@ -25,7 +25,7 @@ typedef struct hn_motion_curve {
 HN_MUST_CHECK hn_status hn_motion_curve_make(hn_motion_curve *c, const hn_part *p,
                                              const char *method, hn_diag *diag);
 
-/// What is read: one row of a table.
+/// A quantity that is read off a curve: one row of a table.
 typedef struct hn_curve_reading {
     const char *name;  ///< "largest", as in the exercise
     const char *says;  ///< "the largest value"

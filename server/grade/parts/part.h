@@ -14,7 +14,7 @@
 
 enum { HN_PART_TEXT = 400, HN_PART_RESULTS = 16, HN_PART_READ_AS = 100 };
 
-/// What became of one entry of an answer.
+/// The result of one entry of an answer.
 typedef struct hn_part_result {
     char name[32]; ///< "" for an answer of one entry, else "2", "12"
     double share;  ///< of the points of this entry, 0 .. 1
@@ -68,8 +68,8 @@ typedef struct hn_part_kind {
     hn_status (*prove)(const hn_part *p, hn_diag *diag);
     /// The figure that the question is about, as text or as SVG; NULL: the kind has none.
     void (*figure)(hn_strbuf *b, const hn_part *p, bool svg);
-    /// What a picture of an answer that can be read shows; NULL: the kind has none. The names of
-    /// settings are borrowed from the exercise.
+    /// Fills in the content of a picture of an answer that can be read; NULL: the kind has none.
+    /// The names of settings are borrowed from the exercise.
     void (*view)(const hn_part *p, const cJSON *given, hn_part_view *out);
 } hn_part_kind;
 

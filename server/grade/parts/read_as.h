@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_GRADE_READ_AS_H
 #define HN_GRADE_READ_AS_H
-// How a formula was read that is spelt otherwise than the parser spells it.
+// Says how a formula was read where its spelling is not the parser's own.
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -32,7 +32,7 @@ int hn_jobs_wait(hn_jobs *jobs);
 void hn_jobs_stop(hn_jobs *jobs);
 void hn_jobs_free(hn_jobs *jobs); ///< stops first; NULL is legal
 
-/// To be called by a job often: returns when it may go on, at once unless others wait and it has
-/// worked for a slice of time. NULL is legal.
+/// Lets other jobs work first. A job calls it often; it returns at once, unless others wait and the
+/// job has worked for a slice of time. NULL is legal.
 void hn_job_make_way(hn_job_turn *turn);
 #endif

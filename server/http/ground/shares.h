@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Who asks: a hash of the address; 0 is this machine, whose share is all of it.
+/// A client: a hash of its address. 0 is this machine, whose share is everything.
 typedef uint64_t hn_client;
 
 typedef struct hn_shares hn_shares;

@@ -12,8 +12,8 @@ struct hn_request;
 
 /// `opts` and `lib` must outlive it. NULL when memory or threads are out.
 hn_comparisons *hn_comparisons_create(const hn_http_opts *opts, const hn_library *lib);
-/// Ends every comparison and waits for their threads; streams that are still open keep what they
-/// read from. NULL is legal.
+/// Ends every comparison and waits for their threads. A stream that is still open keeps the data
+/// that it reads. NULL is legal.
 void hn_comparisons_stop(hn_comparisons *all);
 void hn_comparisons_free(hn_comparisons *all);
 

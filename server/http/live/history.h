@@ -32,8 +32,8 @@ typedef struct hn_event {
     hn_event_kind kind;
     char *data; ///< one line of JSON; NULL when memory ran out (readers are told of a gap)
     size_t n;
-    /// Of an object with members that only some readers want: where the others end, then where each
-    /// of these ends (",\"name\":value"); its last byte closes the object. All 0: no such members.
+    /// For an object with optional members: where its other members end, then where each optional
+    /// member ends (",\"name\":value"); its last byte closes the object. All 0: no such members.
     size_t extra[HN_EVENT_MAX_EXTRAS + 1];
 } hn_event;
 

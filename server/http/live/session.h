@@ -25,7 +25,7 @@ typedef enum hn_session_state {
 
 typedef struct hn_session hn_session;
 
-/// What a new comparison is made of. Texts are copied.
+/// The request of a new comparison. Texts are copied.
 typedef struct hn_session_request {
     const hn_scene_request *scene;
     const char *const *methods;
@@ -52,8 +52,8 @@ double hn_session_untouched(hn_session *session);
 const char *hn_session_id(const hn_session *session);
 /// The description; counts as a reader's look.
 void hn_session_json(hn_strbuf *b, hn_session *session);
-/// What the hand has done: {"generation","frame_dt","pulls":[[frame, point, x, y, z, stiffness,
-/// damping], ...]}
+/// Appends the changes of the hand: {"generation","frame_dt","pulls":[[frame, point, x, y, z,
+/// stiffness, damping], ...]}
 void hn_session_pulls_json(hn_strbuf *b, hn_session *session);
 /// Hands over a suspended PATCH request with its body: the thread carries it out and answers.
 /// Answers itself when the thread has ended.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_SESSION_STATE_H
 #define HN_HTTP_SESSION_STATE_H
-// What a session holds, and what is published of it: for its thread (session.c), its changes
-// (patch.c) and its readers (stream.c).
+// The data of a session, private and published: for its thread (session.c), its changes (patch.c)
+// and its readers (stream.c).
 
 #include "http/live/session.h"
 #include "http/request/request.h"
@@ -11,7 +11,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-/// What is being compared; replaced as a whole.
+/// The subject of the comparison; replaced as a whole.
 typedef struct hn_subject {
     hn_scene_request scene;
     hn_model *model;

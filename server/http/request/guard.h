@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_GUARD_H
 #define HN_HTTP_GUARD_H
-// What is checked before a handler sees a request: who asks, for whom, and in which media types.
+// Checks a request before its handler gets it: its host, the site of the page that sends it, its
+// query and its media types.
 
 #include "http/ground/hosts.h"
 #include "http/request/request.h"

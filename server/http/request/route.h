@@ -47,7 +47,8 @@ typedef struct hn_route_table {
     int n;
 } hn_route_table;
 
-/// What an address has: the route for the verb (HEAD is served by GET), or why not.
+/// The result of a search for an address: the route for the verb (HEAD is served by GET), or why
+/// there is none.
 typedef struct hn_route_match {
     const hn_route *route; ///< NULL: see `allow`
     char allow[64];        ///< verbs this address takes; "" when there is no such address

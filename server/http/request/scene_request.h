@@ -16,7 +16,7 @@
 
 enum { HN_SCENE_REQUEST_PULLS = 8 };
 
-/// What a model is made from; owns copies of everything it names.
+/// The request of a model; owns copies of everything it names.
 typedef struct hn_scene_request {
     char *name, *text; ///< one of them
     int n;

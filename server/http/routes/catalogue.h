@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_CATALOGUE_H
 #define HN_HTTP_CATALOGUE_H
-// What there is: the index with the bounds, scenes, methods, looks, lessons, problems, kinds of
-// errors, health.
+// Lists of what the server offers: the index with the bounds, scenes, methods, looks, lessons,
+// problems, kinds of errors, health.
 
 #include "session/model/model.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_RUN_QUESTION_H
 #define HN_HTTP_RUN_QUESTION_H
-// What a run is asked for, in one spelling: the same question has the same text, and the same id.
+// The request of a run in one spelling: equal requests have the same text, and the same id.
 
 #include "base/diag.h"
 #include "http/request/scene_request.h"

@@ -17,7 +17,7 @@ typedef enum hn_study_state {
     HN_STUDY_FAILED   ///< there is no document
 } hn_study_state;
 
-/// What the thread of a study works on. It alone touches it once it runs, but for the atomics.
+/// The data of a study's thread. Once the thread runs it alone touches them, but for the atomics.
 typedef struct hn_study_work {
     const hn_library *lib;
     const hn_job_kind *kind;

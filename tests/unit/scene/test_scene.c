@@ -31,7 +31,7 @@ static hn_scene *load_set(const char *path, const hn_setting *set, int n) {
 
 // ---- the shipped scenes ----
 
-static void every_shipped_scene_loads_with_its_sizes(void **state) {
+static void scenes_load_with_their_sizes(void **state) {
     static const struct {
         const char *path;
         int bodies, joints, coordinates, constraints, actuated;
@@ -80,8 +80,8 @@ static void fb0_has_the_numbers_of_the_reference(void **state) {
     assert_near(rocker->mass.value, 1.8, 0);
     assert_near(rocker->com[0].value, 0.9, 1e-15);
     assert_near(rocker->inertia[2].value, 1.8 * 1.8 * 1.8 / 12, 1e-15);
-    assert_near(rocker->inertia[1].value, rocker->inertia[2].value,
-                0); // zz alone: a thin rod along x
+    // zz alone: a thin rod along x
+    assert_near(rocker->inertia[1].value, rocker->inertia[2].value, 0);
     assert_near(rocker->inertia[0].value, 0, 0);
     assert_string_equal(rocker->inertia[2].formula, "m3*l3^2/12");
     assert_string_equal(rocker->inertia[2].pointer, "/bodies/2/inertia/zz");
@@ -144,8 +144,8 @@ static void the_tilted_four_bar_has_unit_axes_and_the_inertia_of_thin_rods(void 
         assert_near(zx, 0, 1e-16);
     }
     const hn_quantity *I = s->bodies[1].inertia;
-    assert_near(I[0].value + I[1].value + I[2].value, 2 * 2.0 * 4 / 12,
-                1e-14); // the trace is that of fb0
+    // the trace is that of fb0
+    assert_near(I[0].value + I[1].value + I[2].value, 2 * 2.0 * 4 / 12, 1e-14);
     hn_scene_free(s);
 }
 
@@ -374,8 +374,8 @@ static void loads_keep_formulas_that_vary_apart_from_numbers(void **state) {
 static void what_is_left_undrawn_is_made_from_the_joints(void **state) {
     hn_scene *s = load_set(LESSON "slider-crank.json", NULL, 0);
     (void)state;
-    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_BAR),
-                     2); // crank and rod; the slider's joints share one place
+    // crank and rod; the slider's joints share one place
+    assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_BAR), 2);
     assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_GROUND), 1);
     assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_PIVOT), 2);
     assert_int_equal(hn_test_count_shapes(s, HN_SHAPE_SLIDER), 1);
@@ -427,7 +427,7 @@ static void a_lagrangian_keeps_its_formulas_forces_and_tears(void **state) {
 
 static void a_setting_of_the_start_replaces_what_the_scene_says(void **state) {
     (void)state;
-    // a value, a guess and a rate; th0 of the ladder stands for the repeated entry "th{i}"
+    // a value, a guess and a rate
     hn_setting set[] = {{"start.th1", 1.3}, {"start.a2", -0.7}, {"start.w1", 2}};
     hn_scene *plain = load_set(LESSON "four-bar.json", NULL, 0),
              *moved = load_set(LESSON "four-bar.json", set, 3);
@@ -443,6 +443,7 @@ static void a_setting_of_the_start_replaces_what_the_scene_says(void **state) {
     assert_true(again->hash == moved->hash);
     assert_near(again->coordinates[0].q0, 1.3, 0);
 
+    // an entry that the scene repeats: "th{i}"
     hn_setting one = {"start.th2", 0.25};
     hn_scene *ladder = load_set(LESSON "n-four-bar.json", &one, 1);
     assert_near(ladder->coordinates[hn_scene_find_coordinate(ladder, "th2")].q0, 0.25, 0);
@@ -467,7 +468,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_setting_of_the_start_replaces_what_the_scene_says),
         cmocka_unit_test(a_setting_of_an_unknown_start_is_named),
-        cmocka_unit_test(every_shipped_scene_loads_with_its_sizes),
+        cmocka_unit_test(scenes_load_with_their_sizes),
         cmocka_unit_test(fb0_has_the_numbers_of_the_reference),
         cmocka_unit_test(the_ladder_grows_with_its_parameter),
         cmocka_unit_test(the_tilted_four_bar_has_unit_axes_and_the_inertia_of_thin_rods),

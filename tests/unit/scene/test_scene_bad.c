@@ -5,11 +5,12 @@
 
 #include "support/near.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-/// 1 if the file is refused as expected; otherwise says how not.
-static int is_told(const char *file, const char *pointer, const char *word) {
+/// Whether the file is refused as expected; otherwise prints what was found.
+static bool is_told(const char *file, const char *pointer, const char *word) {
     char path[256];
     hn_scene *scene = (hn_scene *)&path;
     hn_diags diags = {0};
@@ -24,9 +25,9 @@ static int is_told(const char *file, const char *pointer, const char *word) {
     } else if (!strstr(first->message, word) && !strstr(first->hint, word)) {
         print_error("%s: expected '%s', got '%s' (%s)\n", file, word, first->message, first->hint);
     } else {
-        return 1;
+        return true;
     }
-    return 0;
+    return false;
 }
 
 static void every_malformed_scene_is_told_where_and_why(void **state) {

@@ -176,8 +176,7 @@ static void a_second_comparison_and_a_reset_give_the_same_bits(void **state) {
     hn_model_free(model);
 }
 
-// a step of 0.4 s on a crank that turns at 4 rad/s cannot hold: the loop opens and the state blows
-// up
+// alpha h = 20 is far above the 2.785 at which RK4 still damps the gap: the state blows up
 static void a_failed_method_stays_with_its_last_state_and_its_reason(void **state) {
     (void)state;
     hn_model *model = load("four-bar");
@@ -317,7 +316,14 @@ static void looking_between_steps_does_not_change_a_run(void **state) {
         cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetObjectItem(a, "samples"), "q"), 1);
     const cJSON *qb =
         cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetObjectItem(b, "samples"), "q"), 0);
-    assert_true(cJSON_Compare(qa, qb, 1));
+
+    // to the last bit: cJSON_Compare() would pass a difference in it
+    const int n = cJSON_GetArraySize(qa);
+    assert_true(n > 0 && n == cJSON_GetArraySize(qb));
+    for (int i = 0; i < n; i++) {
+        const double p = cJSON_GetArrayItem(qa, i)->valuedouble;
+        assert_true(p == cJSON_GetArrayItem(qb, i)->valuedouble);
+    }
     cJSON_Delete(a);
     cJSON_Delete(b);
     hn_model_free(model);
@@ -352,15 +358,16 @@ static void bad_requests_name_their_field(void **state) {
     const struct {
         hn_run_request request;
         const char *pointer;
+        hn_status status;
     } cases[] = {
-        {{.method = "index1@rk4:h=0.01", .time = 0}, "/time"},
-        {{.method = "index1@rk4:h=0.01", .time = (double)NAN}, "/time"},
-        {{.method = "index1@rk4:h=0.01", .time = 1, .every = -1}, "/every"},
-        {{.method = "index1@rk4:h=0.01", .time = 1, .every = 1e-12}, "/every"},
-        {{.method = "index1@rk4:h=0.01", .time = 1, .at = back, .n_at = 2}, "/at"},
-        {{.method = "index1@rk4:h=0.01", .time = 1, .at = late, .n_at = 1}, "/at"},
-        {{.method = "index1@rk4:h=0", .time = 1}, "/method"},
-        {{.method = "", .time = 1}, "/method"},
+        {{.method = "index1@rk4:h=0.01", .time = 0}, "/time", HN_ERR_INPUT},
+        {{.method = "index1@rk4:h=0.01", .time = (double)NAN}, "/time", HN_ERR_INPUT},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .every = -1}, "/every", HN_ERR_INPUT},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .every = 1e-12}, "/every", HN_ERR_LIMIT},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .at = back, .n_at = 2}, "/at", HN_ERR_INPUT},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .at = late, .n_at = 1}, "/at", HN_ERR_INPUT},
+        {{.method = "index1@rk4:h=0", .time = 1}, "/method", HN_ERR_INPUT},
+        {{.method = "", .time = 1}, "/method", HN_ERR_INPUT},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         hn_strbuf b;
@@ -368,7 +375,7 @@ static void bad_requests_name_their_field(void **state) {
         hn_diags diags = {0};
         hn_status ended = HN_OK;
         const hn_status status = hn_model_run_json(&b, model, &cases[i].request, &ended, &diags);
-        assert_true(status == HN_ERR_INPUT || status == HN_ERR_LIMIT);
+        assert_int_equal(status, cases[i].status);
         assert_string_equal(diags.item[0].pointer, cases[i].pointer);
         assert_int_equal(b.n, 0);
         hn_strbuf_reset(&b);
