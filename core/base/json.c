@@ -190,7 +190,7 @@ void hn_json_put_numbers(hn_strbuf *b, const char *key, const double *values, si
     hn_json_numbers(b, values, n);
 }
 
-void hn_json_diag(hn_strbuf *b, const struct hn_diag *d) {
+static void put_diag(hn_strbuf *b, const struct hn_diag *d) {
     hn_json_object(b);
     hn_json_put_string(b, "status", hn_status_name(d->status));
     hn_json_put_string(b, "pointer", d->pointer);
@@ -205,7 +205,7 @@ void hn_json_diag(hn_strbuf *b, const struct hn_diag *d) {
 void hn_json_diags(hn_strbuf *b, const struct hn_diags *d) {
     hn_json_array(b);
     for (int i = 0; i < d->n; i++) {
-        hn_json_diag(b, &d->item[i]);
+        put_diag(b, &d->item[i]);
     }
     hn_json_end_array(b);
 }

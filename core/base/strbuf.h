@@ -56,6 +56,5 @@ void hn_json_put_numbers(hn_strbuf *b, const char *key, const double *values, si
 /// {"status","pointer","detail","hint"[,"column"]} for one fault, an array of them for a list.
 struct hn_diag;
 struct hn_diags;
-void hn_json_diag(hn_strbuf *b, const struct hn_diag *d);
 void hn_json_diags(hn_strbuf *b, const struct hn_diags *d);
 #endif

@@ -75,8 +75,8 @@ typedef struct hn_build {
     const char **used; ///< names in formulas that are taken
     int n_used, cap_used;
     double gravity[3], step;
-    int n_own_joints, n_own_constraints; ///< before those of the loop file
-    int n_closing;                       ///< joints and constraints that close loops
+    int n_own_constraints; ///< before those of the loop file
+    int n_closing;         ///< joints and constraints that close loops
     int guess; ///< the start need not satisfy what closes the loops: it is where assembly begins
 } hn_build;
 

@@ -34,7 +34,7 @@ static void read_sequence(hn_mj *m, const xmlNode *node) {
     }
 }
 
-void hn_mj_compiler(hn_mj *m, const xmlNode *node) {
+static void read_compiler(hn_mj *m, const xmlNode *node) {
     static const char *const angles[] = {"degree", "radian"}, *const places[] = {"local", "global"},
                              *const geoms[] = {"auto", "true", "false"};
     hn_mj_check(m, node);
@@ -76,7 +76,7 @@ static void read_flags(hn_mj *m, const xmlNode *flag) {
     }
 }
 
-void hn_mj_option(hn_mj *m, const xmlNode *node) {
+static void read_option(hn_mj *m, const xmlNode *node) {
     hn_mj_check(m, node);
     (void)hn_im_vector(m->b, node, "gravity", 3, m->b->gravity);
     (void)hn_im_vector(m->b, node, "timestep", 1, &m->b->step);
@@ -164,7 +164,7 @@ static void set_controls(hn_mj *m, const xmlNode *key) {
     }
 }
 
-void hn_mj_keyframe(hn_mj *m, const xmlNode *section, const char *wanted) {
+static void read_keyframe(hn_mj *m, const xmlNode *section, const char *wanted) {
     int found = 0;
     hn_mj_check(m, section);
     for (const xmlNode *c = hn_im_first(section); c && m->b->status == HN_OK; c = hn_im_next(c)) {
@@ -269,8 +269,8 @@ static void read_sections(hn_mj *m, const char *key) {
     hn_mj_check(m, m->root);
 
     // in this order, whatever the file's: each section needs those before it
-    each(m, "compiler", hn_mj_compiler);
-    each(m, "option", hn_mj_option);
+    each(m, "compiler", read_compiler);
+    each(m, "option", read_option);
     each(m, "default", hn_mj_defaults);
     each(m, "worldbody", hn_mj_world);
     each(m, "equality", hn_mj_equality);
@@ -282,7 +282,7 @@ static void read_sections(hn_mj *m, const char *key) {
     }
     for (const xmlNode *c = hn_im_first(m->root); c && m->b->status == HN_OK; c = hn_im_next(c)) {
         if (hn_im_is(c, "keyframe") && use_key) {
-            hn_mj_keyframe(m, c, key);
+            read_keyframe(m, c, key);
         } else if (hn_im_is(c, "keyframe")) {
             hn_im_skip_children(m->b, HN_IMPORT_IGNORED, c, "the start is the model's own pose");
         } else {

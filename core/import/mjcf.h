@@ -74,7 +74,6 @@ bool hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwis
 bool hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, const char *range);
 /// pos and one of quat, axisangle, xyaxes, zaxis, euler.
 bool hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out);
-bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]);
 /// Names what is not used of an element, by the rules for its name.
 void hn_mj_check(hn_mj *m, const xmlNode *node);
 
@@ -85,13 +84,10 @@ bool hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source);
 bool hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *source);
 
 // ---- sections ----
-void hn_mj_compiler(hn_mj *m, const xmlNode *section);
-void hn_mj_option(hn_mj *m, const xmlNode *section);
 void hn_mj_defaults(hn_mj *m, const xmlNode *section);
 void hn_mj_world(hn_mj *m, const xmlNode *section);
 void hn_mj_equality(hn_mj *m, const xmlNode *section);
 void hn_mj_actuators(hn_mj *m, const xmlNode *section);
-void hn_mj_keyframe(hn_mj *m, const xmlNode *section, const char *wanted);
 
 /// The joints of a body, in the order they act, between it and its parent.
 void hn_mj_join(hn_mj *m, const xmlNode *body_node, const xmlNode *childclass, int parent, int body,

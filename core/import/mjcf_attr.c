@@ -251,7 +251,7 @@ static bool from_euler(hn_mj *m, const hn_mj_element *e, const double *x, double
     return true;
 }
 
-bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
+static bool read_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
     static const struct {
         const char *name;
         int n;
@@ -292,5 +292,5 @@ bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
 
 bool hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out) {
     *out = hn_im_frame_unit();
-    return hn_mj_numbers(m, e, "pos", 3, 3, out->p) >= 0 && hn_mj_orientation(m, e, out->R);
+    return hn_mj_numbers(m, e, "pos", 3, 3, out->p) >= 0 && read_orientation(m, e, out->R);
 }

@@ -99,7 +99,5 @@ const char *hn_canvas_renderer(void);
 HN_MUST_CHECK hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag);
 /// Appends the bytes of a PNG file.
 HN_MUST_CHECK hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag);
-/// Also fails with HN_ERR_IO (pointer: the path).
-HN_MUST_CHECK hn_status hn_canvas_save_png(const hn_canvas *c, const char *path, hn_diag *diag);
 
 #endif

@@ -215,13 +215,3 @@ hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag) {
     free(rgb);
     return status;
 }
-
-hn_status hn_canvas_save_png(const hn_canvas *c, const char *path, hn_diag *diag) {
-    HN_ASSERT(path != NULL);
-    hn_strbuf png;
-    hn_strbuf_init(&png);
-    hn_status status = hn_canvas_png(c, &png, diag);
-    HN_THEN(status, hn_file_write(path, png.text, png.n, diag));
-    hn_strbuf_reset(&png);
-    return status;
-}

@@ -48,7 +48,5 @@ void hn_record_triangle(hn_canvas *c, const double a[2], const double b[2], cons
 void hn_record_disc(hn_canvas *c, double x, double y, double radius);
 /// Keeps the line whose triangles were recorded from vertex `vertex` on. Points must be finite.
 void hn_record_pen(hn_canvas *c, const double *xy, int n, int closed, double width, int vertex);
-/// Adds the triangles of a stroked line to the open shape.
-void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width);
 
 #endif

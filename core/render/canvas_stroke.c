@@ -47,7 +47,8 @@ static void record_run(hn_canvas *c, const double *xy, int n, int closed, double
     hn_record_pen(c, xy, n, closed, width, vertex);
 }
 
-void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width) {
+/// Adds the triangles of a stroked line to the open shape.
+static void record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width) {
     int begin = 0;
     for (int i = 0; i <= n; i++) {
         if (i == n || !is_point(xy + 2 * i)) {
@@ -95,7 +96,7 @@ static void record_dash(hn_canvas *c, const double *p, const double *dir, double
     }
     const double xy[4] = {p[0] + a * dir[0], p[1] + a * dir[1], p[0] + b * dir[0],
                           p[1] + b * dir[1]};
-    hn_record_stroke(c, xy, 2, 0, width);
+    record_stroke(c, xy, 2, 0, width);
 }
 
 static void record_dashed_segment(hn_canvas *c, const double *p, const double *q, dash_walk *w) {
@@ -142,7 +143,7 @@ void hn_canvas_line(hn_canvas *c, const double *xy, int n, const hn_stroke *stro
     if (dashes_are_usable(stroke, xy, n)) {
         record_dashed(c, xy, n, stroke);
     } else {
-        hn_record_stroke(c, xy, n, stroke->closed, stroke->width);
+        record_stroke(c, xy, n, stroke->closed, stroke->width);
     }
     hn_record_end(c);
 }
@@ -179,7 +180,7 @@ void hn_canvas_arrow(hn_canvas *c, double x0, double y0, double x1, double y1, d
                  b[2] = {base[0] + wing * uy, base[1] - wing * ux};
     const double tip[2] = {x1, y1}, shaft[4] = {x0, y0, base[0], base[1]};
     hn_record_begin(c, stroke->paint);
-    hn_record_stroke(c, shaft, 2, 0, stroke->width);
+    record_stroke(c, shaft, 2, 0, stroke->width);
     hn_record_triangle(c, tip, a, b);
     hn_record_end(c);
 }
@@ -193,13 +194,13 @@ void hn_canvas_hatch(hn_canvas *c, double x, double y, double length, double ang
     const double line[4] = {x - length / 2 * ux, y - length / 2 * uy, x + length / 2 * ux,
                             y + length / 2 * uy};
     hn_record_begin(c, stroke->paint);
-    hn_record_stroke(c, line, 2, 0, stroke->width);
+    record_stroke(c, line, 2, 0, stroke->width);
     for (int i = 0; i < n; i++) {
         const double s = (i + 1 - 0.5 * n) * length / n;
         const double px = x + s * ux, py = y + s * uy;
         const double slant[4] = {px, py, px - depth * ux + depth * nx,
                                  py - depth * uy + depth * ny};
-        hn_record_stroke(c, slant, 2, 0, 0.75 * stroke->width);
+        record_stroke(c, slant, 2, 0, 0.75 * stroke->width);
     }
     hn_record_end(c);
 }
@@ -210,7 +211,7 @@ static void lines_marker(hn_canvas *c, const double *offsets, double x, double y
     for (int i = 0; i < 2; i++) {
         const double *o = offsets + 4 * i;
         const double xy[4] = {x + r * o[0], y + r * o[1], x + r * o[2], y + r * o[3]};
-        hn_record_stroke(c, xy, 2, 0, 0.5 * r);
+        record_stroke(c, xy, 2, 0, 0.5 * r);
     }
     hn_record_end(c);
 }
@@ -288,8 +289,8 @@ static void record_glyph(hn_canvas *c, const hn_glyph *g, double x, double y, do
         xy[2 * i + 1] = y - scale * g->xy[2 * i + 1];
     }
     for (int i = 0; i < g->n_lines; i++) {
-        hn_record_stroke(c, xy + 2 * g->start[i], g->start[i + 1] - g->start[i], 0,
-                         TEXT_STROKE * size);
+        record_stroke(c, xy + 2 * g->start[i], g->start[i + 1] - g->start[i], 0,
+                      TEXT_STROKE * size);
     }
 }
 

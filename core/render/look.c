@@ -28,7 +28,8 @@ static const char *const marker_names[HN_MARKER_COUNT] = {
 
 static const char *const theme_names[HN_THEME_COUNT] = {"light", "dark"};
 
-const char *hn_marker_name(hn_marker marker) {
+/// "circle" and so on: the word of the page and of the legend.
+static const char *marker_name(hn_marker marker) {
     HN_ASSERT((int)marker >= 0 && marker < HN_MARKER_COUNT);
     return marker_names[marker];
 }
@@ -75,7 +76,7 @@ static void put_look(hn_strbuf *b, int slot) {
         put_colour(b, theme_names[theme], look->colour[theme]);
     }
     hn_json_put_numbers(b, "dash", look->dash, (size_t)look->n_dash);
-    hn_json_put_string(b, "marker", hn_marker_name(look->marker));
+    hn_json_put_string(b, "marker", marker_name(look->marker));
     hn_json_put_string(b, "glyph", look->glyph);
     hn_json_end_object(b);
 }

@@ -29,8 +29,6 @@ typedef enum hn_marker {
 #undef HN_MARKER_ENUM
         HN_MARKER_COUNT
 } hn_marker;
-/// "circle" and so on: the word of the page and of the legend.
-const char *hn_marker_name(hn_marker marker);
 
 typedef struct hn_look {
     const char *name;                ///< of the colour, for people

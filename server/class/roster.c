@@ -47,7 +47,8 @@ static size_t canvas_name(const char *name) {
     return first;
 }
 
-void hn_roster_student(const char *name, char out[HN_ROSTER_NAME]) {
+/// The student's name in the name of a folder or file, by the rules above.
+static void find_student(const char *name, char out[HN_ROSTER_NAME]) {
     const char *moodle = strstr(name, "_assignsubmission_");
     const char *dot = strrchr(name, '.');
     size_t n = canvas_name(name);
@@ -113,7 +114,7 @@ static hn_status add(hn_roster *r, const char *folder, const char *name, hn_diag
                            "the path of '%.200s' has more than %d bytes", name, HN_ROSTER_PATH - 1);
     }
     e->is_folder = lstat(e->path, &info) == 0 && S_ISDIR(info.st_mode);
-    hn_roster_student(name, e->student);
+    find_student(name, e->student);
 
     // a file of another kind loses its ending too
     char *dot = strrchr(e->student, '.');

@@ -44,7 +44,5 @@ void hn_roster_reset(hn_roster *r);
 /// another kind of file), HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_roster_load(const hn_roster_entry *e, hn_roster_kind kind,
                                        hn_strbuf *text, char file[HN_ROSTER_PATH], hn_diag *diag);
-/// The student's name in the name of a folder or file, by the rules above.
-void hn_roster_student(const char *name, char out[HN_ROSTER_NAME]);
 
 #endif

@@ -17,7 +17,8 @@ typedef struct builder {
     hn_status status;
 } builder;
 
-cJSON *hn_markdown_add(cJSON *children, const char *kind) {
+/// A new node of a kind, appended to the array; NULL when memory is out.
+static cJSON *add_block(cJSON *children, const char *kind) {
     cJSON *node = cJSON_CreateObject();
     if (!node || !cJSON_AddStringToObject(node, "kind", kind) ||
         !cJSON_AddItemToArray(children, node)) {
@@ -35,7 +36,7 @@ static cJSON *children_of(cJSON *node) {
 /// Opens a node inside the innermost one; NULL, with the status set, where that fails.
 static cJSON *push(builder *b, const char *kind) {
     cJSON *inner = b->depth == 0 ? b->open[0] : children_of(b->open[b->depth]);
-    cJSON *node = inner ? hn_markdown_add(inner, kind) : NULL;
+    cJSON *node = inner ? add_block(inner, kind) : NULL;
     if (!node) {
         b->status = HN_ERR_MEMORY;
     } else if (b->depth + 1 == MAX_DEPTH) {

@@ -18,6 +18,4 @@
 /// Appends the nodes of n bytes of Markdown (CommonMark, tables, $..$ and $$..$$; no HTML) to the
 /// array `children`. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (nested deeper than 64).
 HN_MUST_CHECK hn_status hn_markdown_parse(const char *text, size_t n, cJSON *children);
-/// A new node of a kind, appended to the array; NULL when memory is out.
-cJSON *hn_markdown_add(cJSON *children, const char *kind);
 #endif

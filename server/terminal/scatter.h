@@ -20,8 +20,8 @@ typedef struct hn_scatter_series {
 } hn_scatter_series;
 
 typedef struct hn_scatter {
-    const char *x_unit, *y_title; ///< static text
-    double y_high;                ///< upper end of the vertical axis
+    const char *x_unit; ///< static text
+    double y_high;      ///< upper end of the vertical axis
     int n;
     hn_scatter_series series[HN_SCATTER_SERIES];
 } hn_scatter;

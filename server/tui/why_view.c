@@ -11,8 +11,11 @@ enum { MOST_INCIDENTS = 512 };
 /// How the result of a trial begins that was not made, or not to its end.
 static const char NOT_TRIED[] = "not tried";
 
-void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,
-                   char out[HN_WHY_WORDS]) {
+/// Writes remedy k of an incident: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)"
+/// where a trial removed the incident, "not tried yet: ..." while the recording is under way, else
+/// "not tried: ...".
+static void put_remedy(const hn_workbench *w, const hn_incident *incident, int k,
+                       char out[HN_WHY_WORDS]) {
     const char *remedy = incident->remedy[k], *tried = incident->tried[k];
     const bool recorded = hn_recording_frames(w->recording) > hn_recording_last(w->recording);
     const int runs = hn_methods_find(w, remedy);
@@ -86,7 +89,7 @@ static int draw_incident(hn_cells *c, hn_area in, int y, const hn_workbench *w,
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
         const hn_area inset = {in.x + 2, in.y, in.columns - 2, in.rows};
         if (!is_said(list, whose, first, i, k)) {
-            hn_why_remedy(w, incident, k, words);
+            put_remedy(w, incident, k, words);
             y = hn_cells_fold(c, inset, y, HN_CELL_INK, words);
         }
     }

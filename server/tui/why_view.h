@@ -8,11 +8,6 @@
 
 enum { HN_WHY_WORDS = 320 };
 
-/// Writes remedy k of an incident: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)"
-/// where a trial removed the incident, "not tried yet: ..." while the recording is under way, else
-/// "not tried: ...".
-void hn_why_remedy(const hn_workbench *w, const hn_incident *incident, int k,
-                   char out[HN_WHY_WORDS]);
 /// Whether an incident of the selected method has a remedy.
 bool hn_why_has_remedy(const hn_workbench *w);
 /// Goes `by` incidents of the selected method on, or back.

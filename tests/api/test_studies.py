@@ -265,6 +265,9 @@ class Studies(driver.ServerCase):
         choices = next(f["choices"] for f in kinds["stability"]["fields"] if f["name"] == "preset")
         self.assertEqual(list(presets), choices)
         self.assertEqual(presets["baumgarte"]["chooses"], ["alpha", "beta"])
+        self.assertEqual(presets["stiffness"]["units"], ["N/m", "N*m/rad"])
+        self.assertEqual(presets["limits"]["units"], [])
+        self.assertEqual(kinds["budget"]["title"], "where the error comes from")
         self.assertEqual(kinds["work-precision"]["chooses"], ["h", "rtol"])
         for kind in kinds.values():
             for field in kind["fields"]:

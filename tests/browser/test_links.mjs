@@ -8,7 +8,13 @@ import { nearest } from "../../web/state/near.js";
 import { firstPlots, showLinked, shownOf } from "../../web/state/shown.js";
 import { damaged, randomFrom } from "./damage.mjs";
 
-const preset = { name: "baumgarte", about: "", chooses: ["alpha", "beta"], stabilised: true };
+const preset = {
+  name: "baumgarte",
+  about: "",
+  chooses: ["alpha", "beta"],
+  stabilised: true,
+  units: [],
+};
 const STUDIES = ["work-precision", "stability", "budget"].map((name) => ({
   name,
   about: "",

@@ -214,8 +214,14 @@ const STUDIES = [
     chooses: ["h"],
     fields: [{ name: "methods", max: 4 }],
     presets: [
-      { name: "limits", about: "the step", chooses: ["h"], stabilised: false },
-      { name: "baumgarte", about: "α and β", chooses: ["alpha", "beta"], stabilised: true },
+      { name: "limits", about: "the step", chooses: ["h"], stabilised: false, units: [] },
+      {
+        name: "baumgarte",
+        about: "α and β",
+        chooses: ["alpha", "beta"],
+        stabilised: true,
+        units: [],
+      },
     ],
   },
   { name: "budget", chooses: [], presets: [], fields: [] },
@@ -357,8 +363,14 @@ test("the server chooses the map unless one is chosen, and the menu has those th
   const stability = {
     ...STUDIES[1],
     presets: [
-      { name: "stiffness", about: "", chooses: ["h"], stabilised: false },
-      { name: "mass-ratio", about: "", chooses: ["h"], stabilised: false },
+      {
+        name: "stiffness",
+        about: "",
+        chooses: ["h"],
+        stabilised: false,
+        units: ["N/m", "N*m/rad"],
+      },
+      { name: "mass-ratio", about: "", chooses: ["h"], stabilised: false, units: ["kg"] },
       ...STUDIES[1].presets,
     ],
   };

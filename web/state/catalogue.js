@@ -4,10 +4,13 @@
 // module that knows them; everything else asks here.
 
 /**
- * `chooses`: options that the study varies itself; `stabilised`: for methods that have those options.
- * @typedef {{name: string, about: string, chooses: string[], stabilised: boolean}} Preset
+ * `chooses`: options that the study varies itself; `stabilised`: for methods that have those options;
+ * `units`: the scene needs a parameter in one of them, where there are any.
  * @typedef {{
- *   name: string, about: string, chooses: string[], presets: Preset[],
+ *   name: string, about: string, chooses: string[], stabilised: boolean, units: string[],
+ * }} Preset
+ * @typedef {{
+ *   name: string, title: string, about: string, chooses: string[], presets: Preset[],
  *   fields: {name: string, max?: number}[],
  * }} StudyKind
  * @typedef {{code: string, name: string, rule: string}} IncidentKind
@@ -37,7 +40,7 @@ export const limits = () => known;
  */
 export const incidentOf = (code) => known.incidents.get(code);
 
-/** Kinds of studies that the server makes, in its order: name and what each shows. */
+/** Kinds of studies that the server makes, in its order: name, title and what each shows. */
 export const studyKinds = () => [...known.studies.values()];
 
 /** @param {string} kind */

@@ -42,9 +42,6 @@ export const noStudy = () => ({
 const hasOptions = (catalogue, spelling, { chooses, stabilised }) =>
   !stabilised || chooses.every((key) => settingOf(catalogue, spelling, key));
 
-/** Units of the parameter that a map goes over, by its preset; others need none. */
-const OVER = { stiffness: ["N/m", "N*m/rad"], "mass-ratio": ["kg"] };
-
 /**
  * The maps that the methods and the scene have.
  * @param {{
@@ -52,8 +49,8 @@ const OVER = { stiffness: ["N/m", "N*m/rad"], "mass-ratio": ["kg"] };
  * }} data
  */
 export function presetsOf({ catalogue, methods, scene }) {
-  const has = ({ name }) =>
-    !OVER[name] || (scene?.parameters ?? []).some(({ unit }) => OVER[name].includes(unit));
+  const has = ({ units }) =>
+    units.length === 0 || (scene?.parameters ?? []).some(({ unit }) => units.includes(unit));
   return presets().filter(
     (preset) =>
       has(preset) && methods.some(({ spelling }) => hasOptions(catalogue, spelling, preset)),

@@ -183,8 +183,11 @@ export function describeDrawing(data, shown) {
   );
 }
 
+/** A text with a capital letter. @param {string} text */
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** A text as a sentence: with a capital letter and a full stop. @param {string} text */
 export function sentenceCase(text) {
-  const upper = text.charAt(0).toUpperCase() + text.slice(1);
+  const upper = capital(text);
   return /[.!?]$/.test(upper) ? upper : `${upper}.`;
 }

@@ -4,6 +4,7 @@
 // server checks.
 import { sentenceOf } from "../api/client.js";
 import { parseQuantity, plain, prettyUnit, withPowers } from "../state/format.js";
+import { capital } from "../state/words.js";
 import {
   choosePartner,
   faultOf,
@@ -215,8 +216,6 @@ export function createMethodDialog(el, store, actions) {
       ...["formulation", "integrator"].flatMap((kind) => settingFields(kind, parsed[kind])),
     );
   }
-
-  const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
   /** The numbers by which an option names coordinates: ", here 1 th1, 2 a2, 3 x". */
   function numbersOfCoordinates() {

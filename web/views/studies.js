@@ -4,19 +4,20 @@
 // it.
 import { sentenceOf } from "../api/client.js";
 import { studyKinds } from "../state/catalogue.js";
+import { KEYS } from "../state/keys.js";
 import { listen } from "../state/store.js";
 import { labelsIn, missingIn } from "../state/study-documents.js";
+import { capital } from "../state/words.js";
 import { h, say, set } from "../widgets/dom.js";
 import { createStudyBudget } from "./study-budget.js";
 import { createStudyCost } from "./study-cost.js";
 import { createStudyMap } from "./study-map.js";
 
-/** Short words for tabs, and keys; a kind that is not here has the server's own words. */
-const TABS = {
-  "work-precision": { word: "What accuracy costs", letter: "W" },
-  stability: { word: "Where steps are stable", letter: "B" },
-  budget: { word: "Where the error comes from", letter: "E" },
-};
+/** The letter that opens a kind of study, as " (key W on the page)"; "" where there is none. */
+function keyOf(kind) {
+  const key = KEYS.find(({ action, argument }) => action === "study" && argument === kind);
+  return key ? ` (key ${key.shown} on the page)` : "";
+}
 
 /** A study that this page cannot draw: the server's report shows it. */
 function createPlain() {
@@ -80,7 +81,7 @@ export function createStudies(el, store, actions) {
   const kinds = studyKinds();
   const KINDS = kinds.map(({ name }) => name);
   const views = Object.fromEntries(KINDS.map((kind) => [kind, drawn[kind] ?? createPlain()]));
-  const wordOf = (kind) => TABS[kind]?.word ?? kind;
+  const wordOf = (kind) => capital(kinds.find(({ name }) => name === kind)?.title ?? kind);
   const title = h("h2", { id: "studies-title" });
   const tabs = kinds.map(({ name: kind, about }) =>
     h(
@@ -91,7 +92,7 @@ export function createStudies(el, store, actions) {
         class: "quiet",
         id: `tab-${kind}`,
         "aria-controls": `study-${kind}`,
-        title: TABS[kind] ? `${about} (key ${TABS[kind].letter} on the page)` : about,
+        title: about + keyOf(kind),
         onclick: () => actions.setView({ study: kind }),
       },
       wordOf(kind),

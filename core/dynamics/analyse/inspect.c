@@ -483,10 +483,3 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
     put_left_out(b, sys, &c);
     return b->failed ? HN_ERR_MEMORY : HN_OK;
 }
-
-hn_status hn_system_inspect_json(hn_strbuf *b, const hn_system *sys) {
-    hn_json_object(b);
-    hn_status status = hn_system_inspect_put(b, sys);
-    hn_json_end_object(b);
-    return status;
-}

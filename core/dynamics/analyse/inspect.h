@@ -37,6 +37,4 @@ HN_MUST_CHECK hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys
 /// Writes "actuation" {"actuated", "freedoms", "reading"} likewise: motors against the degrees of
 /// freedom that assembly found.
 void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms);
-/// The same as an object of its own.
-HN_MUST_CHECK hn_status hn_system_inspect_json(hn_strbuf *b, const hn_system *sys);
 #endif

@@ -414,18 +414,6 @@ int hn_mode_sign(double value) {
     return value > MODE_ZERO ? 1 : (value < -MODE_ZERO ? -1 : 0);
 }
 
-int hn_assembly_mode(const hn_system *sys, double t, const double *q) {
-    hn_arena *arena = hn_arena_create(0);
-    hn_mode_watch *w = NULL;
-    int mode = 0;
-    if (arena && hn_mode_watch_create(sys, arena, &w) == HN_OK) {
-        mode = hn_mode_sign(hn_mode_watch_value(w, t, q));
-        hn_mode_watch_free(w);
-    }
-    hn_arena_free(arena);
-    return mode;
-}
-
 hn_status hn_mode_dependent(const hn_system *sys, hn_arena *arena, int loop, int *dependent,
                             int *n) {
     finder f;

@@ -27,9 +27,6 @@ double hn_mode_watch_value(hn_mode_watch *w, double t, const double *q);
 int hn_mode_watch_count(const hn_mode_watch *w);
 void hn_mode_watch_values(hn_mode_watch *w, double t, const double *q, double *values);
 
-/// The sign alone, once; 0 when undefined. It makes and frees a watch: not for every step.
-int hn_assembly_mode(const hn_system *sys, double t, const double *q);
-
 /// *out = 1 if the first loop is a planar four-bar (two rows, three angles, every axis of the ring
 /// in the same sense), whose modes are called "open" and "crossed". Scratch from `arena`.
 /// Fails: HN_ERR_MEMORY.

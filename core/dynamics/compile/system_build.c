@@ -31,6 +31,11 @@ static hn_ex new_symbol(hn_system *sys, const char *stem, int *number) {
     return e;
 }
 
+/// n expressions from the system's arena, each the number zero; NULL when memory is out.
+static hn_ex *get_zeros(hn_system *sys, size_t n) {
+    return hn_arena_get(sys->arena, (n ? n : 1) * sizeof(hn_ex));
+}
+
 /// The inputs and the log of the loads by which a hand pulls.
 static hn_status make_pulls(hn_system *sys) {
     static const char *const stems[HN_PULL_INPUTS] = {"pull_k", "pull_c", "pull_x", "pull_y",
@@ -46,7 +51,7 @@ static hn_status make_pulls(hn_system *sys) {
         return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
     }
 
-    sys->pull_inputs = hn_system_get_zeros(sys, (size_t)(HN_PULL_INPUTS * sys->n_pulls));
+    sys->pull_inputs = get_zeros(sys, (size_t)(HN_PULL_INPUTS * sys->n_pulls));
     sys->pulls = hn_pull_log_create(points, sys->n_pulls);
     if (!sys->pull_inputs || !sys->pulls) {
         return HN_ERR_MEMORY;
@@ -78,10 +83,6 @@ hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
     return hn_graph_status(sys->g);
 }
 
-hn_ex *hn_system_get_zeros(hn_system *sys, size_t n) {
-    return hn_arena_get(sys->arena, (n ? n : 1) * sizeof(hn_ex));
-}
-
 hn_diags *hn_system_faults(const hn_system *sys) {
     return hn_graph_failed(sys->g) ? NULL : sys->diags;
 }
@@ -95,17 +96,17 @@ hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n
     sys->info.n_points = n_points;
 
     // expressions, each the number zero so far
-    sys->q = hn_system_get_zeros(sys, (size_t)nq);
-    sys->v = hn_system_get_zeros(sys, n);
-    sys->f = hn_system_get_zeros(sys, n);
-    sys->phi = hn_system_get_zeros(sys, m);
-    sys->phi_t = hn_system_get_zeros(sys, m);
-    sys->gamma = hn_system_get_zeros(sys, m);
-    sys->points = hn_system_get_zeros(sys, 3 * (size_t)n_points);
-    sys->params = hn_system_get_zeros(sys, (size_t)sys->scene->n_params);
-    sys->user_q = hn_system_get_zeros(sys, nu);
-    sys->user_v = hn_system_get_zeros(sys, nu);
-    sys->user_gamma = hn_system_get_zeros(sys, nu);
+    sys->q = get_zeros(sys, (size_t)nq);
+    sys->v = get_zeros(sys, n);
+    sys->f = get_zeros(sys, n);
+    sys->phi = get_zeros(sys, m);
+    sys->phi_t = get_zeros(sys, m);
+    sys->gamma = get_zeros(sys, m);
+    sys->points = get_zeros(sys, 3 * (size_t)n_points);
+    sys->params = get_zeros(sys, (size_t)sys->scene->n_params);
+    sys->user_q = get_zeros(sys, nu);
+    sys->user_v = get_zeros(sys, nu);
+    sys->user_gamma = get_zeros(sys, nu);
     sys->load_values =
         hn_arena_get(sys->arena, ((size_t)sys->scene->n_loads + 1) * sizeof *sys->load_values);
 

@@ -8,8 +8,6 @@
 /// Allocates all arrays that nq, nv and the other sizes decide, with room for `max_rows` rows.
 HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows,
                                            int n_loops, int n_points);
-/// n expressions from the system's arena, each the number zero; NULL when memory is out.
-hn_ex *hn_system_get_zeros(hn_system *sys, size_t n);
 /// Makes symbols of the nq coordinates and nv rates under these names (a name that is taken gets
 /// underscores), then of t and the gains.
 HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,

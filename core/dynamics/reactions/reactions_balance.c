@@ -31,7 +31,7 @@ static void act(hn_reactions *r, int body, double k, const double force[3], cons
 
 /// The part of a joint's hn_reaction_wrench that works along one of its coordinates: a unit force
 /// or moment on the child, in the world.
-bool hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
+static bool find_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);
 
@@ -74,7 +74,7 @@ static void act_along_coordinates(hn_reactions *r) {
             if (tau == 0) {
                 continue;
             }
-            const int is_force = hn_reaction_freedom(r, joint, part, axis);
+            const int is_force = find_freedom(r, joint, part, axis);
             const double *force = is_force ? axis : NULL, *moment = is_force ? NULL : axis;
             act(r, joint->child, tau, force, r->places[index], moment);
             act(r, joint->parent, -tau, force, r->places[index], moment);
@@ -265,7 +265,7 @@ double hn_reaction_calc_defect(const hn_reactions *r) {
         }
         for (int part = 0; part < joint->n_coordinates && r->sys->tree.joint_cut[j] < 0; part++) {
             double axis[3];
-            const int is_force = hn_reaction_freedom(r, joint, part, axis);
+            const int is_force = find_freedom(r, joint, part, axis);
             const double along = hn_num3_dot(axis, is_force ? r->joints[j].f : r->joints[j].n);
             const double tau = r->tau[joint->coordinate + part];
             off[is_force] = fmax(off[is_force], fabs(along - tau));

@@ -14,8 +14,5 @@ void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
 /// Work of a tree joint's wrench along its own degrees of freedom against what is put in there,
 /// relative; see hn_reactions_defect.
 double hn_reaction_calc_defect(const hn_reactions *r);
-/// The part of a joint's wrench that works along one of its coordinates: the unit force (returns 1)
-/// or moment (0) on the child, in the world.
-bool hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]);
 
 #endif

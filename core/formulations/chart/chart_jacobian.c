@@ -42,8 +42,9 @@ void hn_chart_jacobian_free(hn_chart_jacobian *c) {
     c->slopes = NULL;
 }
 
-void hn_chart_jacobian_along(hn_chart_jacobian *c, hn_chart *chart, const double *dx,
-                             const double *du, double *du_dot) {
+/// (1) for dx (nv, NULL: zero) and du (r, NULL: zero): c->dv, and du_dot (r).
+static void move_along(hn_chart_jacobian *c, hn_chart *chart, const double *dx, const double *du,
+                       double *du_dot) {
     const int nv = chart->nv, r = chart->r;
     const hn_chart_point *p = &chart->here;
 
@@ -87,11 +88,11 @@ void hn_chart_jacobian_minimal(hn_chart_jacobian *c, hn_chart *chart, double *ja
         for (int i = 0; i < chart->nv; i++) {
             c->dx[i] = chart->here.N[i * r + j];
         }
-        hn_chart_jacobian_along(c, chart, c->dx, NULL, du_dot);
+        move_along(c, chart, c->dx, NULL, du_dot);
         put_column(jac, n, r, r, j, du_dot);
         memset(du, 0, (size_t)r * sizeof *du);
         du[j] = 1;
-        hn_chart_jacobian_along(c, chart, NULL, du, du_dot);
+        move_along(c, chart, NULL, du, du_dot);
         put_column(jac, n, r, r, r + j, du_dot);
     }
 }
@@ -105,7 +106,7 @@ void hn_chart_jacobian_speeds(hn_chart_jacobian *c, hn_chart *chart, double *jac
         memset(c->dx, 0, (size_t)nv * sizeof *c->dx);
         memset(du, 0, (size_t)r * sizeof *du);
         *(j < nv ? &c->dx[j] : &du[j - nv]) = 1;
-        hn_chart_jacobian_along(c, chart, j < nv ? c->dx : NULL, j < nv ? NULL : du, du_dot);
+        move_along(c, chart, j < nv ? c->dx : NULL, j < nv ? NULL : du, du_dot);
         put_column(jac, n, 0, nv, j, c->dv);
         put_column(jac, n, nv, r, j, du_dot);
     }

@@ -28,9 +28,6 @@ HN_MUST_CHECK hn_status hn_chart_jacobian_prepare(hn_chart_jacobian *c, const hn
 HN_MUST_CHECK hn_status hn_chart_jacobian_at(hn_chart_jacobian *c, hn_chart *chart, hn_arena *arena,
                                              const double *v);
 void hn_chart_jacobian_free(hn_chart_jacobian *c);
-/// (1) for dx (nv, NULL: zero) and du (r, NULL: zero): c->dv, and du_dot (r).
-void hn_chart_jacobian_along(hn_chart_jacobian *c, hn_chart *chart, const double *dx,
-                             const double *du, double *du_dot);
 /// d(u_q', u')/d(u_q, u) of minimal coordinates, 2 r square, row-major.
 void hn_chart_jacobian_minimal(hn_chart_jacobian *c, hn_chart *chart, double *jac);
 /// d(q', u')/d(q, u), nv + r square, row-major; for mechanisms without balls.

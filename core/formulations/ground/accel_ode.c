@@ -38,7 +38,7 @@ static void tell_failure(hn_accel_ode *ode, hn_status status, double t) {
              refusal ? refusal : hn_status_text(status));
 }
 
-hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot) {
+static hn_status evaluate_rhs(void *self, double t, const double *y, double *ydot) {
     hn_accel_ode *ode = self;
     const bool plain = ode->base.nq == ode->base.nv; // no quaternion to bring back to length 1
     const double *q = plain ? y : hn_unit_positions(ode->base.sys, y, ode->base.unit),
@@ -55,7 +55,7 @@ hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot) 
 }
 
 void hn_accel_ode_get(void *self, hn_ode *out) {
-    hn_state_ode_get(self, hn_accel_ode_rhs, out);
+    hn_state_ode_get(self, evaluate_rhs, out);
 }
 
 void hn_accel_ode_add_cost(const void *self, hn_cost *cost) {

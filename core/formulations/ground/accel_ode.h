@@ -35,7 +35,6 @@ HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sy
     }
 void hn_accel_ode_destroy(void *self);
 void hn_accel_ode_get(void *self, hn_ode *out);
-hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot);
 void hn_accel_ode_add_cost(const void *self, hn_cost *cost);
 long long hn_accel_ode_fallbacks(const void *self);
 

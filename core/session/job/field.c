@@ -9,7 +9,8 @@
 
 enum { MAX_FIELDS = 24, MAX_MEMBERS = 5000 };
 
-int hn_fields_count(const hn_field *fields) {
+/// Returns how many rows a table has before the row without a name.
+static int count_fields(const hn_field *fields) {
     int n = 0;
     while (fields[n].name) {
         n++;
@@ -239,7 +240,7 @@ static hn_status check_member(const cJSON *value, const hn_field *f, const char 
 static hn_status report_unknown(const char *name, const hn_field *fields, const char *pointer,
                                 hn_diags *diags) {
     const char *names[MAX_FIELDS];
-    int n = hn_fields_count(fields);
+    int n = count_fields(fields);
     HN_ASSERT(n <= MAX_FIELDS);
     char hint[HN_DIAG_HINT] = "fields: ";
     for (int i = 0; i < n; i++) {
@@ -273,7 +274,7 @@ static hn_status check_one(const cJSON *item, const hn_field *fields, const char
 
 hn_status hn_fields_check(const cJSON *object, const hn_field *fields, const char *parent,
                           bool served, hn_diags *diags) {
-    HN_ASSERT(hn_fields_count(fields) <= MAX_FIELDS);
+    HN_ASSERT(count_fields(fields) <= MAX_FIELDS);
     uint32_t seen = 0;
     hn_status status = HN_OK;
     const cJSON *item;

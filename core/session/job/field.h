@@ -37,8 +37,6 @@ typedef struct hn_field {
     const char *about;
 } hn_field;
 
-/// Returns how many rows a table has before the row without a name.
-int hn_fields_count(const hn_field *fields);
 /// Returns the field of this name; NULL: there is none.
 const hn_field *hn_fields_find(const hn_field *fields, const char *name);
 /// Checks an object against a table and reports every field that is unknown (with a near miss),

@@ -27,6 +27,7 @@ typedef struct hn_job_preset {
     const char *name, *about;
     const char *chooses; ///< options of methods that the job sets itself, separated by blanks
     bool stabilised;     ///< of formulations that have alpha and beta
+    const char *units;   ///< of a parameter that the scene must have, separated by blanks; "": none
 } hn_job_preset;
 
 /// The value of one field of a kind: a number, or a text.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/kinds/job.h"
 
+#include "base/word_list.h"
+
 #include <stdlib.h>
 #include <stdio.h>
 #include <string.h>
@@ -175,12 +177,9 @@ static void put_field(hn_strbuf *b, const hn_field *f) {
 static void put_words(hn_strbuf *b, const char *key, const char *words) {
     hn_json_key(b, key);
     hn_json_array(b);
-    for (const char *p = words; *p; p += strspn(p, " ")) {
-        char word[32];
-        const size_t n = strcspn(p, " ");
-        snprintf(word, sizeof word, "%.*s", (int)n, p);
+    char word[32];
+    while (hn_word_next(&words, word, sizeof word)) {
         hn_json_string(b, word);
-        p += n;
     }
     hn_json_end_array(b);
 }
@@ -195,6 +194,7 @@ static void put_presets(hn_strbuf *b, const hn_job_kind *kind) {
         hn_json_put_string(b, "about", preset->about);
         put_words(b, "chooses", preset->chooses);
         hn_json_put_bool(b, "stabilised", preset->stabilised);
+        put_words(b, "units", preset->units);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
@@ -211,6 +211,7 @@ void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit) {
         // what the kind computes
         hn_json_object(b);
         hn_json_put_string(b, "name", KINDS[i]->name);
+        hn_json_put_string(b, "title", KINDS[i]->title);
         hn_json_put_string(b, "about", KINDS[i]->about);
         put_words(b, "chooses", KINDS[i]->chooses);
 

@@ -37,6 +37,7 @@ typedef enum hn_job_words {
 
 typedef struct hn_job_kind {
     const char *name;       ///< "work-precision"
+    const char *title;      ///< "what accuracy costs", for a tab of the page; of served kinds
     const char *about;      ///< one clause
     const char *command;    ///< of the command line
     hn_job_words words;     ///< of the command line
@@ -90,9 +91,9 @@ const void *hn_job_work(const hn_job *job); ///< what the kind's forms write
 void hn_job_free(hn_job *job);              ///< NULL is legal
 
 /// The list for the index of the API:
-/// [{"name","about","chooses","fields":[{"name","type","min","max",
-/// "choices","about"}...],"presets":[{"name","about","chooses","stabilised"}...]}...], kinds that a
-/// server offers, bounds as they hold there. `time_limit`: the server's own field of that name,
+/// [{"name","title","about","chooses","fields":[{"name","type","min","max","choices","about"}...],
+/// "presets":[{"name","about","chooses","stabilised","units"}...]}...], kinds that a server offers,
+/// bounds as they hold there. `time_limit`: the server's own field of that name,
 /// in place of each kind's.
 void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit);
 

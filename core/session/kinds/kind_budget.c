@@ -48,6 +48,7 @@ HN_JOB_FORM(csv, hn_budgets, hn_budgets_csv)
 
 const hn_job_kind hn_kind_budget = {
     .name = "budget",
+    .title = "where the error comes from",
     .about = "where the error at the end and the energy come from",
     .command = "study",
     .words = HN_JOB_WORDS_SCENE,

@@ -8,7 +8,7 @@
 #include "session/stability/stability_picture.h"
 
 static const char *const PRESETS[] = {
-#define NAME(maker, name, about, chooses, stabilised) name,
+#define NAME(maker, name, about, chooses, stabilised, units) name,
     HN_MAP_PRESETS(NAME)
 #undef NAME
         NULL};
@@ -82,6 +82,7 @@ HN_JOB_FORM(png, hn_map, write_png)
 
 const hn_job_kind hn_kind_stability = {
     .name = "stability",
+    .title = "where steps are stable",
     .about = "where steps are stable: the limit predicted from the spectrum, and tried",
     .command = "study",
     .words = HN_JOB_WORDS_SCENE,

@@ -29,14 +29,14 @@ typedef struct hn_map hn_map;
 
 #define HN_MAP_FIRST "limits" ///< the preset of a request that names none; hn_map_run() may go on
 
-/// Axes of a map by name: maker of the axes, name, about, chooses, stabilised
+/// Axes of a map by name: maker of the axes, name, about, chooses, stabilised, units
 /// (hn_job_preset).
-#define HN_MAP_PRESETS(X)                                                               \
-    X(stiffness_axes, "stiffness", "the step and a stiffness of the scene", "h", false) \
-    X(mass_axes, "mass-ratio", "the step and a mass of the scene", "h", false)          \
-    X(baumgarte_axes, "baumgarte", "alpha and beta of Baumgarte's method, at one step", \
-      "alpha beta", true)                                                               \
-    X(limit_axes, "limits", "the step, doubled until each method fails", "h", false)
+#define HN_MAP_PRESETS(X)                                                                          \
+    X(param_axes, "stiffness", "the step and a stiffness of the scene", "h", false, "N/m N*m/rad") \
+    X(param_axes, "mass-ratio", "the step and a mass of the scene", "h", false, "kg")              \
+    X(baumgarte_axes, "baumgarte", "alpha and beta of Baumgarte's method, at one step",            \
+      "alpha beta", true, "")                                                                      \
+    X(limit_axes, "limits", "the step, doubled until each method fails", "h", false, "")
 
 typedef struct hn_map_axis {
     char name[64]; ///< "h", "alpha", a parameter's; "" of a map with one column

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_axes.h"
 
+#include "base/word_list.h"
 #include "session/stability/stability_internal.h"
 
 #include <math.h>
@@ -9,9 +10,10 @@
 #include <string.h>
 
 enum { DEFAULT_SIDE = 24, CHOSEN_SIDE = 16 }; // points of an axis; of a map that another chose
-static const double DEFAULT_LIMIT = 60;       // wall time of a map [s]
-static const double LOG_FROM = 15;     // positive ranges of this ratio have a logarithmic axis
-static const double PRESET_SPAN = 1e3; // a preset varies a parameter by this factor up and down
+enum { UNIT_SIZE = 24 };
+static const double DEFAULT_LIMIT = 60; // wall time of a map [s]
+static const double LOG_FROM = 15;      // positive ranges of this ratio have a logarithmic axis
+static const double PRESET_SPAN = 1e3;  // a preset varies a parameter by this factor up and down
 static const double FINEST = 0.3, COARSEST = 12; // h times the fastest rate, for steps of a preset
 static const double PRESET_STEPS = 2e4;          // steps of the finest trial of a preset
 static const char STEP[] = "step"; // name of the axis of steps, whatever the scene's parameters are
@@ -190,9 +192,11 @@ static hn_status rate_with(hn_map *map, const char *name, double value, double *
     return HN_OK;
 }
 
-static bool has_unit(const hn_param *p, const char *const *units, int n) {
-    for (int i = 0; i < n; i++) {
-        if (strcmp(p->unit, units[i]) == 0 && p->max > 0 && !p->integer) {
+/// Whether a parameter has one of these units and can go over a range above 0.
+static bool has_unit(const hn_param *p, const char *units) {
+    char unit[UNIT_SIZE];
+    while (hn_word_next(&units, unit, sizeof unit)) {
+        if (strcmp(p->unit, unit) == 0 && p->max > 0 && !p->integer) {
             return true;
         }
     }
@@ -215,20 +219,38 @@ static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diag
     return make_axis(map, &map->y, STEP, low, fmax(high, 40 * low), n, 'l', diags);
 }
 
-// Takes a parameter of one of these units over its range, and the step sizes that the spectra at
-// both ends of the range require.
-static hn_status over_param(hn_map *map, const char *what, const char *const *units, int n_units,
-                            hn_diags *diags) {
+/// "N/m or N*m/rad" of "N/m N*m/rad".
+static void put_units(hn_strbuf *b, const char *units) {
+    char unit[UNIT_SIZE];
+    while (hn_word_next(&units, unit, sizeof unit)) {
+        hn_strbuf_printf(b, "%s%s", b->n ? " or " : "", unit);
+    }
+}
+
+static hn_status refuse_param(const hn_job_preset *preset, hn_diags *diags) {
+    hn_strbuf units;
+    hn_strbuf_init(&units);
+    put_units(&units, preset->units);
+    const hn_status status = hn_diags_add(
+        diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
+        "the preset '%s' needs a parameter in %s; this scene has none that can be varied above 0",
+        preset->name, hn_strbuf_text(&units));
+    hn_strbuf_reset(&units);
+    return status;
+}
+
+/// Takes a parameter of one of the preset's units over its range, and the step sizes that the
+/// spectra at both ends of the range require.
+static hn_status param_axes(hn_map *map, const hn_job_preset *preset, hn_diags *diags) {
     const hn_scene *scene = hn_model_scene(map->model);
     const hn_param *found = NULL;
 
     // the first parameter of a fitting unit
     for (int i = scene->n_params - 1; i >= 0; i--) {
-        found = has_unit(&scene->params[i], units, n_units) ? &scene->params[i] : found;
+        found = has_unit(&scene->params[i], preset->units) ? &scene->params[i] : found;
     }
     if (!found) {
-        return hn_diags_add(diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
-                            "this scene has no parameter that is %s", what);
+        return refuse_param(preset, diags);
     }
 
     // its range: a factor of PRESET_SPAN up and down, within its limits; the present value is on it
@@ -254,23 +276,15 @@ static hn_status feedback_axis(hn_map *map, hn_map_axis *a, const char *name, in
                      'l', diags);
 }
 
-static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
+static hn_status baumgarte_axes(hn_map *map, const hn_job_preset *preset, hn_diags *diags) {
+    (void)preset;
     HN_TRY(feedback_axis(map, &map->x, "alpha", map->n_columns, diags));
     return feedback_axis(map, &map->y, "beta", map->n_rows, diags);
 }
 
-static hn_status stiffness_axes(hn_map *map, hn_diags *diags) {
-    static const char *const units[] = {"N/m", "N*m/rad"};
-    return over_param(map, "a stiffness in N/m or N*m/rad", units, 2, diags);
-}
-
-static hn_status mass_axes(hn_map *map, hn_diags *diags) {
-    static const char *const units[] = {"kg"};
-    return over_param(map, "a mass in kg", units, 1, diags);
-}
-
 // One column whose steps double from row to row.
-static hn_status limit_axes(hn_map *map, hn_diags *diags) {
+static hn_status limit_axes(hn_map *map, const hn_job_preset *preset, hn_diags *diags) {
+    (void)preset;
     const double rate = fastest_rate(map->model);
     HN_TRY(steps_for(map, rate / 40, rate, 2, diags));
     const double low = map->y.value[0], times = floor(log2(map->y.value[1] / low));
@@ -281,9 +295,10 @@ static hn_status limit_axes(hn_map *map, hn_diags *diags) {
 
 static const struct {
     hn_job_preset preset;
-    hn_status (*make)(hn_map *map, hn_diags *diags);
+    hn_status (*make)(hn_map *map, const hn_job_preset *preset, hn_diags *diags);
 } PRESETS[] = {
-#define ROW(maker, name, about, chooses, stabilised) {{name, about, chooses, stabilised}, maker},
+#define ROW(maker, name, about, chooses, stabilised, units) \
+    {{name, about, chooses, stabilised, units}, maker},
     HN_MAP_PRESETS(ROW)
 #undef ROW
 };
@@ -306,11 +321,20 @@ static int find_preset(const char *name) {
 static hn_status take_preset(hn_map *map, hn_diags *diags) {
     const int i = find_preset(map->preset);
     if (i >= 0) {
-        return PRESETS[i].make(map, diags);
+        return PRESETS[i].make(map, &PRESETS[i].preset, diags);
     }
-    return hn_diags_add(diags, HN_ERR_INPUT, "/preset",
-                        "there are stiffness, mass-ratio, baumgarte and limits",
-                        "there is no preset called '%.40s'", map->preset);
+    const char *names[N_PRESETS];
+    hn_strbuf hint;
+    hn_strbuf_init(&hint);
+    for (int k = 0; k < N_PRESETS; k++) {
+        names[k] = PRESETS[k].preset.name;
+    }
+    hn_strbuf_add(&hint, "there are ");
+    hn_word_list(&hint, names, N_PRESETS, " and ");
+    const hn_status status = hn_diags_add(diags, HN_ERR_INPUT, "/preset", hn_strbuf_text(&hint),
+                                          "there is no preset called '%.40s'", map->preset);
+    hn_strbuf_reset(&hint);
+    return status;
 }
 
 // methods ----
@@ -407,14 +431,11 @@ static hn_status take_values(hn_map *map, hn_diags *diags) {
 /// Whether a method has every option of a list, separated by blanks.
 static bool has_options(const hn_method_spec *spec, const char *names) {
     hn_method_spec copy = *spec;
-    for (const char *p = names; *p; p += strspn(p, " ")) {
-        char name[32];
-        const size_t n = strcspn(p, " ");
-        snprintf(name, sizeof name, "%.*s", (int)n, p);
+    char name[32];
+    while (hn_word_next(&names, name, sizeof name)) {
         if (!hn_method_find_option(&copy, name, NULL)) {
             return false;
         }
-        p += n;
     }
     return true;
 }

@@ -219,27 +219,6 @@ void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
     }
 }
 
-int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
-                   int m, int k) {
-    const hn_wp_point *p = &wp->methods[m].point[k];
-    if (!takes_part(wp, classes, error, cost, m, k)) {
-        return 0;
-    }
-    for (int i = 0; i < wp->n_methods; i++) {
-        for (int j = 0; j < wp->n_levels; j++) {
-            const hn_wp_point *other = &wp->methods[i].point[j];
-            if (takes_part(wp, classes, error, cost, i, j) &&
-                hn_wp_cost(other, cost) <= hn_wp_cost(p, cost) &&
-                hn_wp_claimed(wp, other, error) <= hn_wp_claimed(wp, p, error) &&
-                (hn_wp_cost(other, cost) < hn_wp_cost(p, cost) ||
-                 hn_wp_claimed(wp, other, error) < hn_wp_claimed(wp, p, error))) {
-                return 0;
-            }
-        }
-    }
-    return 1;
-}
-
 // ---- the race ----
 
 /// The error at a cost; *is_bound when the cost is more than any point's.

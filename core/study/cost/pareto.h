@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PARETO_H
 #define HN_STUDY_PARETO_H
-// Finds the cheapest method for an accuracy: the cheapest finished point per band, the front over
-// all points, and the accuracy of each method at equal cost. A method that converges to a different
-// solution takes no part.
+// Finds the cheapest method for an accuracy: the cheapest finished point per band, and the
+// accuracy of each method at equal cost. A method that converges to a different solution takes no
+// part.
 //
 // Counts are exact; times are ranked only where a second measurement would say the same: the two
 // halves of the samples of both methods agree, and the methods differ by more than 10 % and by more
@@ -87,9 +87,6 @@ void hn_wp_band(const hn_wp *wp, const hn_class *classes, hn_error_kind error, h
 /// that.
 void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
                   hn_pareto *out);
-/// 1 if no point is both cheaper and more accurate.
-int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
-                   int m, int k);
 
 /// The error of each method for the same number of operations: between two of its points by a
 /// straight line in the logarithms, NaN before its first point. Beyond its dearest point the

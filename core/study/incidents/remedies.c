@@ -22,7 +22,8 @@ enum {
     WRONG = HN_TRAIT_COUNTER_EXAMPLE
 };
 
-bool hn_watch_is_near_singular(const hn_watch *w) {
+/// Says whether the present state is close to a singular configuration.
+static bool is_near_singular(const hn_watch *w) {
     return w->run->info.nc > 0 && w->singular.info.sigma_min < CLOSE * w->singular.largest;
 }
 
@@ -95,7 +96,7 @@ bool hn_remedy_robust(const hn_watch *w, double factor, hn_remedy out) {
 }
 
 bool hn_remedy_robust_near(const hn_watch *w, double factor, hn_remedy out) {
-    return hn_watch_is_near_singular(w) && hn_remedy_robust(w, factor, out);
+    return is_near_singular(w) && hn_remedy_robust(w, factor, out);
 }
 
 bool hn_remedy_feedback(const hn_watch *w, double factor, hn_remedy out) {

@@ -44,7 +44,5 @@ bool hn_remedy_uncorrected(const hn_watch *w, double factor, hn_remedy out);
 
 /// The fastest rate at which the method itself pulls the gap to zero [1/s]; 0 where it does not.
 double hn_pulling_rate(const hn_method_spec *spec);
-/// Says whether the present state is close to a singular configuration.
-bool hn_watch_is_near_singular(const hn_watch *w);
 
 #endif

@@ -216,7 +216,9 @@ double hn_stability_path_rate(const hn_stability_path *p) {
     return p->rate;
 }
 
-int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out) {
+/// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
+/// does not exist (a singular configuration).
+static int path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out) {
     *out = p->values + (size_t)k * 2 * (size_t)p->info.nv;
     return p->n_values[k];
 }
@@ -296,7 +298,7 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
     // limit along the path: the smallest, and the one at the start
     for (int k = 0; k <= HN_STABILITY_LOOKS; k++) {
         const hn_eigenvalue *s;
-        const int n = hn_stability_path_eigenvalues(p, k, &s);
+        const int n = path_eigenvalues(p, k, &s);
         const double limit = fmin(gap, hn_stability_limit(spec->stepper, s, n));
         f.start = k == 0 ? limit : f.start;
         if (limit < f.limit) {
@@ -308,7 +310,7 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
     // the step from which growth shows within the run
     if (f.limit > 0 && isfinite(f.limit)) {
         const hn_eigenvalue *s;
-        const int n = hn_stability_path_eigenvalues(p, f.look, &s);
+        const int n = path_eigenvalues(p, f.look, &s);
         f.visible = gap <= f.limit ? find_visible(spec->stepper, roots, 2, f.limit, steps)
                                    : find_visible(spec->stepper, s, n, f.limit, steps);
     }

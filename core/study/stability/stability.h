@@ -70,9 +70,6 @@ HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const dou
 /// The largest rate of a coordinate along the motion, lengths over the characteristic length [1/s].
 double hn_stability_path_rate(const hn_stability_path *p);
 void hn_stability_path_free(hn_stability_path *p); ///< NULL is legal
-/// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
-/// does not exist (a singular configuration).
-int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out);
 
 /// A predicted limit of the step of one method.
 typedef struct hn_stability_forecast {

@@ -274,7 +274,9 @@ static hn_exit run_prepared(command *c) {
     return written == HN_EXIT_DONE && (end.stopped || end.differs) ? HN_EXIT_ENDED : written;
 }
 
-hn_exit hn_run_job(const hn_library *lib, const hn_args *args, const hn_job_kind *kind) {
+/// Runs a job of this kind as the arguments say, its words as scenes or cases,
+/// and writes its documents. Returns the exit status.
+static hn_exit run_job(const hn_library *lib, const hn_args *args, const hn_job_kind *kind) {
     command c = {.lib = lib, .args = args, .kind = kind};
     hn_diags diags = {0};
     const hn_status status = prepare(&c, &diags);
@@ -313,7 +315,7 @@ hn_exit hn_command_study(const hn_library *lib, const hn_args *args) {
     const char *word = args->words.n > 1 ? args->words.word[1] : hn_job_kind_at(0)->name;
     const hn_job_kind *kind = hn_job_kind_find(word);
     if (kind && kind->words == HN_JOB_WORDS_SCENE) {
-        return hn_run_job(lib, args, kind);
+        return run_job(lib, args, kind);
     }
     hn_diag diag = {0};
     char list[HN_DIAG_HINT];
@@ -323,13 +325,13 @@ hn_exit hn_command_study(const hn_library *lib, const hn_args *args) {
 }
 
 hn_exit hn_command_report(const hn_library *lib, const hn_args *args) {
-    return hn_run_job(lib, args, hn_job_kind_find("report"));
+    return run_job(lib, args, hn_job_kind_find("report"));
 }
 
 hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args) {
-    return hn_run_job(lib, args, hn_job_kind_find("extreme"));
+    return run_job(lib, args, hn_job_kind_find("extreme"));
 }
 
 hn_exit hn_command_reference(const hn_library *lib, const hn_args *args) {
-    return hn_run_job(lib, args, hn_job_kind_find("reference"));
+    return run_job(lib, args, hn_job_kind_find("reference"));
 }

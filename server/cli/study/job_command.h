@@ -8,7 +8,4 @@
 #include "cli/shell/args.h"
 #include "session/kinds/job.h"
 
-/// Runs a job of this kind as the arguments say, its words as scenes or cases,
-/// and writes its documents. Returns the exit status.
-hn_exit hn_run_job(const hn_library *lib, const hn_args *args, const hn_job_kind *kind);
 #endif

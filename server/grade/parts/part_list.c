@@ -24,7 +24,8 @@ static const struct {
 };
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 
-const hn_part_kind *hn_part_kind_find(const char *name, hn_diag *diag) {
+/// The kind of a name ("number", "choice" ...); NULL with a near miss in diag.
+static const hn_part_kind *find_kind(const char *name, hn_diag *diag) {
     const char *names[N_KINDS];
     for (int i = 0; i < N_KINDS; i++) {
         names[i] = KINDS[i].name;
@@ -53,7 +54,7 @@ hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag) {
     p->node = node;
     p->id = hn_part_text(node, "id");
     p->points = hn_part_number(node, "points", -1);
-    p->kind = hn_part_kind_find(hn_part_text(node, "kind"), diag);
+    p->kind = find_kind(hn_part_text(node, "kind"), diag);
     if (!p->kind) {
         return HN_ERR_INPUT;
     }

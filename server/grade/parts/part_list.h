@@ -9,8 +9,6 @@ extern const hn_part_kind hn_part_values, hn_part_choice, hn_part_matrix, hn_par
     hn_part_basis, hn_part_example, hn_part_order, hn_part_method, hn_part_reading,
     hn_part_configuration, hn_part_scene;
 
-/// The kind of a name ("number", "choice" ...); NULL with a near miss in diag.
-const hn_part_kind *hn_part_kind_find(const char *name, hn_diag *diag);
 /// Checks id, kind, points and that every member is known. `node` is the JSON of the part.
 HN_MUST_CHECK hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag);
 #endif

@@ -14,7 +14,7 @@ typedef struct hn_scene_check {
     const hn_part *p;
     const hn_model *model;
     hn_draw draw; ///< the numbers of the variant, the parameters, then the coordinates
-    int n_parameters, n_coordinates;
+    int n_coordinates;
     bool walked;
     hn_circuit circuit;
     double *path; ///< owned: coordinates of every configuration, n a step

@@ -19,7 +19,9 @@ void hn_value_search_begin(hn_value_search *f, hn_value_sheet *sheet, int k, con
         .sheet = sheet, .entry = k, .given = given, .formula = formula, .result = r};
 }
 
-bool hn_value_search_is_done(const hn_value_search *f) {
+/// Whether further candidates cannot change the result: one is certain, or two agree as closely as
+/// is told apart.
+static bool is_done(const hn_value_search *f) {
     return (f->n_found == 2 && f->close == 2) || (f->n_found == 1 && !f->result->likely);
 }
 
@@ -143,7 +145,7 @@ static bool is_reference(const hn_value_search *f, hn_ex e, double factor) {
 bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char *id, double share,
                          const char *format, ...) {
     int close;
-    if (hn_value_search_is_done(f) || !agrees(f, e, factor, &close) || is_reference(f, e, factor)) {
+    if (is_done(f) || !agrees(f, e, factor, &close) || is_reference(f, e, factor)) {
         return false;
     }
     const evidence found = weigh(f, e, factor);

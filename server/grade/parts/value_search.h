@@ -35,7 +35,4 @@ bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char 
 /// The name in a formula with the right values that makes it wrong once its number is another one,
 /// as t1 in place of l1 where both are 0.77. NULL: none, or its number cannot be changed by itself.
 const char *hn_value_search_stray_name(hn_value_sheet *sheet, int k, hn_ex formula);
-/// Whether further candidates cannot change the result: one is certain, or two agree as closely as
-/// is told apart.
-bool hn_value_search_is_done(const hn_value_search *f);
 #endif

@@ -19,7 +19,8 @@ static size_t trim_port(const char *authority) {
                                                              : n;
 }
 
-bool hn_is_same_origin(const char *origin, const char *host) {
+/// Returns whether an Origin header names the host and port of the Host header.
+static bool is_same_origin(const char *origin, const char *host) {
     const size_t scheme = strncmp(origin, "http://", 7) == 0    ? 7
                           : strncmp(origin, "https://", 8) == 0 ? 8
                                                                 : 0;
@@ -31,7 +32,7 @@ bool hn_is_same_origin(const char *origin, const char *host) {
 /// A page may call the server that it came from: same name, same port.
 static bool check_origin(hn_request *r, const char *host) {
     const char *origin = hn_request_header(r, "Origin");
-    if (!origin || hn_is_same_origin(origin, host)) {
+    if (!origin || is_same_origin(origin, host)) {
         return true;
     }
     hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,

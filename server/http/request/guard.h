@@ -14,9 +14,6 @@ int hn_accepts(const char *accept, const char *media_type);
 /// 1 for application/json, with or without parameters.
 bool hn_is_json_type(const char *content_type);
 
-/// Returns whether an Origin header names the host and port of the Host header.
-bool hn_is_same_origin(const char *origin, const char *host);
-
 /// Each returns 1 when all is well; otherwise the reply is a problem.
 int hn_guard_host(hn_request *r, const hn_hosts *hosts);
 int hn_guard_site(hn_request *r);  ///< pages of other sites get no computing

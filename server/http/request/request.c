@@ -183,7 +183,7 @@ void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, con
     reply_document(r, kind, detail, hint, -1, NULL);
 }
 
-void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint) {
+static void reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint) {
     reply_document(r, HN_PROBLEM_BAD_JSON, what, hint, (long long)offset, NULL);
 }
 
@@ -226,7 +226,7 @@ int hn_request_read_body(hn_request *r) {
     hn_diag fault = {0};
     size_t offset = 0;
     if (hn_json_text_locate(r->body, r->n_body, MAX_JSON_DEPTH, &offset, &fault) != HN_OK) {
-        hn_reply_bad_json(r, offset, fault.message, fault.hint);
+        reply_bad_json(r, offset, fault.message, fault.hint);
         return 0;
     }
 

@@ -105,7 +105,6 @@ void hn_reply_empty(hn_request *r, unsigned status);
 void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response);
 void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
                       ...) HN_PRINTF(4, 5);
-void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint);
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 

@@ -24,10 +24,25 @@ static void joints_serve_lists_that_code_writes(void **state) {
     assert_string_equal(hn_word_joint(2, 3, " or "), " or ");
 }
 
+static void words_between_blanks_come_one_by_one(void **state) {
+    (void)state;
+    const char *list = "alpha  beta";
+    char word[5] = "none";
+    assert_true(hn_word_next(&list, word, sizeof word));
+    assert_string_equal(word, "alph"); // cut at the size
+    assert_true(hn_word_next(&list, word, sizeof word));
+    assert_string_equal(word, "beta");
+    assert_false(hn_word_next(&list, word, sizeof word));
+    assert_string_equal(word, "beta");
+    list = "";
+    assert_false(hn_word_next(&list, word, sizeof word));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_last_two_words_are_joined_by_a_word),
         cmocka_unit_test(joints_serve_lists_that_code_writes),
+        cmocka_unit_test(words_between_blanks_come_one_by_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -385,7 +385,9 @@ static void inspect_tells_the_tree_the_cut_and_exact_counts(void **state) {
         hn_scene_load_file("lessons/01-closed-loops/scenes/fb0.json", NULL, 0, &scene, &diags),
         HN_OK);
     assert_int_equal(hn_system_compile(scene, NULL, &sys, &diags), HN_OK);
-    assert_int_equal(hn_system_inspect_json(&b, sys), HN_OK);
+    hn_json_object(&b);
+    assert_int_equal(hn_system_inspect_put(&b, sys), HN_OK);
+    hn_json_end_object(&b);
     cJSON *doc = cJSON_Parse(hn_strbuf_text(&b));
     assert_non_null(doc);
     const cJSON *tree = cJSON_GetObjectItem(doc, "tree");

@@ -380,27 +380,6 @@ static void threads_that_paint_at_once_get_the_same_pixels(void **state) {
     hn_canvas_free(c);
 }
 
-static void a_file_is_saved_and_a_folder_that_is_not_there_is_told(void **state) {
-    (void)state;
-    hn_canvas *c = create(32, 32);
-    char path[] = "/tmp/holonom-test-XXXXXX";
-    const int fd = mkstemp(path);
-    assert_true(fd >= 0);
-    close(fd);
-    hn_diag diag = {0};
-    assert_int_equal(hn_canvas_save_png(c, path, &diag), HN_OK);
-    FILE *file = fopen(path, "rb");
-    unsigned char head[8] = {0};
-    assert_int_equal(fread(head, 1, 8, file), 8);
-    fclose(file);
-    unlink(path);
-    assert_memory_equal(head, "\x89PNG\r\n\x1a\n", 8);
-
-    assert_int_equal(hn_canvas_save_png(c, "/nowhere/at/all.png", &diag), HN_ERR_IO);
-    assert_non_null(strstr(diag.message, "/nowhere/at/all.png"));
-    hn_canvas_free(c);
-}
-
 static hn_status draw_and_encode(hn_strbuf *png) {
     hn_canvas *c = NULL;
     hn_status status = hn_canvas_create(220, 100, HN_THEME_LIGHT, &c, NULL);
@@ -452,7 +431,6 @@ int main(void) {
         cmocka_unit_test(sizes_out_of_bounds_are_refused_by_name),
         cmocka_unit_test(the_png_reads_back_to_the_same_pixels_and_twice_the_same_bytes),
         cmocka_unit_test(threads_that_paint_at_once_get_the_same_pixels),
-        cmocka_unit_test(a_file_is_saved_and_a_folder_that_is_not_there_is_told),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

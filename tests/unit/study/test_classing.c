@@ -426,11 +426,12 @@ static void what_converges_to_something_else_takes_no_part(void **state) {
     (void)state;
     written w;
     front_of(&w, 2); // the third is a hundred times cheaper
-    for (int k = 0; k < 3; k++) {
-        assert_true(hn_wp_on_front(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 0, k));
-        assert_false(hn_wp_on_front(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 1, k));
-        assert_false(hn_wp_on_front(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 2, k));
-    }
+    const double least = hn_wp_claimed(&w.wp, &w.wp.methods[0].point[2], HN_ERROR_Q);
+    hn_band band;
+    hn_wp_band(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, least, &band);
+    assert_int_equal(band.best.method, 0);
+    assert_true(hn_wp_reach(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 0, least).level >= 0);
+    assert_int_equal(hn_wp_reach(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 2, least).level, -1);
 }
 
 static void equal_cost_is_read_off_between_the_points(void **state) {
