@@ -407,17 +407,6 @@ static double find_row_ratio(hn_accel *s) {
     return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->tape.n_out - s->nc);
 }
 
-/// Runs the tape, and takes its answer where nothing is in doubt and nobody asks for more.
-static bool solve_at_once(hn_accel *s, double *a, double *lambda, const hn_accel_info *info) {
-    if (!s->tape.available) {
-        return false;
-    }
-    hn_tape_run(s->in.tape, s->in.x);
-    s->ops += s->tape_ops;
-    return !info && hn_accel_tape_take_sure(&s->tape, &s->in, HN_ACCEL_SURE_PIVOT,
-                                            HN_ACCEL_SURE_ROW, a, lambda);
-}
-
 /// Takes the answer of the tape that has been run. HN_ERR_SINGULAR: a pivot is lost, or so small
 /// that the answer needs correction (*doubtful).
 static hn_status judge_answer(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
@@ -437,22 +426,17 @@ static hn_status judge_answer(hn_accel *s, double *a, double *lambda, hn_accel_i
     return good ? HN_OK : HN_ERR_SINGULAR;
 }
 
-hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
-                        double beta, double *a, double *lambda, hn_accel_info *info) {
-    HN_ASSERT(!lambda || s->opts.want_lambda);
+/// The answer at the state in s->in, for which the tape has been run if there is one, where it is
+/// in doubt or somebody asks for more. A function of its own: it is rare.
+__attribute__((noinline)) static hn_status eval_carefully(hn_accel *s, double t, const double *q,
+                                                          const double *v, double alpha,
+                                                          double beta, double *a, double *lambda,
+                                                          hn_accel_info *info) {
     hn_accel_info own;
     const hn_solver solver = s->opts.solver;
     int doubtful = 0;
 
-    // the tape first
-    s->count++;
-    s->refusal[0] = '\0';
-    hn_inputs_set(&s->in, t, q, v, alpha, beta);
-    if (solve_at_once(s, a, lambda, info)) {
-        return HN_OK;
-    }
-
-    // what it found, where that matters
+    // what the tape found
     info = info ? info : &own;
     *info = (hn_accel_info){.solver = solver, .rank = s->nc, .massless = -1, .row_ratio = 1};
     hn_status status = judge_answer(s, a, lambda, info, &doubtful);
@@ -480,6 +464,25 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     s->fallbacks += info->fallback;
     return solve_dense(s, solver == HN_SOLVER_AUTO ? HN_SOLVER_LEAST_NORM : solver, gap, a, lambda,
                        info);
+}
+
+hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
+                        double beta, double *a, double *lambda, hn_accel_info *info) {
+    HN_ASSERT(!lambda || s->opts.want_lambda);
+    s->count++;
+    s->refusal[0] = '\0';
+    hn_inputs_set(&s->in, t, q, v, alpha, beta);
+
+    // the tape first
+    if (s->tape.available) {
+        hn_tape_run(s->in.tape, s->in.x);
+        s->ops += s->tape_ops;
+        if (!info && hn_accel_tape_take_sure(&s->tape, &s->in, HN_ACCEL_SURE_PIVOT,
+                                             HN_ACCEL_SURE_ROW, a, lambda)) {
+            return HN_OK;
+        }
+    }
+    return eval_carefully(s, t, q, v, alpha, beta, a, lambda, info);
 }
 
 hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,

@@ -5,7 +5,6 @@
 #include "dynamics/evaluate/ldl_kept.h"
 #include "expr/construct.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -91,25 +90,6 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
     return status;
 }
 
-static bool is_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot, double row) {
-    const double *x = in->x;
-    const uint16_t *guard = in->slots + tape->n_answer, *rows = guard + 2 * tape->n_guards;
-    const int n_rows = tape->n_out - tape->n_answer - 2 * tape->n_guards;
-    bool sure = true;
-    for (int k = 0; k < tape->n_guards; k++) { // a NaN is not above anything
-        sure &= fabs(x[guard[2 * k]]) > pivot * fabs(x[guard[2 * k + 1]]);
-    }
-
-    double least = HUGE_VAL, most = 0;
-    for (int i = 0; i < n_rows; i++) {
-        const double square = fabs(x[rows[i]]);
-        least = square < least ? square : least;
-        most = square > most ? square : most;
-        sure &= square == square;
-    }
-    return sure && (n_rows == 0 || least > row * most);
-}
-
 double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in) {
     const double *x = in->x;
     const uint16_t *slots = in->slots + tape->n_answer;
@@ -123,26 +103,44 @@ double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in)
     return worst >= 0 ? worst : 0;
 }
 
+/// Copies outputs first .. end - 1 to `to` (NULL: nowhere); returns zero times their sum, which is
+/// NaN where one of them is not finite.
+static inline double copy_outputs(const hn_inputs *in, int first, int end, double *to) {
+    double zero = 0;
+    for (int k = first; k < end; k++) {
+        const double value = in->x[in->slots[k]];
+        zero += 0 * value;
+        if (to) {
+            *to++ = value;
+        }
+    }
+    return zero;
+}
+
 bool hn_accel_tape_take(const hn_accel_tape *tape, const hn_inputs *in, double *a, double *lambda) {
-    const double *x = in->x;
-    const uint16_t *slots = in->slots;
-    bool finite = true;
-    for (int k = 0; k < tape->n_answer; k++) {
-        finite &= fabs(x[slots[k]]) <= DBL_MAX;
-    }
-    if (!finite) {
-        return false;
-    }
-    for (int i = 0; i < in->nv; i++) {
-        a[i] = x[slots[i]];
-    }
-    for (int i = 0; lambda && i < tape->n_answer - in->nv; i++) {
-        lambda[i] = x[slots[in->nv + i]];
-    }
-    return true;
+    const double zero = copy_outputs(in, 0, in->nv, a);
+    return zero + copy_outputs(in, in->nv, tape->n_answer, lambda) == 0;
 }
 
 bool hn_accel_tape_take_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
                              double row, double *a, double *lambda) {
-    return is_sure(tape, in, pivot, row) && hn_accel_tape_take(tape, in, a, lambda);
+    const double *const x = in->x;
+    const uint16_t *at = in->slots + tape->n_answer;
+    const uint16_t *const rows = at + 2 * tape->n_guards, *const end = in->slots + tape->n_out;
+    bool sure = true;
+    for (; at < rows; at += 2) { // a NaN is not above anything
+        sure &= fabs(x[at[0]]) > pivot * fabs(x[at[1]]);
+    }
+
+    // squares of rows: one that is not finite leaves NaN in `zero`
+    double least = HUGE_VAL, most = 0, zero = 0;
+    for (; at < end; at++) {
+        const double square = fabs(x[*at]);
+        least = square < least ? square : least;
+        most = square > most ? square : most;
+        zero += 0 * square;
+    }
+    sure &= least > row * most;
+    zero += copy_outputs(in, 0, in->nv, a);
+    return sure && zero + copy_outputs(in, in->nv, tape->n_answer, lambda) == 0;
 }

@@ -32,16 +32,16 @@ HN_MUST_CHECK hn_status hn_accel_tape_compile(const hn_system *sys, bool want_la
                                               bool baumgarte, hn_arena *arena, hn_inputs *inputs,
                                               hn_accel_tape *out);
 
-/// Takes the answer as hn_accel_tape_take() does if every pivot is above `pivot` times its
-/// reference and every row's squared length above `row` times the largest: compares without a
-/// division, so `true` is sure and `false` is not.
+/// Takes the answer as hn_accel_tape_take() does. Returns whether it is finite, every pivot above
+/// `pivot` times its reference and every row's squared length above `row` times the largest:
+/// compares without a division, so `true` is sure and `false` is not.
 bool hn_accel_tape_take_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
                              double row, double *a, double *lambda);
 
 /// The smallest pivot relative to its reference after a run of the tape [-]; 0: not a number.
 double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in);
 
-/// Copies the answer, a (nv) and lambda (nc, or NULL). Returns false, and copies nothing, where it
-/// is not finite.
+/// Copies the answer, a (nv) and lambda (nc, or NULL). Returns false where an entry of it is not
+/// finite.
 bool hn_accel_tape_take(const hn_accel_tape *tape, const hn_inputs *in, double *a, double *lambda);
 #endif
