@@ -47,6 +47,7 @@ typedef struct hn_variant_owner {
 typedef struct hn_exercise {
     hn_arena *arena;
     const char *id, *title, *scene, *statement, *lesson, *section, *answer;
+    const char *file;      ///< borrowed; where it was read, as the caller named it; NULL: by its id
     int n_names, n_params; ///< parameters first
     hn_grade_name names[HN_GRADE_MAX_NAMES];
     int n_aliases, n_partial;

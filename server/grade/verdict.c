@@ -149,6 +149,9 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
 
     // the variant that was graded
     hn_json_put_string(b, "problem", v->problem->id);
+    if (v->problem->file) {
+        hn_json_put_string(b, "problem_file", v->problem->file);
+    }
     hn_json_put_string(b, "problem_hash", hash);
     hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
     hn_json_put_int(b, "states", v->n_states);

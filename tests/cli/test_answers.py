@@ -179,6 +179,9 @@ def what_looks_like_an_answer(folder):
     done = run("grade", write(folder, "wrong.json", exercise), write(folder, "answer.json", {"a": 0.4932}))
     expect("an exercise that its second way contradicts grades nobody", done.returncode == 3 and "the exercise is wrong in its part a" in done.stdout + done.stderr,
            done.stdout + done.stderr)  # fmt: skip
+    for several in ({"w2": 1, "w3": 2}, "-1.23, 0.806"):
+        said = run("grade", "fourbar", write(folder, "two.json", {"d": several})).stdout
+        expect(f"two entries written as {several} are asked for as a list", "entries asked for: 2; handed in: 1: write a list, [..., ...]" in said, said)
     said = run("grade", "method", write(folder, "method.json", {"a": "projecton@rk4:h=0.01"})).stdout
     expect("an unknown formulation is told with the nearest one, and without a list that is cut",
            "formulation 'projecton' is not known; did you mean 'projection'?" in said and ",;" not in said, said)  # fmt: skip

@@ -45,6 +45,23 @@ def statuses(folder):
     expect("another score and a changed exercise are said", "ANOTHER SCORE" in again.stdout and "exercise has changed" in again.stdout, again.stdout)
     expect("what is no verdict is refused", run("regrade", path).returncode == 2)
 
+    # so is one on an exercise of the teacher's own, until its file is gone
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "3*l", "second": "l+2*l"}
+    mine = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+            "draw": {"l": {"range": [1, 9], "digits": 2}}, "parts": [part]}  # fmt: skip
+    own = write(folder, "mine.json", mine)
+    kept = write(folder, "own.json", run("grade", own, write(folder, "three.json", {"a": 3}), "--json").stdout)
+    expect("a verdict on an exercise of one's own is reproduced", json.loads(run("regrade", kept, "--json").stdout)["same"], run("regrade", kept).stderr)
+    part.update(answer="3*l/l", second="9/3")
+    write(folder, "mine.json", mine)
+    again = run("regrade", kept)
+    expect("and a change of its file is said", "ANOTHER SCORE: 0 of 1 before, 1 of 1 now" in again.stdout and "exercise has changed" in again.stdout, again.stdout)
+    os.remove(own)
+    again = run("regrade", kept)
+    expect("and that its file is gone", again.returncode == 2 and "no such file is here" in again.stderr, again.stderr)
+    again = run("regrade", write(folder, "scene.json", {"problem": "four-bar", "seed": "1"}))
+    expect("a verdict on a program says how it is graded again", again.returncode == 2 and "'four-bar' is a scene" in again.stderr, again.stderr)
+
 
 def hand_in_line(*words):
     text = run("problem", "p1", *words).stdout
@@ -200,7 +217,7 @@ def for_teachers(folder):
     expect("a count must be exact", 'answer "a": a number; exact\n' in counted, counted)
     said = run("grade", "fourbar", write(folder, "unit.json", {"a": "3 furlongs", "d": ["1,500", 2]})).stdout
     expect("an unknown unit is named, with what is asked for", "'furlongs' at column 3 is no unit known here; asked for: kg m^2" in said, said)
-    expect("a comma in a number is named", "a comma at column 2; write decimals with a point" in said, said)
+    expect("a comma in a number is named", "a comma at column 2, which may stand for decimals or for thousands; write decimals with a point" in said, said)
     expect("a list of commands has help", run("help", "problems").returncode == 0)
 
 

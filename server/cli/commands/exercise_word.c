@@ -20,6 +20,7 @@ hn_status hn_cli_load_exercise(const hn_library *lib, const char *word, hn_exerc
     }
     HN_TRY(hn_exercise_load_file(word, out, diags));
     (*out)->lib = lib;
+    (*out)->file = word;
     return HN_OK;
 }
 

@@ -4,11 +4,11 @@
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "build.h"
+#include "cli/commands/exercise_word.h"
 #include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
-#include "grade/exercise_shelf.h"
 #include "grade/grade.h"
 #include "grade/rubric.h"
 
@@ -16,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MAX_VERDICT = 4 << 20, MAX_DEPTH = 32 };
 
@@ -122,6 +123,26 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
     return hn_cli_print_text(&b);
 }
 
+/// The exercise of the verdict: the file that was named to grade it, or the one of this id.
+static hn_status load_exercise(const hn_library *lib, const cJSON *old, hn_exercise **out,
+                               hn_diags *diags) {
+    const char *id = text_of(old, "problem"), *file = text_of(old, "problem_file");
+    if (!file[0] && !hn_library_problem_path(lib, id) && hn_library_scene_path(lib, id)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/problem", "holonom grade SCENE PROGRAM",
+                            "'%.60s' is a scene: a verdict does not hold the program that was "
+                            "graded; grade it again",
+                            id);
+    }
+    if (file[0] && access(file, F_OK) != 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/problem_file",
+                            "put the file there, or call regrade where grade was called",
+                            "the exercise '%.60s' was read from '%.200s', and no such file is "
+                            "here",
+                            id, file);
+    }
+    return hn_cli_load_exercise(lib, file[0] ? file : id, out, diags);
+}
+
 static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJSON *old,
                            hn_verdict *v) {
     hn_exercise *e = NULL;
@@ -130,7 +151,7 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
     const uint64_t seed = strtoull(text_of(old, "seed"), NULL, 10);
 
     // the submission: the file named, or the copy that the verdict holds
-    hn_status status = hn_shelf_exercise_load(lib, text_of(old, "problem"), &e, &diags);
+    hn_status status = load_exercise(lib, old, &e, &diags);
     HN_THEN(status, hn_cli_apply_rubric(args, e, &diags));
     if (status == HN_OK && args->words.n > 1) {
         status = hn_grade_file(e, args->words.word[1], seed, v);

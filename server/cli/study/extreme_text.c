@@ -97,5 +97,5 @@ void hn_extreme_text(hn_strbuf *b, const hn_extreme *x) {
             first = 0;
         }
     }
-    hn_strbuf_printf(b, "; %d cases\n", x->n_cases);
+    hn_strbuf_printf(b, "; %d case%s\n", x->n_cases, x->n_cases == 1 ? "" : "s");
 }

@@ -12,6 +12,7 @@
 #include "grade/parts/value_search.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,26 +88,39 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
     return HN_OK;
 }
 
+/// What to write where the number of entries is wrong: one text or object that stands for several
+/// is not read.
+static const char *shape_advice(const cJSON *given) {
+    const bool one = cJSON_IsObject(given) || cJSON_IsString(given);
+    return one ? ": write a list, [..., ...]" : "";
+}
+
 static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_result *results,
                              int *n) {
     const cJSON *list[HN_VALUE_ENTRIES];
     int columns = 0;
     const int count = given ? hn_value_flatten(given, list, &columns) : 0;
-    const int transposed = s->reference.columns && columns && count == s->reference.n &&
-                           columns != s->reference.columns;
+    const bool transposed = s->reference.columns && columns && count == s->reference.n &&
+                            columns != s->reference.columns;
+    const bool misshapen = given && (count != s->reference.n || transposed);
     *n = s->reference.n;
 
     // a shape that does not fit is said once, in the first entry
-    if (given && (count != s->reference.n || transposed)) {
-        for (int k = 0; k < *n; k++) {
-            results[k] = (hn_part_result){.mistake = ""};
-            name_entry(s, k, &results[k]);
-            hn_part_keep_given(&results[k], k ? NULL : given);
-            hn_part_wrong(&results[k], transposed ? "transposed" : "shape", 0,
-                          transposed ? "rows and columns are exchanged: %d columns are asked for"
-                                     : "entries asked for: %d; handed in: %d",
-                          transposed ? s->reference.columns : s->reference.n, count);
+    for (int k = 0; k < *n && misshapen; k++) {
+        hn_part_result *r = &results[k];
+        *r = (hn_part_result){.mistake = ""};
+        name_entry(s, k, r);
+        hn_part_keep_given(r, k ? NULL : given);
+        if (transposed) {
+            hn_part_wrong(r, "transposed", 0,
+                          "rows and columns are exchanged: %d columns are asked for",
+                          s->reference.columns);
+        } else {
+            hn_part_wrong(r, "shape", 0, "entries asked for: %d; handed in: %d%s", s->reference.n,
+                          count, shape_advice(given));
         }
+    }
+    if (misshapen) {
         return HN_OK;
     }
     for (int k = 0; k < *n; k++) {

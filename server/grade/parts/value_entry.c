@@ -98,8 +98,10 @@ static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_res
         hn_part_unreadable(r, "'%.60s' is no number; a number is asked for%s%s", text,
                            unit[0] ? ", if you like with its unit: 1.2 " : "", unit);
     } else if (*tail == ',') {
-        hn_part_unreadable(r, "'%.60s' has a comma at column %d; write decimals with a point", text,
-                           (int)(tail - text) + 1);
+        hn_part_unreadable(r,
+                           "'%.60s' has a comma at column %d, which may stand for decimals or "
+                           "for thousands; write decimals with a point, and no comma elsewhere",
+                           text, (int)(tail - text) + 1);
     } else {
         hn_part_unreadable(r, "'%.60s': '%.30s' at column %d is no unit known here; asked for: %s",
                            text, tail, (int)(tail - text) + 1, unit[0] ? unit : "a plain number");
