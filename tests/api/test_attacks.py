@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whoever holds up the server holds up himself: what a hostile or careless client sends, and how soon the server ends beside it."""
 
+import concurrent.futures
 import http.client
 import json
 import math
@@ -39,6 +40,24 @@ class NobodyWaitsForAnother(Timed):
         for path, method, known in (("comparisons/" + c["id"], "PATCH", '"speed":1'), ("terms", "POST", '"t":1')):
             for body in (many_members(known), many_members(known, n_unknown=0, n_known=80000)):
                 self.assert_unhindered(self.server, lambda: self.post(path, body, method), check)
+
+    def test_a_shipped_scene_waits_for_no_large_mechanism(self):
+        """Both take the threads for what is quick: one that forms equations for seconds makes way."""
+        ring = {"scene": "ring", "parameters": {"n": 100}}
+
+        def attempt():
+            """What a shipped scene takes beside two large ones, and half of what they take."""
+            start = time.monotonic()
+            with concurrent.futures.ThreadPoolExecutor(2) as pool:
+                large = [pool.submit(self.post, "comparisons", {**ring, "methods": ["projection@rk4:h=1e-2"]}),
+                         pool.submit(self.server.ask, "GET", "/api/v1/scenes/ring?set=n:100", timeout=120)]
+                time.sleep(0.3)
+                answer, took = self.server.timed("GET", "/api/v1/scenes/four-bar", headers={"User-Agent": "another"})
+                self.assertEqual(answer.status, 200)
+                self.assertTrue({f.result().status for f in large} <= {200, 201, 422})
+            return took, (time.monotonic() - start) / 2
+
+        self.assert_within(attempt)
 
     def test_many_members_by_name_are_refused(self):
         body = json.dumps({"scene": "four-bar", "state": {f"x{i}": 0 for i in range(50000)}})

@@ -121,7 +121,6 @@ WRONG_REQUESTS = [
     ("GET", "/api/v1/problems/p9", {}, None, 404, "not-found"),
     ("GET", "/api/v1/comparisons/0123456789abcdef", {}, None, 404, "not-found"),
     ("GET", "/api/v1/comparisons/0123456789abcdef/events", {}, None, 404, "not-found"),
-    ("DELETE", "/api/v1/comparisons/0123456789abcdef", {}, None, 404, "not-found"),
     ("PATCH", "/api/v1/comparisons/0123456789abcdef", {"Content-Type": "application/json"}, "{}", 404, "not-found"),
     ("POST", "/nothing", {}, "x", 404, "not-found"),
     ("POST", "/", {}, "x", 405, "method-not-allowed"),
@@ -229,6 +228,7 @@ class Malformed(driver.ServerCase):
                            (b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n", b"Host"),
                            (post + b"Content-Length: 2\r\nContent-Length: 3\r\n\r\n{} ", b"Content-Length"),
                            (post + b"Content-Length: 2\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n", b"exclude each other"),
+                           (post + b"Transfer-Encoding: chunked\r\nTransfer-Encoding: gzip\r\n\r\n2\r\n{}\r\n0\r\n\r\n", b"Transfer-Encoding is given 2"),
                            (post + b"Transfer-Encoding: gzip\r\n\r\n{}", b"'gzip'")):
             with self.subTest(head=head):
                 reply = self.server.raw(head)
@@ -261,6 +261,24 @@ class Malformed(driver.ServerCase):
                            headers={"Content-Type": "application/json"}, encode_chunked=True)
         self.assert_problem(driver.Answer(connection.getresponse()), 413, "too-large")
         connection.close()
+
+    def test_a_body_in_chunks_that_is_refused_is_told_so_before_its_end(self):
+        """The end is never sent: 408 after half a minute was the answer."""
+        post = b" HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+        for first_line, sent, status, header in ((b"POST /api/v1/runs", b"140000\r\n" + b" " * 0x140000, 413, b"Connection: close"),
+                                                 (b"POST /api/v1/nothing", b"2\r\n{}", 404, b"Connection: close"),
+                                                 (b"POST /api/v1/scenes", b"2\r\n{}", 405, b"Allow: GET, HEAD, OPTIONS")):
+            with self.subTest(first_line=first_line), socket.create_connection(("127.0.0.1", self.server.port), timeout=20 * driver.SLOW) as s:
+                s.sendall(first_line + post + sent)
+                reply = b""
+                while not reply.endswith(b"}"):
+                    piece = s.recv(65536)
+                    self.assertTrue(piece, reply)
+                    reply += piece
+                head, _, body = reply.partition(b"\r\n\r\n")
+                self.assertTrue(head.startswith(f"HTTP/1.1 {status} ".encode()), reply[:300])
+                self.assertIn(header, head.split(b"\r\n"))
+                self.assertEqual(json.loads(body)["status"], status)
 
     def test_a_client_that_sends_much_reads_why_it_was_refused(self):
         """http.client sends the whole body before it reads: a connection that is closed meanwhile would break its pipe."""
@@ -314,6 +332,30 @@ class Malformed(driver.ServerCase):
         for address in (b"/\0abc", b"/index.html\0.png", b"/healthz\0?x", b"/healthz?a\0b", b"/\0"):
             reply = self.server.raw(b"GET " + address + b" HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
             self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), (address, reply[:200]))
+
+    def test_a_zero_byte_in_a_header_is_refused(self):
+        """The HTTP library reads it as the end of the value: 'Host: localhost' and a zero byte was ours, whatever followed."""
+        end = b"Connection: close\r\n\r\n"
+        for headers in (b"Host: localhost\0.example\r\n" + end, b"Host: localhost\r\nX-A: a\0b\r\n" + end, b"X-A: \0b\r\nHost: localhost\r\n" + end,
+                        b"Host: localhost\r\nConnection: close\0keep\r\n\r\n", b"Host: localhost\nX-A: a\0b\n\n",
+                        b"Host: localhost\r\nX-A: a\r\n b\r\n" + end):  # it goes on in a second line, which is refused too
+            reply = self.server.raw(b"GET /healthz HTTP/1.1\r\n" + headers)
+            self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), (headers, reply[:200]))
+        # other things between a value and the next name are none
+        for headers in (b"Host: localhost\r\nX-A: a  \t \r\n" + end, b"Host: localhost\nX-A: a\nX-B:\nConnection: close\n\n", b"X-A:\r\nX-B:   \r\nHost:  localhost\r\n" + end):
+            reply = self.server.raw(b"GET /healthz?x HTTP/1.1\r\n" + headers)
+            self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), (headers, reply[:200]))
+            self.assertIn(b"'x' is unknown here", reply)
+        body = b"POST /api/v1/runs HTTP/1.1\nHost: localhost\nContent-Type: application/json\nContent-Length: 2\nConnection: close\n\n{}"
+        self.assertTrue(self.server.raw(body).startswith(b"HTTP/1.1 422 "))
+
+    def test_what_has_gone_is_deleted_once_more_without_a_fault(self):
+        made = self.server.compare()["links"]["self"]
+        for address in (made, "/api/v1/comparisons/0123456789abcdef", "/api/v1/studies/0123456789abcdef", "/api/v1/runs/" + 22 * "a"):
+            for _ in range(2):
+                answer = self.server.ask("DELETE", address)
+                self.assertEqual((answer.status, answer.body), (204, b""), address)
+            self.assertEqual(self.server.ask("GET", address).status, 404)
 
     def test_a_request_that_the_http_library_cannot_read_gets_a_problem_document(self):
         head = b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"

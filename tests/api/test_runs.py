@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs as resources: the same question has the same address, is computed once, and is read in pages."""
 
+import concurrent.futures
 import csv
 import io
 import json
@@ -284,6 +285,55 @@ class Kept(unittest.TestCase):
                 f.write("{}")
             kept = sorted(a["id"] for a in answers if a is not answers[3])
             self.assertEqual(server.ask("GET", "/api/v1/runs").json()["runs"], kept)
+            self.assertEqual(server.stop(), 0)
+
+    @staticmethod
+    def add_long_files(folder, n, megabytes):
+        """Files with the names of runs, of which the server finds out that they are spoilt when it has read them whole."""
+        for i in range(n):
+            with open(os.path.join(folder, f"{i:022d}.json"), "wb") as f:
+                f.write(b"A" * 44 + b"\n{")
+                f.truncate(megabytes << 20)
+
+    def test_lists_that_are_asked_for_at_once_make_way_for_one_another(self):
+        """More of them than threads: one that waited for what another held kept that other from its turn, and all stood still."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.add_long_files(folder, 12, 12)
+            server = driver.Server("--runs", folder)
+            with concurrent.futures.ThreadPoolExecutor(8) as pool:
+                lists = list(pool.map(lambda _: server.ask("GET", "/api/v1/runs", timeout=120).json(), range(8)))
+            self.assertEqual(lists, [{"runs": [], "spoilt": 12, "unchecked": 0}] * 8)
+            self.assertEqual(server.stop(), 0)
+
+    def test_a_run_that_is_read_from_a_large_file_holds_up_no_connection(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.add_long_files(folder, 1, 128)
+            server = driver.Server("--runs", folder, "--max-connections", "20")  # few event loops: each has some of those below
+            kept = [server.connect() for _ in range(12)]
+
+            def health(connection):
+                start = time.monotonic()
+                connection.request("GET", "/healthz")
+                self.assertEqual(driver.Answer(connection.getresponse()).status, 200)
+                return time.monotonic() - start
+
+            def attempt():
+                """The longest answer beside the reading of the file, and half of what that takes."""
+                with concurrent.futures.ThreadPoolExecutor(1) as pool:
+                    reading = pool.submit(server.timed, "GET", f"/api/v1/runs/{0:022d}")
+                    longest = 0
+                    while not reading.done():
+                        longest = max([longest] + [health(c) for c in kept])
+                answer, took = reading.result()
+                self.assertEqual(answer.status, 404)
+                return longest, took / 2
+
+            for connection in kept:
+                health(connection)
+            figures = driver.best_of_tries(attempt)
+            self.assertLess(figures[-1][0], figures[-1][1], figures)
+            for connection in kept:
+                connection.close()
             self.assertEqual(server.stop(), 0)
 
     def test_a_folder_that_is_not_there_is_made_for_its_owner(self):

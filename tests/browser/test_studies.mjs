@@ -334,7 +334,7 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
   await until(page, hasEnded("work-precision"), LONG);
   await page
     .locator(".study-run")
-    .getByText(/^done in|left something out$/)
+    .getByText(/^done in|before all was done/)
     .waitFor();
   await page.evaluate(() => (location.hash = "#scene=pendulum&method=reduced@rk4:h=0.01"));
   await until(page, (data) => data.methods.length === 1 && data.view.study === "");

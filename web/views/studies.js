@@ -240,7 +240,7 @@ export function createStudies(el, store, actions) {
     return now === "finished"
       ? `done in ${span(elapsed)}`
       : missing
-        ? `${reason.replace(/ left something out$/, " is over")}; left out: ${missing}`
+        ? `${reason}; left out: ${missing}`
         : reason;
   }
 

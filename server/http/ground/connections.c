@@ -195,6 +195,22 @@ bool hn_connections_make_room(hn_connections *all, hn_client client) {
     return has_room;
 }
 
+bool hn_connections_end_slowest(hn_connections *all, double seconds) {
+    hn_connection_watch *slowest = NULL;
+    pthread_mutex_lock(&all->lock);
+    for (hn_connection_watch *w = all->first; w; w = w->next) {
+        if (w->has_place && w->state == STATE_SENDS && (!slowest || w->since < slowest->since)) {
+            slowest = w;
+        }
+    }
+    const bool ends = slowest && hn_clock_wall() - slowest->since >= seconds;
+    if (ends) {
+        end(all, slowest);
+    }
+    pthread_mutex_unlock(&all->lock);
+    return ends;
+}
+
 hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client) {
     hn_connection_watch *w = calloc(1, sizeof *w);
     if (w) {

@@ -23,6 +23,9 @@ void hn_connections_free(hn_connections *all); ///< NULL is legal; no connection
 /// Makes room for one more connection of a client: closes one that is not being served where no
 /// place is left. Returns false when the client has its share and each of them is being served.
 bool hn_connections_make_room(hn_connections *all, hn_client client);
+/// Closes the connection whose answer has been waiting for its reader for longest, where that is
+/// so many seconds at least. Returns false when there is none.
+bool hn_connections_end_slowest(hn_connections *all, double seconds);
 /// A connection has been accepted. NULL when memory is out: it then has no deadline of its own.
 hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client);
 /// The connection is about to be closed; from here on its descriptor is not touched. NULL is legal.

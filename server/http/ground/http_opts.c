@@ -40,6 +40,7 @@ hn_http_opts hn_http_opts_default(void) {
                           .orphan_expiry = 60,
                           .keep_alive = 10,
                           .connection_timeout = 30,
+                          .unread_patience = 20,
                           .head_deadline = 10,
                           .request_deadline = 60};
 }

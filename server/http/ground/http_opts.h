@@ -30,7 +30,7 @@ typedef struct hn_http_opts {
     int max_studies;     ///< at once
     double client_share; ///< of the places, for one client [-]
     int pool, queue;     ///< threads for long requests; how many may wait
-    int aside;           ///< long requests that are set aside while others have their turn
+    int aside;           ///< requests of a pool that are set aside while others have their turn
     int aside_of_one;    ///< those of one client that make way for its own
     int quick_pool;      ///< threads for requests that read a shipped scene or open a comparison
     int quick_queue;     ///< how many of them may wait: a class that opens the page at once
@@ -50,6 +50,7 @@ typedef struct hn_http_opts {
     double orphan_expiry;    ///< one whose readers have all left [s]
     double keep_alive;       ///< between comment lines of a quiet stream [s]
     int connection_timeout;  ///< without any progress [s]
+    double unread_patience;  ///< with an answer's reader when too many bytes are unread [s]
     double head_deadline;    ///< for a head, in all; a later one counts from its first line [s]
     double request_deadline; ///< for a body, in all, and between two requests [s]
 } hn_http_opts;

@@ -290,7 +290,11 @@ void hn_jobs_stop(hn_jobs *jobs) {
     for (int i = 0; i < n; i++) {
         pthread_join(jobs->turns[i].thread, NULL);
     }
+
+    // who was refused may still ask how long to wait
+    pthread_mutex_lock(&jobs->lock);
     jobs->n_threads = 0;
+    pthread_mutex_unlock(&jobs->lock);
 }
 
 void hn_jobs_free(hn_jobs *jobs) {

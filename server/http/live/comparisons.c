@@ -259,8 +259,8 @@ static void thread_gone(void *user) {
     pthread_mutex_unlock(&all->lock);
 }
 
-/// The comparison of the request's path, retained; NULL with a problem as reply.
-static hn_session *find_session(hn_request *r) {
+/// The comparison of the request's path, retained; NULL when there is none.
+static hn_session *look_for_session(const hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
     hn_session *found = NULL;
     pthread_mutex_lock(&all->lock);
@@ -270,6 +270,12 @@ static hn_session *find_session(hn_request *r) {
         }
     }
     pthread_mutex_unlock(&all->lock);
+    return found;
+}
+
+/// The same; NULL with a problem as reply.
+static hn_session *find_session(hn_request *r) {
+    hn_session *found = look_for_session(r);
     if (!found) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/comparisons makes one",
                          "there is no comparison '%.40s' (any more)", r->parts[0]);
@@ -356,6 +362,7 @@ static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **s
         .duration = hn_fields_number(body, "duration", 0),
         .speed = hn_fields_number(body, "speed", 1),
         .client = r->client,
+        .turn = r->turn,
         .stopping = &r->context->stopping,
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };
@@ -437,7 +444,8 @@ void hn_handle_comparison_patch(hn_request *r) {
 
 void hn_handle_comparison_delete(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
-    hn_session *session = find_session(r);
+    hn_session *session = look_for_session(r);
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // one that has gone is deleted
     if (!session) {
         return;
     }
@@ -450,7 +458,6 @@ void hn_handle_comparison_delete(hn_request *r) {
     pthread_cond_broadcast(&all->changed);
     pthread_mutex_unlock(&all->lock);
     hn_session_release(session);
-    hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
 }
 
 void hn_handle_comparison_events(hn_request *r) {

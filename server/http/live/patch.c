@@ -166,11 +166,11 @@ static hn_status restart(hn_session *session) {
     }
     hn_session_set_anchor(session);
     hn_strbuf_clear(&session->latest);
+    hn_strbuf_clear(&session->pulls_json);
+    session->n_pulls = 0;
     pthread_mutex_unlock(&session->lock);
 
     // readers get the whole description, then frame 0
-    hn_strbuf_clear(&session->pulls_json);
-    session->n_pulls = 0;
     hn_session_publish_pulls(session);
     hn_status status = hn_session_publish_setup(session);
     hn_strbuf b;

@@ -36,11 +36,13 @@ typedef struct hn_session_request {
     double speed;
     int running;
     hn_client client;           ///< who asks
+    hn_job_turn *turn;          ///< of the thread that makes it
     const atomic_int *stopping; ///< the server ends
 } hn_session_request;
 
-/// Loads, compiles, and starts the thread. `gone(user)` is called when the thread ends. Returns one
-/// reference. HN_ERR_STOPPED where equations took longer than run_cpu_s, or the server ends.
+/// Loads, compiles (and makes way for others meanwhile) and starts the thread. `gone(user)` is
+/// called when the thread ends. Returns one reference. HN_ERR_STOPPED where equations took longer
+/// than run_cpu_s, or the server ends.
 HN_MUST_CHECK hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
                                           const hn_session_request *order, void (*gone)(void *user),
                                           void *user, hn_session **out, hn_diags *diags);

@@ -6,8 +6,25 @@
 #include <arpa/inet.h>
 #include <string.h>
 
+enum { NETWORK_BYTES = 8 }; ///< of an IPv6 address: RFC 4291, section 2.5.4
+
 static hn_client make_client(const void *bytes, size_t n) {
     return hn_hash_mix(hn_hash_bytes(HN_HASH_START, bytes, n)) | 1; // 0 is this machine
+}
+
+static hn_client client_of_ip4(struct in_addr a) {
+    return ntohl(a.s_addr) == INADDR_LOOPBACK ? 0 : make_client(&a, sizeof a);
+}
+
+/// A socket for both families shows the addresses of the older one as ::ffff:a.b.c.d. Of the newer
+/// one a household has 2^64: all of them are one client.
+static hn_client client_of_ip6(const struct in6_addr *a) {
+    if (IN6_IS_ADDR_V4MAPPED(a)) {
+        struct in_addr inner;
+        memcpy(&inner, a->s6_addr + NETWORK_BYTES + 4, sizeof inner);
+        return client_of_ip4(inner);
+    }
+    return IN6_IS_ADDR_LOOPBACK(a) ? 0 : make_client(a, NETWORK_BYTES);
 }
 
 hn_client hn_client_of_address(const struct sockaddr *address) {
@@ -15,11 +32,9 @@ hn_client hn_client_of_address(const struct sockaddr *address) {
         return 0;
     }
     if (address->sa_family == AF_INET6) {
-        const struct in6_addr *a = &((const struct sockaddr_in6 *)address)->sin6_addr;
-        return IN6_IS_ADDR_LOOPBACK(a) ? 0 : make_client(a, sizeof *a);
+        return client_of_ip6(&((const struct sockaddr_in6 *)address)->sin6_addr);
     }
-    const struct in_addr *a = &((const struct sockaddr_in *)address)->sin_addr;
-    return ntohl(a->s_addr) == INADDR_LOOPBACK ? 0 : make_client(a, sizeof *a);
+    return client_of_ip4(((const struct sockaddr_in *)address)->sin_addr);
 }
 
 /// The client that a proxy names: the last entry of a list, which the proxy itself has written.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_CLIENT_H
 #define HN_HTTP_CLIENT_H
-// Tells the clients of the server apart. A client is an address. A proxy on this machine names the
-// address that it speaks for in X-Forwarded-For; its last entry counts. All requests of this
-// machine without that header are one client, which may take every place. In the queues the
-// programs of this machine are told apart by their User-Agent, so that a script that fills its
-// share of a queue leaves the rest to a browser.
+// Tells the clients of the server apart. A client is an address, of IPv6 a network of 64 bits. A
+// proxy on this machine names the address that it speaks for in X-Forwarded-For; its last entry
+// counts. All requests of this machine without that header are one client, which may take every
+// place. In the queues the programs of this machine are told apart by their User-Agent, so that a
+// script that fills its share of a queue leaves the rest to a browser.
 
 #include "http/request/request.h"
 

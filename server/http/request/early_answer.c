@@ -13,6 +13,9 @@ void hn_answer_early(hn_request *r) {
     hn_strbuf_init(&answer);
     hn_strbuf_printf(&answer, "HTTP/1.1 %u \r\nContent-Type: %s\r\nContent-Length: %zu\r\n",
                      r->status, r->media_type ? r->media_type : "text/plain", r->text.n);
+    for (int i = 0; i < r->n_headers; i++) {
+        hn_strbuf_printf(&answer, "%s: %s\r\n", r->headers[i].name, r->headers[i].value);
+    }
     hn_strbuf_printf(&answer,
                      "Connection: close\r\nHolonom-Build: %s\r\nX-Content-Type-Options: nosniff"
                      "\r\nCache-Control: no-store\r\n\r\n",

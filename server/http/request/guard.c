@@ -5,6 +5,7 @@
 
 #include <arpa/inet.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -41,7 +42,8 @@ static bool check_origin(hn_request *r, const char *host) {
 }
 
 /// Headers that say what a request is: one that has two values means something else to a proxy.
-static const char *const ONCE[] = {"Host", "Content-Length", "Content-Type", "Authorization"};
+static const char *const ONCE[] = {"Host", "Content-Length", "Transfer-Encoding", "Content-Type",
+                                   "Authorization"};
 enum { N_ONCE = sizeof ONCE / sizeof *ONCE };
 
 static enum MHD_Result count_header(void *cls, enum MHD_ValueKind kind, const char *key,
@@ -55,8 +57,42 @@ static enum MHD_Result count_header(void *cls, enum MHD_ValueKind kind, const ch
     return MHD_YES;
 }
 
+/// Where the value before ends, and whether a zero byte was found. The library keeps a head in one
+/// buffer, with zeros in place of the ends of lines: between a value and the next name there are
+/// zeros alone, unless a zero byte in the value has cut it, or the value goes on in a second line,
+/// which RFC 9112, section 5.2, lets a server refuse.
+typedef struct value_look {
+    const char *end;
+    bool found;
+} value_look;
+
+static enum MHD_Result look_for_cut(void *cls, enum MHD_ValueKind kind, const char *key,
+                                    const char *value) {
+    value_look *look = cls;
+    const ptrdiff_t apart = look->end ? key - look->end : 0;
+    (void)kind;
+    for (ptrdiff_t i = 0; i < apart && apart <= HN_HEAD_BYTES; i++) {
+        look->found |= look->end[i] != '\0';
+    }
+    look->end = value ? value + strlen(value) : NULL;
+    return MHD_YES;
+}
+
+/// Whether the value of a header has been cut. Behind the last one there is the end of its
+/// line, then that of the head.
+static bool has_cut_value(const hn_request *r) {
+    value_look look = {0};
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, look_for_cut, &look);
+    return look.found || (look.end && look.end[1] != '\0');
+}
+
 static bool check_headers(hn_request *r) {
     int n[N_ONCE] = {0};
+    if (has_cut_value(r)) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                         "a header holds a zero byte or goes on in a second line; none may");
+        return false;
+    }
     MHD_get_connection_values(r->connection, MHD_HEADER_KIND, count_header, n);
     for (int i = 0; i < N_ONCE; i++) {
         if (n[i] > 1) {

@@ -20,6 +20,8 @@
 enum { HN_MAX_REPLY_HEADERS = 10 };
 /// Bytes of an address, and parameters of its query: as many as a scene may have, and some more.
 enum { HN_MAX_ADDRESS = 8000, HN_MAX_PARAMETERS = 256 };
+/// For a head, and what the library makes of it: 72 bytes and more for each parameter and header.
+enum { HN_HEAD_BYTES = 64 << 10 };
 
 struct hn_context;
 struct hn_kept_text;

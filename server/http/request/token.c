@@ -46,7 +46,7 @@ static const char *read_bearer(const char *header) {
                                                          : NULL;
 }
 
-/// A guest reads: nothing is changed, and nothing computed that has not been asked for already.
+/// A guest reads: nothing is changed, and no reference motion is computed.
 static bool may_guest(const hn_request *r, const char *method) {
     const int reads = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
     const char *compute = hn_request_query(r, "compute");

@@ -109,11 +109,10 @@ static void check_head(hn_request *r, const char *method) {
     }
 }
 
-/// Whether the rest of the body is not worth reading, or has an end that nobody knows.
+/// Whether the rest of the body is not worth reading, or has an end that nobody knows: in chunks.
 static bool is_too_long_to_drain(const hn_request *r) {
     long long length = 0;
-    const char *encoding = hn_request_header(r, "Transfer-Encoding");
-    if (encoding && strcasecmp(encoding, "chunked") != 0) {
+    if (hn_request_header(r, "Transfer-Encoding")) {
         return true;
     }
     const char *text = hn_request_header(r, "Content-Length");
@@ -180,10 +179,11 @@ void hn_dispatch_job(void *job, hn_job_turn *turn) {
 }
 
 /// Gives the request to a pool, or refuses it with the time after which there will be a place.
-static void push(hn_request *r, hn_jobs *jobs) {
+static void push(hn_dispatch *d, hn_request *r, hn_jobs *jobs) {
     hn_request_suspend(r);
     const long long unread = atomic_load(&r->context->unread);
     if (unread > r->context->opts.max_unread) {
+        hn_connections_end_slowest(d->connections, r->context->opts.unread_patience);
         hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
                          "%lld bytes of answers wait for their readers; at most %lld may", unread,
                          r->context->opts.max_unread);
@@ -228,7 +228,7 @@ static bool start_work(hn_dispatch *d, hn_request *r) {
     case HN_WORK_QUICK:
     case HN_WORK_QUICK_OWN:
     case HN_WORK_HEAVY:
-        push(r, is_quick(r) ? d->quick : d->heavy);
+        push(d, r, is_quick(r) ? d->quick : d->heavy);
         return false;
     }
     return true;

@@ -25,8 +25,6 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
                                     size_t *n_data, void **req_cls);
 void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **req_cls,
                            enum MHD_RequestTerminationCode how);
-/// For a head, and what the library makes of it: 72 bytes and more for each parameter and header.
-enum { HN_HEAD_BYTES = 64 << 10 };
 /// Whether a connection from this address is accepted: a client that has its share is refused.
 enum MHD_Result hn_dispatch_accept(void *cls, const struct sockaddr *address, socklen_t length);
 void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,

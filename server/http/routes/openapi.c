@@ -344,6 +344,7 @@ static bool may_answer(const hn_route *route, hn_http_problem kind) {
     // places that are taken, and who may ask
     case HN_PROBLEM_CONFLICT:
         return route->work == HN_WORK_OWN || strstr(route->path, "/samples") != NULL ||
+               (route->schema && strcmp(route->schema, "Run") == 0) ||
                (takes_study(route) && strchr(route->path, '{'));
     case HN_PROBLEM_BUSY:
         return route->work != HN_WORK_LIGHT || strstr(route->path, "/events") != NULL;

@@ -431,7 +431,7 @@ static const hn_route ROUTES[] = {
      "once",
      RUN_QUERY,
      "{\"scene\":\"four-bar\",\"method\":\"projection@rk4:h=1e-3\",\"time\":1,\"every\":0.1}"},
-    {"GET", "/api/v1/runs/{id}", HN_WORK_OWN, hn_handle_run_get, NULL, JSON, "200", "Run",
+    {"GET", "/api/v1/runs/{id}", HN_WORK_QUICK_OWN, hn_handle_run_get, NULL, JSON, "200", "Run",
      "State, progress and summary of a run; waits for its end when asked to", RUN_QUERY, NULL},
     {"GET", "/api/v1/runs/{id}/samples", HN_WORK_QUICK, hn_handle_run_samples, NULL,
      JSON " application/x-ndjson text/csv", "200", "Samples", "Rows of a run, a page at a time",

@@ -91,7 +91,9 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     const hn_jobs_opts heavy = hn_http_opts_pool(o);
     const hn_jobs_opts quick = {.at_once = o->quick_pool,
                                 .n_waiting = o->quick_queue,
-                                .n_waiting_of_one = hn_http_opts_share(o, o->quick_queue)};
+                                .n_waiting_of_one = hn_http_opts_share(o, o->quick_queue),
+                                .n_aside = o->aside,
+                                .n_aside_of_one = o->aside_of_one};
     HN_TRY(hn_static_files_create(hn_library_web(c->lib), &c->files, diag));
     s->dispatch.context = c;
     s->dispatch.heavy = hn_jobs_create(&heavy, hn_dispatch_job);

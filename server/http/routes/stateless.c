@@ -264,6 +264,7 @@ static void put_hint(hn_strbuf *b, const hn_exercise *problem, hn_variant *x, in
     hn_json_put_int(b, "hints", problem->n_hints);
     hn_json_put_string(b, "text", hn_strbuf_text(&text));
     hn_json_end_object(b);
+    b->failed |= text.failed;
     hn_strbuf_reset(&text);
 }
 

@@ -133,7 +133,9 @@ void hn_run_folder_each(const char *folder, void (*see)(void *user, const char *
     }
 }
 
-bool hn_run_folder_delete(const char *folder, const char *id) {
+void hn_run_folder_delete(const char *folder, const char *id) {
     char path[1024];
-    return file_path(folder, id, path) && unlink(path) == 0;
+    if (file_path(folder, id, path)) {
+        unlink(path);
+    }
 }

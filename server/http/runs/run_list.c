@@ -98,6 +98,28 @@ static entries collect(hn_runs *runs, const char *folder) {
     return all;
 }
 
+/// A copy of what the last list left; an empty one when memory is out, and files are read again.
+static entries copy_seen(hn_run_list *list) {
+    entries copy = {0};
+    pthread_mutex_lock(&list->lock);
+    const size_t bytes = list->seen.n * sizeof *copy.item;
+    copy.item = bytes > 0 ? malloc(bytes) : NULL;
+    if (copy.item) {
+        memcpy(copy.item, list->seen.item, bytes);
+        copy.n = copy.cap = list->seen.n;
+    }
+    pthread_mutex_unlock(&list->lock);
+    return copy;
+}
+
+/// Takes what this list has found, for the next one.
+static void keep_seen(hn_run_list *list, const entries *all) {
+    pthread_mutex_lock(&list->lock);
+    free(list->seen.item);
+    list->seen = *all;
+    pthread_mutex_unlock(&list->lock);
+}
+
 /// Reads a file, unless it was found whole before and is as it was then.
 static void check(entry *e, const entries *seen, const char *folder) {
     const entry *before = seen->n ? bsearch(e, seen->item, seen->n, sizeof *e, compare_ids) : NULL;
@@ -114,16 +136,16 @@ static void check(entry *e, const entries *seen, const char *folder) {
 }
 
 void hn_run_list_put(hn_strbuf *b, hn_run_list *list, hn_runs *runs, hn_interrupt interrupt) {
-    entries all = collect(runs, list->folder);
+    // without the lock: the work makes way for other requests, which may be lists too
+    entries all = collect(runs, list->folder), seen = copy_seen(list);
     int spoilt = 0, unchecked = 0;
     hn_json_key(b, "runs");
     hn_json_array(b);
-    pthread_mutex_lock(&list->lock);
     for (size_t i = 0; i < all.n; i++) {
         entry *e = &all.item[i];
         const bool ended = !e->in_memory && hn_interrupt_ask(&interrupt);
         if (!e->in_memory && !ended) {
-            check(e, &list->seen, list->folder);
+            check(e, &seen, list->folder);
         }
         if (e->in_memory || e->is_whole) {
             hn_json_string(b, e->id);
@@ -132,12 +154,10 @@ void hn_run_list_put(hn_strbuf *b, hn_run_list *list, hn_runs *runs, hn_interrup
         unchecked += ended;
     }
 
-    // what was seen is known the next time
-    free(list->seen.item);
-    list->seen = all;
-    pthread_mutex_unlock(&list->lock);
     hn_json_end_array(b);
     hn_json_put_int(b, "spoilt", spoilt);
     hn_json_put_int(b, "unchecked", unchecked);
     b->failed |= all.failed;
+    free(seen.item);
+    keep_seen(list, &all);
 }

@@ -305,7 +305,8 @@ static void compute(void *arg, hn_job_turn *turn) {
 
     // a run that was stopped is not the answer to its question
     const int stopped = atomic_load(&run->stop);
-    if (run->refused == HN_OK && !stopped && !run->is_cut) {
+    const bool is_kept = run->refused == HN_OK && !stopped && !run->is_cut;
+    if (is_kept) {
         hn_run_folder_keep(all->opts->runs_folder, run);
     }
     pthread_mutex_lock(&all->lock);
@@ -321,6 +322,9 @@ static void compute(void *arg, hn_job_turn *turn) {
     hn_request *due = take_waiting(all, run, 0, 1);
     wake_readers(all, run, HUGE_VAL);
     pthread_mutex_unlock(&all->lock);
+    if (is_kept && !known) { // it was deleted while its file was written
+        hn_run_folder_delete(all->opts->runs_folder, run->id);
+    }
     answer_all(all, run, due);
     hn_runs_release(all, run);
 }
@@ -469,18 +473,16 @@ hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client clien
     return status;
 }
 
-int hn_runs_delete(hn_runs *all, const char *id) {
+void hn_runs_delete(hn_runs *all, const char *id) {
     pthread_mutex_lock(&all->lock);
     hn_kept_run **place = find_place(all, id), *dead = NULL;
-    const int found = *place != NULL;
-    if (found) {
+    if (*place) {
         atomic_store(&(*place)->stop, 1);
         dead = drop(take_out(all, place));
     }
     pthread_mutex_unlock(&all->lock);
     hn_kept_run_free(dead);
-    const bool unlinked = hn_run_folder_delete(all->opts->runs_folder, id);
-    return found || unlinked;
+    hn_run_folder_delete(all->opts->runs_folder, id);
 }
 
 hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run) {

@@ -209,11 +209,8 @@ void hn_handle_run_get(hn_request *r) {
 }
 
 void hn_handle_run_delete(hn_request *r) {
-    if (hn_runs_delete(r->context->runs, r->parts[0])) {
-        hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
-    } else {
-        reply_unknown(r);
-    }
+    hn_runs_delete(r->context->runs, r->parts[0]);
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // one that has gone is deleted
 }
 
 /// The document that `method` names by its index; 0 with a problem as reply.

@@ -350,8 +350,8 @@ static hn_status start(hn_studies *all, study *s) {
 
 // ---- handlers ----
 
-/// The study of the request's path, with a reference for the caller; NULL with a problem as reply.
-static study *find_study(hn_request *r) {
+/// The study of the request's path, with a reference for the caller; NULL when there is none.
+static study *look_for_study(const hn_request *r) {
     hn_studies *all = r->context->studies;
     study *found = NULL, *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
@@ -368,6 +368,12 @@ static study *find_study(hn_request *r) {
     }
     pthread_mutex_unlock(&all->lock);
     free_all(dead, n_dead);
+    return found;
+}
+
+/// The same; NULL with a problem as reply.
+static study *find_study(hn_request *r) {
+    study *found = look_for_study(r);
     if (!found) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/studies makes one",
                          "there is no study '%.40s' (any more)", r->parts[0]);
@@ -559,8 +565,9 @@ void hn_handle_study_patch(hn_request *r) {
 }
 
 void hn_handle_study_delete(hn_request *r) {
-    study *s = find_study(r), *dead[1];
+    study *s = look_for_study(r), *dead[1];
     int n_dead = 0;
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // one that has gone is deleted
     if (!s) {
         return;
     }
@@ -573,5 +580,4 @@ void hn_handle_study_delete(hn_request *r) {
     pthread_mutex_unlock(&s->all->lock);
     HN_ASSERT(n_dead == 0);
     release(s);
-    hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
 }

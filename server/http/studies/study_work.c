@@ -58,6 +58,9 @@ static hn_status read_fields(hn_study_work *w, const cJSON *body, const hn_http_
 
     // the body without what is read elsewhere
     w->body = cJSON_Duplicate(body, 1);
+    if (!w->body) {
+        return HN_ERR_MEMORY;
+    }
     cJSON_DeleteItemFromObjectCaseSensitive(w->body, "scene");
     cJSON_DeleteItemFromObjectCaseSensitive(w->body, "parameters");
     cJSON_DeleteItemFromObjectCaseSensitive(w->body, "kind");
@@ -148,7 +151,8 @@ static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_r
         snprintf(out->reason, sizeof out->reason, "stopped on request; what was done is shown");
     } else if (end->out_of_time || w->out_of_time) {
         out->state = HN_STUDY_STOPPED;
-        snprintf(out->reason, sizeof out->reason, "the time limit of %g s left something out",
+        snprintf(out->reason, sizeof out->reason,
+                 "the time limit of %.4g s was over before all was done",
                  w->request.limits.time_limit);
     } else {
         out->state = HN_STUDY_FINISHED;
@@ -162,7 +166,7 @@ static void report_failure(const hn_study_work *w, hn_status status, const hn_di
     out->state = ended && status == HN_ERR_STOPPED ? HN_STUDY_STOPPED : HN_STUDY_FAILED;
     if (w->out_of_time && !w->cpu_used_up && !atomic_load(&w->stop)) {
         snprintf(out->reason, sizeof out->reason,
-                 "the time limit of %g s was over before there was anything to show",
+                 "the time limit of %.4g s was over before there was anything to show",
                  w->request.limits.time_limit);
         return;
     }

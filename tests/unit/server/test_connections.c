@@ -91,9 +91,42 @@ static void a_connection_without_an_open_request_is_closed_without_a_word(void *
     hn_connections_free(all);
 }
 
+static void who_does_not_read_is_closed_when_patience_is_over(void **state) {
+    (void)state;
+    hn_http_opts opts = hn_http_opts_default();
+    char text[1000];
+    hn_connections *all = hn_connections_create(&opts);
+    assert_non_null(all);
+
+    // who asks, who is served and who has read its answer are no slow readers
+    client asks = open_client(all), served = open_client(all), first = open_client(all),
+           second = open_client(all);
+    hn_connection_asks(all, asks.watch);
+    hn_connection_is_served(all, served.watch);
+    assert_false(hn_connections_end_slowest(all, 0));
+    hn_connection_sends(all, first.watch);
+    hn_connection_sends(all, second.watch);
+    assert_false(hn_connections_end_slowest(all, PATIENCE_MS));
+
+    client *const slow[] = {&first, &second};
+    for (int i = 0; i < 2; i++) {
+        assert_true(hn_connections_end_slowest(all, 0));
+        read_to_end(slow[i], text);
+        assert_string_equal(text, "");
+    }
+    assert_false(hn_connections_end_slowest(all, 0));
+
+    client *const open[] = {&asks, &served, &first, &second};
+    for (int i = 0; i < 4; i++) {
+        close_client(all, open[i]);
+    }
+    hn_connections_free(all);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_that_stands_still_is_told_so),
+        cmocka_unit_test(who_does_not_read_is_closed_when_patience_is_over),
         cmocka_unit_test(a_connection_without_an_open_request_is_closed_without_a_word),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
