@@ -246,7 +246,7 @@ ATTACKS = [
     ("200 readers of a few bytes a second", slow_readers),
     *((f"1,400 sockets: {name}", idle_sockets(name)) for name in ManySockets.HOLDING),
     ("256 heads, a byte each half second", slow_heads),
-    ("60 answers of 25 MB that nobody reads", unread_answers),
+    ("60 answers of 10 MB that nobody reads", unread_answers),
     ("3 pictures of 4096 x 4096", large_pictures),
     ("35 references for another site", computing_from_another_site),
     ("5 references of 30 s", references),

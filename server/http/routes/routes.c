@@ -448,7 +448,7 @@ static const hn_route ROUTES[] = {
     {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",
      "Picture", "A picture of where the methods have taken a scene", NULL,
      "{\"scene\":\"four-bar\",\"methods\":[\"projection@rk4:h=1e-3\"],\"time\":0.5}"},
-    {"GET", "/api/v1/problems/{id}", HN_WORK_LIGHT, hn_handle_problem, NULL, JSON, "200",
+    {"GET", "/api/v1/problems/{id}", HN_WORK_QUICK, hn_handle_problem, NULL, JSON, "200",
      "Document", "A problem's text and what to hand in; or one of its hints", PROBLEM_QUERY, NULL},
     {"POST", "/api/v1/grade", HN_WORK_HEAVY, hn_handle_grade, GRADE, JSON, "200", "Verdict",
      "Grades one submission", NULL,
