@@ -193,6 +193,22 @@ def jansen(motion):
         yield f"foot at {th:.2f} rad", math.hypot(x - p["foot"][0], y - p["foot"][1]), 0, 100 * CLOSE
 
 
+def driven_jansen_scene():
+    """The same leg, its crank turned by a motor: no freedom is left, nothing but the drive bounds a step."""
+    made = jansen_scene()
+    made["start"]["positions"]["th"], made["start"]["rates"] = {"guess": 0.4}, {}
+    made["constraints"] = [{"name": "motor", "motion": {"joint": "th", "value": "0.4 + 40*t"}}]
+    return {**made, "name": "driven-jansen"}
+
+
+def driven_jansen(motion):
+    yield from jansen(motion)
+    for t, th in zip(motion.t, motion.q("th")):
+        yield "crank", th, 0.4 + 40 * t, CLOSE
+    told = [i["message"] for i in motion.document["incidents"]]
+    yield f"reports {told}", len(told), 0, 0
+
+
 # ---- sliders, suspensions, presses ----
 
 
@@ -316,6 +332,9 @@ LINKAGES = [
     dict(name="watt", scene=watt_scene(), fact=watt, time=1, at=every(0.05, 1)),
     dict(name="hart", scene=hart_scene(), fact=hart, time=1, at=every(0.05, 1)),
     dict(name="jansen", scene=jansen_scene(), fact=jansen, time=1.2, at=every(0.02, 1.2)),
+    # four turns; rk4 with steps of 0.4 rad
+    dict(name="driven-jansen", scene=driven_jansen_scene(), fact=driven_jansen, time=0.63, at=every(0.007, 0.63),
+         methods=["partitioning@dop853:rtol=1e-10", "reduced@dopri5:rtol=1e-6", "projection@rk4:h=1e-2"]),
     dict(name="offset-slider-crank", scene=offset_slider_scene(), fact=offset_slider, time=2, at=every(0.002, 2)),
     dict(name="double-wishbone", scene=wishbone_scene(), fact=wishbone, time=1, at=every(0.01, 1)),
     dict(name="scissor-lift", scene=scissor_scene(), fact=scissor, time=0.1, at=[0.05, 0.1],

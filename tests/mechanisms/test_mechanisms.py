@@ -6,10 +6,11 @@ import sys
 
 from linkages import LINKAGES
 from machines import MACHINES
+from seldom import SELDOM
 from space import SPACE
 from workshop import METHODS, run
 
-ALL = LINKAGES + MACHINES + SPACE
+ALL = LINKAGES + MACHINES + SPACE + SELDOM
 
 
 def check(mechanism, method):

@@ -68,6 +68,11 @@ class Motion:
     def row(self, name):
         return [row[self.document["rows"].index(name)] for row in self.lam]
 
+    def point(self, name):
+        """World places of a point of the drawing."""
+        k = 3 * self.document["points"].index(name)
+        return [row[k:k + 3] for row in self.document["samples"]["points"]]
+
     def force(self, carrier):
         """On the child of a joint, world axes."""
         k = 3 * self.document["carriers"].index(carrier)

@@ -14,6 +14,8 @@ Each mechanism runs by projection@rk4 with its own step and by projection@dopri5
   stiff        right when an implicit method of the same tolerance needs less than half the steps
   chart-lost   by nullspace@rk4: right when the motion is singular there, when the run had left its motion before, or when
                partitioning and projection end there too
+  energy       energy-drift and energy-jump, also of a run by index1@rk4: right when the state of the run is more than SLIGHT off
+               the same motion computed at rtol 1e-10, at the report or at the end; of a run the first report is judged
 
 An event that no report announced is a singular configuration, or one nearly so, later than 0.3 s after the start without a
 prediction. A prediction is early when it comes 0.2 s before the event, or a quarter of the time 2 pi / |fastest rate|.
@@ -27,24 +29,27 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from bounded import run_bounded
+
 EVENTS = ("near-singular", "rank-loss")
-FAR = 0.05  # of the size of a state
-KINDS = ("rank-ahead", "branch-flip", "stiff", "chart-lost")
+FAR, SLIGHT = 0.05, 0.01  # of the size of a state
+KINDS = ("rank-ahead", "branch-flip", "stiff", "chart-lost", "energy")
+ENERGY = ("energy-drift", "energy-jump")
 FAMILIES = ("four-bar", "five-bar", "slider-crank", "watt-six-bar", "stephenson-six-bar", "quick-return", "double-rocker",
             "rssr", "spatial-slider-crank", "oblique-four-bar")
 LONGEST = 4.0  # [s] of motion of a random mechanism
-TOO_LONG = 120  # [s] for one run
+TOO_DEAR = 120  # [s] of computing time for one run
 
 
 def run(program, scene, method, time, sets=(), at=None):
-    """the document of a run; None where the loops of the setting do not close, or it takes too long"""
+    """the document of a run; None where the loops of the setting do not close, or it takes too much computing time"""
     args = [program, "run", scene, "--no-native", "--method", method, "--time", f"{time:.9g}", "--at", f"{at or time:.9g}", "--json"]
     for s in sets:
         args += ["--set", s]
+    done = run_bounded(args, TOO_DEAR)
     try:
-        done = subprocess.run(args, capture_output=True, text=True, timeout=TOO_LONG, check=False)
-        document = json.loads(done.stdout)
-    except (ValueError, subprocess.TimeoutExpired):
+        document = json.loads(done.stdout) if done else {}
+    except ValueError:
         return None
     return document if "incidents" in document else None
 
@@ -54,14 +59,14 @@ def state(document):
     return samples["q"][-1] + samples["v"][-1] if samples["t"] else None
 
 
-def is_off(program, scene, method, t, sets):
-    """whether the run is far off its motion at t"""
+def is_off(program, scene, method, t, sets, much=FAR):
+    """whether the run is off its motion at t by more than this share of the state's size"""
     here, exact = run(program, scene, method, t, sets), run(program, scene, "projection@dop853:rtol=1e-10", t, sets)
     if not here or not exact or exact["status"] != "ok" or not here["samples"]["t"]:
         return True
     a, b = state(here), state(exact)
     size = 1 + math.sqrt(sum(x * x for x in b))
-    return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b))) > FAR * size
+    return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b))) > much * size
 
 
 def is_early(lead, document):
@@ -150,6 +155,17 @@ def judge_chart(table, program, name, scene, document, sets, step):
         table.notes.append(f"chart-lost, {name}: {document['reason']}")
 
 
+def judge_energy(table, program, name, scene, document, sets):
+    told = [i for i in document["incidents"] if i["code"] in ENERGY]
+    if not told:
+        return
+    times = sorted({told[0]["t"], document["t_reached"]} - {0.0})
+    right = any(is_off(program, scene, document["method"], t, sets, SLIGHT) for t in times)
+    (table.right if right else table.wrong)["energy"] += 1
+    if not right:
+        table.notes.append(f"energy, {name}: {document['method']} {told[0]['t']:.4g} s: {told[0]['message']}")
+
+
 def judge(program, name, scene, step, time, sets=()):
     table = Table()
     fixed = run(program, scene, f"projection@rk4:h={step:g}", time, sets)
@@ -158,6 +174,11 @@ def judge(program, name, scene, step, time, sets=()):
     table.runs += 1
     judge_ahead(table, name, fixed)
     judge_branch(table, program, name, scene, fixed, sets)
+    judge_energy(table, program, name, scene, fixed, sets)
+    open_loops = run(program, scene, f"index1@rk4:h={step:g}", time, sets)
+    if open_loops:
+        table.runs += 1
+        judge_energy(table, program, name, scene, open_loops, sets)
     for other in ("projection@dopri5:rtol=1e-6", f"nullspace@rk4:h={step:g}"):
         document = run(program, scene, other, time, sets)
         if document:
@@ -165,6 +186,7 @@ def judge(program, name, scene, step, time, sets=()):
             judge_branch(table, program, name, scene, document, sets)
             judge_stiff(table, program, name, scene, document, sets, time)
             judge_chart(table, program, name, scene, document, sets, step)
+            judge_energy(table, program, name, scene, document, sets)
     return table
 
 

@@ -281,13 +281,15 @@ static bool look_at_two(hn_singularity *r, hn_singularity_info *info) {
 }
 
 /// Singular values at a state whose rows and scales are there; returns false when the dense
-/// factorisation had to answer.
+/// factorisation had to answer. It alone leaves out rows that always depend on others: the sparse
+/// factor takes them for nearly dependent where it keeps some digit of their pivots.
 static bool look(hn_singularity *r, double t, const double *q, int sweeps,
                  hn_singularity_info *info) {
     if (r->nc == 2 && r->start_rank == 2 && look_at_two(r, info)) {
         return true;
     }
-    if (hn_factor_update(r->factor, t, q, NULL) == HN_OK) {
+    const bool all_count = r->first || r->start_rank == r->nc;
+    if (all_count && hn_factor_update(r->factor, t, q, NULL) == HN_OK) {
         look_sparsely(r, sweeps, info);
         return true;
     }

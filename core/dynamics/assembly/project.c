@@ -53,6 +53,7 @@ struct hn_projector {
     double *zero;  // nv
 
     int have_factor, dense, rank;
+    double weakest; // of the factor: the smallest pivot of J that was kept against the largest
     double factor_t, *factor_q;
 
     double *speed_unit; // nv: what a velocity of 1 may do to J v
@@ -234,6 +235,7 @@ static hn_status factor_dense(hn_projector *p, double t, const double *q) {
     p->fallbacks++;
     p->dense = 1;
     p->rank = info.rank;
+    p->weakest = info.pivot_ratio;
     return status;
 }
 
@@ -253,6 +255,7 @@ static hn_status make_factor(hn_projector *p, double t, const double *q, bool fo
         }
         p->dense = 0;
         p->rank = p->nc;
+        p->weakest = 1;
     }
 
     // else the dense one, which finds the rank
@@ -409,6 +412,14 @@ static hn_status correct_velocity(hn_projector *p, double *v) {
     return HN_OK;
 }
 
+/// Velocity gap that rounding leaves, for velocities of size 1. Positions are closed to rounding;
+/// where rows depend on each other, that much in q makes them disagree by as much more as the
+/// weakest direction of J is weaker than the strongest.
+static double rounding_of_gap(const hn_projector *p) {
+    const bool dependent = p->have_factor && p->dense && p->rank < p->nc;
+    return VELOCITY_ROUNDING / (dependent ? p->weakest : 1);
+}
+
 /// The problem is linear, so a fresh factor closes the gap at once and a near one does in two or
 /// three rounds. A factor that does not contract is made again here, and then by the dense solve.
 static hn_status close_velocity_gap(hn_projector *p, double t, const double *q, double *v,
@@ -478,10 +489,9 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
         status = close_velocity_gap(p, t, q, v, scale, info);
     }
 
-    // no better than before is rounding if the gap was small already
     if (status != HN_OK || info->gap > info->gap_before) {
         // no better than before: rounding if the gap was small already
-        int rounding = status == HN_OK && info->gap_before <= VELOCITY_ROUNDING * scale;
+        const bool rounding = status == HN_OK && info->gap_before <= rounding_of_gap(p) * scale;
         info->gap = info->gap_before;
         memcpy(v, p->best, (size_t)p->nv * sizeof *v);
         return rounding ? HN_OK : (status != HN_OK ? status : HN_ERR_NO_CONVERGENCE);

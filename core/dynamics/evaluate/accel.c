@@ -214,10 +214,40 @@ static void find_rest(hn_accel *s, const double *a, const double *lambda) {
     }
 }
 
+/// Whether the multipliers lie in a direction in which J is weaker than what open loops change, as
+/// rows are that depend on each other while the loops are closed: |J' lambda| against |lambda|
+/// times the longest row, in units of sqrt(M_jj).
+static bool rests_on_noise(hn_accel *s, const double *lambda, double rank_tol) {
+    const double *J = hn_eval_list(s->terms, HN_TERM_J);
+    double *force = s->rest, *length = s->step, forces = 0, longest = 0, size = 0;
+    memset(force, 0, (size_t)s->nv * sizeof *force);
+    memset(length, 0, (size_t)s->nc * sizeof *length);
+
+    // forces, and the lengths of the rows
+    for (int k = 0; k < s->n_J; k++) {
+        const int i = s->J_row[k], j = s->J_col[k];
+        if (s->mass[j] > 0) {
+            force[j] += J[k] * lambda[i] / sqrt(s->mass[j]);
+            length[i] += J[k] * J[k] / s->mass[j];
+        }
+    }
+
+    // against the multipliers
+    for (int j = 0; j < s->nv; j++) {
+        forces = hypot(forces, force[j]);
+    }
+    for (int i = 0; i < s->nc; i++) {
+        longest = fmax(longest, sqrt(length[i]) / s->row_unit[i]);
+        size = hypot(size, lambda[i] * s->row_unit[i]);
+    }
+    return forces < rank_tol * longest * size;
+}
+
 /// Solves with the sparse factor and corrects the answer while the corrections halve. Fails where
-/// the factor does.
-static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a, double *lambda,
-                               hn_accel_info *info) {
+/// the factor does, and where the answer rests on what the gap of the loops leaves of dependent
+/// rows.
+static hn_status solve_refined(hn_accel *s, double t, const double *q, double gap, double *a,
+                               double *lambda, hn_accel_info *info) {
     enum { MAX_CORRECTIONS = 4 };
     double *step_a = s->step, *step_l = s->step + s->nv, last = HUGE_VAL;
 
@@ -249,8 +279,10 @@ static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a
         }
     }
 
-    // taken only if finite
-    if (!hn_all_finite(s->nv, s->dense_a) || !hn_all_finite(s->nc, s->dense_lambda)) {
+    // taken only if it is an answer
+    const double rank_tol = fmax(hn_kkt_opts_default().rank_tol, hn_pivot_noise_of(gap));
+    if (!hn_all_finite(s->nv, s->dense_a) || !hn_all_finite(s->nc, s->dense_lambda) ||
+        rests_on_noise(s, s->dense_lambda, rank_tol)) {
         return HN_ERR_SINGULAR;
     }
     s->refinements++;
@@ -452,7 +484,7 @@ __attribute__((noinline)) static hn_status eval_carefully(hn_accel *s, double t,
 
     // pivots in doubt: the tape's factor, refined
     const double gap = eval_terms(s, t, q, v, alpha, beta);
-    if (doubtful && solve_refined(s, t, q, a, lambda, info) == HN_OK) {
+    if (doubtful && solve_refined(s, t, q, gap, a, lambda, info) == HN_OK) {
         return HN_OK;
     }
 

@@ -166,7 +166,9 @@ double hn_heading_check(hn_watch *w) {
         }
         angle = change < CHANGE ? angle_between(n, r->smooth, r->now.e) : HUGE_VAL;
     }
-    r->explained = is_line && angle > HN_RUN_WARN_TURN && isfinite(angle) && is_explained(w);
+    r->explained =
+        angle > HN_RUN_WARN_TURN && isfinite(angle) &&
+        (is_line ? is_explained(w) : hn_motion_is_followed(w, &r->outside, &w->run->now));
 
     // the present one becomes the last
     const hn_heading spare = r->older;

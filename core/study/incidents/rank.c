@@ -63,9 +63,10 @@ static void check_near(hn_watch *w) {
     }
 
     // J M^-1 J' has singular values squared. A pivot that is lost where J is not says only that the
-    // order of elimination does not suit the configuration
+    // order of elimination does not suit the configuration, or that open loops part dependent rows
     const double row = w->shortest_row, ratio = w->singular.info.ratio;
-    const double pivot = w->accel_status == HN_OK && w->accel_info.fallback
+    const bool dependent = w->start_rank < s->info.nc;
+    const double pivot = w->accel_status == HN_OK && (w->accel_info.fallback || dependent)
                              ? ratio * ratio
                              : row * row * w->accel_info.pivot_ratio;
     // accelerations that fail for another reason, as numbers that overflow, say nothing about rows
