@@ -100,9 +100,9 @@ static double room_of_text(const double xy[2], double half, double height, const
 double hn_label_room(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
                      double half) {
     double room = room_beside(s, placed, xy, half);
-    for (int i = 0; i < placed->n_arrows; i++) {
-        const double(*arrow)[2] = placed->arrow[i];
-        room = fmin(room, room_of_text(xy, half, s->font, arrow[0], arrow[1]));
+    for (int i = 0; i < placed->n_lines; i++) {
+        const double(*line)[2] = placed->line[i];
+        room = fmin(room, room_of_text(xy, half, s->font, line[0], line[1]));
     }
     return room;
 }
@@ -176,7 +176,7 @@ static double room_for_value(const hn_sheet *s, const hn_drawing *d, const doubl
     for (int i = 0; i < all->n; i++) {
         room = fmin(room, room_of_text(xy, half, tall, all->at[i].tail, all->at[i].tip));
     }
-    return fmin(room, room_beside(s, placed, xy, half));
+    return fmin(room, hn_label_room(s, placed, xy, half));
 }
 
 /// The point of an arrow that is nearest to a text.
@@ -291,14 +291,19 @@ static void remember_corners(const hn_sheet *s, hn_label_places *placed) {
     }
 }
 
+void hn_label_keep_off_line(hn_label_places *placed, const double line[2][2]) {
+    if (placed->n_lines < (int)(sizeof placed->line / sizeof *placed->line)) {
+        memcpy(placed->line[placed->n_lines++], line, sizeof *placed->line);
+    }
+}
+
 void hn_label_keep_off_loads(const hn_sheet *s, const hn_snapshot_pose *pose,
                              const hn_snapshot_opts *opts, hn_label_places *placed) {
     hn_load_mark w;
-    for (int i = 0; i < opts->n_loads && placed->n_arrows < HN_LABEL_ARROWS; i++) {
+    for (int i = 0; i < opts->n_loads; i++) {
         if (lay_arrow(s, pose, opts, i, &w)) {
-            double(*to)[2] = placed->arrow[placed->n_arrows++];
-            memcpy(to[0], w.tail, sizeof w.tail);
-            memcpy(to[1], w.tip, sizeof w.tip);
+            const double line[2][2] = {{w.tail[0], w.tail[1]}, {w.tip[0], w.tip[1]}};
+            hn_label_keep_off_line(placed, line);
         }
     }
 }

@@ -11,13 +11,13 @@
 
 enum { HN_LABELS_PLACED = 128, HN_LABEL_ARROWS = 64 };
 
-/// Texts that have been placed: each a line, its middle and half its width [px]; and the arrows of
-/// forces, which are drawn later.
+/// Texts that have been placed: each a line, its middle and half its width [px]; and lines that
+/// texts keep off: arrows of forces, which are drawn later, and dimension lines.
 typedef struct hn_label_places {
     int n;
     double at[HN_LABELS_PLACED][2], half[HN_LABELS_PLACED];
-    int n_arrows;
-    double arrow[HN_LABEL_ARROWS][2][2]; ///< tail and tip [px]
+    int n_lines;
+    double line[2 * HN_LABEL_ARROWS][2][2]; ///< both ends [px]
 } hn_label_places;
 
 /// The arrow of a force and its value [px].
@@ -30,10 +30,12 @@ typedef struct hn_load_mark {
 
 /// Keeps later texts off this one.
 void hn_label_remember(hn_label_places *placed, const double xy[2], double half);
+/// Keeps later texts off a line.
+void hn_label_keep_off_line(hn_label_places *placed, const double line[2][2]);
 /// Keeps later texts off the arrows of opts.loads.
 void hn_label_keep_off_loads(const hn_sheet *s, const hn_snapshot_pose *pose,
                              const hn_snapshot_opts *opts, hn_label_places *placed);
-/// The room between a line of text and the texts and arrows so far [px]; below 0 it lies on one.
+/// The room between a line of text and the texts and lines so far [px]; below 0 it lies on one.
 double hn_label_room(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
                      double half);
 /// Lays the arrows of opts.loads that have a length in this view, at most HN_LABEL_ARROWS, and

@@ -146,6 +146,9 @@ static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], c
     place_on_line(s, placed, middle_at, along, half, at);
     draw_value(c, s, at[0], at[1], text);
     hn_label_remember(placed, at, half);
+    const double line[2][2] = {{a[0] + off * side[0], a[1] + off * side[1]},
+                               {b[0] + off * side[0], b[1] + off * side[1]}};
+    hn_label_keep_off_line(placed, line);
 }
 
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,

@@ -86,6 +86,22 @@ class Snapshot(Command):
             self.assert_exit(done, INPUT)
             self.assertIn(b"there are: A B", done.stderr)
 
+    def test_the_legend_says_on_which_bodies_the_forces_act(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "f.png")
+            for scene, said in (("four-bar", "forces: O1 on crank, A on coupler, O3 on rocker, B on rocker"), ("fb0-lagrangian", "no force at any joint"),
+                                ("heavy-top", "no constraints; forces: foot on top"), ("stewart-6-6", "each on the second body of its joint")):  # fmt: skip
+                done = call("snapshot", scene, "--time", "0.1", "--forces", "-o", path, "--describe")
+                self.assertIn(said, strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"], scene)
+
+    def test_several_loops_have_a_gap_over_all_constraints(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "g.png")
+            for scene, over_all in (("four-bar", False), ("stewart-6-6", True)):
+                done = call("snapshot", scene, "--method", "index1@rk4:h=0.01", "--time", "0.5", "-o", path, "--describe")
+                note = strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"]
+                self.assertEqual(note.endswith(" over all constraints"), over_all, note)
+
     def test_the_pictures_of_a_strip_have_one_scale_of_forces(self):
         def largest(picture):
             return max(math.hypot(*load["force"]) for load in picture["loads"])

@@ -160,7 +160,9 @@ static void note_method(hn_picture_moment *p, int i, const hn_sample *sample, in
     char gap[HN_SI_TEXT], t[HN_SI_TEXT];
     hn_si_format(sample->gap, "m", 2, gap);
     hn_si_format(s.t, "s", 3, t);
-    if (good) {
+    if (good && hn_system_get_info(hn_model_system(p->model)).nc == 0) {
+        snprintf(p->notes[i], HN_PICTURE_NOTE, "no constraints");
+    } else if (good) {
         snprintf(p->notes[i], HN_PICTURE_NOTE, "gap %s%s", gap,
                  is_over_all(p, sample) ? " over all constraints" : "");
     } else {
@@ -273,35 +275,11 @@ static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w) {
     }
 }
 
-/// The forces in the joints of the first method's state, where they can be computed.
-static hn_status gather_forces(hn_picture_moment *p, hn_diags *diags) {
-    hn_reaction_writer *w = NULL;
-    hn_sample sample = {0};
-    const hn_system *sys = hn_model_system(p->model);
-    const hn_system_info info = hn_system_get_info(sys);
-    double *state = hn_arena_doubles(p->arena, (size_t)info.nq + (size_t)info.nv + 1);
-    if (!p->comparison) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/forces", "name a method",
-                            "forces belong to a motion, and no method runs here");
-    }
-    HN_TRY(state ? HN_OK : HN_ERR_MEMORY);
-    HN_TRY(hn_reaction_writer_create(p->model, p->arena, &w, diags));
-
-    // at the state that the first method reached
-    hn_comparison_sample(p->comparison, 0, &sample);
-    const int n = hn_reaction_writer_count(w);
-    p->loads = hn_arena_get(p->arena, ((size_t)n + 1) * sizeof *p->loads);
-    hn_status status = p->loads ? HN_OK : HN_ERR_MEMORY;
-    if (status == HN_OK && sample.q) {
-        hn_system_from_user(sys, sample.q, state);
-        hn_system_rates_from_user(sys, sample.v, state + info.nq);
-        status = hn_reaction_writer_eval(w, sample.t, state, state + info.nq);
-        status = status == HN_ERR_MEMORY ? status : HN_OK; // no forces at a singular state
-    }
-
+/// An arrow for each force of the writer but those that are zero to rounding.
+static void add_loads(hn_picture_moment *p, const hn_reaction_writer *w) {
     double largest = 0, size;
     for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < n && status == HN_OK; i++) {
+        for (int i = 0; i < hn_reaction_writer_count(w); i++) {
             hn_snapshot_load load = {.point = -1, .unit = "N"};
             hn_reaction_writer_force(w, i, load.force, load.place);
             size = hypot(hypot(load.force[0], load.force[1]), load.force[2]);
@@ -311,9 +289,50 @@ static hn_status gather_forces(hn_picture_moment *p, hn_diags *diags) {
             }
         }
     }
-    if (status == HN_OK && p->n_loads > 0) {
+    const size_t used = strlen(p->notes[0]);
+    if (p->n_loads > 0) {
         note_forces(p, w);
+    } else {
+        snprintf(p->notes[0] + used, HN_PICTURE_NOTE - used, "; no force at any joint");
     }
+}
+
+/// The forces in the joints at the state that the first method has reached; where they are not
+/// determined, the legend says so.
+static hn_status eval_forces(hn_picture_moment *p, hn_reaction_writer *w, double *state) {
+    hn_sample sample = {0};
+    const hn_system *sys = hn_model_system(p->model);
+    const int nq = hn_system_get_info(sys).nq;
+    hn_comparison_sample(p->comparison, 0, &sample);
+    if (!sample.q) {
+        return HN_OK; // the legend says that the method has ended
+    }
+    hn_system_from_user(sys, sample.q, state);
+    hn_system_rates_from_user(sys, sample.v, state + nq);
+    const hn_status status = hn_reaction_writer_eval(w, sample.t, state, state + nq);
+    if (status == HN_OK) {
+        add_loads(p, w);
+    } else if (status != HN_ERR_MEMORY) {
+        const size_t used = strlen(p->notes[0]);
+        snprintf(p->notes[0] + used, HN_PICTURE_NOTE - used, "; no forces: %s",
+                 hn_status_text(status));
+    }
+    return status == HN_ERR_MEMORY ? status : HN_OK;
+}
+
+static hn_status gather_forces(hn_picture_moment *p, hn_diags *diags) {
+    hn_reaction_writer *w = NULL;
+    const hn_system_info info = hn_system_get_info(hn_model_system(p->model));
+    double *state = hn_arena_doubles(p->arena, (size_t)info.nq + (size_t)info.nv + 1);
+    if (!p->comparison) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/forces", "name a method",
+                            "forces belong to a motion, and no method runs here");
+    }
+    HN_TRY(state ? HN_OK : HN_ERR_MEMORY);
+    HN_TRY(hn_reaction_writer_create(p->model, p->arena, &w, diags));
+    const size_t n = (size_t)hn_reaction_writer_count(w);
+    p->loads = hn_arena_get(p->arena, (n + 1) * sizeof *p->loads);
+    const hn_status status = p->loads ? eval_forces(p, w, state) : HN_ERR_MEMORY;
     hn_reaction_writer_free(w);
     return status;
 }

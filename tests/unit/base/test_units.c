@@ -27,7 +27,8 @@ static void one_to_three_digits_stand_before_the_point(void **state) {
         {0.5, "", 2, "0.50"},
         {2.13e-17, "m", 2, "2.1e-17 m"},
         {5e16, "m", 1, "5e+16 m"},
-        {4e-15, "m", 1, "4 fm"},
+        {4e-12, "m", 1, "4 pm"},
+        {4e-15, "m", 1, "4e-15 m"},
         {(double)NAN, "m", 3, "not finite"},
         {-(double)INFINITY, "m", 3, "not finite"},
     };

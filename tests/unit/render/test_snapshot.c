@@ -477,15 +477,17 @@ static void a_length_keeps_off_the_arrow_of_a_force(void **state) {
     hn_canvas *c = create();
     hn_label_places free_places = {0}, crossed = {0};
     hn_snapshot_dimensions(c, &sheet, &four_bar, &pose, &free_places);
-    assert_true(free_places.n == 3);
-    crossed.n_arrows = 1; // straight through the first length
-    crossed.arrow[0][0][0] = crossed.arrow[0][1][0] = free_places.at[0][0];
-    crossed.arrow[0][0][1] = free_places.at[0][1] - 40;
-    crossed.arrow[0][1][1] = free_places.at[0][1] + 40;
+    assert_int_equal(free_places.n, 3);
+    assert_int_equal(free_places.n_lines, 3); // names keep off these lines
+    crossed.n_lines = 1;                      // straight through the first length
+    crossed.line[0][0][0] = crossed.line[0][1][0] = free_places.at[0][0];
+    crossed.line[0][0][1] = free_places.at[0][1] - 40;
+    crossed.line[0][1][1] = free_places.at[0][1] + 40;
     assert_true(hn_label_room(&sheet, &crossed, free_places.at[0], free_places.half[0]) < 0);
     hn_snapshot_dimensions(c, &sheet, &four_bar, &pose, &crossed);
     hn_canvas_free(c);
     crossed.n = 0; // the arrow alone counts
+    crossed.n_lines = 1;
     assert_true(hn_label_room(&sheet, &crossed, crossed.at[0], crossed.half[0]) >= 0);
 }
 
