@@ -57,7 +57,7 @@ ROOMS_server       := program: terminal: lesson:terminal grade/parts:terminal gr
                       http/routes:grade,grade/parts,lesson,http/ground,http/request,http/live,http/studies,http/runs \
                       cli/shell:terminal tui:terminal,lesson,grade,grade/parts,cli/shell \
                       cli/commands:class,grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
-                      cli/study:terminal,cli/shell cli:program,terminal,cli/shell :cli
+                      cli/study:terminal,cli/shell cli:program,terminal,grade,grade/parts,cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
 VARIANT ?= release

@@ -21,13 +21,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HELP_INDENT = 10, HELP_WIDTH = 80 };
+enum { HELP_INDENT = 10 };
 
-/// Words in lines of HELP_WIDTH columns; the cursor is at column `indent`, and so is the beginning
-/// of every further line.
+/// Words in lines of the help's width; the cursor is at column `indent`, and so is the beginning of
+/// every further line.
 static void add_folded(hn_strbuf *b, int indent, const char *words) {
     for (bool first = true; *words; first = false) {
-        const size_t n = hn_fold_line(words, HELP_WIDTH - indent);
+        const size_t n = hn_fold_line(words, hn_help_width() - indent);
         hn_strbuf_printf(b, "%*s%.*s\n", first ? 0 : indent, "", (int)n, words);
         words += n;
         words += strspn(words, " ");
@@ -35,6 +35,18 @@ static void add_folded(hn_strbuf *b, int indent, const char *words) {
 }
 
 static void describe_all(hn_strbuf *b) {
+    static const char *const notes[] = {
+        "SCENE is a shipped scene's name, a file, or - for standard input.",
+        "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
+        "projection@rk4:h=1e-3.",
+        "A file of --out that is there and holds something else is kept as FILE.1, FILE.2, ...; "
+        "where it may be somebody's work (program, rubric write, export --blanks) nothing is "
+        "written without --force.",
+        "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault, 4 a run ended "
+        "early and said why, or a prediction of extreme failed, 130 Ctrl-C ended the workbench in "
+        "the terminal.",
+        "'holonom lessons' is short for 'holonom list lessons'; so are problems, scenes and "
+        "methods."};
     hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods at the same times\n"
                      "Begin with: holonom compare four-bar\n\n");
     for (int i = 0; i < hn_command_count(); i++) {
@@ -43,17 +55,10 @@ static void describe_all(hn_strbuf *b) {
                          HELP_INDENT, "");
         add_folded(b, HELP_INDENT, c->about);
     }
-    hn_strbuf_add(b, "\nSCENE is a shipped scene's name, a file, or - for standard input.\n"
-                     "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...],\n"
-                     "as projection@rk4:h=1e-3.\n"
-                     "A file of --out that is there and holds something else is kept as FILE.1,\n"
-                     "FILE.2, ...; where it may be somebody's work (program, rubric write,\n"
-                     "export --blanks) nothing is written without --force.\n"
-                     "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault,\n"
-                     "4 a run ended early and said why, or a prediction of extreme failed,\n"
-                     "130 Ctrl-C ended the workbench in the terminal.\n"
-                     "'holonom lessons' is short for 'holonom list lessons'; so are problems,\n"
-                     "scenes and methods.\n");
+    hn_strbuf_add(b, "\n");
+    for (size_t i = 0; i < sizeof notes / sizeof *notes; i++) {
+        add_folded(b, 0, notes[i]);
+    }
 }
 
 static void describe_one(hn_strbuf *b, const hn_command *command) {
@@ -133,7 +138,7 @@ static hn_exit print_terms(const hn_args *args) {
     const bool found = describe_words(&b, hn_strbuf_text(&word));
     hn_exit result = HN_EXIT_DONE;
     if (found) {
-        result = hn_cli_print(&b);
+        result = hn_cli_print_prose(&b);
     } else if (of_words) {
         hn_diag diag;
         hn_diag_set(&diag, HN_ERR_INPUT, NULL, "'holonom help words' lists the terms",
@@ -164,7 +169,7 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&b);
     if (args->words.n == 0) {
         describe_all(&b);
-        return hn_cli_print(&b);
+        return hn_cli_print_prose(&b);
     }
     const char *word = args->words.word[0];
     const hn_command *command =
@@ -173,7 +178,7 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
         return print_terms(args);
     }
     describe_one(&b, command);
-    return hn_cli_print(&b);
+    return hn_cli_print_prose(&b);
 }
 
 static hn_exit print_version(const hn_library *lib, const hn_args *args) {
@@ -243,7 +248,7 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
         hn_strbuf b;
         hn_strbuf_init(&b);
         describe_one(&b, command);
-        return hn_cli_print(&b);
+        return hn_cli_print_prose(&b);
     }
     if (function.needs_library && hn_library_open(NULL, &lib, &diag) != HN_OK) {
         hn_report_diag(args, &diag);
@@ -299,7 +304,11 @@ int hn_cli_main(int argc, char **argv) {
     hn_args args = {0};
     hn_diag diag = {0};
     if (argc < 2) {
-        fputs(FIRST_STEPS, stderr);
+        hn_strbuf steps;
+        hn_strbuf_init(&steps);
+        hn_fold_prose(&steps, FIRST_STEPS, hn_terminal_error_limit());
+        fputs(hn_strbuf_text(&steps), stderr);
+        hn_strbuf_reset(&steps);
         return HN_EXIT_INPUT;
     }
     if (strcmp(argv[1], "complete") == 0) {

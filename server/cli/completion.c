@@ -5,6 +5,7 @@
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
 #include "dynamics/compile/coordinates.h"
+#include "grade/exercise_shelf.h"
 #include "integrators/method/catalogue.h"
 #include "session/extreme/extreme_files.h"
 #include "session/model/lists.h"
@@ -96,12 +97,6 @@ static void offer_documents(const completing *c, const hn_library *lib, const ch
     hn_strbuf_reset(&text);
 }
 
-static void offer_problems(const completing *c, const hn_library *lib) {
-    for (int i = 0; i < hn_library_n_problems(lib); i++) {
-        offer(c, hn_library_problem_id(lib, i), "", NULL);
-    }
-}
-
 static void offer_extreme_cases(const completing *c, const hn_library *lib) {
     hn_extreme *x = NULL;
     hn_diags diags = {0};
@@ -190,7 +185,7 @@ static void offer_word(const completing *c, const hn_library *lib, const hn_comm
         if (strcmp(command->name, "lesson") == 0) {
             offer_documents(c, lib, "lessons", hn_lessons_json);
         } else {
-            offer_problems(c, lib);
+            offer_documents(c, lib, "problems", hn_shelf_exercises_json);
         }
     }
     if (!first || !strstr(command->words, "SCENE")) {
@@ -253,19 +248,29 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
 // ---- what a shell needs ----
 
 // bash takes : = and @ for ends of words where it may complete: the line is split at blanks here,
-// and what stands up to the last of them is not typed again; @ itself is
+// and what stands up to the last of them is not typed again; @ itself is. Where bash lists several
+// candidates (COMP_TYPE: the code of ? ! or @), what each is about stands beside it
 static const char BASH[] =
     "_holonom() {\n"
-    "    local IFS=$'\\n' line=${COMP_LINE:0:COMP_POINT} cur breaks kept=\n"
-    "    local -a words\n"
+    "    local IFS=$'\\n' line=${COMP_LINE:0:COMP_POINT} cur breaks kept= one i\n"
+    "    local -a words rows\n"
     "    IFS=$' \\t' read -ra words <<<\"$line\"\n"
     "    [[ $line == *[$' \\t'] ]] && words+=('')\n"
     "    cur=${words[${#words[@]} - 1]}\n"
-    "    COMPREPLY=($(holonom complete -- \"${words[@]:1}\" 2>/dev/null | cut -f1))\n"
+    "    while IFS= read -r one; do\n"
+    "        rows+=(\"$one\")\n"
+    "    done < <(holonom complete -- \"${words[@]:1}\" 2>/dev/null)\n"
+    "    COMPREPLY=(\"${rows[@]%%$'\\t'*}\")\n"
     "    [[ ${COMPREPLY[0]} == *[=@] ]] && compopt -o nospace 2>/dev/null\n"
     "    breaks=${COMP_WORDBREAKS//[^:=@]/}\n"
     "    [[ $breaks ]] && kept=${cur%\"${cur##*[$breaks]}\"} kept=${kept%@}\n"
     "    COMPREPLY=(\"${COMPREPLY[@]#\"$kept\"}\")\n"
+    "    [[ ${#rows[@]} -gt 1 && $COMP_TYPE == @(33|63|64) ]] || return 0\n"
+    "    for i in \"${!rows[@]}\"; do\n"
+    "        [[ ${rows[i]} == *$'\\t'* ]] || continue\n"
+    "        printf -v one '%-20s  %s' \"${COMPREPLY[i]}\" \"${rows[i]#*$'\\t'}\"\n"
+    "        COMPREPLY[i]=${one:0:${COLUMNS:-80} - 1}\n"
+    "    done\n"
     "}\ncomplete -o default -F _holonom holonom\n";
 // what each candidate is about stands beside it; a blank follows what is complete; works from a
 // folder of functions and when it is sourced

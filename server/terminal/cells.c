@@ -2,6 +2,7 @@
 #include "terminal/cells.h"
 
 #include "render/look.h"
+#include "terminal/line_break.h"
 
 #include <stdarg.h>
 #include <stdint.h>
@@ -135,7 +136,8 @@ int hn_cells_printf(hn_cells *c, hn_area area, int x, int y, int colour, int sty
     return hn_cells_put(c, area, x, y, colour, style, line);
 }
 
-/// Bytes of the longest beginning of text that fits, broken at a blank where there is one.
+/// Bytes of the longest beginning of text that fits, broken at a blank where there is one that may
+/// be.
 static size_t fitting(const char *text, int columns) {
     size_t bytes = 0, blank = 0;
     int used = 0;
@@ -143,7 +145,7 @@ static size_t fitting(const char *text, int columns) {
         if (text[bytes] == '\n') {
             return bytes;
         }
-        if (text[bytes] == ' ') {
+        if (text[bytes] == ' ' && hn_line_may_break(text, bytes)) {
             blank = bytes;
         }
         if (++used > columns) {
@@ -211,16 +213,19 @@ static int cube_step(uint32_t channel) {
     return channel < 48 ? 0 : channel < 115 ? 1 : (int)(channel - 35) / 40;
 }
 
-int hn_cell_colour_256(int colour, int theme) {
-    if (colour == HN_CELL_INK) {
-        return -1;
-    }
+int hn_cell_colour_rgb(int colour, int theme) {
     const hn_surface *surface = hn_surface_get((hn_theme)theme);
-    const uint32_t rgb = colour == HN_CELL_MUTED   ? surface->muted
-                         : colour == HN_CELL_ALARM ? surface->tear
-                                                   : hn_look_get(colour)->colour[theme];
-    return 16 + 36 * cube_step(rgb >> 16 & 255) + 6 * cube_step(rgb >> 8 & 255) +
-           cube_step(rgb & 255);
+    return colour == HN_CELL_INK     ? -1
+           : colour == HN_CELL_MUTED ? (int)surface->muted
+           : colour == HN_CELL_ALARM ? (int)surface->tear
+                                     : (int)hn_look_get(colour)->colour[theme];
+}
+
+int hn_cell_colour_256(int colour, int theme) {
+    const int rgb = hn_cell_colour_rgb(colour, theme);
+    return rgb < 0 ? -1
+                   : 16 + 36 * cube_step((uint32_t)rgb >> 16 & 255) +
+                         6 * cube_step((uint32_t)rgb >> 8 & 255) + cube_step((uint32_t)rgb & 255);
 }
 
 static int line_end(const hn_cells *c, int row) {

@@ -57,7 +57,8 @@ int hn_text_columns(const char *text);
 /// The page as lines, blanks at their ends left out. `colours`: with ANSI sequences for bold,
 /// reverse and 256 colours.
 void hn_cells_text(hn_strbuf *b, const hn_cells *c, bool colours);
-/// The colour as one of the 256 of a terminal, in the given theme (hn_theme); -1 for ink: the
-/// terminal's own.
+/// The colour as 0xRRGGBB in the given theme (hn_theme); -1 for ink: the terminal's own.
+int hn_cell_colour_rgb(int colour, int theme);
+/// The same as one of the 256 of a terminal.
 int hn_cell_colour_256(int colour, int theme);
 #endif

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LABEL_COLUMNS = 12, AXIS_ROWS = 2, FOOT_ROWS = 4, SHADES = 4 };
+enum { LABEL_COLUMNS = 12, AXIS_ROWS = 3, FOOT_ROWS = 5, SHADES = 4 };
 enum { LEGEND_COLUMNS = 17, LEGEND_ROWS = 11, MOST_ENTRIES = 12, ENTRY = 64 };
 
 static const char PREDICTED[] = "━";
@@ -136,7 +136,29 @@ static void draw_cell(hn_cells *c, hn_area area, const hn_map_plot *p, range r, 
     }
 }
 
-static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, int width) {
+/// The axis across: a tick below the left edge of a cell, and below it the cell's value, of the
+/// last cell too; a value that would run into the one before is left out.
+static void draw_ticks(hn_cells *c, hn_area area, const hn_map_plot *p, int cell) {
+    int at[HN_MAP_SIDE], free = 0, n = hn_map_ticks(&p->x, at);
+    at[n++] = p->x.n - 1;
+    for (int x = 0; x < p->x.n * cell; x++) {
+        hn_cells_put(c, area, LABEL_COLUMNS + x, p->y.n, HN_CELL_MUTED, 0, "─");
+    }
+    for (int i = 0; i < n; i++) {
+        char label[32];
+        const int x = at[i] * cell, wide = p->x.n * cell;
+        const int used = snprintf(label, sizeof label, "%.3g", p->x.value[at[i]]);
+        const int left = x + used > wide && wide > used ? wide - used : x;
+        if (left >= free) {
+            hn_cells_put(c, area, LABEL_COLUMNS + x, p->y.n, HN_CELL_MUTED, 0, "┬");
+            hn_cells_put(c, area, LABEL_COLUMNS + left, p->y.n + 1, HN_CELL_MUTED, 0, label);
+            free = left + used + 1;
+        }
+    }
+}
+
+/// cell: columns that one takes.
+static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, int cell) {
     char title[96], other[96];
     for (int row = 0; row < p->y.n; row++) {
         hn_cells_printf(c, area, 0, p->y.n - 1 - row, HN_CELL_MUTED, 0, "%10.3g │",
@@ -149,13 +171,8 @@ static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, int width
         hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n, HN_CELL_MUTED, 0, " vertical: %s", title);
         return;
     }
-    const int end = LABEL_COLUMNS + width;
-    char last[32];
-    const int n = snprintf(last, sizeof last, "%.3g", p->x.value[p->x.n - 1]);
-    hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n, HN_CELL_MUTED, 0, "%.3g", p->x.value[0]);
-    hn_cells_put(c, area, end - n > LABEL_COLUMNS + 8 ? end - n : LABEL_COLUMNS + 8, p->y.n,
-                 HN_CELL_MUTED, 0, last);
-    hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n + 1, HN_CELL_MUTED, 0, "across: %s, up: %s",
+    draw_ticks(c, area, p, cell);
+    hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n + 2, HN_CELL_MUTED, 0, "across: %s, up: %s",
                     other, title);
 }
 
@@ -225,11 +242,13 @@ static void draw_legend_below(hn_cells *c, hn_area area, int y, const legend *l)
     }
 }
 
+/// A mark stands in the second column of its cell where there is one: the outcome in the first one
+/// stays.
 static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place at, bool wide,
                  int style, const char *glyph) {
     if (at.column >= 0) {
-        hn_cells_put(c, area, LABEL_COLUMNS + at.column * (wide ? 2 : 1), p->y.n - 1 - at.row,
-                     HN_CELL_INK, style, glyph);
+        const int x = LABEL_COLUMNS + (wide ? 2 * at.column + 1 : at.column);
+        hn_cells_put(c, area, x, p->y.n - 1 - at.row, HN_CELL_INK, style, glyph);
     }
 }
 
@@ -243,7 +262,7 @@ void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_pl
             draw_cell(c, area, p, r, column, row, wide);
         }
     }
-    draw_axes(c, area, p, p->x.n * (wide ? 2 : 1));
+    draw_axes(c, area, p, wide ? 2 : 1);
     mark(c, area, p, present, wide, HN_CELL_BOLD, "★");
     mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "◆");
 

@@ -41,6 +41,10 @@ int hn_terminal_limit(void) {
     return limit_of(STDOUT_FILENO);
 }
 
+int hn_terminal_prose(void) {
+    return wide ? 0 : hn_terminal_columns();
+}
+
 int hn_terminal_error_limit(void) {
     return limit_of(STDERR_FILENO);
 }

@@ -18,7 +18,7 @@ static const double LONGEST_REFERENCE = 60; // CPU time of each means [s]
 enum { MOST_INCIDENTS = 64 * HN_COMPARISON_MAX_METHODS, MOST_FRAMES = 20000 };
 
 typedef struct track_store {
-    double *gap, *velocity_gap, *energy, *error, *points, *evaluations, *q, *v;
+    double *gap, *velocity_gap, *energy, *error, *points, *step_ops, *q, *v;
 } track_store;
 
 typedef struct told_incident {
@@ -178,7 +178,9 @@ static void keep_frame(hn_recording *r, int frame) {
         hn_sample sample = {0};
         const int good = hn_comparison_sample(r->comparison, m, &sample);
         const hn_run_summary summary = hn_run_get_summary(hn_comparison_run(r->comparison, m));
-        r->stores[m].evaluations[frame] = (double)summary.cost.evals;
+        r->stores[m].step_ops[frame] =
+            summary.steps > 0 ? hn_cost_known_ops(&summary.cost) / (double)summary.steps
+                              : (double)NAN;
         if (good && sample.points) {
             keep_sample(r, m, frame, &sample);
         } else {
@@ -220,7 +222,7 @@ static bool allocate_track(hn_recording *r, int m) {
     track_store *to = &r->stores[m];
     const size_t frames = (size_t)r->last + 1;
     double **const columns[] = {&to->gap, &to->velocity_gap, &to->energy, &to->error,
-                                &to->evaluations};
+                                &to->step_ops};
     bool good = true;
     for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
         *columns[i] = calloc(frames, sizeof(double));
@@ -239,7 +241,7 @@ static bool allocate_track(hn_recording *r, int m) {
     r->tracks[m].points = to->points;
     r->tracks[m].q = to->q;
     r->tracks[m].v = to->v;
-    r->tracks[m].evaluations = to->evaluations;
+    r->tracks[m].step_ops = to->step_ops;
     return good && to->points && to->q && to->v;
 }
 
@@ -343,7 +345,7 @@ void hn_recording_free(hn_recording *r) {
         free(s->velocity_gap);
         free(s->energy);
         free(s->error);
-        free(s->evaluations);
+        free(s->step_ops);
         free(s->points);
         free(s->q);
         free(s->v);

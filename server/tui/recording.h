@@ -26,9 +26,9 @@ typedef struct hn_track {
     /// largest distance of a drawn point from the reference [m]; NaN: no reference there, and at
     /// frame 0 (hn_recording_update)
     const double *error;
-    const double *points;      ///< 3 n_points a frame
-    const double *q, *v;       ///< n_user a frame: coordinates and rates as in the scene
-    const double *evaluations; ///< since the start
+    const double *points;   ///< 3 n_points a frame
+    const double *q, *v;    ///< n_user a frame: coordinates and rates as in the scene
+    const double *step_ops; ///< operations of a step on average; NaN: not counted, or no step yet
 } hn_track;
 
 /// How a method ended, as far as it is known now.

@@ -43,11 +43,11 @@ static struct {
     int n_mouse; ///< events that are still to be handed out
 
     // pictures wait until the terminal has read the one before
-    bool asks, asked, answers;
-    double first_asked, asked_at; ///< [s]
-    uint64_t shown;               ///< hash of the last picture
-    bool with_sequence;           ///< the last picture had one
-    double delay;                 ///< [s] of the last picture with a sequence
+    bool asks, asked, answers, early; ///< early: the question before the first picture is open
+    double first_asked, asked_at;     ///< [s]
+    uint64_t shown;                   ///< hash of the last picture
+    bool with_sequence;               ///< the last picture had one
+    double delay;                     ///< [s] of the last picture with a sequence
 
     // questions about pictures
     int questions; ///< of those that end in the name: still unanswered
@@ -119,9 +119,22 @@ static void ask_terminal(void) {
 }
 
 static void take_answer(void) {
-    screen.asked = false;
     screen.answers = true;
+    if (screen.early) {
+        screen.early = false;
+        return;
+    }
+    screen.asked = false;
     screen.delay = screen.with_sequence ? hn_clock_wall() - screen.asked_at : screen.delay;
+}
+
+/// Asks before the first picture: over a slow line that picture is long under way, and others would
+/// queue up behind it until it is known that this terminal answers.
+static void ask_early(void) {
+    if (screen.asks) {
+        put_sequence(QUESTION);
+        screen.early = true;
+    }
 }
 
 double hn_screen_delay(void) {
@@ -294,12 +307,38 @@ static int of_few(int colour, int theme) {
     return dark && chosen == BLUE ? CYAN : chosen;
 }
 
+/// From ncurses 6.1 on colours may have more than 16 bits.
+#if NCURSES_EXT_FUNCS >= 20180127
+#define TRUE_COLOURS
+#endif
+
+/// Whether the terminal's description says that the number of a colour is its red, green and blue,
+/// as that of xterm-direct does.
+static bool is_direct(void) {
+#ifdef TRUE_COLOURS
+    const char *bits = tigetstr("RGB");
+    return tigetflag("RGB") > 0 || tigetnum("RGB") > 0 || (bits && bits != (char *)-1);
+#else
+    return false;
+#endif
+}
+
+static void set_pair(int pair, int colour) {
+#ifdef TRUE_COLOURS
+    init_extended_pair(pair, colour, -1); // a short holds no true colour
+#else
+    init_pair((short)pair, (short)colour, -1);
+#endif
+}
+
 static void make_colours(int theme) {
     start_color();
     use_default_colors();
+    const bool direct = is_direct();
     for (int i = 0; i < HN_CELL_COLOURS; i++) {
-        const int colour = COLORS >= 256 ? hn_cell_colour_256(i, theme) : of_few(i, theme);
-        init_pair((short)(i + 1), (short)colour, -1);
+        set_pair(i + 1, direct          ? hn_cell_colour_rgb(i, theme)
+                        : COLORS >= 256 ? hn_cell_colour_256(i, theme)
+                                        : of_few(i, theme));
     }
 }
 
@@ -315,8 +354,9 @@ bool hn_screen_open(int theme, bool colours) {
     screen.parent = getppid();
     signal(SIGTTOU, SIG_IGN);
     screen.have_modes = tcgetattr(STDIN_FILENO, &screen.modes) == 0;
-    // a fresh description of the terminal rather than initscr(), which ends the program where there
-    // is none
+    // a fresh description of the terminal, with names that are not of the standard, rather than
+    // initscr(), which ends the program where there is none
+    use_extended_names(TRUE);
     SCREEN *made = newterm(NULL, stdout, stdin);
     if (!made) {
         return false;
@@ -338,6 +378,7 @@ bool hn_screen_open(int theme, bool colours) {
     mousemask(BUTTON1_PRESSED | BUTTON1_RELEASED | REPORT_MOUSE_POSITION, NULL);
     mouseinterval(0);
     prepare_asking();
+    ask_early();
     screen.mouse = has_mouse();
     atexit(hn_screen_close);
     watch_signals();

@@ -23,7 +23,7 @@ void hn_undo_go(hn_workbench *w, int by) {
     for (int i = 0; i < one->n_methods; i++) {
         methods[i] = one->methods[i];
     }
-    const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
+    const double t = hn_workbench_moment(w);
     const bool same_scene = strcmp(one->scene, w->scene) == 0;
     v->going = true;
     const bool good =

@@ -17,7 +17,8 @@
 
 enum { NUMBER_DIGITS = 2 }; // significant, as in the page
 enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
-enum { MESSAGE_LINES = 6 };                                    // at most
+enum { MESSAGE_LINES = 6, INCIDENT_LINES = 3 };                // at most
+enum { NOTICE_ROWS = 2 };                                      // kept free below the views
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
 enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
@@ -40,7 +41,7 @@ static hn_area header_area(const hn_cells *c) {
 
 static hn_area table_area(int columns, int rows, const hn_workbench *w) {
     const int height = w->n_methods + 2;
-    return (hn_area){0, rows - height - 2, columns, height};
+    return (hn_area){0, rows - 1 - NOTICE_ROWS - height, columns, height};
 }
 
 hn_places hn_views_places(int columns, int rows, const hn_workbench *w) {
@@ -179,10 +180,12 @@ static void fold_fitted(hn_cells *c, hn_area area, int colour, const char *text)
     }
 }
 
-/// Text that ends in row `last`, in as many lines as it needs; what they cover is wiped.
-static void draw_lines(hn_cells *c, hn_area area, int last, int colour, const char *text) {
+/// Text that ends in row `last`, in as many lines as it needs, `most` of them; what they cover is
+/// wiped.
+static void draw_lines(hn_cells *c, hn_area area, int last, int most, int colour,
+                       const char *text) {
     const int needed = hn_text_rows(text, area.columns);
-    const int rows = needed < MESSAGE_LINES ? needed : MESSAGE_LINES;
+    const int rows = needed < most ? needed : most;
     const hn_area lines = {area.x, last - rows + 1, area.columns, rows};
     for (int y = lines.y; y <= last; y++) {
         hn_cells_printf(c, (hn_area){0, y, c->columns, 1}, 0, 0, HN_CELL_INK, 0, "%*s", c->columns,
@@ -206,7 +209,7 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
     if (w->message[0]) {
         // a long one takes the place of the keys, and of rows above
-        draw_lines(c, area, area.y + needs_two_lines(c, w), HN_CELL_INK, w->message);
+        draw_lines(c, area, area.y + needs_two_lines(c, w), MESSAGE_LINES, HN_CELL_INK, w->message);
         return;
     }
 
@@ -227,7 +230,8 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
         snprintf(line, sizeof line, "! %s at %.4g s: %s",
                  hn_recording_track(w->recording, whose[last])->name, list[last].t,
                  list[last].message);
-        put_fitted(c, area, 0, 0, HN_CELL_ALARM, 0, line);
+        draw_lines(c, area, area.y, w->panel == HN_PANEL_MAIN ? INCIDENT_LINES : 1, HN_CELL_ALARM,
+                   line);
     }
 }
 
@@ -248,14 +252,14 @@ static const double *error_of(const hn_track *t) {
 static const double *energy_of(const hn_track *t) {
     return t->energy;
 }
-static const double *evaluations_of(const hn_track *t) {
-    return t->evaluations;
+static const double *step_ops_of(const hn_track *t) {
+    return t->step_ops;
 }
 
 static const number_column NUMBERS[] = {{"now: gap", "m", gap_of},
                                         {"error", "m", error_of},
                                         {"energy", "J", energy_of},
-                                        {"evals", "", evaluations_of}};
+                                        {"ops/step", "", step_ops_of}};
 enum { N_NUMBERS = sizeof NUMBERS / sizeof *NUMBERS };
 
 /// Where the columns of the table are, in columns of its inside.

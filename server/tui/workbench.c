@@ -62,7 +62,8 @@ hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags) {
     HN_TRY(hn_recording_create(w->model, methods, w->n_methods, 0, &fresh, diags));
     // the same moment in frames of another length
     if (w->recording) {
-        w->clock *= hn_recording_frame_dt(w->recording) / hn_recording_frame_dt(fresh);
+        w->moment = hn_workbench_moment(w);
+        w->clock = w->moment / hn_recording_frame_dt(fresh);
         w->clock = w->playing ? w->clock : round(w->clock);
     }
     hn_recording_free(w->recording);
@@ -260,7 +261,13 @@ static void end_command(hn_workbench *w) {
     hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
 }
 
+double hn_workbench_moment(const hn_workbench *w) {
+    const double dt = hn_recording_frame_dt(w->recording);
+    return w->clock == round(w->moment / dt) ? w->moment : w->clock * dt;
+}
+
 void hn_workbench_go_to(hn_workbench *w, double t) {
+    w->moment = t;
     const double frame = round(t / hn_recording_frame_dt(w->recording));
     w->clock = fmax(0, fmin(frame, hn_recording_last(w->recording)));
     hn_recording_want(w->recording, (int)w->clock + AHEAD);

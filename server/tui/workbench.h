@@ -97,6 +97,7 @@ typedef struct hn_workbench {
 
     // what is shown
     double clock, speed; ///< [frames] now; times real time
+    double moment;       ///< [s] asked for last: frames of another length may not hit it
     double late;         ///< [s] for which the clock has been waiting for frames without a pause
     bool playing, quit;
     int selected;
@@ -156,6 +157,8 @@ void hn_workbench_close(hn_workbench *w);
 void hn_workbench_tick(hn_workbench *w, double seconds);
 /// Shows the frame at t [s], as soon as it is recorded.
 void hn_workbench_go_to(hn_workbench *w, double t);
+/// The moment [s] that was asked for while its frame is shown, otherwise the time of the clock.
+double hn_workbench_moment(const hn_workbench *w);
 /// The frame shown.
 int hn_workbench_frame(const hn_workbench *w);
 /// Records the methods anew; on failure what was recorded stays.

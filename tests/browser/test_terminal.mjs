@@ -20,11 +20,15 @@ const plain = (text) =>
     .replace(/\s+/g, " ")
     .trim();
 
-/** Rows of the page's table: [name, verdict, gap, error]. */
+/** Rows of the page's table: [name, verdict, gap, error, energy, operations of a step]. */
 const rowsOfPage = (page) =>
   page.$$eval(".method-table tbody tr", (rows) =>
     rows
-      .map((row) => ["who", "verdict", "gap", "off"].map((cell) => row.querySelector(`.${cell}`)))
+      .map((row) =>
+        ["who", "verdict", "gap", "off", "energy", "cost"].map((cell) =>
+          row.querySelector(`.${cell}`),
+        ),
+      )
       .filter((cells) => cells.every(Boolean))
       .map((cells) => cells.map((cell) => cell.innerText)),
   );
@@ -37,12 +41,18 @@ function rowsOfTerminal(scene, t, methods) {
     encoding: "utf8",
     env: { ...process.env, LC_ALL: "C.UTF-8" },
   });
-  const row = /^│\d\S (.+?) +(\S+ m|\S+ [mµnk]m|-) +(\S+ m|\S+ [mµnk]m|-) .*?[→↗↘] (.*?) +│$/gmu;
-  return [...frame.matchAll(row)].map(([, name, gap, error, verdict]) => [
+  const length = String.raw`(\S+ [mµnk]?m|-)`;
+  const row = new RegExp(
+    String.raw`^│\d\S (.+?) +${length} +${length} +(\S+ [mµnk]?J|-) +(\S+) +[→↗↘] (.*?) +│$`,
+    "gmu",
+  );
+  return [...frame.matchAll(row)].map(([, name, gap, error, energy, cost, verdict]) => [
     name,
     verdict,
     gap,
     error,
+    energy,
+    `${cost}/step`,
   ]);
 }
 

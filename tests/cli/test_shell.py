@@ -50,6 +50,10 @@ class Completion(unittest.TestCase):
         text = call("complete", "--", "run", "four-bar", "--set", "l1").stdout
         self.assertRegex(text, r"^l1=\t0\.1 to 3 m, now 0\.5: length of the crank\n$")
 
+    def test_exercises_come_with_their_titles(self):
+        self.assertEqual(call("complete", "--", "problem", "p2").stdout, "p2\tNull-space projection\n")
+        self.assertEqual(call("complete", "--", "grade", "p2").stdout, "p2\tNull-space projection\n")
+
     def test_nothing_is_offered_where_nothing_is_known(self):
         for words in (["nonsense", "x"], ["run", "no-such-scene", "--set", "l"], ["import", "fi"], []):
             self.assertLess(len(candidates(*words)), 40)
@@ -109,6 +113,15 @@ class Help(unittest.TestCase):
         for words in [[], ["words"], *([c] for c in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M))]:
             wide = [line for line in call("help", *words).stdout.splitlines() if len(line) > 80]
             self.assertEqual(wide, [], words)
+
+    def test_help_fits_a_narrower_terminal(self):
+        env = {**os.environ, "COLUMNS": "60", "LC_ALL": "C.UTF-8"}
+        for words in (["help"], ["help", "words"], ["help", "serve"], ["run", "--help"], []):
+            done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=60, env=env)
+            lines = (done.stdout or done.stderr).splitlines()
+            self.assertGreater(len(lines), 8, words)
+            # one word that is longer than a line stays whole
+            self.assertEqual([line for line in lines if len(line) > 60 and " " in line.strip()], [], words)
 
     def test_terms_of_messages_are_explained(self):
         words = call("help", "words").stdout
@@ -242,6 +255,13 @@ class Width(unittest.TestCase):
         done = subprocess.run([PROGRAM, "compare", "four-bar", "--time", "0.5"], capture_output=True, text=True, timeout=60, env=env)
         self.assertIn("evals", done.stdout)
         self.assertNotIn("\033", done.stdout)
+
+    def test_a_pipe_gets_paragraphs_of_eighty_columns_unless_it_is_wide(self):
+        env = {k: v for k, v in os.environ.items() if k != "COLUMNS"}
+        narrow, wide = (subprocess.run([PROGRAM, "problem", "p3", *more], capture_output=True, text=True, timeout=60, env=env).stdout for more in ([], ["--wide"]))
+        self.assertLessEqual(max(map(len, narrow.splitlines())), 80)
+        self.assertGreater(max(map(len, wide.splitlines())), 100)
+        self.assertEqual(narrow.split(), wide.split())
 
     def test_a_terminal_gets_colours_unless_it_says_no(self):
         for more, coloured in (({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)):

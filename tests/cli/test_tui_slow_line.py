@@ -13,13 +13,12 @@ from terminal import PATIENCE, Terminal  # noqa: E402
 
 
 class SlowLine:
-    """A terminal that takes 2 kB/s, and knows the top row of its screen; it answers the question after its health as terminals do."""
+    """A terminal that takes `rate` bytes in a second, and knows the top row of its screen; it answers the question after its health as terminals do."""
 
-    RATE = 2000.0  # [bytes/s]
     SEQUENCE = re.compile(rb"\033\[([?0-9;]*)([@-~])|\033\][^\a]*\a|\033[()][0-9A-Z]|\033[=>78M]")
 
-    def __init__(self, terminal):
-        self.terminal = terminal
+    def __init__(self, terminal, rate):
+        self.terminal, self.rate = terminal, rate  # [bytes/s]
         self.line = b""  # what has arrived and is not yet understood
         self.row, self.column, self.top = 0, 0, {}
         self.since = time.monotonic()
@@ -30,7 +29,7 @@ class SlowLine:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             time.sleep(0.01)
-            due = int((time.monotonic() - self.since) * self.RATE) - self.read_bytes
+            due = int((time.monotonic() - self.since) * self.rate) - self.read_bytes
             if due > 0 and select.select([self.terminal.master], [], [], 0)[0]:
                 try:
                     piece = os.read(self.terminal.master, due)
@@ -104,12 +103,12 @@ class SlowLine:
 
 
 class ASlowLine(unittest.TestCase):
-    def open(self):
+    def open(self, rate=2000.0):
         """The workbench after eight seconds: what queues up has queued up by then."""
         terminal = Terminal("four-bar")
         self.addCleanup(terminal.close)
-        line = SlowLine(terminal)
-        self.assertTrue(line.serve(lambda: line.read_bytes > 8 * line.RATE and line.time_shown() is not None, 3 * PATIENCE), line.top)
+        line = SlowLine(terminal, rate)
+        self.assertTrue(line.serve(lambda: line.read_bytes > 8 * line.rate and line.time_shown() is not None, 3 * PATIENCE), line.top)
         return terminal, line
 
     def test_fewer_pictures_are_sent_and_none_is_late(self):
@@ -120,7 +119,15 @@ class ASlowLine(unittest.TestCase):
         before = line.read_bytes
         terminal.type(" ")
         self.assertTrue(line.serve(line.paused, 2 * PATIENCE))
-        self.assertLess(line.read_bytes - before, 5 * line.RATE)
+        self.assertLess(line.read_bytes - before, 5 * line.rate)
+
+    def test_9600_baud_shows_no_picture_late(self):
+        # ten bits a byte: the first picture takes most of the eight seconds, and nothing may have queued up behind it
+        terminal, line = self.open(960.0)
+        before = line.read_bytes
+        terminal.type(" ")
+        self.assertTrue(line.serve(line.paused, 2 * PATIENCE))
+        self.assertLess(line.read_bytes - before, 5 * line.rate)
 
     def test_q_quits_at_once(self):
         # at most 1.5 s for the answer to the last picture, that the shell shall not read
@@ -129,7 +136,7 @@ class ASlowLine(unittest.TestCase):
         terminal.type("q")
         self.assertTrue(line.serve(lambda: terminal.process.poll() is not None, 2 * PATIENCE))
         self.assertEqual(terminal.process.returncode, 0)
-        self.assertLess(line.read_bytes - before, 5 * line.RATE)
+        self.assertLess(line.read_bytes - before, 5 * line.rate)
 
 
 if __name__ == "__main__":

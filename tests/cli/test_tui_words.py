@@ -12,7 +12,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
-from terminal import PROGRAM, Terminal, once  # noqa: E402
+from terminal import PROGRAM, ROOT, Terminal, once  # noqa: E402
 
 OPENS = ("--methods", "index1@rk4:h=0.02", "projection@rk4:h=0.02")  # the first one's loop opens
 
@@ -22,17 +22,23 @@ def message(frame):
     return frame.rstrip("\n").split("\n")[-2].strip()
 
 
+def notice(frame):
+    """The incident above the keys, whose lines are one again; "" where there is none."""
+    found = re.search(r"(?m)^ (! .*(?:\n .*)*)\n .*$\Z", frame.rstrip("\n"))
+    return " ".join(found.group(1).split()) if found else ""
+
+
 class Table(unittest.TestCase):
     def test_eighty_columns_show_gap_and_error_and_the_whole_verdict(self):
         _, out, _ = once("four-bar", "--once", "--t", "3.5")
         head = next(line for line in out.split("\n") if "methods" in line)
-        self.assertEqual(re.findall(r"gap|error|energy|evals", head), ["gap", "error"])
+        self.assertEqual(re.findall(r"gap|error|energy|ops", head), ["gap", "error"])
         self.assertRegex(out, r"(?m)^│1\S index-1 +[\d.]+ mm +[\d.]+ mm ↗ open by [\d.]+ mm and \d+ mm from the true motion │$")
         # with more room the energy comes before the cost
-        for columns, heads in ((88, ["gap", "error"]), (95, ["gap", "error", "energy"]), (120, ["gap", "error", "energy", "evals"])):
+        for columns, heads in ((88, ["gap", "error"]), (95, ["gap", "error", "energy"]), (120, ["gap", "error", "energy", "ops"])):
             _, out, _ = once("four-bar", "--once", "--t", "1", "--size", f"{columns}x24")
             head = next(line for line in out.split("\n") if "methods" in line)
-            self.assertEqual(re.findall(r"gap|error|energy|evals", head), heads, columns)
+            self.assertEqual(re.findall(r"gap|error|energy|ops", head), heads, columns)
 
     def test_the_longest_line_of_keys_that_fits_is_shown_whole(self):
         for columns in (80, 92, 100, 106, 120):
@@ -74,12 +80,17 @@ class Messages(unittest.TestCase):
         self.assertIn("t 0.500 s", undone)
         self.assertIn("done again: change 1 of 1", after("d0.01<Enter>zy"))
         self.assertIn("undone: change 1 of 2 (method 1 is index1@rk4:h=0.01)", after("d0.01<Enter>d0.005<Enter>zz"))
+        # frames of 50 ms have none at 0.54 s: the moment asked for comes back with the old step
+        moved = "<Right>" * 2 + "d50 ms<Enter>"
+        self.assertIn("t 0.550 s", after(moved))
+        self.assertIn("t 0.540 s", after(moved + "z"))
+        self.assertIn("t 0.560 s", after(moved + "z<Right>"))
         self.assertIn("undone: change 1 of 1 (l = 0.5)", after("p<Enter>0.5<Enter><Esc>z"))
 
     def test_a_long_message_keeps_its_values_and_its_end(self):
         for size in ("120x40", "80x24"):
             _, out, _ = once("four-bar", "--once", "--t", "0.5", "--size", size, "--methods", "index1@rk4:h=0.02", "--keys", "p<Enter>2.5<Enter>")
-            self.assertIn("make rocker longer than 0.932719 m or coupler longer than 1.33272 m, or", " ".join(out.split()), size)
+            self.assertIn("make rocker longer than 0.932719 m or coupler longer than 1.33272 m, or change a start value that is held", " ".join(out.split()), size)
 
     def test_why_says_how_the_gap_decays_where_alpha_is_above_beta(self):
         _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "200x40", "--methods", "baumgarte:alpha=13.61,beta=7.462@rk4", "--keys", "i")
@@ -166,13 +177,18 @@ class Messages(unittest.TestCase):
     def test_an_incident_leaves_the_line_when_it_is_no_news(self):
         # the first run opens at 1 s; a fifth of the motion later only its own line still tells
         def line(t, keys):
-            return message(once("four-bar", "--once", "--t", t, "--size", "150x30", "--keys", keys, *OPENS)[1])
+            return notice(once("four-bar", "--once", "--t", t, "--size", "150x30", "--keys", keys, *OPENS)[1])
         happened = float(re.search(r"! index-1 at ([\d.]+) s: the loop has opened", line("1.9", "1")).group(1))
         self.assertLess(happened, 1.9)
         self.assertIn("! index-1 at", line("1.9", "2"))
         later = happened + 0.2 * 10 + 0.5
         self.assertIn("! index-1 at", line(f"{later:.2f}", "1"))
         self.assertNotIn(f"at {happened:g} s", line(f"{later:.2f}", "2"))
+
+
+    def test_an_incident_is_whole_in_eighty_columns(self):
+        _, out, _ = once("four-bar", "--once", "--t", "2.5", "--size", "80x24", *OPENS)
+        self.assertRegex(notice(out), r"^! index-1 at [\d.]+ s: the energy has changed by [^…]* 1 % of the largest energies so far$")
 
 
 class Studies(unittest.TestCase):
@@ -207,6 +223,16 @@ class Studies(unittest.TestCase):
                                "--methods", "baumgarte@rk4:h=0.02"], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "60", "LC_ALL": "C.UTF-8"})
         for entry in ("▲ unstable: the error grew", "× stopped with a reason", "━ predicted limit"):
             self.assertTrue(any(entry in row for row in done.stdout.split("\n")), done.stdout)
+
+    def test_an_error_budget_has_all_methods_side_by_side_under_their_names(self):
+        five = ("index1", "baumgarte", "projection", "nullspace", "reduced")
+        for size, n_tables in (("120x60", 1), ("80x60", 2)):
+            with tempfile.TemporaryDirectory() as cache:
+                _, out, _ = once("pendulum", "--once", "--t", "0.5", "--size", size, "--methods", *(f"{name}@rk4:h=0.02" for name in five), "--keys", "e", HOLONOM_CACHE=cache)
+            heads = [line for line in out.split("\n") if re.search(r"index-1 +Baumgarte", line)]
+            self.assertEqual(len(heads), n_tables, out)
+            for head in heads:
+                self.assertEqual(len(re.sub("[│]", "", head).split()), len(five), head)
 
     def test_the_map_says_what_alpha_and_beta_are(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
@@ -334,6 +360,18 @@ class Colours(unittest.TestCase):
         self.assertLessEqual({b"36", b"31", b"32", b"35", b"33"}, seen := self.colours("xterm"))
         self.assertNotIn(b"34", seen)
         self.assertIn(b"34", self.colours("xterm", "--theme", "light"))
+
+    @unittest.skipUnless(shutil.which("infocmp") and subprocess.run(["infocmp", "xterm-direct"], capture_output=True).returncode == 0,
+                         "no description of a terminal of true colours is here")
+    def test_true_colours_are_those_of_the_page(self):
+        terminal = Terminal("four-bar", "--frames", "20", "--t", "1", TERM="xterm-direct")
+        self.addCleanup(terminal.close)
+        self.assertEqual(terminal.ended(), 0)
+        sent = {tuple(map(int, found)) for found in re.findall(rb"38[:;]2[:;]+(\d+)[:;](\d+)[:;](\d+)m", terminal.seen)}
+        with open(os.path.join(ROOT, "core", "render", "look.c"), encoding="utf-8") as file:
+            known = {tuple(bytes.fromhex(colour)) for colour in re.findall(r"0x([0-9a-fA-F]{6})", file.read())}
+        self.assertGreater(len(sent), 4)
+        self.assertLessEqual(sent, known)
 
     @unittest.skipUnless(shutil.which("infocmp") and subprocess.run(["infocmp", "xterm-16color"], capture_output=True).returncode == 0,
                          "no description of a terminal of 16 colours is here")

@@ -30,8 +30,9 @@ CASES = (("holonom sna", "holonom snapshot "), ("holonom run slider-c", "holonom
          ("holonom study four-bar stability --preset baum", "holonom study four-bar stability --preset baumgarte "),
          ("holonom run four-bar --set start.th3", "holonom run four-bar --set start.th3="), ("holonom extreme X25", "holonom extreme X25 "),
          ("holonom report four-bar slider-c", "holonom report four-bar slider-crank "))
-# what Tab lists where nothing is typed yet, and what zsh and fish say of it
-LISTS = (("holonom export four-bar --language ", r"wolfram", r"wolfram"), ("holonom run four-bar --set ", r"start\.w1", r"length of the crank"))
+# what Tab lists, and what it says of it: a language, a parameter with its range, an exercise
+LISTS = (("holonom export four-bar --language ", r"wolfram", r"wolfram"), ("holonom run four-bar --set ", r"start\.w1", r"0\.1 to 3 m, now 0\.5: length of the crank"),
+         ("holonom problem p", r"p2", r"Null-space projection"))
 
 
 class Completion(Tmux):
@@ -57,7 +58,7 @@ class Completion(Tmux):
             self.keys("-l", typed)
             self.wait_for(rf"> {re.escape(typed)}?\s*\n")
             self.keys(*("Tab", "Tab")[:2 if shell.startswith("bash") else 1])
-            self.wait_for(name if shell.startswith("bash") else f"(?s)(?=.*{name})(?=.*{says})")
+            self.wait_for(f"(?s)(?=.*{name})(?=.*{says})")
 
     def stands(self, line):
         """Whether the line of the cursor is this one, the cursor behind it."""

@@ -63,10 +63,22 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
                               source->n_settings, scene, diags);
 }
 
+/// Bytes of the beginning of a list that `room` bytes hold: whole parts between separators.
+static int whole_parts(const char *list, size_t room, const char *separator) {
+    size_t n = strlen(list);
+    if (n > room) {
+        for (n = room; n > 0 && strncmp(list + n, separator, strlen(separator)) != 0;) {
+            n--;
+        }
+    }
+    return (int)n;
+}
+
 /// Puts what was changed of the scene before the reason of a loop that stands open, which names
 /// bodies and starts: "with l1 = 50 m (0.5 in the scene), loop B ..."; and its undoing before what
 /// else to try. Nothing where nothing was changed.
 static void put_changes(const hn_scene *scene, hn_diag *why) {
+    static const char OR[] = ", or ";
     char changes[HN_DIAG_MESSAGE] = "", back[HN_DIAG_HINT] = "";
     size_t used = 0, used_back = 0;
     for (int i = 0; i < scene->n_params; i++) {
@@ -86,8 +98,11 @@ static void put_changes(const hn_scene *scene, hn_diag *why) {
     if (used > 0) {
         const hn_diag said = *why;
         snprintf(why->message, sizeof why->message, "%.250s, %.250s", changes, said.message);
-        snprintf(why->hint, sizeof why->hint, "%.90s%s%.90s", back, said.hint[0] ? ", or " : "",
-                 said.hint);
+        const int n_back = whole_parts(back, sizeof why->hint / 2, ", ");
+        const size_t room = sizeof why->hint - 1 - (size_t)n_back - (sizeof OR - 1);
+        const int n_said = whole_parts(said.hint, room, OR);
+        snprintf(why->hint, sizeof why->hint, "%.*s%s%.*s", n_back, back, n_said > 0 ? OR : "",
+                 n_said, said.hint);
     }
 }
 

@@ -148,7 +148,7 @@ static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant
         hn_draw_text(&b, &x->draw, e->hints[i]);
         hn_strbuf_add(&b, "\n");
     }
-    return hn_cli_print_text(&b);
+    return hn_cli_print_prose(&b);
 }
 
 /// Writes the figures of all parts that have one: into FILE.svg, or with the ids of the parts
@@ -208,7 +208,7 @@ static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
         result = hn_cli_print(&b);
     } else {
         hn_variant_text(&b, &x);
-        result = hn_cli_print_text(&b);
+        result = hn_cli_print_prose(&b);
     }
     hn_variant_reset(&x);
     return result;
@@ -223,7 +223,7 @@ static hn_exit print_matrix_exercise(const hn_args *args, const hn_exercise *e) 
     } else {
         hn_exercise_text(&b, e, seed, args->student);
     }
-    return args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
+    return args->json ? hn_cli_print(&b) : hn_cli_print_prose(&b);
 }
 
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {

@@ -3,6 +3,7 @@
 
 #include "cli/shell/fold.h"
 #include "session/kinds/job.h"
+#include "terminal/width.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -550,10 +551,15 @@ void hn_args_about(hn_strbuf *b, const hn_option_row *o) {
     hn_strbuf_add(b, o->about);
 }
 
+int hn_help_width(void) {
+    const int columns = hn_terminal_columns();
+    return columns < HELP_WIDTH ? columns : HELP_WIDTH;
+}
+
 /// The right column of the help, from the first line's place on.
 static void put_about(hn_strbuf *b, const char *about) {
     for (const char *rest = about; *rest;) {
-        const size_t n = hn_fold_line(rest, HELP_WIDTH - HELP_HEAD - 3);
+        const size_t n = hn_fold_line(rest, hn_help_width() - HELP_HEAD - 3);
         hn_strbuf_printf(b, "%*s%.*s\n", rest == about ? 0 : HELP_HEAD + 3, "", (int)n, rest);
         rest += n;
         rest += strspn(rest, " ");

@@ -50,6 +50,8 @@ typedef struct hn_args {
 HN_MUST_CHECK hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc,
                                       char **argv, hn_diag *diag);
 void hn_args_reset(hn_args *args);
+/// Columns of the help: those of the terminal behind standard output, 80 at most.
+int hn_help_width(void);
 /// "--set NAME=VALUE   a parameter that differs ...", a line an option of the command.
 void hn_args_describe(hn_strbuf *b, const hn_command *command);
 /// One option as help, manual and completion show it; argument NULL: a flag.

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/fold.h"
 
+#include "terminal/line_break.h"
+
 #include <stdbool.h>
 #include <string.h>
+
+enum { HANG = 2 }; // [columns]
 
 /// Bytes of an escape sequence at the text's beginning; 0: there is none.
 static size_t escape_length(const char *text) {
@@ -34,11 +38,12 @@ size_t hn_fold_line(const char *text, int columns) {
     int width = 0;
     while (text[n] && text[n] != '\n') {
         // a word that is longer than the line is not broken, but a product is behind a factor
-        if (width >= columns && (blank > 0 || factor > 0 || text[n] == ' ')) {
-            return text[n] == ' ' ? n : blank > 0 ? blank : factor;
+        const bool here = text[n] == ' ' && hn_line_may_break(text, n);
+        if (width >= columns && (blank > 0 || factor > 0 || here)) {
+            return here ? n : blank > 0 ? blank : factor;
         }
         const size_t escape = escape_length(text + n);
-        blank = text[n] == ' ' && width > 0 ? n : blank;
+        blank = here && width > 0 ? n : blank;
         width += escape == 0;
         n += escape ? escape : character_length(text + n);
         factor = text[n - 1] == '*' && text[n] != ' ' ? n : factor;
@@ -46,25 +51,25 @@ size_t hn_fold_line(const char *text, int columns) {
     return n;
 }
 
-/// Adds one line, without its end.
-static void add_line(hn_strbuf *b, const char *line, int columns) {
+/// Adds one line, without its end; what follows a break is indented `hang` columns further.
+static void add_line(hn_strbuf *b, const char *line, int columns, int hang) {
     const int indent = (int)strspn(line, " ");
     size_t n = (size_t)indent + hn_fold_line(line + indent, columns - indent);
     hn_strbuf_add_n(b, line, n);
     for (line += n; line[0] && line[0] != '\n'; line += n) {
         line += strspn(line, " ");
-        n = hn_fold_line(line, columns - indent - 2);
-        hn_strbuf_printf(b, "\n%*s%.*s", indent + 2, "", (int)n, line);
+        n = hn_fold_line(line, columns - indent - hang);
+        hn_strbuf_printf(b, "\n%*s%.*s", indent + hang, "", (int)n, line);
     }
 }
 
-void hn_fold_add(hn_strbuf *b, const char *text, int columns) {
+static void add_folded(hn_strbuf *b, const char *text, int columns, int hang_of_flush) {
     while (*text) {
         const size_t n = strcspn(text, "\n");
         if (columns == 0 || hn_fold_width(text, n) <= columns) {
             hn_strbuf_add_n(b, text, n);
         } else {
-            add_line(b, text, columns);
+            add_line(b, text, columns, *text == ' ' ? HANG : hang_of_flush);
         }
         text += n;
         if (*text == '\n') {
@@ -72,4 +77,12 @@ void hn_fold_add(hn_strbuf *b, const char *text, int columns) {
             text++;
         }
     }
+}
+
+void hn_fold_add(hn_strbuf *b, const char *text, int columns) {
+    add_folded(b, text, columns, HANG);
+}
+
+void hn_fold_prose(hn_strbuf *b, const char *text, int columns) {
+    add_folded(b, text, columns, 0);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_FOLD_H
 #define HN_CLI_FOLD_H
-// Lines that fit the terminal: broken at blanks, never within a word; a product that is longer
-// than a line is broken behind one of its "*".
+// Lines that fit the terminal: broken at blanks, never within a word nor between a number and
+// its unit; a product that is longer than a line is broken behind one of its "*".
 
 #include "base/strbuf.h"
 
@@ -14,4 +14,6 @@ size_t hn_fold_line(const char *text, int columns);
 /// Adds the text with every line folded to `columns`; what follows a break is indented two columns
 /// further than its line. columns 0: as it is.
 void hn_fold_add(hn_strbuf *b, const char *text, int columns);
+/// The same for paragraphs: lines that begin at the left edge go on there.
+void hn_fold_prose(hn_strbuf *b, const char *text, int columns);
 #endif

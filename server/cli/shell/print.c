@@ -66,7 +66,8 @@ static bool page(const hn_strbuf *text) {
     return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) != COMMAND_NOT_FOUND;
 }
 
-hn_exit hn_cli_print_text(hn_strbuf *text) {
+static hn_exit print_folded(hn_strbuf *text, int columns,
+                            void (*fold)(hn_strbuf *b, const char *text, int columns)) {
     if (!text->failed && hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"))) {
         hn_strbuf plain;
         hn_strbuf_init(&plain);
@@ -74,10 +75,10 @@ hn_exit hn_cli_print_text(hn_strbuf *text) {
         hn_strbuf_reset(text);
         *text = plain;
     }
-    if (!text->failed && hn_terminal_limit() > 0) {
+    if (!text->failed && columns > 0) {
         hn_strbuf folded;
         hn_strbuf_init(&folded);
-        hn_fold_add(&folded, hn_strbuf_text(text), hn_terminal_limit());
+        fold(&folded, hn_strbuf_text(text), columns);
         hn_strbuf_reset(text);
         *text = folded;
     }
@@ -86,4 +87,12 @@ hn_exit hn_cli_print_text(hn_strbuf *text) {
         return HN_EXIT_DONE;
     }
     return hn_cli_print(text);
+}
+
+hn_exit hn_cli_print_text(hn_strbuf *text) {
+    return print_folded(text, hn_terminal_limit(), hn_fold_add);
+}
+
+hn_exit hn_cli_print_prose(hn_strbuf *text) {
+    return print_folded(text, hn_terminal_prose(), hn_fold_prose);
 }

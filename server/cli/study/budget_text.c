@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/study/budget_text.h"
 
+#include "cli/shell/fold.h"
 #include "cli/shell/table.h"
 #include "render/look.h"
 #include "terminal/bars.h"
@@ -9,6 +10,9 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
+
+enum { NAME = 48, MOST_BESIDE = HN_TABLE_COLUMNS - 1 /* methods; a column is for the causes */ };
 
 /// One of the two tables: the error at the end by cause, or the change of energy by item.
 typedef struct sheet {
@@ -16,10 +20,13 @@ typedef struct sheet {
     int energy, n_parts;
     int n;
     const hn_budget_row *rows[HN_BUDGETS_METHODS]; ///< those that have something to tell
+    char plain[HN_BUDGETS_METHODS][NAME];          ///< name of the formulation
+    char name[HN_BUDGETS_METHODS][NAME + 8];       ///< no two are the same
 } sheet;
 
 static sheet gather(const hn_budgets *a, int energy) {
-    sheet s = {a, energy, energy ? HN_ENERGY_COUNT : HN_CAUSE_COUNT, 0, {NULL}};
+    sheet s = {
+        .budgets = a, .energy = energy, .n_parts = energy ? HN_ENERGY_COUNT : HN_CAUSE_COUNT};
     for (int m = 0; m < hn_budgets_n(a); m++) {
         const hn_budget_row *row = hn_budgets_at(a, m);
         const bool has =
@@ -100,37 +107,80 @@ static void put_line(hn_table *t, const sheet *s, int from, int to, const char *
     }
 }
 
-/// For narrow terminals: a line a cause, a column a method, at most BLOCK methods side by side;
-/// every cause is shown.
-static void put_by_cause(hn_strbuf *b, const sheet *s) {
-    enum { BLOCK = 4 };
-    static const char *const heads[HN_BUDGETS_METHODS] = {
-        "1",  "2",  "3",  "4",  "5",  "6",  "7",  "8",  "9",  "10", "11", "12",
-        "13", "14", "15", "16", "17", "18", "19", "20", "21", "22", "23", "24"};
-    for (int from = 0; from < s->n; from += BLOCK) {
-        const int to = from + BLOCK < s->n ? from + BLOCK : s->n;
-        hn_table t;
-        hn_table_init(&t);
-        hn_table_column(&t, "", 0);
-        for (int i = from; i < to; i++) {
-            hn_table_column(&t, heads[i], 1);
-            hn_table_spare(&t, 0);
+/// Short names of the methods, told apart by a number where one comes again: "Baumgarte (2)".
+static void name_methods(sheet *s) {
+    for (int i = 0; i < s->n; i++) {
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        int before = 0;
+        const bool known = hn_method_parse(s->rows[i]->spelling, &spec, &diag) == HN_OK;
+        snprintf(s->plain[i], NAME, "%.*s", NAME - 1,
+                 known ? spec.formulation->short_name : s->rows[i]->spelling);
+        for (int k = 0; k < i; k++) {
+            before += strcmp(s->plain[k], s->plain[i]) == 0;
         }
+        snprintf(s->name[i], sizeof s->name[i], before ? "%s (%d)" : "%s", s->plain[i], before + 1);
+    }
+}
 
-        // the whole, its parts, and their sum
-        put_line(&t, s, from, to, s->energy ? "change" : "error at the end", -1);
-        for (int k = 0; k < s->n_parts; k++) {
-            put_line(&t, s, from, to, name_of(s, k), k);
+/// A line a cause, a column a method, for the methods from `from` to before `to`. Returns whether
+/// the table has room for all of them.
+static bool fill_by_cause(hn_strbuf *b, const sheet *s, int from, int to) {
+    hn_table t;
+    hn_table_init(&t);
+    hn_table_column(&t, "", 0);
+    for (int i = from; i < to; i++) {
+        hn_table_column(&t, s->name[i], 1);
+        hn_table_spare(&t, 1);
+    }
+
+    // the whole, its parts, and their sum
+    put_line(&t, s, from, to, s->energy ? "change" : "error at the end", -1);
+    for (int k = 0; k < s->n_parts; k++) {
+        put_line(&t, s, from, to, name_of(s, k), k);
+    }
+    if (!s->energy) {
+        put_line(&t, s, from, to, "their sum", -2);
+    }
+    hn_table_write(b, &t);
+    const bool whole = t.n_left_out == 0;
+    hn_table_reset(&t);
+    return whole;
+}
+
+/// How many methods have room side by side: blocks of nearly the same size.
+static int block_size(const sheet *s) {
+    int n_blocks = 1, size = s->n;
+    for (bool whole = false; !whole && size > 1; n_blocks++) {
+        size = (s->n + n_blocks - 1) / n_blocks;
+        whole = size <= MOST_BESIDE;
+        for (int from = 0; whole && from < s->n; from += size) {
+            hn_strbuf tried;
+            hn_strbuf_init(&tried);
+            whole = fill_by_cause(&tried, s, from, from + size < s->n ? from + size : s->n);
+            hn_strbuf_reset(&tried);
         }
-        if (!s->energy) {
-            put_line(&t, s, from, to, "their sum", -2);
-        }
-        hn_table_write(b, &t);
-        hn_table_reset(&t);
+    }
+    return size;
+}
+
+/// For narrow terminals: a line a cause, a column a method, in as few blocks as there is room for;
+/// every cause is shown.
+static void put_by_cause(hn_strbuf *b, sheet *s) {
+    name_methods(s);
+    const int size = block_size(s);
+    for (int from = 0; from < s->n; from += size) {
+        fill_by_cause(b, s, from, from + size < s->n ? from + size : s->n);
+    }
+    int width = 0;
+    for (int i = 0; i < s->n; i++) {
+        const int columns = hn_fold_width(s->name[i], strlen(s->name[i]));
+        width = columns > width ? columns : width;
     }
     for (int i = 0; i < s->n; i++) {
         const hn_coordinate *c = hn_budget_coordinate(hn_budgets_model(s->budgets), s->rows[i]);
-        hn_strbuf_printf(b, "  %-2d %s", i + 1, s->rows[i]->spelling);
+        const int columns = hn_fold_width(s->name[i], strlen(s->name[i]));
+        hn_strbuf_printf(b, "  %s%*s  %s", s->name[i], width - columns, "", s->rows[i]->spelling);
         if (s->energy) {
             hn_strbuf_printf(b, ", to t = %g s\n", s->rows[i]->budget.t);
         } else {
@@ -141,7 +191,7 @@ static void put_by_cause(hn_strbuf *b, const sheet *s) {
 
 /// A line a method where there is room for every column.
 static void put_sheet(hn_strbuf *b, const hn_budgets *a, int energy) {
-    const sheet s = gather(a, energy);
+    sheet s = gather(a, energy);
     hn_strbuf wide;
     hn_table t;
     hn_strbuf_init(&wide);

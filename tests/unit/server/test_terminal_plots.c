@@ -3,6 +3,7 @@
 #include "support/near.h"
 
 #include "terminal/bars.h"
+#include "terminal/line_break.h"
 #include "terminal/map_plot.h"
 #include "terminal/scatter.h"
 
@@ -79,6 +80,59 @@ static void a_map_shades_what_ran_by_its_gap_and_marks_what_grew(void **state) {
     hn_cells_free(&c);
 }
 
+static void marks_of_a_map_leave_the_outcome_of_their_cell(void **state) {
+    (void)state;
+    static hn_map_plot p;
+    hn_cells c = {0};
+    const hn_map_place present = {1, 0}, cursor = {2, 1};
+    fill_map(&p);
+    assert_true(hn_cells_resize(&c, 60, 12));
+    hn_map_plot_draw(&c, (hn_area){0, 0, 60, 12}, &p, present, cursor);
+    assert_string_equal(glyph(&c, 14, 1), "█");
+    assert_string_equal(glyph(&c, 15, 1), "★");
+    assert_string_equal(glyph(&c, 16, 0), "▲");
+    assert_string_equal(glyph(&c, 17, 0), "◆");
+    hn_cells_free(&c);
+}
+
+static void a_map_names_columns_below_a_tick_at_their_edge(void **state) {
+    (void)state;
+    static hn_map_plot p;
+    hn_cells c = {0};
+    const hn_map_place none = {-1, -1};
+    fill_map(&p);
+    assert_true(hn_cells_resize(&c, 60, 12));
+    hn_map_plot_draw(&c, (hn_area){0, 0, 60, 12}, &p, none, none);
+    assert_string_equal(glyph(&c, 12, 2), "┬");
+    assert_string_equal(glyph(&c, 12, 3), "1");
+    assert_string_equal(glyph(&c, 14, 2), "┬");
+    assert_string_equal(glyph(&c, 14, 3), "1");
+    assert_string_equal(glyph(&c, 15, 3), "0");
+    // 100 would touch 10
+    assert_string_equal(glyph(&c, 16, 2), "─");
+    assert_string_equal(glyph(&c, 16, 3), "");
+    hn_cells_free(&c);
+}
+
+static void a_line_is_not_broken_between_a_number_and_its_unit(void **state) {
+    (void)state;
+    const char *const whole[] = {"gap 27 mm", "after 4 s.", "right to 1 %",
+                                 "4 rad/s",   "3 1/s",      "12 µm"};
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++) {
+        const char *blank = strrchr(whole[i], ' ');
+        assert_false(hn_line_may_break(whole[i], (size_t)(blank - whole[i])));
+    }
+    const char *const broken[] = {"of 27 methods", "a m", "5 scenes", "in 2 sixth"};
+    for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+        const char *blank = strrchr(broken[i], ' ');
+        assert_true(hn_line_may_break(broken[i], (size_t)(blank - broken[i])));
+    }
+
+    // one that fills the line alone is broken all the same, as nothing else can be
+    assert_int_equal(hn_text_rows("worst gap 27 mm", 13), 2);
+    assert_int_equal(hn_text_rows("27 mm", 3), 2);
+}
+
 static void a_map_finds_the_nearest_cell_and_says_what_is_in_it(void **state) {
     (void)state;
     static hn_map_plot p;
@@ -117,6 +171,9 @@ int main(void) {
         cmocka_unit_test(points_stand_in_their_decades_and_failures_on_the_upper_edge),
         cmocka_unit_test(one_point_spans_no_range_and_draws_nothing),
         cmocka_unit_test(a_map_shades_what_ran_by_its_gap_and_marks_what_grew),
+        cmocka_unit_test(marks_of_a_map_leave_the_outcome_of_their_cell),
+        cmocka_unit_test(a_map_names_columns_below_a_tick_at_their_edge),
+        cmocka_unit_test(a_line_is_not_broken_between_a_number_and_its_unit),
         cmocka_unit_test(a_map_finds_the_nearest_cell_and_says_what_is_in_it),
         cmocka_unit_test(bars_have_lengths_in_proportion_and_a_negative_one_is_lighter),
     };
