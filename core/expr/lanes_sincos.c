@@ -160,15 +160,20 @@ __attribute__((target("avx2,fma"))) static inline void rows_avx2(const void *ind
 
 __attribute__((target("avx2,fma"))) static void four_avx2(double a, double b, double c, double d,
                                                           double *sine, double *cosine) {
+    /// What this thread asked for last: the watch and the next step, or a projection and its
+    /// corrections, ask at one configuration by tapes of their own. At first: the angles +0.
+    static _Thread_local struct { avx2_v angle, sine, cosine; } last = {.cosine = {1, 1, 1, 1}};
     const avx2_v x = {a, b, c, d};
-    avx2_v s, k;
-    if (_mm256_movemask_pd((__m256d)avx2_far(x)) != 0) {
-        avx2_any(x, &s, &k);
-    } else {
-        avx2_both(avx2_bring_near(x), &s, &k);
+    if (_mm256_movemask_pd((__m256d)((avx2_i)x != (avx2_i)last.angle)) != 0) {
+        last.angle = x;
+        if (_mm256_movemask_pd((__m256d)avx2_far(x)) != 0) {
+            avx2_any(x, &last.sine, &last.cosine);
+        } else {
+            avx2_both(avx2_bring_near(x), &last.sine, &last.cosine);
+        }
     }
-    _mm256_storeu_pd(sine, (__m256d)s);
-    _mm256_storeu_pd(cosine, (__m256d)k);
+    _mm256_storeu_pd(sine, (__m256d)last.sine);
+    _mm256_storeu_pd(cosine, (__m256d)last.cosine);
 }
 
 #define WIDE "avx512f,avx512dq,avx512vl,fma"

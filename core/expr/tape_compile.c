@@ -118,6 +118,25 @@ static bool is_of_input(const compiler *c, const hn_draft *d) {
     return d->code == TAPE_SINCOS && c->ir.nodes[d->operand[0]].kind == HN_IR_INPUT;
 }
 
+enum { MOST_SORTED = 4 }; // angles that are found together, see hn_lanes_sincos_four
+
+static int32_t input_of(const compiler *c, const hn_draft *d) {
+    return c->ir.nodes[d->operand[0]].input;
+}
+
+/// Orders sines and cosines by their inputs: tapes that take the same angles take them in the same
+/// places.
+static void sort_angles(const compiler *c, int32_t n, hn_draft *d) {
+    for (int32_t i = 1; i < n; i++) {
+        const hn_draft next = d[i];
+        int32_t k = i;
+        for (; k > 0 && input_of(c, &d[k - 1]) > input_of(c, &next); k--) {
+            d[k] = d[k - 1];
+        }
+        d[k] = next;
+    }
+}
+
 /// Moves sines and cosines of inputs to the front; the others keep their order. Returns how many.
 static int32_t put_angles_first(compiler *c) {
     int32_t n = 0;
@@ -138,6 +157,9 @@ static int32_t put_angles_first(compiler *c) {
         } else {
             c->drafts[--to] = c->drafts[i];
         }
+    }
+    if (n <= MOST_SORTED) {
+        sort_angles(c, n, first);
     }
     memcpy(c->drafts, first, (size_t)n * sizeof *first);
     free(first);

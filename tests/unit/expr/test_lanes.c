@@ -253,12 +253,48 @@ static void vector_sines_serve_with_the_gnu_library(void **state) {
     assert_false(hn_lanes_sincos_is_vector(HN_LANES_PLAIN));
 }
 
+/// Beside the C library, bit for bit; a NaN may be another one.
+static void assert_four(hn_lanes_sincos_four four, const double x[4]) {
+    double sine[4], cosine[4];
+    four(x[0], x[1], x[2], x[3], sine, cosine);
+    for (int i = 0; i < 4; i++) {
+        const double wanted[2] = {sin(x[i]), cos(x[i])};
+        if (isnan(wanted[0])) {
+            assert_true(isnan(sine[i]) && isnan(cosine[i]));
+        } else {
+            assert_memory_equal(&sine[i], &wanted[0], sizeof *sine);
+            assert_memory_equal(&cosine[i], &wanted[1], sizeof *cosine);
+        }
+    }
+}
+
+// the angles of the last call are remembered: what comes back must be theirs, however they recur
+static void four_angles_are_those_of_the_library_however_they_recur(void **state) {
+    (void)state;
+    const hn_lanes_sincos_four four = hn_lanes_sincos_four_get();
+    if (!four) {
+        skip();
+    }
+    static const double sets[][4] = {{0, 0, 0, 0},       {-0.0, 0, 0, -0.0},  {1, 0.5, 1.5, 1},
+                                     {0.5, 1, 1.5, 1},   {1, 0.5, 1.5, 30},   {NAN, 1, 2, 3},
+                                     {1e9, 1, INFINITY}, {2.5, -2.5, 1e-9, 0}};
+    enum { SETS = sizeof sets / sizeof sets[0] };
+    for (int i = 0; i < SETS; i++) {
+        for (int k = 0; k < SETS; k++) {
+            assert_four(four, sets[i]);
+            assert_four(four, sets[i]);
+            assert_four(four, sets[k]);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_lane_has_the_bits_of_the_interpreter),
         cmocka_unit_test(compiled_lanes_have_the_bits_of_the_interpreter),
         cmocka_unit_test(sines_of_lanes_have_the_bits_of_the_c_library),
         cmocka_unit_test(vector_sines_serve_with_the_gnu_library),
+        cmocka_unit_test(four_angles_are_those_of_the_library_however_they_recur),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
