@@ -63,17 +63,23 @@ export async function startServer(options = []) {
     child.stderr.on("data", read);
     child.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${text}`)));
   });
-  const stop = () =>
-    new Promise((resolve) => {
-      if (child.exitCode !== null) {
-        resolve(child.exitCode);
-        return;
-      }
-      child.removeAllListeners("exit");
-      child.on("exit", resolve);
-      child.kill("SIGTERM");
-    });
-  return { url, port: Number(new URL(url).port), stop };
+  return { url, port: Number(new URL(url).port), stop: () => end(child) };
+}
+
+/**
+ * Asks a process to end, and waits until it has.
+ * @param {import("node:child_process").ChildProcess} child
+ */
+export function end(child) {
+  return new Promise((resolve) => {
+    if (child.exitCode !== null || child.signalCode !== null) {
+      resolve(child.exitCode);
+      return;
+    }
+    child.removeAllListeners("exit");
+    child.on("exit", resolve);
+    child.kill("SIGTERM");
+  });
 }
 
 /** @param {string[]} [more] flags of the browser */

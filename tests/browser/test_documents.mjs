@@ -200,6 +200,18 @@ test("bars, pins and motors are put with the mouse, and the document follows", a
   await until(page, (data) => data.scene.bodies.length === 2);
   const text = () => page.inputValue("#editor-text").then(JSON.parse);
   await soon(async () => assert.equal((await text()).joints[1].parent.body, "bar1"));
+  // the lines that are new are in sight
+  await soon(async () => {
+    const { first, last, from } = await page.evaluate(() => {
+      const field = document.querySelector("#editor-text");
+      const line = field.value.split("\n").findIndex((one) => /"name": "bar2"/.test(one));
+      const [first, last] = [line * 20, (line + 1) * 20];
+      return { first: first - field.scrollTop, last: last - field.scrollTop, from: line };
+    });
+    assert.ok(from > 0 && first >= 0, `line ${from} at ${first} px`);
+    const height = await page.locator("#editor-text").evaluate((field) => field.clientHeight);
+    assert.ok(last <= height, `line ${from} ends at ${last} of ${height} px`);
+  });
   await soon(async () => assert.equal(await read(page, (data) => data.scene.dof), 2));
 
   await page.getByRole("button", { name: "motor", exact: true }).click();
@@ -221,6 +233,17 @@ test("bars, pins and motors are put with the mouse, and the document follows", a
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.1);
+  await page.getByRole("button", { name: "pin", exact: true }).click();
+  await soon(async () =>
+    assert.match(
+      await page.textContent("#editor-state"),
+      /^the motion is shown at its start again/,
+    ),
+  );
+  await page.getByRole("button", { name: "bar", exact: true }).click();
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running" || data.view.replaying);
   const [u, v] = await tip();
   await page.mouse.move(u, v);
   await page.mouse.down();

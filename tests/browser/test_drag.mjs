@@ -155,6 +155,29 @@ test("a length has a handle on its bar; one that cannot be assembled is held bac
   assert.deepEqual((await answer.json()).points, points);
 });
 
+test("a joint that is dragged to where it stands changes nothing, and there is nothing to undo", async (t) => {
+  const page = await open(t);
+  await page.getByRole("button", { name: "↔ lengths" }).click();
+  await page.getByText("drag a square along its bar").waitFor();
+  const { x, y } = await jointAt(page, "A");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  // out to the side and back
+  await page.mouse.move(x - 30, y, { steps: 3 });
+  await until(page, (data) => data.drag?.moved);
+  const waiting = countAsked(page, /drag/);
+  await page.mouse.move(x, y, { steps: 3 });
+  await soon(async () => {
+    await drawn(page); // an answer asks for the newest wish at once
+    assert.equal(waiting(), 0);
+  });
+  const run = await read(page, (data) => data.run);
+  await page.mouse.up();
+  await until(page, (data) => data.drag === null);
+  const after = await read(page, (data) => [data.settings, data.undo, data.run]);
+  assert.deepEqual(after, [{}, { past: 0, future: 0 }, run]);
+});
+
 test("the place of a dragged length is where the next run starts, also late in a run", async (t) => {
   const page = await open(t);
   await playTo(page, 1.5);

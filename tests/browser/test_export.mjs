@@ -44,6 +44,11 @@ test("the recording becomes one file that plays without a server", async (t) => 
   await soon(async () => assert.notEqual(await drawn(), first));
   assert.equal(await alone.locator("li").count(), 5);
 
+  // powers as the page writes them, and an axis of time with its unit
+  const marks = await alone.locator("svg.gap text").allTextContents();
+  assert.ok(marks.includes("10⁻¹³") && marks.includes("0 s"), String(marks));
+  assert.ok(!marks.some((text) => /\de/.test(text)), String(marks));
+
   // beside each method its state at the time shown, and its dashes as on the page
   const saysAt = async (i) => {
     await alone.locator("input[type=range]").fill(String(i));

@@ -55,6 +55,8 @@ async function checkFirstScreen(page, width, height) {
     assert.ok(bottom - top >= 16 && right - left >= 40, `${name} is ${bottom - top} px high`);
   }
   assert.ok(boxes.gap.bottom - boxes.gap.top > 120, "the plot of the gap can be read");
+  const { top, bottom } = boxes.drawing;
+  assert.ok(bottom - top > 200, `beside the guide the drawing has ${bottom - top} px`);
   const sections = Object.values(await boxesOf(page, SECTIONS));
   const overlap = (a, b) =>
     a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
@@ -116,7 +118,7 @@ test("the card that says why opens in sight, under its row, takes the focus and 
   }
 });
 
-test("a notice covers no verdict, no curve of the widest layout and no button to play", async (t) => {
+test("a notice covers no verdict, no button, no scale bar and no curve of the widest layout", async (t) => {
   const page = await open(t, { hash: "#scene=four-bar&zzz=1" });
   await page.locator(".note:not([hidden]) .notice").waitFor();
   for (const [width, height] of [
@@ -132,6 +134,7 @@ test("a notice covers no verdict, no curve of the widest layout and no button to
         verdict: "#verdict",
         play: "#play",
         scrubber: ".scrubber",
+        ...(width > 1023 ? { buttons: ".under .choices", scale: ".picture .scale path" } : {}),
         ...(width > 1199 ? { curve: "figure.plot:nth-child(2) .curve" } : {}),
       });
       for (const [name, box] of Object.entries(boxes)) {
@@ -215,6 +218,38 @@ test("a cut among several is said to be the widest, in lines that fit", async (t
   );
 });
 
+test("what a change has changed is one line for the selected method, and a list of the others", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  await soon(async () =>
+    assert.match(
+      await page.textContent(".scene-notes"),
+      /the scene's own step of 0\.01 s; the methods run at 0\.02 s now/,
+    ),
+  );
+  await playTo(page, 1);
+  await page.fill("#set-h", "0.01");
+  await page.press("#set-h", "Enter");
+  await until(page, (data) => data.methods.every(({ spelling }) => /h=0\.01$/.test(spelling)));
+  await soon(async () =>
+    assert.doesNotMatch(await page.textContent(".scene-notes"), /the methods run at/),
+  );
+  await playTo(page, 1);
+  const line = page.locator(".change summary");
+  await soon(async () => {
+    const text = await line.textContent();
+    assert.match(text, /^index-1 until 1\.0\d s: .* before, .* now \(and 4 methods more\)$/);
+  });
+  const { height } = await line.boundingBox();
+  assert.ok(height < 30, `one line: ${height} px`);
+  const others = page.locator(".change li");
+  assert.ok(!(await others.first().isVisible()));
+  await line.click();
+  await soon(async () => assert.ok(await others.first().isVisible()));
+  assert.equal(await others.count(), 4);
+  await page.keyboard.press("3");
+  await soon(async () => assert.match(await line.textContent(), /^projection until /));
+});
+
 test("methods with steps of their own say them, and the field says that they differ", async (t) => {
   const page = await open(t, {
     hash: "#scene=four-bar&method=index1@rk4:h=0.02&method=projection@rk4:h=0.005",
@@ -261,15 +296,12 @@ test("at 1024 the drawer lies over the methods and leaves the mechanism in sight
 test("the columns say what is now and what is worst; alpha and beta say what they do", async (t) => {
   const page = await open(t);
   const heads = await page.locator(".method-table thead th").allTextContents();
-  assert.deepEqual(heads.slice(3), [
-    "worst so far",
-    "gap now",
-    "error now",
-    "energy now",
-    "operations",
-  ]);
+  assert.deepEqual(heads.slice(3), ["worst so far", "now", "gap", "error", "energy", "operations"]);
+  const moments = await page.locator(".method-table tbody .moment").allTextContents();
+  assert.deepEqual(moments, Array(5).fill("now"), "beside the numbers of each row");
   assert.match(await page.textContent("label[for=set-alpha]"), /α damps the gap/);
   assert.match(await page.textContent("label[for=set-beta]"), /β pulls the gap shut/);
+  assert.match(await page.textContent("#controls .law"), /φ̈ \+ 2α φ̇ \+ β² φ = 0/);
   await page.locator(".tear-inset .power").hover();
   await soon(async () => assert.match(await page.textContent("#tip"), /^Magnification: /));
 });

@@ -47,6 +47,7 @@ test("a link says the same after it was read and written again", () => {
       judged: ["", "th3", "theta_coupler"][k % 3],
       until: [0, 1.25, 1e-3][k % 3],
       step: [0, 0.0028][k % 2],
+      budget: ["", "energy"][k % 2],
       look: pick([0.5]).flatMap(() => [0.5, -1.25]),
       camera: pick([1]).flatMap(() => [2.5, 0.1, -3, 1e-4]),
       upper: pick(["off", "energy_change,turned", "phase,of:th1", "work,table"])
@@ -87,6 +88,7 @@ test("what is shown goes into a link and comes back: plots, zoom, camera, panels
     map: "baumgarte",
     judged: "th3",
     split: { scene: "a", time: 1.25, step: 0.005 },
+    budget: "energy",
     panel: "lessons",
     lesson: "02",
   };

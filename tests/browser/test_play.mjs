@@ -54,8 +54,9 @@ test("Space plays and pauses; the unstabilised gap grows and the others stay clo
   const stands = await time(page);
   await page.waitForTimeout(300);
   await soon(async () => assert.equal(await time(page), stands));
+  // until 2 s: on a busy machine the pause comes later
   const worst = await read(page, (data) =>
-    data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)),
+    data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.indexAt(2))),
   );
   assert.ok(worst[0] > 1e-3 && worst[0] < 0.1, `index 1: ${worst[0]} m`);
   assert.ok(worst[1] < worst[0], `Baumgarte: ${worst[1]} m`);

@@ -20,10 +20,13 @@ for line in sys.stdin:
 
 test("a server that allows programs offers them in the dialog of methods, and one runs", async (t) => {
   const folder = mkdtempSync(join(tmpdir(), "programs-"));
-  t.after(() => rmSync(folder, { recursive: true }));
   writeFileSync(join(folder, "mine.py"), PENDULUM);
   writeFileSync(join(folder, "notes.txt"), "no program");
   const server = await bench.server(t, ["--programs", folder]);
+  t.after(async () => {
+    await server.stop(); // and its program, which stands in the folder
+    rmSync(folder, { recursive: true });
+  });
   const page = await bench.open(t, { url: server.url, hash: "#pendulum" });
   await page.getByRole("button", { name: "add a method" }).click();
   // the list of methods may still be on its way

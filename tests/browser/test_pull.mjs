@@ -27,6 +27,7 @@ test("a hand pulls while it runs, its force is told, and the log done again give
   await soon(async () =>
     assert.match(await page.textContent(".picture .hand text"), /^[\d.]+ (m|k)?N$/),
   );
+  assert.ok(await page.getByText("arrow: force of spring and damper").isVisible());
   await page.mouse.up();
   await until(page, (data) => data.hand === null && data.pulls.length >= 2);
   await page.keyboard.press("Space");

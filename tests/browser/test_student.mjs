@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { PROGRAM, ROOT, createBench, playTo, read, soon, until } from "./support.mjs";
+import { PROGRAM, ROOT, createBench, end, playTo, read, soon, until } from "./support.mjs";
 
 const ROUNDING = 1e-12; // [m] a loop that a method keeps closed
 const LONG = 60000; // [ms] that a study may take on a busy machine
@@ -34,7 +34,7 @@ const gapAt = (page, t) =>
 test("S1 serve prints its address, and where the port is taken the next free one", async (t) => {
   const taken = new URL(bench.url).port;
   const child = spawn(PROGRAM, ["serve", "--port", taken], { cwd: ROOT });
-  t.after(() => child.kill("SIGTERM"));
+  t.after(() => end(child));
   let text = "";
   for (const stream of [child.stdout, child.stderr]) {
     stream.on("data", (chunk) => (text += chunk));
@@ -120,6 +120,13 @@ test("S5 Why? has what happened, the rule and things to try", async (t) => {
 test("the card says what happens at a dead point, and a method that stops there can be tried", async (t) => {
   const page = await open(t, { hash: "#slider-crank" });
   await playTo(page, 1);
+  // the record of incidents names them too, whoever has opened no card
+  await soon(async () =>
+    assert.match(
+      await page.textContent(".incidents"),
+      /dead point of x0\.\d\d s to 0\.\d\d s, \d timesWhy\?/,
+    ),
+  );
   await page.getByRole("button", { name: "Why? projection" }).click();
   await page.getByText(/^Dead point of x at 0\.\d\d s: what happens\?$/).waitFor();
   await page.getByText(/x turns back there while th1 moves on at \d+ rad\/s/).waitFor();

@@ -343,7 +343,7 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
   await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
 
   // a budget with its fields, which the next link holds as well
-  const fields = "study=budget&judged=th&until=0.5&step=0.005";
+  const fields = "study=budget&judged=th&until=0.5&step=0.005&budget=energy";
   await page.evaluate(
     (hash) => (location.hash = hash),
     `#scene=pendulum&method=index1@rk4:h=0.01&${fields}`,
@@ -357,6 +357,9 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
   const { time, methods } = await read(page, (data) => data.studies.budget.document);
   assert.deepEqual([time, methods[0].error.coordinate], [0.5, "th"]);
   await soon(async () => assert.equal(await page.inputValue("#budget-time"), "0.5 s"));
+  await soon(async () =>
+    assert.match(await page.textContent(".budgets"), /energy at the end has changed by/),
+  );
   await page.getByRole("dialog").getByRole("button", { name: "link" }).click();
   await soon(async () => assert.ok(new URL(page.url()).hash.includes(fields), page.url()));
 });

@@ -6,7 +6,12 @@ import { test } from "node:test";
 import { createHistory, thin } from "../../web/state/history.js";
 import { findJump } from "../../web/state/jump.js";
 import { limits, readIndex } from "../../web/state/catalogue.js";
-import { deadPointAt, lastDeadPoint, singularWords } from "../../web/state/dead-point.js";
+import {
+  deadPointAt,
+  deadPointLines,
+  deadPointsOf,
+  singularWords,
+} from "../../web/state/dead-point.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
 import { passedAt, predictionAt, stopReason } from "../../web/state/words.js";
@@ -415,9 +420,13 @@ test("a dead point is a coordinate that turns back while another one moves on", 
     incidents: [],
     catalogue: { formulations: [{ name: "reduced", integrators: ["rk4"] }], integrators: [] },
   };
-  assert.equal(lastDeadPoint(data, 0, 15), null, "cos has no zero before pi/2");
-  const found = lastDeadPoint(data, 0, 40);
+  assert.deepEqual(deadPointsOf(data, 0, 15), [], "cos has no zero before pi/2");
+  const [found, ...more] = deadPointsOf(data, 0, 40);
   assert.equal(found.coordinate, 1);
+  assert.deepEqual(more, []);
+  const [line] = deadPointLines(data, 0, 60); // the second zero of cos is at 47.1 frames
+  assert.deepEqual([line.name, line.count, line.first], ["x", 2, found.t]);
+  assert.match(line.words, /^x turns back there while the mechanism moves on\. A force along x /);
   assert.ok(Math.abs(found.t - (history.t[1] - history.t[0]) * 5 * Math.PI) < 1e-3);
   const { title, words, tries, isNear } = deadPointAt(data, 0, 40);
   assert.equal(isNear, history.t[40] - found.t < 0.5);
@@ -435,7 +444,7 @@ test("a dead point is a coordinate that turns back while another one moves on", 
   for (let k = 0; k <= 60; k++) {
     swing.push(frame(k, 1, { q: [0, 0], v: [Math.cos(k / 10), 2 * Math.cos(k / 10)] }));
   }
-  assert.equal(lastDeadPoint({ ...data, history: swing }, 0, 60), null);
+  assert.deepEqual(deadPointsOf({ ...data, history: swing }, 0, 60), []);
 });
 
 test("a history keeps the state of each frame, and of a failed method its last one", () => {

@@ -10,9 +10,13 @@ import { shownIndex, sourceOf } from "../state/store.js";
 /**
  * @typedef {{
  *   points: number[], state: Record<string, number>, settings: Record<string, number>,
- *   held: string, moved: boolean, of: "" | "start" | "parameter",
- * }} Drag the last closed configuration; held: why it does not follow, or ""; of: what is dragged
+ *   held: string, moved: boolean, of: "" | "start" | "parameter", from: number[] | null,
+ * }} Drag the last closed configuration; held: why it does not follow, or ""; of: what is dragged;
+ *   from: the drawn points where it began, null: it is set by number
  */
+
+/** Of the scene's length: who moves every drawn point by less has moved nothing that can be seen. */
+const UNSEEN = 1e-3;
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -43,12 +47,29 @@ export function createDragActions(store, exchange, notice) {
   async function answerTo(drag, { settings, of, ...body }) {
     if (of === "parameter") {
       const { points } = await api.assemble({ scene: sourceOf(data), parameters: settings });
-      return { points, state: drag.state, settings, held: "", of, moved: true };
+      return { ...drag, points, settings, held: "", of, moved: true };
     }
     const parameters = parametersOf(settings);
     const asked = { scene: sourceOf(data), parameters, state: drag.state, ...body };
     const { points, state, reached, reason } = await api.drag(asked);
-    return { points, state, settings, held: reached ? "" : (reason ?? ""), of, moved: true };
+    return {
+      ...drag,
+      points,
+      state,
+      settings,
+      held: reached ? "" : (reason ?? ""),
+      of,
+      moved: true,
+    };
+  }
+
+  /** Is what is let go another start, or another length, than before? @param {Drag} drag */
+  function isChange({ of, moved, settings, points, from }) {
+    const { parameters, length } = data.scene;
+    const apart = (i) => Math.hypot(...[0, 1, 2].map((k) => points[i + k] - (from?.[i + k] ?? 0)));
+    return of === "parameter"
+      ? parameters.some(({ name, value }) => name in settings && settings[name] !== value)
+      : moved && (from === null || from.some((_, i) => i % 3 === 0 && apart(i) > UNSEEN * length));
   }
 
   /**
@@ -122,7 +143,8 @@ export function createDragActions(store, exchange, notice) {
       const { q, v } = data.history.stateAt(data.view.selected, i);
       const state = namedState(data.scene.coordinates, q, v);
       const points = [...data.history.pointsAt(data.view.selected, i)];
-      put({ points, state, settings: data.settings, held: "", of: "", moved: false });
+      const { settings } = data;
+      put({ points, state, settings, held: "", of: "", moved: false, from: points });
       return true;
     },
     /** @param {number} point index of a drawn point @param {number[]} target [m] */
@@ -147,7 +169,7 @@ export function createDragActions(store, exchange, notice) {
       if (!drag) {
         return;
       }
-      if (drag.moved) {
+      if (isChange(drag)) {
         const parameters =
           drag.of === "parameter" ? drag.settings : settingsWithStart(drag.settings, drag.state);
         await exchange
@@ -173,8 +195,8 @@ export function createDragActions(store, exchange, notice) {
         await exchange.restart({ parameters: settingsWithStart(data.settings, moved) });
         return;
       }
-      put({ points, state, settings: data.settings, held: "", of: "start", moved: false });
       const { settings } = data;
+      put({ points, state, settings, held: "", of: "start", moved: false, from: null });
       await follow({ coordinate: name, target: [value], settings, of: "start" });
       const held = data.drag?.held;
       await actions.endDrag();

@@ -40,21 +40,21 @@ function turning(before, v, greatest) {
 }
 
 /**
- * The last dead point until the frame shown of a mechanism with one degree of freedom: the velocity
- * of a coordinate changes its sign while another coordinate moves on. There the null vector of J
- * has a zero in that place, so J without that column is singular.
+ * The dead points until the frame shown of a mechanism with one degree of freedom, in the order of
+ * time: the velocity of a coordinate changes its sign while another coordinate moves on. There the
+ * null vector of J has a zero in that place, so J without that column is singular.
  * @typedef {{coordinate: number, t: number, leads: number, speed: number}} DeadPoint
  * leads: the coordinate that moves on, speed: its velocity [rad/s or m/s]
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
- * @returns {DeadPoint | null}
+ * @returns {DeadPoint[]}
  */
-export function lastDeadPoint({ history, scene }, m, shown) {
+export function deadPointsOf({ history, scene }, m, shown) {
   if (scene?.dof !== 1 || !(scene.m > 0)) {
-    return null;
+    return [];
   }
   const greatest = scene.coordinates.map(() => 0);
-  /** @type {DeadPoint | null} */
-  let found = null;
+  /** @type {DeadPoint[]} */
+  const found = [];
   for (let i = 1; i <= shown && !(history.ended[m] <= history.t[i]); i++) {
     const [before, v] = [history.stateAt(m, i - 1).v, history.stateAt(m, i).v];
     greatest.forEach((speed, k) => (greatest[k] = Math.max(speed, Math.abs(v[k]))));
@@ -63,10 +63,32 @@ export function lastDeadPoint({ history, scene }, m, shown) {
       const there = Array.from(v, (x, k) => before[k] + share * (x - before[k]));
       const leads = leader(scene, there, greatest);
       const t = history.t[i - 1] + share * (history.t[i] - history.t[i - 1]);
-      found = leads >= 0 ? { coordinate: at, t, leads, speed: there[leads] } : found;
+      if (leads >= 0) {
+        found.push({ coordinate: at, t, leads, speed: there[leads] });
+      }
     }
   }
   return found;
+}
+
+/** What is true at every dead point. @param {string} name of the coordinate that turns back */
+const atDeadPoint = (name) =>
+  `A force along ${name} moves nothing then, and ${name} does not determine the configuration`;
+
+/**
+ * Dead points of one coordinate as a line of the record of incidents.
+ * @param {import("./store.js").Data} data @param {number} m @param {number} shown
+ * @returns {{name: string, count: number, first: number, last: number, words: string}[]}
+ */
+export function deadPointLines(data, m, shown) {
+  const all = deadPointsOf(data, m, shown);
+  return data.scene.coordinates.flatMap(({ name }, k) => {
+    const own = all.filter(({ coordinate }) => coordinate === k);
+    const words = `${name} turns back there while the mechanism moves on. ${atDeadPoint(name)}.`;
+    return own.length
+      ? [{ name, count: own.length, first: own[0].t, last: own[own.length - 1].t, words }]
+      : [];
+  });
 }
 
 /** How a method fares at a dead point of a coordinate. */
@@ -89,7 +111,7 @@ function fateWords({ formulation, label }) {
  * } | null}
  */
 export function deadPointAt(data, m, shown) {
-  const point = lastDeadPoint(data, m, shown);
+  const point = deadPointsOf(data, m, shown).at(-1);
   if (!point || data.history.ended[m] <= data.history.t[shown]) {
     return null;
   }
@@ -104,9 +126,8 @@ export function deadPointAt(data, m, shown) {
     title: `Dead point of ${name} at ${seconds(point.t, data.duration)}`,
     isNear: data.history.t[shown] - point.t < NEAR,
     words:
-      `${name} turns back there while ${other.name} moves on at ${speed}. A force along ${name} ` +
-      `moves nothing then, and ${name} does not determine the configuration; ${other.name} ` +
-      `does. ${fateWords(data.methods[m])}`,
+      `${name} turns back there while ${other.name} moves on at ${speed}. ` +
+      `${atDeadPoint(name)}; ${other.name} does. ${fateWords(data.methods[m])}`,
     tries:
       fits && !data.methods.some((one) => one.spelling === method)
         ? [{ label: `reduced with ${name}: it stops there`, method }]

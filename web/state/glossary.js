@@ -2,6 +2,9 @@
 // @ts-check
 // Special words of the page, each with the sentence that defines it.
 
+/** What Baumgarte's method demands of the gap φ. */
+export const GAP_LAW = "φ̈ + 2α φ̇ + β² φ = 0";
+
 /**
  * `match`: how texts spell the word, where they explain it.
  * @type {Record<string, {word: string, means: string, match?: RegExp}>}

@@ -5,7 +5,7 @@
 // scene.
 import { presets, studyKinds } from "./catalogue.js";
 import { QUANTITIES } from "./quantities.js";
-import { PANELS, SHOWN } from "./shown.js";
+import { BUDGETS, PANELS, SHOWN } from "./shown.js";
 
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
 const PARAMETER = /^[A-Za-z][\w.-]*$/;
@@ -20,12 +20,12 @@ const FARTHEST = 1e12;
  * empty; `zoom` [s] of the plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0
  * where none is said; `study`, `map`, `panel`, `lesson`: what is open, or ""; `judged`, `until`,
  * `step`: the coordinate whose error the budget splits, or "", its end and its step [s], or 0;
- * `note`: what its author wrote; `pulls`: what a hand did, as the server's log has it.
+ * `budget`: what of it is shown, or "": the error; `note`: what its author wrote; `pulls`: what a hand did, as the server's log has it.
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
  *   selected: number, hidden: number[], show: string[], look: number[], camera: number[],
  *   upper: string[], lower: string[], zoom: number[], why: number, speed: number, study: string,
- *   map: string, judged: string, until: number, step: number, panel: string, lesson: string,
- *   note: string, build: string, pulls: number[][]}} Linked
+ *   map: string, judged: string, until: number, step: number, budget: string, panel: string,
+ *   lesson: string, note: string, build: string, pulls: number[][]}} Linked
  */
 
 /** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
@@ -51,6 +51,7 @@ const EMPTY = () => ({
   judged: "",
   until: 0,
   step: 0,
+  budget: "",
   panel: "",
   lesson: "",
   note: "",
@@ -101,6 +102,7 @@ const OPTIONAL = /** @type {const} */ ([
   "judged",
   "until",
   "step",
+  "budget",
   "panel",
   "lesson",
   "note",
@@ -208,6 +210,7 @@ const FIELDS = {
   },
   until: (out, value) => putNumber(value, (number) => (out.until = number), 1e-12, FARTHEST),
   step: (out, value) => putNumber(value, (number) => (out.step = number), 1e-12, FARTHEST),
+  budget: oneOf("budget", () => BUDGETS),
   panel: oneOf("panel", () => PANELS),
   lesson: (out, value) => {
     out.lesson = NAME.test(value) ? value : "";

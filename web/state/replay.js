@@ -82,9 +82,19 @@ const plot = document.querySelector("svg.gap"), W = 640, H = 180;
 const end = film.t[film.t.length - 1] || 1;
 const low = -17, high = Math.max(-3, ...film.gap.flat().filter((x) => x !== null));
 const px = (t) => 40 + (W - 50) * t / end, py = (g) => 8 + (H - 28) * (high - g) / (high - low);
+const put = (x, y, anchor, words) => {
+  make("text", plot, { x, y, "text-anchor": anchor, "font-size": 11, fill: "currentColor" }).textContent = words;
+};
 for (let d = Math.ceil(low); d <= high; d += 4) {
   make("path", plot, { d: "M40 " + py(d) + "H" + (W - 10), stroke: "currentColor", opacity: 0.15 });
-  make("text", plot, { x: 34, y: py(d) + 4, "text-anchor": "end", "font-size": 11, fill: "currentColor" }).textContent = "1e" + d;
+  put(34, py(d) + 4, "end", "10" + [..."" + d].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join(""));
+}
+const span = 10 ** Math.floor(Math.log10(end));
+const every = [0.2, 0.5, 1, 2].find((k) => end / (k * span) <= 6) * span;
+for (let k = 0; k * every <= end * (1 + 1e-9); k++) {
+  const t = Number((k * every).toPrecision(6));
+  make("path", plot, { d: "M" + px(t) + " " + (H - 20) + "v4", stroke: "currentColor" });
+  put(px(t), H - 5, "middle", t + (k === 0 ? " s" : ""));
 }
 film.gap.forEach((row, m) => {
   let d = "";

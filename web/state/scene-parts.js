@@ -3,6 +3,24 @@
 // Adds parts to a scene document: bars, pins, sliders, motors. Places are in the world, at the
 // start; every function returns a new document.
 
+/** A document with one bar, to begin with. */
+export const NEW_SCENE = `{
+  "holonom": 1,
+  "name": "mine",
+  "title": "My mechanism",
+  "parameters": {},
+  "gravity": [0, -9.81],
+  "bodies": [
+    {"name": "bar1", "mass": 1, "com": [0.5, 0], "inertia": {"zz": 0.0833}, "draw": [{"bar": [[0, 0], [1, 0]]}]}
+  ],
+  "joints": [
+    {"name": "P1", "type": "revolute", "parent": {"body": "ground", "at": [0, 0]}, "child": {"body": "bar1"}, "coordinate": "th1", "rate": "w1"}
+  ],
+  "start": {"positions": {"th1": 0.3}},
+  "duration": 10
+}
+`;
+
 /**
  * A place on the mechanism: on which body (-1: the ground), where in its frame, and where in the
  * world.

@@ -48,6 +48,8 @@ const FLAT = "flat";
 export const SHOWN = [...SWITCHES, ...SPACE, FLAT];
 /** Panels that a link may open. */
 export const PANELS = ["lessons", "editor"];
+/** What an error budget shows, the first by itself. */
+export const BUDGETS = ["error", "energy"];
 
 /** A number of a camera: more digits than can be seen. @param {number} x */
 const short = (x) => Number(x.toPrecision(5));
@@ -108,6 +110,7 @@ export function shownOf({ view, scene, speed }) {
     study: view.study,
     map: view.map,
     ...budgetOf(view, scene),
+    budget: view.budget,
     panel: view.panel,
     lesson: view.panel === "lessons" ? view.lesson : "",
   };
@@ -155,6 +158,7 @@ export function showLinked(data, link) {
   if (link.judged && !view.judged) {
     faults.push(`no coordinate is called '${link.judged}'`);
   }
+  view.budget = link.budget;
   view.split = { scene: scene.id, time: link.until, step: link.step };
   view.panel = link.panel;
   if (link.lesson && !lessons.some(({ id }) => id === link.lesson)) {

@@ -62,6 +62,7 @@ function initialView() {
     /** end [s] and step [s] of the motion whose error is split, of this scene; 0: its own
      * @type {{scene: string, time: number, step: number}} */
     split: { scene: "", time: 0, step: 0 },
+    /** what the budget shows, of BUDGETS; "": the first of them */ budget: "",
     letters: true,
     stepped: false,
     /** the recording plays */ replaying: false,

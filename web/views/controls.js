@@ -3,7 +3,7 @@
 // Step size, tolerance and Baumgarte's constants: a slider and a field for each option that some
 // method has.
 import { niceAbove, niceBelow, parseQuantity, plain } from "../state/format.js";
-import { GLOSSARY } from "../state/glossary.js";
+import { GAP_LAW, GLOSSARY } from "../state/glossary.js";
 import { settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { createSliderField } from "../widgets/slider-field.js";
@@ -83,7 +83,8 @@ const CONTROLS = [
 export function createControls(el, store, actions) {
   const data = store.data;
   const list = h("div", { class: "settings" });
-  el.append(list);
+  const law = h("p", { class: "law", hidden: true }, "the gap φ obeys ", h("b", {}, GAP_LAW));
+  el.append(list, law);
   /** @type {Map<string, ReturnType<typeof createSliderField>>} */
   const fields = new Map();
   let scene = "";
@@ -180,6 +181,7 @@ export function createControls(el, store, actions) {
     if (!same || wanted.length !== list.children.length) {
       list.replaceChildren(...wanted);
     }
+    law.hidden = !fields.has("alpha");
   }
 
   function settle() {
@@ -195,6 +197,7 @@ export function createControls(el, store, actions) {
       stop();
       fields.forEach((field) => field.dispose());
       list.remove();
+      law.remove();
     },
   };
 }

@@ -113,7 +113,7 @@ export function createGallery(el, store, actions) {
   }
 
   function makeCards() {
-    for (const { id, title } of data.scenes) {
+    for (const { id, title } of data.scenes.toSorted((a, b) => a.title.localeCompare(b.title))) {
       const picture = h("span", { class: "card-picture" });
       const caption = h("span", { class: "about" });
       const card = h(

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The record of incidents, one line for each method and cause with a count, and what to know about
-// the scene.
+// The record of incidents, one line for each method and cause with a count, the dead points of the
+// selected method, and what to know about the scene.
 import { incidentOf } from "../state/catalogue.js";
 import { groupIncidents, triesOfIncident } from "../state/cards.js";
-import { seconds } from "../state/format.js";
+import { deadPointLines } from "../state/dead-point.js";
+import { plain, seconds } from "../state/format.js";
+import { settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { sentenceCase } from "../state/words.js";
 import { h } from "../widgets/dom.js";
@@ -12,6 +14,7 @@ import { explained } from "../widgets/term.js";
 import { tryButtons } from "../widgets/tries.js";
 
 const REDRAW = 250; // [ms]
+const DEAD_POINTS = 1000; // [ms] all frames are looked through for them
 
 /**
  * @param {HTMLElement} el
@@ -28,8 +31,13 @@ export function createHappening(el, store, actions) {
     about,
   );
   let timer = 0;
+  let later = 0;
+  /** what the dead points that are shown were found in */
+  let searched = "";
+  /** @type {ReturnType<typeof deadPointLines>} */
+  let dead = [];
 
-  /** When, and how often. @param {import("../state/cards.js").Group} group */
+  /** When, and how often. @param {{count: number, first: number, last: number}} line */
   function whenWords({ count, first, last }) {
     const at = seconds(first, data.duration);
     return count > 1 ? `${at} to ${seconds(last, data.duration)}, ${count} times` : at;
@@ -67,6 +75,41 @@ export function createHappening(el, store, actions) {
     );
   }
 
+  /** @param {ReturnType<typeof deadPointLines>[number]} line */
+  function makeDeadPoint(line) {
+    return h(
+      "li",
+      { class: "dead-point", "data-key": `dead point ${line.name}` },
+      h(
+        "details",
+        {},
+        h(
+          "summary",
+          {},
+          h("span", { class: "what" }, `dead point of ${line.name}`),
+          h("span", { class: "number when" }, whenWords(line)),
+          h("span", { class: "why-word" }, "Why?"),
+        ),
+        h("p", { class: "message" }, ...explained(line.words)),
+      ),
+    );
+  }
+
+  /** Looks for dead points in the frames that have come since the last time. */
+  function findDeadPoints() {
+    later = 0;
+    const { history, view, run } = data;
+    const now = `${run} ${view.selected} ${history?.count ?? 0} ${history?.stride}`;
+    if (now !== searched && data.scene && history?.count > 0) {
+      searched = now;
+      const found = deadPointLines(data, view.selected, history.count - 1);
+      if (JSON.stringify(found) !== JSON.stringify(dead)) {
+        dead = found;
+        show();
+      }
+    }
+  }
+
   function show() {
     timer = 0;
     const open = new Set(
@@ -74,21 +117,50 @@ export function createHappening(el, store, actions) {
         .filter((item) => item.querySelector("details")?.open)
         .map(({ dataset }) => dataset.key),
     );
-    const items = groupIncidents(data.incidents).map(makeItem);
+    const items = [...groupIncidents(data.incidents).map(makeItem), ...dead.map(makeDeadPoint)];
     items.forEach((item) => {
       const details = item.querySelector("details");
       if (details && open.has(item.dataset.key)) {
         details.open = true;
       }
     });
+    const { activeElement: focused } = document;
+    const key = list.contains(focused) ? focused?.closest("li")?.dataset.key : undefined;
     list.replaceChildren(...items);
+    items
+      .find((item) => item.dataset.key === key)
+      ?.querySelector("summary")
+      ?.focus();
     none.hidden = items.length > 0;
+  }
+
+  function findDeadPointsLater() {
+    later ||= window.setTimeout(findDeadPoints, DEAD_POINTS);
   }
 
   function showSoon() {
     if (!timer) {
       timer = window.setTimeout(show, REDRAW);
     }
+  }
+
+  /** Texts of a scene tell of its own step: a run at another one is another run. */
+  function stepNote() {
+    const own = data.scene?.step ?? 0;
+    const steps = data.methods.map(({ spelling }) =>
+      Number(settingOf(data.catalogue, spelling, "h")?.value ?? 0),
+    );
+    const other = steps.find((step) => step > 0 && step !== own);
+    return own > 0 && other
+      ? [
+          h(
+            "p",
+            { class: "about" },
+            `The figures in these texts hold for the scene's own step of ${plain(own)} s; ` +
+              `the methods run at ${plain(other)} s now, so theirs differ.`,
+          ),
+        ]
+      : [];
   }
 
   function showNotes() {
@@ -101,22 +173,26 @@ export function createHappening(el, store, actions) {
       ...notes
         .filter(([, text]) => text)
         .flatMap(([title, text]) => [h("h2", {}, String(title)), h("p", {}, String(text))]),
+      ...stepNote(),
     );
   }
 
   const stop = listen(store, {
     methods: () => {
       list.replaceChildren();
+      dead = [];
       show();
       showNotes();
     },
     incident: showSoon,
+    view: findDeadPointsLater,
   });
   return {
-    update() {},
+    update: findDeadPointsLater,
     dispose() {
       stop();
       clearTimeout(timer);
+      clearTimeout(later);
       el.replaceChildren();
     },
   };

@@ -64,6 +64,10 @@ export function createStudies(el, store, actions) {
       }, words),
   });
   const budget = createStudyBudget(store, {
+    show(name) {
+      actions.setView({ budget: name });
+      budget.paint();
+    },
     judged: studies.judged,
     judge(coordinate) {
       actions.setView({ judged: coordinate });

@@ -3,6 +3,7 @@
 // Where the error at the end comes from, and who put energy in: the parts of each method as a bar
 // that adds up, and as numbers.
 import { parseQuantity, plain, quantity, scientific, seconds } from "../state/format.js";
+import { BUDGETS } from "../state/shown.js";
 import { BILL, CAUSES, barsOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
@@ -11,10 +12,12 @@ const DIGITS = 3; // so that the parts add up as they are printed
 const ABSURD = 10; // times the whole: parts that add up to more say nothing
 const LETTERED = 16; // [px] a part at least so long has its letter
 
-const BUDGETS = [
-  { name: "error", word: "position error", order: CAUSES },
-  { name: "energy", word: "energy", order: BILL },
-];
+/** By the names that a link has for them. */
+const SHOWS = BUDGETS.map((name) =>
+  name === "error"
+    ? { name, word: "position error", order: CAUSES }
+    : { name, word: "energy", order: BILL },
+);
 
 /** @param {number | null} value @param {string} unit */
 const numberOf = (value, unit) =>
@@ -34,7 +37,7 @@ const FIELDS = /** @type {const} */ ([
  * @typedef {{time: number, step: number}} Split end and step [s]; 0: the scene's, the methods'
  * @param {import("../state/store.js").Store} store
  * @param {{
- *   judged: () => string, judge: (coordinate: string) => void,
+ *   judged: () => string, judge: (coordinate: string) => void, show: (budget: string) => void,
  *   split: () => Split, setSplit: (change: Partial<Split>) => void,
  * }} actions
  */
@@ -49,20 +52,9 @@ export function createStudyBudget(store, actions) {
   );
   const refused = h("p", { class: "hint", role: "status" });
   const fields = FIELDS.map((field) => makeField(field));
-  let shown = BUDGETS[0];
-  const choices = BUDGETS.map((budget) =>
-    h(
-      "button",
-      {
-        type: "button",
-        class: "quiet",
-        onclick: () => {
-          shown = budget;
-          paint();
-        },
-      },
-      budget.word,
-    ),
+  let shown = SHOWS[0];
+  const choices = SHOWS.map(({ name, word }) =>
+    h("button", { type: "button", class: "quiet", onclick: () => actions.show(name) }, word),
   );
   const about = h("p", { class: "about" });
   const list = h("div", { class: "budgets" });
@@ -284,7 +276,8 @@ export function createStudyBudget(store, actions) {
   }
 
   function paint() {
-    choices.forEach((node, i) => node.setAttribute("aria-pressed", String(BUDGETS[i] === shown)));
+    shown = SHOWS.find(({ name }) => name === data.view.budget) ?? SHOWS[0];
+    choices.forEach((node, i) => node.setAttribute("aria-pressed", String(SHOWS[i] === shown)));
     fillMenu();
     fillFields();
     if (!study()) {

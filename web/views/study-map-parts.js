@@ -10,6 +10,7 @@ import {
   heatRange,
 } from "../state/heat.js";
 import { plain, powerOfTen, prettyUnit, quantity } from "../state/format.js";
+import { GAP_LAW } from "../state/glossary.js";
 import { CLASSES, boundaryOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
@@ -179,7 +180,9 @@ export function fillLegend(legend, map, { heat, here, step, widen }) {
     ...outcomes,
     lineEntry("boundary", `predicted boundary${limitWords}`),
     ...(kind ? [lineEntry("contour", "contours, one for each power of ten")] : []),
-    ...(criticalLine(map) ? [lineEntry("critical", "critical damping, ζ = α/β = 1")] : []),
+    ...(criticalLine(map)
+      ? [lineEntry("critical", `critical damping, ζ = α/β = 1, of ${GAP_LAW}`)]
+      : []),
     ...(here
       ? [
           entry(

@@ -4,7 +4,7 @@
 // same words, not more often than every two seconds; methods that stop are announced at once.
 import { shownIndex, listen } from "../state/store.js";
 import { sentences } from "../state/verdict.js";
-import { seconds } from "../state/format.js";
+import { counted, seconds } from "../state/format.js";
 import { beforeAndAfter, passedAt, predictionAt, stopReason } from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
 import { paintNoMore, paintSoon } from "../widgets/pace.js";
@@ -18,8 +18,11 @@ export function createVerdictBar(el, store) {
   const seen = h("div", { class: "seen", "aria-hidden": "true" });
   const live = h("p", { class: "live hidden", "aria-live": "polite", "aria-atomic": "true" });
   const banner = h("p", { class: "banner hidden", role: "alert" });
-  const changes = h("p", { class: "change", hidden: true });
+  const changed = h("summary", {});
+  const others = h("ul", {});
+  const changes = h("details", { class: "change", hidden: true }, changed, others);
   el.replaceChildren(changes, seen, live, banner);
+  changes.addEventListener("toggle", () => (forgetRoom(), keepRoom()));
   let saidAt = -PAUSE;
   let timer = 0;
   /** [px] of the bar since the methods changed, and the sentences it was last measured for */
@@ -69,6 +72,21 @@ export function createVerdictBar(el, store) {
     document.documentElement.style.removeProperty("--verdict-room");
   }
 
+  /** What a change has changed: of the selected method in a line, of the others under it. */
+  function paintChanges() {
+    const { methods, view } = data;
+    const all = beforeAndAfter(data, shownIndex(data));
+    const own = all.findIndex((one) => one.startsWith(`${methods[view.selected]?.label} until`));
+    const [first] = all.splice(Math.max(0, own), 1);
+    const more = all.length > 0 ? ` (and ${counted(all.length, "method")} more)` : "";
+    changes.hidden = first === undefined;
+    say(changed, first === undefined ? "" : `${first}${more}`);
+    if (others.dataset.text !== all.join("\n")) {
+      others.dataset.text = all.join("\n");
+      others.replaceChildren(...all.map((text) => h("li", {}, text)));
+    }
+  }
+
   function paint() {
     const list = present();
     const key = list.map(({ text, tone }) => tone + text).join("\n");
@@ -79,8 +97,7 @@ export function createVerdictBar(el, store) {
       );
     }
     say(banner, failures().join("; "));
-    say(changes, beforeAndAfter(data, shownIndex(data)).join("; "));
-    changes.hidden = changes.textContent === "";
+    paintChanges();
     const all = changes.textContent + key;
     if (all !== roomFor) {
       roomFor = all;

@@ -2,6 +2,7 @@
 // @ts-check
 // The mechanism: supports once, one ghost per method, the selected method opaque and on top, with
 // the buttons that say what else is drawn.
+import { glyphWords } from "../../state/glyphs.js";
 import { lookOf } from "../../state/look.js";
 import { listen, shownIndex } from "../../state/store.js";
 import { h, s, say, set } from "../../widgets/dom.js";
@@ -11,7 +12,7 @@ import { createHand } from "./hand.js";
 import { createHandles } from "./handles.js";
 import { createLengths } from "./lengths.js";
 import { createLight } from "./light.js";
-import { createMarks } from "./marks.js";
+import { createMarks, namedPoints } from "./marks.js";
 import { createMotion } from "./motion.js";
 import { createNotices } from "./notices.js";
 import { createStage } from "./stage.js";
@@ -66,9 +67,10 @@ export function createDrawing(el, store, actions) {
     "describe",
   );
   const caption = h("p", { class: "caption" });
-  const tools = h("div", { class: "undo-tools" }, lengths.button, ...hand.tools);
+  const tools = h("div", { class: "undo-tools" }, ...lengths.tools, ...hand.tools);
   const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note, tools);
   const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
+  const glyphs = h("p", { class: "glyphs" });
   const demonstrations = h(
     "div",
     { class: "demonstrations" },
@@ -87,7 +89,7 @@ export function createDrawing(el, store, actions) {
     h("div", { class: "over" }, caption, demonstrations),
     frame,
     notices.title,
-    h("div", { class: "under" }, choices),
+    h("div", { class: "under" }, choices, glyphs),
     notices.spoken,
   );
 
@@ -129,6 +131,7 @@ export function createDrawing(el, store, actions) {
   function fit() {
     stage.fit();
     depth.fit(stage.foot);
+    say(glyphs, stage.camera3 ? glyphWords(data.scene) : "");
     refit();
   }
 
@@ -143,6 +146,11 @@ export function createDrawing(el, store, actions) {
   function makeGhosts() {
     say(caption, data.scene?.caption ?? "");
     demonstrations.hidden = !(data.scene?.m > 0);
+    const nameless = data.scene && namedPoints(data.scene).length === 0;
+    set(toggles.labels, {
+      "aria-disabled": nameless ? "true" : null,
+      title: nameless ? "this scene has too many joints to name, or none with a name" : null,
+    });
     if (data.scene) {
       ghosts.make();
       depth.make();

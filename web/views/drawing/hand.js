@@ -71,6 +71,11 @@ export function createHand(layer, data, stage, actions) {
     "forget the pulls",
   );
   panel.append(points, hand);
+  const legend = h(
+    "span",
+    { class: "tool-hint", hidden: true },
+    "zigzag: the hand's spring; arrow: force of spring and damper",
+  );
 
   /** @param {boolean} on */
   function open(on) {
@@ -146,12 +151,13 @@ export function createHand(layer, data, stage, actions) {
     );
 
   return {
-    tools: [button, panel, forget],
+    tools: [button, panel, forget, legend],
     /** @param {number} now index of the frame shown */
     draw(now) {
       listPoints();
       forget.hidden = !data.pulled;
       const pull = data.history.pullAt(now);
+      legend.hidden = !pull;
       if (!pull) {
         layer.replaceChildren();
         newton = 0;

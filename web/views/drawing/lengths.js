@@ -34,6 +34,7 @@ export function createLengths(layer, data, stage, actions) {
     },
     "↔ lengths",
   );
+  const hint = h("span", { class: "tool-hint", role: "status" });
 
   const pointsNow = () => {
     const i = shownIndex(data);
@@ -107,6 +108,12 @@ export function createLengths(layer, data, stage, actions) {
     madeFor = key;
     const found = await lengthsOf(data, (parameters) => actions.pointsWith(parameters));
     if (madeFor === key) {
+      say(
+        hint,
+        found.length
+          ? "drag a square along its bar"
+          : "no bar of this scene has a length of its own to change",
+      );
       handles = found.map(makeHandle);
       layer.replaceChildren(...handles.map(({ node }) => node));
       draw();
@@ -120,6 +127,7 @@ export function createLengths(layer, data, stage, actions) {
       hidden: data.scene?.view?.spatial ?? false,
     });
     layer.style.display = on && data.state !== "running" ? "" : "none";
+    hint.hidden = !on;
     const points = pointsNow();
     if (!on || !points || !stage.pen) {
       return;
@@ -133,5 +141,5 @@ export function createLengths(layer, data, stage, actions) {
     }
   }
 
-  return { button, draw };
+  return { tools: [button, hint], draw };
 }

@@ -12,6 +12,19 @@ const SHORTEST_ARROW = 3; // [px]
 const RING = 14; // [px] radius of the ring round a cut joint
 const ROOM = 8; // [px] that names keep from an arrow
 
+const MOST_CUTS = 12; // whose names a drawing has room for
+
+/**
+ * Points with a name; where no joint has one, since there are many, the cut joints with theirs.
+ * @param {import("../../state/types.js").Scene} scene
+ * @returns {{i: number, text: string}[]}
+ */
+export function namedPoints({ drawing: { labels, tears } }) {
+  const named = labels.flatMap((text, i) => (text ? [{ i, text }] : []));
+  const cuts = tears.length > MOST_CUTS ? [] : tears;
+  return named.length ? named : cuts.map(({ p, name }) => ({ i: p, text: name }));
+}
+
 /**
  * @param {{tears: SVGElement, arrows: SVGElement, labels: SVGElement, traces: SVGElement}} layers
  * @param {import("../../state/store.js").Data} data
@@ -47,10 +60,9 @@ export function createMarks(layers, data, stage) {
     if (!data.view.labels) {
       return;
     }
-    const named = data.scene.drawing.labels.flatMap((text, i) => {
-      const at = stage.camera.point(points, i);
-      return text && Number.isFinite(at[0]) ? [{ i, text, at }] : [];
-    });
+    const named = namedPoints(data.scene)
+      .map(({ i, text }) => ({ i, text, at: stage.camera.point(points, i) }))
+      .filter(({ at }) => Number.isFinite(at[0]));
     const obstacles = named.length ? [...stage.pen.obstacles(points), ...arrows] : [];
     const placed = stage.places.place(named, obstacles);
     placed.forEach(({ text, x, y }, k) => {

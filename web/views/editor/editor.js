@@ -6,7 +6,7 @@ import { Problem, sentenceOf } from "../../api/client.js";
 import { documents } from "../../api/documents.js";
 import { offersAt } from "../../state/completion.js";
 import { caretIn, lineOf, parseText, placeOf, placesOf } from "../../state/json-text.js";
-import { writeScene } from "../../state/scene-parts.js";
+import { NEW_SCENE, writeScene } from "../../state/scene-parts.js";
 import { listen, madeOf } from "../../state/store.js";
 import { counted } from "../../state/format.js";
 import { h, say, set } from "../../widgets/dom.js";
@@ -16,23 +16,9 @@ import { createEditorTools } from "./tools.js";
 
 const PAUSE = 450; // [ms] after the last key before the server is asked
 const MOST_UNDONE = 100;
+const LINE = 20; // [px] the height of a line of the document
+const LINES_ABOVE = 5; // a line that is to be seen
 const MODELS = /\.(xml|urdf|mjcf)$/i;
-const NEW_SCENE = `{
-  "holonom": 1,
-  "name": "mine",
-  "title": "My mechanism",
-  "parameters": {},
-  "gravity": [0, -9.81],
-  "bodies": [
-    {"name": "bar1", "mass": 1, "com": [0.5, 0], "inertia": {"zz": 0.0833}, "draw": [{"bar": [[0, 0], [1, 0]]}]}
-  ],
-  "joints": [
-    {"name": "P1", "type": "revolute", "parent": {"body": "ground", "at": [0, 0]}, "child": {"body": "bar1"}, "coordinate": "th1", "rate": "w1"}
-  ],
-  "start": {"positions": {"th1": 0.3}},
-  "duration": 10
-}
-`;
 
 /**
  * @param {HTMLElement} el
@@ -130,7 +116,7 @@ export function createEditor(el, store, actions, drawing) {
         const go = () => {
           field.focus();
           field.setSelectionRange(offset, offset);
-          field.scrollTop = Math.max(0, (line - 5) * 20);
+          scrollTo(line);
         };
         return h(
           "li",
@@ -235,13 +221,19 @@ export function createEditor(el, store, actions, drawing) {
     offers.close();
   }
 
-  /** @param {string} text */
-  function put(text) {
+  /** @param {number} line counted from 1 */
+  function scrollTo(line) {
+    field.scrollTop = Math.max(0, (line - LINES_ABOVE) * LINE);
+    gutter.scrollTop = field.scrollTop;
+  }
+
+  /** @param {string} text @param {number} [line] that is to be seen */
+  function put(text, line = 1) {
     before.push({ text: field.value, ran: madeOf(data) });
     before.splice(0, before.length - MOST_UNDONE);
     field.value = text;
-    field.scrollTop = 0;
     showLines();
+    scrollTo(line);
     return run();
   }
 
@@ -270,7 +262,9 @@ export function createEditor(el, store, actions, drawing) {
       return;
     }
     try {
-      put(`${writeScene(make(value))}\n`);
+      const text = `${writeScene(make(value))}\n`;
+      const old = writeScene(value).split("\n");
+      put(text, 1 + text.split("\n").findIndex((line, i) => line !== old[i]));
     } catch (error) {
       say(state, `this document repeats parts: write the new one by hand (${sentenceOf(error)})`);
     }

@@ -61,8 +61,9 @@ export function createEditorTools(data, { stage, frame, overlay }, { change, tel
     );
     frame.classList.toggle("builds", name !== "");
     if (name) {
+      const late = data.state === "running" || shownIndex(data) > 0;
       begin();
-      tell(TOOLS[name]);
+      tell(late ? `the motion is shown at its start again; ${TOOLS[name]}` : TOOLS[name]);
     }
   }
 
