@@ -110,6 +110,7 @@ test("the gallery draws every scene, filters, and opens the chosen one", async (
 async function edit(page) {
   await page.getByRole("button", { name: "edit", exact: true }).click();
   await page.waitForFunction(() => document.querySelector("#editor-text")?.value.length > 100);
+  await page.waitForFunction(() => document.querySelector("#editor-text").scrollTop === 0);
 }
 const says = (page, text) =>
   page.waitForFunction(

@@ -147,7 +147,7 @@ draw(0);
 
 const STYLE = `:root{color-scheme:light dark}body{margin:0 auto;padding:16px;max-width:960px;font:15px/1.45 system-ui,sans-serif}
 h1{font-size:20px;margin:0 0 4px}p{margin:0 0 8px}
-svg{display:block;width:100%;height:auto}.drawing{max-height:56vh}
+svg{display:block;width:100%;height:auto}.drawing{max-height:42vh}.gap{max-height:24vh}
 .row{display:flex;gap:12px;align-items:center;margin:8px 0}.row input[type=range]{flex:1}
 button{min-width:88px;min-height:36px;font:inherit}ul{list-style:none;margin:8px 0;padding:0}
 li{display:flex;gap:8px;align-items:center}li .line{flex:none;width:36px;height:4px}

@@ -389,6 +389,7 @@ export function createEditor(el, store, actions, drawing) {
       await fill();
       field.focus();
       field.setSelectionRange(0, 0);
+      scrollTo(1);
     },
   };
 }
