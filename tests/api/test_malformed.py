@@ -280,6 +280,26 @@ class Malformed(driver.ServerCase):
                 self.assertIn(header, head.split(b"\r\n"))
                 self.assertEqual(json.loads(body)["status"], status)
 
+    def test_a_body_that_is_sent_to_a_file_of_the_page_is_read_or_refused(self):
+        """One that was longer than is read ended the server."""
+
+        def ask(method, path, size, chunked, headers=()):
+            connection = self.server.connect()
+            piece = b" " * (1 << 20)
+            body = (piece[:min(size - at, len(piece))] for at in range(0, size, len(piece)))
+            connection.request(method, path, body=body, encode_chunked=chunked, headers={**dict(headers), **({} if chunked else {"Content-Length": str(size)})})
+            answer = driver.Answer(connection.getresponse())
+            connection.close()
+            return answer
+
+        for method, path, status in (("GET", "/", 200), ("GET", "/index.html", 200), ("GET", "/api", 308), ("OPTIONS", "/", 204)):
+            for headers in ({}, {"Accept-Encoding": "gzip"}):
+                for chunked in (False, True):
+                    with self.subTest(method=method, path=path, chunked=chunked, headers=headers):
+                        self.assertEqual(ask(method, path, 3 << 20, chunked, headers).status, status)
+                        document = self.assert_problem(ask(method, path, 9 << 20, chunked, headers), 413, "too-large")
+                        self.assertIn("takes no body", document["detail"])
+
     def test_a_client_that_sends_much_reads_why_it_was_refused(self):
         """http.client sends the whole body before it reads: a connection that is closed meanwhile would break its pipe."""
         length, piece = 50 << 20, b" " * (1 << 20)

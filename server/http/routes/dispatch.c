@@ -109,10 +109,15 @@ static void check_head(hn_request *r, const char *method) {
     }
 }
 
-/// Whether the rest of the body is not worth reading, or has an end that nobody knows: in chunks.
+static bool is_refused(const hn_request *r) {
+    return r->status >= MHD_HTTP_BAD_REQUEST;
+}
+
+/// Whether the rest of the body is not worth reading: it is long, or it is that of a refused
+/// request and comes in chunks, so that nobody knows its end.
 static bool is_too_long_to_drain(const hn_request *r) {
     long long length = 0;
-    if (hn_request_header(r, "Transfer-Encoding")) {
+    if (is_refused(r) && hn_request_header(r, "Transfer-Encoding")) {
         return true;
     }
     const char *text = hn_request_header(r, "Content-Length");
@@ -120,7 +125,20 @@ static bool is_too_long_to_drain(const hn_request *r) {
            r->body_dropped > MAX_DRAINED;
 }
 
+/// A refusal in place of the reply that is there: a file of the page, or where else to look.
+static void refuse_body(hn_request *r) {
+    if (r->response) {
+        MHD_destroy_response(r->response);
+        r->response = NULL;
+    }
+    r->n_headers = 0;
+    hn_reply_problem(r, HN_PROBLEM_TOO_LARGE, NULL, "this address takes no body");
+}
+
 static void answer_and_drain(hn_dispatch *d, hn_request *r) {
+    if (!is_refused(r)) {
+        refuse_body(r);
+    }
     hn_connection_is_answered(d->connections, r->watch);
     hn_answer_early(r);
     r->drain_until = hn_clock_wall() + DRAIN_SECONDS;
@@ -133,7 +151,7 @@ static void take_body(hn_request *r, const char *data, size_t n) {
     if (r->stage != HN_STAGE_BODY || !r->route->fields) {
         r->body_dropped += n;
         if (r->stage == HN_STAGE_BODY && r->body_dropped > MAX_DRAINED) {
-            hn_reply_problem(r, HN_PROBLEM_TOO_LARGE, NULL, "this address takes no body");
+            refuse_body(r);
         }
         return;
     }
