@@ -65,6 +65,13 @@ def failed_commands(page):
     return faults
 
 
+def rooms_left_out():
+    """Rooms of core/ that the picture in core/README.md does not name."""
+    picture = re.search(r"^## Layers and rooms.*?^\|", read("core/README.md"), re.M | re.S).group()
+    rooms = [f.rstrip("/").split("/")[-1] for f in glob.glob("core/*/*/") if glob.glob(f + "*.h")]
+    return [room for room in rooms if not re.search(rf"\b{room}\b", picture)]
+
+
 def main():
     lines = len(read("README.md").splitlines())
     results = [("README.md has at most 110 lines", [] if lines <= MOST_LINES else [f"{lines} lines"])]
@@ -73,6 +80,7 @@ def main():
         results.append((f"{page}: the paths it names are there", dead_paths(page)))
         if commands(page):
             results.append((f"{page}: its commands run", failed_commands(page)))
+    results.append(("core/README.md: its picture names every room", rooms_left_out()))
     none = [p for p in ("README.md", "core/session/README.md", "core/import/README.md", "lessons/README.md") if not commands(p)]
     results.append(("the pages have commands to run", none))
     for n, (name, faults) in enumerate(results, 1):
