@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "expr/parse.h"
 
+#include "base/suggest.h"
 #include "expr/construct.h"
 
 #include <ctype.h>
@@ -163,12 +164,10 @@ static hn_ex unknown_function(parser *p, size_t at, const char *name) {
         }
     }
     names[n++] = "hypot";
-    const char *near = hn_nearest_name(name, names, n);
-    char hint[HN_DIAG_HINT] =
-        "functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, abs and their like";
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    char hint[HN_DIAG_HINT];
+    hn_suggest(hint, name, names, n,
+               "functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, abs and "
+               "their like");
     return fail(p, at, hint, "there is no function '%.60s'", name);
 }
 

@@ -7,6 +7,7 @@
 // joints of the model, each with a number, or a list for a joint of several coordinates.
 #include "import/loops.h"
 
+#include "base/suggest.h"
 #include "base/json_text.h"
 
 #include <cjson/cJSON.h>
@@ -147,9 +148,9 @@ static bool read_document(hn_build *b, const cJSON *root) {
             known |= strcmp(c->string, fields[k]) == 0;
         }
         if (!known) {
-            const char *near = hn_nearest_name(c->string, fields, N_FIELDS);
+            char hint[HN_DIAG_HINT];
             return fault(b, hn_im_text(b, "/%.60s", c->string),
-                         near ? hn_im_text(b, "did you mean '%s'?", near) : NULL, "unknown field");
+                         hn_suggest(hint, c->string, fields, N_FIELDS, NULL), "unknown field");
         }
     }
 

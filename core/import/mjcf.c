@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/mjcf.h"
 
+#include "base/suggest.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -17,9 +19,8 @@ static int one_of(hn_mj *m, const xmlNode *node, const char *attribute, const ch
         }
     }
     if (text) {
-        const char *near = hn_nearest_name(text, words, n);
-        hn_im_fault(m->b, node, attribute,
-                    near ? hn_im_text(m->b, "did you mean '%s'?", near) : NULL,
+        char hint[HN_DIAG_HINT];
+        hn_im_fault(m->b, node, attribute, hn_suggest(hint, text, words, n, NULL),
                     "'%.40s' is not among the words allowed here", text);
     }
     return otherwise;

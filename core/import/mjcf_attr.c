@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Attributes of MJCF elements: defaults by class, angles, orientations in five spellings.
+#include "base/suggest.h"
 #include "import/mjcf.h"
 
 #include "linalg/small3.h"
@@ -92,9 +93,8 @@ const xmlNode *hn_mj_class(hn_mj *m, const xmlNode *node, const char *attribute,
         for (int i = 0; i < n; i++) {
             names[i] = class_name(m, m->classes[i]);
         }
-        const char *near = hn_nearest_name(name, names, n);
-        *ok = hn_im_fault(m->b, node, attribute,
-                          near ? hn_im_text(m->b, "did you mean '%s'?", near) : NULL,
+        char hint[HN_DIAG_HINT];
+        *ok = hn_im_fault(m->b, node, attribute, hn_suggest(hint, name, names, n, NULL),
                           "there is no default class '%.60s'", name);
     }
     return cls;

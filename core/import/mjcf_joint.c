@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Joints of MJCF: they act one after the other, the first next to the parent, with a body without
 // mass between two of them.
+#include "base/suggest.h"
 #include "import/mjcf.h"
 
 #include "linalg/small3.h"
@@ -38,10 +39,9 @@ static bool read_type(hn_mj *m, const hn_mj_element *e, hn_joint_type *type) {
             return true;
         }
     }
-    const char *near = hn_nearest_name(word, names, N_TYPES);
+    char hint[HN_DIAG_HINT];
     return hn_im_fault(m->b, e->node, "type",
-                       near ? hn_im_text(m->b, "did you mean '%s'?", near)
-                            : "hinge, slide, ball or free",
+                       hn_suggest(hint, word, names, N_TYPES, "hinge, slide, ball or free"),
                        "unknown joint type '%.40s'", word);
 }
 

@@ -3,6 +3,7 @@
 // wiki (urdf/XML).
 #include "import/urdf.h"
 
+#include "base/suggest.h"
 #include "import/xml.h"
 
 #include "linalg/small3.h"
@@ -173,8 +174,8 @@ static int read_type(urdf *u, const xmlNode *node) {
         }
     }
     if (word) {
-        const char *near = hn_nearest_name(word, names, N_TYPES);
-        hn_im_fault(u->b, node, "type", near ? hn_im_text(u->b, "did you mean '%s'?", near) : NULL,
+        char hint[HN_DIAG_HINT];
+        hn_im_fault(u->b, node, "type", hn_suggest(hint, word, names, N_TYPES, NULL),
                     "unknown joint type '%.40s'", word);
     }
     return -1;

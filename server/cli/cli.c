@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/cli.h"
 
+#include "base/suggest.h"
 #include "build.h"
 #include "cli/command_table.h"
 #include "cli/completion.h"
@@ -112,10 +113,8 @@ static hn_diag unknown_command(const char *name) {
     for (int i = 0; i < n; i++) {
         names[i] = hn_command_at(i)->name;
     }
-    const char *near = hn_nearest_name(name, names, n);
     char hint[HN_DIAG_HINT];
-    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help%s' lists the commands",
-             near ? near : "");
+    hn_suggest(hint, name, names, n, "'holonom help' lists the commands");
     hn_diag diag;
     hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "there is no command '%.60s'", name);
     return diag;

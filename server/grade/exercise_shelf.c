@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/exercise_shelf.h"
 
+#include "base/suggest.h"
 #include "grade/exam.h"
 #include "grade/parts/part_model.h"
 #include "grade/variant.h"
@@ -29,10 +30,8 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
     for (int i = 0; i < n; i++) {
         names[i] = hn_library_problem_id(lib, i);
     }
-    const char *near = hn_nearest_name(id, names, n);
     char hint[HN_DIAG_HINT];
-    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom list problems'%s",
-             near ? near : " names them all");
+    hn_suggest(hint, id, names, n, "'holonom list problems' names them all");
     return hn_diags_add(diags, HN_ERR_INPUT, "/problem", hint, "there is no problem '%.80s'", id);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/rubric.h"
 
+#include "base/suggest.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
@@ -113,12 +114,11 @@ static hn_status check_visibilities(const hn_rubric *r, hn_diags *diags) {
             known |= strcmp(word, VISIBILITIES[i]) == 0;
         }
         if (!known) {
-            const char *near = word ? hn_nearest_name(word, VISIBILITIES, N_VISIBILITIES) : NULL;
-            status =
-                hn_rubric_fault(r, diags, "visibility", m->string,
-                                near ? near : "visible, hidden, after_due_date or after_published",
-                                "the visibility of part %.40s is no word of Gradescope's",
-                                m->string ? m->string : "");
+            char hint[HN_DIAG_HINT];
+            hn_suggest_or_list(hint, word ? word : "", VISIBILITIES, N_VISIBILITIES, "one of: ");
+            status = hn_rubric_fault(r, diags, "visibility", m->string, hint,
+                                     "the visibility of part %.40s is no word of Gradescope's",
+                                     m->string ? m->string : "");
         }
     }
     return status;
@@ -243,9 +243,11 @@ static hn_status check_fields(hn_rubric *r, hn_diags *diags) {
             k++;
         }
         if (k == N_FIELDS) {
-            status = hn_rubric_fault(r, diags, m->string, NULL,
-                                     hn_nearest_name(m->string, FIELDS, N_FIELDS),
-                                     "a rubric has no field '%.40s'", m->string);
+            char hint[HN_DIAG_HINT];
+            status =
+                hn_rubric_fault(r, diags, m->string, NULL,
+                                hn_suggest_or_list(hint, m->string, FIELDS, N_FIELDS, "fields: "),
+                                "a rubric has no field '%.40s'", m->string);
         }
     }
     r->exercise = cJSON_GetStringValue(hn_rubric_section(r, "exercise"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/verdict_forms.h"
 
+#include "base/suggest.h"
 #include "grade/verdict_platforms.h"
 #include "grade/verdict_reports.h"
 
@@ -74,11 +75,9 @@ hn_status hn_verdict_form_find(const char *name, const hn_verdict_form **out, hn
             return HN_OK;
         }
     }
-    const char *near = hn_nearest_name(name, names, N_FORMS);
+    char hint[HN_DIAG_HINT];
     return hn_diag_set(diag, HN_ERR_INPUT, NULL,
-                       near ? near
-                            : "text, json, gradescope, prairielearn, autolab, coderunner, "
-                              "lti-score, junit, csv or html",
+                       hn_suggest_or_list(hint, name, names, N_FORMS, "one of: "),
                        "'%.40s' is not a form of verdicts", name);
 }
 

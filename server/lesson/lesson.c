@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lesson/lesson.h"
 
+#include "base/suggest.h"
 #include "base/file.h"
 #include "lesson/markdown.h"
 #include "session/model/lists.h"
@@ -250,13 +251,8 @@ static const char *find_id(const cJSON *list, const char *word, hn_diags *diags)
     }
 
     // what to try instead
-    const char *near = hn_nearest_name(word, ids, n);
     char hint[HN_DIAG_HINT];
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    } else {
-        snprintf(hint, sizeof hint, "'holonom lessons' lists all %d", n);
-    }
+    hn_suggest(hint, word, ids, n, "'holonom lessons' lists them all");
     hn_diags_add(diags, HN_ERR_INPUT, "/lesson", hint, "there is no lesson '%.60s'", word);
     return NULL;
 }

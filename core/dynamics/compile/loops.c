@@ -45,8 +45,9 @@ static int count_open(const hn_reach *end) {
 }
 
 /// The rows of a type, in their order. Places: 3 along the loop's own axes, or where the joint lets
-/// the halves move apart, along axes of the joint (bits: 1 x, 2 y, 4 z). Turns: the pairs that stay
-/// perpendicular.
+/// the halves move apart, along axes of the joint (bits: 1 x, 2 y, 4 z), taken on the half that
+/// turns less: both halves must share the directions that these bits name. Turns: the pairs that
+/// stay perpendicular.
 enum { TURN = 1, TILT_1 = 2, TILT_2 = 4, CROSS = 8 };
 typedef struct closing {
     int all_places, along, turns;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/option.h"
 
+#include "base/suggest.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
@@ -45,17 +47,14 @@ static hn_status find_choice(const hn_option *option, const char *word, double *
             return HN_OK;
         }
     }
-    char list[160] = "", hint[96] = "";
+    char list[160] = "", hint[HN_DIAG_HINT];
     size_t n = 0;
     for (int i = 0; i < option->n_choices && n < sizeof list; i++) {
         const int wrote =
             snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", option->choices[i]);
         n += wrote > 0 ? (size_t)wrote : 0;
     }
-    const char *near = hn_nearest_name(word, option->choices, option->n_choices);
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    hn_suggest(hint, word, option->choices, option->n_choices, NULL);
     return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s = '%s' is not one of: %s", option->key,
                        word, list);
 }

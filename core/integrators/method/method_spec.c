@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/method/method_spec.h"
+#include "base/suggest.h"
 #include "integrators/list/stepper_list.h"
 #include "integrators/method/guest.h"
 #include "formulations/list/formulation_list.h"
@@ -52,11 +53,8 @@ static size_t find_char(piece p, char c) {
 
 static hn_status unknown_name(hn_diag *diag, piece p, const char *what, const char *word,
                               const char *const *names, int n) {
-    char hint[128] = "";
-    const char *near = hn_nearest_name(word, names, n);
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    char hint[HN_DIAG_HINT];
+    hn_suggest(hint, word, names, n, NULL);
     char list[HN_DIAG_MESSAGE - 128] = ""; // the rest of the message is shorter
     size_t used = 0;
     for (int i = 0; i < n; i++) {

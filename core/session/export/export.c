@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/export.h"
 
+#include "base/suggest.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "dynamics/compile/compile.h"
@@ -25,18 +26,16 @@ static hn_status choose_language(hn_exporter *e, const char *name, hn_diags *dia
     int n;
     const hn_language *all = hn_languages(&n);
     const char *names[32];
-    char hint[HN_DIAG_HINT] = "";
+    char hint[HN_DIAG_HINT];
     e->language = hn_language_find(name);
     if (e->language) {
         return HN_OK;
     }
     for (int i = 0; i < n && i < 32; i++) {
         names[i] = all[i].name;
-        const size_t at = strlen(hint);
-        snprintf(hint + at, sizeof hint - at, "%s%s", i ? ", " : "", names[i]);
     }
-    const char *near = hn_nearest_name(name, names, n);
-    return hn_diags_add(diags, HN_ERR_INPUT, "/language", near ? near : hint,
+    hn_suggest_or_list(hint, name, names, n, "");
+    return hn_diags_add(diags, HN_ERR_INPUT, "/language", hint,
                         "'%.40s' is not a language of export", name);
 }
 
@@ -59,13 +58,9 @@ static hn_status choose_solver(hn_exporter *e, const char *name, hn_diags *diags
     }
 
     // the nearest, or all of them
-    char hint[HN_DIAG_HINT] = "";
-    for (int i = 0; i < n; i++) {
-        const size_t at = strlen(hint);
-        snprintf(hint + at, sizeof hint - at, "%s%s", i ? ", " : "", names[i]);
-    }
-    const char *near = hn_nearest_name(name, names, n);
-    return hn_diags_add(diags, HN_ERR_INPUT, "/solver", near ? near : hint,
+    char hint[HN_DIAG_HINT];
+    hn_suggest_or_list(hint, name, names, n, "");
+    return hn_diags_add(diags, HN_ERR_INPUT, "/solver", hint,
                         "'%.40s' is not a solver of programs in %s", name, e->language->name);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_read.h"
 
+#include "base/suggest.h"
 #include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_measure.h"
 #include "session/extreme/extreme_quantity.h"
@@ -61,12 +62,9 @@ static const hn_extreme_scene *find_scene(hn_xr *r, const char *key, const char 
 
     // suggest the nearest name for an unknown one
     if (!hn_library_scene_path(r->lib, name)) {
-        const char *near =
-            hn_nearest_name(name, hn_library_scene_ids(r->lib), hn_library_n_scenes(r->lib));
-        char hint[HN_DIAG_HINT] = "'holonom list scenes' names them";
-        if (near) {
-            snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-        }
+        char hint[HN_DIAG_HINT];
+        hn_suggest(hint, name, hn_library_scene_ids(r->lib), hn_library_n_scenes(r->lib),
+                   "'holonom list scenes' names them");
         hn_xr_fault(r, key, hint, "neither this file nor the lessons have a scene '%.60s'", name);
     }
     return scene;

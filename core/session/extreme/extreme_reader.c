@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_reader.h"
+#include "base/suggest.h"
 #include "session/extreme/extreme_model.h"
 
 #include <stdarg.h>
@@ -43,17 +44,7 @@ static int count(const char *const *names) {
 
 /// "did you mean 'x'?", or the list of what there is.
 void hn_xr_suggest(char hint[HN_DIAG_HINT], const char *word, const char *const *names, int n) {
-    const char *near = hn_nearest_name(word, names, n);
-    size_t used = 0;
-    if (near) {
-        snprintf(hint, HN_DIAG_HINT, "did you mean '%s'?", near);
-        return;
-    }
-    for (int i = 0; i < n && used < HN_DIAG_HINT - 1; i++) {
-        const int more =
-            snprintf(hint + used, HN_DIAG_HINT - used, "%s%s", i ? ", " : "there is ", names[i]);
-        used += more > 0 ? (size_t)more : 0;
-    }
+    hn_suggest_or_list(hint, word, names, n, "there is ");
 }
 
 /// Checks that `node` is an object and reports fields that are unknown or given twice.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/face/holonom.h"
 
+#include "base/suggest.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "integrators/method/method_spec.h"
@@ -143,9 +144,10 @@ static hn_status find_scene(holonom_mechanism *m, const char *scene, const char 
     if (*path) {
         return HN_OK;
     }
-    const char *near =
-        hn_nearest_name(scene, hn_library_scene_ids(m->library), hn_library_n_scenes(m->library));
-    return hn_diags_add(diags, HN_ERR_INPUT, "/scene", near, "no shipped scene is called '%.80s'",
+    char hint[HN_DIAG_HINT];
+    hn_suggest(hint, scene, hn_library_scene_ids(m->library), hn_library_n_scenes(m->library),
+               NULL);
+    return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint, "no shipped scene is called '%.80s'",
                         scene);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/job/field.h"
 
+#include "base/suggest.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -134,17 +136,13 @@ static bool has_type(const cJSON *value, const hn_field *f) {
 static hn_status check_choice(const char *text, const hn_field *f, const char *pointer,
                               hn_diags *diags) {
     int n = 0;
-    char offered[HN_DIAG_HINT] = "";
     for (; f->choices[n]; n++) {
         if (strcmp(f->choices[n], text) == 0) {
             return HN_OK;
         }
-        size_t used = strlen(offered);
-        snprintf(offered + used, sizeof offered - used, "%s%s", n ? ", " : "", f->choices[n]);
     }
-    const char *near = hn_nearest_name(text, f->choices, n);
     char hint[HN_DIAG_HINT];
-    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "one of: %s", near ? near : offered);
+    hn_suggest_or_list(hint, text, f->choices, n, "one of: ");
     return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "'%.60s' is not offered for '%s'", text,
                         f->name);
 }
@@ -242,16 +240,11 @@ static hn_status report_unknown(const char *name, const hn_field *fields, const 
     const char *names[MAX_FIELDS];
     int n = count_fields(fields);
     HN_ASSERT(n <= MAX_FIELDS);
-    char hint[HN_DIAG_HINT] = "fields: ";
     for (int i = 0; i < n; i++) {
         names[i] = fields[i].name;
-        size_t used = strlen(hint);
-        snprintf(hint + used, sizeof hint - used, "%s%s", i ? ", " : "", names[i]);
     }
-    const char *near = hn_nearest_name(name, names, n);
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    char hint[HN_DIAG_HINT];
+    hn_suggest_or_list(hint, name, names, n, "fields: ");
     return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "there is no field '%.60s' here", name);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/model.h"
 
+#include "base/suggest.h"
 #include "base/units.h"
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
@@ -38,12 +39,9 @@ static hn_status load_shipped(const hn_library *lib, const hn_model_source *sour
                               hn_scene **scene, hn_diags *diags) {
     const char *path = hn_library_scene_path(lib, source->name);
     if (!path) {
-        const char *near =
-            hn_nearest_name(source->name, hn_library_scene_ids(lib), hn_library_n_scenes(lib));
         char hint[HN_DIAG_HINT];
-        snprintf(hint, sizeof hint,
-                 near ? "did you mean '%s'?" : "'holonom list scenes' names them all%s",
-                 near ? near : "");
+        hn_suggest(hint, source->name, hn_library_scene_ids(lib), hn_library_n_scenes(lib),
+                   "'holonom list scenes' names them all");
         return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint,
                             "no shipped scene is called '%.80s'", source->name);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/state.h"
 
+#include "base/suggest.h"
 #include "dynamics/compile/coordinates.h"
 #include "session/model/model.h"
 
@@ -25,11 +26,8 @@ static hn_status unknown_entry(const hn_model *model, const char *name, int n, h
         names[2 * i] = user_coordinate(model, i)->name;
         names[2 * i + 1] = user_coordinate(model, i)->rate;
     }
-    const char *near = hn_nearest_name(name, names, 2 * told);
-    char hint[HN_DIAG_HINT] = "name a coordinate or a rate of the scene", pointer[HN_DIAG_POINTER];
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%.80s'?", near);
-    }
+    char hint[HN_DIAG_HINT], pointer[HN_DIAG_POINTER];
+    hn_suggest(hint, name, names, 2 * told, "name a coordinate or a rate of the scene");
     snprintf(pointer, sizeof pointer, "/state/%.80s", name);
     return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint,
                         "the scene has no free coordinate or rate '%.80s'", name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/run/run.h"
 
+#include "base/suggest.h"
 #include "formulations/ground/flops.h"
 #include "study/incidents/chart.h"
 #include "study/incidents/energy.h"
@@ -406,7 +407,7 @@ void hn_run_loads_changed(hn_run *run, double t) {
 static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) {
     const hn_method_spec *spec = hn_run_spec(run);
     const char *keys[2 * HN_MAX_OPTIONS];
-    char hint[64] = "";
+    char hint[HN_DIAG_HINT];
     int n = 0;
     for (int i = 0; i < spec->formulation->n_options; i++) {
         keys[n++] = spec->formulation->options[i].key;
@@ -420,10 +421,7 @@ static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) 
         }
         keys[n++] = spec->stepper->options[i].key;
     }
-    const char *near = hn_nearest_name(key, keys, n);
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    hn_suggest(hint, key, keys, n, NULL);
     return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s has no setting '%s'",
                        spec->formulation->name, key);
 }

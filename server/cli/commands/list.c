@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom list scenes|methods|lessons|problems
+#include "base/suggest.h"
 #include "cli/shell/commands.h"
 #include "integrators/method/catalogue.h"
 #include "cli/shell/diagnostics.h"
@@ -158,11 +159,8 @@ static hn_exit tell_unknown(const hn_args *args, const char *name) {
     for (int i = 0; i < N_LISTS; i++) {
         names[i] = LISTS[i].name;
     }
-    const char *near = hn_nearest_name(name, names, N_LISTS);
     char hint[HN_DIAG_HINT];
-    snprintf(hint, sizeof hint,
-             near ? "did you mean '%s'?" : "scenes, methods, lessons, problems%s",
-             near ? near : "");
+    hn_suggest(hint, name, names, N_LISTS, "scenes, methods, lessons, problems");
     hn_diag diag;
     hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "'%.60s' cannot be listed", name);
     return hn_report_diag(args, &diag);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom rubric: checks a teacher's rubric against its exercise, or writes one to start from. Exit
 // status 2: the rubric is at fault.
+#include "base/suggest.h"
 #include "cli/commands/exercise_word.h"
 #include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
@@ -100,9 +101,9 @@ hn_exit hn_command_rubric(const hn_library *lib, const hn_args *args) {
         return write_rubric(lib, args, what);
     }
     hn_diag diag;
-    const char *near = hn_nearest_name(deed, deeds, 2);
-    hn_diag_set(&diag, HN_ERR_INPUT, NULL, near ? near : "rubric check FILE, rubric write ID",
-                "a rubric cannot be '%.40s'ed", deed);
+    char hint[HN_DIAG_HINT];
+    hn_suggest(hint, deed, deeds, 2, "rubric check FILE, rubric write ID");
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "there is no command 'rubric %.40s'", deed);
     return hn_report_diag(args, &diag);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/args.h"
 
+#include "base/suggest.h"
 #include "cli/shell/fold.h"
 #include "session/kinds/job.h"
 #include "terminal/width.h"
@@ -295,9 +296,9 @@ static hn_status report_unknown(const hn_command *command, const char *name, hn_
         name_option(fields[i], field_names[i]);
         names[n++] = field_names[i];
     }
-    const char *near = hn_nearest_name(name, names, n);
-    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help %s' lists its options",
-             near ? near : command->name);
+    char help[80];
+    snprintf(help, sizeof help, "'holonom help %.40s' lists its options", command->name);
+    hn_suggest(hint, name, names, n, help);
     return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%s' has no option '%.60s'", command->name,
                        name);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/matrix_text.h"
 
+#include "base/suggest.h"
 #include "grade/parts/latex_letters.h"
 
 #include <ctype.h>
@@ -166,8 +167,9 @@ static hn_status look_up(parser *p, const char *name, hn_matrix *out) {
         m = p->names->lookup(p->names->user, other);
     }
     if (!m) {
+        char hint[HN_DIAG_HINT];
         return hn_diag_set(p->desk.diag, HN_ERR_INPUT, NULL,
-                           hn_nearest_name(name, p->names->known, p->names->n_known),
+                           hn_suggest(hint, name, p->names->known, p->names->n_known, NULL),
                            "there is no matrix '%.30s'; products are written with a blank or *",
                            name);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/motion_curve.h"
 
+#include "base/suggest.h"
 #include "integrators/method/method_spec.h"
 #include "study/run/run.h"
 
@@ -221,7 +222,8 @@ const hn_curve_reading *hn_curve_reading_find(const char *name, hn_diag *diag) {
             return &READINGS[i];
         }
     }
-    hn_diag_set(diag, HN_ERR_INPUT, "/parts/read", hn_nearest_name(name, names, N_READINGS),
-                "there is no reading '%.40s'", name);
+    char hint[HN_DIAG_HINT];
+    hn_suggest_or_list(hint, name, names, N_READINGS, "readings: ");
+    hn_diag_set(diag, HN_ERR_INPUT, "/parts/read", hint, "there is no reading '%.40s'", name);
     return NULL;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/part_list.h"
 
+#include "base/suggest.h"
+
 #include <string.h>
 
 static const struct {
@@ -33,8 +35,10 @@ static const hn_part_kind *find_kind(const char *name, hn_diag *diag) {
             return KINDS[i].kind;
         }
     }
-    hn_diag_set(diag, HN_ERR_INPUT, "/parts/kind", hn_nearest_name(name, names, N_KINDS),
-                "there is no kind of answer '%.40s'", name);
+    char hint[HN_DIAG_HINT];
+    hn_suggest_or_list(hint, name, names, N_KINDS, "kinds: ");
+    hn_diag_set(diag, HN_ERR_INPUT, "/parts/kind", hint, "there is no kind of answer '%.40s'",
+                name);
     return NULL;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/part_model.h"
 
+#include "base/suggest.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -73,7 +75,9 @@ int hn_part_find_coordinate(const hn_model *model, const char *name, hn_diag *di
             return i;
         }
     }
-    hn_diag_set(diag, HN_ERR_INPUT, "/parts", hn_nearest_name(name, names, n),
-                "the scene has no free coordinate '%.40s'", name);
+    char hint[HN_DIAG_HINT];
+    hn_suggest_or_list(hint, name, names, n, "coordinates: ");
+    hn_diag_set(diag, HN_ERR_INPUT, "/parts", hint, "the scene has no free coordinate '%.40s'",
+                name);
     return -1;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/scene_checks.h"
 
+#include "base/suggest.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -411,6 +413,8 @@ hn_status hn_scene_check_run(hn_scene_check *c, const cJSON *node, hn_part_resul
             return TESTS[i].run(c, node, r, diag);
         }
     }
-    return hn_diag_set(diag, HN_ERR_INPUT, "/parts/checks", hn_nearest_name(asked, names, N_TESTS),
+    char hint[HN_DIAG_HINT];
+    hn_suggest_or_list(hint, asked, names, N_TESTS, "tests: ");
+    return hn_diag_set(diag, HN_ERR_INPUT, "/parts/checks", hint,
                        "part %s: there is no test '%.40s'", c->p->id, asked);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/guard.h"
 
+#include "base/suggest.h"
 #include "http/request/context.h"
 
 #include <arpa/inet.h>
@@ -251,18 +252,14 @@ int hn_guard_query(hn_request *r) {
     }
 
     // the known names, or the one that was meant
-    char hint[HN_DIAG_HINT] = "this address takes no parameters";
+    char hint[HN_DIAG_HINT];
     const char *names[MAX_QUERY];
     int n = 0;
     for (const hn_route_query *q = r->route->query; q && q->name && n < MAX_QUERY; q++) {
-        const size_t used = n ? strlen(hint) : 0;
-        snprintf(hint + used, sizeof hint - used, "%s%s", n ? ", " : "parameters: ", q->name);
         names[n++] = q->name;
     }
-    const char *near = hn_nearest_name(check.unknown, names, n);
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    hn_suggest_or_list(hint, check.unknown, names, n,
+                       n ? "parameters: " : "this address takes no parameters");
     hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, hint, "the query parameter '%s' is unknown here",
                      check.unknown);
     return 0;

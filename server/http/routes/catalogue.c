@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/suggest.h"
 #include "integrators/method/catalogue.h"
 #include "http/routes/catalogue.h"
 
@@ -169,11 +170,9 @@ hn_model *hn_catalogue_load_scene(hn_request *r, bool allow_open) {
     hn_model *model = NULL;
     query_settings settings = {&order, &diags};
     if (order.name && !hn_library_scene_path(r->context->lib, order.name)) {
-        const char *near = hn_nearest_name(order.name, hn_library_scene_ids(r->context->lib),
-                                           hn_library_n_scenes(r->context->lib));
         char hint[HN_DIAG_HINT];
-        snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "GET /api/v1/scenes%s",
-                 near ? near : " lists them");
+        hn_suggest(hint, order.name, hn_library_scene_ids(r->context->lib),
+                   hn_library_n_scenes(r->context->lib), "GET /api/v1/scenes lists them");
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, hint, "no scene is called '%.80s'", order.name);
         hn_scene_request_reset(&order);
         return NULL;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/runs/run_samples.h"
 
+#include "base/suggest.h"
 #include "http/runs/json_scan.h"
 
 #include <stdbool.h>
@@ -48,17 +49,12 @@ static void add_all(reader *r, const char *samples) {
 static hn_status refuse_column(const char *name, const char *samples, hn_diags *diags) {
     reader all = {0};
     const char *names[MAX_COLUMNS];
-    char hint[HN_DIAG_HINT] = "";
+    char hint[HN_DIAG_HINT];
     add_all(&all, samples);
     for (int i = 0; i < all.n; i++) {
-        const size_t used = strlen(hint);
         names[i] = all.columns[i].name;
-        snprintf(hint + used, sizeof hint - used, "%s%s", i ? ", " : "columns: ", names[i]);
     }
-    const char *near = hn_nearest_name(name, names, all.n);
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
-    }
+    hn_suggest_or_list(hint, name, names, all.n, "columns: ");
     return hn_diags_add(diags, HN_ERR_INPUT, "/fields", hint, "the run has no column '%s'", name);
 }
 
