@@ -63,8 +63,8 @@ const LESSON = {
       scene: "slider-crank",
       methods: ["index1@rk4:h=0.01", "projection@rk4:h=0.01"],
       set: ["r=0.25"],
-      time: 2,
-      command: "compare slider-crank --methods index1@rk4:h=0.01 projection@rk4:h=0.01 --time 2",
+      time: 30,
+      command: "compare slider-crank --methods index1@rk4:h=0.01 projection@rk4:h=0.01 --time 30",
       children: [paragraph(text("Look at the gap."))],
     },
     {
@@ -146,6 +146,16 @@ test("an exhibit runs beside its text, a prediction is kept", async (t) => {
     ]),
   );
   await soon(async () => assert.equal(await read(page, (data) => data.settings.r), 0.25));
+  // as long as the text asks for, which is longer than the scene suggests
+  await soon(async () =>
+    assert.deepEqual(
+      await read(page, (data) => [
+        data.duration,
+        data.scenes.find(({ id }) => id === "slider-crank").duration < 30,
+      ]),
+      [30, true],
+    ),
+  );
   await page.waitForSelector(".exhibit .thumbnail");
 
   const after = page.locator(".prediction-after");

@@ -277,7 +277,8 @@ export function createSceneActions(store, exchange, notice) {
     /**
      * @param {string} id
      * @param {{settings: Record<string, number>, methods: string[], speed?: number,
-     *   pulls?: number[][]}} [link] in place of what the scene suggests
+     *   pulls?: number[][], end?: number}} [link] in place of what the scene suggests; end: the run
+     *   lasts at least so long [s]
      */
     async loadScene(id, link) {
       data.view.lengths = false;
@@ -291,7 +292,9 @@ export function createSceneActions(store, exchange, notice) {
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
       const speed = link?.speed || firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
       const parameters = link?.settings ?? {};
-      await exchange.create({ scene: id, methods, speed, parameters, ...pullsOf(link) });
+      const { end = 0 } = link ?? {};
+      const longer = end > duration ? { duration: end } : {};
+      await exchange.create({ scene: id, methods, speed, parameters, ...longer, ...pullsOf(link) });
     },
     /**
      * Opens a scene that is none of the shipped ones. The one that runs goes on when the server

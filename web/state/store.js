@@ -132,6 +132,8 @@ function initialData() {
     /** what hands did in this comparison: [frame, point, x, y, z, stiffness, damping]
      * @type {number[][]} */
     pulls: [],
+    /** the end that was asked for in place of the scene's [s]; 0: the scene's */
+    asked: 0,
     /** changes that can be undone and redone */ undo: { past: 0, future: 0 },
     notice: "",
     /** what was written beside the comparison; it travels with the link */ note: "",

@@ -29,13 +29,13 @@ export function makeExhibit(block, kit, actions, { number, whenSeen }) {
   const picture = h("div", { class: "exhibit-picture" });
   const said = h("p", { role: "status", class: "about" });
   const settings = Object.fromEntries(wordsIn(block.set).map(readSetting));
-  const link = { settings, methods: wordsIn(block.methods) };
+  const link = { settings, methods: wordsIn(block.methods), end: Number(block.time) || 0 };
 
   async function run() {
     say(said, "opening");
     try {
       await actions.loadScene(scene, link);
-      const end = Number(block.time);
+      const { end } = link;
       say(
         said,
         end > 0 ? `runs beside this text; look at it until ${end} s` : "runs beside this text",
