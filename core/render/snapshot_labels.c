@@ -13,7 +13,7 @@ static const double SAME_PLACE = 2;      // [px]
 static const double VALUE_SIZE = 0.9;    // letters of a force's value, of the body text
 static const double HALO = 0.8;          // how far the paper behind a text covers what is there
 static const double BESIDE = 0.6;        // [letters] farther from its arrow a value has a leader
-static const double DOUBT = 1.5;         // [px] of room that a place loses which another arrow has
+static const double DOUBT = 1.5;         // [px] of room that a place loses for each doubt_of() it
 static const double ENOUGH = 2;          // [px] of room: more is no better
 
 typedef struct arrows {
@@ -300,10 +300,11 @@ void hn_label_keep_off_line(hn_label_places *placed, const double line[2][2]) {
 void hn_label_keep_off_loads(const hn_sheet *s, const hn_snapshot_pose *pose,
                              const hn_snapshot_opts *opts, hn_label_places *placed) {
     hn_load_mark w;
-    for (int i = 0; i < opts->n_loads; i++) {
+    for (int i = 0, n = 0; i < opts->n_loads && n < HN_LABEL_ARROWS; i++) {
         if (lay_arrow(s, pose, opts, i, &w)) {
             const double line[2][2] = {{w.tail[0], w.tail[1]}, {w.tip[0], w.tip[1]}};
             hn_label_keep_off_line(placed, line);
+            n++;
         }
     }
 }

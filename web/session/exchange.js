@@ -116,7 +116,7 @@ export function createExchange(store, notice) {
     data.refused = refused;
     data.document = typeof body.scene === "object" ? body.scene : null;
     data.pulls = body.pulls ?? [];
-    data.asked = body.duration ?? 0;
+    data.askedEnd = body.duration ?? 0;
     adopt(description);
     if (old) {
       api.deleteComparison(old).catch((error) => {
@@ -135,7 +135,7 @@ export function createExchange(store, notice) {
     methods: data.methods.map((m) => m.spelling),
     speed: data.speed,
     ...(data.pulls.length ? { pulls: data.pulls } : {}),
-    ...(data.asked ? { duration: data.asked } : {}),
+    ...(data.askedEnd ? { duration: data.askedEnd } : {}),
   });
 
   /**

@@ -133,7 +133,7 @@ function initialData() {
      * @type {number[][]} */
     pulls: [],
     /** the end that was asked for in place of the scene's [s]; 0: the scene's */
-    asked: 0,
+    askedEnd: 0,
     /** changes that can be undone and redone */ undo: { past: 0, future: 0 },
     notice: "",
     /** what was written beside the comparison; it travels with the link */ note: "",
