@@ -97,7 +97,7 @@ class Server:
         finally:
             connection.close()
 
-    def raw(self, data, timeout=10):
+    def raw(self, data, timeout=60):
         """Sends bytes as they are; everything that comes back until the server closes or is silent."""
         with socket.create_connection(("127.0.0.1", self.port), timeout=timeout * SLOW) as s:
             s.settimeout(timeout)
