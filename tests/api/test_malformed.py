@@ -2,6 +2,7 @@
 """Requests at fault: each gets a problem document that says where and what, and the server goes on."""
 
 import json
+import random
 import signal
 import socket
 import unittest
@@ -168,6 +169,27 @@ RAW = [
     b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n",
     b"GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n\r\n",
 ]
+
+
+# what heads at random are made of
+VERBS = [b"GET", b"POST", b"HEAD", b"OPTIONS", b"PATCH", b"DELETE", b"PUT", b"BREW", b""]
+ADDRESSES = [b"/", b"/index.html", b"/api", b"/api/v1/", b"/healthz", b"/api/v1/runs", b"/api/v1/comparisons", b"/api/v1/comparisons/0123456789abcdef/events",
+             b"/api/v1/studies", b"/api/v1/scenes/four-bar", b"/api/v1/nothing", b"*", b"http://localhost/", b"/%2e%2e/x", b"/?x=1", b"/?" + b"a&" * 300]
+LINES = [b"Content-Type: application/json", b"Accept-Encoding: gzip", b"Expect: 100-continue", b"Connection: close", b"Upgrade: websocket", b"Accept: text/html",
+         b"If-None-Match: *", b"Origin: http://evil.example", b"Authorization: Bearer x", b"Range: bytes=0-1", b"X-A: a\0b", b"X-Forwarded-For: 1.2.3.4, 5.6.7.8"]
+LENGTHS = [b"Content-Length: " + n for n in (b"0", b"2", b"1100000", b"9000000", b"99999999999999999999", b"-1", b"x", b"2, 2")]
+ENCODINGS = [b"Transfer-Encoding: " + name for name in (b"chunked", b"Chunked", b"gzip")]
+BODIES = [b"", b"{}", b'{"scene":"pendulum","method":"index1@rk4:h=1e-2","time":0.1}', b"2\r\n{}\r\n0\r\n\r\n", b"2\r\n{}\r\n", b"fffffff\r\n" + b" " * 3000, b" " * 70000, b"zz\r\n"]
+
+
+def random_request(chance):
+    lines = [chance.choice(VERBS) + b" " + chance.choice(ADDRESSES) + b" HTTP/" + chance.choice([b"1.1"] * 4 + [b"1.0", b"2.0"])]
+    lines += [b"Host: localhost"] * (chance.random() < 0.95) + chance.sample(LINES, chance.randrange(4))
+    lines += chance.sample(LENGTHS, chance.random() < 0.5) + chance.sample(ENCODINGS, chance.random() < 0.3)
+    request = bytearray(chance.choice([b"\r\n"] * 5 + [b"\n"]).join(lines) + b"\r\n\r\n" + chance.choice(BODIES))
+    for _ in range(chance.randint(1, 5) if chance.random() < 0.2 else 0):
+        request[chance.randrange(len(request))] = chance.randrange(256)
+    return bytes(request)
 
 
 class Malformed(driver.ServerCase):
@@ -467,9 +489,20 @@ class Malformed(driver.ServerCase):
                 self.server.raw(data, timeout=2)
                 self.assertEqual(self.server.ask("GET", "/healthz").status, 200)
 
-    def test_random_changes_of_a_sound_body_never_stop_the_server(self):
-        import random
+    def test_heads_at_random_never_stop_the_server(self):
+        chance = random.Random(20240216)  # its 286th request ended the server once
+        for k in range(1000):
+            request = random_request(chance)
+            with socket.create_connection(("127.0.0.1", self.server.port), timeout=60 * driver.SLOW) as s:
+                s.settimeout(0.02)  # long enough for an answer that is there, and no more: most of them want the rest of the body
+                try:
+                    s.sendall(request)
+                    s.recv(4096)
+                except OSError:
+                    pass
+            self.assertIsNone(self.server.process.poll(), (k, request[:300], self.server.errors))
 
+    def test_random_changes_of_a_sound_body_never_stop_the_server(self):
         random.seed(20240214)
         scene = json.load(open("lessons/01-closed-loops/scenes/four-bar.json"))
         text = json.dumps(but(RUN, scene=scene)).encode()
