@@ -398,6 +398,8 @@ class Malformed(driver.ServerCase):
                 answer = self.server.ask("DELETE", address)
                 self.assertEqual((answer.status, answer.body), (204, b""), address)
             self.assertEqual(self.server.ask("GET", address).status, 404)
+        paths = self.server.ask("GET", "/api/v1/openapi.json").json()["paths"]
+        self.assertFalse([path for path, verbs in paths.items() if "404" in verbs.get("delete", {}).get("responses", {})])
 
     def test_a_request_that_the_http_library_cannot_read_gets_a_problem_document(self):
         head = b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"

@@ -331,7 +331,7 @@ static bool may_answer(const hn_route *route, hn_http_problem kind) {
     switch (kind) {
     // the address and the body
     case HN_PROBLEM_NOT_FOUND:
-        return strchr(route->path, '{') != NULL;
+        return strchr(route->path, '{') && strcmp(route->method, "DELETE") != 0;
     case HN_PROBLEM_BAD_JSON:
     case HN_PROBLEM_TOO_LARGE:
     case HN_PROBLEM_MEDIA_TYPE:

@@ -444,7 +444,7 @@ static const hn_route ROUTES[] = {
      "200", "Text", "The scene of a run, with its parameters, as a program that checks itself",
      RUN_EXPORT_QUERY, NULL},
     {"DELETE", "/api/v1/runs/{id}", HN_WORK_LIGHT, hn_handle_run_delete, NULL, JSON, "204", NULL,
-     "Stops a run and forgets it", NULL, NULL},
+     "Stops a run and forgets it; one that has gone is no fault", NULL, NULL},
     {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",
      "Picture", "A picture of where the methods have taken a scene", NULL,
      "{\"scene\":\"four-bar\",\"methods\":[\"projection@rk4:h=1e-3\"],\"time\":0.5}"},
@@ -465,7 +465,7 @@ static const hn_route ROUTES[] = {
      "200", "Comparison", "Plays, pauses, paces, steps, resets, changes methods and settings", NULL,
      "{\"state\":\"paused\",\"step\":10}"},
     {"DELETE", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_delete, NULL, JSON,
-     "204", NULL, "Ends a comparison", NULL, NULL},
+     "204", NULL, "Ends a comparison; one that has gone is no fault", NULL, NULL},
     {"GET", "/api/v1/comparisons/{id}/pulls", HN_WORK_LIGHT, hn_handle_comparison_pulls, NULL, JSON,
      "200", "Document", "What a hand has pulled so far, for POST and PATCH", NULL, NULL},
     {"GET", "/api/v1/comparisons/{id}/events", HN_WORK_LIGHT, hn_handle_comparison_events, NULL,
@@ -487,7 +487,7 @@ static const hn_route ROUTES[] = {
      "Stops a study and keeps what was done, or lets a stopped one go on from there", NULL,
      "{\"state\":\"stopped\"}"},
     {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",
-     NULL, "Stops a study and forgets it", NULL, NULL},
+     NULL, "Stops a study and forgets it; one that has gone is no fault", NULL, NULL},
 };
 enum { N_ROUTES = sizeof ROUTES / sizeof *ROUTES };
 
