@@ -47,7 +47,7 @@ static size_t canvas_name(const char *name) {
     return first;
 }
 
-/// The student's name in the name of a folder or file, by the rules above.
+/// Takes the student's name from the name of a folder or file, by the rules of roster.h.
 static void find_student(const char *name, char out[HN_ROSTER_NAME]) {
     const char *moodle = strstr(name, "_assignsubmission_");
     const char *dot = strrchr(name, '.');

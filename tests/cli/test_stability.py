@@ -221,6 +221,9 @@ class Stability(unittest.TestCase):
             done = self.call(*STUDY, *words)
             self.assertEqual(done.returncode, INPUT, words)
             self.assertIn(said, done.stderr + done.stdout)
+        done = self.call("study", "pendulum", "stability", "--preset", "stiffness")
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn(b"'stiffness' needs a parameter in N/m or N*m/rad", done.stderr)
 
     def test_an_interrupted_map_goes_on_to_the_cells_of_an_undisturbed_one(self):
         words = [*SMALL[:-1], "projection@rk4", "projection@dop853", "projection@symplectic-euler", "--csv"]

@@ -29,8 +29,8 @@ static void act(hn_reactions *r, int body, double k, const double force[3], cons
     }
 }
 
-/// The part of a joint's hn_reaction_wrench that works along one of its coordinates: a unit force
-/// or moment on the child, in the world.
+/// Finds the part of a joint's wrench that works along one of its coordinates: a unit force or
+/// moment on the child, in the world. Returns whether it is a force.
 static bool find_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);

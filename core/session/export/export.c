@@ -34,7 +34,7 @@ static hn_status choose_language(hn_exporter *e, const char *name, hn_diags *dia
     for (int i = 0; i < n && i < 32; i++) {
         names[i] = all[i].name;
     }
-    hn_suggest_or_list(hint, name, names, n, "");
+    hn_suggest_or_list(hint, name, names, n, "languages: ");
     return hn_diags_add(diags, HN_ERR_INPUT, "/language", hint,
                         "'%.40s' is not a language of export", name);
 }
@@ -59,7 +59,7 @@ static hn_status choose_solver(hn_exporter *e, const char *name, hn_diags *diags
 
     // the nearest, or all of them
     char hint[HN_DIAG_HINT];
-    hn_suggest_or_list(hint, name, names, n, "");
+    hn_suggest_or_list(hint, name, names, n, "solvers: ");
     return hn_diags_add(diags, HN_ERR_INPUT, "/solver", hint,
                         "'%.40s' is not a solver of programs in %s", name, e->language->name);
 }

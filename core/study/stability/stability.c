@@ -216,8 +216,8 @@ double hn_stability_path_rate(const hn_stability_path *p) {
     return p->rate;
 }
 
-/// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
-/// does not exist (a singular configuration).
+/// Returns the number of eigenvalues at state k of the path (0 .. HN_STABILITY_LOOKS), and them,
+/// fastest first; 0 where there is no spectrum (a singular configuration).
 static int path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out) {
     *out = p->values + (size_t)k * 2 * (size_t)p->info.nv;
     return p->n_values[k];

@@ -274,8 +274,8 @@ static hn_exit run_prepared(command *c) {
     return written == HN_EXIT_DONE && (end.stopped || end.differs) ? HN_EXIT_ENDED : written;
 }
 
-/// Runs a job of this kind as the arguments say, its words as scenes or cases,
-/// and writes its documents. Returns the exit status.
+/// Runs a job of this kind as the arguments say, with its words as scenes or cases, and writes its
+/// documents. Returns the exit status.
 static hn_exit run_job(const hn_library *lib, const hn_args *args, const hn_job_kind *kind) {
     command c = {.lib = lib, .args = args, .kind = kind};
     hn_diags diags = {0};
