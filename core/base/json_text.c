@@ -37,7 +37,7 @@ static void locate(const scan *s, size_t at, int *line, int *column) {
     }
 }
 
-/// What stands at the scan's place, for a message.
+/// Names the character at the scan's place, for a message.
 static void describe(const scan *s, char *out, size_t size) {
     int c = peek(s);
     if (c < 0) {

@@ -34,7 +34,7 @@ enum { LONG_TEXT = 400000 };
 enum { TEXT_OF_A_LIMIT = 1000000 };
 enum { MOST_BYTES = 64 << 20 };
 
-/// What stands behind the compiler's bytes.
+/// The record behind the compiler's bytes.
 typedef struct footer {
     char magic[8];
     uint64_t key;      // of text and builder

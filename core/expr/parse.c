@@ -51,7 +51,7 @@ static char peek(parser *p) {
     return p->text[p->at];
 }
 
-/// What stands here, for a message: "'x'", "the end", "a byte that is not ASCII".
+/// Names the text here, for a message: "'x'", "the end", "a byte that is not ASCII".
 static const char *found(parser *p, char out[32]) {
     const char c = peek(p);
     if (!c) {

@@ -216,7 +216,7 @@ static void reduce(hn_graph *g, terms *s) {
 
 // ---- nested sums ----
 
-/// What a list costs: its terms, and the coefficients that are not those of the leading term up to
+/// The cost of a list: its terms, and the coefficients that are not those of the leading term up to
 /// sign.
 static int cost(const terms *s) {
     int n = s->n;

@@ -44,7 +44,7 @@ static double call(const hn_tape_instruction *i, const double *w) {
     return hn_op_get_info((hn_op)i->v[6])->value(x);
 }
 
-/// What the instructions do that are not one expression.
+/// The instructions that are more than one expression.
 #define TAPE_FUNCTIONS(X)                               \
     X(TAPE_SINCOS, sincos(a, &w[i->v[0]], &w[i->v[2]])) \
     X(TAPE_SIN, w[i->v[0]] = sin(a))                    \

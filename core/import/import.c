@@ -126,7 +126,7 @@ static void tell_at_source(const hn_build *b, const hn_diag *d) {
     }
 }
 
-/// What was written has to be a scene.
+/// Checks that the text written is a scene.
 static void check_scene(hn_build *b, const hn_strbuf *text) {
     hn_scene *scene = NULL;
     hn_diags found = {0};

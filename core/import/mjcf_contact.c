@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which geoms of MJCF can touch one another: their bits match, and MuJoCo does not pass over their
-// bodies. It passes over a body and itself, bodies without a joint between them, and a body and its
-// parent unless that stands still.
+// Finds the geoms of MJCF that can touch one another: their bits match, and MuJoCo does not pass
+// over their bodies. It passes over a body and itself, bodies without a joint between them, and a
+// body and its parent unless that stands still.
 // Source: MuJoCo documentation, "Computation", section "Collision detection, selection".
 #include "import/mjcf.h"
 
@@ -27,7 +27,7 @@ bool hn_mj_add_geom(hn_mj *m, const hn_mj_element *e, int body) {
     return true;
 }
 
-/// What has been found of each body, so that no pair of geoms walks the tree.
+/// Facts about each body, found once, so that no pair of geoms walks the tree.
 typedef struct touch {
     const hn_mj *m;
     const hn_im_joint **carrier; ///< the joint that carries the body, NULL: none

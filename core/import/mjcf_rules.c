@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the reader of MJCF does with every attribute it knows. Attributes it does not know are named
-// as such.
+// The treatment of every attribute that the reader of MJCF knows. Attributes it does not know are
+// named as such.
 #include "import/mjcf.h"
 
 #include <string.h>

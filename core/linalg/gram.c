@@ -29,7 +29,7 @@ struct hn_gram {
 
 // ---- places ----
 
-/// What is needed while the products are listed.
+/// Scratch for listing the products.
 typedef struct lister {
     int *start, *list; ///< entries of each column, their rows rising
     int *number;       ///< per row: 1 + its sum with the row at hand

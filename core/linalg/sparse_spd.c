@@ -22,7 +22,7 @@ struct hn_sparse_spd {
 
 // ---- order and pattern ----
 
-// What is left of the matrix, each unknown with the list of those that it is joined to.
+// The rest of the matrix during the elimination: each unknown with the list of its neighbours.
 typedef struct graph {
     int n;
     hn_arena *arena;

@@ -55,7 +55,7 @@ hn_rd_meaning hn_rd_find_name(const hn_reader *r, const char *name, int *index) 
     return r->slot[k].meaning;
 }
 
-/// What a name stands for in a formula of the reader's present scope.
+/// Finds the meaning of a name in a formula of the reader's present scope.
 static int lookup(void *user, const char *name, hn_ex *out) {
     hn_reader *r = user;
     if (r->loop_name && strcmp(name, r->loop_name) == 0) {

@@ -146,8 +146,8 @@ static int find_root(int *up, int i) {
     return i;
 }
 
-/// Which bodies hang together through the joints (only those that may carry a coordinate, or all);
-/// node 0 is ground.
+/// Finds the bodies that are connected through the joints (only those that may carry a coordinate,
+/// or all); node 0 is ground.
 static void join(const hn_scene *s, int with_cut, int *up) {
     for (int i = 0; i <= s->n_bodies; i++) {
         up[i] = i;

@@ -131,7 +131,7 @@ static void check_joint_name(hn_reader *r, const hn_joint *j) {
     }
 }
 
-/// What makes no sense of a joint that closes a loop.
+/// Reads whether the joint is cut to close a loop.
 static void read_cut(hn_reader *r, const cJSON *node, hn_joint *j) {
     j->cut = hn_rd_flag(r, node, "cut");
     if (j->cut && j->type == HN_JOINT_FREE) {

@@ -95,7 +95,7 @@ static void read_gravity(hn_reader *r, const cJSON *root) {
     hn_rd_leave(r, mark);
 }
 
-/// Which of the two kinds it is; 0 after a fault.
+/// Reads whether the scene is one of bodies or of formulas. Returns false after a fault.
 static bool read_kind(hn_reader *r, const cJSON *root) {
     const cJSON *bodies = hn_rd_get(root, "bodies"), *joints = hn_rd_get(root, "joints");
     const int formulas = hn_rd_get(root, "lagrangian") != NULL;

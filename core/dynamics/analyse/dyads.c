@@ -134,7 +134,7 @@ static void name_block(builder *b, int first, int end, const char *format) {
              shown < end - first ? ", ..." : "");
 }
 
-/// What keeps the whole from a closed form before a block is looked at.
+/// Finds what keeps the whole mechanism from a closed form, before the blocks are examined.
 static bool refuse_whole(builder *b) {
     hn_dyads *d = b->d;
     if (d->n_dep != b->sys->nc) {

@@ -373,7 +373,7 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
     r->last.ahead = HUGE_VAL; // said once
 }
 
-/// What the looks know of the rows: kept, or given back.
+/// The record of the checks about the rows: kept, or restored.
 static void keep(hn_singularity *r, int back) {
     if (back) {
         r->pending = false; // those of the probe

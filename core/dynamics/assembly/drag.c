@@ -75,7 +75,7 @@ static void set_units(drag *d) {
 
 // ---- measuring ----
 
-/// What is dragged, at q.
+/// The position of the dragged point or coordinate at q.
 static void find_place(drag *d, const double *q, double place[3]) {
     if (d->goal->point >= 0) {
         hn_eval_run(d->points, d->t, q, NULL);

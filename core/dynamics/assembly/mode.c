@@ -35,7 +35,7 @@ typedef struct loop_parts {
     int independent;   ///< the one taken last
 } loop_parts;
 
-/// What finding the parts of all loops shares.
+/// Common data of finding the parts of all loops.
 typedef struct finder {
     const hn_system *sys;
     int n_user;

@@ -354,7 +354,7 @@ static wrench ball_wrench(hn_mech *m, int link, hn_vec3 axis) {
     return w;
 }
 
-/// Of the link's velocity number `part`.
+/// Returns the wrench of a unit force or moment along the link's velocity number `part`.
 static wrench unit_wrench(hn_mech *m, int link, int part) {
     const hn_link_trace *at = &m->at[link];
     int planar = hn_mech_is_planar(m, link);

@@ -53,14 +53,14 @@ void hn_accel_lanes_free(hn_accel_lanes *l) {
     hn_lanes_tape_reset(&l->code);
 }
 
-/// What a judgement leaves of each lane: `below` has the sign of a sum that is negative where every
-/// comparison holds, `zero` is 0 where every number is finite.
+/// The result of a judgement of each lane: `below` has the sign of a sum that is negative where
+/// every comparison holds, `zero` is 0 where every number is finite.
 typedef struct verdicts {
     hn_lane_half_bits below[HALVES];
     hn_lane_half zero[HALVES];
 } verdicts;
 
-/// What hn_accel_tape_take_sure() asks of one lane, or more, on all of them: rows are compared with
+/// The checks of hn_accel_tape_take_sure(), or stricter ones, on all lanes: rows are compared with
 /// the sum in place of the largest. Differences and signs, for compilers split comparisons of
 /// vectors that the processor does not have into single ones.
 HN_LANES_BODY judge_body(const hn_accel_lanes *l, verdicts *out) {

@@ -64,7 +64,7 @@ static void add_entry(builder *b, term_values *term, int row, int col, hn_ex ex,
     }
 }
 
-/// What a term consists of: a list of entries or a plain array.
+/// The content of a term: a list of entries or a plain array.
 typedef struct term_source {
     const hn_entries *entries;
     const hn_ex *list;

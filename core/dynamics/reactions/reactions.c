@@ -56,7 +56,7 @@ static void put_row(output_list *list, hn_graph *g, const hn_row_wrench *w) {
     put3(list, hn_mat3_apply_transposed(g, &w->turn, w->moment_b));
 }
 
-/// What is reported beside the terms that the system has anyway.
+/// Quantities that are reported beside the terms of the system.
 typedef struct terms {
     hn_relative *bodies;
     hn_ex *energies; ///< r->n_energies, in the arena

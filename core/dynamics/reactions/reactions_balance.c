@@ -160,8 +160,8 @@ static void read_row(const hn_reactions *r, int body, int k, double out[3]) {
     hn_reaction_to_world(r, body, v, out);
 }
 
-/// What one row's multiplier does to its two bodies; to the hn_reaction_wrench of its joint or
-/// constraint that is handed out.
+/// Applies one row's multiplier to its two bodies, and to the wrench of its joint or constraint
+/// that is handed out.
 static void act_row(hn_reactions *r, int row, double lambda, hn_reaction_wrench *constraint) {
     const int k = r->first_row + HN_REACTION_ROW * row;
     const hn_loop *loop = &r->sys->loops[r->sys->rows[row].loop];

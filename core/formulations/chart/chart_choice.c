@@ -12,9 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 
-// Which columns of J are dependent. Volumes are products of the diagonal of R, kept as logarithms:
-// a mechanism with hundreds of rows would overflow a plain determinant. Columns are scaled by 1 /
-// sqrt(M_jj), so metres and radians can be compared.
+// Chooses the dependent columns of J. Volumes are products of the diagonal of R, kept as
+// logarithms: a mechanism with hundreds of rows would overflow a plain determinant. Columns are
+// scaled by 1 / sqrt(M_jj), so metres and radians can be compared.
 
 #define RANK_TOL 1e-10
 #define SINGULAR_TOL \

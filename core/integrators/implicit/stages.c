@@ -139,7 +139,7 @@ static hn_status give_up(hn_stages *nw, double t, double h, int n, double ratio)
     return HN_ERR_NO_CONVERGENCE;
 }
 
-/// What an iteration has seen so far.
+/// The record of an iteration so far.
 typedef struct progress {
     double size, ratio; ///< of the last correction, and against the one before
     double least;       ///< smallest correction so far

@@ -161,7 +161,7 @@ static hn_status write_animation(const sheet *p, hn_strbuf *out, hn_diag *diag) 
 
 // ---- words ----
 
-/// What the picture shows, in sentences.
+/// Writes the content of the picture in sentences.
 static void put_words(hn_strbuf *b, const sheet *p) {
     hn_strbuf_printf(b, "%s.", p->opts.title ? p->opts.title : "");
     for (int i = 0; i < p->n_moments; i++) {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/// What the coordinates of a joint do one after the other (scene.h).
+/// The motions of a joint's coordinates, in their order (scene.h).
 static const struct {
     int n;
     hn_joint_step step[HN_POSE_PARTS];
@@ -49,7 +49,7 @@ hn_im_frame hn_start_poses_world(const hn_start_poses *poses, int body) {
     return body == HN_GROUND ? hn_im_frame_unit() : poses->body[body].world;
 }
 
-/// What one step moves, at the coordinate's value (three of them for a ball).
+/// The motion of one step, at the coordinate's value (three values for a ball).
 static hn_im_frame motion(const hn_joint_step *s, const double *q) {
     hn_im_frame out = hn_im_frame_unit();
     double axis[3] = {0, 0, 0};

@@ -354,7 +354,7 @@ static void name_loads(urdf *u) {
     }
 }
 
-/// What the loop file holds too, where there is none.
+/// Names the content that only a loop file can hold, where none is written.
 static void name_loops(urdf *u) {
     bool is_at_zero = true, has_gravity = true;
     for (int i = 0; i < u->scene->n_joints; i++) {

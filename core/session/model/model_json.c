@@ -48,7 +48,7 @@ static const char *kind_name(hn_unit_kind kind) {
     return kind == HN_ANGLE ? "angle" : kind == HN_LENGTH ? "length" : "other";
 }
 
-/// What a script needs before it runs the scene: suggested times, the length that errors are
+/// Writes what a script needs before it runs the scene: suggested times, the length that errors are
 /// measured by, kinds of coordinates.
 static void put_measures(hn_strbuf *b, const hn_model *model) {
     const hn_scene *scene = hn_model_scene(model);

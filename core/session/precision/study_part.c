@@ -28,7 +28,7 @@ static void put_scene(hn_strbuf *b, const hn_scene *scene) {
     hn_json_end_object(b);
 }
 
-/// What decides the points: parts that differ in it are not of one study.
+/// The settings that decide the points: parts that differ in them are not of one study.
 static void put_request(hn_strbuf *b, const hn_study *s) {
     hn_json_key(b, "request");
     hn_json_object(b);

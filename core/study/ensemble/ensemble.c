@@ -24,7 +24,7 @@ typedef struct work_list {
     hn_ensemble_end *ends;
 } work_list;
 
-/// What one thread has.
+/// The data of one thread.
 typedef struct worker {
     const hn_ensemble *ensemble;
     hn_arena *arena;

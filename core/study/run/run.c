@@ -18,7 +18,7 @@
 
 #define DEFAULT_MAX_STEPS 50000000ll
 
-/// What the stepping has cost so far.
+/// Returns the cost of the stepping so far.
 typedef struct cost_clock {
     hn_cost cost, mark; ///< in all; of the engine when the last interval ended
     hn_step_clock time;
@@ -43,7 +43,8 @@ hn_run_opts hn_run_opts_default(void) {
 
 // ---- the clock ----
 
-/// What a sample between steps has cost the engine is not the stepping's.
+/// Marks the cost of the engine, so that a sample between steps adds nothing to that of the
+/// stepping.
 static void mark_cost(hn_run *run) {
     run->clock.mark = hn_engine_cost(&run->stepping.engine);
 }

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/// What differs between the two kinds of pair. A NULL in `dense` or `raw_lambda` of the integrator
-/// is asked for by the has_ functions, so the entries here are never called without it.
+/// The differences between the two kinds of pair. A NULL in `dense` or `raw_lambda` of the
+/// integrator is asked for by the has_ functions, so the entries here are never called without it.
 struct hn_engine_kind {
     hn_status (*create)(hn_engine *e, hn_diag *diag);
     void (*destroy)(hn_engine *e);

@@ -150,7 +150,8 @@ static hn_state_seen seen_of(const hn_sample *s) {
     return (hn_state_seen){s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
 }
 
-/// What the pilot may be off at the time reached: a share of its difference from the rough run.
+/// Returns the possible error of the pilot at the time reached: a share of its difference from the
+/// rough run.
 /// Returns false where that is too much for an estimate.
 static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
     hn_sample rough;

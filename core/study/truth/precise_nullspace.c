@@ -114,7 +114,7 @@ static void make_reflector(nullspace *s, int k) {
     x[k] = alpha;
 }
 
-/// What is left of row k beside those before it, squared.
+/// Returns the squared length of the part of row k that is perpendicular to the rows before it.
 static hn_real rest_of(const nullspace *s, int k) {
     const hn_real *x = column_of(s, k) + s->rank;
     return inner(s->m->nv - s->rank, x, x);

@@ -76,7 +76,7 @@ double hn_ref_digits(const hn_ref *ref) {
     return e > 0 ? fmin(MOST_DIGITS, -log10(e)) : MOST_DIGITS;
 }
 
-/// What one computation leaves, and what scales are made of.
+/// The result of one computation, and the data for scales.
 typedef struct recorder {
     hn_ref *ref;
     const hn_ref_opts *opts;
@@ -178,7 +178,7 @@ static double worse(double a, double b) {
     return isnan(a) || isnan(b) ? (double)NAN : fmax(a, b);
 }
 
-/// What storing numbers as doubles costs by itself: nothing below it can be told apart.
+/// The error of storing numbers as doubles: smaller differences cannot be told apart.
 static double rounding(const hn_ref *ref, int k, hn_error_kind kind) {
     double most = 1;
     for (int i = 0; kind == HN_ERROR_Q && i < ref->n_user; i++) {
