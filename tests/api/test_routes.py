@@ -371,7 +371,7 @@ class Stateless(driver.ServerCase):
             wrong = self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?" + word), 422)
             self.assertEqual(wrong["errors"][0]["pointer"], place, word)
         wrong = self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=pyton"), 422)
-        self.assertEqual((wrong["errors"][0]["pointer"], wrong["hint"]), ("/language", "python"))
+        self.assertEqual((wrong["errors"][0]["pointer"], wrong["hint"]), ("/language", "did you mean 'python'?"))
         self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?method=x@rk4"), 422)
         self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-ba/export"), 404)
 

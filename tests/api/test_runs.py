@@ -238,7 +238,7 @@ class Export(unittest.TestCase):
                 if PYTHON:  # the program needs numpy
                     done = subprocess.run([PYTHON, path], capture_output=True, text=True, timeout=120)
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-            for query, status, word in (("?language=pyton", 422, "\"hint\":\"python\""), ("?method=2", 422, "method"), ("?lang=c", 400, "language")):
+            for query, status, word in (("?language=pyton", 422, "did you mean 'python'?"), ("?method=2", 422, "method"), ("?lang=c", 400, "language")):
                 answer = server.ask("GET", made[0]["links"]["export"] + query)
                 self.assertEqual(answer.status, status, query)
                 self.assertIn(word, answer.body.decode(), query)
