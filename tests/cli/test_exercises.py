@@ -16,10 +16,10 @@ def variants(_):
     expect("the same seed gives the same text", a == b and a != c)
     s, t = (run("problem", "p1", "--student", n).stdout for n in ("s1001", "s1002"))
     expect("every student has a variant", s != t and s == run("problem", "p1", "--student", "s1001").stdout)
-    formula = next(line for line in run("problem", "loops").stdout.splitlines() if line.startswith('  answer "e"'))
+    formula = next(line for line in run("problem", "loops", "--wide").stdout.splitlines() if line.startswith('  answer "e"'))
     expect("a formula may use the numbers that are given, by their names",
            formula.endswith("names: th2 th3 w1 w2 w3; with numbers given: b j l1 l2 l3 d th1"), formula)
-    own, other = (run("problem", "p3", "--student", n).stdout for n in ("s1001", "s1002"))
+    own, other = (run("problem", "p3", "--wide", "--student", n).stdout for n in ("s1001", "s1002"))
     numbers = json.loads(run("problem", "p3", "--student", "s1001", "--json").stdout)["numbers"]
     expect("so has the exercise whose formulas are the same for all", own != other and '{"student": "s1001", "J": ' in own
            and all(f"{name} = {x:.6f}" in own and f"{name} = {x:.6f}" not in other for name, x in numbers.items()), own)  # fmt: skip

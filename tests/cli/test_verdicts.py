@@ -64,7 +64,7 @@ def statuses(folder):
 
 
 def hand_in_line(*words):
-    text = run("problem", "p1", *words).stdout
+    text = run("problem", "p1", "--wide", *words).stdout
     return json.loads(text.split("Hand in a JSON file: ")[1].splitlines()[0].replace("...", "null"))
 
 
