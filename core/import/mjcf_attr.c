@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Attributes of MJCF elements: defaults by class, angles, orientations in five spellings.
-#include "base/suggest.h"
 #include "import/mjcf.h"
 
+#include "base/suggest.h"
 #include "linalg/small3.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Joints of MJCF: they act one after the other, the first next to the parent, with a body without
 // mass between two of them.
-#include "base/suggest.h"
 #include "import/mjcf.h"
 
+#include "base/suggest.h"
 #include "linalg/small3.h"
 
 #include <math.h>

@@ -463,7 +463,7 @@ static void each_variant_has_numbers_that_close_the_loop_and_a_velocity_of_j(voi
         cJSON *root = parse(&b);
         const cJSON *numbers = cJSON_GetObjectItemCaseSensitive(root, "numbers");
         for (int i = 0; i < 4; i++) {
-            char length[4], angle[5];
+            char length[16], angle[16];
             snprintf(length, sizeof length, "l%d", i + 1);
             snprintf(angle, sizeof angle, "th%d", i + 1);
             l[i] = (i < 2 ? 1 : -1) * number_of(numbers, length);
