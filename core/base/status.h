@@ -7,23 +7,23 @@
 #include <stdlib.h>
 
 /// value, its name in every document, sentence for a person
-#define HN_STATUS_FAILURES(X)                                                                     \
-    X(HN_ERR_MEMORY, "out-of-memory", "out of memory")                                            \
-    X(HN_ERR_INPUT, "input", "the input is at fault")                                             \
-    X(HN_ERR_LIMIT, "limit", "a stated limit is exceeded")                                        \
-    X(HN_ERR_IO, "file", "a file could not be read or written")                                   \
-    X(HN_ERR_SINGULAR, "singular", "a matrix is singular beyond repair")                          \
-    X(HN_ERR_NOT_SPD, "not-positive-definite", "a matrix that must be positive definite is not")  \
-    X(HN_ERR_INCONSISTENT, "inconsistent", "the constraints contradict each other")               \
-    X(HN_ERR_NO_CONVERGENCE, "no-convergence", "an iteration did not converge")                   \
-    X(HN_ERR_UNREACHABLE, "unreachable", "the loops cannot be closed")                            \
-    X(HN_ERR_CHART, "chart-lost", "the chosen coordinates stopped being valid here")              \
-    X(HN_ERR_DIVERGED, "diverged", "the state left every sensible bound or stopped being finite") \
-    X(HN_ERR_STEP_UNDERFLOW, "step-underflow", "the step became too small to make progress")      \
-    X(HN_ERR_STOPPED, "stopped",                                                                  \
-      "the limit of steps or time was reached, or it was asked to stop")                          \
-    X(HN_ERR_UNSUPPORTED, "unsupported", "this combination is not served")                        \
-    X(HN_ERR_INTERNAL, "internal", "the program is at fault")                                     \
+#define HN_STATUS_FAILURES(X)                                                                    \
+    X(HN_ERR_MEMORY, "out-of-memory", "out of memory")                                           \
+    X(HN_ERR_INPUT, "input", "the input is at fault")                                            \
+    X(HN_ERR_LIMIT, "limit", "a stated limit is exceeded")                                       \
+    X(HN_ERR_IO, "file", "a file could not be read or written")                                  \
+    X(HN_ERR_SINGULAR, "singular", "a matrix is singular")                                       \
+    X(HN_ERR_NOT_SPD, "not-positive-definite", "a matrix that must be positive definite is not") \
+    X(HN_ERR_INCONSISTENT, "inconsistent", "the constraints contradict each other")              \
+    X(HN_ERR_NO_CONVERGENCE, "no-convergence", "an iteration did not converge")                  \
+    X(HN_ERR_UNREACHABLE, "unreachable", "the loops cannot be closed")                           \
+    X(HN_ERR_CHART, "chart-lost", "the chosen coordinates stopped being valid here")             \
+    X(HN_ERR_DIVERGED, "diverged", "the state grew beyond all bounds or stopped being finite")   \
+    X(HN_ERR_STEP_UNDERFLOW, "step-underflow", "the step became too small to make progress")     \
+    X(HN_ERR_STOPPED, "stopped",                                                                 \
+      "the limit of steps or time was reached, or it was asked to stop")                         \
+    X(HN_ERR_UNSUPPORTED, "unsupported", "this combination is not supported")                    \
+    X(HN_ERR_INTERNAL, "internal", "the program is at fault")                                    \
     X(HN_ERR_MASS, "mass-singular", "the mass matrix has no inverse")
 #define HN_STATUS_LIST(X) X(HN_OK, "ok", "done") HN_STATUS_FAILURES(X)
 

@@ -250,7 +250,7 @@ static hn_status emit(const hn_tape *tape, hn_native_form form, hn_strbuf *text,
     const hn_status status = hn_native_emit(text, tape, form);
     return status == HN_OK
                ? HN_OK
-               : hn_diag_set(diag, status, NULL, NULL, "the tape cannot be written as C: %s",
+               : hn_diag_set(diag, status, NULL, NULL, "the equations cannot be written as C: %s",
                              hn_status_text(status));
 }
 
@@ -405,7 +405,7 @@ static bool open_service(void) {
         &service.builder, service.folder, service.opts.compiler, service.opts.time_limit, &diag);
     service.builder.ending = &service.ending;
     if (status == HN_OK && !start_thread()) {
-        status = hn_diag_set(&diag, HN_ERR_MEMORY, NULL, NULL, "no thread for native tapes");
+        status = hn_diag_set(&diag, HN_ERR_MEMORY, NULL, NULL, "no thread to compile machine code");
     }
     service.is_open = status == HN_OK;
     service.is_broken = !service.is_open;
@@ -533,8 +533,8 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     *costs = (hn_native_costs){.instructions = tape->info.instructions};
     if (tape->info.instructions > MOST_SINGLE) {
         return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL,
-                           "the tape has %d instructions; machine code of more than %d is slower "
-                           "than the interpreter",
+                           "the equations have %d instructions; machine code of more than %d is "
+                           "slower than the interpreter",
                            tape->info.instructions, MOST_SINGLE);
     }
     pthread_mutex_lock(&service.lock);
@@ -542,7 +542,7 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     pthread_mutex_unlock(&service.lock);
     if (!is_open) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s",
-                           service.reason[0] ? service.reason : "native tapes are switched off");
+                           service.reason[0] ? service.reason : "machine code is switched off");
     }
 
     // a tape of its own, compiled aside

@@ -108,7 +108,7 @@ void hn_im_note(hn_build *b, hn_import_outcome outcome, const xmlNode *node, con
     if (b->n_notes == HN_IMPORT_MAX_NOTES) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
-                           "%s: more than %d things of this model are not in the scene",
+                           "%s: more than %d parts of this model are not in the scene",
                            hn_im_line_of(b, node), HN_IMPORT_MAX_NOTES);
     }
 

@@ -71,11 +71,11 @@ static void read_root(hn_build *b, xmlDoc *doc, const hn_import_source *source) 
 static void name_scene(hn_build *b, const hn_import_source *source) {
     const char *name = source->name ? source->name : b->name;
     b->name = hn_im_label(b, name && *name ? name : "imported");
-    b->about =
-        hn_im_text(b,
-                   "Imported from %s. Lengths in m, angles in rad; coordinates are 0 where "
-                   "they are 0 in that file.%s",
-                   b->format, b->n_closing ? " What closes its loops is marked as cut." : "");
+    b->about = hn_im_text(
+        b,
+        "Imported from %s. Lengths in m, angles in rad; coordinates are 0 where "
+        "they are 0 in that file.%s",
+        b->format, b->n_closing ? " The joints that close its loops are marked as cut." : "");
 }
 
 static void sum_up(hn_import *im) {

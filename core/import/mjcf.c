@@ -228,7 +228,7 @@ static const struct {
     {"sensor", 1, HN_IMPORT_IGNORED, "measures only"},
     {"contact", 1, HN_IMPORT_REFUSED, "contacts are not in the scene"},
     {"tendon", 1, HN_IMPORT_REFUSED, "tendons are not in the scene"},
-    {"deformable", 1, HN_IMPORT_REFUSED, "what bends is not in the scene"},
+    {"deformable", 1, HN_IMPORT_REFUSED, "flexible parts are not in the scene"},
     {"extension", 1, HN_IMPORT_REFUSED, "plugins are not in the scene"}};
 static const char READ[] = "compiler option default worldbody equality actuator keyframe";
 

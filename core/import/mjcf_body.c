@@ -128,7 +128,8 @@ static void read_child(hn_mj *m, const xmlNode *c, place *p) {
     } else if (hn_im_lists(looks, name)) {
         hn_im_skip(m->b, HN_IMPORT_IGNORED, c, "affects the appearance only");
     } else if (!hn_im_lists(joints, name)) {
-        hn_im_skip(m->b, HN_IMPORT_REFUSED, c, "what this element makes is not in the scene");
+        hn_im_skip(m->b, HN_IMPORT_REFUSED, c,
+                   "the parts that this element generates are not in the scene");
     } else if (p->body == HN_GROUND) {
         hn_im_fault(m->b, c, NULL, "put it into a body", "the world has no '%s'", name);
     }

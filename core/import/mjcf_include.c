@@ -163,9 +163,10 @@ static bool include(including *in, xmlNode *node) {
                            "this include names no file");
     }
     if (!in->source->read) {
-        return hn_im_fault(in->b, node, "file", "import the model from its file",
-                           "where '%.80s' is is not known: the model is not read from a file",
-                           wanted);
+        return hn_im_fault(
+            in->b, node, "file", "import the model from its file",
+            "the folder of '%.80s' is not known, because the model was not read from a file",
+            wanted);
     }
     if (hn_im_first(node)) {
         hn_im_skip_children(in->b, HN_IMPORT_REFUSED, node,

@@ -13,8 +13,7 @@
 static const char LOOKS[] = "affects the appearance and editors only";
 static const char SOLVER[] = "a setting of MuJoCo's solver";
 static const char CONTACT[] = "contacts are not in the scene";
-static const char SOFT[] =
-    "the constraint gives way a little in MuJoCo; in the scene it holds exactly";
+static const char SOFT[] = "the constraint is soft in MuJoCo and exact in the scene";
 
 static const hn_im_rule COMPILER[] = {
     {"angle coordinate eulerseq autolimits inertiafromgeom inertiagrouprange boundmass "
@@ -27,7 +26,7 @@ static const hn_im_rule COMPILER[] = {
     {"fusestatic", HN_IMPORT_IGNORED, "bodies without joints stay bodies, fixed to their parents"},
     {"boundinertia", HN_IMPORT_REFUSED, "moments of inertia are kept as they are"},
     {"balanceinertia", HN_IMPORT_REFUSED,
-     "an inertia that no body has is a fault here, not mended"},
+     "an inertia that no body can have is reported as an error and not corrected"},
     END};
 static const hn_im_rule OPTION[] = {
     {"gravity timestep", USED, NULL},
@@ -94,12 +93,12 @@ static const hn_im_rule ACTUATOR[] = {
     {"group user nsample interp delay refsite lengthrange cranklength actdim dynprm",
      HN_IMPORT_IGNORED, "not needed for a drive of a joint"},
     {"dampratio timeconst inheritrange actlimited actrange actearly damping armature",
-     HN_IMPORT_REFUSED, "the drive acts at once and without it"},
+     HN_IMPORT_REFUSED, "the drive acts without delay, and this attribute is ignored"},
     END};
 static const hn_im_rule KEY[] = {
     {"name qpos qvel ctrl", USED, NULL},
     {"time", HN_IMPORT_IGNORED, "runs begin at t = 0"},
-    {"act mpos mquat", HN_IMPORT_IGNORED, "there is nothing in the scene that they set"},
+    {"act mpos mquat", HN_IMPORT_IGNORED, "the scene has nothing that these values set"},
     END};
 static const hn_im_rule DEFAULT[] = {{"class", USED, NULL}, END};
 static const hn_im_rule ROOT[] = {{"model", USED, NULL}, END};

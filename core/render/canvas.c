@@ -14,7 +14,7 @@ static const double PI = 3.14159265358979324;
 static hn_status check_size(int size, const char *pointer, hn_diag *diag) {
     if (size < HN_CANVAS_MIN || size > HN_CANVAS_MAX) {
         return hn_diag_set(diag, HN_ERR_LIMIT, pointer, NULL,
-                           "%d pixels asked for, %d to %d are possible", size, HN_CANVAS_MIN,
+                           "%d pixels were asked for; %d to %d are allowed", size, HN_CANVAS_MIN,
                            HN_CANVAS_MAX);
     }
     return HN_OK;

@@ -82,7 +82,8 @@ bool hn_rd_check_identifier(hn_reader *r, const char *name) {
 bool hn_rd_check_no_turn(hn_reader *r, int coordinate) {
     const hn_coordinate *c = &r->scene->coordinates[coordinate];
     return c->turn < 0 ||
-           hn_rd_fault(r, "its rate can be used; for angles of their own take a universal joint",
+           hn_rd_fault(r,
+                       "its rate can be used; a universal joint has angles that formulas can use",
                        "'%s' is an entry of the rotation vector of the joint '%s': it can be given "
                        "at the start, but no formula and no load can use it",
                        c->name, r->scene->joints[c->joint].name);

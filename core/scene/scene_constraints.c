@@ -131,10 +131,10 @@ static bool read_formula(hn_reader *r, const cJSON *node, hn_constraint *c) {
     if (!hn_rd_quantity(r, node, &c->value, HN_RD_POSE)) {
         return false;
     }
-    return c->value.varies || hn_rd_fault(r, "as in \"th1 - w*t\"",
-                                          "this constraint is the constant %g: it holds no "
-                                          "coordinate",
-                                          c->value.value);
+    return c->value.varies ||
+           hn_rd_fault(r, "as in \"th1 - w*t\"",
+                       "this constraint is the constant %g and contains no coordinate",
+                       c->value.value);
 }
 
 /// coordinate = value over time, kept as the formula coordinate - (value).

@@ -19,7 +19,7 @@ static bool read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pin
     }
     const cJSON *value = hn_rd_get(node, "value"), *guess = hn_rd_get(node, "guess");
     if (!value == !guess) {
-        return hn_rd_fault(r, "'value' is kept, 'guess' is where assembly begins",
+        return hn_rd_fault(r, "assembly keeps a 'value' and starts from a 'guess'",
                            "expected either 'value' or 'guess', found %s",
                            value ? "both" : "neither");
     }

@@ -40,16 +40,17 @@ static void describe_all(hn_strbuf *b) {
         "SCENE is a shipped scene's name, a file, or - for standard input.",
         "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
         "projection@rk4:h=1e-3.",
-        "A file of --out that is there and holds something else is kept as FILE.1, FILE.2, ...; "
-        "where it may be somebody's work (program, rubric write, export --blanks) nothing is "
-        "written without --force.",
+        "--out never destroys a file: an old FILE with other contents is kept as FILE.1, FILE.2, "
+        "... The commands program, rubric write and export --blanks write over a file only with "
+        "--force.",
         "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault, 4 a run ended "
-        "early and said why, or a prediction of extreme failed, 130 Ctrl-C ended the workbench in "
-        "the terminal.",
-        "'holonom lessons' is short for 'holonom list lessons'; so are problems, scenes and "
-        "methods."};
-    hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods at the same times\n"
-                     "Begin with: holonom compare four-bar\n\n");
+        "early with its reason, or a prediction of 'extreme' failed, 130 Ctrl-C ended the "
+        "workbench in the terminal. A run that reaches its end has status 0 even if its motion is "
+        "WRONG: read the verdict, or use --json.",
+        "'holonom lessons' is short for 'holonom list lessons'; the same holds for problems, "
+        "scenes and methods."};
+    hn_strbuf_add(b, "holonom simulates mechanisms with closed loops by several methods at "
+                     "once.\nBegin with: holonom compare four-bar\n\n");
     for (int i = 0; i < hn_command_count(); i++) {
         const hn_command *c = hn_command_at(i);
         hn_strbuf_printf(b, "  holonom %s%s%s\n%*s", c->name, c->words[0] ? " " : "", c->words,
@@ -95,13 +96,13 @@ static bool describe_words(hn_strbuf *b, const char *word) {
 
 /// What `holonom` alone says: the first three things to do.
 static const char FIRST_STEPS[] =
-    "holonom: mechanisms with closed loops, many methods at the same times\n\n"
+    "holonom simulates mechanisms with closed loops by several methods at once.\n\n"
     "Start with one of these:\n"
-    "  holonom serve                  the page, in a browser\n"
+    "  holonom serve                  the workbench as a page in a browser\n"
     "  holonom tui four-bar           the same workbench in this terminal\n"
     "  holonom compare four-bar       several methods: which are right\n"
     "  holonom run four-bar --plot    one method, drawn over time\n"
-    "  holonom list scenes            the mechanisms that are there\n\n"
+    "  holonom list scenes            all shipped mechanisms\n\n"
     "'holonom help' lists all commands, 'holonom help COMMAND' explains one,\n"
     "'holonom help words' the terms of messages and tables.\n";
 
@@ -141,7 +142,7 @@ static hn_exit print_terms(const hn_args *args) {
     } else if (of_words) {
         hn_diag diag;
         hn_diag_set(&diag, HN_ERR_INPUT, NULL, "'holonom help words' lists the terms",
-                    "the terms do not hold '%.60s'", hn_strbuf_text(&word));
+                    "'%.60s' is not among the terms", hn_strbuf_text(&word));
         result = hn_report_diag(args, &diag);
     } else {
         hn_diag diag = unknown_command(hn_strbuf_text(&word));

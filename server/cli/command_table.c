@@ -9,68 +9,75 @@
 #define MODEL_OPTIONS "--set"
 
 static const hn_command COMMANDS[] = {
-    {"serve", "", "the page and the API, for this machine alone unless --host says more",
+    {"serve", "",
+     "serve the workbench as a page and as an API; only this machine can connect unless --host is "
+     "given",
      "--host --port --programs --answer-time --allow-host --open --history --max-comparisons "
      "--max-streams "
      "--max-connections --runs --token --guests --run-cpu "
      "--idle-pause "
      "--expiry --keep-alive",
      0, 0, hn_command_serve},
-    {"tui", "[SCENE|LINK]", "the workbench in this terminal: mechanism, plots, verdicts, studies",
+    {"tui", "[SCENE|LINK]",
+     "open the workbench in this terminal: mechanism, plots, verdicts, studies",
      MODEL_OPTIONS
      " --methods --once --t --keys --frames --size --ascii --blocks --pictures --theme",
      0, 1, hn_command_tui},
-    {"list", "scenes|methods|lessons|problems", "names what there is, with a line on each",
-     "--wide", 1, 1, hn_command_list},
-    {"inspect", "SCENE", "degrees of freedom, loops, rank, and how the equations are solved",
+    {"list", "scenes|methods|lessons|problems",
+     "list the scenes, methods, lessons or exercises, with one line on each", "--wide", 1, 1,
+     hn_command_list},
+    {"inspect", "SCENE", "show degrees of freedom, loops, rank, and how the equations are solved",
      MODEL_OPTIONS " --wide", 1, 1, hn_command_inspect},
-    {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
+    {"equations", "SCENE", "write the equations of motion (--format text, latex or json)",
      MODEL_OPTIONS " --format=text|latex|json --wide", 1, 1, hn_command_equations},
     {"export", "SCENE",
-     "the mechanism as a program that checks itself: --language python, c, cpp, java, octave, "
-     "julia, wolfram or modelica (for Julia, Wolfram and Modelica the equations are tested, but no "
-     "exported program was run); latex: its equations to read; or as a model: --format mjcf or "
-     "urdf",
+     "write the mechanism as a program that checks itself: --language python, c, cpp, java, "
+     "octave, julia, wolfram or modelica (for Julia, Wolfram and Modelica the equations are "
+     "tested, but no exported program was run); --language latex writes the equations to read, "
+     "--format mjcf or urdf a model for another simulator",
      MODEL_OPTIONS
      " --language=python|c|cpp|java|octave|julia|wolfram|modelica|latex --method --style --solver "
      "--blanks --format=mjcf|urdf --loops --out -o --force",
      1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java|julia",
-     "a starting point for a solver of your own, run as program:FILE; the one in Python needs "
-     "numpy",
+     "write a starting point for a solver of your own, which runs as the method program:FILE; the "
+     "one in Python needs numpy",
      "--out -o --force", 1, 1, hn_command_program},
-    {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
+    {"terms", "SCENE", "print M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
-    {"run", "SCENE", "one method; samples as --format csv, ndjson or json, with a verdict",
+    {"run", "SCENE",
+     "run one method; writes samples as --format csv, ndjson or json, and a verdict",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
                    "--raw-lambda --reactions --format=csv|ndjson|json --plot",
      1, 1, hn_command_run},
-    {"compare", "SCENE", "several methods at the same times: which are right, what they cost",
+    {"compare", "SCENE", "run several methods side by side: which are right, and what they cost",
      MODEL_OPTIONS
      " --allow-programs --trust-programs --answer-time --methods --time --frame --plot --wide",
      1, 1, hn_command_compare},
     {"study", "SCENE work-precision|budget|stability",
-     "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
-     ".json or .csv (maps also .svg, .png)",
+     "measure error against cost, where an error comes from, or which steps are stable; --out "
+     "FILE.html, .json or .csv (maps also .svg, .png)",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --methods --time --grid --csv "
                    "--out -o --plot --wide",
      1, 2, hn_command_study},
     {"report", "[SCENE...]",
-     "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
+     "put studies, error budgets and survival of several scenes on one page; --out FILE.html or "
+     ".json",
      "--methods --out -o --plots --wide", 0, HN_JOB_SCENES, hn_command_report},
     {"reference", "SCENE",
-     "the reference solution, computed in two independent ways, with the digits on which they "
-     "agree; --out writes it in the format of the shipped files",
+     "compute the reference solution in two independent ways, with the digits on which they agree; "
+     "--out writes it in the format of the shipped files",
      MODEL_OPTIONS " --time --out -o --wide", 1, 1, hn_command_reference},
     {"merge", "PART...",
-     "the parts of a study (study --shard) put together, as if it had been one run",
+     "put the parts of a study together that study --shard computed, as if one run had made them",
      "--csv --out -o --wide", 1, HN_CLI_MAX_WORDS, hn_command_merge},
     {"extreme", "[ID...]",
-     "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
+     "run the cases in which methods break, and compare predictions with observations; --out "
+     "FILE.html, .json or .csv",
      "--csv --out -o --wide", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
     {"snapshot", "SCENE|ID",
-     "draws a scene after a run, or an exercise with the numbers of --seed or --student; PNG or "
-     "SVG by the ending of -o",
+     "draw a scene after a run, or an exercise with the numbers of --seed or --student; the ending "
+     "of -o chooses PNG or SVG",
      MODEL_OPTIONS
      " --allow-programs --trust-programs --answer-time --method --methods --time "
      "--at --ghosts --animate --trace --dimensions --forces --describe --out -o --width "
@@ -80,11 +87,11 @@ static const hn_command COMMANDS[] = {
      "convert a MuJoCo MJCF or URDF file to a scene; unsupported elements are listed with their "
      "lines",
      "--out -o --loops --key", 1, 1, hn_command_import},
-    {"lesson", "N|ID", "a lesson to read: text, formulas, what to try, exercises", "--wide", 1, 1,
+    {"lesson", "N|ID", "print a lesson: text, formulas, what to try, exercises", "--wide", 1, 1,
      hn_command_lesson},
     {"problem", "ID|FILE",
-     "an exercise with the numbers of a variant; --check proves it over --seeds A..B; --out "
-     "FILE.svg writes the plot that is to be read",
+     "print an exercise with the numbers of a variant; --check tests it over --seeds A..B; --out "
+     "FILE.svg writes the plot that the exercise asks about",
      "--seed --student --hint --seeds --check --wide --out -o", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...|FOLDER",
      "verdicts (SUBMISSION - is standard input) as --format text, json, gradescope, prairielearn, "
@@ -98,17 +105,18 @@ static const hn_command COMMANDS[] = {
      "--wide --jobs --shard --merge",
      2, HN_CLI_MAX_WORDS, hn_command_grade},
     {"rubric", "check|write FILE|ID",
-     "check a rubric and say what it means, or write an exercise's own as a start",
+     "check a rubric and explain it, or write the exercise's own rubric as a starting point",
      "--out -o --force", 2, 2, hn_command_rubric},
-    {"regrade", "VERDICT [SUBMISSION]", "grade again what a verdict (JSON) says, and compare",
-     "--rubric", 1, 2, hn_command_regrade},
-    {"manual", "", "the manual page in roff, for 'man -l -'", "", 0, 0, NULL},
-    {"completion", "bash|zsh|fish", "what a shell needs to complete commands of this program", "",
-     1, 1, NULL},
+    {"regrade", "VERDICT [SUBMISSION]",
+     "grade the submission of a verdict (JSON) again, and compare the scores", "--rubric", 1, 2,
+     hn_command_regrade},
+    {"manual", "", "write the manual page in roff, for 'man -l -'", "", 0, 0, NULL},
+    {"completion", "bash|zsh|fish",
+     "write the script with which a shell completes holonom's commands", "", 1, 1, NULL},
     {"help", "[COMMAND|words|TERM...]",
-     "this text, a command's options, or what the terms of messages and tables mean: all, or one",
-     "", 0, HN_CLI_MAX_WORDS, NULL},
-    {"version", "", "what this program is", "", 0, 0, NULL},
+     "show this text, the options of a command, or the meaning of terms in messages and tables", "",
+     0, HN_CLI_MAX_WORDS, NULL},
+    {"version", "", "print the version of holonom", "", 0, 0, NULL},
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof *COMMANDS };
 

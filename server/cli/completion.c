@@ -116,7 +116,7 @@ static void offer_starts(const completing *c, const hn_model *model) {
             &hn_model_scene(model)->coordinates[hn_system_user_coordinate(sys, i)];
         char name[96];
         snprintf(name, sizeof name, "start.%.80s", q->name);
-        offer(c, name, "=", "where it starts");
+        offer(c, name, "=", "its value at the start");
         snprintf(name, sizeof name, "start.%.80s", q->rate);
         offer(c, name, "=", "its rate at the start");
     }
@@ -315,7 +315,7 @@ hn_exit hn_command_completion(const hn_library *lib, const hn_args *args) {
             return hn_cli_print(&b);
         }
     }
-    hn_diag_set(&diag, HN_ERR_INPUT, NULL, "there are bash, zsh and fish",
-                "no completion for the shell '%.40s'", args->words.word[0]);
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, "bash, zsh and fish have one",
+                "there is no completion for the shell '%.40s'", args->words.word[0]);
     return hn_report_diag(args, &diag);
 }

@@ -10,8 +10,8 @@
 static const hn_term TERMS[] = {
     // loops
     {"loop gap, constraint violation",
-     "Distance between the two halves of the joints at which loops are cut open to write their "
-     "equations phi = 0. A closed mechanism has none."},
+     "Distance between the two halves of the joints at which the loops are cut to write their "
+     "equations phi = 0. It is 0 while the loops are closed."},
     {"velocity gap, velocity violation", "How fast the loops come apart: the norm of J v + phi_t."},
     {"J", "The matrix of the constraints: a row for each closure equation, a column for each "
           "velocity. J v + phi_t = 0 keeps the loops closed."},
@@ -24,16 +24,20 @@ static const hn_term TERMS[] = {
      "so that a loop gap dies away as a damped vibration does. With alpha = beta it falls about "
      "as exp(-alpha t); with alpha below beta it swings meanwhile; with alpha above beta it falls "
      "more slowly in the end, as exp(-(alpha - sqrt(alpha^2 - beta^2)) t)."},
-    {"degrees of freedom", "Velocities less independent constraints: nv - rank J."},
+    {"degrees of freedom", "Number of velocities minus number of independent constraints: nv - "
+                           "rank J."},
+    {"consistent start",
+     "Start values of coordinates and velocities that satisfy phi = 0 and J v + phi_t = 0. "
+     "Assembly computes them from the values that the scene gives."},
     {"branch, assembly mode",
      "One of the ways in which the same links can be put together, as 'open' and 'crossed' of a "
      "four-bar. A method can jump to another one with its loops closed."},
 
     // singular configurations
     {"J loses rank, dependent constraints",
-     "In some configurations (links in line) one closure equation follows from the others. There "
-     "the mechanism can have one more degree of freedom, the motion may branch or lock, and single "
-     "multipliers are not determined."},
+     "In some configurations, for example with links in line, one closure equation follows from "
+     "the others. There the mechanism can have one more degree of freedom, the motion may branch "
+     "or lock, and single multipliers are not determined."},
     {"singular configuration",
      "A configuration in which J loses rank: a change point, a flat linkage. At a dead point J "
      "keeps "
@@ -48,42 +52,57 @@ static const hn_term TERMS[] = {
      "By how much the equations can magnify a relative error: with 1e6, six of sixteen digits of "
      "the multipliers are lost."},
     {"pilot run",
-     "A second run by a robust method, beside or ahead of the one that is shown. It foresees "
-     "singular configurations, tries remedies, and gives the error estimate."},
+     "A second run by a robust and tighter method, at the same times as the run that is shown or "
+     "ahead of it. It detects singular configurations ahead, tries remedies, and gives the error "
+     "estimate."},
     {"chart, independent coordinates",
      "The coordinates that a method steps; the others follow from the loops. At a turning point of "
      "an independent coordinate another one has to take its place."},
 
     // errors
-    {"error estimate",
-     "Largest difference of a run from its pilot run so far, relative: angles in rad, lengths over "
-     "the mechanism's length, reactions over their largest value."},
+    {"error estimate, motion error, reaction error",
+     "Largest difference of a run from its pilot run so far. Of the motion: angles in rad, lengths "
+     "over the mechanism's length. Of the reactions: over their largest value."},
     {"right, inaccurate, WRONG",
-     "The verdict by the error estimate: up to 1 %, above, and from 1 on (a radian, or the "
-     "mechanism's length). 'ok' says only that the run came to its end."},
+     "The verdict of 'run' and 'compare', by the error estimate. right: motion error and reaction "
+     "error are at most 0.01. inaccurate: one of them is larger. WRONG: the motion error is 1 or "
+     "more, a radian or the mechanism's length. 'ok' says only that the run reached its end."},
+    {"not judged",
+     "There is no error estimate for the end of the run: the pilot run ended earlier, would have "
+     "cost too much, or was itself too uncertain. The reason is given."},
     {"right to 3 digits",
-     "The verdict of the workbench and the page, at the time shown: the worse of the distance of "
-     "drawn points from the reference solution, over the mechanism's length, and of the energy "
-     "change over the range of the energies."},
-    {"reference solution",
-     "The motion computed in two ways without common code, at very tight tolerance. The digits on "
-     "which both agree count as true."},
+     "The verdict of the workbench and the page, at the time shown. It is the larger of two "
+     "errors: the distance of drawn points from the reference solution, over the mechanism's "
+     "length, and the energy change, over the range of the energies."},
+    {"incident, remedy",
+     "An incident is an event that the program reports during a run, such as a loop that opens or "
+     "an energy that jumps. A remedy is a change of method or step that removes it; 'tried' gives "
+     "the result of the pilot run with it."},
+    {"gap limit",
+     "The loop gap from which a loop is reported as open: 0.001 of the mechanism's length."},
+    {"reference solution", "The motion, computed at a very tight tolerance in two ways that share "
+                           "no code but that of the "
+                           "equations. The digits on which both agree count as true."},
     {"energy change",
-     "Kinetic and potential energy now less those at the start, less the work of drives, dampers "
-     "and loads. The true change is 0."},
-    {"drift", "An error that grows with every step, as nothing in the equations pushes it back."},
+     "Kinetic and potential energy now, minus their value at the start, minus the work of drives, "
+     "dampers and loads. The true value is 0."},
+    {"drift", "An error that grows with every step because nothing in the equations corrects it."},
     {"rtol, tolerance",
-     "What a method that chooses its own steps allows as relative error of one step; the error of "
-     "a whole run is larger."},
+     "The relative error that a method with a variable step allows in one step. The error of a "
+     "whole run is larger."},
     {"stiff",
-     "Some part of the motion is much faster than what can be seen. Explicit methods must take "
-     "steps that follow it, implicit methods need not."},
+     "A part of the motion is much faster than the rest and too small to see. Explicit methods "
+     "must take steps short enough to follow it, implicit methods need not."},
 
     // cost
-    {"evals", "How often accelerations, or residuals of an implicit step, were computed."},
+    {"evals",
+     "Evaluations: how often accelerations, or residuals of an implicit step, were computed."},
     {"ops", "Arithmetic operations, counted exactly: the same on every machine."},
-    {"quartiles", "A quarter of the steps was measured faster than the first time, a quarter "
-                  "slower than the second."},
+    {"quartiles", "Two times: a quarter of the measured steps took less than the first one, a "
+                  "quarter took more than the second one."},
+    {"compiled instructions, tape",
+     "The list of arithmetic instructions to which the equations of a scene are compiled. It is "
+     "interpreted at first, and replaced by machine code where a C compiler is installed."},
 };
 
 const hn_term *hn_glossary(int *n) {

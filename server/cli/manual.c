@@ -62,29 +62,26 @@ static void put_command(hn_strbuf *b, const hn_command *command) {
 
 static void put_sections(hn_strbuf *b) {
     hn_strbuf_add(
-        b,
-        ".SH WORDS\n.TP\n.B SCENE\nthe name of a shipped scene, a file, or \\- for standard input\n"
-        ".TP\n.B METHOD\nFORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
-        "projection@rk4:h=1e\\-3\n"
-        ".SH FILES\nA file of \\-\\-out that is there and holds something else is kept as "
-        "FILE.1, FILE.2, and so on, and a line on standard error says so. A picture or plot that "
-        "holonom drew itself is replaced: it can be drawn again. Where the file may be somebody's "
-        "work (program, rubric write, export \\-\\-blanks) nothing is written without "
-        "\\-\\-force, which replaces it. FILE.part, in which an interrupted grading of a class "
-        "goes on, is holonom's own.\n"
-        ".SH EXIT STATUS\n.TP\n.B 0\ndone; a wrong answer that was graded low is done\n"
-        ".TP\n.B 2\nthe input is at fault\n.TP\n.B 3\nthe program is at fault\n"
-        ".TP\n.B 4\na run ended early and said why, or a prediction of extreme failed\n"
-        ".TP\n.B 130\nCtrl\\-C ended the workbench in the terminal (tui)\n"
-        ".SH EXAMPLES\n.nf\n.in 2n\nholonom serve\nholonom tui four\\-bar\n"
-        "holonom compare four\\-bar \\-\\-methods index1@rk4:h=1e\\-2 projection@rk4:h=1e\\-2\n"
-        "holonom run four\\-bar \\-\\-method reduced@dop853:rtol=1e\\-10 \\-\\-time 2 \\-\\-json\n"
-        "holonom grade p3 answer.json\n.in\n.fi\n"
-        ".SH ENVIRONMENT\n.TP\n.B HOLONOM_HOME\nfolder with lessons/ and web/\n"
-        ".TP\n.B HOLONOM_CACHE\nfolder for computed references and unfinished studies\n"
-        ".TP\n.B XDG_STATE_HOME\nfolder in which the workbench in the terminal keeps the best "
-        "scores of exercises, as holonom/lessons.json; ~/.local/state when not set\n"
-        ".TP\n.B NO_COLOR\nno colours, whatever the terminal can show\n");
+        b, ".SH WORDS\n.TP\n.B SCENE\nthe name of a shipped scene, a file, or \\- for standard "
+           "input\n.TP\n.B METHOD\nFORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
+           "projection@rk4:h=1e\\-3\n.SH FILES\n\\-\\-out never destroys a file: an old FILE with "
+           "other contents is kept as FILE.1, FILE.2, and so on, and a line on standard error says "
+           "so. A picture or plot that holonom drew is replaced, because it can be drawn again. "
+           "The commands program, rubric write and export \\-\\-blanks replace an existing file "
+           "only with \\-\\-force. FILE.part is a file of holonom, from which an interrupted "
+           "grading of a class continues.\n.SH EXIT STATUS\n.TP\n.B 0\ndone, whatever the verdict: "
+           "a run that reaches its end has status 0 even if its motion is WRONG, and so has a "
+           "submission whose answers are wrong\n.TP\n.B 2\nthe input is at fault\n.TP\n.B 3\nthe "
+           "program is at fault\n.TP\n.B 4\na run ended early with its reason, or a prediction of "
+           "extreme failed\n.TP\n.B 130\nCtrl\\-C ended the workbench in the terminal (tui)\n.SH "
+           "EXAMPLES\n.nf\n.in 2n\nholonom serve\nholonom tui four\\-bar\nholonom compare "
+           "four\\-bar \\-\\-methods index1@rk4:h=1e\\-2 projection@rk4:h=1e\\-2\nholonom run "
+           "four\\-bar \\-\\-method reduced@dop853:rtol=1e\\-10 \\-\\-time 2 \\-\\-json\nholonom "
+           "grade p3 answer.json\n.in\n.fi\n.SH ENVIRONMENT\n.TP\n.B HOLONOM_HOME\nfolder with "
+           "lessons/ and web/\n.TP\n.B HOLONOM_CACHE\nfolder for computed references and "
+           "unfinished studies\n.TP\n.B XDG_STATE_HOME\nfolder in which the workbench in the "
+           "terminal keeps the best scores of exercises, as holonom/lessons.json; ~/.local/state "
+           "when not set\n.TP\n.B NO_COLOR\nif it is set, nothing is printed in colour\n");
 }
 
 hn_exit hn_command_manual(const hn_library *lib, const hn_args *args) {
@@ -92,11 +89,10 @@ hn_exit hn_command_manual(const hn_library *lib, const hn_args *args) {
     (void)args;
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_strbuf_add(&b, ".TH HOLONOM 1 \"\" \"holonom " HN_VERSION "\"\n"
-                      ".SH NAME\nholonom \\- simulates mechanisms with closed loops by many "
-                      "methods side by side\n"
-                      ".SH SYNOPSIS\n.B holonom\n\\fICOMMAND\\fR [\\fIWORD\\fR...] "
-                      "[\\fIOPTION\\fR...]\n.SH COMMANDS\n");
+    hn_strbuf_add(&b, ".TH HOLONOM 1 \"\" \"holonom " HN_VERSION
+                      "\"\n.SH NAME\nholonom \\- simulates mechanisms with closed loops by several "
+                      "methods at once\n.SH SYNOPSIS\n.B holonom\n\\fICOMMAND\\fR "
+                      "[\\fIWORD\\fR...] [\\fIOPTION\\fR...]\n.SH COMMANDS\n");
     for (int i = 0; i < hn_command_count(); i++) {
         put_command(&b, hn_command_at(i));
     }

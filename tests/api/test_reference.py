@@ -32,7 +32,7 @@ class Reference(driver.ServerCase):
 
     def test_what_is_not_stored_is_computed_only_on_request(self):
         problem = self.refused("?set=g:9&time=1", 404)
-        self.assertIn("would have to be computed", problem["detail"])
+        self.assertIn("has to be computed", problem["detail"])
         self.assertIn("compute=true", problem["hint"])
         reference = self.get("?set=g:9&time=1&compute=true")
         self.assertEqual((reference["source"], reference["time"]), ("computed", 1))

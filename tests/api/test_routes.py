@@ -322,7 +322,7 @@ class Stateless(driver.ServerCase):
         far = self.post("drag", {"scene": "four-bar", "point": 1, "target": [3, 4]}).json()
         self.assertEqual((far["end"], far["reached"]), ("nearest", False))
         self.assertAlmostEqual(far["distance"], 4.5, 6)
-        self.assertIn("no pose around here", far["reason"])
+        self.assertIn("no closed configuration near this one", far["reason"])
         for wrong, place in ((body, "/target"), ({**body, "target": [1, 2]}, "/target"), ({**body, "point": 1, "target": [1]}, "/point"),
                              ({"scene": "four-bar", "target": [1, 2]}, "/point"), ({"scene": "four-bar", "point": 99, "target": [1, 2]}, "/point"),
                              ({"scene": "four-bar", "coordinate": "b3", "target": [1]}, "/coordinate"),

@@ -47,7 +47,7 @@ class FairShares(Timed):
         time.sleep(0.5)
         busy = server.ask("POST", "/api/v1/comparisons?wait=0", self.MAKE[2])
         self.assertEqual(busy.status, 429)
-        self.assertRegex(busy.json()["detail"], r"\b[23] requests wait for a place before this one")
+        self.assertRegex(busy.json()["detail"], r"\b[23] requests wait before this one")
         left.close()
         threads[1].join()
         self.assertEqual((answers[0].status, answers[0].headers["retry-after"]), (429, "5"))

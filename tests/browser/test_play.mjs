@@ -495,13 +495,13 @@ test("a singular pose is counted down, and then told with what became of each me
   for (const { message } of met) {
     assert.match(
       message,
-      /two branches of motion cross; the run (went straight on|left the smooth path)/,
+      /two branches of motion cross; the run (stayed on the smooth path|left the smooth path)/,
     );
   }
   await page.waitForFunction(
     () =>
       [...document.querySelectorAll(".incidents .message")].filter((node) =>
-        /the run (went straight on|left the smooth path)/.test(node.textContent),
+        /the run (stayed on the smooth path|left the smooth path)/.test(node.textContent),
       ).length === 3,
   );
 });

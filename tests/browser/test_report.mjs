@@ -54,7 +54,7 @@ const isShown = (locator) =>
 for (const javaScriptEnabled of [true, false]) {
   test(`on paper what is folded is there, ${javaScriptEnabled ? "with" : "without"} scripts`, () =>
     withPage({ javaScriptEnabled }, async (page) => {
-      const heads = ["Methods", "What did not come to the end", "How it was measured"];
+      const heads = ["Methods", "Runs that did not reach the end", "How it was measured"];
       for (const name of heads) {
         const head = page.locator("h3", { hasText: name });
         assert.equal(await isShown(head), false, `${name} is folded on a screen`);

@@ -40,7 +40,7 @@ test("S1 serve prints its address, and where the port is taken the next free one
     stream.on("data", (chunk) => (text += chunk));
   }
   await soon(async () => {
-    assert.match(text, new RegExp(`port ${taken} is taken; port \\d+ is used`));
+    assert.match(text, new RegExp(`port ${taken} is already in use; port \\d+ is used`));
     assert.match(text, /holonom is at http:\/\/127\.0\.0\.1:\d+\//);
   });
   const [url] = /http:\/\/127\.0\.0\.1:\d+\//.exec(text) ?? [];

@@ -142,7 +142,7 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
     assert.match(await menu.textContent(), /^the most telling map: alpha and beta/);
     const lines = await page.locator(".steps li").allTextContents();
     assert.equal(lines.length, map.steps, "the map of steps by which it was chosen");
-    assert.ok(lines.every((line) => /not stiff: at the predicted limit/.test(line)));
+    assert.ok(lines.every((line) => /not stiff: accuracy limits the step/.test(line)));
   });
   await soon(async () =>
     assert.match(
@@ -265,7 +265,7 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   await soon(async () =>
     assert.match(
       await page.locator(".budgets").textContent(),
-      /the errors are too large to be split, the parts add up to .*; they agree until/,
+      /the error is too large to be split, the parts add up to .*; they agree until/,
     ),
   );
 

@@ -375,7 +375,7 @@ test("how the methods came through a singular configuration is said once for all
     ...{ code: "near-singular", method, t, value: 1e-5 },
     message: `J almost loses rank; two branches of motion cross; the run ${fate}`,
   });
-  const straight = "went straight on";
+  const straight = "stayed on the smooth path";
   const data = {
     history,
     methods: [{ label: "raw" }, { label: "projection" }],
@@ -383,15 +383,15 @@ test("how the methods came through a singular configuration is said once for all
     view: { hidden: new Set() },
   };
   const passed = "the mechanism passed a singular configuration at 0.76 s: two branches of motion";
-  assert.equal(passedAt(data, 54), `${passed} cross there; all methods went straight on`);
+  assert.equal(passedAt(data, 54), `${passed} cross there; all methods stayed on the smooth path`);
   // another one that is ahead is a sentence of its own
   data.incidents.push({ code: "rank-ahead", method: 0, t: 0.8, value: 0.2 });
   assert.equal(predictionAt(data, 54), "singular configuration in 0.10 s: J loses rank (raw)");
-  assert.equal(passedAt(data, 54), `${passed} cross there; all methods went straight on`);
+  assert.equal(passedAt(data, 54), `${passed} cross there; all methods stayed on the smooth path`);
   data.incidents[2] = at(1, 0.76, "left the smooth path there, by 0.4 rad");
   assert.equal(
     passedAt(data, 54),
-    `${passed} cross there; raw went straight on; projection left the smooth path there, by 0.4 rad`,
+    `${passed} cross there; raw stayed on the smooth path; projection left the smooth path there, by 0.4 rad`,
   );
   assert.equal(passedAt(data, 30), "", "it is not there yet");
 });

@@ -67,10 +67,19 @@ class Budget(unittest.TestCase):
         self.assertGreater(error["mismatch"], 0.2)
         self.assertFalse(error["holds"])
         self.assertEqual(error["holds_until"], 5)
-        self.assertIn("the errors are too large to be split", page)
-        errors, energies = page.split("Who put energy in", 1)
+        self.assertIn("the error is too large to be split", page)
+        errors, energies = page.split("Causes that put energy in", 1)
         self.assertNotIn('<g class="part">', errors)
         self.assertIn('<g class="part">', energies)
+        # the table marks the sum and says so below, before the energy; drawn, a sentence replaces the bars
+        words = ["study", "four-bar", "budget", "--methods", method]
+        table = call(*words).stdout.split("\nEnergy put in")[0]
+        self.assertRegex(table, r"1\.27\*")
+        self.assertIn(f"  * {method}: the error is too large to be split", table)
+        self.assertIn("at t = 5 s the parts still added up to the error, within 10 %", " ".join(table.split()))
+        drawn = call(*words, "--plot").stdout.split("\nEnergy put in")[0]
+        self.assertIn("the error is too large to be split", drawn)
+        self.assertNotIn("truncation", drawn)
         # and until then they do add up
         shorter = strict(call("study", "four-bar", "budget", "--methods", method, "--time", "5", "--json").stdout)["methods"][0]["error"]
         self.assertTrue(shorter["holds"])
@@ -114,7 +123,7 @@ class Budget(unittest.TestCase):
                     self.assertEqual(float(row[name]) if row[name] else None, value, name)
         studies.assert_page(self, page)
         self.assertEqual(page.count("<svg"), 2)
-        for text in (*[m["method"] for m in document["methods"]], "an error budget is made of 200000 steps at most", "Who put energy in"):
+        for text in (*[m["method"] for m in document["methods"]], "an error budget can have at most 200000 steps", "Causes that put energy in"):
             self.assertIn(text, page)
         # a block of its colour a part, its number where it is pointed at
         self.assertRegex(page, r"<g class=\"part\"><title>truncation: [+\u2212][0-9.]+ .rad</title>")
@@ -123,13 +132,13 @@ class Budget(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             status, out, err = studies.interrupt([*SECONDS, "--json"], folder, "budget")
             self.assertEqual(status, ENDED, err)
-            self.assertIn("stopped on request; the same command goes on from here", err)
+            self.assertIn("stopped on request; the same command continues from here", err)
             states = [m["state"] for m in strict(out)["methods"]]
             self.assertEqual(len(states), 6)
             self.assertEqual(sorted(set(states)), ["done", "left out"])
             done = studies.call(SECONDS, folder, text=True)
             self.assertEqual(done.returncode, DONE, done.stderr)
-            self.assertIn(f"going on with {states.count('done')} methods from before", done.stderr)
+            self.assertIn(f"continuing with {states.count('done')} methods of an earlier run", done.stderr)
             self.assertEqual(studies.journals(folder, "budget"), [], "nothing is left of whole budgets")
 
     def test_time_left_is_shown(self):

@@ -300,12 +300,12 @@ class Class(unittest.TestCase):
     def test_scores_of_before_are_kept(self):
         out = os.path.join(self.temporary.name, "scores.csv")
         self.put("ann.json", RIGHT)
-        self.assertNotIn("held something else", self.grade("--out", out).stderr)
-        self.assertNotIn("held something else", self.grade("--out", out).stderr)  # the same scores once more
+        self.assertNotIn("the old contents", self.grade("--out", out).stderr)
+        self.assertNotIn("the old contents", self.grade("--out", out).stderr)  # the same scores once more
         for n in (1, 2):
             with open(out, "a", encoding="utf-8") as f:
                 f.write(f"changed by hand, {n}\n")
-            self.assertIn(f"'{out}' held something else: that is kept in '{out}.{n}'", self.grade("--out", out).stderr)
+            self.assertIn(f"the old contents of '{out}' are kept in '{out}.{n}'", self.grade("--out", out).stderr)
             with open(f"{out}.{n}", encoding="utf-8") as f:
                 self.assertIn(f"changed by hand, {n}", f.read())
         with open(out, encoding="utf-8") as f:

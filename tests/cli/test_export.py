@@ -301,7 +301,7 @@ def skeleton():
         if subprocess.run([python, "-c", "import matplotlib"], capture_output=True).returncode == 0:
             faults += plot_faults(python, scene, bare)
     for words, said in ((("--language", "latex", "--style", "skeleton"), "no skeleton in latex"), (("--style", "bare"), "full or skeleton"),
-                        (("--language", "c", "--solver", "eigen"), "one solver only"), (("--language", "cpp", "--solver", "egen"), "eigen"),
+                        (("--language", "c", "--solver", "eigen"), "only one solver"), (("--language", "cpp", "--solver", "egen"), "eigen"),
                         (("--language", "java", "--solver", "ejml", "--blanks"), "without further libraries"),
                         (("--format", "mjcf", "--solver", "eigen"), "--solver"),
                         (("--blanks", "--style", "skeleton"), "leave one of them out")):

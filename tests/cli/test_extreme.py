@@ -81,7 +81,7 @@ class Extreme(unittest.TestCase):
         self.assertNotIn(" fail", table.splitlines()[-1])
 
     def test_an_unknown_case_and_a_wrong_file_name_are_told(self):
-        for words, says in ([["x99"], "no case 'x99'"], [["x3", "--out", "a.doc"], "does not say which form to write"]):
+        for words, says in ([["x99"], "no case 'x99'"], [["x3", "--out", "a.doc"], "does not choose a form"]):
             done = call(words)
             self.assertEqual(done.returncode, INPUT)
             self.assertIn(says, done.stderr)
@@ -91,7 +91,7 @@ class Extreme(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             status, out, err = studies.interrupt(words, folder, "extreme")
             self.assertEqual(status, ENDED, err)
-            self.assertIn("stopped on request; the same command goes on from here", err)
+            self.assertIn("stopped on request; the same command continues from here", err)
             document = json.loads(out)
             self.assertTrue(document["stopped"])
             seen = [t for t in verdicts(document) if t[2] == "pass"]
@@ -99,7 +99,7 @@ class Extreme(unittest.TestCase):
             self.assertIn("not run", {v for _, _, v, _ in verdicts(document)})
             done = studies.call([w for w in words if w != "--json"], folder, text=True)
             self.assertEqual(done.returncode, DONE, done.stderr)
-            self.assertIn(f"going on with {len(seen)} trials from before", done.stderr)
+            self.assertIn(f"continuing with {len(seen)} trials of an earlier run", done.stderr)
             self.assertEqual(studies.journals(folder, "extreme"), [], "nothing is left of a whole matrix")
 
     def test_killed_ten_times_it_ends_with_the_bytes_of_an_undisturbed_one(self):
@@ -121,7 +121,7 @@ class Extreme(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             poor = studies.call(["extreme", *SECONDS, "--json", "--time-limit", "0.2"], folder, text=True)
             self.assertTrue(json.loads(poor.stdout)["out_of_time"])
-            self.assertIn("the time limit left trials out; the same command goes on from here", poor.stderr)
+            self.assertIn("the time limit left trials out; the same command continues from here", poor.stderr)
             rich = studies.call(["extreme", *SECONDS, "--json"], folder, text=True)
         self.assertEqual(rich.stdout, call([*SECONDS, "--json"]).stdout)
 
@@ -133,7 +133,7 @@ class Extreme(unittest.TestCase):
             argv, env = studies.command(words, folder, HOLONOM_HOME=os.environ.get("HOLONOM_HOME", os.getcwd()))
             done = subprocess.run([other, *argv[1:]], capture_output=True, text=True, env=env, check=False, timeout=200 * driver.SLOW)
             self.assertEqual(done.returncode, DONE, done.stderr)
-            self.assertNotIn("going on", done.stderr)
+            self.assertNotIn("continuing", done.stderr)
             self.assertEqual(len(studies.journals(folder, "extreme")), 1, "that of the first waits for it")
 
     def test_a_journal_that_was_cut_or_damaged_is_used_as_far_as_it_is_whole(self):

@@ -115,7 +115,7 @@ class Files(Command):
                         self.assertEqual(open(path + ".1").read(), "mine\n")
                         self.assertNotEqual(open(path, "rb").read(), b"mine\n")
                         told = " ".join(done.stderr.decode().split())
-                        self.assertIn(f"'{path}' held something else: that is kept in '{path}.1'", told)
+                        self.assertIn(f"the old contents of '{path}' are kept in '{path}.1'", told)
                 if option == "-o":
                     # every command that has the option is in the tables
                     names = {line.split()[1] for line in call("help").stdout.decode().splitlines() if line.startswith("  holonom ")}
@@ -224,7 +224,7 @@ class Files(Command):
             # with room it is kept
             done = call("snapshot", "four-bar", "-o", path)
             self.assert_exit(done, DONE)
-            self.assertIn(b"that is kept in", done.stderr)
+            self.assertIn(b"are kept in", done.stderr)
             self.assertEqual(open(path + ".1").read(), "somebody's work")
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
@@ -261,7 +261,7 @@ class Files(Command):
                     f.write("mine\n")
                 done = call(*words, "-o", path)
                 self.assert_exit(done, DONE)
-                self.assertIn(b"that is kept in", done.stderr)
+                self.assertIn(b"are kept in", done.stderr)
                 self.assertEqual(open(path + ".1").read(), "mine\n")
                 # the same once more changes nothing
                 self.assertNotIn(b"kept", call(*words, "-o", path).stderr)

@@ -110,7 +110,7 @@ class Import(unittest.TestCase):
             os.symlink(os.path.join(top, "world.xml"), os.path.join(folder, "parts", "world.xml"))
             result = call("import", main)
             self.assertEqual(result.returncode, INPUT)
-            self.assertIn("a link out of the model's folder", result.stderr.decode())
+            self.assertIn("a link that leads out of the model's folder", result.stderr.decode())
             os.remove(os.path.join(folder, "parts", "world.xml"))
             result = call("import", main)
             self.assertEqual(result.returncode, INPUT)

@@ -101,8 +101,8 @@ class Kept(unittest.TestCase):
                 process.send_signal(how)
                 told = process.stderr.read().decode()
                 self.assertEqual(process.wait(timeout=60), studies.ENDED, told)
-            self.assertIn("what was done could not be written and is not kept", told)
-            self.assertNotIn("goes on from here", told)
+            self.assertIn("the finished part could not be written and is lost", told)
+            self.assertNotIn("continues from here", told)
 
 
 if __name__ == "__main__":

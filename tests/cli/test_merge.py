@@ -200,9 +200,9 @@ class Merge(unittest.TestCase):
             ([*COUNTED, "--shard", "3/2"], b"part 3 of 2"),
             ([*COUNTED, "--shard", "1/9999"], b"1 to 240 parts"),
             ([*COUNTED, "--shard", "1"], b"no part of a study"),
-            ([*COUNTED, "--shard", "1/2", "--csv"], b"a part of a study is JSON"),
-            ([*COUNTED, "--shard", "1/2", "--out", "x.html"], b"a part of a study is JSON"),
-            (["merge", self.parts(1)[0], "--out", "x.pdf"], b"does not say which form to write"),
+            ([*COUNTED, "--shard", "1/2", "--csv"], b"a part of a study is written as JSON"),
+            ([*COUNTED, "--shard", "1/2", "--out", "x.html"], b"a part of a study is written as JSON"),
+            (["merge", self.parts(1)[0], "--out", "x.pdf"], b"does not choose a form"),
             (["merge"], b"needs PART"),
         ):
             done = self.call(words)
@@ -285,11 +285,11 @@ class Merge(unittest.TestCase):
         words, cache = [*words, "1/2", "--out", files[0]], self.cache("cache-of-the-interrupted")
         status, _, err = studies.interrupt(words, cache, "study")
         self.assertEqual(status, ENDED, err)
-        self.assertIn("goes on from here", err)
+        self.assertIn("continues from here", err)
         self.refused(files, "1 of 2 parts are missing: 1/2", "stopped before its end")
         done = studies.call(words, cache)
         self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertRegex(done.stderr, rb"going on with \d+ points")
+        self.assertRegex(done.stderr, rb"continuing with \d+ points")
         self.assertEqual(self.call(["merge", *files]).returncode, DONE)
 
     def test_what_the_budget_left_out_stays_and_a_richer_run_of_that_part_fills_it(self):

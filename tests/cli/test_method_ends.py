@@ -203,7 +203,7 @@ class Tolerances(unittest.TestCase):
                 if row:
                     rows.setdefault(row[1], []).append((float(row[2]), float(row[3])))
         for card in catalogue()["integrators"]:
-            said = re.search(r"at rtol=1e-6, the middle error is ([\d.]+) rtol(?:, and one in ten is above (\d+) rtol)?", card["about"])
+            said = re.search(r"at rtol=1e-6 the median error is ([\d.]+) rtol(?:, and one scene in ten has more than (\d+) rtol)?", card["about"])
             self.assertEqual(said is not None, card["name"] in rows, card["name"])
             if said:
                 # two digits, as the table has them

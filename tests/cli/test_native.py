@@ -40,7 +40,7 @@ class Native(unittest.TestCase):
             self.assertIn("break_even_evaluations", n)
 
     def test_both_switches_leave_the_interpreter(self):
-        off = {"status": "native tapes are switched off"}
+        off = {"status": "machine code is switched off"}
         self.assertEqual(self.native("--no-native"), off)
         self.assertEqual(self.native(HOLONOM_NATIVE="0"), off)
         self.assertEqual(os.listdir(self.cache), [])

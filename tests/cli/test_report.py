@@ -98,9 +98,9 @@ class Report(unittest.TestCase):
         best = max(METHODS, key=answers.count)
         self.assertTrue(said[0].startswith(f"Cheapest: {best} in {answers.count(best)} of {len(answers)}"), said)
         # projection alone closes the loops and passes the flat poses with every size
-        self.assertRegex(said[1], "^To the end at every size in every scene, .*: projection@rk4.$")
+        self.assertRegex(said[1], "^These methods reach the end at every size in every scene, .*: projection@rk4.$")
         self.assertIn("Break at some sizes or all in fb0: nullspace-as-printed@rk4.", said)
-        self.assertIn("Ranked by operations: no time was taken.", said)
+        self.assertIn("Ranked by operations: no time was measured.", said)
 
     def test_tables_have_heads_and_headings_go_down_one_level_at_a_time(self):
         with open(self.page, encoding="utf-8") as f:
@@ -145,7 +145,7 @@ class Report(unittest.TestCase):
             self.assertEqual(status, ENDED, err)
             report = strict(out)
             self.assertTrue(report["stopped"])
-            self.assertIn("goes on from here", err)
+            self.assertIn("continues from here", err)
             self.assertIn("not begun", report["scenes"][1]["reason"])
             self.assertTrue(studies.journals(folder, "study"))
 
@@ -155,7 +155,7 @@ class Report(unittest.TestCase):
             (["report", "fb0", "--methods", "index1@rk5"], b"rk5"),
             (["report", "fb0", "--levels", "99"], b"2 to 10"),
             (["report", "fb0", "--time-limit", "-3"], b"are allowed"),
-            (["report", "fb0", "--out", "x.pdf"], b"does not say which form to write"),
+            (["report", "fb0", "--out", "x.pdf"], b"does not choose a form"),
         ):
             done = call(words, self.kept.name)
             self.assertEqual(done.returncode, INPUT, words)

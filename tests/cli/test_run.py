@@ -146,7 +146,7 @@ class Run(Command):
             force, at = run["samples"]["reaction_force"][-1], run["carriers"].index(carrier)
             upward = force[3 * at + 1]
             self.assertAlmostEqual(upward, 20, delta=1e-9, msg=carrier)  # m g, upward
-        self.assertRegex(b" ".join(call("run", "--help").stdout.split()), rb"Of a joint they act on the child, by its parent")
+        self.assertRegex(b" ".join(call("run", "--help").stdout.split()), rb"The reaction of a joint acts from the parent on the child")
         with open("core/README.md", encoding="utf-8") as readme:
             self.assertIn("| a joint | its child | its parent |", readme.read())
 
@@ -185,7 +185,7 @@ class Run(Command):
         self.assertNotIn("smaller step", vain)
         # where a trial from the start is too long the sentence says so
         late = call("run", "slider-crank", "--method", "projection@euler:h=1e-3", "--time", "8", "--at", "8").stderr.decode()
-        self.assertRegex(late, r"tried in vain from t = 7\.\d* s on \(the state there holds the errors so far; from the start a trial takes too many steps\): h=")
+        self.assertRegex(late, r"tried in vain from t = 7\.\d* s on \(where the state already holds the errors so far; a trial from the start would take too many steps\): h=")
         # equations that lack a term are wrong at any step
         for method, word in ("rk4:h=0.01", "step"), ("dopri5:rtol=1e-5", "tolerance"):
             method = f"nullspace-as-printed@{method}"
@@ -211,7 +211,7 @@ class Run(Command):
         whole = told("10")
         self.assertEqual((float(whole[1]), whole[2]), (10, ""))
         near = told("9.2")
-        self.assertEqual(near[2], ", past the near end of the run")
+        self.assertEqual(near[2], ", beyond the end of the run")
         # a tenth of the way to the event
         self.assertGreater(float(near[1]), 9.2)
         self.assertLess(float(near[1]), 9.18 * 1.11)
@@ -237,15 +237,15 @@ class Run(Command):
         done = call("run", "parallelogram", "--method", "projection@rk4:h=1e-3", "--time", "5", "--json")
         for code in "rank-ahead", "near-singular":
             told = [i["message"] for i in json.loads(done.stdout)["incidents"] if i["code"] == code]
-            self.assertEqual([("; later reports of this kind are not listed" in m) for m in told], [False] * 4 + [True])
+            self.assertEqual([("; further incidents of this kind are not listed" in m) for m in told], [False] * 4 + [True])
 
     def test_a_status_that_finds_fault_says_by_which_measure(self):
         done = call("compare", "four-bar", "--methods", "nullspace@rk4:h=0.01", "--time", "3").stdout.decode()
         self.assertRegex(done, r"(?m)^nullspace\S+ +inaccurate ")
-        measure = "status: right where the estimated errors of motion and reactions are at most 0.01, WRONG where that of the motion is 1 or more"
+        measure = "status: by the estimated errors of motion and reactions: right up to 0.01, WRONG from a motion error of 1 on"
         self.assertIn(measure, " ".join(done.split()))
         done = call("compare", "four-bar", "--methods", "projection@rk4:h=1e-3", "--time", "1").stdout.decode()
-        self.assertNotIn("status: right where", done)
+        self.assertNotIn("status: by", done)
 
     def test_a_scene_whose_methods_are_meant_to_go_wrong_says_so(self):
         own = " ".join(call("compare", "four-bar").stdout.decode().split())
@@ -406,7 +406,7 @@ class Run(Command):
         self.assertGreater(told["over_rtol"], 10)
         self.assertAlmostEqual(told["over_rtol"] / (told["q"] / 1e-6), 1, delta=1e-6)
         said = call("run", "four-bar", "--method", "ggl@ida:rtol=1e-6,safety=1", "--time", "5", "--at", "5").stderr.decode()
-        self.assertIn(f"; that is {told['over_rtol']:.0f} times rtol, which bounds the error of a step", said)
+        self.assertIn(f"; that is {told['over_rtol']:.0f} times rtol, which limits the error of one step only", said)
         table = call("compare", "four-bar", "--methods", "ggl@ida:rtol=1e-6,safety=1", "projection@rk4:h=1e-3", "--time", "5", "--wide").stdout.decode()
         self.assertRegex(table, r"ggl@ida.* \d+ rtol ")
         self.assertEqual(table.count(" rtol "), 1)
@@ -434,7 +434,7 @@ class Run(Command):
         words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=4e-5", "--time", "200", "--at", "200"]
         piped = subprocess.run(words, capture_output=True, timeout=300 * driver.SLOW)
         self.assertEqual(piped.returncode, DONE)
-        self.assertRegex(piped.stderr, rb"\Aholonom: the motion is right as far as it was judged: [^\n]*; after that no error was estimated \([^\n]*\)\n\Z")  # the verdict, and no progress
+        self.assertRegex(piped.stderr, rb"\Aholonom: the motion is right as far as it was judged: [^\n]*; the error after that was not estimated \([^\n]*\)\n\Z")  # the verdict, and no progress
         terminal, end = pty.openpty()
         process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=end)
         os.close(end)

@@ -83,7 +83,7 @@ class Stability(unittest.TestCase):
             text = self.call(*words).stdout.decode()
             for method in study["steps"]:
                 said = method["agreement"]["text"]
-                self.assertRegex(said, r"not stiff: at the predicted limit, .* one step moves the mechanism by [\d.]+ rad")
+                self.assertRegex(said, r"not stiff: accuracy limits the step, .* one step moves the mechanism by [\d.]+ rad")
                 self.assertNotIn("of 1 columns", said)
                 self.assertNotIn("preset", said)
                 self.assertIn(said, page)
@@ -215,7 +215,7 @@ class Stability(unittest.TestCase):
             (["--preset", "limits", "--over", "h=1e-3..1"], b"not from both"),
             (["--grid", "0x7"], b"not a grid"),
             (["--grid", "99x99", "--over", "h=1e-3..1,k=1..1e3"], b"2 to 64 are allowed"),
-            (["--out", "x.pdf"], b"does not say which form to write"),
+            (["--out", "x.pdf"], b"does not choose a form"),
             (["--levels", "3"], b"kind stability has no 'levels'"),
         ):
             done = self.call(*STUDY, *words)
@@ -232,10 +232,10 @@ class Stability(unittest.TestCase):
             whole = call(words, other)
         status, _, told = studies.interrupt(words, self.folder, "stability")
         self.assertEqual(status, ENDED, told)
-        self.assertIn("goes on from here", told)
+        self.assertIn("continues from here", told)
         done = self.call(*words)
         self.assertEqual(done.returncode, DONE)
-        self.assertIn(b"going on with", done.stderr)
+        self.assertIn(b"continuing with", done.stderr)
         self.assertEqual(done.stdout, whole.stdout)
         left = [name for name in os.listdir(self.folder) if name != "native"]  # compiled tapes stay
         self.assertEqual(left, [], "nothing is left of a finished map")

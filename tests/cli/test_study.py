@@ -85,7 +85,7 @@ class Study(unittest.TestCase):
         self.assertEqual(done.returncode, DONE, done.stderr)
         for method in METHODS:
             self.assertIn(method, text)
-        self.assertIn("converges to something else", text)
+        self.assertIn("converges to another motion", text)
         self.assertIn("converges with order", text)
         self.assertRegex(text, "[\u2801-\u28ff]", "braille")
         self.assertRegex(text, r"Cheapest by operations, for errors up to t = [\d.]+ s\n")
@@ -108,7 +108,7 @@ class Study(unittest.TestCase):
         # the motor's torque depends on the speed
         words = ["study", "quick-return", "--methods", "projection@rk4", "index3@rattle", "--time", "0.1", "--levels", "4", "--samples", "0"]
         done = call(words, self.folder)
-        told = [line for line in done.stdout.decode().split("Not at the end")[1].splitlines() if "rattle" in line]
+        told = [line for line in done.stdout.decode().split("Runs that did not reach the end")[1].splitlines() if "rattle" in line]
         self.assertEqual(len(told), 1, told)
         self.assertIn("and 3 other sizes: a force depends on speed", told[0])
 
@@ -118,7 +118,7 @@ class Study(unittest.TestCase):
             (["study", "fb0", "--methods", "index1@rk5"], b"rk5"),
             (["study", "fb0", "--levels", "99"], b"2 to 10"),
             (["study", "fb0", "--time", "-1"], b"are allowed"),
-            (["study", "fb0", "--out", "x.pdf"], b"does not say which form to write"),
+            (["study", "fb0", "--out", "x.pdf"], b"does not choose a form"),
             (["study", "fb0", "--samples", "1000"], b"0 to 10 are allowed"),
             (["study", "fb0", "--time-limit", "0", "--out", "/no/such/folder/x.html"], b"cannot write"),
             (["extreme", "--out", "/no/such/folder/x.html"], b"cannot write"),
@@ -158,11 +158,11 @@ class Study(unittest.TestCase):
                 self.assertEqual(status, ENDED, err)
                 study = strict(out)
                 self.assertTrue(study["stopped"])
-                self.assertIn("goes on from here", err)
+                self.assertIn("continues from here", err)
                 done = sum(p["state"] == "done" for m in study["methods"] for p in m["points"])
                 text = call([w for w in words if w != "--json"], folder)
                 self.assertEqual(text.returncode, DONE)
-                found = re.search(rb"going on with (\d+) points", text.stderr)
+                found = re.search(rb"continuing with (\d+) points", text.stderr)
                 self.assertEqual(int(found.group(1)) if found else 0, done)
 
     def test_time_left_is_shown_and_again_when_the_study_goes_on(self):

@@ -412,7 +412,7 @@ class Keys(unittest.TestCase):
             out = " ".join("".join(line[100:149] for line in study("").split("\n")[2:20]).split())
             self.assertRegex(out, r"For 1 mm at the end of [\d.]+ m, an error of \S+ up to t = 2 s of the scene's 10 s: index1@rk4 with h = \S+ s is the cheapest, (about|at most) \S+")
             self.assertIn("is no error above 0; type one as 1 mm", study("e<CtrlU>0<Enter>"))
-            self.assertIn("no run of this study is so accurate", study("e<CtrlU>1e-15<Enter><Enter>"))
+            self.assertIn("no run of this study is accurate enough", study("e<CtrlU>1e-15<Enter><Enter>"))
             # what is added by Enter has the error that was asked for, in the study's 2 s; half of it at least, as its size is read off a line between two points
             methods = ("--methods", "index1@euler:h=0.02")
             listed = study("e<CtrlU>1 %<Enter><Enter>m")

@@ -389,7 +389,7 @@ void hn_figures_lesson(hn_figures *f) {
     hn_model_open_closed(&m, "four-angles-as-printed", NULL);
     hn_figure_put(f, "freedoms of the four angles", "four angles as printed", "2",
                   m.assembly.freedoms);
-    const hn_figure rate = {.what = "rate at which neighbours part [1/s]",
+    const hn_figure rate = {.what = "rate at which neighbouring motions separate [1/s]",
                             .how = "four angles as printed, 30 s",
                             .printed = "1.05",
                             .factor = 1.5,

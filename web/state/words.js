@@ -24,7 +24,7 @@ const justPassed = ({ incidents, view }, now) =>
 
 /**
  * How the runs came through the singular configuration that was passed: "two branches of motion
- * cross there; index-1 and reduced went straight on"; "" where the engine does not say.
+ * cross there; index-1 and reduced stayed on the smooth path"; "" where the engine does not say.
  * @param {import("./store.js").Store["data"]} data
  * @param {import("./store.js").Incident[]} passed
  */

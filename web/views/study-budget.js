@@ -193,7 +193,7 @@ export function createStudyBudget(store, actions) {
       ended && Math.abs(budget.sum) <= ABSURD * Math.abs(budget.total)
         ? `, the parts add up to ${numberOf(budget.sum, budget.unit)}`
         : "";
-    const warning = ended ? `: the errors are too large to be split${sum}${agree}` : "";
+    const warning = ended ? `: the error is too large to be split${sum}${agree}` : "";
     const words = budget
       ? `${budget.what} ${numberOf(budget.total, budget.unit)}${warning}${partly}`
       : why;

@@ -66,7 +66,7 @@ export function createWanted(data, { labelOf, costText, onPick }) {
     );
     const without = others.length ? ` ${listed(others)}: not reached in this study.` : "";
     if (!first) {
-      return `For ${words}: no run of this study is so accurate.`;
+      return `For ${words}: no run of this study is accurate enough.`;
     }
     const { close, unsteady } = rankingOf(list);
     if (close.length > 1 || unsteady || !now.ranked) {

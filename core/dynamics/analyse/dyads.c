@@ -139,8 +139,8 @@ static bool refuse_whole(builder *b) {
     hn_dyads *d = b->d;
     if (d->n_dep != b->sys->nc) {
         snprintf(d->refusal, sizeof d->refusal,
-                 "closure rows are redundant: %d rows for %d dependent coordinates", b->sys->nc,
-                 d->n_dep);
+                 "closure equations are redundant: %d equations for %d dependent coordinates",
+                 b->sys->nc, d->n_dep);
         return true;
     }
     for (int k = 0; k < d->n_dep; k++) {
@@ -161,7 +161,7 @@ static void recognise_blocks(builder *b, int n_blocks) {
     for (int k = n_blocks - 1; k >= 0 && !d->refusal[0]; k--) {
         const int first = b->R[k], end = b->R[k + 1];
         if (end - first > 2) {
-            name_block(b, first, end, "%d unknowns hang together in their rows: %s%s");
+            name_block(b, first, end, "%d unknowns appear together in the closure equations: %s%s");
             return;
         }
 
@@ -175,8 +175,8 @@ static void recognise_blocks(builder *b, int n_blocks) {
 
         if (!hn_dyad_recognise(b->sys, step, b->x, &seed)) {
             name_block(b, first, end,
-                       "a block of %d is no dyad: its rows depend on %s%s otherwise than on links "
-                       "that turn or slide in a plane");
+                       "a block of %d equations is not a dyad: it depends on %s%s in another way "
+                       "than links that turn or slide in a plane");
             return;
         }
         d->n++;

@@ -324,11 +324,10 @@ static void put_solver(hn_strbuf *b, const hn_system *sys, const counts *c) {
                            ? "an order of elimination without a zero pivot was found when compiling"
                            : "every order of elimination meets a zero pivot");
     if (c->factor.available) {
-        hn_json_put_string(
-            b, "behind_it",
-            "refinement where a pivot is below 1e-3 of its row, dense least-norm "
-            "where one is below 1e-8 or a row vanishes: it finds the rank and solves "
-            "with rows that depend on each other");
+        hn_json_put_string(b, "behind_it",
+                           "iterative refinement where a pivot is below 1e-3 of its row; where one "
+                           "is below 1e-8 or a row is zero, the dense least-norm solver, which "
+                           "finds the rank and allows dependent rows");
         hn_json_put_int(b, "pivots", c->factor.n_blocks);
     }
     put_newton(b, sys, c);

@@ -44,8 +44,10 @@ static hn_status check_pins(const hn_assembler *s) {
             const int pinned = c->q0_pinned || c->v0_pinned;
             status = hn_diags_add(
                 s->diags, HN_ERR_UNSUPPORTED, c->q0_given ? c->q0_pointer : c->v0_pointer,
-                pinned ? "pin another coordinate, or say \"cut\": true at another joint of the loop"
-                       : "guess another one, or say \"cut\": true at another joint of the loop",
+                pinned ? "give the value of another coordinate, or write \"cut\": true at another "
+                         "joint of the loop"
+                       : "give the guess of another coordinate, or write \"cut\": true at another "
+                         "joint of the loop",
                 "%s cannot be %s: its joint closes a loop and follows from the others", c->name,
                 pinned ? "pinned" : "guessed");
         }
@@ -60,10 +62,11 @@ static hn_status check_orientations(const hn_assembler *s) {
         if (s->turn[i] == 0 &&
             (c[0].q0_pinned != c[1].q0_pinned || c[1].q0_pinned != c[2].q0_pinned)) {
             const hn_coordinate *pinned = &c[c[0].q0_pinned ? 0 : c[1].q0_pinned ? 1 : 2];
-            return hn_diags_add(s->diags, HN_ERR_INPUT, pinned->q0_pointer,
-                                "pin all three entries, or none and give them as a guess",
-                                "%s, %s and %s are one orientation: %s alone cannot be pinned",
-                                c[0].name, c[1].name, c[2].name, pinned->name);
+            return hn_diags_add(
+                s->diags, HN_ERR_INPUT, pinned->q0_pointer,
+                "give 'value' for all three entries, or 'guess' for all three",
+                "%s, %s and %s are the entries of one orientation: %s alone cannot have a 'value'",
+                c[0].name, c[1].name, c[2].name, pinned->name);
         }
     }
     return HN_OK;

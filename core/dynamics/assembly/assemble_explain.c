@@ -302,13 +302,12 @@ static bool tell_digits(hn_assembler *s, int loop, double gap) {
         fabs(largest->q0) <= MANY_TURNS) {
         return false;
     }
-    hn_diags_add(
-        s->diags, HN_ERR_UNREACHABLE, largest->q0_pointer,
-        "leave whole turns of 2 pi out of it: up to 1e6 rad it has digits enough",
-        "%s = %.6g rad has run out of digits: numbers of that size are %.2g rad apart, and "
-        "loop %s keeps a gap of %.6g%s",
-        largest->name, largest->q0, apart, hn_system_loop_name(s->sys, loop), gap,
-        loop_has_lengths(s, loop) ? " m" : "");
+    hn_diags_add(s->diags, HN_ERR_UNREACHABLE, largest->q0_pointer,
+                 "subtract whole turns of 2 pi: up to 1e6 rad an angle has enough digits",
+                 "%s = %.6g rad is too large: numbers of this size are %.2g rad apart, so loop %s "
+                 "keeps a gap of %.6g%s",
+                 largest->name, largest->q0, apart, hn_system_loop_name(s->sys, loop), gap,
+                 loop_has_lengths(s, loop) ? " m" : "");
     return true;
 }
 
@@ -324,7 +323,7 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
 
     // what to try
     size_t used = strlen(hint);
-    const char *other = pins[0] ? "change a start value that is held"
+    const char *other = pins[0] ? "change a start value that is given as 'value'"
                                 : (used ? "" : "start from another guess, or change a length");
     (void)snprintf(hint + used, sizeof hint - used, "%s%s", used && other[0] ? ", or " : "", other);
 
@@ -335,7 +334,8 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
     if (hn_assemble_flipped(s) == loop) {
         hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer,
                      "check the axes of its joints, or start from another guess",
-                     "loop %s was only found closed with the axes of its halves opposed%s%s%s",
+                     "loop %s was only found closed with the axes of its two halves in opposite "
+                     "directions%s%s%s",
                      hn_system_loop_name(s->sys, loop), with, pins, held);
         return;
     }

@@ -130,11 +130,11 @@ static hn_status report_missing(const mode_search *m) {
             snprintf(list + used, sizeof list - used, "%s'%s'", k ? ", " : "", m->found[k]);
         used += wrote > 0 ? (size_t)wrote : 0;
     }
-    return hn_diags_add(m->s->diags, HN_ERR_UNREACHABLE, "/start/mode",
-                        "ask for one of these, free a start value that is held, or begin "
-                        "nearer to the one wanted",
-                        "the assembly mode '%s' was not found with what is pinned; found: %s",
-                        m->s->scene->mode, list);
+    return hn_diags_add(
+        m->s->diags, HN_ERR_UNREACHABLE, "/start/mode",
+        "ask for one of these, give a start value as 'guess', or start nearer to the wanted mode",
+        "the assembly mode '%s' was not found with the start values that are kept; found: %s",
+        m->s->scene->mode, list);
 }
 
 /// "open" and "crossed" are + and -; else one sign per loop.

@@ -206,11 +206,10 @@ static hn_status report_contradiction(hn_assembler *s, const double *gap) {
     for (int i = 0; i < s->n; i++) {
         pointer = user_coordinate(s, i)->v0_pinned ? user_coordinate(s, i)->v0_pointer : pointer;
     }
-    return hn_diags_add(
-        s->diags, HN_ERR_INCONSISTENT, pointer, "let one of these rates be free",
-        "the pinned rates %s contradict the closed loops: |J v| = %.3g is left whatever the other "
-        "rates are",
-        pinned[0] ? pinned : "(none)", hn_norm2(s->nc, gap));
+    return hn_diags_add(s->diags, HN_ERR_INCONSISTENT, pointer, "leave one of these rates out",
+                        "the given rates %s contradict the closed loops: |J v| is at least %.3g "
+                        "for any values of the other rates",
+                        pinned[0] ? pinned : "(none)", hn_norm2(s->nc, gap));
 }
 
 /// Changes the free user rates least so that J v + phi_t = 0; v (n) in system rates, in and out.

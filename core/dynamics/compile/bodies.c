@@ -121,7 +121,7 @@ static void name_loops(hn_system *sys) {
                                   .constraint = -1,
                                   .tear = k,
                                   .why = joint->cut ? "the scene asks for it"
-                                                    : "both its bodies hang on the tree already"};
+                                                    : "both its bodies are already in the tree"};
     }
     hn_constraints_name_loops(sys);
 }

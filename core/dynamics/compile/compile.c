@@ -30,7 +30,7 @@ static hn_status check_freedoms(hn_system *sys) {
             return hn_diags_add(sys->diags, HN_ERR_INPUT,
                                 c->joint >= 0 ? sys->scene->joints[c->joint].pointer : NULL,
                                 "give the body a mass or an inertia about the joint",
-                                "coordinate '%s' moves nothing that has mass", c->name);
+                                "coordinate '%s' moves no mass", c->name);
         }
     }
     return HN_OK;

@@ -84,8 +84,8 @@ hn_status hn_system_quantity_of(const hn_system *sys, const hn_quantity *quantit
     if (s.refused && s.refused_ball) {
         return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, quantity->pointer,
                             "use its rates, or a joint of revolutes in its place",
-                            "'%s' is an entry of an orientation, which jumps where the turn passes "
-                            "half a revolution, so it has no formula that holds at every pose",
+                            "'%s' is an entry of an orientation, which jumps where the rotation "
+                            "passes half a revolution, so no formula can use it",
                             s.refused);
     }
     if (s.refused) {

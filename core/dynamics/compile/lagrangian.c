@@ -126,7 +126,7 @@ static hn_status trace_mass(hn_system *sys, const plain *c, const hn_ex *p) {
 
 static hn_status check_energies(hn_system *sys, hn_ex kinetic, hn_ex potential) {
     if (hn_depends_on(sys->g, kinetic, sys->t_symbol)) {
-        return refuse_kinetic(sys, "it depends on t, which is not served");
+        return refuse_kinetic(sys, "it depends on t, which is not supported");
     }
     for (int k = 0; k < 3 * sys->n_balls; k++) {
         const int speed = sys->balls[k / 3].speed + k % 3;
@@ -143,7 +143,7 @@ static hn_status check_energies(hn_system *sys, hn_ex kinetic, hn_ex potential) 
     }
     return hn_is_zero(at_rest(sys, kinetic))
                ? HN_OK
-               : refuse_kinetic(sys, "it does not vanish with the rates");
+               : refuse_kinetic(sys, "it is not zero when the rates are zero");
 }
 
 hn_status hn_lagrangian_add_energies(hn_system *sys) {
@@ -226,7 +226,8 @@ static hn_status add_constraint(hn_system *sys, int i) {
         return hn_diags_add(
             hn_system_faults(sys), HN_ERR_UNSUPPORTED, row.pointer,
             "write the constraint on positions",
-            "constraint '%s' contains a rate; only constraints on positions are served", row.name);
+            "constraint '%s' contains a rate; only constraints on positions are supported",
+            row.name);
     }
 
     // the row, and what its multiplier does along the coordinates

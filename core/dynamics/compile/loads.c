@@ -71,8 +71,8 @@ static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex ta
     if (!sys->user_known[load->coordinate]) {
         return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, load->pointer,
                             "cut another joint of its loop",
-                            "a load on '%s' is not served: its joint is cut between bodies that do "
-                            "not turn about parallel axes",
+                            "a load on '%s' is not supported: its joint is cut between bodies that "
+                            "do not turn about parallel axes",
                             sys->scene->coordinates[load->coordinate].name);
     }
     hn_ex *gradient = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *gradient);
@@ -90,8 +90,8 @@ static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex ta
 static hn_status refuse_position(hn_system *sys, const hn_load *load, const char *what) {
     return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, load->pointer,
                         "give it damping only, or use springs between points",
-                        "%s on '%s' is not served: an entry of an orientation jumps where "
-                        "the turn passes half a revolution",
+                        "%s on '%s' is not supported: an entry of an orientation jumps where the "
+                        "rotation passes half a revolution",
                         what, sys->scene->coordinates[load->coordinate].name);
 }
 

@@ -141,7 +141,7 @@ static hn_status span(const hn_scene *scene, hn_arena *arena, hn_tree *tree, hn_
             return hn_diags_add(
                 diags, HN_ERR_INPUT, scene->bodies[b].pointer,
                 "mark another joint of its loop as the cut",
-                "body '%s' hangs on joints marked \"cut\" only, so nothing carries it",
+                "all joints of body '%s' are marked \"cut\", so no joint carries it",
                 scene->bodies[b].name);
         }
     }
@@ -250,8 +250,7 @@ static hn_status check_cuts(const hn_scene *scene, const hn_tree *tree, hn_diags
         if (joint->type == HN_JOINT_FREE) {
             return hn_diags_add(
                 diags, HN_ERR_INPUT, joint->pointer, "leave it out",
-                "a free joint closes nothing, and both bodies of '%s' hang on other "
-                "joints already",
+                "the free joint '%s' has no effect: other joints already carry both its bodies",
                 joint->name);
         }
     }

@@ -346,14 +346,15 @@ static hn_status refuse(hn_accel *s, hn_solver solver, hn_status status, int mas
     const char *name = hn_solver_names[solver];
     if (massless >= 0) {
         snprintf(s->refusal, sizeof s->refusal,
-                 "solver=%s needs M^-1, and %s moves no mass; solver=auto serves this", name,
-                 name_of_speed(s, massless));
+                 "solver=%s needs the inverse of M, which does not exist: %s moves no mass; use "
+                 "solver=auto",
+                 name, name_of_speed(s, massless));
         return HN_ERR_MASS;
     }
     if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO && solver != HN_SOLVER_LEAST_NORM) {
         snprintf(s->refusal, sizeof s->refusal,
-                 "solver=%s needs independent constraint equations; solver=auto, proximal or "
-                 "least-norm serve this",
+                 "solver=%s needs independent constraint equations; use solver=auto, proximal or "
+                 "least-norm",
                  name);
     } else if (status == HN_ERR_SINGULAR) {
         refuse_massless(s);
@@ -566,7 +567,7 @@ hn_tape_info hn_accel_tape_info(const hn_accel *s) {
 hn_status hn_accel_measure_native(const hn_accel *s, hn_native_costs *costs, hn_diag *diag) {
     if (!s->tape.available) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
-                           "the solve is dense and has no tape");
+                           "the dense solver is not compiled to instructions");
     }
     return hn_native_measure(s->in.tape, costs, diag);
 }

@@ -179,10 +179,9 @@ hn_status hn_chart_check_mode(hn_chart *chart) {
     const bool turned = chart->base.valid && chart->base.sign * chart->here.sign < 0;
     if (turned && !went_straight_on(chart)) {
         chart->here.valid = 0;
-        return hn_chart_fail_end(
-            chart, chart->here.t, chart->here.q,
-            "the loop went over to its other assembly mode, past a dead point or because the "
-            "step is too long");
+        return hn_chart_fail_end(chart, chart->here.t, chart->here.q,
+                                 "the loop went over to its other assembly mode, past a dead point "
+                                 "or because the step is too long");
     }
     return HN_OK;
 }
@@ -400,7 +399,7 @@ hn_status hn_chart_solve_reduced(hn_chart *chart, double t, double *x) {
     if (status != HN_OK || !isfinite(largest)) {
         const hn_status told = isfinite(largest) ? status : HN_ERR_DIVERGED;
         return hn_chart_fail(chart, told, t, chart->here.q,
-                             "the mass that the free motion moves is not positive");
+                             "the reduced mass matrix is not positive definite");
     }
     hn_cholesky_solve(r, chart->A, r, x);
     return hn_all_finite(r, x) ? HN_OK

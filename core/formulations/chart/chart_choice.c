@@ -161,8 +161,9 @@ static hn_status fail_ball(hn_chart *chart, double t, int column) {
     const hn_scene *scene = hn_system_scene(chart->sys);
     const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(chart->sys, column)];
     snprintf(chart->why, sizeof chart->why,
-             "no chart at t = %.6g s: the turning of %s would have to be an independent "
-             "coordinate, and a ball has none of its own; nullspace and projection serve this",
+             "no set of independent coordinates at t = %.6g s: the rotation of %s would have to be "
+             "independent, and the entries of an orientation cannot be; nullspace and projection "
+             "can be used",
              t, c->joint >= 0 ? scene->joints[c->joint].name : c->name);
     return HN_ERR_UNSUPPORTED;
 }

@@ -135,8 +135,8 @@ static hn_status demand_dyads(hn_minimal_state *s, double t) {
     }
     return adopt_dyads(s, t) ? HN_OK
                              : hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
-                                             "a dyad stands at its dead point: which way it goes "
-                                             "on does not follow from the configuration");
+                                             "a dyad is at its dead point: the configuration does "
+                                             "not determine how it continues");
 }
 
 // a closed form for the coordinates chosen, if there is one and it is wanted; at the closed pose

@@ -377,7 +377,7 @@ hn_status hn_tspace_accel(hn_tspace *ts, const double *v, double *u_dot) {
     const hn_status status = hn_cholesky(r, ts->A, r, 1e-14 * largest);
     if (status != HN_OK || !isfinite(largest)) {
         return fail(ts, isfinite(largest) ? status : HN_ERR_DIVERGED, ts->t,
-                    "the mass left on the free motion is not positive");
+                    "the reduced mass matrix is not positive definite");
     }
     hn_cholesky_solve(r, ts->A, r, u_dot);
     return hn_all_finite(r, u_dot)

@@ -119,9 +119,8 @@ const hn_formulation hn_formulation_augmented_lagrangian = {
     .name = "augmented-lagrangian",
     .title = "augmented Lagrangian",
     .short_name = "augm. Lagr.",
-    .rule = "Solve with a mild penalty, read off the loop force that it implies, apply "
-            "that force and repeat: a few iterations give what the penalty alone never "
-            "reaches.",
+    .rule = "Solve with a moderate penalty, compute the loop force from it, apply this force and "
+            "repeat. A few iterations reach an accuracy that a penalty alone does not have.",
     .drift = "as Baumgarte with alpha = xi omega and beta = omega: bounded, fed by "
              "truncation error",
     .when = "redundant constraints, motions through singular configurations; the "

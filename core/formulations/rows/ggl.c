@@ -18,7 +18,7 @@ const hn_formulation hn_formulation_ggl = {
     .when = "stiff springs and dampers, long runs, tight tolerances; the first choice "
             "among implicit methods",
     .when_not = "short runs without stiffness: an explicit method with projection costs less; "
-                "massless links: its equations contain M^-1 (index2 and index3 serve them)",
+                "massless links: its equations contain the inverse of M (use index2 or index3)",
     .source =
         "Gear, Leimkuhler & Gupta 1985; Fuehrer & Leimkuhler 1991; Hairer & Wanner 1996, VII.2",
     .needs = "M f phi J and derivatives",

@@ -141,16 +141,16 @@ static hn_status tell(symmetric *s, hn_status status, double t) {
                 ? hn_system_scene(sys)->coordinates[hn_system_user_coordinate(sys, no_mass)].name
                 : "a speed";
         snprintf(s->ode.base.why, sizeof s->ode.base.why,
-                 "the symmetric projection at t = %.6g s needs M^-1, and %s moves no mass; "
-                 "projection and index3 serve this",
+                 "the symmetric projection at t = %.6g s needs the inverse of M, which does not "
+                 "exist: %s moves no mass; projection and index3 can be used",
                  t, name);
         return HN_ERR_MASS;
     }
 
     // otherwise the reason by status
     if (status == HN_ERR_NO_CONVERGENCE) {
-        reason = "it does not converge: the step is too long for it, or the pose is close to one "
-                 "where the loops lose rank";
+        reason = "it does not converge: the step is too long for it, or the configuration is "
+                 "nearly singular";
     } else if (status == HN_ERR_SINGULAR || status == HN_ERR_NOT_SPD) {
         reason = "the equations have no unique answer here: closure rows depend on each other";
     }

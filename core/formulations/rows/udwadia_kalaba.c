@@ -200,7 +200,7 @@ static int fill_stack(udwadia_kalaba *u) {
 
 static hn_status no_mass(udwadia_kalaba *u, int coordinate, double t) {
     snprintf(u->ode.base.why, sizeof u->ode.base.why,
-             "at t = %.6g s %s can move without moving any mass or meeting a constraint", t,
+             "at t = %.6g s %s can move without moving a mass, and no constraint prevents it", t,
              hn_dense_ode_name(&u->ode, coordinate));
     return HN_ERR_SINGULAR;
 }

@@ -152,10 +152,9 @@ static const char *const starts[] = {"shifted", "consistent", "zero"};
 const hn_stepper hn_stepper_genalpha = {
     .name = "genalpha",
     .title = "generalised-alpha",
-    .about =
-        "Order 2 in positions, speeds and multipliers for rho < 1; fast oscillations are "
-        "damped to rho of their size each step, slow ones hardly. At rho = 1 nothing is damped "
-        "and its own multipliers never settle.",
+    .about = "Order 2 in positions, velocities and multipliers for rho < 1. A fast oscillation "
+             "shrinks by the factor rho in each step, a slow one hardly. At rho = 1 nothing is "
+             "damped, and the multipliers of the scheme oscillate for ever.",
     .source = "Chung & Hulbert 1993; Arnold & Bruls 2007",
     .order = 2,
     .stages = 1,

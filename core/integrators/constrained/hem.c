@@ -30,8 +30,9 @@ HALF_EXPLICIT(hrk4, hn_half_explicit_rk4, 0);
 const hn_stepper hn_stepper_hem3 = {
     .name = "hem3",
     .title = "half-explicit Runge-Kutta 3",
-    .about = "Three explicit stages, each with multipliers that make the next stage's speeds fit "
-             "the loops. J v = 0 to rounding, no Newton, no rate of J; phi drifts with the error.",
+    .about = "Three explicit stages. The multipliers of each stage make the velocities of the next "
+             "stage satisfy J v = 0 to rounding; no Newton iteration and no rate of J is needed. "
+             "The gap drifts with the error of the method.",
     .source = "Brasey & Hairer 1993",
     .order = 3,
     .stages = 3,
@@ -46,9 +47,8 @@ const hn_stepper hn_stepper_hem3 = {
 const hn_stepper hn_stepper_hem4 = {
     .name = "hem4",
     .title = "half-explicit Runge-Kutta 4",
-    .about =
-        "Five explicit stages of order 4 for the index-2 system; speeds fit the loops at every "
-        "stage, positions drift with the error of the method.",
+    .about = "Five explicit stages of order 4 for the index-2 system. The velocities satisfy J v = "
+             "0 at every stage; the gap drifts with the error of the method.",
     .source = "Brasey & Hairer 1993",
     .order = 4,
     .stages = 5,
@@ -63,12 +63,12 @@ const hn_stepper hn_stepper_hem4 = {
 const hn_stepper hn_stepper_hem4_adaptive = {
     .name = "hem4-adaptive",
     .title = "half-explicit Runge-Kutta 4, adaptive",
-    .about = "hem4 with its error watched by step doubling: each step is made whole and in halves, "
-             "the halves are kept. A partitioned pair of order 5(4), PHEM56 (Murua 1997), would "
-             "need fewer evaluations; it is not here, because its coefficients could not be had "
-             "from a source that can be checked. rtol bounds the error of a step, not of the "
-             "motion: over the shipped scenes, at rtol=1e-6, the middle error is 250 rtol, and one "
-             "in ten is above 9800 rtol.",
+    .about = "hem4 with an error estimate by step doubling: each step is made once whole and once "
+             "as two half steps, and the half steps are kept. A partitioned pair of order 5(4), "
+             "PHEM56 (Murua 1997), would need fewer evaluations; it is not included, because no "
+             "source was found with which its coefficients could be checked. rtol limits the error "
+             "of one step, not that of the motion: over the shipped scenes at rtol=1e-6 the median "
+             "error is 250 rtol, and one scene in ten has more than 9800 rtol.",
     .source = "Brasey & Hairer 1993; Hairer, Norsett & Wanner 1993, section II.4",
     .order = 4,
     .control_order = 5,
@@ -85,8 +85,8 @@ const hn_stepper hn_stepper_hem4_adaptive = {
 const hn_stepper hn_stepper_half_explicit_rk4 = {
     .name = "half-explicit-rk4",
     .title = "Runge-Kutta 4, used half-explicitly",
-    .about = "An exhibit: the classical tableau meets the conditions of order 4 for ordinary "
-             "differential equations, but not those for index 2. What is left is order 3.",
+    .about = "A counter-example: the classical tableau meets the conditions of order 4 for "
+             "ordinary differential equations, but not those for index 2, where its order is 3.",
     .source = "Brasey & Hairer 1993; Hairer, Lubich & Roche 1989",
     .order = 3,
     .stages = 4,

@@ -104,8 +104,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     s->split = hn_lagrange_has_dissipation(s->terms);
     if (s->split && (int)options[OPT_SPEED_FORCES] == REFUSE) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "rattle:speed-forces=split",
-                           "a force depends on speed (a damper, friction, a formula in v): rattle "
-                           "takes it only in half-steps of its own");
+                           "a force depends on velocities (a damper, friction, a formula in v): "
+                           "rattle can apply it only in separate half-steps");
     }
     return HN_OK;
 }
@@ -383,7 +383,7 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     if (status == HN_OK && s->split) {
         status = damp(s, t + h, h / 2, q1, v1);
     }
-    return status == HN_OK ? HN_OK : hn_dae_fail(b, status, t + h, "the speeds of the step");
+    return status == HN_OK ? HN_OK : hn_dae_fail(b, status, t + h, "the velocities of the step");
 }
 
 static void accepted(void *self, int changed) {
@@ -426,11 +426,9 @@ static const char *const speed_forces[] = {"refuse", "split"};
 const hn_stepper hn_stepper_rattle = {
     .name = "rattle",
     .title = "RATTLE",
-    .about =
-        "A map that keeps what mechanics keeps: loops closed to rounding and an energy error "
-        "that stays bounded for millions of steps. Fixed steps only; a damper has to be "
-        "split off (speed-forces=split). Balls turn along their group, by less than half a turn a "
-        "step.",
+    .about = "A symplectic method: loops stay closed to rounding, and the energy error stays "
+             "bounded for millions of steps. Fixed steps only. Dampers need speed-forces=split. A "
+             "ball joint may turn by less than half a turn in a step.",
     .source = "Andersen 1983; Leimkuhler & Skeel 1994; Marsden & West 2001; for balls Bou-Rabee & "
               "Marsden 2009",
     .order = 2,

@@ -397,9 +397,9 @@ static const hn_dae_stepper dae = {
 const hn_stepper hn_stepper_trapezoidal = {
     .name = "trapezoidal",
     .title = "trapezoidal rule",
-    .about = "Newmark's rule without damping, order 2. With ali3p's projections after each step it "
-             "is cheap and robust; alone on index 3 its speeds and multipliers blow up slowly, an "
-             "exhibit.",
+    .about = "Newmark's rule without damping, order 2. With the projections of ali3p after each "
+             "step it is cheap and robust. On index 3 alone its velocities and multipliers grow "
+             "slowly without bound (a counter-example).",
     .source = "Newmark 1959; Cuadrado, Cardenal & Bayo 1997; Cardona & Geradin 1989",
     .order = 2,
     .stages = 1,

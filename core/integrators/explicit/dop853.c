@@ -168,11 +168,11 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
 const hn_stepper hn_stepper_dop853 = {
     .name = "dop853",
     .title = "Dormand-Prince 8(5,3)",
-    .about = "Chooses its own long steps from rtol and atol; order 8. Twelve right-hand sides for "
-             "a trial and four more for an accepted step's dense output of order 7. For tight "
-             "tolerances and references."
-             " A pole on a cart is off by about 10 rtol after 5 s; over the shipped scenes, at "
-             "rtol=1e-6, the middle error is 12 rtol, and one in ten is above 480 rtol.",
+    .about = "Order 8; chooses its own, long steps from rtol and atol. A trial step costs twelve "
+             "evaluations, the dense output of order 7 of an accepted step four more. For tight "
+             "tolerances and references. After 5 s the motion of a pole on a cart is off by about "
+             "10 rtol; over the shipped scenes at rtol=1e-6 the median error is 12 rtol, and one "
+             "scene in ten has more than 480 rtol.",
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.5, II.6, II.10",
     .order = 8,
     .stages = STAGES,

@@ -10,7 +10,8 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
 const hn_stepper hn_stepper_euler = {
     .name = "euler",
     .title = "explicit Euler",
-    .about = "One slope a step. An undamped oscillation always grows: for teaching, not for use.",
+    .about = "One evaluation per step, order 1. An undamped oscillation always grows: for "
+             "teaching, not for use.",
     .source = "Euler 1768",
     .order = 1,
     .stages = 1,

@@ -10,7 +10,7 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
 const hn_stepper hn_stepper_heun = {
     .name = "heun",
     .title = "Heun",
-    .about = "Two slopes a step, order 2. An undamped oscillation still grows, slowly.",
+    .about = "Two evaluations per step, order 2. An undamped oscillation still grows, but slowly.",
     .source = "Heun 1900",
     .order = 2,
     .stages = 2,

@@ -10,7 +10,8 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
 const hn_stepper hn_stepper_rk4 = {
     .name = "rk4",
     .title = "Runge-Kutta 4",
-    .about = "Four slopes a step, order 4: the classical choice for smooth motion at a fixed step.",
+    .about = "Four evaluations per step, order 4: the classical choice for smooth motion at a "
+             "fixed step.",
     .source = "Kutta 1901",
     .order = 4,
     .stages = 4,

@@ -64,9 +64,8 @@ static void accepted(void *self, int changed) {
 const hn_stepper hn_stepper_symplectic_euler = {
     .name = "symplectic-euler",
     .title = "symplectic Euler",
-    .about = "New speeds first, then positions with them: order 1, yet the energy of a "
-             "conservative motion "
-             "stays bounded instead of growing.",
+    .about = "Computes new velocities first, then positions from them. Order 1, but the energy "
+             "error of a conservative motion stays bounded.",
     .source = "Hairer, Lubich & Wanner 2006, I.1.2",
     .order = 1,
     .stages = 1,

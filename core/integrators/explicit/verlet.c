@@ -87,9 +87,10 @@ static void accepted(void *self, int changed) {
 const hn_stepper hn_stepper_verlet = {
     .name = "verlet",
     .title = "velocity Verlet",
-    .about = "Half a kick, drift, half a kick: order 2. Where forces depend on position alone the "
-             "energy stays bounded for ever; where they depend on speed, as in every mechanism "
-             "described by angles, it is kept only to the order.",
+    .about =
+        "Half a step of the velocities, a step of the positions, half a step of the velocities: "
+        "order 2. Where forces depend on positions alone, the energy error stays bounded. Where "
+        "they depend on velocities, as in every mechanism described by angles, it does not.",
     .source = "Swope, Andersen, Berens & Wilson 1982; Hairer, Lubich & Wanner 2003",
     .order = 2,
     .stages = 2,

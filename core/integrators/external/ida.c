@@ -207,8 +207,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     // options and equations that the library cannot serve
     if (hn_dae_close_option(form, form_options) > 0) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "use ggl@ida, or index2@radau5",
-                           "ida cannot take projected positions (close): its history of steps "
-                           "would begin anew each time");
+                           "ida cannot be used with projected positions (close): each projection "
+                           "would discard its history of steps");
     }
     take_options(s, form, options);
     hn_status status = hn_dae_refuse_projecting(form, form_options, "ida", diag);
@@ -494,13 +494,13 @@ static const char *const suppressions[] = {"none", "multipliers", "speeds"};
 const hn_stepper hn_stepper_ida = {
     .name = "ida",
     .title = "SUNDIALS IDA",
-    .about = "The library for differential-algebraic systems: BDF of order 1 to 5 that chooses "
-             "order and step itself. Made for index 1: index2 and ggl work because their "
-             "multipliers are kept out of the error test and found loosely; index3 is there to see "
-             "it fail. The library is given a thirtieth of rtol, because its local errors add up "
-             "(safety). rtol bounds the error of a step, not of the motion: a pole on a cart is "
-             "off by about 30 rtol after 5 s; over the shipped scenes, at rtol=1e-6, the middle "
-             "error is 27 rtol, and one in ten is above 4300 rtol.",
+    .about = "SUNDIALS' solver for differential-algebraic systems: BDF of order 1 to 5, which "
+             "chooses order and step itself. It is made for index 1. index2 and ggl work because "
+             "their multipliers are left out of the error test; index3 is offered to show how it "
+             "fails. The library is given a thirtieth of rtol, because its local errors add up "
+             "(option safety). rtol limits the error of one step, not that of the motion: after 5 "
+             "s the motion of a pole on a cart is off by about 30 rtol; over the shipped scenes at "
+             "rtol=1e-6 the median error is 27 rtol, and one scene in ten has more than 4300 rtol.",
     .source = "Hindmarsh et al. 2005; Brenan, Campbell & Petzold 1996",
     .order = 5,
     .stages = 1,

@@ -60,17 +60,18 @@ hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *sys, hn_dae_fo
     *p = (hn_ida_problem){.sys = sys, .form = form, .nq = info.nq, .nv = info.nv, .nc = info.nc};
     if (is_stabilised(p) && form_options[HN_STABILISED_RULE] == HN_BAUMGARTE_AUTO) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "rule=given with alpha and beta",
-                           "rule=auto follows the steps of an integrator that takes the ordinary "
-                           "differential equation; ida takes alpha and beta as given");
+                           "rule=auto needs an integrator of the ordinary differential equation, "
+                           "whose steps it follows; ida needs alpha and beta as numbers");
     }
     if (is_stabilised(p)) {
         p->alpha = form_options[HN_STABILISED_ALPHA];
         p->beta = form_options[HN_STABILISED_BETA];
     }
     if (has_mu(p) && p->nq != p->nv) {
-        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "index2@ida serves it",
-                           "ida takes ggl only where every coordinate has a speed of its own; a "
-                           "spherical or free joint has four coordinates and three speeds");
+        return hn_diag_set(
+            diag, HN_ERR_UNSUPPORTED, NULL, "index2@ida solves it",
+            "ida solves ggl only where every coordinate has its own velocity; the orientation of a "
+            "spherical or free joint has four coordinates and three velocities");
     }
     const hn_status status = create_memory(p, arena);
     return status == HN_OK ? HN_OK

@@ -25,10 +25,10 @@ static void *create_gauss2(int n_pos, int n_vel, hn_arena *arena) {
 const hn_stepper hn_stepper_gauss2 = {
     .name = "gauss2",
     .title = "Gauss, 2 stages",
-    .about = "Order 4, symmetric; long runs without drift of the energy where the formulation "
-             "keeps its structure (reduced, partitioning). Stiff motions are not damped. Not for "
-             "index2: no stage stands at the end of the step, the order falls to 2 and the "
-             "multipliers do not converge.",
+    .about =
+        "Order 4, symmetric. In long runs the energy does not drift if the formulation preserves "
+        "this (reduced, partitioning). Stiff motions are not damped. Not for index2: no stage is "
+        "at the end of the step, so the order falls to 2 and the multipliers do not converge.",
     .source = "Hairer, Lubich & Wanner 2006, II.1; Hairer & Wanner 1996, VII.4",
     .unserved = NOT_INDEX_2,
     .order = 4,
@@ -57,10 +57,10 @@ static void *create_gauss3(int n_pos, int n_vel, hn_arena *arena) {
 const hn_stepper hn_stepper_gauss3 = {
     .name = "gauss3",
     .title = "Gauss, 3 stages",
-    .about = "Order 6, symmetric; long runs without drift of the energy where the formulation "
-             "keeps its structure (reduced, partitioning). Stiff motions are not damped. Not for "
-             "index2: no stage stands at the end of the step, the order falls to 4 and that of "
-             "the multipliers to 2.",
+    .about =
+        "Order 6, symmetric. In long runs the energy does not drift if the formulation preserves "
+        "this (reduced, partitioning). Stiff motions are not damped. Not for index2: no stage is "
+        "at the end of the step, so the order falls to 4, and that of the multipliers to 2.",
     .source = "Hairer, Lubich & Wanner 2006, II.1; Hairer & Wanner 1996, VII.4",
     .unserved = NOT_INDEX_2,
     .order = 6,

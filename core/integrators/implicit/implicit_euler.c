@@ -32,8 +32,8 @@ static const hn_dae_stepper implicit_euler_dae = {.create = create_implicit_eule
 const hn_stepper hn_stepper_implicit_euler = {
     .name = "implicit-euler",
     .title = "implicit Euler",
-    .about = "Asks for the slope at the end of the step: order 1, every stiff motion damped, and "
-             "much of the others too. Serves the differential-algebraic forms as they are.",
+    .about = "Takes the slope at the end of the step: order 1. It damps every stiff motion, and "
+             "slow motions too. It also solves the differential-algebraic forms (index 1 to 3).",
     .source = "Hairer & Wanner 1996, IV.3",
     .order = 1,
     .stages = 1,

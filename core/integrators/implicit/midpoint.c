@@ -31,9 +31,9 @@ static const hn_dae_stepper midpoint_dae = {.create = create_midpoint_dae, HN_IM
 const hn_stepper hn_stepper_midpoint = {
     .name = "midpoint",
     .title = "implicit midpoint",
-    .about = "Order 2, symmetric, energy bounded in long runs. Stiff motions are not damped: they "
-             "ring with the sign changing at each step. With index2 the loop is asked for at the "
-             "end of the step, its multipliers live at the middle.",
+    .about = "Order 2, symmetric; the energy error stays bounded in long runs. Stiff motions are "
+             "not damped: they change their sign at each step. With index2 the constraints hold at "
+             "the end of the step, and the multipliers belong to its middle.",
     .source = "Hairer, Lubich & Wanner 2006, II.1; Hairer & Wanner 1996, IV.3",
     .order = 2,
     .stages = 1,

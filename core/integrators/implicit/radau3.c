@@ -31,8 +31,8 @@ static const hn_dae_stepper radau3_dae = {.create = create_radau3_dae, HN_IMPLIC
 const hn_stepper hn_stepper_radau3 = {
     .name = "radau3",
     .title = "Radau IIA, 2 stages",
-    .about = "Order 3, every stiff motion damped, two stages. Serves the differential-algebraic "
-             "forms as they are.",
+    .about = "Order 3, two stages; damps every stiff motion. It also solves the "
+             "differential-algebraic forms (index 1 to 3).",
     .source = "Hairer & Wanner 1996, IV.5",
     .order = 3,
     .stages = 2,

@@ -23,11 +23,9 @@ bool hn_guest_is_named(const char *spelling) {
 
 hn_status hn_guest_find(const char *name, hn_guest *out, hn_diag *diag) {
     if (!finder) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL,
-                           "--allow-programs allows them; serve takes --programs DIR",
-                           "'%.100s' is a program of its own, and such programs are not allowed "
-                           "here",
-                           name);
+        return hn_diag_set(
+            diag, HN_ERR_INPUT, NULL, "--allow-programs allows them; serve takes --programs DIR",
+            "'%.100s' is an external program, and such programs are not allowed here", name);
     }
     return finder(name, out, diag);
 }

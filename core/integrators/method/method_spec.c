@@ -217,7 +217,7 @@ static void warn_below_zero(const hn_option *table, int n, const double *set, hn
     for (int i = 0; i < n && diag; i++) {
         if (table[i].warn_below_zero && set[i] < 0) {
             snprintf(diag->message, sizeof diag->message,
-                     "%s = %g %s: below zero it pushes the loop apart", table[i].key, set[i],
+                     "%s = %g %s is negative: it drives the loop open", table[i].key, set[i],
                      table[i].unit);
         }
     }
@@ -265,7 +265,8 @@ static hn_status check_pair(piece right, const hn_method_spec *spec, hn_diag *di
     snprintf(hint, sizeof hint, "%.40s serves %s", spec->stepper->name, served);
     const int n = list_fitting(spec, 1, list, sizeof list);
     const char *why = of_dae ? spec->stepper->unserved : NULL;
-    hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s makes %s, which %s does not solve; %s%s%s%s",
+    hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
+                "the formulation %s gives %s, which the integrator %s does not solve; %s%s%s%s",
                 spec->formulation->name,
                 of_dae ? "a differential-algebraic system" : "an ordinary differential equation",
                 spec->stepper->name, n ? "choose one of " : "no integrator does", list,

@@ -339,8 +339,8 @@ void hn_dae_tell_massless(const hn_system *sys, const double *mass, int apart, d
         named ? hn_system_scene(sys)->coordinates[hn_system_user_coordinate(sys, found)].name
               : "a combination of the coordinates";
     snprintf(why, size,
-             "ggl needs M^-1 and the mass matrix at t = %.6g s has none: %s moves no mass; index2 "
-             "and index3 serve this",
+             "ggl needs the inverse of the mass matrix, which does not exist at t = %.6g s: %s "
+             "moves no mass; index2 and index3 can be used",
              t, name);
 }
 
@@ -358,8 +358,8 @@ hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
         return HN_OK;
     }
     return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "take radau5, radau3 or implicit-euler",
-                       "%s does not take index3 with project=yes: its speeds belong to its own "
-                       "scheme, which a projection after each step would break",
+                       "%s cannot be used with index3:project=yes: its scheme computes its own "
+                       "velocities, and a projection after each step would destroy its order",
                        integrator);
 }
 

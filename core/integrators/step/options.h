@@ -25,8 +25,11 @@
         .about = "absolute error allowed in a step; 0: rtol, in units of the mechanism where " \
                  "lengths or rates are far from 1 m and 1/s"                                   \
     }
-#define HN_OPTION_FIRST_STEP \
-    { .key = "h0", .max = 100, .unit = "s", .about = "first step; 0: chosen from the first slopes" }
+#define HN_OPTION_FIRST_STEP                                          \
+    {                                                                 \
+        .key = "h0", .max = 100, .unit = "s",                         \
+        .about = "first step; 0: chosen from the slopes at the start" \
+    }
 #define HN_OPTION_LARGEST_STEP \
     { .key = "hmax", .max = 100, .unit = "s", .about = "largest step; 0: no limit" }
 /// The option of adaptive integrators that can also run at a fixed step.

@@ -59,14 +59,14 @@ void hn_budget_note(const hn_model *model, const hn_budget_row *row, char out[HN
     if (!c || hn_budget_holds(row)) {
         return;
     }
-    const int n =
-        snprintf(out, HN_BUDGET_NOTE,
-                 "the errors are too large to be split: the parts add up to %.3g %s, the error "
-                 "is %.3g %s",
-                 row->budget.sum, unit, row->budget.error, unit);
+    const int n = snprintf(
+        out, HN_BUDGET_NOTE,
+        "the error is too large to be split: the parts add up to %.3g %s, the error is %.3g %s",
+        row->budget.sum, unit, row->budget.error, unit);
     if (isfinite(row->holds_until) && n > 0 && n < HN_BUDGET_NOTE) {
-        snprintf(out + n, (size_t)(HN_BUDGET_NOTE - n), "; they agree until t = %.3g s",
-                 row->holds_until);
+        snprintf(out + n, (size_t)(HN_BUDGET_NOTE - n),
+                 "; at t = %.3g s the parts still added up to the error, within %.0f %%",
+                 row->holds_until, 100 * HN_BUDGET_HOLDS);
     }
 }
 
@@ -89,7 +89,7 @@ static hn_status find_coordinate(hn_budgets *a, hn_diags *diags) {
         snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", own);
     }
     return name ? hn_diags_add(diags, HN_ERR_INPUT, "/coordinate", names,
-                               "the scene has no coordinate '%.60s' to judge by", name)
+                               "the scene has no coordinate '%.60s'", name)
                 : HN_OK;
 }
 

@@ -110,14 +110,14 @@ static void put_legend(hn_strbuf *b) {
         hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_energy_item_name((hn_energy_item)i),
                          hn_energy_item_about((hn_energy_item)i));
     }
-    hn_strbuf_add(b, "</dl><p class=\"quiet\">Where formulation and integrator are one, as in "
-                     "ggl@radau5, truncation is the error of both; \xe2\x80\x93: it cannot be "
-                     "determined.</p>");
+    hn_strbuf_add(b, "</dl><p class=\"quiet\">Some integrators solve the constraint equations "
+                     "themselves, as in ggl@radau5: there truncation is the error of formulation "
+                     "and integrator together. \xe2\x80\x93: not known.</p>");
 }
 
 void hn_budgets_html(hn_strbuf *b, const hn_budgets *a) {
     static const char *const heads[] = {"Where the error at the end comes from",
-                                        "Who put energy in, or took it out"};
+                                        "Causes that put energy in, or took it out"};
 
     // the head of the page
     const hn_scene *scene = hn_model_scene(a->model);
@@ -129,11 +129,11 @@ void hn_budgets_html(hn_strbuf *b, const hn_budgets *a) {
     // the heading, and what was compared with what
     hn_strbuf_add(b, "<h1>");
     hn_html_text(b, title);
-    hn_strbuf_printf(
-        b,
-        "</h1><p class=\"quiet\">Each method from the scene's start to t = %g s, every step of it "
-        "beside the exact flow of its own equations and of the equations of motion.</p>",
-        a->request.time);
+    hn_strbuf_printf(b,
+                     "</h1><p class=\"quiet\">Each method runs from the scene's start to t = %g s. "
+                     "Each of its steps is compared with the exact solution of its own equations, "
+                     "and with that of the equations of motion.</p>",
+                     a->request.time);
 
     // methods without a budget, with the reason
     put_reasons(b, a);

@@ -169,14 +169,14 @@ static void put_budget(hn_strbuf *b, const hn_model *model, const hn_budget_row 
 
 void hn_budgets_plot(hn_strbuf *b, const hn_model *model, const hn_budget_row *rows, int n,
                      int energy) {
-    const char *title = energy ? "who put energy in (right) or took it out (left)"
+    const char *title = energy ? "causes that put energy in (right) or took it out (left)"
                                : "where the error at the end comes from, signed";
     hn_plot_begin(b, WIDTH, BAR_TOP + BAR_ROW * n, title);
     hn_plot_text(b, 0, 14, "title", title);
     hn_plot_text(b, 0, 34, "note",
-                 energy ? "each bar to its own scale; the parts add up to the number at its right"
-                        : "each bar to its own scale; the parts add up, to first order, to the "
-                          "number at its right");
+                 energy ? "each bar has its own scale; its parts add up to the number on the right"
+                        : "each bar has its own scale; its parts add up, to first order, to the "
+                          "number on the right");
     for (int i = 0; i < n; i++) {
         put_budget(b, model, &rows[i], energy, BAR_TOP + BAR_ROW * i);
     }

@@ -131,7 +131,8 @@ static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_di
     }
     if (!(opts->frame_dt >= 0) || !isfinite(opts->frame_dt) ||
         (opts->frame_dt > 0 && opts->frame_dt < 1e-6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/frame_dt", "leave it out to have it chosen",
+        return hn_diags_add(diags, HN_ERR_INPUT, "/frame_dt",
+                            "leave frame_dt out: the program chooses it",
                             "frame_dt is %g s; it must be at least 1e-6 s", opts->frame_dt);
     }
     if (!(opts->duration >= 0) || !(opts->duration <= 1e6)) {
@@ -457,7 +458,8 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
                             hn_diag *diag) {
     if (method < -1 || method >= c->n) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/set/method", NULL,
-                           "method %d was named; -1 to %d are allowed", method, c->n - 1);
+                           "there is no method %d; -1 (all methods) and 0 to %d are allowed",
+                           method, c->n - 1);
     }
 
     // one method, or all that have the option

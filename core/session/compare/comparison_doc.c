@@ -22,8 +22,8 @@ static void put_reason(hn_strbuf *b, const hn_comparison *c, int method, const h
     if (slowness > 0) {
         char text[200];
         snprintf(text, sizeof text,
-                 "one frame of %.3g s took more than %g s of computing: %.3g times slower than the "
-                 "clock; take a larger step",
+                 "computing one frame, %.3g s of motion, took more than %g s, at least %.3g times "
+                 "as long as real time; take a larger step",
                  hn_comparison_frame_dt(c), hn_comparison_cpu_limit(c), slowness);
         hn_json_put_string(b, "status", hn_status_name(HN_ERR_STOPPED));
         hn_json_put_string(b, "reason", text);

@@ -59,7 +59,7 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
         snprintf(text, sizeof text, "nothing was computed beyond the start");
     } else if (!e.known || e.t < WHOLE * t_run) {
         snprintf(text + used, sizeof text - (size_t)used, "%s (%s)",
-                 e.known ? "; after that no error was estimated" : "the error is not known",
+                 e.known ? "; the error after that was not estimated" : "the error is not known",
                  e.reason[0] ? e.reason : "nothing was compared");
     }
     hn_json_key(b, "verdict");

@@ -66,7 +66,7 @@ static hn_status check(const hn_hand *hand, const hn_pull *pull, hn_diag *diag) 
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         if (!(fabs(values[i]) <= HN_SCENE_MAX_NUMBER)) {
             return hn_diag_set(diag, HN_ERR_INPUT, "/pull/to", NULL,
-                               "a number of the pull is not finite");
+                               "a number of the pull is not finite or above 1e100 in size");
         }
     }
     return HN_OK;
@@ -94,8 +94,10 @@ hn_status hn_hand_add(hn_hand *hand, long long frame, hn_pull *pull, hn_diag *di
         return hn_diag_set(diag, HN_ERR_INPUT, "/pulls", NULL, "pulls must be in order of frames");
     }
     if (hand->n == HN_PULL_MOST_ENTRIES) {
-        return hn_diag_set(diag, HN_ERR_LIMIT, "/pull", "reset the comparison with no pulls",
-                           "there are %d pulls, no more are kept", HN_PULL_MOST_ENTRIES);
+        return hn_diag_set(diag, HN_ERR_LIMIT, "/pull",
+                           "reset the comparison and leave its pulls out",
+                           "this comparison already has %d pulls, which is the largest number",
+                           HN_PULL_MOST_ENTRIES);
     }
     if (make_room(hand) != HN_OK) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");

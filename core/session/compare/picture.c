@@ -166,7 +166,7 @@ static void put_words(hn_strbuf *b, const sheet *p) {
     hn_strbuf_printf(b, "%s.", p->opts.title ? p->opts.title : "");
     for (int i = 0; i < p->n_moments; i++) {
         const hn_picture_moment *m = &p->moments[i];
-        hn_strbuf_add(b, isfinite(m->time) ? "" : " One pose, as given.");
+        hn_strbuf_add(b, isfinite(m->time) ? "" : " One configuration, without a motion.");
         if (isfinite(m->time)) {
             hn_strbuf_printf(b, " At t = %.4g s:", m->time);
         }
@@ -255,7 +255,7 @@ static hn_status make_moments(sheet *p, hn_status *ended, hn_diags *diags) {
     hn_status status = HN_OK;
     if (r->n_times > HN_PICTURE_TIMES || (r->n_times > 0 && !r->methods)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
-                            "%d times of a motion were asked for; 1 to %d are drawn", r->n_times,
+                            "%d times were asked for; a picture can show 1 to %d", r->n_times,
                             HN_PICTURE_TIMES);
     }
     const int n = r->n_times > 0 ? r->n_times : 1;

@@ -61,9 +61,10 @@ static hn_status choose_traces(hn_picture_moment *p, hn_diags *diags) {
                 hn_strbuf_add(&names, d.labels[k] ? " " : "");
                 hn_strbuf_add(&names, d.labels[k] ? d.labels[k] : "");
             }
-            const hn_status status = hn_diags_add(diags, HN_ERR_INPUT, "/trace", NULL,
-                                                  "no point '%.40s' is drawn; there are:%.200s",
-                                                  p->request->traces[i], hn_strbuf_text(&names));
+            const hn_status status =
+                hn_diags_add(diags, HN_ERR_INPUT, "/trace", NULL,
+                             "the drawing has no point '%.40s'; its points are:%.200s",
+                             p->request->traces[i], hn_strbuf_text(&names));
             hn_strbuf_reset(&names);
             return status;
         }
@@ -136,8 +137,8 @@ static hn_status run_methods(hn_picture_moment *p, hn_diags *diags) {
         record_traces(p, lines, k + 1, frames);
         if (r->cpu_limit > 0 && cpu_used(p->comparison) > r->cpu_limit) {
             status = hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a larger step or less time",
-                                  "%g s of computing were used up at t = %g s", r->cpu_limit,
-                                  (k + 1) * opts.frame_dt);
+                                  "the limit of %g s of computing was reached at t = %g s",
+                                  r->cpu_limit, (k + 1) * opts.frame_dt);
         }
     }
     return status;
@@ -326,7 +327,7 @@ static hn_status gather_forces(hn_picture_moment *p, hn_diags *diags) {
     double *state = hn_arena_doubles(p->arena, (size_t)info.nq + (size_t)info.nv + 1);
     if (!p->comparison) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/forces", "name a method",
-                            "forces belong to a motion, and no method runs here");
+                            "forces can be drawn only after a run, and no method is named");
     }
     HN_TRY(state ? HN_OK : HN_ERR_MEMORY);
     HN_TRY(hn_reaction_writer_create(p->model, p->arena, &w, diags));

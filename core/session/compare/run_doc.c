@@ -120,7 +120,7 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     if (n > (double)allowed) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, r->at ? "/at" : "/every", "ask for fewer output times",
-            "%.*g samples were asked for; at most %lld are given", n < 1e15 ? 15 : 3, n, allowed);
+            "%.*g samples were asked for; at most %lld are allowed", n < 1e15 ? 15 : 3, n, allowed);
     }
     s->n = (long long)n;
     return r->at ? check_at(r, diags) : HN_OK;

@@ -54,7 +54,8 @@ static hn_status choose_solver(hn_exporter *e, const char *name, hn_diags *diags
     }
     if (n == 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/solver", "leave it out",
-                            "programs in %s have one solver only", e->language->name);
+                            "programs in %s have only one solver, and no choice of it",
+                            e->language->name);
     }
 
     // the nearest, or all of them
@@ -68,12 +69,13 @@ static hn_status choose_solver(hn_exporter *e, const char *name, hn_diags *diags
 static hn_status check_blanks(const hn_exporter *e, hn_diags *diags) {
     if (e->blanks && e->skeleton) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/style", "leave one of them out",
-                            "a program with --blanks keeps what grade asks of it: it is no "
-                            "skeleton");
+                            "--blanks and --style skeleton exclude each other: 'grade' needs the "
+                            "functions that a skeleton leaves out");
     }
     if (e->blanks && e->solver != e->language->solvers) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/solver", "leave one of them out",
-                            "grade runs programs with --blanks without further libraries");
+                            "a program with --blanks cannot use another solver: 'grade' runs it "
+                            "without further libraries");
     }
     return HN_OK;
 }
@@ -97,7 +99,7 @@ static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_dia
     if (!is_plain && strcmp(spec.formulation->name, "baumgarte") != 0) {
         return hn_diags_add(
             diags, HN_ERR_INPUT, "/method", "index1@rk4, or baumgarte:alpha=5,beta=5@rk4",
-            "an exported program cannot hold its loops by '%s'", spec.formulation->name);
+            "exported programs do not have the formulation '%s'", spec.formulation->name);
     }
     for (int i = 0; i < spec.formulation->n_options; i++) {
         const char *key = spec.formulation->options[i].key;
@@ -121,7 +123,7 @@ static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib, 
     hn_status status = read_text(lib, e->language, &text, diags);
     if (status == HN_OK && e->skeleton && !strstr(hn_strbuf_text(&text), "@IF SKELETON@")) {
         status = hn_diags_add(diags, HN_ERR_INPUT, "/style",
-                              "every language but modelica and latex has one",
+                              "every language except modelica and latex has one",
                               "there is no skeleton in %s", e->language->name);
     }
     HN_THEN(status, hn_export_fill(b, e, hn_strbuf_text(&text)));

@@ -48,22 +48,25 @@ static hn_status check_format(const char *name, bool wants_loops, hn_diags *diag
     }
     return wants_loops && !found->has_loop_file
                ? hn_diags_add(diags, HN_ERR_INPUT, "/loops", "leave it out",
-                              "%s holds loops itself: it has no loop file", found->called)
+                              "%s describes closed loops itself and needs no loop file",
+                              found->called)
                : HN_OK;
 }
 
 static hn_status check_scene(const hn_scene *scene, const model_format *f, hn_diags *diags) {
     const int world = hn_scene_find_body(scene, "world");
     if (world >= 0) {
-        return hn_diags_add(diags, HN_ERR_INPUT, scene->bodies[world].pointer,
-                            "call the body otherwise", "%s calls the ground 'world'", f->called);
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, scene->bodies[world].pointer, "give the body another name",
+            "a body cannot be called 'world': %s gives this name to the ground", f->called);
     }
     if (!scene->is_lagrangian) {
         return HN_OK;
     }
-    return hn_diags_add(diags, HN_ERR_INPUT, "/lagrangian", "--language writes it as a program",
-                        "'%.60s' is written as formulas: %s holds bodies and joints, and there "
-                        "are none",
+    return hn_diags_add(diags, HN_ERR_INPUT, "/lagrangian",
+                        "--language writes it as a program instead",
+                        "the scene '%.60s' consists of formulas and has no bodies or joints, so %s "
+                        "cannot describe it",
                         scene->name, f->called);
 }
 
@@ -187,7 +190,7 @@ static void name_the_rest(hn_mjcf *m) {
                            j->type == HN_JOINT_FIXED;
         if (hn_system_joint_is_cut(hn_model_system(m->model), i) && !holds) {
             hn_xml_leave_out(m->left_out, "joint", j->name,
-                             "it closes a loop, and is neither a hinge, a ball nor fixed");
+                             "it closes a loop; only hinges, balls and fixed joints can");
         }
     }
     if (m->scene->has_formulas) {
@@ -195,8 +198,9 @@ static void name_the_rest(hn_mjcf *m) {
     }
     for (int i = 0; i < m->scene->n_bodies; i++) {
         if (!(m->scene->bodies[i].mass.value > 0)) {
-            hn_xml_leave_out(m->left_out, "mass of body", m->scene->bodies[i].name,
-                             "it is 0, and MuJoCo moves no body without mass: give it a small one");
+            hn_xml_leave_out(
+                m->left_out, "mass of body", m->scene->bodies[i].name,
+                "the mass is 0, and MuJoCo cannot move a body without mass: give it a small mass");
         }
     }
 }
@@ -208,7 +212,7 @@ static hn_status prepare(hn_mjcf *m, hn_arena *arena, hn_diags *diags) {
     const hn_status status = hn_start_poses_find(m->model, arena, &m->poses);
     if (status == HN_ERR_UNSUPPORTED) {
         return hn_diags_add(diags, status, "/joints", "let the free joint begin at the ground",
-                            "MJCF has free joints of the world only");
+                            "a free joint in MJCF always begins at the world");
     }
     HN_TRY(status);
     if (hn_arena_failed(arena)) {

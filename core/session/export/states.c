@@ -93,9 +93,9 @@ static hn_status find_later(hn_exporter *e, hn_diags *diags) {
                 return HN_OK;
             }
             if (hn_walk_ask(&e->limits, e->started) != HN_WALK_DONE) {
-                return hn_diags_add(diags, HN_ERR_STOPPED, NULL, NULL,
-                                    "the later state for the self-check took more computing time "
-                                    "than is allowed");
+                return hn_diags_add(
+                    diags, HN_ERR_STOPPED, NULL, NULL,
+                    "computing the later state of the self-check took longer than allowed");
             }
         }
     }

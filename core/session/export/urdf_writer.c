@@ -318,7 +318,8 @@ static void put_loop_file(urdf *u) {
     }
     hn_json_object(u->loops);
     hn_json_put_int(u->loops, "holonom_loops", 1);
-    hn_json_put_string(u->loops, "about", "what the URDF beside it does not hold");
+    hn_json_put_string(u->loops, "about",
+                       "the parts of the mechanism that the URDF file cannot hold");
     hn_json_key(u->loops, "joints");
     hn_json_array(u->loops);
     for (int i = 0; i < u->scene->n_joints; i++) {
@@ -359,8 +360,9 @@ static void name_loops(urdf *u) {
     bool is_at_zero = true, has_gravity = true;
     for (int i = 0; i < u->scene->n_joints; i++) {
         if (hn_system_joint_is_cut(hn_model_system(u->model), i)) {
-            hn_xml_leave_out(u->left_out, "joint", u->scene->joints[i].name,
-                             "it closes a loop, and URDF is a tree: --loops FILE keeps it");
+            hn_xml_leave_out(
+                u->left_out, "joint", u->scene->joints[i].name,
+                "it closes a loop, and a URDF is a tree: --loops FILE writes it to a second file");
         }
     }
     for (int i = 0; i < u->scene->n_coordinates; i++) {
@@ -370,12 +372,14 @@ static void name_loops(urdf *u) {
         has_gravity &= u->scene->gravity[i].value == GRAVITY[i];
     }
     if (!is_at_zero) {
-        hn_xml_leave_out(u->left_out, "start", NULL,
-                         "a URDF begins at 0, at rest: --loops FILE keeps it");
+        hn_xml_leave_out(
+            u->left_out, "start", NULL,
+            "a URDF starts at 0 and at rest: --loops FILE writes the start to a second file");
     }
     if (!has_gravity) {
         hn_xml_leave_out(u->left_out, "gravity", NULL,
-                         "readers of URDF take 9.81 m/s^2 against z: --loops FILE keeps it");
+                         "programs that read URDF take 9.81 m/s^2 along -z: --loops FILE writes "
+                         "gravity to a second file");
     }
 }
 

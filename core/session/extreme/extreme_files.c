@@ -89,7 +89,7 @@ static hn_status check_ids(const hn_folder *cases, const char *const *ids, int n
             found |= number_of(cases->names[k]) > 0 && is_wanted(cases->names[k], &ids[i], 1);
         }
         if (!found) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/id", "they are x1 to x25",
+            return hn_diags_add(diags, HN_ERR_INPUT, "/id", "the cases are x1 to x25",
                                 "there is no case '%.40s'", ids[i]);
         }
     }

@@ -80,11 +80,12 @@ static void put_summary(hn_strbuf *b, const hn_extreme *x) {
 
 void hn_extreme_html(hn_strbuf *b, const hn_extreme *x) {
     hn_page_head(b, "holonom: the extreme matrix", hn_style_extreme);
-    hn_strbuf_add(b, "<h1>The extreme matrix</h1><p>Where methods break, and whether theory said "
-                     "so. Each line states what was expected, with its reason, before it was run. "
-                     "Pass: inside the band. Warn: outside, by no more than three times the "
-                     "tolerance or a factor of ten behind a bound, or for some methods "
-                     "only.</p><p class=\"quiet\">");
+    hn_strbuf_add(b,
+                  "<h1>The extreme matrix</h1><p>Cases in which methods break, and whether theory "
+                  "predicts it. Each prediction was written down with its reason before the case "
+                  "was run. Pass: the observation is inside the predicted band. Warn: it is "
+                  "outside, by at most three times the tolerance or a factor of ten beyond a "
+                  "bound, or it is outside for some of the methods only.</p><p class=\"quiet\">");
     for (int v = 0; v < HN_EXTREME_VERDICTS; v++) {
         const hn_extreme_verdict verdict = (hn_extreme_verdict)v;
         if (hn_extreme_count(x, verdict) > 0) {

@@ -140,15 +140,19 @@ SEE_REDUCED(spread)
 
 const hn_extreme_measure hn_extreme_measures[] = {
     {"value", "the quantity itself", 1, 0, 0, see_value},
-    {"exponent", "its power of the swept number, fitted", 1, 1, 0, see_exponent},
-    {"ratio", "at the first value of the sweep over that at the last", 1, 1, 0, see_ratio},
+    {"exponent", "the power of the swept number with which it changes, fitted", 1, 1, 0,
+     see_exponent},
+    {"ratio", "its value at the first number of the sweep over that at the last", 1, 1, 0,
+     see_ratio},
     {"largest", "over the sweep", 1, 1, 0, see_largest},
     {"smallest", "over the sweep", 1, 1, 0, see_smallest},
-    {"spread", "largest less smallest over the sweep, relative", 1, 1, 0, see_spread},
-    {"outcome", "how the run ended, or the solver answered", 0, -1, 1, see_outcome},
+    {"spread", "the largest minus the smallest over the sweep, relative", 1, 1, 0, see_spread},
+    {"outcome", "how the run ended, or what the solver answered", 0, -1, 1, see_outcome},
     {"stable-step", "the largest step {h} at which nothing grows [s]", 0, 0, 0,
      hn_extreme_see_stable_step},
-    {"lyapunov", "rate at which neighbours part, from twins brought together again and again [1/s]",
+    {"lyapunov",
+     "rate at which neighbouring motions separate, from pairs that are brought together again and "
+     "again [1/s]",
      0, 0, 0, hn_extreme_see_lyapunov},
 };
 const int hn_extreme_n_measures = sizeof hn_extreme_measures / sizeof *hn_extreme_measures;

@@ -34,7 +34,8 @@ static void read_scenes(hn_xr *r, const cJSON *root) {
         char *text = cJSON_IsObject(m) ? cJSON_PrintUnformatted(m) : NULL;
         if (!text && !cJSON_IsString(m)) {
             hn_xr_fault(r, m->string, NULL,
-                        "expected a scene: an object, or the text of one that is no JSON");
+                        "expected a scene: an object, or a string with the text of a scene that is "
+                        "not JSON");
             continue;
         }
         c->scenes[c->n_scenes].name = hn_xr_keep(r, m->string);
@@ -117,7 +118,7 @@ static void read_quantity(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
         hn_xr_fault(r, "of", hint, "there is no quantity '%.60s'", word);
     }
     if (t->measure && (word != NULL) != t->measure->takes_quantity) {
-        hn_xr_fault(r, "of", NULL, word ? "'%s' takes no quantity" : "'%s' is of a quantity",
+        hn_xr_fault(r, "of", NULL, word ? "'%s' takes no quantity" : "'%s' needs a quantity",
                     t->measure->name);
     }
 }
@@ -175,7 +176,8 @@ static void read_truth(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
         t->n_truth = hn_xr_assigns(r, root, "truth", t, t->truth);
     }
     if (t->of && (t->of->needs & HN_EXTREME_TRUTH) && !node) {
-        hn_xr_fault(r, "truth", NULL, "an error needs a truth: a method, or numbers by name");
+        hn_xr_fault(r, "truth", NULL,
+                    "an error needs a true solution: a method, or an object of numbers");
     }
 }
 
@@ -187,7 +189,8 @@ static void read_methods(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
     t->n_methods = solvers ? hn_xr_texts(r, node, "solver", "solvers", t->methods)
                            : hn_xr_texts(r, node, "method", "methods", t->methods);
     if (solvers && (hn_xr_get(node, "method") || hn_xr_get(node, "methods"))) {
-        hn_xr_fault(r, "solvers", NULL, "a trial has methods or solvers, not both");
+        hn_xr_fault(r, "solvers", NULL,
+                    "both methods and solvers are given; a trial has one of them");
     }
 
     // solvers must exist and fit the quantity
@@ -211,7 +214,8 @@ static void read_methods(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
 
     // bound the number of runs
     if (t->n_methods * (t->n_scenes > 0 ? t->n_scenes : 1) > HN_EXTREME_RUNS) {
-        hn_xr_fault(r, "methods", NULL, "more than %d methods times scenes", HN_EXTREME_RUNS);
+        hn_xr_fault(r, "methods", NULL, "methods times scenes are more than %d runs",
+                    HN_EXTREME_RUNS);
     }
 }
 
@@ -239,15 +243,16 @@ static void read_rest(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
         t->limit[0] = hn_xr_check_number(r, cJSON_GetArrayItem(limit, 0), "limit", 1e-12, 100);
         t->limit[1] = hn_xr_check_number(r, cJSON_GetArrayItem(limit, 1), "limit", 1e-12, 100);
     } else if (limit) {
-        hn_xr_fault(r, "limit", NULL, "expected two steps [s] to look between");
+        hn_xr_fault(r, "limit", NULL,
+                    "expected two steps [s], between which the limit is searched");
     }
 
     // what the quantity needs must be named
     if (t->of && (t->of->needs & HN_EXTREME_COORDINATE) && !t->coordinate) {
-        hn_xr_fault(r, "coordinate", NULL, "'%s' is of a coordinate", t->of->name);
+        hn_xr_fault(r, "coordinate", NULL, "'%s' needs the name of a coordinate", t->of->name);
     }
     if (t->of && (t->of->needs & HN_EXTREME_INCIDENT) && !t->incident) {
-        hn_xr_fault(r, "incident", NULL, "'%s' is of an incident", t->of->name);
+        hn_xr_fault(r, "incident", NULL, "'%s' needs the name of an incident", t->of->name);
     }
 
     // the incident must be one that runs report
@@ -256,7 +261,7 @@ static void read_rest(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
         known = strcmp(hn_incident_spelling((hn_incident_code)i), t->incident) == 0;
     }
     if (!known) {
-        hn_xr_fault(r, "incident", NULL, "no run reports '%.60s'", t->incident);
+        hn_xr_fault(r, "incident", NULL, "there is no incident '%.60s'", t->incident);
     }
 }
 

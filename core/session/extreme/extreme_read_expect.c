@@ -35,7 +35,7 @@ static void read_band(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
     const double within = hn_xr_number(r, node, "within", 0, HN_XR_NUMBER, (double)NAN);
     const double share = hn_xr_number(r, node, "within_share", 0, 1, (double)NAN);
     if (isnan(within) == isnan(share)) {
-        hn_xr_fault(r, "value", NULL, "a value takes one of 'within' and 'within_share'");
+        hn_xr_fault(r, "value", NULL, "a value needs either 'within' or 'within_share'");
     }
     const double tolerance = isnan(within) ? share * fabs(value) : within;
     set_band(e, value - tolerance, value + tolerance, tolerance);
@@ -71,7 +71,7 @@ static void read_word(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
     if (!known) {
         char hint[HN_DIAG_HINT] = "";
         hn_xr_suggest(hint, e->word, words, n);
-        hn_xr_fault(r, "word", hint, "no run ends as '%.60s'", e->word);
+        hn_xr_fault(r, "word", hint, "there is no outcome '%.60s'", e->word);
     }
     snprintf(e->text, sizeof e->text, e->says ? "%s: \"%s\"" : "%s", e->word, e->says);
 }
@@ -82,7 +82,7 @@ static void read_origin(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
     e->from_spectrum = from != NULL;
     if (from && strcmp(from, "spectrum") != 0) {
         hn_xr_fault(r, "from", "take \"spectrum\"",
-                    "a prediction comes from the spectrum, or stands here");
+                    "the only source of a prediction is 'spectrum'; otherwise leave 'from' out");
     }
     e->reason = hn_xr_text(r, node, "reason", 1);
     e->source = hn_xr_text(r, node, "source", 0);
@@ -122,8 +122,9 @@ static void check_measure(hn_xr *r, const hn_extreme_trial *t, bool one) {
 
     // a stable step needs one place to search: the spectrum's limit or 'limit'
     if (stable_step && (t->limit[0] > 0) == e->from_spectrum) {
-        hn_xr_fault(r, "from", NULL,
-                    "a step is searched about the spectrum's limit, or between the two of 'limit'");
+        hn_xr_fault(
+            r, "from", NULL,
+            "'stable-step' needs either \"from\": \"spectrum\" or the two steps of 'limit'");
     }
 
     // the prediction must be of the kind that the measure gives
@@ -150,8 +151,9 @@ void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
         if (given == 1) {
             read_form(r, node, &t->expect);
         } else {
-            hn_xr_fault(r, NULL, NULL,
-                        "a prediction is one of value, at_most, at_least, between and word");
+            hn_xr_fault(
+                r, NULL, NULL,
+                "a prediction needs exactly one of value, at_most, at_least, between and word");
         }
 
         check_measure(r, t, given == 1);

@@ -12,8 +12,8 @@ static const hn_field FIELDS[] = {
     {.name = "coordinate",
      .type = HN_FIELD_TEXT,
      .argument = "NAME",
-     .about = "whose error is split; when left out, of each method the coordinate whose error is "
-              "largest at the end"},
+     .about = "coordinate whose error is split; when left out, for each method the one with the "
+              "largest error at the end"},
     HN_JOB_END_OF_FIELDS,
 };
 
@@ -49,7 +49,7 @@ HN_JOB_FORM(csv, hn_budgets, hn_budgets_csv)
 const hn_job_kind hn_kind_budget = {
     .name = "budget",
     .title = "where the error comes from",
-    .about = "where the error at the end and the energy come from",
+    .about = "which causes add up to the error at the end and to the change of energy",
     .command = "study",
     .words = HN_JOB_WORDS_SCENE,
     .pieces = "methods",

@@ -18,7 +18,7 @@ static const hn_field FIELDS[] = {
     {.name = "hold",
      .type = HN_FIELD_BOOL,
      .argument = "",
-     .about = "end the reference where fewer than 6 digits are sure, if that is earlier"},
+     .about = "end the reference early where fewer than 6 digits are sure"},
     HN_JOB_END_OF_FIELDS,
 };
 
@@ -46,7 +46,7 @@ static hn_status shorten(hn_reference_work *w, hn_ref_request *request, hn_diags
     }
     if (hold <= 0) {
         return hn_diags_add(diags, HN_ERR_NO_CONVERGENCE, NULL, "take a shorter time",
-                            "the two computations share fewer than %d digits from the start on",
+                            "the two computations agree on fewer than %d digits from the start on",
                             HN_HOLD_DIGITS);
     }
     hn_ref_free(w->ref);
@@ -90,7 +90,7 @@ static void save(hn_strbuf *b, const void *work) {
 
 const hn_job_kind hn_kind_reference = {
     .name = "reference",
-    .about = "the reference solution: by two means, and the digits they share",
+    .about = "the reference solution, computed in two ways, with the digits on which they agree",
     .command = "reference",
     .pieces = "",
     .chooses = "",

@@ -21,14 +21,14 @@ static const hn_field FIELDS[] = {
      .type = HN_FIELD_CHOICE,
      .choices = PRESETS,
      .argument = "NAME",
-     .about =
-         "axes of the map by name; when left out: limits, and where that finds a mechanism with "
-         "loops that is not stiff, the error over alpha and beta with the steps as lines"},
+     .about = "axes of the map by name; when left out: limits, and for a mechanism with loops that "
+              "turns out not to be stiff, the error over alpha and beta"},
     {.name = "over",
      .type = HN_FIELD_TEXT,
      .argument = "AXES",
-     .about = "one or two axes in place of a preset, as in h=1e-4..1e-1,k=1e2..1e8, each with :lin "
-              "or :log behind it if wanted; step names the step where h is a parameter"},
+     .about =
+         "one or two axes in place of a preset, as in h=1e-4..1e-1,k=1e2..1e8; :lin or :log after "
+         "an axis chooses its spacing; 'step' names the step in a scene where h is a parameter"},
     {.name = "columns",
      .type = HN_FIELD_INTEGER,
      .min = 2,
@@ -83,7 +83,8 @@ HN_JOB_FORM(png, hn_map, write_png)
 const hn_job_kind hn_kind_stability = {
     .name = "stability",
     .title = "where steps are stable",
-    .about = "where steps are stable: the limit predicted from the spectrum, and tried",
+    .about = "which steps are stable: the limit predicted from the spectrum, and the limit found "
+             "by trials",
     .command = "study",
     .words = HN_JOB_WORDS_SCENE,
     .pieces = "cells",

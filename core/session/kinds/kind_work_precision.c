@@ -51,7 +51,7 @@ HN_JOB_FORM(csv, hn_study, hn_study_csv)
 const hn_job_kind hn_kind_work_precision = {
     .name = "work-precision",
     .title = "what accuracy costs",
-    .about = "error against cost of each method",
+    .about = "the error of each method against its cost",
     .command = "study",
     .words = HN_JOB_WORDS_SCENE,
     .pieces = "points",

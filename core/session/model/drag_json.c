@@ -15,9 +15,11 @@ static const struct {
     const char *name, *reason;
 } ENDS[] = {
     [HN_DRAG_REACHED] = {"reached", NULL},
-    [HN_DRAG_NEAREST] = {"nearest", "the loops allow no pose around here that is nearer"},
-    [HN_DRAG_TIME] = {"time", "the computing time was over on the way: drag on from here"},
-    [HN_DRAG_STUCK] = {"stuck", "the loops cannot be closed any nearer: a singular configuration"},
+    [HN_DRAG_NEAREST] = {"nearest",
+                         "no closed configuration near this one is nearer to the target"},
+    [HN_DRAG_TIME] = {"time", "the computing time ended on the way; drag on from here"},
+    [HN_DRAG_STUCK] =
+        {"stuck", "the loops cannot be closed nearer to the target: the configuration is singular"},
 };
 
 static const hn_coordinate *user_coordinate(const hn_model *model, int i) {
@@ -36,7 +38,7 @@ static hn_status find_coordinate(const hn_model *model, const char *name, int *o
         }
     }
     return hn_diags_add(diags, HN_ERR_INPUT, "/coordinate",
-                        "coordinates of joints that close a loop follow from the others",
+                        "name a free coordinate; a joint that closes a loop has none",
                         "the scene has no free coordinate '%.80s'", name);
 }
 

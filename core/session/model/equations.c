@@ -188,7 +188,7 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
 
     // title, and the system that the terms belong to
     hn_strbuf_printf(b, "%s\n%s\n", scene->title ? scene->title : scene->id, SYSTEM_TEXT);
-    hn_strbuf_add(b, "speeds, in the order of rows and columns:");
+    hn_strbuf_add(b, "velocities, in the order of rows and columns:");
     for (int i = 0; i < info.nv; i++) {
         hn_strbuf_printf(b, "%s %s", i ? "," : "", symbol_name(sys, x.v_symbols[i]));
     }
@@ -204,8 +204,8 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
     // entries of every term, then the position form
     for (int k = 0; k < N_TERMS; k++) {
         hn_strbuf_printf(b, "\n%s (%s; %s)\n", terms[k].name, terms[k].meaning,
-                         terms[k].symmetric ? "each entry stands for its mirror too, M[i,j] = "
-                                              "M[j,i]; others that are not listed are zero"
+                         terms[k].symmetric ? "symmetric: of M[i,j] = M[j,i] one is listed; "
+                                              "entries that are not listed are zero"
                                             : "entries not listed are zero");
         write_entries(b, hn_system_graph(sys), &terms[k], write_text);
     }

@@ -89,9 +89,9 @@ static void put_changes(const hn_scene *scene, hn_diag *why) {
         used += (size_t)snprintf(changes + used, sizeof changes - used,
                                  "%s%.40s = %.*g%s%s (%.*g in the scene)", used ? ", " : "with ",
                                  p->name, digits, p->value, space, p->unit, digits, p->initial);
-        used_back +=
-            (size_t)snprintf(back + used_back, sizeof back - used_back, "%s%.40s = %.*g",
-                             used_back ? ", " : "go back towards ", p->name, digits, p->initial);
+        used_back += (size_t)snprintf(back + used_back, sizeof back - used_back, "%s%.40s = %.*g",
+                                      used_back ? ", " : "take values closer to ", p->name, digits,
+                                      p->initial);
     }
     if (used > 0) {
         const hn_diag said = *why;
@@ -164,7 +164,8 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     // the compiler's limit has no message of its own
     if (status == HN_ERR_LIMIT && diags && diags->n == 0) {
         hn_diags_add(diags, status, "/scene", "take fewer bodies, or shorter chains",
-                     "the scene's equations hold more values at once than a tape can (65,000)");
+                     "the scene's equations need more values at once than compiled instructions "
+                     "can hold (65,000)");
     }
     if (status != HN_OK) {
         if (source->path) {

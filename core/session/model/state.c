@@ -75,9 +75,10 @@ static hn_status check_digits(const hn_model *model, const hn_state_entry *large
         const hn_coordinate *c = user_coordinate(model, i % n);
         const char *name = i < n ? c->name : c->rate;
         if (fabs(back[i] - u[i]) > LOST * (1 + fabs(u[i])) && strcmp(name, large->name) != 0) {
-            return hn_diags_add(diags, HN_ERR_INPUT, pointer, "take a smaller value",
-                                "'%.80s' is %g: beside it '%.80s' would be %g in place of %g",
-                                large->name, large->value, name, back[i], u[i]);
+            return hn_diags_add(
+                diags, HN_ERR_INPUT, pointer, "take a smaller value",
+                "'%.80s' = %g is so large that rounding changes '%.80s' to %g; %g was asked for",
+                large->name, large->value, name, back[i], u[i]);
         }
     }
     return HN_OK;

@@ -54,7 +54,7 @@ void hn_study_find_chaos(hn_study *s, const hn_walk_limits *limits) {
     if (status != HN_OK) {
         s->chaos = (hn_chaos){.T = s->ref->T};
         snprintf(s->chaos.why, sizeof s->chaos.why,
-                 "whether neighbouring motions part is not known: %.120s",
+                 "it is not known whether the motion is chaotic: %.120s",
                  status == HN_ERR_STOPPED ? "it would take too long" : diag.message);
         return;
     }

@@ -131,7 +131,7 @@ static void put_answer(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_
     hn_page_lines(b, hn_strbuf_text(&text));
     hn_strbuf_add(b, p.n_bands || p.beyond_horizon
                          ? "</ul>"
-                         : "<li>Nothing reaches an error of 0.1.</li></ul>");
+                         : "<li>No run has an error of 0.1 or less.</li></ul>");
     b->failed |= text.failed;
     hn_strbuf_reset(&text);
 }
@@ -185,9 +185,9 @@ static void put_quantity(hn_strbuf *b, double value, const char *unit) {
 void hn_study_put_methods(hn_strbuf *b, const hn_study *s, int level) {
     const hn_wp *wp = hn_study_wp(s);
     put_head(b, level, "Methods");
-    hn_strbuf_add(b, "<p class=\"quiet\">What the ladder of sizes says of each, and its most "
-                     "accurate point. Closed is not correct: a gap of 1e-16 promises nothing about "
-                     "the other columns.</p>");
+    hn_strbuf_add(b, "<p class=\"quiet\">The verdict follows from all sizes of step or tolerance; "
+                     "the numbers are those of the most accurate run. A closed loop does not make "
+                     "a motion right: a gap of 1e-16 says nothing about the other columns.</p>");
 
     // head of the table
     hn_page_table(b, "Methods");
@@ -239,7 +239,8 @@ void hn_study_put_race(hn_strbuf *b, const hn_study *s, int level) {
     put_head(b, level, "What equal cost buys");
     hn_strbuf_printf(b,
                      "<p class=\"quiet\">Error of the %s for the same number of operations, "
-                     "between measured points; ≤: with fewer already; –: no point is as cheap.</p>",
+                     "interpolated between measured points. ≤: a cheaper run already has this "
+                     "error. –: every run of the method costs more.</p>",
                      hn_error_title(error));
 
     // costs as columns
@@ -337,7 +338,7 @@ void hn_study_put_failures(hn_strbuf *b, const hn_study *s, int level) {
             // the heading appears with the first failure only
             hn_wp_spelling(wp, m, k, spelling);
             if (!any++) {
-                put_head(b, level, "What did not come to the end");
+                put_head(b, level, "Runs that did not reach the end");
                 hn_strbuf_add(b, "<ul class=\"answers\">");
             }
 
@@ -410,7 +411,7 @@ static void put_plots(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(
         b, "</div></section><p class=\"quiet\">Down is more accurate, left is cheaper. A cross "
            "on the upper edge is a run that ended early, at what it had cost by then. A "
-           "faint curve converges to something else.</p>\n");
+           "faint curve converges to another motion.</p>\n");
 }
 
 void hn_study_put_chaos(hn_strbuf *b, const hn_study *s) {
@@ -440,9 +441,9 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_printf(b, " %s</p>", hex);
     hn_study_put_chaos(b, s);
     if (wp->stopped || wp->out_of_time) {
-        hn_strbuf_printf(b, "<p class=\"wrong\">%s; what was left out is listed below.</p>",
-                         wp->stopped ? "This study was stopped before its end"
-                                     : "The time limit left points or samples out");
+        hn_strbuf_printf(b, "<p class=\"wrong\">%s; the missing ones are listed below.</p>",
+                         wp->stopped ? "This study was stopped before it was complete"
+                                     : "The time limit was too short for all points and samples");
     }
 }
 
@@ -450,10 +451,9 @@ void hn_study_put_measures(hn_strbuf *b, const hn_study *s, int level) {
     const hn_ref *ref = hn_study_wp(s)->ref;
     put_head(b, level, "How it was measured");
     hn_strbuf_printf(b,
-                     "<p>The reference solution is %s; %s, which shares "
-                     "nothing with it but the scene's equations, agrees to %.1f digits of the "
-                     "coordinates, %.1e of the reactions. Errors below ten times their difference "
-                     "are given as bounds.</p>",
+                     "<p>The reference solution is %s; %s, which has only the scene's equations in "
+                     "common with it, agrees to %.1f digits of the coordinates and to %.1e of the "
+                     "reactions. Errors below ten times their difference are given as bounds.</p>",
                      ref->means[0], ref->means[1], hn_ref_digits(ref),
                      ref->error[HN_ERROR_REACTION]);
     hn_strbuf_printf(
@@ -469,17 +469,12 @@ void hn_page_timing(hn_strbuf *b) {
     hn_strbuf_printf(
         b,
         "<p>CPU time is the median of up to %d samples of one run without output, each a batch of "
-        "%g "
-        "ms or more, taken in rounds over all points. Spread is the distance of the quartiles over "
-        "the median; “busy” marks points whose wall time exceeded the CPU time by more than %.0f "
-        "%%. "
-        "Halfway every run is made anew, so that the samples are two measurements. Times are "
-        "ranked "
-        "only where the medians of both halves agree within %.0f %%, and the methods differ by "
-        "more "
-        "than %.0f %% and by more than their quartiles and halves do. Evaluations and operations "
-        "are "
-        "exact.</p>\n",
+        "%g ms or more, taken in rounds over all points. Spread is the distance of the quartiles "
+        "over the median; “busy” marks points whose wall time exceeded the CPU time by more than "
+        "%.0f %%. Halfway every run is repeated from its start, so that the samples form two "
+        "measurements. Times are ranked only where the medians of both halves agree within %.0f "
+        "%%, and the methods differ by more than %.0f %% and by more than their quartiles and "
+        "halves do. Evaluations and operations are exact.</p>\n",
         HN_WP_SAMPLES, 1e3 * HN_TIMING_BATCH, 100 * (HN_WP_BUSY - 1), 100 * (HN_PARETO_STEADY - 1),
         100 * (HN_PARETO_CLOSE - 1));
 }

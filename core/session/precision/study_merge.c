@@ -83,15 +83,15 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
     p->name = text->name;
     p->root = cJSON_ParseWithLength(text->text, text->n);
     if (!p->root) {
-        return refuse(g, p, "it is not JSON, or cut short");
+        return refuse(g, p, "it is not complete JSON");
     }
 
     // kind and version of the document
     if (strcmp(text_of(p->root, "study"), HN_PART_STUDY) != 0) {
-        return refuse(g, p, "its field \"study\" does not say so");
+        return refuse(g, p, "its field \"study\" has another value");
     }
     if (!whole_of(p->root, "format", 1, 1000, &format) || format != HN_PART_FORMAT) {
-        return refuse(g, p, "its format is that of another version");
+        return refuse(g, p, "it was written by a version of holonom with another format");
     }
 
     // which part it is, and its points
@@ -160,7 +160,7 @@ static hn_status load_scene(merging *g) {
         }
     }
     if (!text) {
-        return refuse(g, p, "it holds no scene");
+        return refuse(g, p, "its scene is missing");
     }
 
     // load from the text; the parts need no library
@@ -180,14 +180,14 @@ static hn_status load_scene(merging *g) {
     hn_hash_hex(hn_model_scene(g->study->model)->hash, hex);
     return strcmp(hex, text_of(p->root, "scene/hash")) == 0
                ? HN_OK
-               : refuse(g, p, "its scene was changed: it does not have the hash beside it");
+               : refuse(g, p, "its scene does not match its hash: the scene was changed");
 }
 
 static hn_status load_reference(merging *g) {
     const part *p = &g->parts[0];
     double T;
     if (!hn_stored_number(at_path(p->root, "request"), "time", &T) || !(T > 0)) {
-        return refuse(g, p, "it has no end time");
+        return refuse(g, p, "its end time is missing");
     }
     g->study->ref =
         hn_reference_take(member(p->root, "reference"), g->study->model, T, HN_REF_TIMES);
@@ -202,7 +202,7 @@ static hn_status read_methods(merging *g, hn_method_spec *specs, int *n) {
         const char *spelling = cJSON_GetStringValue(item);
         if (!spelling || *n == HN_WP_METHODS ||
             hn_method_parse(spelling, &specs[*n], &diag) != HN_OK) {
-            return refuse(g, &g->parts[0], diag.message[0] ? diag.message : "its methods are none");
+            return refuse(g, &g->parts[0], diag.message[0] ? diag.message : "it names no methods");
         }
         (*n)++;
     }
@@ -420,7 +420,7 @@ static hn_status find_missing(merging *g) {
     }
 
     // report
-    hn_diags_add(g->diags, HN_ERR_INPUT, "/shard", "run them with the same request, or again",
+    hn_diags_add(g->diags, HN_ERR_INPUT, "/shard", "run the missing parts with the same request",
                  "%d of %d parts are missing: %.300s", least, of, hn_strbuf_text(&b));
     hn_strbuf_reset(&b);
     return HN_ERR_INPUT;

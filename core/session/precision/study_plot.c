@@ -304,8 +304,8 @@ void hn_study_plot(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost
     frame f = {.error = error, .cost = cost};
     char title[120];
     if (!find_frame(wp, &f)) {
-        hn_strbuf_add(b, "<p class=\"none\">No point to draw: nothing came to its end, or nothing "
-                         "was timed.</p>");
+        hn_strbuf_add(b, "<p class=\"none\">There is no point to draw: no run reached its end, or "
+                         "no time was measured.</p>");
         return;
     }
 

@@ -126,7 +126,7 @@ void hn_wanted_text(hn_strbuf *b, const hn_study *study, const hn_wanted *wanted
     spelling[0] = '\0';
     hn_wp_band(wp, classes, error, HN_COST_OPS, wanted->error, &band);
     if (band.best.level < 0) {
-        hn_strbuf_printf(b, "For %s: no run of this study is so accurate.", wanted->words);
+        hn_strbuf_printf(b, "For %s: no run of this study is accurate enough.", wanted->words);
         return;
     }
 

@@ -120,13 +120,14 @@ static hn_status check_size(const motion *m, hn_diags *diags) {
     const double numbers = samples * (m->n_user + 3.0 * m->n_points + 1);
     if (!(m->every > 0) || !isfinite(m->every)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
-                            "the time from sample to sample is %g s; it must be above 0", m->every);
+                            "the time between samples is %g s; it must be above 0", m->every);
     }
     if (!(samples <= HN_REF_MOTION_SAMPLES + 1) || !(numbers <= HN_REF_MOTION_NUMBERS)) {
-        return hn_diags_add(
-            diags, HN_ERR_INPUT, "/every", "take a longer time from sample to sample",
-            "%.0f samples of %.0f numbers are more than one answer holds (%d samples, %d numbers)",
-            samples, numbers / samples, HN_REF_MOTION_SAMPLES, HN_REF_MOTION_NUMBERS);
+        return hn_diags_add(diags, HN_ERR_INPUT, "/every", "take a longer time between samples",
+                            "%.0f samples of %.0f numbers were asked for; one answer holds at most "
+                            "%d samples and %d numbers",
+                            samples, numbers / samples, HN_REF_MOTION_SAMPLES,
+                            HN_REF_MOTION_NUMBERS);
     }
     return HN_OK;
 }

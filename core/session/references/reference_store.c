@@ -239,7 +239,7 @@ hn_status hn_reference_get(const hn_model *model, const hn_ref_request *request,
         return hn_diags_add(diags, HN_ERR_UNSUPPORTED, NULL,
                             "one is shipped for every scene with its own parameters and time",
                             "no reference solution is stored for this scene with these parameters "
-                            "to t = %g s; it would have to be computed",
+                            "to t = %g s; it has to be computed",
                             T);
     }
 

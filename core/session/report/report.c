@@ -271,7 +271,7 @@ hn_status hn_report_open(const hn_job_request *request, hn_report **out, hn_diag
     for (int i = 0; i < r->n; i++) {
         r->scenes[i].model = q.models[i];
         snprintf(r->scenes[i].reason, sizeof r->scenes[i].reason,
-                 "not begun: the report was stopped before");
+                 "not begun: the report was stopped earlier");
     }
     *out = r;
     return HN_OK;

@@ -80,7 +80,7 @@ typedef enum hn_verdict_kind {
     HN_VERDICT_GOOD,
     HN_VERDICT_PARTLY,    ///< some sizes fail
     HN_VERDICT_FAILS,     ///< all do
-    HN_VERDICT_ELSEWHERE, ///< converges to something else
+    HN_VERDICT_ELSEWHERE, ///< converges to another motion
     HN_VERDICT_REFUSED,   ///< the method does not serve the scene
     HN_VERDICT_NOT_RUN    ///< the time limit left it out
 } hn_verdict_kind;

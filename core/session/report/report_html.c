@@ -56,7 +56,7 @@ static void put_answer(hn_strbuf *b, const hn_report_scene *s, double accuracy) 
     const hn_report_answer a = hn_report_find_answer(s, accuracy);
     char cost[HN_SI_TEXT];
     if (a.method < 0) {
-        hn_strbuf_add(b, "<td class=\"none\">nobody</td>");
+        hn_strbuf_add(b, "<td class=\"none\">none</td>");
         return;
     }
     hn_si_format(a.cost, a.by == HN_COST_TIME ? "s" : "op", 2, cost);
@@ -111,11 +111,10 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
     }
 
     // how to read the table
-    hn_strbuf_add(
-        b, "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
-           "only where two measurements agree and the next method is clearly slower. "
-           "Operations (op): time does not decide there, arithmetic does; “2 alike”: so many "
-           "others need as few.</p>");
+    hn_strbuf_add(b, "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, where "
+                     "two measurements agree and the next method is clearly slower. Operations "
+                     "(op): elsewhere methods are ranked by arithmetic operations. “2 alike”: two "
+                     "other methods need as few.</p>");
 }
 
 static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
@@ -177,13 +176,13 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
     }
 
     // how to read the table
-    hn_strbuf_add(
-        b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
-           "or tolerance did not come to the end. “3 left out”: so many finer ones, to keep the "
-           "budget; the method may reach more. “no digit”: no error is below 0.1. “elsewhere”: it "
-           "converges, but not to "
-           "the motion of the scene. “survives n/m”: so many other step sizes came "
-           "through the singular poses within 1e-2.</p>\n");
+    hn_strbuf_add(b,
+                  "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: with three of seven "
+                  "sizes of step or tolerance the run did not reach the end. “3 left out”: three "
+                  "finer sizes were not run, to keep the time limit; the method may be more "
+                  "accurate than shown. “no digit”: no error is below 0.1. “elsewhere”: the method "
+                  "converges, but to another motion. “survives n/m”: of m other step sizes, n "
+                  "passed the singular configurations with an error of at most 1e-2.</p>\n");
 }
 
 static void put_sentences(hn_strbuf *b, const hn_report *r) {
@@ -209,10 +208,10 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
         hn_strbuf_add(b, " by holonom ");
         hn_html_text(b, r->request.build);
     }
-    hn_strbuf_add(b, "; one thread, nothing beside what is timed</p>");
+    hn_strbuf_add(b, "; one thread, and no other work while time is measured</p>");
     if (r->stopped) {
-        hn_strbuf_add(b, "<p class=\"wrong\">Stopped on request before its end; the same command "
-                         "goes on from there.</p>");
+        hn_strbuf_add(b, "<p class=\"wrong\">The report was stopped before it was complete; the "
+                         "same command continues it.</p>");
     }
     put_sentences(b, r);
     hn_strbuf_add(b, "<div class=\"top\">");
@@ -255,11 +254,12 @@ static void put_survival(hn_strbuf *b, const hn_report_scene *s) {
     if (!s->strips) {
         return;
     }
-    hn_strbuf_printf(b,
-                     "<h3>Through singular poses</h3><p class=\"quiet\">The first of them at t = "
-                     "%.3g s. A mark a run: across its step or tolerance, up the time it came to; "
-                     "what survives stands on the upper line.</p>",
-                     s->singular_at);
+    hn_strbuf_printf(
+        b,
+        "<h3>Through singular configurations</h3><p class=\"quiet\">The mechanism reaches its "
+        "first singular configuration at t = %.3g s. Each mark is a run: its step or tolerance to "
+        "the right, the time it reached upwards. Runs that survive are on the upper line.</p>",
+        s->singular_at);
     hn_page_scroll(b, "sizes that survive");
     hn_report_survival_plot(b, s);
     hn_strbuf_add(b, "</div>\n");
@@ -298,9 +298,8 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
     // say when the time limit left results out
     const hn_wp *wp = hn_study_wp(s->study);
     if (wp->out_of_time || wp->stopped) {
-        hn_strbuf_add(b,
-                      "<p class=\"quiet\">The budget left finer sizes or samples of time out; they "
-                      "are listed below.</p>");
+        hn_strbuf_add(b, "<p class=\"quiet\">The time limit was too short for the finer sizes or "
+                         "for all samples of time; the missing ones are listed below.</p>");
     }
 
     // the plots and the answers
@@ -375,7 +374,7 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     hn_strbuf_add(b,
                   "<p class=\"quiet\">Down is more accurate, left is cheaper. A cross on the upper "
                   "edge is a run that ended early, at what it had cost by then; a faint curve "
-                  "converges to something else; the grey band is what the reference cannot "
+                  "converges to another motion; the grey band is what the reference cannot "
                   "resolve.</p>");
     for (int i = 0; i < r->n; i++) {
         put_scene(b, &r->scenes[i], i);

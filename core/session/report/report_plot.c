@@ -31,9 +31,9 @@ static const char *const SIGNS[HN_SURVIVAL_ENDS] = {
 static const char *const MEANINGS[HN_SURVIVAL_ENDS] = {
     [HN_SURVIVAL_SURVIVED] = "survived",
     [HN_SURVIVAL_OFF] = "inaccurate from here",
-    [HN_SURVIVAL_STOPPED] = "stopped, and said why",
-    [HN_SURVIVAL_TOLD] = "wrong, and reported",
-    [HN_SURVIVAL_SILENT] = "folded over, silently",
+    [HN_SURVIVAL_STOPPED] = "ended early, with a reason",
+    [HN_SURVIVAL_TOLD] = "wrong, with a report",
+    [HN_SURVIVAL_SILENT] = "wrong, without a report",
 };
 
 static void put_sign(hn_strbuf *b, hn_survival_end end, double x, double y) {

@@ -87,7 +87,7 @@ hn_verdict hn_report_find_verdict(const hn_report_scene *s, int m) {
     }
 
     // the reason, and whether any result can be trusted
-    v.why = v.why ? v.why : "left out to keep the budget";
+    v.why = v.why ? v.why : "left out to keep the time limit";
     v.untrusted = v.kind == HN_VERDICT_FAILS || v.kind == HN_VERDICT_ELSEWHERE ||
                   (v.done > 0 && !(v.best < NO_DIGIT));
     return v;
@@ -157,14 +157,14 @@ static void say_dependable(hn_strbuf *b, const hn_report *r, const hn_wp *wp) {
     for (int m = 0; m < wp->n_methods; m++) {
         if (is_dependable(r, m)) {
             list(b, &said,
-                 "To the end at every size in every scene, and to an error of 1e-6 or less: ",
+                 "These methods reach the end at every size in every scene, with an error of 1e-6 "
+                 "or less: ",
                  wp->methods[m].spelling);
         }
     }
-    hn_strbuf_add(
-        b, said ? ".\n"
-                : "No method comes to the end at every size in every scene, and to an error of "
-                  "1e-6 or less.\n");
+    hn_strbuf_add(b, said ? ".\n"
+                          : "No method reaches the end at every size in every scene with an error "
+                            "of 1e-6 or less.\n");
 }
 
 static bool fails(const hn_verdict *v) {
@@ -226,18 +226,18 @@ static void say_timed(hn_strbuf *b, const hn_report *r) {
 
     // say what decided the ranking
     if (timed == 0) {
-        hn_strbuf_add(b, "Ranked by operations: no time was taken.\n");
+        hn_strbuf_add(b, "Ranked by operations: no time was measured.\n");
     } else if (answers > 0) {
-        hn_strbuf_printf(b, "Ranked by CPU time: %d of %d", by_time, answers);
+        hn_strbuf_printf(b, "Answers ranked by CPU time: %d of %d", by_time, answers);
 
         // say why the others are ranked by operations
         if (by_time < answers) {
-            hn_strbuf_add(b, "; the others by operations, as ");
+            hn_strbuf_add(b, "; the others are ranked by operations, because ");
             if (few > 0) {
                 hn_strbuf_printf(b, "points were timed fewer than %d times in %d of %d scenes",
                                  HN_WP_ENOUGH, few, scenes);
             } else {
-                hn_strbuf_add(b, "times there do not repeat, or differ too little");
+                hn_strbuf_add(b, "their times do not repeat or differ too little");
             }
         }
         hn_strbuf_add(b, ".\n");
@@ -252,9 +252,9 @@ void hn_report_sentences(hn_strbuf *b, const hn_report *r) {
     const hn_wp *wp = hn_study_wp(any);
     say_cheapest(b, r, wp);
     say_dependable(b, r, wp);
-    if (say_where(b, r, wp, fails, "Break at some sizes or all") == 0) {
+    if (say_where(b, r, wp, fails, "Methods that fail at some or all sizes") == 0) {
         hn_strbuf_add(b, "Nothing fails.\n");
     }
-    say_where(b, r, wp, is_elsewhere, "Converge to something else");
+    say_where(b, r, wp, is_elsewhere, "Converge to another motion");
     say_timed(b, r);
 }

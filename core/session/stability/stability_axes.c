@@ -100,7 +100,7 @@ static hn_status make_axis(hn_map *map, hn_map_axis *a, const char *name, double
     }
     if (form == 'l' && low <= 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
-                            "%s starts at %g: ratios need values above 0", name, low);
+                            "%s starts at %g; a logarithmic axis needs values above 0", name, low);
     }
     a->is_log = form ? form == 'l' : low > 0 && high / low >= LOG_FROM;
     fill_axis(a, low, high, n);
@@ -207,7 +207,7 @@ static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diag
     if (!(fast > 0)) {
         return hn_diags_add(
             diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
-            "nothing vibrates or creeps at the start, so no range of steps follows");
+            "nothing vibrates or decays at the start, so no range of steps can be chosen");
     }
     // the present step is on the axis too
     const double present = hn_model_scene(map->model)->step;
@@ -392,16 +392,17 @@ static hn_status check_sizes(hn_map *map, hn_diags *diags) {
     h = map->y.is_step ? map->y.value[0] : h;
     if (map->T / h > HN_MAP_STEPS) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a shorter time or larger steps",
-                            "%g s at steps of %.3g s take %.3g of them; a trial has at most %g",
+                            "%g s in steps of %.3g s are %.3g steps; a trial has at most %g",
                             map->T, h, map->T / h, HN_MAP_STEPS);
     }
 
     // each value of a parameter is a scene of its own
     map->n_scenes = (map->x.is_param ? map->x.n : 1) * (map->y.is_param ? map->y.n : 1);
-    return map->n_scenes <= HN_MAP_MODELS ? HN_OK
-                                          : hn_diags_add(diags, HN_ERR_LIMIT, "/grid", NULL,
-                                                         "%d scenes differ in this map; at most %d",
-                                                         map->n_scenes, HN_MAP_MODELS);
+    return map->n_scenes <= HN_MAP_MODELS
+               ? HN_OK
+               : hn_diags_add(diags, HN_ERR_LIMIT, "/grid", NULL,
+                              "this map needs %d different scenes; at most %d are allowed",
+                              map->n_scenes, HN_MAP_MODELS);
 }
 
 /// Sets the axes and their numbers of points.
@@ -422,7 +423,7 @@ static hn_status take_values(hn_map *map, hn_diags *diags) {
     if (map->n_columns < 2 || map->n_rows < 2 || map->n_columns > HN_MAP_SIDE ||
         map->n_rows > HN_MAP_SIDE) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/grid", NULL,
-                            "a grid of %d by %d; each side has 2 to %d", map->n_columns,
+                            "the grid is %d by %d; each side can have 2 to %d", map->n_columns,
                             map->n_rows, HN_MAP_SIDE);
     }
     return HN_OK;

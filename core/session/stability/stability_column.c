@@ -317,15 +317,16 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
     }
     if (a.compared == 0 && !a.why && map->n_scenes == 1 && !map->scenes[0].path &&
         map->scenes[0].why[0]) {
-        a.why = map->out_of_time
-                    ? "the time limit came before the motion to compare with was computed"
-                    : map->scenes[0].why;
+        a.why =
+            map->out_of_time
+                ? "the time limit ended the study before the motion to compare with was computed"
+                : map->scenes[0].why;
     }
     if (a.compared == 0 && !a.why) {
         const hn_map_column *c = hn_map_column_at(map, m, 0);
         a.why = map->x.n == 1 && c->stable == 0
                     ? "no step was stable, down to the smallest that a trial may take"
-                    : "no boundary was both predicted and tried inside this map";
+                    : "this map contains no boundary that was both predicted and tried";
     }
     a.why = a.compared ? NULL : a.why;
     return a;
@@ -340,8 +341,8 @@ static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
             if (map->x.name[0]) {
                 hn_strbuf_printf(b, "at %s = %.4g ", map->x.name, map->x.value[i]);
             }
-            hn_strbuf_printf(b, "from h = %.3g s on, %.2g of the limit: %s", c->unstable,
-                             c->unstable / c->predicted[0], c->how);
+            hn_strbuf_printf(b, "from h = %.3g s on, %.2g times the predicted limit: %s",
+                             c->unstable, c->unstable / c->predicted[0], c->how);
             return;
         }
     }
@@ -374,11 +375,11 @@ const char *hn_map_telling(const hn_map *map) {
 /// applies.
 static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_column *c) {
     hn_strbuf_printf(b,
-                     "not stiff: at the predicted limit, %.3g s, one step moves the mechanism by "
-                     "%.2g rad, so accuracy bounds the step and not stability",
+                     "not stiff: accuracy limits the step, not stability; at the predicted limit, "
+                     "%.3g s, one step moves the mechanism by %.2g rad",
                      c->predicted[0], c->turn);
     if (c->accurate > 0) {
-        hn_strbuf_printf(b, ": the velocities err by less than %g %% up to h = %.3g s",
+        hn_strbuf_printf(b, "; the velocities are right to %g %% up to h = %.3g s",
                          100 * HN_STABILITY_ACCURATE, c->accurate);
     }
     if (c->stable > 0) {
@@ -398,7 +399,7 @@ void hn_map_steps_text(hn_strbuf *b, const hn_map *map, int m) {
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
     const hn_map_agreement a = hn_map_agrees(map, m);
     if (a.why) {
-        hn_strbuf_printf(b, "nothing to compare: %s", a.why);
+        hn_strbuf_printf(b, "prediction not tested: %s", a.why);
         return;
     }
 
@@ -424,13 +425,14 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
 
     // the others, by the kind of disagreement
     if (a.unseen) {
-        hn_strbuf_printf(b, "; %d: beyond the limit a step grows too little to be seen", a.unseen);
+        hn_strbuf_printf(b, "; in %d the error grows too slowly beyond the limit to be seen",
+                         a.unseen);
     }
     if (a.earlier) {
-        hn_strbuf_printf(b, "; %d: ended earlier than predicted", a.earlier);
+        hn_strbuf_printf(b, "; in %d runs ended earlier than predicted", a.earlier);
         put_first_earlier(b, map, m);
     }
     if (a.later) {
-        hn_strbuf_printf(b, "; %d: stable further than predicted", a.later);
+        hn_strbuf_printf(b, "; in %d runs were stable beyond the prediction", a.later);
     }
 }

@@ -9,7 +9,7 @@
 static const hn_map_class_look LOOKS[HN_STABILITY_CLASS_COUNT] = {
     {HN_STABILITY_PENDING, "not tried", "", -3, 0},
     {HN_STABILITY_FINE, "stable, velocities right to 1 %", "\xc2\xb7", 0, 0.35},
-    {HN_STABILITY_INACCURATE, "stable, velocities off by more", "~", 2, 0.35},
+    {HN_STABILITY_INACCURATE, "stable, velocities less accurate", "~", 2, 0.35},
     {HN_STABILITY_GREW, "unstable: the error grew", "\xe2\x96\xb2", -1, 0.55},
     {HN_STABILITY_STOPPED, "stopped with a reason", "\xc3\x97", -2, 0.75},
     {HN_STABILITY_REFUSED, "refused", "-", -3, 1},
@@ -136,7 +136,7 @@ void hn_map_cell_text(hn_strbuf *b, const hn_map *map, int m, int column, int ro
         hn_strbuf_printf(b, ", error %.2g, gap %.2g, %lld steps", t->error, t->gap, t->steps);
     }
     if (isfinite(cell->margin) && cell->margin > 0) {
-        hn_strbuf_printf(b, "; the step is %.3g of the predicted limit", cell->margin);
+        hn_strbuf_printf(b, "; the step is %.3g times the predicted limit", cell->margin);
     } else if (cell->margin > 0) {
         hn_strbuf_add(b, "; predicted to grow at any step");
     } else if (cell->margin == 0) {

@@ -343,10 +343,9 @@ void hn_map_html(hn_strbuf *b, const hn_map *map) {
     hn_strbuf_printf(
         b,
         ": where steps are stable</h1><p>Every cell is a run to t = %g s, or of %d steps where "
-        "that "
-        "is longer. The thick line is the limit predicted from the eigenvalues of the motion on "
-        "the loops, the strictest along the motion; the dotted one is where runs began to grow or "
-        "ended. Point at a cell to read its outcome.</p>",
+        "that is longer. The thick line is the limit of the step that is predicted from the "
+        "eigenvalues of the motion on the loops: the smallest along the motion. At the dotted line "
+        "the errors of runs began to grow, or runs ended. Point at a cell to read its outcome.</p>",
         hn_map_time(map), HN_STABILITY_LEAST_STEPS);
 
     // where a map of steps has chosen this one, what it found comes first
@@ -365,10 +364,11 @@ void hn_map_html(hn_strbuf *b, const hn_map *map) {
     hn_strbuf_printf(
         b,
         "<h2>What the words mean</h2><p class=\"quiet\">Error: the largest difference of the "
-        "speeds from a finely computed motion, in the energy norm, in units of the motion's own "
-        "energy range. Grew: the energy stood %g times that range above the motion's, or above "
-        "once the range and still rising, or the loop stood open by %g of the mechanism's length. "
-        "Stopped: the run ended with a reason. Implicit integrators have no limit of this kind: "
-        "where they end, Newton's method does.</p></main></body></html>\n",
+        "velocities from those of a motion computed with small steps, in the energy norm, relative "
+        "to the range of the motion's energy. Grew: the energy was above that of the motion by %g "
+        "times this range, or by one range and still rising, or the loop was open by %g of the "
+        "mechanism's length. Stopped: the run ended with a reason. Implicit integrators have no "
+        "limit of this kind; they end where Newton's method no longer "
+        "converges.</p></main></body></html>\n",
         HN_STABILITY_RUNAWAY, HN_STABILITY_OPEN);
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 
 static const char UNKNOWN[] =
-    "a program of one's own computes the accelerations, and its operations are not counted";
+    "an external program computes the accelerations, and its operations are not counted";
 
 void hn_cost_put_ops_json(hn_strbuf *b, const char *key, const hn_cost *cost) {
     hn_json_put_number(b, key, hn_cost_known_ops(cost));

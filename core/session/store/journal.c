@@ -86,7 +86,7 @@ static hn_status open_file(hn_journal *j, hn_diags *diags) {
     }
     if (!take_lock(fileno(j->file))) {
         hn_journal_end(j, 0);
-        return hn_diags_add(diags, HN_ERR_IO, NULL, "wait for it, or ask for something else",
+        return hn_diags_add(diags, HN_ERR_IO, NULL, "wait until it ends, or ask for another study",
                             "another program is doing the same work");
     }
     return HN_OK;

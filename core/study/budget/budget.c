@@ -226,7 +226,7 @@ static hn_status book_steps(hn_budget_work *b, double T, hn_diag *diag) {
     while (status == HN_OK && b->steps->now.t < T * (1 - HN_BOOKS_ARRIVED)) {
         if ((long long)b->kept >= most) {
             return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
-                               "an error budget is made of %lld steps at most", most);
+                               "an error budget can have at most %lld steps", most);
         }
         if (b->kept % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
             hn_budget_work_asked_to_stop(b, 0.3 * b->steps->now.t / T)) {
@@ -298,8 +298,8 @@ static void explain(const hn_budget_work *b, hn_diag *diag) {
     if (hn_run_passed_singular(b->run, &t)) {
         const size_t used = strlen(diag->message);
         snprintf(diag->message + used, sizeof diag->message - used,
-                 "; the constraints become all but dependent near t = %.3g s (J all but loses "
-                 "rank), and neighbours off the loops cannot be followed past that",
+                 "; near t = %.3g s the constraints become almost dependent (J almost loses rank), "
+                 "and motions with open loops cannot be followed beyond",
                  t);
     }
 }
@@ -358,7 +358,7 @@ hn_status hn_budget_make(const hn_system *sys, const hn_method_spec *spec, const
 
     if (!(T > 0) || !isfinite(T)) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/time", NULL,
-                           "the end must lie after 0, not at %g s", T);
+                           "the end time is %g s; it must be above 0", T);
     }
 
     // the run, and the budget kept beside it

@@ -36,7 +36,8 @@
     X(HN_CAUSE_TRUNCATION, "truncation", "error of the integrator's steps")                    \
     X(HN_CAUSE_FORMULATION, "formulation", "terms that the formulation adds to the equations") \
     X(HN_CAUSE_PROJECTION, "projection", "displacement by the projection along the motion")    \
-    X(HN_CAUSE_DRIFT, "drift", "error that opens the loops and that no projection removes")    \
+    X(HN_CAUSE_DRIFT, "drift",                                                                 \
+      "error of the steps off the loops, less what the projection removes of it")              \
     X(HN_CAUSE_SOLVE, "solve", "rounding in the linear solve, against another solver")         \
     X(HN_CAUSE_ROUNDING, "rounding", "rounding in the sums, against compensated sums")
 

@@ -202,7 +202,7 @@ static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *
             p = &wp->methods[m].point[k];
         }
     }
-    snprintf(c->text, sizeof c->text, "%d of %d sizes came to the end%s%.180s", l->n, wp->n_levels,
+    snprintf(c->text, sizeof c->text, "%d of %d sizes reached the end%s%.180s", l->n, wp->n_levels,
              p->reason[0] ? ": " : "", p->reason);
 }
 
@@ -228,7 +228,7 @@ static void describe_fine_end(const hn_wp *wp, int m, const hn_class *c, char fl
         if (wp->methods[m].adaptive) {
             snprintf(size, sizeof size, "%.0e", c->floor_size);
         }
-        snprintf(floor, 120, "; at its floor of %.1e from %s = %s on", c->floor,
+        snprintf(floor, 120, "; from %s = %s on the error stays at %.1e", c->floor,
                  wp->methods[m].adaptive ? "rtol" : "h", size);
     }
     if (c->rounding >= 0) {
@@ -251,12 +251,13 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
                  "converges with order %.2f, where its integrator has %g%s%s", c->order, c->theory,
                  why, floor);
     } else if (c->kind == HN_CLASS_FLOOR) {
-        snprintf(c->text, sizeof c->text, "at its floor of %.1e from the coarsest sizes on",
+        snprintf(c->text, sizeof c->text,
+                 "the error does not fall with the size: it is %.1e from the coarsest size on",
                  c->floor);
     } else if (c->first >= 0 && c->last - c->first < 2) {
         snprintf(c->text, sizeof c->text,
-                 "not in the asymptotic range: two points between 0.5 and the floor, slope %.1f "
-                 "(theory %g)%s",
+                 "not in the asymptotic range: only two points have an error between 0.5 and "
+                 "rounding, with a slope of %.1f (theory %g)%s",
                  c->order, c->theory, floor);
     } else if (c->first >= 0) {
         char why[200];
@@ -266,7 +267,8 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
                  c->high, c->theory, why, floor);
     } else {
         snprintf(c->text, sizeof c->text,
-                 "not in the asymptotic range: fewer than two points between 0.5 and the floor");
+                 "not in the asymptotic range: fewer than two points have an error between 0.5 and "
+                 "rounding");
     }
 }
 
@@ -290,8 +292,8 @@ static bool has_no_order(const hn_wp *wp, int m, const ladder *l, hn_class *out)
     // a chaotic motion
     if (hn_wp_is_beyond_horizon(wp)) {
         snprintf(out->text, sizeof out->text,
-                 "not classed: neighbouring motions part, and from t = %.3g s on, before the end, "
-                 "where a method goes says nothing of it",
+                 "not classed: the motion is chaotic, and after t = %.3g s, before the end, the "
+                 "error of the coordinates does not measure the quality of a method",
                  wp->horizon);
         return true;
     }
@@ -299,8 +301,8 @@ static bool has_no_order(const hn_wp *wp, int m, const ladder *l, hn_class *out)
     // another limit
     if (goes_elsewhere(wp, l, out)) {
         snprintf(out->text, sizeof out->text,
-                 "converges to something else: %.1e from the reference, while its finest sizes are "
-                 "%.0e from each other",
+                 "converges to another motion: %.1e away from the reference, while its finest "
+                 "sizes differ by %.0e",
                  out->offset, out->own);
         return true;
     }

@@ -177,7 +177,7 @@ static bool fits(hn_wp *wp, int m, int k, double started) {
     const int coarser = coarser_mine(wp, m, k);
     if (coarser >= 0 && wp->methods[m].point[coarser].state == HN_WP_SKIPPED) {
         set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_STOPPED,
-                   "left out, as the coarser size before it, to keep the time limit");
+                   "left out to keep the time limit, as was the coarser size before it");
         return false;
     }
 

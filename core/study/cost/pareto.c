@@ -344,7 +344,7 @@ static void put_ranking(hn_strbuf *b, const hn_wp *wp, const hn_band *coarse, co
         put_amount(b, fine->best.cost, cost);
     }
     if (fine->next.level < 0) {
-        hn_strbuf_add(b, wp->n_methods > 1 ? "; no other run of this study gets there" : "");
+        hn_strbuf_add(b, wp->n_methods > 1 ? "; no other run of this study is as accurate" : "");
     } else if (coarse->n_close == 0) {
         hn_strbuf_add(b, "; next");
         if (fine->accuracy < coarse->accuracy) {
@@ -399,20 +399,19 @@ static void put_clocks(hn_strbuf *b, const hn_wp *wp) {
         hn_strbuf_printf(b, "the same run took %.0f %% longer in one part than in another.\n",
                          100 * (wp->clocks_apart - 1));
     } else {
-        hn_strbuf_add(b, "the parts have no run in common that shows whether their clocks ran "
-                         "alike.\n");
+        hn_strbuf_add(b, "the parts have no run in common, so it is not known whether their "
+                         "computers are equally fast.\n");
     }
 }
 
 void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
     // reasons why nothing is ranked
     if (p->beyond_horizon) {
-        hn_strbuf_printf(
-            b,
-            "Not ranked: neighbouring motions part exponentially, and from t = %.3g s "
-            "on, before the end at %.4g s, this error says nothing of a method; energy "
-            "still does.\n",
-            wp->horizon, wp->ref->T);
+        hn_strbuf_printf(b,
+                         "Not ranked: the motion is chaotic, and after t = %.3g s, before the end "
+                         "at %.4g s, this error does not measure the quality of a method; the "
+                         "error of the energy still does.\n",
+                         wp->horizon, wp->ref->T);
         return;
     }
     if (p->few) {

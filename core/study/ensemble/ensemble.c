@@ -71,11 +71,11 @@ hn_status hn_ensemble_check(const hn_system *sys, const hn_method_spec *spec, hn
 
     // the method
     if (!ask_formulation(spec, &accel, &alpha, &beta)) {
-        why = "the formulation keeps something from one step to the next";
+        why = "the formulation keeps values from one step to the next";
     } else if (!spec->stepper->tableau || spec->stepper_set[HN_FIXED_STEP_SUM] != 0) {
         why = "the integrator is not an explicit one with a fixed step and a plain sum";
     } else if (accel.solver != HN_SOLVER_AUTO && accel.solver != HN_SOLVER_LDL) {
-        why = "the solver has no tape";
+        why = "the solver is not compiled to instructions";
     }
 
     // the scene
@@ -110,8 +110,9 @@ static hn_status create_parts(hn_ensemble *e, hn_diag *diag) {
     }
     HN_TRY(hn_accel_create(e->sys, &opts, e->arena, &e->accel));
     if (!hn_accel_has_lanes(e->accel)) {
-        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
-                           "these runs cannot step side by side: the solver has no tape here");
+        return hn_diag_set(
+            diag, HN_ERR_UNSUPPORTED, NULL, NULL,
+            "these runs cannot step side by side: the solver is not compiled to instructions here");
     }
 
     // one by one, for each compiles tapes in the graph of the system

@@ -44,10 +44,10 @@ static void conclude(hn_watch *w) {
     s->announced = 0;
     hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
     if (!true_by_now) {
-        hn_incident_append(
-            &w->log, i,
-            "; withdrawn at t = %.4g s: the run did not get there, sigma_min stayed above %.2g",
-            w->run->now.t, s->lowest);
+        hn_incident_append(&w->log, i,
+                           "; withdrawn at t = %.4g s: the run did not reach a singular "
+                           "configuration, sigma_min stayed above %.2g",
+                           w->run->now.t, s->lowest);
     }
 }
 
@@ -87,8 +87,8 @@ const hn_incident_kind hn_incident_rank_ahead = {
     .code = HN_INCIDENT_RANK_AHEAD,
     .spelling = "rank-ahead",
     .name = "a singular configuration lies ahead",
-    .rule = "The smallest singular value of J falls towards zero. Where it vanishes constraint "
-            "equations become dependent, and the motion may branch or lock.",
+    .rule = "The smallest singular value of J falls towards zero. Where it is zero, constraint "
+            "equations are dependent, and the motion may branch or lock.",
     .check = check,
     .remedies = {{hn_remedy_robust, 0}},
 };

@@ -39,12 +39,12 @@ static void check_mode(hn_watch *w) {
     const bool named = !hn_system_scene(sys)->is_lagrangian; // formulas share their loops
     if (loop >= 0 && hn_motion_unexplained(w, 0) > HN_RUN_WARN_JUMP &&
         !hn_motion_is_followed(w, &w->run->before, &w->run->now)) {
-        hn_incident_report(
-            w, &hn_incident_branch_flip, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
-            "the loop%s%s jumped to its other assembly mode in one step (from %.2g to "
-            "%.2g: the sign tells the modes apart)",
-            named ? " " : "", named ? hn_system_loop_name(sys, loop) : "", w->last_modes[loop],
-            w->modes[loop]);
+        hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[loop],
+                           HN_RUN_WARN_MODE,
+                           "the loop%s%s jumped to its other assembly mode in one step (the number "
+                           "whose sign is the mode went from %.2g to %.2g)",
+                           named ? " " : "", named ? hn_system_loop_name(sys, loop) : "",
+                           w->last_modes[loop], w->modes[loop]);
     } else {
         hn_incident_over(&w->log, HN_INCIDENT_BRANCH_FLIP);
     }
@@ -77,8 +77,8 @@ static void check_turn(hn_watch *w) {
         !hn_motion_is_followed(w, &s->before, &s->now)) {
         hn_incident_report(
             w, &hn_incident_branch_flip, "change of speed", 2 * speed, change,
-            "the velocities turned round within one step of %.3g s: the accelerations "
-            "explain a change of %.2g times their size, and turning round takes 2",
+            "the velocities turned round within one step of %.3g s: the accelerations account for "
+            "a change of %.2g times the velocities, a turn takes twice the velocities",
             s->now.t - s->before.t, change / speed);
     }
 }
@@ -95,7 +95,8 @@ static void finish_passing(hn_watch *w, double angle) {
     }
     hn_incident *i = &w->log.list[passing - 1];
     if (angle == HUGE_VAL) {
-        hn_incident_append(&w->log, i, "; the steps are too long to say which way the run went on");
+        hn_incident_append(&w->log, i,
+                           "; the steps are too long to say on which branch the run continued");
     } else if (angle > HN_RUN_WARN_TURN) {
         hn_incident_append(&w->log, i,
                            w->heading.explained
@@ -103,7 +104,7 @@ static void finish_passing(hn_watch *w, double angle) {
                                : "; the run left the smooth path there, by %.2g rad",
                            angle);
     } else {
-        hn_incident_append(&w->log, i, "; the run went straight on");
+        hn_incident_append(&w->log, i, "; the run stayed on the smooth path");
     }
 }
 
@@ -117,11 +118,11 @@ static void check_direction(hn_watch *w) {
     if (angle < HUGE_VAL && angle > HN_RUN_WARN_TURN && !w->heading.explained) {
         hn_incident_report(
             w, &hn_incident_branch_flip, "turn", angle, HN_RUN_WARN_TURN,
-            passed ? "the run came out of a singular configuration on another branch: its "
-                     "direction turned by %.2g rad from the smooth continuation"
-                   : "the last step jumped to another branch: its direction turned by %.2g rad "
-                     "from the smooth continuation, and its velocities do not explain how far it "
-                     "went",
+            passed
+                ? "the run came out of a singular configuration on another branch: its "
+                  "direction turned by %.2g rad from the smooth continuation"
+                : "the last step jumped to another branch: its direction turned by %.2g rad from "
+                  "the smooth continuation, and the step is longer than its velocities allow",
             angle);
     } else {
         hn_incident_over(&w->log, HN_INCIDENT_BRANCH_FLIP);
@@ -133,9 +134,9 @@ static void check_stay(hn_watch *w) {
     double way = 0;
     if (hn_heading_stays_singular(w, &way)) {
         hn_incident_report(w, &hn_incident_branch_flip, "way", way, w->length,
-                           "the run went on with some links folded onto each other: it left the "
-                           "motion at a singular configuration, and the constraints stay dependent "
-                           "(the smallest singular value of J is %.2g, its largest so far %.2g)",
+                           "the run left the motion at a singular configuration and continued with "
+                           "some links folded onto each other: the constraints stay dependent (the "
+                           "smallest singular value of J is %.2g, its largest so far %.2g)",
                            w->singular.info.sigma_min, w->singular.largest);
     }
 }

@@ -8,15 +8,15 @@ void hn_chart_check(hn_watch *w, long long changes) {
         return;
     }
     hn_incident_over(&w->log, HN_INCIDENT_CHART_CHANGE);
-    hn_incident_report(w, &hn_incident_chart_change, "chart changes", (double)changes, 0,
-                       "other coordinates became the independent ones; the motion goes on "
-                       "unchanged");
+    hn_incident_report(
+        w, &hn_incident_chart_change, "chart changes", (double)changes, 0,
+        "the method chose other independent coordinates; the motion is not affected");
 }
 
 const hn_incident_kind hn_incident_chart_change = {
     .code = HN_INCIDENT_CHART_CHANGE,
     .spelling = "chart-change",
     .name = "changed its independent coordinates",
-    .rule = "A set of independent coordinates serves one part of the motion. At a turning point of "
-            "one of them another coordinate must take its place.",
+    .rule = "A set of independent coordinates is valid for a part of the motion. At a turning "
+            "point of one of them another coordinate must take its place.",
 };

@@ -24,10 +24,10 @@ static void check_multipliers(hn_watch *w) {
     }
     const double limit = HN_RUN_WARN_MULTIPLIERS * s->multiplier;
     if (size > limit) {
-        hn_incident_report(w, &hn_incident_multipliers, "|lambda|", size, limit,
-                           "the multipliers grew to %.3g, %.2g times what they were away from "
-                           "singular configurations",
-                           size, size / s->multiplier);
+        hn_incident_report(
+            w, &hn_incident_multipliers, "|lambda|", size, limit,
+            "the multipliers grew to %.3g, %.2g times their size away from singular configurations",
+            size, size / s->multiplier);
     }
 }
 
@@ -66,8 +66,8 @@ static void check_solver(hn_watch *w) {
         return;
     }
     hn_incident_report(w, &hn_incident_solver, "dense solves", (double)more, 0,
-                       "the dense least-norm solver took over %lld times so far: the sparse LDL' "
-                       "factorisation lost a pivot",
+                       "the sparse LDL' factorisation met a pivot near zero, and the dense "
+                       "least-norm solver took its place %lld times so far",
                        now);
 }
 
@@ -75,8 +75,8 @@ const hn_incident_kind hn_incident_multipliers = {
     .code = HN_INCIDENT_MULTIPLIERS,
     .spelling = "multipliers-grow",
     .name = "the multipliers grow",
-    .rule = "Where the rows of J become dependent ever larger multipliers balance the same loads. "
-            "They cancel each other; the joints do not carry forces of that size.",
+    .rule = "Where the rows of J become dependent, larger and larger multipliers balance the same "
+            "loads. Their forces cancel each other; the joints do not carry forces of that size.",
     .check = check_multipliers,
 };
 
@@ -84,8 +84,9 @@ const hn_incident_kind hn_incident_ill_conditioned = {
     .code = HN_INCIDENT_ILL_CONDITIONED,
     .spelling = "ill-conditioned",
     .name = "few digits of the multipliers are left",
-    .rule = "Accelerations and multipliers lose as many of their sixteen digits as the condition "
-            "number of K has. Near a singular configuration it has no bound.",
+    .rule =
+        "Accelerations and multipliers lose as many of their sixteen digits as the condition "
+        "number of K has. Near a singular configuration the condition number grows without bound.",
     .check = check_condition,
 };
 
@@ -93,7 +94,7 @@ const hn_incident_kind hn_incident_solver = {
     .code = HN_INCIDENT_SOLVER,
     .spelling = "solver-fallback",
     .name = "the dense solver took over",
-    .rule = "The sparse solver keeps one order of pivots. Where one of them vanishes a dense "
-            "least-norm solver gives the answer: slower, and as accurate.",
+    .rule = "The sparse solver has a fixed order of pivots. Where one of them vanishes, a dense "
+            "least-norm solver gives the answer: it is slower and as accurate.",
     .check = check_solver,
 };

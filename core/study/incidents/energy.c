@@ -141,7 +141,7 @@ const hn_incident_kind hn_incident_energy_jump = {
     .spelling = "energy-jump",
     .name = "the energy jumped",
     .rule = "A mechanism without loads that do work keeps its energy. A jump within one step means "
-            "that the step misses the motion, whether or not the loops are closed.",
+            "that the step is wrong, even where the loops stay closed.",
     .check = check_jump,
     .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}, {hn_remedy_stiff_closed, 0}},
 };

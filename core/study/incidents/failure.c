@@ -70,8 +70,8 @@ const hn_incident_kind hn_incident_chart_lost = {
     .is_wrong = true,
     .spelling = "chart-lost",
     .name = "the independent coordinates no longer determine the configuration",
-    .rule = "A set of independent coordinates serves one part of the motion. At a turning point of "
-            "one of them the dependent coordinates cannot be solved for.",
+    .rule = "A set of independent coordinates is valid for a part of the motion. At a turning "
+            "point of one of them the dependent coordinates cannot be solved for.",
     .remedies = {{hn_remedy_robust_near, 0}, {hn_remedy_other_chart, 0}, {hn_remedy_finer, 0.25}},
 };
 
@@ -128,15 +128,15 @@ const hn_incident_kind hn_incident_program = {
     .is_wrong = true,
     .spelling = "program-failed",
     .name = "the program gave no answer that can be used",
-    .rule = "The method is a program of its own. It ended, took too long, or answered with "
-            "something else than what was asked for.",
+    .rule = "The method is a program outside holonom. It ended, took too long, or gave an answer "
+            "of another form than was asked for.",
 };
 
 const hn_incident_kind hn_incident_stopped = {
     .code = HN_INCIDENT_STOPPED,
     .spelling = "stopped",
     .name = "the limit of steps or time was reached",
-    .rule = "Each method may use a limited number of steps and a limited computing time, so that "
-            "the other methods do not wait for it.",
+    .rule = "Each method has a limited number of steps and a limited computing time, so that the "
+            "other methods need not wait for it.",
     .remedies = {{hn_remedy_finer, 10}},
 };

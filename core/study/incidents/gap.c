@@ -29,8 +29,8 @@ const hn_incident_kind hn_incident_gap_open = {
     .is_wrong = true,
     .spelling = "gap-open",
     .name = "the loop has opened",
-    .rule = "A constraint that is imposed only on accelerations leaves the errors of two "
-            "integrations uncorrected: the gap grows with the square of time.",
+    .rule = "This method imposes the constraint on accelerations only. Nothing corrects the errors "
+            "of the two integrations that follow, and the gap grows with the square of time.",
     .check = check,
     .remedies = {{hn_remedy_close, 0}, {hn_remedy_finer, 0.5}, {hn_remedy_feedback, 0}},
 };

@@ -22,8 +22,8 @@ static void check_gap(hn_watch *w, const hn_state_at *at, double gap) {
     if (gap > limit) {
         const int digits = hn_digits_apart(gap, limit, 3);
         set_time(hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
-                                    "the loop has opened between two steps: the constraint "
-                                    "violation of %.*g m exceeds the limit of %.*g m",
+                                    "the loop has opened inside a step: the constraint violation "
+                                    "of %.*g m exceeds the limit of %.*g m",
                                     digits, gap, digits, limit),
                  at->t);
     }
@@ -40,12 +40,11 @@ static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m
     if (e->conservative && limit > 0 && fabs(change) > fmax(limit, e->noise) &&
         fabs(since_start) > limit) {
         const int digits = hn_digits_apart(fabs(change), limit, 3);
-        set_time(
-            hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
-                               "the energy changed by %.*g J between two steps, more than %.*g J, "
-                               "and no load does work",
-                               digits, change, digits, limit),
-            at->t);
+        set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
+                                    "inside a step the energy is %.*g J away from its value at the "
+                                    "step before, more than %.*g J, and no load does work",
+                                    digits, change, digits, limit),
+                 at->t);
     }
 }
 
@@ -61,8 +60,8 @@ static void check_branch(hn_watch *w, const hn_state_at *at) {
             set_time(
                 hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[k],
                                    HN_RUN_WARN_MODE,
-                                   "the loop jumped to its other assembly mode between two steps "
-                                   "(from %.2g to %.2g: the sign tells the modes apart)",
+                                   "the loop jumped to its other assembly mode inside a step (the "
+                                   "number whose sign is the mode went from %.2g to %.2g)",
                                    w->last_modes[k], w->modes[k]),
                 at->t);
             return;

@@ -34,7 +34,7 @@ static void append_rows(hn_watch *w, hn_incident *i, const hn_singularity_pose *
 void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, double sigma_min) {
     static const char *const branches[] = {
         [HN_BRANCHES_CROSS] = "; two branches of motion cross",
-        [HN_BRANCHES_NONE] = "; no motion leads through: it locks",
+        [HN_BRANCHES_NONE] = "; no motion leads through it: the mechanism locks",
         [HN_BRANCHES_CUSP] = "; two branches touch",
         [HN_BRANCHES_UNKNOWN] = "",
     };
@@ -47,7 +47,9 @@ void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, do
     }
     hn_incident_append(&w->log, i, "%s", branches[pose.branches]);
     if (w->measure.gap > w->warn_gap * w->length) {
-        hn_incident_append(&w->log, i, "; all this of the open loop, not of the mechanism");
+        hn_incident_append(
+            &w->log, i,
+            "; the loop is open here, so this describes the open chain and not the mechanism");
     }
     w->singular.passing = 1 + (int)(i - w->log.list);
 }

@@ -45,7 +45,7 @@ hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const
     vsnprintf(i->message, sizeof i->message, format, args);
     va_end(args);
     if (w->log.reported[kind->code] == HN_INCIDENT_MOST_OF_ONE_KIND) {
-        hn_incident_append(&w->log, i, "; later reports of this kind are not listed");
+        hn_incident_append(&w->log, i, "; further incidents of this kind are not listed");
     }
     offer_remedies(w, kind, i);
     keep_before(w, i);

@@ -91,8 +91,8 @@ void hn_step_limit_check(hn_watch *w) {
     if (rate * h > limit) {
         const int digits = hn_digits_apart(rate * h, limit, 3);
         hn_incident_report(w, &hn_incident_step_limit, "alpha h", rate * h, limit,
-                           "the stabilisation is too fast for the step: rate x h = %.*g, %s is "
-                           "stable up to %.*g",
+                           "the stabilisation is too fast for this step: its rate times h is %.*g, "
+                           "and %s is stable up to %.*g",
                            digits, rate * h, stepper->name, digits, limit);
     }
 }
@@ -101,11 +101,10 @@ void hn_step_long_check(hn_watch *w) {
     const double h = hn_method_option(&w->run->spec, "h", 0), whole = w->t_end - w->run->t0;
     if (!w->run->adaptive && w->t_end > 0 && h > whole * (1 + HN_STEPPING_LANDING)) {
         const int digits = hn_digits_apart(h, whole, 4);
-        hn_incident_report(
-            w, &hn_incident_step_long, "h", h, whole,
-            "the step of %.*g s is longer than the run of %.*g s: the output is that "
-            "of one shorter step; choose h below %.*g s",
-            digits, h, digits, whole, digits, whole);
+        hn_incident_report(w, &hn_incident_step_long, "h", h, whole,
+                           "the step h = %.*g s is longer than the run of %.*g s, so one shorter "
+                           "step was taken; choose h below %.*g s",
+                           digits, h, digits, whole, digits, whole);
     }
 }
 
@@ -113,8 +112,9 @@ const hn_incident_kind hn_incident_stiff = {
     .code = HN_INCIDENT_STIFF,
     .spelling = "stiff",
     .name = "a stiff part limits the step",
-    .rule = "Some part of the motion is much faster than the mechanism, and too small to see. An "
-            "explicit method must take steps that follow it; an implicit method need not.",
+    .rule =
+        "Some part of the motion is much faster than the rest and too small to see. An explicit "
+        "method must take steps short enough to follow it; an implicit method need not.",
     .remedies = {{hn_remedy_stiff_closed, 0},
                  {hn_remedy_stiff_same, 0},
                  {hn_remedy_stiff_multistep, 0}},
@@ -125,8 +125,8 @@ const hn_incident_kind hn_incident_restarts = {
     .spelling = "order-lost",
     .name = "restarts at order 1 after every step",
     .rule =
-        "A multistep method gets its order from previous steps. A correction of the state after "
-        "each step makes them useless: the order stays 1 and the steps stay short.",
+        "A multistep method gets its order from previous steps. If the state is corrected after "
+        "each step, the previous steps cannot be used: the order stays 1 and the steps stay short.",
     .remedies = {{hn_remedy_one_step, 0}, {hn_remedy_uncorrected, 0}},
 };
 

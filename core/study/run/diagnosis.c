@@ -371,7 +371,7 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
     }
     snprintf(said, sizeof(hn_remedy),
              TRIED "%suntil t = %.*g s%s: %s gap %.2g m, energy changed by %.2g J", begun,
-             begun[0] ? 4 : 3, reached, beyond ? ", past the near end of the run" : "",
+             begun[0] ? 4 : 3, reached, beyond ? ", beyond the end of the run" : "",
              begun[0] ? "last" : "largest", begun[0] ? last_gap : sum.worst_gap,
              sum.worst_energy_change);
     return right ? REMOVES : FAILS;
@@ -405,8 +405,8 @@ static void tell_in_vain(hn_watch *w, hn_incident *i, hn_remedy texts[], const t
     if (from != &w->run->start) {
         snprintf(begun, sizeof begun, " from t = %.4g s on%s", from->t,
                  whole ? " and from the start"
-                       : " (the state there holds the errors so far; from the start a trial takes "
-                         "too many steps)");
+                       : " (where the state already holds the errors so far; a trial from the "
+                         "start would take too many steps)");
     }
     hn_incident_append(&w->log, i, IN_VAIN "%s: %s%s%s%s%s", begun, texts[0], n > 1 ? ", " : "",
                        n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
@@ -453,7 +453,7 @@ static bool tells_error(const hn_watch *w, const hn_incident *i) {
 static void leave_untried(hn_watch *w, hn_incident *i) {
     for (int k = 0; k < HN_REMEDIES && i->remedy[k][0]; k++) {
         snprintf(i->tried[k], sizeof i->tried[k],
-                 "not tried, as nothing is wrong here; take it if the run goes wrong from here on");
+                 "not tried, as nothing is wrong so far; use it if the run goes wrong later");
     }
     i->revision = ++w->log.revision;
 }

@@ -417,13 +417,14 @@ static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) 
     // an option of the integrator is known, but fixed
     for (int i = 0; i < spec->stepper->n_options; i++) {
         if (strcmp(spec->stepper->options[i].key, key) == 0) {
-            return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "make the run anew with it",
-                               "%s belongs to the integrator and stays as it is during a run", key);
+            return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "start a new run with the new value",
+                               "%s is an option of the integrator and cannot change during a run",
+                               key);
         }
         keys[n++] = spec->stepper->options[i].key;
     }
     hn_suggest(hint, key, keys, n, NULL);
-    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s has no setting '%s'",
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s has no option '%s'",
                        spec->formulation->name, key);
 }
 
@@ -444,7 +445,7 @@ hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag) 
                                                        : HN_ERR_UNSUPPORTED;
     HN_THEN(status, f->set(run->sampling.side.formulation, i, value));
     if (status != HN_OK) {
-        return hn_diag_set(diag, status, NULL, "make the run anew with it",
+        return hn_diag_set(diag, status, NULL, "start a new run with the new value",
                            "%s of %s cannot change during a run", key, f->name);
     }
     s->spec.formulation_set[i] = value;

@@ -61,9 +61,11 @@ static hn_status matrix(void *self, double t, const double *y, double *jac) {
 
 const char *hn_stability_why_not(const hn_stepper *stepper) {
     if (!stepper->create) {
-        return "it solves differential-algebraic systems only, where a test equation has no say";
+        return "it solves differential-algebraic systems only, to which the test equation does not "
+               "apply";
     }
-    return stepper->step ? NULL : "it chooses steps and order itself, so no step size is its limit";
+    return stepper->step ? NULL
+                         : "it chooses its own steps and order, so it has no limit of the step";
 }
 
 static bool open_probe(probe *p, const hn_stepper *stepper) {

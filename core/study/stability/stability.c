@@ -152,9 +152,10 @@ static hn_status compute(making *m, const hn_walk_limits *limits, hn_diag *diag)
     }
     p->scale = p->highest_kinetic + (m->v_max - m->v_min);
     if (!(p->scale > 0)) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL,
-                           "give it a speed or a place from which it falls",
-                           "nothing moves, so growth has no scale");
+        return hn_diag_set(
+            diag, HN_ERR_INPUT, NULL,
+            "give the start a velocity, or a configuration that is not at rest",
+            "the mechanism does not move, so the growth of an error cannot be measured");
     }
     return HN_OK;
 }
@@ -234,7 +235,7 @@ static const char *why_not(const hn_method_spec *spec) {
                "method ends, not an instability";
     }
     if (traits & HN_TRAIT_ADDS_VIBRATIONS) {
-        return "the penalty adds vibrations of its own, which the loops do not have";
+        return "the penalty adds vibrations that the mechanism does not have";
     }
     if ((traits & HN_TRAIT_PULLS_GAP) && hn_method_option(spec, "rule", 0) != 0) {
         return "alpha and beta follow the motion";

@@ -297,13 +297,13 @@ hn_status hn_engine_create(const hn_system *sys, const hn_method_spec *spec, hn_
 
     // formulation and integrator of different kinds
     if (!hn_method_fits(f, spec->stepper)) {
-        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s does not serve %s",
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s cannot be used with %s",
                            spec->stepper->name, f->name);
     }
     if (f->around_step && spec->stepper->advance) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "take midpoint or rk4",
-                           "%s makes each step out of several steps of the integrator, and %s "
-                           "chooses its steps itself",
+                           "%s builds each step from several steps of the integrator, but %s "
+                           "chooses its own steps",
                            f->name, spec->stepper->name);
     }
     return e->kind->create(e, diag);

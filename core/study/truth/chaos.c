@@ -36,7 +36,7 @@ typedef struct twins {
 static hn_status ended(const hn_run *run, hn_diag *diag) {
     const hn_run_summary s = hn_run_get_summary(run);
     return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
-                       "neighbouring motions could be followed to t = %.4g s only: %s", s.t,
+                       "neighbouring motions could only be followed to t = %.4g s: %s", s.t,
                        s.reason);
 }
 
@@ -212,11 +212,10 @@ static bool is_possible(const hn_system *sys, const double *q, const double *v, 
         const int freedoms = *status == HN_OK ? info.nv - s.rank : 0;
         out->possible = freedoms > 1 || (freedoms == 1 && info.has_time);
         if (!out->possible) {
-            snprintf(
-                out->why, sizeof out->why, "not chaotic: %s",
-                freedoms == 1
-                    ? "with one freedom and nothing that depends on time there is no room for it"
-                    : "there is no freedom left");
+            snprintf(out->why, sizeof out->why, "not chaotic: %s",
+                     freedoms == 1
+                         ? "one degree of freedom without explicit time dependence allows no chaos"
+                         : "no degree of freedom is left");
         }
     }
 

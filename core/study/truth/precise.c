@@ -248,8 +248,9 @@ hn_status hn_precise_walk(hn_precise_kind kind, const hn_system *sys, const doub
     }
     if (status != HN_OK) {
         (void)hn_diag_set(diag, status, NULL, NULL, "at t = %.6g s: %s", (double)p.t,
-                          *end == HN_WALK_OVER ? "takes more computing time than there is"
-                                               : hn_status_text(status));
+                          *end == HN_WALK_OVER
+                              ? "takes more computing time than the time limit leaves"
+                              : hn_status_text(status));
     }
     hn_precise_model_free(p.model);
     hn_arena_free(arena);

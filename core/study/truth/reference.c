@@ -246,9 +246,8 @@ static hn_status find_two(const hn_system *sys, const double *q, const double *v
     return found == HN_REF_MEANS
                ? HN_OK
                : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL,
-                             "take a shorter time; without a reference nothing can be called an "
-                             "error",
-                             "there is no reference solution to t = %g s: %s", T, refused);
+                             "take a shorter time; errors cannot be measured without a reference",
+                             "no reference solution could be computed to t = %g s: %s", T, refused);
 }
 
 hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, double T,

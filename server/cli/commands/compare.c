@@ -163,7 +163,7 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
     hn_strbuf_printf(b,
                      "! %s is wrong: its coordinates are off by up to %.2g (angles in rad, lengths "
-                     "over the mechanism's)%s\n",
+                     "over the mechanism's length)%s\n",
                      hn_document_text(m, "method"),
                      hn_document_number(hn_document_get(m, "error_estimate"), "q"),
                      hn_error_advice(m, hn_document_get(summary, "incidents"), i));
@@ -182,7 +182,7 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary, const cJSON *m, in
     }
     if (list.n > MAX_INCIDENTS) {
         const int more = list.n - MAX_INCIDENTS;
-        hn_strbuf_printf(b, "! %s: %d incident%s more (--json lists them all)\n", name, more,
+        hn_strbuf_printf(b, "! %s: and %d more incident%s (--json lists them all)\n", name, more,
                          more > 1 ? "s" : "");
     }
 }
@@ -232,10 +232,10 @@ static bool is_at_fault(const cJSON *summary) {
 static void put_measure(hn_strbuf *b, const cJSON *summary) {
     if (is_at_fault(summary)) {
         hn_strbuf_printf(b,
-                         "status: right where the estimated errors of motion and reactions are at "
-                         "most %g, WRONG where that of the motion is %g or more, else inaccurate "
-                         "(the workbench and the page have another measure: how far drawn points "
-                         "and the energy are from a reference motion)\n",
+                         "status: by the estimated errors of motion and reactions: right up to %g, "
+                         "WRONG from a motion error of %g on, inaccurate between. The workbench "
+                         "and the page judge by another measure: the distance of drawn points from "
+                         "the reference solution, and the energy ('holonom help right')\n",
                          HN_ACCURACY_WARN, HN_ACCURACY_WRONG);
     }
 }

@@ -42,8 +42,8 @@ static hn_status read_included(void *user, const char *name, size_t most, hn_str
                              strerror(why));
     } else if (status == HN_OK && !below) {
         status = hn_diag_set(diag, HN_ERR_IO, NULL, "copy it beside the model",
-                             "'%.100s' is a link out of the model's folder, and files there are "
-                             "not read",
+                             "'%.100s' is a link that leads out of the model's folder; only files "
+                             "in this folder are read",
                              name);
     } else if (status == HN_OK) {
         status = hn_file_read(real, most, text, diag);
@@ -177,11 +177,10 @@ static void tell_assembly(const hn_model *model, const hn_diags *why) {
                     open->message, open->hint);
         return;
     }
-    hn_cli_note(
-        "holonom: assembled with a gap of %.2g: %d degrees of freedom; of the rows that close "
-        "loops %d are "
-        "redundant, and %d are 0 whatever the pose\n",
-        a->gap, a->freedoms, a->redundant, hn_system_get_info(hn_model_system(model)).rows_dropped);
+    hn_cli_note("holonom: assembled with a gap of %.2g and %d degrees of freedom; of the closure "
+                "equations, %d are redundant and %d hold in every configuration\n",
+                a->gap, a->freedoms, a->redundant,
+                hn_system_get_info(hn_model_system(model)).rows_dropped);
 }
 
 static void tell_summary(const hn_import *im) {
@@ -189,7 +188,9 @@ static void tell_summary(const hn_import *im) {
     hn_cli_note("holonom: %s with %d bodies%s, %d joints, %d of its joints and constraints closing "
                 "loops; %.6g kg\n",
                 hn_import_format(im), info.n_bodies - info.n_carriers,
-                info.n_carriers ? " (and carriers without mass between joints of one body)" : "",
+                info.n_carriers
+                    ? " (and auxiliary bodies without mass, between several joints of one body)"
+                    : "",
                 info.n_joints, info.n_closing, info.mass);
     hn_cli_note("holonom: not in the scene: %d ignored, %d approximated, %d refused\n",
                 hn_import_count(im, HN_IMPORT_IGNORED), hn_import_count(im, HN_IMPORT_APPROXIMATED),

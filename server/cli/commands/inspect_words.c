@@ -16,7 +16,7 @@ const hn_outline_word hn_inspect_words[] = {
     {"start.energy", "energy, kinetic and potential [J]"},
 
     {"redundant_rows", "redundant constraint rows"},
-    {"redundant_rows.vanish", "zero in every pose"},
+    {"redundant_rows.vanish", "zero in every configuration"},
     {"redundant_rows.follow", "that follow from others at the start"},
     {"redundant_rows.follow.from", "follows from"},
 
@@ -28,12 +28,12 @@ const hn_outline_word hn_inspect_words[] = {
     {"kind", "form of the scene file"},
     {"sizes.speeds", "velocities"},
     {"sizes.rows", "constraint rows"},
-    {"sizes.freedoms_by_count", "velocities less rows"},
+    {"sizes.freedoms_by_count", "velocities minus constraint rows"},
     {"tree", "spanning tree"},
     {"loops", "loops, each closed by a joint that was cut"},
     {"loops.why", "why this joint"},
 
-    {"groups", "groups of bodies whose angles are counted in one frame"},
+    {"groups", "groups of bodies whose angles are measured in the same frame"},
     {"groups.base", "frame fixed to"},
     {"groups.base_rotates", "which rotates"},
     {"coordinates", "coordinates of the equations"},
@@ -43,7 +43,7 @@ const hn_outline_word hn_inspect_words[] = {
     {"solver", "how the linear systems are solved"},
     {"solver.answers", "accelerations by"},
     {"solver.why", "because"},
-    {"solver.behind_it", "where that loses digits"},
+    {"solver.behind_it", "where elimination would lose digits"},
     {"solver.newton", "matrices of Newton's method by"},
     {"solver.newton_size", "their size"},
     {"solver.newton_entries", "their entries"},
@@ -57,7 +57,7 @@ const hn_outline_word hn_inspect_words[] = {
     {"nonzeros.fill_in", "of these, filled in by elimination"},
 
     {"operations", "arithmetic operations of one evaluation"},
-    {"operations.together", "all of these at once"},
+    {"operations.together", "all of these together"},
     {"operations.solve", "accelerations and multipliers"},
     {"operations.solve_baumgarte", "the same with Baumgarte's terms"},
     {"tape", "compiled instructions for accelerations and multipliers"},

@@ -50,7 +50,7 @@ static const struct {
        {{"scene", "id", NULL},
         {"title", "title", NULL},
         {"kind", "kind", NULL},
-        {"what it is", "caption", NULL}},
+        {"description", "caption", NULL}},
        NULL}}},
     {"methods",
      methods_json,
@@ -61,8 +61,8 @@ static const struct {
         {"index", "index", ""},
         {"the gap", "drift", NULL},
         {"needs", "needs", NULL}},
-       "h: step, p: order of the integrator, t: time; needs: the terms evaluated (M mass matrix, "
-       "f forces, phi constraints, J their Jacobian, gamma of J a + gamma = 0)"},
+       "h: step, p: order of the integrator, t: time. needs: terms that the method evaluates (M "
+       "mass matrix, f forces, phi constraints, J their Jacobian, gamma in J a + gamma = 0)"},
       {"integrators",
        4,
        {{"integrator", "name", NULL},
@@ -82,9 +82,8 @@ static const struct {
         {"lesson", "place", NULL},
         {"points", "points", ""},
         {"drawn from the seed", "varied", NULL}},
-       "Time limit: 60 s for a submission of a class; a run that a part asks for ends after "
-       "200,000 "
-       "steps."}}},
+       "Grading one submission of a class takes at most 60 s; a run that a part asks for ends "
+       "after 200,000 steps."}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 
@@ -162,7 +161,7 @@ static hn_exit tell_unknown(const hn_args *args, const char *name) {
     char hint[HN_DIAG_HINT];
     hn_suggest(hint, name, names, N_LISTS, "scenes, methods, lessons, problems");
     hn_diag diag;
-    hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "'%.60s' cannot be listed", name);
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "there is no list of '%.60s'", name);
     return hn_report_diag(args, &diag);
 }
 

@@ -103,7 +103,7 @@ static void tell_incidents(const hn_incident_list *list) {
         }
     }
     if (more > 0) {
-        hn_cli_note("holonom: %d incident%s more (--json lists them all)\n", more,
+        hn_cli_note("holonom: and %d more incident%s (--json lists them all)\n", more,
                     more > 1 ? "s" : "");
     }
 }
@@ -120,7 +120,7 @@ static void tell_verdict(const cJSON *run, const char *exhibit) {
     char factor[96] = "";
     if (times > HN_TOLERANCE_KEPT) {
         snprintf(factor, sizeof factor,
-                 "; that is %.0f times rtol, which bounds the error of a step", times);
+                 "; that is %.0f times rtol, which limits the error of one step only", times);
     }
     hn_cli_note("holonom: the motion is %s: %s%s%s\n",
                 in_part   ? "right as far as it was judged"

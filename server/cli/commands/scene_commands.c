@@ -162,9 +162,8 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
     // numbers that are rounding beside the largest are shown as 0
     const double force = largest_of(list, "force"), moment = largest_of(list, "moment");
     const double rounding[] = {1e-12 * force, 1e-12 * fmax(force, moment)};
-    hn_strbuf_add(b,
-                  "reactions on the body named, world axes; a joint's contain the drives and loads "
-                  "along its own coordinates\n");
+    hn_strbuf_add(b, "reactions on the body that is named, in world axes; those of a joint contain "
+                     "the drives and loads along its coordinates\n");
     cJSON_ArrayForEach(item, list) {
         hn_strbuf_printf(b, "  %-16s on %-12s", hn_document_text(item, "name"),
                          hn_document_text(item, "on"));
@@ -207,7 +206,7 @@ static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
     } parts[] = {{"M_r = Phi' M Phi", "M_r", 1},
                  {"C_r, so that M_r' - 2 C_r is skew", "C_r", 1},
                  {"v_r", "v_r", 0},
-                 {"d_r, closures that move", "d_r", 0},
+                 {"d_r, from closures that depend on time", "d_r", 0},
                  {"g_r = Phi' g, gravity and springs", "g_r", 0},
                  {"tau_r = Phi' tau, motors and other loads", "tau_r", 0},
                  {"a_r", "a_r", 0}};
@@ -226,8 +225,8 @@ static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
     const double gap = hn_document_number(d, "speed_gap");
     if (!isnan(gap)) {
         hn_strbuf_printf(b,
-                         "the velocities given do not fit the loops (by %.3g); below, the others "
-                         "follow from v_r\n",
+                         "the given velocities violate the closed loops by %.3g; below, the "
+                         "dependent velocities are computed from v_r\n",
                          gap);
     }
     if (cJSON_GetArraySize(independent) == 0) {
@@ -252,7 +251,8 @@ static void put_mark(hn_strbuf *b, const cJSON *d) {
     const char *mark = hn_document_text(d, "lambda_mark");
     if (mark[0] && strcmp(mark, "determined") != 0) {
         hn_strbuf_printf(
-            b, "multipliers, and reactions that rest on them: %s (condition %.2g, rank %g of %d)\n",
+            b,
+            "multipliers, and reactions computed from them: %s (condition %.2g, rank %g of %d)\n",
             mark, hn_document_number(d, "condition"), hn_document_number(d, "rank"),
             cJSON_GetArraySize(hn_document_get(d, "rows")));
     }
@@ -270,8 +270,8 @@ static void put_terms_heading(hn_strbuf *b, const cJSON *d, const hn_args *args)
     hn_strbuf_printf(b, ": %s\n", hn_document_text(d, "equations"));
     if (!isnan(args->t) && !given) {
         hn_strbuf_printf(b,
-                         "--t does not move the mechanism; the motion at that time: holonom run "
-                         "%s --at %g --reactions\n",
+                         "--t does not move the mechanism; for the motion at that time: holonom "
+                         "run %s --at %g --reactions\n",
                          args->words.word[0], hn_document_number(d, "t"));
     }
 }

@@ -54,7 +54,7 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     opts->n_allow_hosts = args->allow_hosts.n;
     if (opts->n_allow_hosts > HN_MAX_HOSTS) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
-                           "--allow-host is said %d times; at most %d are allowed",
+                           "--allow-host is given %d times; at most %d are allowed",
                            opts->n_allow_hosts, HN_MAX_HOSTS);
     }
 
@@ -111,12 +111,13 @@ static hn_status choose_token(const hn_args *args, hn_http_opts *opts, char made
                                                                     : made;
     if (opts->token == made && !hn_token_make(made)) {
         return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, "take --token TEXT",
-                           "no token could be made: the system has no randomness");
+                           "no token could be made: the system gives no random numbers");
     }
     if (opts->token && strspn(opts->token, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
                                            "0123456789-_.~") != strlen(opts->token)) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
-                           "--token takes letters, digits and -_.~: it stands in a link");
+        return hn_diag_set(
+            diag, HN_ERR_INPUT, NULL, NULL,
+            "--token takes only letters, digits and -_.~ because it becomes part of a link");
     }
     return HN_OK;
 }
@@ -124,7 +125,8 @@ static hn_status choose_token(const hn_args *args, hn_http_opts *opts, char made
 static void announce(const hn_server *server, const hn_args *args, const hn_http_opts *opts) {
     int port = hn_server_port(server);
     if (opts->port != 0 && port != opts->port) {
-        fprintf(stderr, "holonom: port %d is taken; port %d is used\n", opts->port, port);
+        fprintf(stderr, "holonom: port %d is already in use; port %d is used instead\n", opts->port,
+                port);
     }
 
     // a script reads the address, a person clicks on it
@@ -157,11 +159,11 @@ static void open_browser(const char *address) {
         sigemptyset(&none);
         sigprocmask(SIG_SETMASK, &none, NULL);
         execlp("xdg-open", "xdg-open", address, (char *)NULL);
-        fprintf(stderr, "holonom: xdg-open is not there; open %s by hand\n", address);
+        fprintf(stderr, "holonom: xdg-open is not installed; open %s in a browser\n", address);
         _exit(1);
     }
     if (pid < 0) {
-        fprintf(stderr, "holonom: no browser could be opened; open %s by hand\n", address);
+        fprintf(stderr, "holonom: no browser could be started; open %s in a browser\n", address);
     }
 }
 
@@ -175,7 +177,7 @@ static const struct timespec PATIENCE = {.tv_sec = 2};
 /// Ends the program if the server has not ended by then.
 static void *end_anyway(void *unused) {
     nanosleep(&PATIENCE, NULL);
-    fprintf(stderr, "holonom: the server was ended while some work did not stop\n");
+    fprintf(stderr, "holonom: the server ended although some work did not stop in time\n");
     _exit(HN_EXIT_DONE);
     return unused;
 }
@@ -208,8 +210,8 @@ static void fit_descriptors(hn_http_opts *opts) {
         opts->max_connections--;
     }
     fprintf(stderr,
-            "holonom: the system allows %llu open files: %d connections at once, not %d; ulimit -n "
-            "%d allows them\n",
+            "holonom: the system allows %llu open files, so the server takes %d connections at "
+            "once, not %d; 'ulimit -n %d' allows all\n",
             (unsigned long long)limit.rlim_max, opts->max_connections, asked, (int)wanted);
 }
 

@@ -19,7 +19,7 @@
 static hn_status choose_form(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
     if (!args->out) {
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
-                            "where should the picture go?");
+                            "the file for the picture is not given");
     }
     const bool svg = hn_path_ends_in(args->out, ".svg");
     const bool png = strcmp(args->out, "-") == 0 || hn_path_ends_in(args->out, ".png") ||
@@ -52,14 +52,14 @@ static hn_status choose_form(const hn_args *args, hn_picture_request *request, h
 /// Moments of one motion follow each other.
 static hn_status check_times(const hn_args *args, hn_diags *diags) {
     if (args->at.n > 0 && !isnan(args->time)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", "leave one of them out",
-                            "--time %g and --at both say which time is drawn", args->time);
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/time", "leave one of them out",
+            "--time %g and --at both choose the time of the picture; give one of them", args->time);
     }
     for (int i = 1; i < args->at.n; i++) {
         if (!(args->at.value[i] > args->at.value[i - 1])) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/at",
-                                "put them in rising order: --at 0,0.2,0.5",
-                                "%g s stands after %g s; the times of one motion must rise",
+            return hn_diags_add(diags, HN_ERR_INPUT, "/at", "as in --at 0,0.2,0.5",
+                                "the times of --at must increase: %g s comes after %g s",
                                 args->at.value[i], args->at.value[i - 1]);
         }
     }
@@ -150,8 +150,8 @@ static void note_start(const hn_exercise *e) {
         asked |= strcmp(hn_part_text(e->parts[i].node, "kind"), "configuration") == 0;
     }
     if (asked) {
-        hn_cli_note("holonom: the lengths are those of the variant; the angles are those of the "
-                    "scene's start, since '%s' asks for the variant's\n",
+        hn_cli_note("holonom: lengths are those of the variant; angles are those of the scene's "
+                    "start, because finding the variant's angles is the task of '%s'\n",
                     e->id);
     }
 }
@@ -163,7 +163,8 @@ static hn_status load_subject(const hn_library *lib, const hn_args *args, subjec
         return load_exercise(lib, args, s, diags);
     }
     if (args->student || !isnan(args->seed)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "name an exercise, or leave them out",
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL,
+                            "name an exercise, or leave --seed and --student out",
                             "--seed and --student choose a variant, and a scene has none");
     }
     return hn_args_load_model(lib, args, word, 0, &s->model, diags);
@@ -190,10 +191,9 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     if (status == HN_OK && s.exercise) {
         note_start(s.exercise);
         if (request.n_entries > 0 && (args->at.n > 0 || !isnan(args->time))) {
-            hn_cli_note(
-                "holonom: the one configuration that '%s' gives is drawn; it has no motion, "
-                "so --time and --at are not used\n",
-                hn_exercise_id(s.exercise));
+            hn_cli_note("holonom: exercise '%s' has one configuration and no motion; --time and "
+                        "--at are not used\n",
+                        hn_exercise_id(s.exercise));
         }
     }
     hn_exercise_free(s.exercise);
@@ -214,7 +214,7 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     }
     hn_strbuf_reset(&description);
     if (result == HN_EXIT_DONE && ended != HN_OK) {
-        hn_cli_note("holonom: a method ended early (%s); the picture says which and where\n",
+        hn_cli_note("holonom: a method ended early (%s); the picture shows which, and when\n",
                     hn_status_text(ended));
         result = HN_EXIT_ENDED;
     }

@@ -110,7 +110,8 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
         if (name && strcmp(name, "dumb") != 0 && hn_tui_run(w, opts)) {
             return HN_EXIT_DONE;
         }
-        hn_cli_note("holonom: the terminal '%s' cannot be driven; this is one frame as text\n",
+        hn_cli_note("holonom: the terminal '%s' cannot show the workbench; this is one frame of it "
+                    "as text\n",
                     getenv("TERM") ? getenv("TERM") : "");
     }
 

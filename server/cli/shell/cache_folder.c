@@ -29,7 +29,8 @@ bool hn_cache_folder_find(char out[400]) {
 const char *hn_cache_folder(const hn_args *args, char out[400]) {
     const bool found = hn_cache_folder_find(out);
     if (!found && !args->json) {
-        hn_cli_note("holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
+        hn_cli_note("holonom: unfinished work is not kept: there is no folder for it; "
+                    "HOLONOM_CACHE can name one\n");
     }
     return found ? out : NULL;
 }

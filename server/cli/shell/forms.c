@@ -45,7 +45,7 @@ hn_status hn_forms_check(const hn_job_form *forms, const hn_args *args, hn_diags
                      forms[i].suffix);
         }
         return hn_diags_add(diags, HN_ERR_INPUT, "/out", hint,
-                            "the name '%.200s' does not say which form to write", args->out);
+                            "the ending of '%.200s' does not choose a form", args->out);
     }
     if (args->json && args->csv) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",

@@ -84,8 +84,10 @@ static bool keep_former(const char *path, size_t size, char name[FORMER_NAME]) {
 static hn_exit fail_to_keep(const hn_args *args, const char *path, hn_strbuf *bytes) {
     hn_diag diag = {0};
     hn_strbuf_reset(bytes);
-    hn_diag_set(&diag, HN_ERR_IO, "/out", "choose another name",
-                "'%.200s' holds something else that cannot be kept: it is left as it was", path);
+    hn_diag_set(
+        &diag, HN_ERR_IO, "/out", "choose another name",
+        "'%.200s' has other contents that cannot be kept under another name, so it was not changed",
+        path);
     hn_report_diag(args, &diag);
     return HN_EXIT_PROGRAM;
 }
@@ -107,7 +109,7 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
         unlink(name);
         return result;
     }
-    hn_cli_note("holonom: '%s' held something else: that is kept in '%s'\n", path, name);
+    hn_cli_note("holonom: the old contents of '%s' are kept in '%s'\n", path, name);
     return result;
 }
 

@@ -92,11 +92,10 @@ static void tell_beyond(const hn_model *model) {
         const hn_param *p = &scene->params[i];
         if (p->beyond) {
             const int digits = hn_digits_apart(p->value, p->value < p->min ? p->min : p->max, 6);
-            hn_cli_note(
-                "holonom: %s = %.*g is outside its range, %.*g to %.*g%s%s, of which the texts of "
-                "this scene speak\n",
-                p->name, digits, p->value, digits, p->min, digits, p->max, p->unit[0] ? " " : "",
-                p->unit);
+            hn_cli_note("holonom: %s = %.*g is outside its range, %.*g to %.*g%s%s; the texts of "
+                        "this scene hold inside the range only\n",
+                        p->name, digits, p->value, digits, p->min, digits, p->max,
+                        p->unit[0] ? " " : "", p->unit);
         }
     }
 }

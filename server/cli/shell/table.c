@@ -283,7 +283,7 @@ static void name_left_out(hn_strbuf *b, hn_table *t, const layout *l) {
     if (n > 0) {
         hn_strbuf whole;
         hn_strbuf_init(&whole);
-        hn_strbuf_printf(&whole, "left out at %d columns: %s (--wide shows %s)\n", t->width,
+        hn_strbuf_printf(&whole, "not shown in %d columns: %s (--wide shows %s)\n", t->width,
                          hn_strbuf_text(&line), n > 1 ? "them" : "it");
         hn_fold_add(b, hn_strbuf_text(&whole), t->width);
         hn_strbuf_reset(&whole);

@@ -70,6 +70,15 @@ static double whole_of(const sheet *s, int i) {
     return s->energy ? s->rows[i]->budget.energy : s->rows[i]->budget.error;
 }
 
+/// The sum of the parts, marked where it is not the error.
+static void put_sum(hn_table *t, const hn_budget_row *row) {
+    if (isfinite(row->budget.sum)) {
+        hn_table_cell(t, "%.3g%s", row->budget.sum, hn_budget_holds(row) ? "" : "*");
+    } else {
+        hn_table_cell(t, "-");
+    }
+}
+
 /// A line a method, a column a cause.
 static void fill_by_method(hn_table *t, const sheet *s) {
     hn_table_column(t, "method", 0);
@@ -91,19 +100,23 @@ static void fill_by_method(hn_table *t, const sheet *s) {
             put_part(t, hn_budget_part(s->rows[i], s->energy, k));
         }
         if (!s->energy) {
-            put_part(t, s->rows[i]->budget.sum);
+            put_sum(t, s->rows[i]);
         }
     }
 }
+
+enum { WHOLE = -1, SUM = -2 }; // lines of the narrow form beside those of the parts
 
 /// One line of the narrow form: a cause, and a number of every method of the block.
 static void put_line(hn_table *t, const sheet *s, int from, int to, const char *name, int part) {
     hn_table_cell(t, "%s", name);
     for (int i = from; i < to; i++) {
-        const double value = part == -1   ? whole_of(s, i)
-                             : part == -2 ? s->rows[i]->budget.sum
-                                          : hn_budget_part(s->rows[i], s->energy, part);
-        put_part(t, value);
+        if (part == SUM) {
+            put_sum(t, s->rows[i]);
+        } else {
+            put_part(t,
+                     part == WHOLE ? whole_of(s, i) : hn_budget_part(s->rows[i], s->energy, part));
+        }
     }
 }
 
@@ -135,12 +148,12 @@ static bool fill_by_cause(hn_strbuf *b, const sheet *s, int from, int to) {
     }
 
     // the whole, its parts, and their sum
-    put_line(&t, s, from, to, s->energy ? "change" : "error at the end", -1);
+    put_line(&t, s, from, to, s->energy ? "change" : "error at the end", WHOLE);
     for (int k = 0; k < s->n_parts; k++) {
         put_line(&t, s, from, to, name_of(s, k), k);
     }
     if (!s->energy) {
-        put_line(&t, s, from, to, "their sum", -2);
+        put_line(&t, s, from, to, "their sum", SUM);
     }
     hn_table_write(b, &t);
     const bool whole = t.n_left_out == 0;
@@ -207,16 +220,24 @@ static void put_sheet(hn_strbuf *b, const hn_budgets *a, int energy) {
     hn_strbuf_reset(&wide);
 }
 
+/// Why a method has no budget, or only one of a part of its run.
 static void put_reasons(hn_strbuf *b, const hn_budgets *a) {
     for (int m = 0; m < hn_budgets_n(a); m++) {
         const hn_budget_row *row = hn_budgets_at(a, m);
         if (row->reason[0]) {
             hn_strbuf_printf(b, "  %s: %s, %s\n", row->spelling, hn_budget_state(row), row->reason);
         }
+    }
+}
+
+/// What the mark at a sum means: below the table of errors, to which it belongs.
+static void put_notes(hn_strbuf *b, const hn_budgets *a) {
+    for (int m = 0; m < hn_budgets_n(a); m++) {
+        const hn_budget_row *row = hn_budgets_at(a, m);
         char note[HN_BUDGET_NOTE];
         hn_budget_note(hn_budgets_model(a), row, note);
         if (note[0]) {
-            hn_strbuf_printf(b, "  %s: %s\n", row->spelling, note);
+            hn_strbuf_printf(b, "  * %s: %s\n", row->spelling, note);
         }
     }
 }
@@ -231,9 +252,9 @@ static void put_legend(hn_strbuf *b) {
         hn_strbuf_printf(b, "  %-12s %s\n", hn_energy_item_name((hn_energy_item)i),
                          hn_energy_item_about((hn_energy_item)i));
     }
-    hn_strbuf_add(b,
-                  "  Where formulation and integrator are one, as in ggl@radau5, truncation is the "
-                  "error of both; \"-\": it cannot be determined.\n");
+    hn_strbuf_add(
+        b, "  Some integrators solve the constraint equations themselves, as in ggl@radau5: there "
+           "truncation is the error of formulation and integrator together. \"-\": not known.\n");
 }
 
 void hn_budgets_text(hn_strbuf *b, const hn_budgets *a) {
@@ -241,14 +262,24 @@ void hn_budgets_text(hn_strbuf *b, const hn_budgets *a) {
     hn_strbuf_printf(b, "%s, to t = %g s\n\nWhere the error at the end comes from\n",
                      scene->title ? scene->title : scene->id, hn_budgets_time(a));
     put_sheet(b, a, 0);
+    put_notes(b, a);
     hn_strbuf_add(b, "\nEnergy put in (+) or taken out (-), in J\n");
     put_sheet(b, a, 1);
     put_reasons(b, a);
     put_legend(b);
 }
 
-/// The parts of one error, each against the largest of them.
+/// The parts of one error, each against the largest of them; a sentence where they do not add up.
 static void put_bars(hn_strbuf *b, const sheet *s, int i) {
+    hn_strbuf_printf(b, "\n%s: %.3g %s\n", s->rows[i]->spelling, whole_of(s, i), unit_of(s, i));
+    if (!s->energy && !hn_budget_holds(s->rows[i])) {
+        char note[HN_BUDGET_NOTE];
+        hn_budget_note(hn_budgets_model(s->budgets), s->rows[i], note);
+        hn_strbuf_printf(b, "  %s\n", note);
+        return;
+    }
+
+    // the largest part has the longest bar
     hn_bar bars[HN_CAUSE_COUNT + HN_ENERGY_COUNT];
     double most = 0;
     for (int k = 0; k < s->n_parts; k++) {
@@ -266,7 +297,6 @@ static void put_bars(hn_strbuf *b, const sheet *s, int i) {
                      unit_of(s, i));
         }
     }
-    hn_strbuf_printf(b, "\n%s: %.3g %s\n", s->rows[i]->spelling, whole_of(s, i), unit_of(s, i));
     hn_bars_text(b, bars, s->n_parts, hn_terminal_columns(), hn_terminal_colours());
 }
 

@@ -96,8 +96,8 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
     // standard input cannot be read a second time
     if (strcmp(word, "-") == 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/over", "write it into a file first",
-                            "a scene from standard input can be read once only, and a map over a "
-                            "parameter reads it for every value");
+                            "a map over a parameter reads the scene for every value, and standard "
+                            "input can be read only once");
     }
 
     // the options are large: the copy lives on the heap
@@ -198,15 +198,15 @@ static hn_status prepare(command *c, hn_diags *diags) {
 
 static void report_resumed(const command *c, const hn_job *job) {
     if (hn_job_resumed(job) > 0 && !c->args->json) {
-        hn_cli_note("holonom: going on with %d %s from before\n", hn_job_resumed(job),
+        hn_cli_note("holonom: continuing with %d %s of an earlier run\n", hn_job_resumed(job),
                     c->kind->pieces);
     }
 }
 
 static void report_end(const command *c, const hn_job_end *end) {
     const char *kept = !c->request.limits.folder ? ""
-                       : end->lost ? "; what was done could not be written and is not kept"
-                                   : "; the same command goes on from here";
+                       : end->lost ? "; the finished part could not be written and is lost"
+                                   : "; the same command continues from here";
     if (end->stopped) {
         hn_cli_note("holonom: stopped on request%s\n", kept);
     } else if (end->out_of_time) {

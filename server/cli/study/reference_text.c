@@ -39,8 +39,9 @@ static void put_values(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
 
     // say what the table leaves out
     if (shown < ref->n_user) {
-        hn_strbuf_printf(b, "%d coordinates more, all rates, multipliers and the energy: --json\n",
-                         ref->n_user - shown);
+        hn_strbuf_printf(
+            b, "--json shows %d more coordinates, all rates, multipliers and the energy\n",
+            ref->n_user - shown);
     }
 }
 
@@ -56,22 +57,22 @@ void hn_reference_text(hn_strbuf *b, const hn_reference_work *work) {
     // the shipped reference ends early where the motion is chaotic
     if (ref->T < scene->duration && source == HN_REF_SHIPPED) {
         hn_strbuf_printf(b,
-                         "The scene's own time is %g s; what is shipped ends where fewer than %d "
-                         "digits are sure: the motion is chaotic.\n",
+                         "The scene's own time is %g s. The shipped reference ends earlier, where "
+                         "fewer than %d digits are sure, because the motion is chaotic.\n",
                          scene->duration, HN_HOLD_DIGITS);
     }
 
     // the two methods and how well they agree
-    hn_strbuf_printf(b,
-                     "1: %s\n2: %s\nThey share nothing but the equations, and agree to %.1f digits "
-                     "of the coordinates, %.1e of the rates, %.1e of the reactions, %.1e of the "
-                     "energy.\n",
-                     ref->means[0], ref->means[1], hn_ref_digits(ref), ref->error[HN_ERROR_V],
-                     ref->error[HN_ERROR_REACTION], ref->error[HN_ERROR_ENERGY]);
+    hn_strbuf_printf(
+        b,
+        "1: %s\n2: %s\nThey have only the equations in common, and agree to %.1f digits of the "
+        "coordinates, to %.1e of the rates, %.1e of the reactions and %.1e of the energy.\n",
+        ref->means[0], ref->means[1], hn_ref_digits(ref), ref->error[HN_ERROR_V],
+        ref->error[HN_ERROR_REACTION], ref->error[HN_ERROR_ENERGY]);
 
     // a method that failed, and why
     if (ref->refused[0]) {
-        hn_strbuf_printf(b, "Did not come to the end: %s\n", ref->refused);
+        hn_strbuf_printf(b, "Did not reach the end: %s\n", ref->refused);
     }
 
     hn_strbuf_add(b, "\n");

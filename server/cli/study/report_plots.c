@@ -118,7 +118,7 @@ hn_exit hn_write_plots(const hn_args *args, const hn_report *r) {
         }
     }
     if (!converts) {
-        hn_cli_note("holonom: %d plots as SVG; PNG too where there is rsvg-convert (Debian: "
+        hn_cli_note("holonom: %d plots were written as SVG; PNG needs rsvg-convert (Debian: "
                     "librsvg2-bin)\n",
                     written);
     }

@@ -45,7 +45,7 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) 
     hn_table_init(&t);
 
     // columns: the scenes that fit
-    hn_table_column(&t, "smallest error of q", 0);
+    hn_table_column(&t, "smallest error of the coordinates", 0);
     const int n =
         hn_report_n_scenes(r) < HN_TABLE_COLUMNS - 1 ? hn_report_n_scenes(r) : HN_TABLE_COLUMNS - 1;
     for (int i = 0; i < n; i++) {
@@ -79,12 +79,12 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) 
 
     // explain the mark
     if (left) {
-        hn_strbuf_add(b, "(1 left): so many finer sizes were left out to keep the time limit\n");
+        hn_strbuf_add(b, "(1 left): one finer size was not run, to keep the time limit\n");
     }
 }
 
 static void put_survival(hn_strbuf *b, const hn_report_scene *s) {
-    hn_strbuf_printf(b, "\n%s: step sizes that survive its singular poses\n",
+    hn_strbuf_printf(b, "\n%s: step sizes that survive the singular configurations\n",
                      hn_report_scene_id(s));
     for (int m = 0; m < hn_study_wp(s->study)->n_methods; m++) {
         hn_strbuf_printf(b, "  %-24s %2d of %d\n", hn_study_wp(s->study)->methods[m].spelling,

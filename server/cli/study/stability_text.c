@@ -93,7 +93,7 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
 
 void hn_map_text(hn_strbuf *b, const hn_map *map) {
     const hn_scene *scene = hn_model_scene(hn_map_model(map));
-    hn_strbuf_printf(b, "%s: where steps are stable, runs to t = %.4g s or %d steps\n",
+    hn_strbuf_printf(b, "%s: which steps are stable, tried by runs to t = %.4g s or of %d steps\n",
                      scene->title ? scene->title : scene->id, hn_map_time(map),
                      HN_STABILITY_LEAST_STEPS);
     if (!hn_map_x(map)->name[0] && hn_map_y(map)->is_step) {

@@ -47,9 +47,10 @@ hn_exit hn_write_part(const hn_args *args, const hn_study *study) {
 
 hn_status hn_part_check(const hn_args *args, hn_diags *diags) {
     if (args->csv || (args->out && !hn_path_ends_in(args->out, ".json"))) {
-        return hn_diags_add(
-            diags, HN_ERR_INPUT, "/out", "take --out FILE.json, then holonom merge FILE.json...",
-            "a part of a study is JSON; the whole of it becomes a table or a report");
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out",
+                            "take --out FILE.json, then holonom merge FILE.json...",
+                            "a part of a study is written as JSON; 'holonom merge' makes a table "
+                            "or a report of all parts");
     }
     return HN_OK;
 }

@@ -90,7 +90,7 @@ static void put_methods(hn_strbuf *b, const hn_wp *wp) {
 
 static void put_verdicts(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
-    hn_strbuf_add(b, "\nWhat the ladder of sizes says of each\n");
+    hn_strbuf_add(b, "\nVerdict on each method, from all its sizes of step or tolerance\n");
     for (int m = 0; m < wp->n_methods; m++) {
         hn_strbuf_printf(b, "  %s %-28s %s\n", hn_look_glyph(m), wp->methods[m].spelling,
                          hn_study_classes(study)[m].text);
@@ -116,7 +116,7 @@ static void put_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
     const size_t before = b->n;
     hn_pareto_sentences(b, wp, p);
     if (b->n == before) {
-        hn_strbuf_add(b, "Nothing to rank: no run came to an error of 0.1 or less.\n");
+        hn_strbuf_add(b, "Nothing to rank: no run has an error of 0.1 or less.\n");
     }
 }
 
@@ -182,8 +182,8 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
 
     // the heading, then the table
     hn_strbuf_printf(b,
-                     "\nWhat equal cost buys: the error of the %s (between measured points; "
-                     "\xe2\x89\xa4: with fewer already; -: no point is as cheap)\n",
+                     "\nError of the %s for the same cost, interpolated between measured points "
+                     "(\xe2\x89\xa4: a cheaper run has this error; -: every run costs more)\n",
                      hn_error_title(kind));
     hn_table_write(b, &t);
     hn_table_reset(&t);
@@ -241,8 +241,8 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
             char spelling[HN_SPEC_MAX];
             hn_wp_spelling(wp, m, k, spelling);
             shorten_size(spelling);
-            hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", hn_look_glyph(m),
-                             spelling);
+            hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nRuns that did not reach the end\n",
+                             hn_look_glyph(m), spelling);
 
             // how far it came, and how many others share the reason
             if (p->t_reached > 0) {
@@ -263,7 +263,7 @@ static void put_head(hn_strbuf *b, const hn_study *study) {
     const hn_ref *ref = hn_study_wp(study)->ref;
     hn_strbuf_printf(b, "%s, to t = %g s\n", scene->title ? scene->title : scene->id, ref->T);
     hn_strbuf_printf(
-        b, "Reference: %s and %s agree to %.1f digits; errors below %.0e are not claimed.\n",
+        b, "Reference: %s and %s agree to %.1f digits; errors below %.0e cannot be measured.\n",
         ref->means[0], ref->means[1], hn_ref_digits(ref),
         HN_WP_ABOVE_REFERENCE * ref->error[HN_ERROR_Q]);
     hn_strbuf_printf(b, "Chaos: %s.\n\n", hn_study_chaos(study)->why);

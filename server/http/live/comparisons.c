@@ -98,12 +98,12 @@ static bool take_place(hn_comparisons *all, hn_client client) {
 
 static void refuse(hn_comparisons *all, hn_request *r, int n_before) {
     if (all->stopping) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
         return;
     }
     hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed, or wait",
-                     "%d of %d comparisons are open; while others want one too, a client may have "
-                     "%d of them; %d requests wait for a place before this one",
+                     "%d of %d comparisons are open, and %d requests wait before this one; while "
+                     "other clients wait, one client may have %d",
                      hn_shares_taken(all->places), all->opts->max_comparisons,
                      hn_http_opts_share(all->opts, all->opts->max_comparisons), n_before);
     hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
@@ -278,7 +278,7 @@ static hn_session *find_session(hn_request *r) {
     hn_session *found = look_for_session(r);
     if (!found) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/comparisons makes one",
-                         "there is no comparison '%.40s' (any more)", r->parts[0]);
+                         "there is no comparison '%.40s', or it was deleted", r->parts[0]);
     }
     return found;
 }

@@ -233,7 +233,7 @@ static bool read_fields(hn_request *r, unsigned *fields) {
         }
         if (i == HN_FRAME_EXTRAS) {
             hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "fields=sigma_min,lambda,condition",
-                             "a frame has no field '%.*s' to add", (int)(n < 40 ? n : 40), at);
+                             "'%.*s' cannot be added to a frame", (int)(n < 40 ? n : 40), at);
             return false;
         }
         *fields |= 1U << i;
@@ -280,7 +280,7 @@ static hn_stream *create_stream(hn_session *session, hn_request *r, int skips) {
     hn_shares *places = r->context->streams;
     if (!hn_shares_take(places, r->client)) {
         hn_reply_problem(r, HN_PROBLEM_BUSY, "close a stream",
-                         "%d streams are open already, or yours have their share of %d",
+                         "all streams are in use (%d), or your client has its share of %d",
                          hn_shares_taken(places), session->opts->max_streams);
         hn_reply_header_add(r, "Retry-After", "5");
         return NULL;

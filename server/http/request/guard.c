@@ -108,13 +108,13 @@ static bool check_headers(hn_request *r) {
     const char *encoding = hn_request_header(r, "Transfer-Encoding");
     if (encoding && strcasecmp(encoding, "chunked") != 0) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "send a Content-Length",
-                         "the Transfer-Encoding is '%.40s'; chunked is the one that is read",
-                         encoding);
+                         "the Transfer-Encoding is '%.40s'; only chunked is accepted", encoding);
         return false;
     }
     if (encoding && hn_request_header(r, "Content-Length")) {
-        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "send one of them",
-                         "the headers Content-Length and Transfer-Encoding exclude each other");
+        hn_reply_problem(
+            r, HN_PROBLEM_BAD_REQUEST, "send one of them",
+            "both Content-Length and Transfer-Encoding are given; only one is allowed");
         return false;
     }
     return true;
@@ -144,7 +144,8 @@ int hn_guard_site(hn_request *r) {
         return 1;
     }
     hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,
-                     "a page of another site asks for computing (Sec-Fetch-Site: %.40s)", site);
+                     "a page of another site asks this server to compute (Sec-Fetch-Site: %.40s)",
+                     site);
     return 0;
 }
 
@@ -278,7 +279,7 @@ int hn_guard_body_type(hn_request *r) {
         return 1;
     }
     hn_reply_problem(r, HN_PROBLEM_MEDIA_TYPE, "Content-Type: application/json",
-                     type ? "the body is said to be '%.100s'"
+                     type ? "the Content-Type of the body is '%.100s'"
                           : "the Content-Type header is missing%s",
                      type ? type : "");
     return 0;

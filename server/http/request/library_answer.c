@@ -17,9 +17,9 @@ static const struct {
     const char *detail;
 } REFUSALS[] = {
     {400, HN_PROBLEM_BAD_REQUEST,
-     "the request line, a header, the length or a chunk of the body is not as HTTP has it"},
-    {413, HN_PROBLEM_TOO_LARGE, "the body is longer than any that is read"},
-    {414, HN_PROBLEM_ADDRESS, "the address alone is longer than any head that is read"},
+     "the request line, a header, the length or a chunk of the body breaks a rule of HTTP"},
+    {413, HN_PROBLEM_TOO_LARGE, "the body is longer than the server accepts for any address"},
+    {414, HN_PROBLEM_ADDRESS, "the address is longer than the head of a request may be"},
     {431, HN_PROBLEM_HEAD, "the head is longer than 64 kB"},
     {500, HN_PROBLEM_INTERNAL, "the HTTP library could not serve the request"},
     {505, HN_PROBLEM_VERSION, "the request line does not end in HTTP/1.0 or HTTP/1.1"},

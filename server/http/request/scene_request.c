@@ -95,7 +95,7 @@ hn_status hn_scene_request_add_pull(hn_scene_request *order, int point, hn_diags
     if (order->n_pulls == HN_SCENE_REQUEST_PULLS) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, "/pull/point", "send \"pulls\": [] to forget the pulls so far",
-            "%d points were pulled already, no more are served", HN_SCENE_REQUEST_PULLS);
+            "%d points were pulled already, which is the largest number", HN_SCENE_REQUEST_PULLS);
     }
     order->pulls[order->n_pulls++] = point;
     return HN_OK;

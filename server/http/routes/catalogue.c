@@ -159,7 +159,7 @@ static hn_status see_setting(void *user, const char *value) {
     double x = value[n] ? strtod(value + n + 1, &end) : 0;
     if (!value[n] || n == 0 || end == value + n + 1 || *end) {
         return hn_diags_add(q->diags, HN_ERR_INPUT, "/parameters", "set=l1:1.2",
-                            "'%.80s' is not a parameter and a number", value);
+                            "'%.80s' is not of the form parameter:number", value);
     }
     return hn_scene_request_add(q->order, value, n, x, q->diags);
 }

@@ -85,8 +85,9 @@ static void check_head(hn_request *r, const char *method) {
         return;
     }
     if (r->has_zero) {
-        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
-                         "the address holds a zero byte (%%00 or a raw one), which none here has");
+        hn_reply_problem(
+            r, HN_PROBLEM_BAD_REQUEST, NULL,
+            "the address holds a zero byte (%%00 or a raw one); no address of this server does");
         return;
     }
 
@@ -202,15 +203,17 @@ static void push(hn_dispatch *d, hn_request *r, hn_jobs *jobs) {
     const long long unread = atomic_load(&r->context->unread);
     if (unread > r->context->opts.max_unread) {
         hn_connections_end_slowest(d->connections, r->context->opts.unread_patience);
-        hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
-                         "%lld bytes of answers wait for their readers; at most %lld may", unread,
-                         r->context->opts.max_unread);
+        hn_reply_problem(
+            r, HN_PROBLEM_BUSY, NULL,
+            "%lld bytes of answers have not been read by their clients; at most %lld may wait",
+            unread, r->context->opts.max_unread);
         hn_reply_header_add(r, "Retry-After", "5");
         hn_request_finish(r);
     } else if (!hn_jobs_push(jobs, r, r->queues_as)) {
-        hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
-                         "%d requests of this kind are waiting already, or yours have their share",
-                         r->context->opts.queue);
+        hn_reply_problem(
+            r, HN_PROBLEM_BUSY, NULL,
+            "%d requests of this kind are waiting already, or your client has its share of them",
+            r->context->opts.queue);
         hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
         hn_request_finish(r);
     }

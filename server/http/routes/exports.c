@@ -119,9 +119,9 @@ static void add_left_out(hn_strbuf *b, const hn_strbuf *left_out) {
 static hn_status write_mechanism(const hn_model *model, const wanted *w, hn_strbuf *b,
                                  const char **suffix, hn_diags *diags) {
     if (w->language || w->method || w->style || w->solver || w->blanks) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/format",
-                            "leave out language, method, style, solver and blanks",
-                            "format asks for the mechanism, the others for a program");
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/format", "leave out language, method, style, solver and blanks",
+            "'format' asks for the mechanism as a model, but the other fields ask for a program");
     }
     hn_strbuf left_out;
     hn_strbuf_init(&left_out);

@@ -99,17 +99,17 @@ static const struct {
      "\"progress\":{\"type\":\"number\"},\"links\":{\"type\":\"object\"},\"runs\":" OBJECTS ","
      "\"scene\":{\"type\":[\"string\",\"null\"]},"
      "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT
-     ",\"verdict\":{\"type\":\"object\",\"description\":\"what the error estimate says of the "
-     "motion; "
-     "status says only whether the run reached its end\",\"properties\":{\"is\":{\"enum\":["
-     "\"right\",\"inaccurate\",\"wrong\",\"unknown\"]},\"text\":" TEXT "}}"
+     ",\"verdict\":{\"type\":\"object\",\"description\":\"verdict on the motion by its error "
+     "estimate; status only says whether the run reached its "
+     "end\",\"properties\":{\"is\":{\"enum\":[\"right\",\"inaccurate\",\"wrong\",\"unknown\"]},"
+     "\"text\":" TEXT "}}"
      ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ",\"lambda_marks\":" TEXTS ","
      "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
-     ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},"
-     "\"description\":\"what the multipliers of each sample, and reactions that rest on them, "
-     "are worth: an index into lambda_marks\"}"
-     "}},\"incidents\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/"
-     "Incident\"}},\"cost\":{\"type\":\"object\"}}}"},
+     ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},\"description\":"
+     "\"reliability of the multipliers of each sample, and of the reactions computed from them: an "
+     "index into "
+     "lambda_marks\"}}},\"incidents\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/"
+     "schemas/Incident\"}},\"cost\":{\"type\":\"object\"}}}"},
     {"ComparisonList",
      "{\"type\":\"object\",\"required\":[\"comparisons\"],\"properties\":{\"comparisons\":" TEXTS
      "}}"},
@@ -139,10 +139,10 @@ static const struct {
      "value of these rows; null without rows, or where the smallest is 0\"}}}"},
     {"Incident",
      "{\"type\":\"object\",\"description\":\"data of the event incident; sent again with the same "
-     "method, code and t when the run has shown what became of "
-     "it\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
-     "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"
-     "\"integer\"},\"code\":" TEXT ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
+     "method, code and t when its outcome is "
+     "known\",\"required\":[\"generation\",\"method\",\"code\",\"t\",\"message\"],\"properties\":{"
+     "\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":\"integer\"},\"code\":" TEXT
+     ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
      "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT
      ",\"remedies\":" TEXTS ",\"tried\":" TEXTS "}}"},
     {"Comparison",
@@ -172,12 +172,12 @@ static const struct {
     {"StudyList",
      "{\"type\":\"object\",\"required\":[\"studies\"],\"properties\":{\"studies\":" OBJECTS "}}"},
     {"Study",
-     "{\"type\":\"object\",\"description\":\"document is that of the command line's --json, null "
-     "until there is one; while a stopped study goes on it is that of what was done before. "
-     "progress and time_left_s are of the present run, elapsed_s is of "
-     "all\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
-     "\"time_left_s\",\"time_limit_s\",\"scene\",\"parameters\",\"methods\",\"document\",\"links\"]"
-     ","
+     "{\"type\":\"object\",\"description\":\"document is the one that the command line writes with "
+     "--json, and null before the first result; while a stopped study continues, it holds the "
+     "earlier results. progress and time_left_s describe the present run of the study, elapsed_s "
+     "all of "
+     "them\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\",\"time_"
+     "left_s\",\"time_limit_s\",\"scene\",\"parameters\",\"methods\",\"document\",\"links\"],"
      "\"properties\":{\"id\":" TEXT ",\"kind\":" TEXT
      ",\"state\":{\"enum\":[\"running\",\"finished\",\"stopped\",\"failed\"]},\"reason\":" TEXT
      ",\"hint\":" TEXT ",\"progress\":{\"type\":\"number\"},\"elapsed_s\":{\"type\":\"number\"},"
@@ -208,22 +208,22 @@ static const struct {
     {"server", "The server itself: links, limits, health, this description."},
     {"scenes", "Shipped mechanisms, and their reference solutions."},
     {"methods", "Formulations and integrators, with their options."},
-    {"look", "Colours, dashes and markers of methods."},
+    {"look", "Colours, dashes and markers with which methods are drawn."},
     {"lessons", "Lessons with their scenes."},
     {"problems", "Exercises that can be graded."},
     {"grade", "Grading of submissions."},
     {"errors", "The kinds of problem documents."},
-    {"terms", "M, f, J, gamma at one state."},
+    {"terms", "The terms M, f, J, gamma of the equations at one state."},
     {"assemble", "Consistent starting values."},
-    {"drag", "Closed poses near a target."},
+    {"drag", "Closed configurations near a target."},
     {"languages", "Languages of export."},
     {"export", "Mechanisms as programs."},
-    {"inspect", "Sizes, tree, loops, rank."},
+    {"inspect", "Sizes, tree, loops and rank of a mechanism."},
     {"equations", "The equations of motion."},
-    {"runs", "Runs: the same question has the same id."},
+    {"runs", "Runs of one or several methods: the same request has the same id."},
     {"snapshots", "Pictures."},
-    {"comparisons", "Several methods on one clock, streamed."},
-    {"studies", "Long jobs: work-precision, stability, error budget."},
+    {"comparisons", "Several methods side by side, as a stream of frames."},
+    {"studies", "Long computations: work-precision, stability, error budget."},
 };
 enum { N_TAGS = sizeof TAGS / sizeof *TAGS };
 
@@ -556,7 +556,7 @@ static void put_document(hn_strbuf *b, const hn_context *c) {
     hn_json_put_string(b, "title", "holonom");
     hn_json_put_string(b, "version", hn_build_name());
     hn_json_put_string(b, "summary",
-                       "Mechanisms with closed loops, many methods at the same times");
+                       "Mechanisms with closed loops, simulated by several methods at once");
     hn_json_put_string(
         b, "description",
         "Simulates mechanisms with closed loops by several methods at once. Errors are "
@@ -565,7 +565,7 @@ static void put_document(hn_strbuf *b, const hn_context *c) {
     hn_json_key(b, "license");
     hn_json_raw(b, "{\"name\":\"GPL-3.0-or-later\",\"identifier\":\"GPL-3.0-or-later\"}");
     hn_json_key(b, "contact");
-    hn_json_raw(b, "{\"name\":\"whoever runs this server\"}");
+    hn_json_raw(b, "{\"name\":\"the operator of this server\"}");
     hn_json_end_object(b);
 
     // addresses are relative, so that a prefix of a proxy holds; nothing is asked of who calls

@@ -39,7 +39,9 @@ static const char *const STATES[] = {"running", "paused", NULL};
 
 static const hn_field IMPORT[] = {
     {.name = "text", .type = HN_FIELD_TEXT, .required = 1, .about = "MJCF or URDF: XML"},
-    {.name = "name", .type = HN_FIELD_TEXT, .about = "of the scene; the model's own when left out"},
+    {.name = "name",
+     .type = HN_FIELD_TEXT,
+     .about = "name of the scene; the model's own when left out"},
     {.name = "loops",
      .type = HN_FIELD_TEXT,
      .about = "URDF: the joints that close its loops, as JSON text"},
@@ -65,18 +67,18 @@ static const hn_field PULL[] = {
      .type = HN_FIELD_NUMBER,
      .min = 0,
      .max = 1e12,
-     .about = "of the hand's spring [N/m]; chosen from weight and size when left out"},
+     .about = "stiffness of the hand's spring [N/m]; chosen from weight and size when left out"},
     {.name = "damping",
      .type = HN_FIELD_NUMBER,
      .min = 0,
      .max = 1e12,
-     .about = "of the hand's spring [N s/m]; chosen when left out"},
+     .about = "damping of the hand's spring [N s/m]; chosen when left out"},
     END_OF_FIELDS};
-#define PULLS_FIELD                                                                                \
-    {                                                                                              \
-        .name = "pulls", .type = HN_FIELD_ANY,                                                     \
-        .about = "what the hand does: a list of [frame, point, x, y, z, stiffness, damping]; the " \
-                 "methods start anew and do it again, to the same bits"                            \
+#define PULLS_FIELD                                                                               \
+    {                                                                                             \
+        .name = "pulls", .type = HN_FIELD_ANY,                                                    \
+        .about = "pulls of the hand: a list of [frame, point, x, y, z, stiffness, damping]; the " \
+                 "methods restart and repeat the pulls bit for bit"                               \
     }
 
 static const hn_field TERMS[] = {
@@ -87,30 +89,36 @@ static const hn_field TERMS[] = {
      .about = "coordinates and rates that differ from the assembled start"},
     {.name = "reactions",
      .type = HN_FIELD_BOOL,
-     .about = "what every joint and constraint carries too: forces [N] and moments [N m], and "
-              "efforts along coordinates; on the child of a joint, on the body of a distance's "
-              "'to', on a body that is guided"},
-    {.name = "pull", .type = HN_FIELD_RECORD, .record = PULL, .about = "a hand that holds a point"},
+     .about = "adds the reactions of every joint and constraint: forces [N], moments [N m], and "
+              "efforts along coordinates. The reaction of a joint acts on its child, that of a "
+              "distance on the body of 'to', that of a guide on the guided body"},
+    {.name = "pull",
+     .type = HN_FIELD_RECORD,
+     .record = PULL,
+     .about = "a spring by which a hand holds a point"},
     END_OF_FIELDS};
 
 static const hn_field DRAG[] = {
     SCENE_FIELDS,
     {.name = "state",
      .type = HN_FIELD_BY_NAME,
-     .about = "coordinates and rates from which it is dragged, where they differ from the "
-              "assembled start: the state of the answer before"},
+     .about = "coordinates and rates from which the drag begins, where they differ from the "
+              "assembled start: the state of the previous answer"},
     {.name = "point",
      .type = HN_FIELD_INTEGER,
      .min = 0,
      .max = 1e6,
-     .about = "index among the points of the scene; or a coordinate"},
-    {.name = "coordinate", .type = HN_FIELD_TEXT, .about = "name of a coordinate; or a point"},
+     .about = "index among the points of the scene, unless a coordinate is given"},
+    {.name = "coordinate",
+     .type = HN_FIELD_TEXT,
+     .about = "name of a coordinate, unless a point is given"},
     {.name = "target",
      .type = HN_FIELD_NUMBERS,
      .required = 1,
      .min = 1,
      .max = 3,
-     .about = "of a point [x, y] or [x, y, z] in the world [m], of a coordinate its value"},
+     .about =
+         "for a point its place [x, y] or [x, y, z] in the world [m], for a coordinate its value"},
     END_OF_FIELDS};
 
 static const hn_field EQUATIONS[] = {SCENE_FIELDS,
@@ -125,57 +133,56 @@ static const hn_field EXPORT[] = {
     {.name = "language", .type = HN_FIELD_TEXT, .about = "python when left out; see /languages"},
     {.name = "blanks",
      .type = HN_FIELD_BOOL,
-     .about = "leave out mass, force, jacobian and bias, for students to fill in"},
+     .about = "leaves the functions mass, force, jacobian and bias empty for students to fill in"},
     {.name = "method",
      .type = HN_FIELD_TEXT,
-     .about =
-         "index1@... or baumgarte:...@...: how the program holds its loops; any other is named "
-         "in the last line"},
+     .about = "index1@... or baumgarte:...@...: formulation of the program; another method is only "
+              "named in the last line"},
     {.name = "style", .type = HN_FIELD_TEXT, .about = "skeleton: without self-check; or full"},
-    {.name = "solver", .type = HN_FIELD_TEXT, .about = "one of the language's; see /languages"},
+    {.name = "solver",
+     .type = HN_FIELD_TEXT,
+     .about = "name of a solver of the language; see /languages"},
     {.name = "format",
      .type = HN_FIELD_TEXT,
-     .about =
-         "mjcf or urdf: the mechanism itself in place of a program; a comment at its end names "
-         "what it does not hold"},
+     .about = "mjcf or urdf: a model of the mechanism in place of a program; a comment at its end "
+              "names the parts that it cannot hold"},
     END_OF_FIELDS};
 
-static const hn_field RUN[] = {SCENE_FIELDS,
-                               {.name = "method",
-                                .type = HN_FIELD_TEXT,
-                                .about = "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
-                               {.name = "methods",
-                                .type = HN_FIELD_TEXTS,
-                                .min = 1,
-                                .max = HN_COMPARISON_MAX_METHODS,
-                                .about = "several of them, in place of method"},
-                               {.name = "time",
-                                .type = HN_FIELD_NUMBER,
-                                .required = 1,
-                                .min = 1e-9,
-                                .max = LONGEST_RUN,
-                                .about = "end of the run [s]"},
-                               {.name = "at",
-                                .type = HN_FIELD_NUMBERS,
-                                .min = 1,
-                                .max = MAX_TIMES,
-                                .about = "output times, ascending [s]"},
-                               {.name = "every",
-                                .type = HN_FIELD_NUMBER,
-                                .min = 1e-9,
-                                .max = LONGEST_RUN,
-                                .about = "output interval [s]; 200 samples when neither is given"},
-                               {.name = "reactions",
-                                .type = HN_FIELD_BOOL,
-                                .about = "columns reaction_force [N] and reaction_moment [N m] "
-                                         "too, three numbers for each of carriers, and effort, "
-                                         "one for each of efforts"},
-                               {.name = "raw_lambda",
-                                .type = HN_FIELD_BOOL,
-                                .about =
-                                    "a column raw_lambda too: the multipliers the scheme itself "
-                                    "found, where it has some"},
-                               END_OF_FIELDS};
+static const hn_field RUN[] = {
+    SCENE_FIELDS,
+    {.name = "method",
+     .type = HN_FIELD_TEXT,
+     .about = "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .min = 1,
+     .max = HN_COMPARISON_MAX_METHODS,
+     .about = "several methods, in place of method"},
+    {.name = "time",
+     .type = HN_FIELD_NUMBER,
+     .required = 1,
+     .min = 1e-9,
+     .max = LONGEST_RUN,
+     .about = "end of the run [s]"},
+    {.name = "at",
+     .type = HN_FIELD_NUMBERS,
+     .min = 1,
+     .max = MAX_TIMES,
+     .about = "output times, ascending [s]"},
+    {.name = "every",
+     .type = HN_FIELD_NUMBER,
+     .min = 1e-9,
+     .max = LONGEST_RUN,
+     .about = "output interval [s]; 200 samples when neither is given"},
+    {.name = "reactions",
+     .type = HN_FIELD_BOOL,
+     .about = "adds the columns reaction_force [N] and reaction_moment [N m], with three numbers "
+              "for each entry of carriers, and effort, with one number for each entry of efforts"},
+    {.name = "raw_lambda",
+     .type = HN_FIELD_BOOL,
+     .about = "a column raw_lambda too: the multipliers the scheme itself "
+              "found, where it has some"},
+    END_OF_FIELDS};
 
 static const hn_field COMPARISON[] = {
     SCENE_FIELDS,
@@ -189,7 +196,7 @@ static const hn_field COMPARISON[] = {
      .type = HN_FIELD_NUMBER,
      .min = 1e-6,
      .max = 10,
-     .about = "time from frame to frame [s]; chosen when left out"},
+     .about = "time between frames [s]; chosen when left out"},
     {.name = "duration",
      .type = HN_FIELD_NUMBER,
      .min = 1e-6,
@@ -213,7 +220,7 @@ static const hn_field SNAPSHOT[] = {
      .required = 1,
      .min = 1,
      .max = HN_COMPARISON_MAX_METHODS,
-     .about = "spellings of methods; the first is opaque"},
+     .about = "spellings of methods; the first is drawn opaque"},
     {.name = "time",
      .type = HN_FIELD_NUMBER,
      .required = 1,
@@ -230,7 +237,7 @@ static const hn_field SNAPSHOT[] = {
      .min = HN_CANVAS_MIN,
      .max = HN_CANVAS_MAX,
      .about = "pixels"},
-    {.name = "theme", .type = HN_FIELD_CHOICE, .choices = THEMES, .about = "paper or slate"},
+    {.name = "theme", .type = HN_FIELD_CHOICE, .choices = THEMES, .about = "background"},
     {.name = "view",
      .type = HN_FIELD_TEXT,
      .about = "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
@@ -241,13 +248,13 @@ static const hn_field GRADE[] = {
     {.name = "submission",
      .type = HN_FIELD_ANY,
      .required = 1,
-     .about = "what a submission's file would hold"},
+     .about = "contents of the submission's file"},
     {.name = "seed",
      .type = HN_FIELD_INTEGER,
      .min = 0,
      .max = 9007199254740991.0,
      .about = "chooses the variant and the states at which answers are compared; 0: the variant "
-              "that the submission says"},
+              "that the submission names"},
     END_OF_FIELDS};
 
 static const hn_field SET[] = {
@@ -255,7 +262,7 @@ static const hn_field SET[] = {
      .type = HN_FIELD_INTEGER,
      .min = -1,
      .max = HN_COMPARISON_MAX_METHODS - 1,
-     .about = "index of the method; -1: all that have the key"},
+     .about = "index of the method; -1: all methods that have this option"},
     {.name = "key",
      .type = HN_FIELD_TEXT,
      .required = 1,
@@ -274,26 +281,26 @@ static const hn_field CHANGE[] = {
      .type = HN_FIELD_INTEGER,
      .min = 1,
      .max = 600,
-     .about = "frames to go forward while paused"},
+     .about = "number of frames to advance while paused"},
     {.name = "reset", .type = HN_FIELD_BOOL, .about = "back to the start"},
     {.name = "methods",
      .type = HN_FIELD_TEXTS,
      .min = 1,
      .max = HN_COMPARISON_MAX_METHODS,
-     .about = "new methods; all start anew"},
+     .about = "new methods; all methods restart"},
     {.name = "parameters",
      .type = HN_FIELD_BY_NAME,
-     .about = "all parameters that differ from the scene's; all methods start anew"},
+     .about = "all parameters that differ from the scene's; all methods restart"},
     {.name = "set",
      .type = HN_FIELD_RECORD,
      .record = SET,
-     .about = "an option of a formulation, changed while running"},
+     .about = "changes an option of a formulation during the run"},
     {.name = "pull",
      .type = HN_FIELD_RECORD,
      .record = PULL,
-     .about = "a hand holds a point by a spring from the present frame on; all methods feel it, "
-              "and its work counts"},
-    {.name = "release", .type = HN_FIELD_BOOL, .about = "the hand lets go"},
+     .about = "from the present frame on, a hand holds a point by a spring; the force acts in all "
+              "methods, and its work counts in the energy change"},
+    {.name = "release", .type = HN_FIELD_BOOL, .about = "the hand releases the point"},
     PULLS_FIELD,
     END_OF_FIELDS};
 
@@ -301,26 +308,30 @@ static const hn_route_query SCENE_QUERY[] = {{"set", "array", "parameter:value, 
                                              {NULL, NULL, NULL}};
 static const hn_route_query REFERENCE_QUERY[] = {
     {"set", "array", "parameter:value, may be repeated"},
-    {"time", "number", "end [s]; that of the stored one when left out"},
-    {"every", "number", "the motion between the stored times too, at this interval [s]"},
+    {"time", "number", "end [s]; the end of the stored reference when left out"},
+    {"every", "number", "adds the motion between the stored times, at this interval [s]"},
     {"compute", "boolean",
-     "true: computed where none is stored, within run_cpu_s; else that is 404 with the reason"},
+     "true: a reference that is not stored is computed, within run_cpu_s; otherwise the answer is "
+     "404 with the reason"},
     {NULL, NULL, NULL}};
 static const hn_route_query EXPORT_QUERY[] = {
     {"set", "array", "parameter:value, may be repeated"},
     {"language", "string", "python when left out; see /languages"},
-    {"blanks", "boolean", "true: without mass, force, jacobian and bias, for students to fill in"},
+    {"blanks", "boolean",
+     "true: leaves the functions mass, force, jacobian and bias empty for students to fill in"},
     {"method", "string",
-     "index1@... or baumgarte:...@...: how the program holds its loops; any other is named in the "
-     "last line"},
+     "index1@... or baumgarte:...@...: formulation of the program; another method is only named in "
+     "the last line"},
     {"style", "string", "skeleton: without self-check; or full"},
-    {"solver", "string", "one of the language's; see /languages"},
+    {"solver", "string", "name of a solver of the language; see /languages"},
     {"format", "string",
-     "mjcf or urdf: the mechanism itself in place of a program; a comment at its end names what it "
-     "does not hold"},
+     "mjcf or urdf: a model of the mechanism in place of a program; a comment at its end names the "
+     "parts that it cannot hold"},
     {NULL, NULL, NULL}};
 static const hn_route_query PROBLEM_QUERY[] = {
-    {"hint", "integer", "one of its hints, from 1, in place of the problem"}, {NULL, NULL, NULL}};
+    {"hint", "integer",
+     "number of a hint, from 1: the answer is this hint in place of the problem"},
+    {NULL, NULL, NULL}};
 static const hn_route_query RUN_QUERY[] = {
     {"wait", "number", "seconds to wait for the end, at most 60; POST: 25 when left out, GET: 0"},
     {NULL, NULL, NULL}};
@@ -335,16 +346,15 @@ static const hn_route_query RUN_EXPORT_QUERY[] = {
     {"method", "integer", "index of the method that the last line names; 0 when left out"},
     {NULL, NULL, NULL}};
 static const hn_route_query COMPARISON_QUERY[] = {
-    {"wait", "number",
-     "seconds to wait for a place where there is none, at most 60; 25 when left out"},
+    {"wait", "number", "seconds to wait while all places are taken, at most 60; 25 when left out"},
     {NULL, NULL, NULL}};
 static const hn_route_query SAMPLES_QUERY[] = {
     {"fields", "string", "columns, separated by commas: t,q,gap; all when left out"},
-    {"stride", "integer", "every so many samples"},
+    {"stride", "integer", "stride: one row for every so many samples"},
     {"from", "number", "first time [s]"},
     {"to", "number", "last time [s]"},
     {"cursor", "integer", "index of the first sample, from next_cursor or the Link header"},
-    {"limit", "integer", "most rows of a page, at most 100000"},
+    {"limit", "integer", "largest number of rows in a page, at most 100000"},
     {"method", "integer", "index of the method in a run by several; 0 when left out"},
     {NULL, NULL, NULL}};
 static const hn_route_query EVENTS_QUERY[] = {
@@ -352,7 +362,7 @@ static const hn_route_query EVENTS_QUERY[] = {
      "complete (every frame) or live (a slow reader skips frames, never incidents)"},
     {"last_event_id", "string", "the same as the Last-Event-ID header"},
     {"fields", "string",
-     "what each frame says beside, with an entry for each method: sigma_min, lambda, condition, "
+     "further members of each frame, with an entry for each method: sigma_min, lambda, condition, "
      "separated by commas"},
     {NULL, NULL, NULL}};
 
@@ -376,13 +386,16 @@ static const hn_route ROUTES[] = {
     {"GET", "/api/v1/schema", HN_WORK_QUICK, hn_handle_scene_schema, NULL, JSON, "200", "Document",
      "The JSON schema of scene files", NULL, NULL},
     {"POST", "/api/v1/import", HN_WORK_HEAVY, hn_handle_import, IMPORT, JSON, "200", "Document",
-     "A model of another program (MJCF, URDF) as a scene, with notes on what is not in it", NULL,
+     "Converts a model of another program (MJCF, URDF) to a scene, with notes on the parts that a "
+     "scene cannot hold",
+     NULL,
      "{\"text\":\"<robot name='arm'><link name='base'/><link name='arm'><inertial><mass "
      "value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
      "<joint name='j' type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 0 "
      "1'/></joint></robot>\"}"},
     {"GET", "/api/v1/scenes/{id}/reference", HN_WORK_HEAVY, hn_handle_reference, NULL, JSON, "200",
-     "Reference", "The reference solution of a scene: by two means, with the digits they share",
+     "Reference",
+     "The reference solution of a scene, computed in two ways, with the digits on which they agree",
      REFERENCE_QUERY, NULL},
     {"GET", "/api/v1/scenes/{id}/export", HN_WORK_HEAVY, hn_handle_scene_export, NULL, "text/plain",
      "200", "Text", "A scene as a program that solves its equations and checks itself",
@@ -415,20 +428,20 @@ static const hn_route ROUTES[] = {
      "Document", "Consistent starting values", NULL,
      "{\"scene\":\"four-bar\",\"parameters\":{\"l1\":0.6}}"},
     {"POST", "/api/v1/drag", HN_WORK_QUICK, hn_handle_drag, DRAG, JSON, "200", "Drag",
-     "The closed pose that brings a point or a coordinate nearest to a target: 50 ms of computing",
+     "The closed configuration that brings a point or a coordinate nearest to a target, within 50 "
+     "ms of computing",
      NULL, "{\"scene\":\"four-bar\",\"coordinate\":\"th1\",\"target\":[1.2]}"},
     {"POST", "/api/v1/inspect", HN_WORK_HEAVY, hn_handle_inspect, SCENE_ONLY, JSON, "200",
-     "Document", "Sizes, tree, loops, rank, operations kept and left out", NULL,
+     "Document", "Sizes, tree, loops, rank, and the operations of the compiled equations", NULL,
      "{\"scene\":\"four-bar\"}"},
     {"POST", "/api/v1/equations", HN_WORK_HEAVY, hn_handle_equations, EQUATIONS, JSON, "200",
      "Equations", "The equations of motion with parameters as symbols", NULL,
      "{\"scene\":\"four-bar\",\"format\":\"latex\"}"},
     {"GET", "/api/v1/runs", HN_WORK_HEAVY, hn_handle_runs_list, NULL, JSON, "200", "RunList",
-     "Ids of the runs that are kept whole, and the number of spoilt files", NULL, NULL},
+     "Ids of the runs that are kept, and the number of damaged files", NULL, NULL},
     {"POST", "/api/v1/runs", HN_WORK_QUICK_OWN, hn_handle_runs_create, RUN, JSON, "201 200 202",
      "Run",
-     "Runs a scene by one method or several; the same question has the same id and is computed "
-     "once",
+     "Runs a scene by one method or several; the same request has the same id and is computed once",
      RUN_QUERY,
      "{\"scene\":\"four-bar\",\"method\":\"projection@rk4:h=1e-3\",\"time\":1,\"every\":0.1}"},
     {"GET", "/api/v1/runs/{id}", HN_WORK_QUICK_OWN, hn_handle_run_get, NULL, JSON, "200", "Run",
@@ -444,9 +457,9 @@ static const hn_route ROUTES[] = {
      "200", "Text", "The scene of a run, with its parameters, as a program that checks itself",
      RUN_EXPORT_QUERY, NULL},
     {"DELETE", "/api/v1/runs/{id}", HN_WORK_LIGHT, hn_handle_run_delete, NULL, JSON, "204", NULL,
-     "Stops a run and forgets it; one that has gone is no fault", NULL, NULL},
+     "Stops a run and deletes it; one that is already gone is no error", NULL, NULL},
     {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",
-     "Picture", "A picture of where the methods have taken a scene", NULL,
+     "Picture", "A picture of the scene after a run by the given methods", NULL,
      "{\"scene\":\"four-bar\",\"methods\":[\"projection@rk4:h=1e-3\"],\"time\":0.5}"},
     {"GET", "/api/v1/problems/{id}", HN_WORK_QUICK, hn_handle_problem, NULL, JSON, "200",
      "Document", "A problem's text and what to hand in; or one of its hints", PROBLEM_QUERY, NULL},
@@ -455,27 +468,31 @@ static const hn_route ROUTES[] = {
      "{\"problem\":\"p3\",\"submission\":{\"J\":[[\"-l1*sin(th1)\",\"-l2*sin(th2)\",\"l3*sin(th3)"
      "\",\"l4*sin(th4)\"],[\"l1*cos(th1)\",\"l2*cos(th2)\",\"-l3*cos(th3)\",\"-l4*cos(th4)\"]]}}"},
     {"GET", "/api/v1/comparisons", HN_WORK_LIGHT, hn_handle_comparisons_list, NULL, JSON, "200",
-     "ComparisonList", "Ids of the comparisons there are", NULL, NULL},
+     "ComparisonList", "Ids of all comparisons", NULL, NULL},
     {"POST", "/api/v1/comparisons", HN_WORK_QUICK_OWN, hn_handle_comparisons_create, COMPARISON,
      JSON, "201", "Comparison", "Makes a comparison", COMPARISON_QUERY,
      "{\"scene\":\"four-bar\",\"methods\":[\"index1@rk4:h=1e-2\",\"projection@rk4:h=1e-2\"]}"},
     {"GET", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_get, NULL, JSON, "200",
      "Comparison", "A comparison and its latest frame", NULL, NULL},
     {"PATCH", "/api/v1/comparisons/{id}", HN_WORK_OWN, hn_handle_comparison_patch, CHANGE, JSON,
-     "200", "Comparison", "Plays, pauses, paces, steps, resets, changes methods and settings", NULL,
+     "200", "Comparison",
+     "Plays, pauses, steps or resets a comparison, or changes its speed, methods and options", NULL,
      "{\"state\":\"paused\",\"step\":10}"},
     {"DELETE", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_delete, NULL, JSON,
-     "204", NULL, "Ends a comparison; one that has gone is no fault", NULL, NULL},
+     "204", NULL, "Ends a comparison; one that is already gone is no error", NULL, NULL},
     {"GET", "/api/v1/comparisons/{id}/pulls", HN_WORK_LIGHT, hn_handle_comparison_pulls, NULL, JSON,
-     "200", "Document", "What a hand has pulled so far, for POST and PATCH", NULL, NULL},
+     "200", "Document", "The pulls of the hand so far, in the form that POST and PATCH take", NULL,
+     NULL},
     {"GET", "/api/v1/comparisons/{id}/events", HN_WORK_LIGHT, hn_handle_comparison_events, NULL,
      "text/event-stream", "200", "Events", "Server-sent events: one stream for all methods",
      EVENTS_QUERY, NULL},
     {"GET", "/api/v1/studies", HN_WORK_LIGHT, hn_handle_studies_list, NULL, JSON, "200",
-     "StudyList", "The studies there are", NULL, NULL},
+     "StudyList", "All studies", NULL, NULL},
     {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, hn_study_fields, JSON,
      "202", "Study",
-     "Starts a study; its Location gives the progress, and the document when it is done", NULL,
+     "Starts a study; the address in its Location header gives the progress, and in the end the "
+     "document",
+     NULL,
      "{\"scene\":\"four-bar\",\"kind\":\"work-precision\",\"methods\":[\"projection@rk4\",\"index1@"
      "rk4\"],\"time\":1,\"levels\":3,\"samples\":0}"},
     {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",
@@ -483,11 +500,10 @@ static const hn_route ROUTES[] = {
     {"GET", "/api/v1/studies/{id}/report", HN_WORK_LIGHT, hn_handle_study_report, NULL, "text/html",
      "200", "Report", "The study as one HTML file that needs no network", NULL, NULL},
     {"PATCH", "/api/v1/studies/{id}", HN_WORK_QUICK, hn_handle_study_patch, hn_study_change, JSON,
-     "200", "Study",
-     "Stops a study and keeps what was done, or lets a stopped one go on from there", NULL,
+     "200", "Study", "Stops a study and keeps its results, or continues a stopped one", NULL,
      "{\"state\":\"stopped\"}"},
     {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",
-     NULL, "Stops a study and forgets it; one that has gone is no fault", NULL, NULL},
+     NULL, "Stops a study and deletes it; one that is already gone is no error", NULL, NULL},
 };
 enum { N_ROUTES = sizeof ROUTES / sizeof *ROUTES };
 

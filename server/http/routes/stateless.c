@@ -119,10 +119,10 @@ static bool names_one(hn_request *r) {
         cJSON_HasObjectItem(r->json, "point") + cJSON_HasObjectItem(r->json, "coordinate");
     if (n != 1) {
         hn_diags diags = {0};
-        const hn_status status =
-            hn_diags_add(&diags, HN_ERR_INPUT, "/point", "\"point\": 3, or \"coordinate\": \"th1\"",
-                         n ? "both a point and a coordinate were named: name one"
-                           : "what is dragged is not named: name a point or a coordinate");
+        const hn_status status = hn_diags_add(
+            &diags, HN_ERR_INPUT, "/point", "\"point\": 3, or \"coordinate\": \"th1\"",
+            n ? "both a point and a coordinate were named: name one"
+              : "neither a point nor a coordinate is named; the request needs one of them");
         hn_reply_diags(r, status, &diags);
     }
     return n == 1;

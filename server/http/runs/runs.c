@@ -137,7 +137,7 @@ void hn_run_reply(hn_request *r, const hn_kept_run *run) {
 
 static void reply_unknown(hn_request *r) {
     hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/runs asks the question again",
-                     "there is no run '%.40s' (any more)", r->parts[0]);
+                     "there is no run '%.40s', or it was deleted", r->parts[0]);
 }
 
 hn_kept_run *hn_run_find(hn_request *r) {
@@ -172,7 +172,7 @@ void hn_handle_runs_create(hn_request *r) {
     }
     if (status == HN_ERR_LIMIT && diags.n == 0) {
         hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
-                         "%d runs are waiting already, or yours have their share",
+                         "%d runs are waiting already, or your client has its share of them",
                          r->context->opts.queue);
         hn_reply_header_add(r, "Retry-After", "%d", hn_runs_wait(all));
     } else {

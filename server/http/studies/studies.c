@@ -291,7 +291,7 @@ static void reply_no_place(hn_request *r, place p) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
     } else {
         hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
-                         "%d studies are running, and no more at once",
+                         "%d studies are running, which is the largest number",
                          r->context->studies->opts->max_studies);
         hn_reply_header_add(r, "Retry-After", "%d", RETRY_AFTER);
     }
@@ -376,7 +376,7 @@ static study *find_study(hn_request *r) {
     study *found = look_for_study(r);
     if (!found) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/studies makes one",
-                         "there is no study '%.40s' (any more)", r->parts[0]);
+                         "there is no study '%.40s', or it was deleted", r->parts[0]);
     }
     return found;
 }

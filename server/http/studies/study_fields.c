@@ -16,12 +16,12 @@ hn_field hn_study_change[3] = {
      .type = HN_FIELD_CHOICE,
      .required = 1,
      .choices = STATES,
-     .about = "stopped: ends the computing, what was done is kept; running: a study that was "
-              "stopped, by its time limit too, goes on with what is left"},
+     .about = "stopped: ends the computation and keeps the results; running: continues a study "
+              "that was stopped, or that reached its time limit"},
     {.name = "time_limit",
      .type = HN_FIELD_NUMBER,
-     .about = "wall time of going on [s], at most what the computing time leaves over all runs; "
-              "what is left of the study's when left out"},
+     .about = "time limit of the continued run [s], at most what is left of the study's computing "
+              "time; all that is left when left out"},
     {.name = NULL},
 };
 
@@ -90,7 +90,7 @@ void hn_study_fields_fill(double most_seconds) {
          .type = HN_FIELD_CHOICE,
          .required = 1,
          .choices = kind_names,
-         .about = "what is studied; the index of the API lists the kinds with their fields"},
+         .about = "kind of the study; the index of the API lists the kinds with their fields"},
     };
     const hn_job_kind *kind;
     int n = 0, n_kinds = 0;

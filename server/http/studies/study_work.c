@@ -145,10 +145,10 @@ static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_r
     if (w->cpu_used_up) {
         out->state = HN_STUDY_STOPPED;
         snprintf(out->reason, sizeof out->reason,
-                 "the computing time of one study is used up; what was done is shown");
+                 "the computing time of one study is used up; the finished part is shown");
     } else if (atomic_load(&w->stop)) {
         out->state = HN_STUDY_STOPPED;
-        snprintf(out->reason, sizeof out->reason, "stopped on request; what was done is shown");
+        snprintf(out->reason, sizeof out->reason, "stopped on request; the finished part is shown");
     } else if (end->out_of_time || w->out_of_time) {
         out->state = HN_STUDY_STOPPED;
         snprintf(out->reason, sizeof out->reason,
@@ -166,14 +166,13 @@ static void report_failure(const hn_study_work *w, hn_status status, const hn_di
     out->state = ended && status == HN_ERR_STOPPED ? HN_STUDY_STOPPED : HN_STUDY_FAILED;
     if (w->out_of_time && !w->cpu_used_up && !atomic_load(&w->stop)) {
         snprintf(out->reason, sizeof out->reason,
-                 "the time limit of %.4g s was over before there was anything to show",
+                 "the time limit of %.4g s ended before the first result",
                  w->request.limits.time_limit);
         return;
     }
     snprintf(out->reason, sizeof out->reason, "%s",
-             w->cpu_used_up
-                 ? "the computing time of one study is used up before there was anything to show"
-             : atomic_load(&w->stop) ? "stopped before there was anything to show"
+             w->cpu_used_up ? "the computing time of one study ended before the first result"
+             : atomic_load(&w->stop) ? "stopped before the first result"
              : diags->n > 0          ? diags->item[0].message
                                      : hn_status_text(status));
     snprintf(out->hint, sizeof out->hint, "%s", diags->n > 0 ? diags->item[0].hint : "");

@@ -188,7 +188,7 @@ static void what_formulas_cannot_be_is_told(void **state) {
         {"{\"kinetic\":\"w^3\"}", "quadratic"},
         {"{\"potential\":\"a*w\"}", "rate"},
         {"{\"coordinates\":[{\"name\":\"a\"}],\"potential\":\"a\"}", "taken already"},
-        {"{\"coordinates\":[{\"name\":\"c\"}],\"potential\":\"c\"}", "moves nothing"},
+        {"{\"coordinates\":[{\"name\":\"c\"}],\"potential\":\"c\"}", "moves no mass"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char text[2048];

@@ -105,7 +105,7 @@ static void a_negative_alpha_is_allowed_and_told(void **state) {
     hn_diag d;
     assert_int_equal(parse("baumgarte:alpha=-5@rk4", &s, &d), HN_OK);
     assert_near(hn_method_option(&s, "alpha", 0), -5, 0);
-    assert_non_null(strstr(d.message, "pushes the loop apart"));
+    assert_non_null(strstr(d.message, "drives the loop open"));
 }
 
 static void normal_spelling_reads_back_to_the_same_spec(void **state) {

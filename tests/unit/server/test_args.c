@@ -118,7 +118,7 @@ static void choices_of_an_option_are_those_of_its_command(void **state) {
         {"run", "--format", "csv|ndjson|json", "csv, ndjson or json: form of the output"},
         {"equations", "--format", "text|latex|json", "text, latex or json: form of the output"},
         {"snapshot", "--theme", "light|dark",
-         "paper or slate; in the workbench the terminal says which"},
+         "light or dark background; the workbench asks the terminal when left out"},
         {"study", "--preset", "stiffness|mass-ratio|baumgarte|limits", NULL},
         {"run", "--time", "", "end of the run [s]; the scene's when left out"},
     };

@@ -207,7 +207,7 @@ static void a_method_that_hardly_ever_finishes_is_failed_with_its_reason(void **
         snprintf(w.methods[0].point[k].reason, HN_DIAG_MESSAGE, "the loop flew apart");
     }
     assert_int_equal(class_of(&w, 0).kind, HN_CLASS_FAILED);
-    assert_non_null(strstr(class_of(&w, 0).text, "1 of 4 sizes came to the end: the loop flew"));
+    assert_non_null(strstr(class_of(&w, 0).text, "1 of 4 sizes reached the end: the loop flew"));
 }
 
 static void sizes_that_are_still_to_be_run_have_not_failed(void **state) {

@@ -178,7 +178,8 @@ static void methods_that_keep_something_are_refused(void **state) {
         {HN_TRIAL_LESSON "fb0.json", "baumgarte:rule=auto@rk4:h=1e-3", "from one step to the next"},
         {HN_TRIAL_LESSON "fb0.json", "index1@dopri5:rtol=1e-6", "not an explicit one"},
         {HN_TRIAL_LESSON "fb0.json", "index1@rk4:h=1e-3,sum=compensated", "plain sum"},
-        {HN_TRIAL_LESSON "fb0.json", "index1:solver=dense@rk4:h=1e-3", "no tape"},
+        {HN_TRIAL_LESSON "fb0.json", "index1:solver=dense@rk4:h=1e-3",
+         "not compiled to instructions"},
         {SPACE "heavy-top.json", "index1@rk4:h=1e-3", "quaternions"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
