@@ -173,7 +173,7 @@ class Studies(driver.ServerCase):
         self.assertEqual((document["preset"], document["stiff"], document["telling"]), ("baumgarte", False, None))
         self.assertEqual([m["method"] for m in document["methods"]], ["baumgarte@rk4:h=0.01"])
         self.assertEqual([m["method"] for m in document["steps"]], ["projection@rk4", "baumgarte@rk4"])
-        self.assertIn("the velocities err by less than 1 %", document["steps"][0]["agreement"]["text"])
+        self.assertIn("the velocities are right to 1 %", document["steps"][0]["agreement"]["text"])
         # a stiff one is answered by the steps
         done = wait(self.server, start(self.server, {**body, "scene": "stiff-four-bar", "time": 0.1}))
         document = done["document"]

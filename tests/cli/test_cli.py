@@ -71,7 +71,7 @@ class CommandLine(Command):
         step = position["steps"][0]
         self.assertEqual([line["name"] for line in step["unknowns"]], ["theta_coupler", "th3"])
         self.assertIn(step["sign"]["value"], (-1, 1))
-        self.assertIn("the others: Newton, because 4 unknowns hang", self.assert_exit(call("equations", "3-rrr"), DONE))
+        self.assertIn("the others: Newton, because 4 unknowns appear", self.assert_exit(call("equations", "3-rrr"), DONE))
         self.assertNotIn("independent:", self.assert_exit(call("equations", "pendulum"), DONE))
 
     def test_terms_say_of_which_state_they_are(self):
@@ -155,7 +155,7 @@ class CommandLine(Command):
         self.assertEqual(squeezer["answers"], "dyads: closed form (3 of them)")
         self.assertLess(squeezer["operations"], squeezer["operations_of_a_newton_step"])
         self.assertEqual([step["kind"] for step in squeezer["steps"]], ["RRR"] * 3)
-        self.assertTrue(answers("3-rrr")["answers"].startswith("Newton, because 4 unknowns hang together"))
+        self.assertTrue(answers("3-rrr")["answers"].startswith("Newton, because 4 unknowns appear together"))
         self.assertIn("no loops", answers("pendulum")["answers"])
         refused = call("run", "3-rrr", "--method", "reduced:position=dyads@rk4:h=1e-3", "--time", "0.1")
         self.assertNotEqual(refused.returncode, DONE)
@@ -264,7 +264,7 @@ class CommandLine(Command):
             (("grade", "p3"), "needs"),
             (("grade", "p3", "x.json", "--format", "gradscope"), "gradescope"),
             (("serve", "--port", "99999"), "65535"),
-            (("run", "four-bar", "--set", "start.th1=1e8"), "th1 = 1e+08 rad has run out of digits: numbers of that size are 2.2e-08 rad apart"),
+            (("run", "four-bar", "--set", "start.th1=1e8"), "th1 = 1e+08 rad is too large: numbers of this size are 2.2e-08 rad apart"),
             (("run", "four-bar", "--set", "start.th1=1e99"), "subtract whole turns of 2 pi"),
             (("run", "four-bar", "--set", "l1=9"), "cannot be closed"),
             (("run", "four-bar", "--set", "start.w1=1e99"), "below 1e+09 (at /scene/start)"),
@@ -351,7 +351,7 @@ class CommandLine(Command):
         try:
             port = json.loads(second.stdout.readline())["port"]
             self.assertNotEqual(port, first.port)
-            self.assertIn(f"port {first.port} is taken", second.stderr.readline().decode())
+            self.assertIn(f"port {first.port} is already in use", second.stderr.readline().decode())
         finally:
             second.terminate()
             second.communicate(timeout=30 * driver.SLOW)

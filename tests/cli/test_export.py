@@ -243,7 +243,7 @@ def hostile_words(folder):
 def refusals():
     """Requests that must be refused, with a word of the message."""
     cases = [(["four-bar", "--language", "pyton"], 2, "python"), (["four-baar"], 2, "four-bar"),
-             (["four-bar", "--method", "projection@rk4"], 2, "cannot hold its loops by 'projection'"), (["four-bar", "--method", "x@rk4"], 2, "x"),
+             (["four-bar", "--method", "projection@rk4"], 2, "do not have the formulation 'projection'"), (["four-bar", "--method", "x@rk4"], 2, "x"),
              (["four-bar", "-o", "no/such/folder/x.py"], 2, "no/such/folder")]  # fmt: skip
     for words, status, said in cases:
         done = call([PROGRAM, "export", *words])

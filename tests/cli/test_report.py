@@ -84,7 +84,7 @@ class Report(unittest.TestCase):
             self.assertIn(method, text)
         self.assertIn("survived 24 of 24", text)
         self.assertIn("No budget of errors and energy", text)
-        self.assertIn("not chaotic: with one freedom", text)
+        self.assertIn("not chaotic: one degree of freedom", text)
         ids = re.findall(r'\bid="([^"]*)"', text)
         self.assertEqual(len(ids), len(set(ids)), "no id twice")
         for anchor in re.findall(r'href="#([^"]*)"', text):
@@ -99,7 +99,7 @@ class Report(unittest.TestCase):
         self.assertTrue(said[0].startswith(f"Cheapest: {best} in {answers.count(best)} of {len(answers)}"), said)
         # projection alone closes the loops and passes the flat poses with every size
         self.assertRegex(said[1], "^These methods reach the end at every size in every scene, .*: projection@rk4.$")
-        self.assertIn("Break at some sizes or all in fb0: nullspace-as-printed@rk4.", said)
+        self.assertIn("Methods that fail at some or all sizes in fb0: nullspace-as-printed@rk4.", said)
         self.assertIn("Ranked by operations: no time was measured.", said)
 
     def test_tables_have_heads_and_headings_go_down_one_level_at_a_time(self):

@@ -54,7 +54,7 @@ class Run(Command):
             "start": {"positions": {"x": 0, "y": 0}, "rates": {"u": 0, "v": 0}}, "duration": 1, "step": 0.01,
         })
         text = self.assert_exit(call("terms", "-", stdin=rails), DONE)
-        self.assertIn("multipliers, and reactions that rest on them: no digit left (condition 6e+14, rank 2 of 2)", text)
+        self.assertIn("multipliers, and reactions computed from them: no digit left (condition 6e+14, rank 2 of 2)", text)
         self.assertNotIn("no digit", self.assert_exit(call("terms", "-", "--t", "1", stdin=rails), DONE))
         result = call("run", "-", "--method", RK4, "--time", "1", "--at", "0,1", stdin=rails)
         rows = list(csv.DictReader(io.StringIO(self.assert_exit(result, DONE))))
@@ -89,7 +89,7 @@ class Run(Command):
         result = call("run", "four-bar", "--method", "index3@rk4")
         said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
         self.assertEqual(result.returncode, 2)
-        self.assertIn("index3 makes a differential-algebraic system, which rk4 does not solve", said)
+        self.assertIn("the formulation index3 gives a differential-algebraic system, which the integrator rk4 does not solve", said)
         self.assertIn("radau5", said)
         self.assertIn("rk4 serves index1", said)
 
@@ -163,7 +163,7 @@ class Run(Command):
         far = "projection@rk4:h=2"
         text = self.assert_exit(call("compare", "four-bar", "--methods", far, RK4, "--time", "1"), DONE)
         self.assertRegex(text, r"(?m)^projection@rk4\S* +WRONG +1.00 ")
-        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\S* \(angles in rad, lengths over the mechanism's\)$")
+        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\S* \(angles in rad, lengths over the mechanism's length\)$")
         self.assertRegex(text, r"(?m)^index1@rk4\S* +right +1.00 ")
         self.assertNotRegex(text, r"index1@rk4\S* is wrong")
         told = call("run", "four-bar", "--method", far, "--time", "1", "--at", "1").stderr.decode()
@@ -325,7 +325,7 @@ class Run(Command):
             self.assert_exit(done, INPUT)
             told = done.stderr.decode()
             self.assertIn("with l1 = 50 m (0.5 in the scene), loop B cannot be closed with th1 = 1 held; ground+crank spans", told)
-            self.assertIn("go back towards l1 = 0.5, or", told)
+            self.assertIn("take values closer to l1 = 0.5, or", told)
             self.assertNotIn("make ", told)  # a rocker of 48 m
 
     def test_compare_keeps_a_method_that_failed_and_says_which(self):

@@ -246,7 +246,7 @@ class Width(unittest.TestCase):
 
     def test_columns_that_do_not_fit_are_named_and_wide_shows_them(self):
         narrow, wide = (self.lines(["compare", "four-bar", "--time", "0.5", *more], 80) for more in ([], ["--wide"]))
-        self.assertRegex(" ".join(narrow), r"left out at 80 columns: t, .*evals, ops.* \(--wide shows them\)")
+        self.assertRegex(" ".join(narrow), r"not shown in 80 columns: t, .*evals, ops.* \(--wide shows them\)")
         self.assertIn("evals", wide[1])
         self.assertNotIn("left out", " ".join(wide))
 

@@ -177,7 +177,7 @@ class Snapshot(Command):
     def test_times_must_rise(self):
         done = call("snapshot", "four-bar", "--at", "0.5,0.2", "-o", os.path.join(tempfile.gettempdir(), "never.png"))
         self.assert_exit(done, INPUT)
-        self.assertIn(b"0.2 s stands after 0.5 s", done.stderr)
+        self.assertIn(b"0.2 s comes after 0.5 s", done.stderr)
 
     def test_without_osmesa_the_built_in_renderer_draws_and_is_named(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -154,7 +154,7 @@ class Stability(unittest.TestCase):
         done = self.call(*STUDY, "--methods", "index3@genalpha", "projection@radau5")
         self.assertEqual(done.returncode, DONE, done.stderr)
         text = done.stdout.decode()
-        self.assertIn("index3@genalpha: nothing to compare", text)
+        self.assertIn("index3@genalpha: prediction not tested", text)
         self.assertIn("not an instability", text)
 
     def test_documents_hold_the_same_cells(self):

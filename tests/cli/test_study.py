@@ -110,7 +110,7 @@ class Study(unittest.TestCase):
         done = call(words, self.folder)
         told = [line for line in done.stdout.decode().split("Runs that did not reach the end")[1].splitlines() if "rattle" in line]
         self.assertEqual(len(told), 1, told)
-        self.assertIn("and 3 other sizes: a force depends on speed", told[0])
+        self.assertIn("and 3 other sizes: a force depends on velocities", told[0])
 
     def test_what_is_at_fault_is_told(self):
         for words, said in (

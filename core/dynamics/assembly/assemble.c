@@ -48,8 +48,8 @@ static hn_status check_pins(const hn_assembler *s) {
                          "joint of the loop"
                        : "give the guess of another coordinate, or write \"cut\": true at another "
                          "joint of the loop",
-                "%s cannot be %s: its joint closes a loop and follows from the others", c->name,
-                pinned ? "pinned" : "guessed");
+                "%s cannot have a '%s': its joint closes a loop, and it follows from the others",
+                c->name, pinned ? "value" : "guess");
         }
     }
     return status;

@@ -228,7 +228,7 @@ static void describe_fine_end(const hn_wp *wp, int m, const hn_class *c, char fl
         if (wp->methods[m].adaptive) {
             snprintf(size, sizeof size, "%.0e", c->floor_size);
         }
-        snprintf(floor, 120, "; from %s = %s on the error stays at %.1e", c->floor,
+        snprintf(floor, 120, "; the error stays at %.1e from %s = %s on", c->floor,
                  wp->methods[m].adaptive ? "rtol" : "h", size);
     }
     if (c->rounding >= 0) {

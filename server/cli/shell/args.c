@@ -467,6 +467,7 @@ static void set_defaults(hn_args *args) {
 hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc, char **argv,
                         hn_diag *diag) {
     set_defaults(args);
+    args->command = command;
     int only_words = 0;
     for (int i = 0; i < argc; i++) {
         hn_status status;

@@ -26,9 +26,10 @@ typedef struct hn_numbers {
 /// Options of all commands; a command reads those it lists. Numbers that were not given are NaN,
 /// texts NULL.
 typedef struct hn_args {
-    hn_words words;        ///< what is neither command nor option
-    hn_words set;          ///< each parameter once
-    hn_words set_over_set; ///< by the program itself: stronger than `set`
+    const hn_command *command; ///< borrowed: whose options these are
+    hn_words words;            ///< what is neither command nor option
+    hn_words set;              ///< each parameter once
+    hn_words set_over_set;     ///< by the program itself: stronger than `set`
     hn_words methods, traces, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,

@@ -21,14 +21,87 @@ static hn_exit exit_of(hn_status status, const hn_diags *diags) {
     return ours ? HN_EXIT_PROGRAM : HN_EXIT_INPUT;
 }
 
-static void tell(const hn_diag *d) {
+// ---- places ----
+
+/// Whether a list of words as typed has NAME=VALUE.
+static bool sets(const hn_words *typed, const char *name) {
+    const size_t n = strlen(name);
+    for (int i = 0; i < typed->n; i++) {
+        if (strncmp(typed->word[i], name, n) == 0 && typed->word[i][n] == '=') {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Whether the command reads the option of this name, without the hyphens.
+static bool has_option(const hn_command *command, const char *name) {
+    hn_option_row o;
+    for (int i = 0; hn_args_option(command, i, &o); i++) {
+        if (strcmp(o.name + strspn(o.name, "-"), name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The name behind one of these beginnings of a pointer; NULL: it has another one, or goes deeper.
+static const char *name_behind(const char *pointer, const char *const *beginnings) {
+    for (; *beginnings; beginnings++) {
+        const size_t n = strlen(*beginnings);
+        if (strncmp(pointer, *beginnings, n) == 0 && pointer[n] && !strchr(pointer + n, '/')) {
+            return pointer + n;
+        }
+    }
+    return NULL;
+}
+
+/// The place of a fault as it was typed: "in --method"; a JSON pointer for what a file holds.
+static void put_place(hn_strbuf *b, const hn_args *args, const char *pointer) {
+    static const char *const parameters[] = {"/parameters/", NULL},
+                             *const starts[] = {"/start/positions/", "/start/rates/",
+                                                "/start/moved/", NULL},
+                             *const states[] = {"/state/", NULL};
+    const char *parameter = name_behind(pointer, parameters), *start = name_behind(pointer, starts),
+               *state = name_behind(pointer, states);
+    const char *before = "at ", *place = pointer;
+    const bool typed_methods = args && args->methods.n > 0 && strncmp(pointer, "/methods/", 9) == 0;
+    if (args && args->command && has_option(args->command, pointer + 1)) {
+        before = "in --";
+        place = pointer + 1;
+    } else if (strcmp(pointer, "/scene") == 0) {
+        before = "in ";
+        place = "SCENE";
+    } else if (typed_methods || (args && args->set.n > 0 && strcmp(pointer, "/parameters") == 0)) {
+        before = "in ";
+        place = typed_methods ? "--methods" : "--set";
+    } else if (args && parameter && sets(&args->set, parameter)) {
+        before = "in --set ";
+        place = parameter;
+    } else if (args && state && sets(&args->state_q, state)) {
+        before = "in --q ";
+        place = state;
+    } else if (args && state && sets(&args->state_v, state)) {
+        before = "in --v ";
+        place = state;
+    } else if (start) {
+        before = "start value of ";
+        place = start;
+    }
+    hn_strbuf_add(b, before);
+    hn_visible_add(b, place, true);
+}
+
+// ---- sentences ----
+
+static void tell(const hn_args *args, const hn_diag *d) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_strbuf_add(&b, "holonom: ");
     hn_visible_add(&b, d->message, true);
     if (d->pointer[0]) {
-        hn_strbuf_add(&b, " (at ");
-        hn_visible_add(&b, d->pointer, true);
+        hn_strbuf_add(&b, " (");
+        put_place(&b, args, d->pointer);
         if (d->column > 0) {
             hn_strbuf_printf(&b, ", column %d", d->column);
         }
@@ -59,7 +132,7 @@ hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *d
 
     // sentences for people, the first fault first
     for (int i = 0; i < diags->n; i++) {
-        tell(&diags->item[i]);
+        tell(args, &diags->item[i]);
     }
     if (diags->n == 0) {
         hn_cli_note("holonom: %s\n", hn_status_text(status));

@@ -42,7 +42,7 @@ static const struct {
      "default class 'a' is defined in line 1 already"},
     {"<mujoco><include file='x.xml'/><worldbody><body><joint/><geom "
      "size='1'/></body></worldbody></mujoco>",
-     "where 'x.xml' is is not known"},
+     "the folder of 'x.xml' is not known"},
     {"<mujoco><worldbody><body name='b'><joint/><geom size='1'/></body></worldbody><equality>"
      "<connect body1='b' body2='c' anchor='0 0 0'/></equality></mujoco>",
      "no body named 'c'"},

@@ -163,8 +163,8 @@ static void a_refused_pair_names_what_fits_on_either_side(void **state) {
     hn_method_spec s;
     hn_diag d;
     assert_int_equal(parse("index3@rk4:h=0.01", &s, &d), HN_ERR_INPUT);
-    assert_non_null(strstr(
-        d.message, "index3 makes a differential-algebraic system, which rk4 does not solve"));
+    assert_non_null(strstr(d.message, "the formulation index3 gives a differential-algebraic "
+                                      "system, which the integrator rk4 does not solve"));
     assert_non_null(strstr(d.hint, "rk4 serves index1, baumgarte"));
     assert_null(strstr(d.hint, "index3,"));
 }

@@ -89,7 +89,7 @@ static void a_narrow_terminal_folds_words_then_loses_columns_and_names_them(void
     t.width = 50;
     hn_table_write(&b, &t);
     assert_non_null(
-        strstr(hn_strbuf_text(&b), "left out at 50 columns: evals (--wide shows it)\n"));
+        strstr(hn_strbuf_text(&b), "not shown in 50 columns: evals (--wide shows it)\n"));
     assert_null(strstr(hn_strbuf_text(&b), "123456"));
     assert_non_null(strstr(hn_strbuf_text(&b), "12.4"));
     hn_strbuf_reset(&b);

@@ -297,7 +297,7 @@ static void coordinates_that_end_where_only_a_ball_could_follow_say_so(void **st
         assert_true(n > 0);
         const hn_incident *last = &incidents[n - 1];
         assert_int_equal(last->code, HN_INCIDENT_CHART_LOST);
-        assert_non_null(strstr(last->message, "the turning of S would have to be an independent"));
+        assert_non_null(strstr(last->message, "the rotation of S would have to be independent"));
         // no shorter step brings such a coordinate: other methods are what helps, and they do
         for (int k = 0; k < 3 && last->remedy[k][0]; k++) {
             assert_non_null(strchr(last->remedy[k], '@'));
