@@ -217,6 +217,27 @@ class CommandLine(Command):
             self.assert_exit(many, INPUT)
             self.assertTrue({"right.json", "empty.json", "wrong.json"} <= set(os.listdir(out)))
 
+    def test_a_fault_names_the_option_that_was_typed_and_a_file_has_its_pointer(self):
+        rows = [
+            (("run", "four-bar", "--method", "foo"), "(in --method)"),
+            (("compare", "four-bar", "--methods", RK4, "foo"), "(in --methods)"),
+            (("run", "for-bar"), "(in SCENE)"),
+            (("run", "four-bar", "--time", "-1"), "(in --time)"),
+            (("run", "four-bar", "--set", "nonsense=1"), "(in --set)"),
+            (("run", "four-bar", "--set", "l1=50"), "(start value of th1)"),
+            (("terms", "four-bar", "--q", "nonsense=1"), "(in --q nonsense)"),
+            (("terms", "four-bar", "--v", "nonsense=1"), "(in --v nonsense)"),
+            (("study", "four-bar", "stability", "--over", "nonsense=1..2"), "(in --over)"),
+            (("inspect", "-"), "(at /title)"),
+        ]
+        for words, place in rows:
+            with self.subTest(words=words):
+                said = call(*words, stdin='{"holonom": 1, "title": 3}').stderr.decode()
+                self.assertIn(place, said.replace("\n", " "))
+        # what a program reads has pointers
+        told = strict(call("run", "four-bar", "--method", "foo", "--json").stdout)
+        self.assertEqual(told["errors"][0]["pointer"], "/method")
+
     def test_input_at_fault_is_2_and_says_what_to_do(self):
         rows = [
             (("rnu",), "run"),

@@ -84,7 +84,7 @@ class Snapshot(Command):
             self.assertIn("B at (", bare["words"])
             done = call("snapshot", "four-bar", "--trace", "Q", "-o", os.path.join(folder, "n.png"))
             self.assert_exit(done, INPUT)
-            self.assertIn(b"there are: A B", done.stderr)
+            self.assertIn(b"its points are: A B", done.stderr)
 
     def test_the_legend_says_on_which_bodies_the_forces_act(self):
         with tempfile.TemporaryDirectory() as folder:
