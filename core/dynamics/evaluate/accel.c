@@ -346,9 +346,8 @@ static hn_status refuse(hn_accel *s, hn_solver solver, hn_status status, int mas
     const char *name = hn_solver_names[solver];
     if (massless >= 0) {
         snprintf(s->refusal, sizeof s->refusal,
-                 "solver=%s needs the inverse of M, which does not exist: %s moves no mass; use "
-                 "solver=auto",
-                 name, name_of_speed(s, massless));
+                 "solver=%s needs the inverse of M, but %s moves no mass; use solver=auto", name,
+                 name_of_speed(s, massless));
         return HN_ERR_MASS;
     }
     if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO && solver != HN_SOLVER_LEAST_NORM) {
