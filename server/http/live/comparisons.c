@@ -102,8 +102,8 @@ static void refuse(hn_comparisons *all, hn_request *r, int n_before) {
         return;
     }
     hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed, or wait",
-                     "%d of %d comparisons are open, and %d requests wait before this one; while "
-                     "other clients wait, one client may have %d",
+                     "%d of %d comparisons are open; while other clients wait, one client may have "
+                     "%d of them; %d requests wait before this one",
                      hn_shares_taken(all->places), all->opts->max_comparisons,
                      hn_http_opts_share(all->opts, all->opts->max_comparisons), n_before);
     hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
