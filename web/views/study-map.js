@@ -99,7 +99,7 @@ export function createStudyMap(store, actions) {
       .map(({ kind, value }) => `${kind.word} ${heatWords(kind, value)}`);
     const figures = sizes.length ? `; ${sizes.join(", ")}` : "";
     const margin = Number.isFinite(cell.margin ?? NaN)
-      ? `; the step is ${plain(Number(cell.margin.toPrecision(2)))} times the predicted limit`
+      ? `; the step is ${plain(Number(cell.margin.toPrecision(2)))} of the predicted limit`
       : "";
     return `${labelOf(method)}, ${where}: ${outcome}${figures}${margin}`;
   }

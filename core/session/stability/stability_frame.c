@@ -136,7 +136,7 @@ void hn_map_cell_text(hn_strbuf *b, const hn_map *map, int m, int column, int ro
         hn_strbuf_printf(b, ", error %.2g, gap %.2g, %lld steps", t->error, t->gap, t->steps);
     }
     if (isfinite(cell->margin) && cell->margin > 0) {
-        hn_strbuf_printf(b, "; the step is %.3g times the predicted limit", cell->margin);
+        hn_strbuf_printf(b, "; the step is %.3g of the predicted limit", cell->margin);
     } else if (cell->margin > 0) {
         hn_strbuf_add(b, "; predicted to grow at any step");
     } else if (cell->margin == 0) {
