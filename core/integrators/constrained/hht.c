@@ -106,9 +106,9 @@ static const hn_dae_stepper dae = {
 const hn_stepper hn_stepper_hht = {
     .name = "hht",
     .title = "HHT-I3",
-    .about = "Newmark's method with a mean of the forces at both ends of the step. Order 2 if the "
-             "mass matrix is constant, as for points in Cartesian coordinates; little more than "
-             "order 1 in angles, which genalpha avoids by an extra variable.",
+    .about = "Newmark's method with a weighted mean of the forces at both ends of the step. Order "
+             "2 if the mass matrix is constant, as for points in Cartesian coordinates; little "
+             "more than order 1 in angles, which genalpha avoids by an extra variable.",
     .source = "Negrut, Rampalli, Ottarsson & Sajdak 2007; Jay & Negrut 2007",
     .order = 2,
     .stages = 1,

@@ -87,10 +87,10 @@ static void accepted(void *self, int changed) {
 const hn_stepper hn_stepper_verlet = {
     .name = "verlet",
     .title = "velocity Verlet",
-    .about =
-        "Half a step of the velocities, a step of the positions, half a step of the velocities: "
-        "order 2. Where forces depend on positions alone, the energy error stays bounded. Where "
-        "they depend on velocities, as in every mechanism described by angles, it does not.",
+    .about = "Half a step of the velocities, a step of the positions, half a step of the "
+             "velocities: order 2. Where forces depend on positions alone, the energy error stays "
+             "bounded. Where they depend on velocities, as in every mechanism described by angles, "
+             "the energy is only as accurate as the order.",
     .source = "Swope, Andersen, Berens & Wilson 1982; Hairer, Lubich & Wanner 2003",
     .order = 2,
     .stages = 2,

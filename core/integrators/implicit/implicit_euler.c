@@ -32,8 +32,9 @@ static const hn_dae_stepper implicit_euler_dae = {.create = create_implicit_eule
 const hn_stepper hn_stepper_implicit_euler = {
     .name = "implicit-euler",
     .title = "implicit Euler",
-    .about = "Takes the slope at the end of the step: order 1. It damps every stiff motion, and "
-             "slow motions too. It also solves the differential-algebraic forms (index 1 to 3).",
+    .about =
+        "Takes the slope at the end of the step: order 1. It damps every stiff motion, and slow "
+        "motions too. It also solves the differential-algebraic forms (ggl, index2, index3).",
     .source = "Hairer & Wanner 1996, IV.3",
     .order = 1,
     .stages = 1,

@@ -32,7 +32,7 @@ const hn_stepper hn_stepper_radau3 = {
     .name = "radau3",
     .title = "Radau IIA, 2 stages",
     .about = "Order 3, two stages; damps every stiff motion. It also solves the "
-             "differential-algebraic forms (index 1 to 3).",
+             "differential-algebraic forms (ggl, index2, index3).",
     .source = "Hairer & Wanner 1996, IV.5",
     .order = 3,
     .stages = 2,

@@ -359,7 +359,7 @@ hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
     }
     return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "take radau5, radau3 or implicit-euler",
                        "%s cannot be used with index3:project=yes: its scheme computes its own "
-                       "velocities, and a projection after each step would destroy its order",
+                       "velocities, and a projection after each step would disturb them",
                        integrator);
 }
 
