@@ -329,7 +329,7 @@ static hn_status take_preset(hn_map *map, hn_diags *diags) {
     for (int k = 0; k < N_PRESETS; k++) {
         names[k] = PRESETS[k].preset.name;
     }
-    hn_strbuf_add(&hint, "there are ");
+    hn_strbuf_add(&hint, "the presets are ");
     hn_word_list(&hint, names, N_PRESETS, " and ");
     const hn_status status = hn_diags_add(diags, HN_ERR_INPUT, "/preset", hn_strbuf_text(&hint),
                                           "there is no preset called '%.40s'", map->preset);
