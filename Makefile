@@ -587,8 +587,10 @@ run-server: $(PROGRAM)
 	    LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(filter-out $(UNSANITISED),$(SCRIPTS)))
 
-run-bench: $(BENCH)
+run-bench: $(BENCH) $(PROGRAM)
 	@for b in $(BENCH); do echo "# $$(basename $$b)"; $$b || exit 1; done >build/bench.csv
+	@echo '# commands' >>build/bench.csv
+	@HOLONOM=$(PROGRAM) python3 tests/bench/commands.py >>build/bench.csv
 	@cp build/bench.csv tests/tables/bench.csv && cat tests/tables/bench.csv
 
 # ---- checking -------------------------------------------------------------------------------------------------
