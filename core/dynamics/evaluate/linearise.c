@@ -475,6 +475,15 @@ double hn_linear_entry(const hn_linear *l, hn_linear_term term, int k) {
     return *place_of(l, index_of(term), k);
 }
 
+void hn_linear_copy_whole(const hn_linear *l, hn_linear_term term, double *whole) {
+    const int at = index_of(term);
+    const term_values *of = &l->terms[at];
+    HN_ASSERT(of->values != NULL && is_matrix(at));
+    for (int k = 0; k < of->n_entries; k++) {
+        whole[(size_t)of->rows[k] * (size_t)l->nv + (size_t)of->cols[k]] = *place_of(l, at, k);
+    }
+}
+
 const double *hn_linear_list(const hn_linear *l, hn_linear_term term) {
     const term_values *of = &l->terms[index_of(term)];
     HN_ASSERT(of->values != NULL && of->listed);

@@ -53,6 +53,9 @@ const double *hn_linear_list(const hn_linear *l, hn_linear_term term);
 /// Entries of a matrix term that are not identically zero: their number, rows and columns
 /// (borrowed).
 int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows, const int **cols);
+/// Writes the entries of a matrix of either kind to their places in `whole`, row by row; the other
+/// places stay as they are.
+void hn_linear_copy_whole(const hn_linear *l, hn_linear_term term, double *whole);
 /// Entry k of hn_linear_pattern() of a matrix of either kind.
 double hn_linear_entry(const hn_linear *l, hn_linear_term term, int k);
 int hn_linear_entries(const hn_linear *l, hn_linear_term term); ///< their number alone

@@ -35,8 +35,8 @@ static unsigned terms_of(const hn_accel_jacobian *j) {
 
 static hn_status create_tapes(hn_accel_jacobian *j, hn_arena *arena) {
     const hn_accel_opts opts = {.baumgarte = j->stabilised, .want_lambda = 1};
-    HN_TRY(hn_linear_create(j->sys, terms_of(j), arena, &j->terms));
-    HN_TRY(hn_linear_create(j->sys, HN_LINEAR_V, arena, &j->twist));
+    HN_TRY(hn_linear_create_listed(j->sys, terms_of(j), arena, &j->terms));
+    HN_TRY(hn_linear_create_listed(j->sys, HN_LINEAR_V, arena, &j->twist));
     if (!j->gives) {
         HN_TRY(hn_accel_create(j->sys, &opts, arena, &j->accel));
     }
@@ -109,6 +109,8 @@ static hn_status allocate(hn_accel_jacobian *j, hn_arena *arena) {
         j->work[k / 4][k % 4] = hn_arena_doubles(arena, n);
     }
     j->W = hn_arena_doubles(arena, nc * nc);
+    j->whole_M = hn_arena_doubles(arena, nv * nv);
+    j->whole_J = hn_arena_doubles(arena, nc * nv);
     const int most = j->nv > j->nc ? j->nv : j->nc;
     const int good = hn_qr_init(&j->qr, arena, most, most);
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
@@ -174,10 +176,10 @@ static void subtract_by_speed(const hn_accel_jacobian *j, const double *x, doubl
 // out (nv) += k X' x for a term X
 static void add_transposed(const hn_accel_jacobian *j, hn_linear_term term, double k,
                            const double *x, double *out) {
-    const double *values = hn_linear_get(j->terms, term);
+    const double *list = hn_linear_list(j->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
     for (int e = 0; e < n; e++) {
-        out[cols[e]] += k * values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]] * x[rows[e]];
+        out[cols[e]] += k * list[e] * x[rows[e]];
     }
 }
 
@@ -206,16 +208,16 @@ hn_status hn_accel_jacobian_prepare(hn_accel_jacobian *j) {
 
 // entry of J where masses are of size 1, as linalg/saddle.h looks at it
 static double weigh_entry(const hn_accel_jacobian *j, int row, int col) {
-    const double *J = hn_linear_get(j->terms, HN_LINEAR_J),
-                 *M = hn_linear_get(j->terms, HN_LINEAR_M);
-    const double m = M[(size_t)col * (size_t)j->nv + (size_t)col];
-    return J[(size_t)row * (size_t)j->nv + (size_t)col] / (m > 0 ? sqrt(m) : 1);
+    const double m = j->whole_M[(size_t)col * (size_t)j->nv + (size_t)col];
+    return j->whole_J[(size_t)row * (size_t)j->nv + (size_t)col] / (m > 0 ? sqrt(m) : 1);
 }
 
 // one over the length of each row, short ones stretched no more than the accelerations do
 // (linalg/saddle.h, row_floor)
 static const double *scale_rows(const hn_accel_jacobian *j) {
     double *scale = j->work[0][1], longest = 0;
+    hn_linear_copy_whole(j->terms, HN_LINEAR_M, j->whole_M);
+    hn_linear_copy_whole(j->terms, HN_LINEAR_J, j->whole_J);
     for (int i = 0; i < j->nc; i++) {
         double sum = 0;
         for (int k = 0; k < j->nv; k++) {
@@ -321,16 +323,16 @@ static hn_status shift_multipliers(hn_accel_jacobian *j) {
 
 // (J a)_q = V(a) - V(0), as V is linear in the speeds and V(0) belongs to time
 static void find_twist(hn_accel_jacobian *j, double t) {
-    const double *V = hn_linear_get(j->twist, HN_LINEAR_V);
+    const double *V = hn_linear_list(j->twist, HN_LINEAR_V);
     const int *rows, *cols, n = hn_linear_pattern(j->twist, HN_LINEAR_V, &rows, &cols);
     hn_linear_run(j->twist, t, j->pose, j->a, NULL, NULL);
     for (int e = 0; e < n; e++) {
-        j->twisted[e] = V[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
+        j->twisted[e] = V[e];
     }
     if (j->has_time) {
         hn_linear_run(j->twist, t, j->pose, NULL, NULL, NULL);
         for (int e = 0; e < n; e++) {
-            j->twisted[e] -= V[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
+            j->twisted[e] -= V[e];
         }
     }
 }

@@ -82,11 +82,10 @@ static void put_displaced(const hn_accel_jacobian *j, const hn_slopes_target *at
 
 static void put_term_displaced(const hn_accel_jacobian *j, const hn_slopes_target *at,
                                hn_linear_term term, hn_complex s, hn_complex k) {
-    const double *values = hn_linear_get(j->terms, term);
+    const double *list = hn_linear_list(j->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
     for (int e = 0; e < n; e++) {
-        const double x = values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
-        put_displaced(j, at, rows[e], cols[e], s, k, x);
+        put_displaced(j, at, rows[e], cols[e], s, k, list[e]);
     }
 }
 

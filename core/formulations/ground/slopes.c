@@ -5,10 +5,10 @@
 
 void hn_slopes_add_term(const hn_accel_jacobian *j, hn_linear_term term, double k, const double *x,
                         double *out) {
-    const double *values = hn_linear_get(j->terms, term);
+    const double *list = hn_linear_list(j->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
     for (int e = 0; e < n; e++) {
-        out[rows[e]] += k * values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]] * x[cols[e]];
+        out[rows[e]] += k * list[e] * x[cols[e]];
     }
 }
 
@@ -59,10 +59,10 @@ void hn_slopes_put_entry(const hn_accel_jacobian *j, const hn_slopes_target *at,
 // k X, the columns of X along the speeds
 void hn_slopes_put_term(const hn_accel_jacobian *j, const hn_slopes_target *at, hn_linear_term term,
                         hn_complex k) {
-    const double *values = hn_linear_get(j->terms, term);
+    const double *list = hn_linear_list(j->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
     for (int e = 0; e < n; e++) {
-        const double x = values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
+        const double x = list[e];
         hn_slopes_put_entry(j, at, rows[e], cols[e], (hn_complex){x * k.re, x * k.im});
     }
 }
@@ -70,14 +70,14 @@ void hn_slopes_put_term(const hn_accel_jacobian *j, const hn_slopes_target *at, 
 // what (2) and (3) have in common
 void hn_slopes_put_saddle(const hn_accel_jacobian *j, hn_newton_matrix *to) {
     const hn_complex one = {1, 0};
-    const double *J = hn_linear_get(j->terms, HN_LINEAR_J);
+    const double *J = hn_linear_list(j->terms, HN_LINEAR_J);
     const int *rows, *cols, n = hn_linear_pattern(j->terms, HN_LINEAR_J, &rows, &cols);
     hn_newton_matrix_begin(to, j->nv + j->n_kept);
     hn_slopes_put_term(j, &(hn_slopes_target){to, 0, 0}, HN_LINEAR_M, one);
     hn_slopes_put_term(j, &(hn_slopes_target){to, j->nv, 1}, HN_LINEAR_J, one);
     for (int e = 0; e < n; e++) {
         const int place = j->place[rows[e]];
-        const double x = J[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
+        const double x = J[e];
         for (int k = 0; k < j->n_kept && j->combined; k++) {
             hn_newton_matrix_put(to, cols[e], j->nv + k, -x * j->W[rows[e] * j->n_kept + k], 0);
         }

@@ -37,6 +37,7 @@ struct hn_accel_jacobian {
     double *twisted;           ///< per entry of V's pattern: (J a)_q
     int n_kept, *kept, *place; ///< rows in use, and which of them a row is, -1: left out
     int may_combine, combined; ///< 1: rows in use are combinations, columns of W
+    double *whole_M, *whole_J; ///< nv x nv, nc x nv: M and J where rows are chosen, else zero
     double *W;                 ///< nc x n_kept
     hn_qr qr;                  ///< nc x nv and nv x nc
     hn_newton_matrix *matrix[HN_SLOPES_MATRICES];
