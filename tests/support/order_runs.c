@@ -15,7 +15,7 @@ static double error_of(const hn_system *sys, const hn_method_spec *spec, const d
     if (hn_run_create(sys, spec, q, v, NULL, &run, &diag) != HN_OK) {
         fail_msg("%s: %s", spec->formulation->name, diag.message);
     }
-    double worst = NAN;
+    double worst = (double)NAN;
     if (hn_run_advance(run, T) == HN_OK && hn_run_sample(run, T, &sample) == HN_OK) {
         worst = 0;
         for (int i = 0; i < hn_system_get_info(sys).n_user; i++) {
