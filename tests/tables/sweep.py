@@ -34,10 +34,12 @@ from threading import Lock
 from bounded import run_bounded
 
 LONGEST = 1.0  # [s] of motion
-LONGEST_OF_MANY = 0.1  # [s] where a slider counts loops
+LONGEST_OF_MANY = 0.1  # [s] where a slider counts loops or links,
+MOST_OF_MANY = 20  # [s] and no more than this over their number: steps times loops bound the work, on any machine
 TOO_DEAR = 120  # [s] of computing time for one run
 CORNERS = 4
 RANDOM = 4
+LIMITS = [LONGEST, LONGEST_OF_MANY, MOST_OF_MANY, TOO_DEAR, CORNERS, RANDOM]  # results of others do not serve
 SMALLER = (16, 256)
 OTHERS = ("projection@rk4", "ggl@radau5", "nullspace@rk4")
 OPEN_OR_CHART = ("index1", "baumgarte", "nullspace", "partitioning", "reduced")
@@ -137,8 +139,9 @@ def explain(program, name, scene, setting, method, duration, told):
 
 def sweep(program, name, scene, setting):
     """what came of one setting: "open" where its loops cannot be closed, else the runs that ended"""
-    many = any(p.get("integer") for _, p in sliders(scene))
-    duration = min(scene.get("duration", LONGEST), LONGEST_OF_MANY if many else LONGEST)
+    counts = [setting.get(slider, p["value"]) for slider, p in sliders(scene) if p.get("integer")]
+    longest = min(LONGEST_OF_MANY, MOST_OF_MANY / max(counts)) if counts else LONGEST
+    duration = min(scene.get("duration", LONGEST), longest)
     if run(program, name, setting, scene["methods"][0], 1e-9) is None:
         return {"open": 1, "runs": 0, "ended": []}
     ended = []
@@ -156,7 +159,7 @@ def sweep_all(program, tasks):
     with open(program, "rb") as binary:
         version = hashlib.sha256(binary.read()).hexdigest()[:16]
     kept = [json.loads(line) for line in DONE.read_text().splitlines()] if DONE.exists() else []
-    kept = [one for one in kept if one["version"] == version and one["limits"] == [LONGEST, CORNERS, RANDOM]]
+    kept = [one for one in kept if one["version"] == version and one["limits"] == LIMITS]
     DONE.write_text("".join(json.dumps(one) + "\n" for one in kept))
     results = {tuple(one["key"]): one["result"] for one in kept}
     lock = Lock()
@@ -167,7 +170,7 @@ def sweep_all(program, tasks):
         result = sweep(program, key[0], scene, setting)
         with lock, DONE.open("a") as file:
             results[key] = result
-            file.write(json.dumps({"version": version, "limits": [LONGEST, CORNERS, RANDOM], "key": key, "result": result}) + "\n")
+            file.write(json.dumps({"version": version, "limits": LIMITS, "key": key, "result": result}) + "\n")
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(lambda task: work(*task), tasks))

@@ -233,6 +233,7 @@ static bool rests_on_noise(hn_accel *s, const double *lambda, double rank_tol) {
     }
 
     // against the multipliers
+    s->ops += 7.0 * s->n_J;
     for (int j = 0; j < s->nv; j++) {
         forces = hypot(forces, force[j]);
     }
