@@ -277,7 +277,7 @@ def main():
     program, words = sys.argv[1], sys.argv[2:]
     resource.setrlimit(resource.RLIMIT_NOFILE, (resource.getrlimit(resource.RLIMIT_NOFILE)[1],) * 2)
     good = True
-    print(f"healthz beside each attack; bound {BOUND} s at the 95th percentile\n")
+    print(f"healthz beside each attack; bound {BOUND} s at the 95th percentile; load of the machine before: {os.getloadavg()[0]:.1f}\n")
     print(f"{'attack':38} {'median':>9} {'95 %':>9} {'longest':>9} {'to end':>7}  outcome")
     for name, attack in ATTACKS:
         if words and not any(w in name for w in words):
