@@ -298,7 +298,7 @@ class Kept(unittest.TestCase):
     def test_lists_that_are_asked_for_at_once_make_way_for_one_another(self):
         """More of them than threads: one that waited for what another held kept that other from its turn, and all stood still."""
         with tempfile.TemporaryDirectory() as folder:
-            self.add_long_files(folder, 12, 12)
+            self.add_long_files(folder, 12, 12 // driver.SLOW)  # more than a slice of time for each list
             server = driver.Server("--runs", folder)
             with concurrent.futures.ThreadPoolExecutor(8) as pool:
                 lists = list(pool.map(lambda _: server.ask("GET", "/api/v1/runs", timeout=120).json(), range(8)))
@@ -307,7 +307,7 @@ class Kept(unittest.TestCase):
 
     def test_a_run_that_is_read_from_a_large_file_holds_up_no_connection(self):
         with tempfile.TemporaryDirectory() as folder:
-            self.add_long_files(folder, 1, 128)
+            self.add_long_files(folder, 1, 128 // driver.SLOW)
             server = driver.Server("--runs", folder, "--max-connections", "20")  # few event loops: each has some of those below
             kept = [server.connect() for _ in range(12)]
 

@@ -33,6 +33,6 @@ void hn_jobs_stop(hn_jobs *jobs);
 void hn_jobs_free(hn_jobs *jobs); ///< stops first; NULL is legal
 
 /// Lets other jobs work first. A job calls it often; it returns at once, unless others wait and the
-/// job has worked for a slice of time. NULL is legal. The caller holds no lock that a job waits for.
+/// job has worked for a slice of time. NULL is legal. The caller holds no lock that jobs need.
 void hn_job_make_way(hn_job_turn *turn);
 #endif
