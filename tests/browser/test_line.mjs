@@ -2,7 +2,7 @@
 // The line between page and server: cut and mended, hidden, late, and after the end of a run.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, fastest, playTo, read, soon, until } from "./support.mjs";
+import { createBench, drawn, fastest, playTo, read, soon, until } from "./support.mjs";
 
 const LONG = 60000; // [ms] that a run may take on a busy machine
 
@@ -142,12 +142,30 @@ test("a change made at a run's end, before the page heard of the end, runs on; w
   );
 });
 
+test("an answer that comes after the run's end, told by the stream, does not set it running again", async (t) => {
+  const page = await open(t, { hash: "#pendulum" });
+  await fastest(page);
+  await page.route("**/api/v1/comparisons/*", async (route) => {
+    const answer = await route.fetch(); // made while it runs, and on its way until the end
+    await until(page, (data) => data.state === "finished", LONG);
+    await route.fulfill({ response: answer });
+  });
+  const late = page.waitForResponse((answer) => answer.request().method() === "PATCH");
+  await page.keyboard.press("Space");
+  assert.equal((await (await late).json()).state, "running");
+  await page.unroute("**/api/v1/comparisons/*");
+  await drawn(page);
+  assert.equal(await read(page, (data) => data.state), "finished");
+  await soon(async () => assert.match(await page.textContent("#play"), /Replay/));
+});
+
 test("answers that overtake the stream are not undone by what the stream tells later", async (t) => {
   const line = await bench.line(t);
   const page = await open(t, { url: line.url });
   line.hold();
-  for (const speed of [2, 5, 10]) {
-    await page.keyboard.press("=");
+  // slower, so that the run cannot end while the page does not hear of it
+  for (const speed of [0.5, 0.25, 0.1]) {
+    await page.keyboard.press("-");
     await until(page, `(data) => data.speed === ${speed}`);
   }
   await page.focus("#play");
@@ -160,7 +178,7 @@ test("answers that overtake the stream are not undone by what the stream tells l
     new MutationObserver(() =>
       globalThis.seen.push([
         document.querySelector("#play").textContent,
-        document.querySelector("#transport .speed").textContent,
+        document.querySelector("#speed").value,
       ]),
     ).observe(document.querySelector("#transport"), {
       subtree: true,
@@ -173,7 +191,7 @@ test("answers that overtake the stream are not undone by what the stream tells l
   await until(page, `(data) => Number(data.stream.id) >= ${last} + 5`);
   const seen = await page.evaluate(() => globalThis.seen);
   assert.deepEqual(
-    seen.filter(([play, speed]) => !/Play/.test(play) || !/10/.test(speed)),
+    seen.filter(([play, speed]) => !/Play/.test(play) || speed !== "0.1"),
     [],
   );
 });

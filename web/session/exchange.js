@@ -119,12 +119,9 @@ export function createExchange(store, notice) {
     data.askedEnd = body.duration ?? 0;
     adopt(description);
     if (old) {
-      api.deleteComparison(old).catch((error) => {
-        // one that the server has closed itself is closed
-        if (!(error instanceof Problem) || error.status !== 404) {
-          notice("the server could not close the previous comparison");
-        }
-      });
+      api
+        .deleteComparison(old)
+        .catch(() => notice("the server could not close the previous comparison"));
     }
   }
 

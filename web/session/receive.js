@@ -52,6 +52,8 @@ export function createReceiver(store, notice) {
   const data = store.data;
   /** id of the newest event contained in an answer: the state in an older event is out of date */
   let covered = 0;
+  /** id of the newest event that told a state: the state in an older answer is out of date */
+  let stated = 0;
 
   /** The present run becomes the one "before" if only its methods or settings change. */
   function keepBefore(description) {
@@ -139,7 +141,8 @@ export function createReceiver(store, notice) {
       store.emit("scene");
       store.emit("methods");
     }
-    applyState(description);
+    const { state, speed } = description;
+    applyState(description.last_event < stated ? { speed } : { state, speed });
     if (restarted && description.latest?.frame === 0) {
       applyFrame(description.latest); // later frames come by the stream, none is left out
     }
@@ -168,15 +171,17 @@ export function createReceiver(store, notice) {
     reset: ({ description }) => applyDescription(description),
     state: (change, id) => {
       if (id > covered) {
+        stated = id;
         applyState(change);
       }
     },
     gap: ({ from, to }) =>
       notice(`the server no longer has events ${from} to ${to}; the curves have a hole there`),
-    end: ({ generation, deleted }) => {
+    end: ({ generation, deleted }, id) => {
       if (!deleted && generation !== data.generation) {
         return false;
       }
+      stated = Math.max(stated, id);
       // a comparison that the server has closed is not finished: Play makes it again
       applyState({ state: deleted ? "paused" : "finished", speed: data.speed });
       return true;
@@ -194,12 +199,14 @@ export function createReceiver(store, notice) {
       data.id = description.id;
       data.generation = description.generation;
       covered = description.last_event;
+      stated = 0;
     },
     /** Another comparison: its events are counted from the beginning. @param {string} id */
     begin(id) {
       data.id = id;
       data.generation = -1;
       covered = 0;
+      stated = 0;
     },
     /**
      * Takes one event of the stream.
