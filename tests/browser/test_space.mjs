@@ -173,13 +173,17 @@ for (const [theme, width] of [
       bypassCSP: true,
     });
     await isSolid(page);
-    // it has too many joints to name all of them: the cut ones have their names
-    await soon(async () =>
-      assert.deepEqual(
-        Object.keys(await namePlaces(page)).sort(),
-        [1, 2, 3, 4, 5, 6].map((k) => `S${k}`),
-      ),
-    );
+    // it has too many joints to name all: the cut ones have their names, where there is room
+    await soon(async () => {
+      const names = Object.keys(await namePlaces(page));
+      assert.ok(names.every((name) => /^S[1-6]$/.test(name)) && names.length >= 4, String(names));
+    });
+    await soon(async () => {
+      const tools = await page.locator(".space-tools").boundingBox();
+      const tops = Object.values(await namePlaces(page)).map(([, y]) => y);
+      const lowest = tools.y + tools.height - 4; // above it no name has room beside its joint
+      assert.ok(width > 639 || Math.min(...tops) > lowest, `${tops} below ${lowest}`);
+    });
     assert.equal(
       await page.textContent(".glyphs"),
       "thin rod: axis of a joint · cone: sliding drive",

@@ -8,6 +8,7 @@ import { drawnPoints } from "../../widgets/pieces.js";
 
 const HALF_ANGLE = 0.3; // [rad] half the vertical angle of view
 const MARGIN = { side: 44, top: 36, bottom: 48 }; // [px]
+const STACKED = { query: "(max-width: 639.5px)", top: 96 }; // [px] two rows of buttons lie there
 const SCALE_BAR = 150; // [px] at most
 const MOST_POSES = 100; // of the reference solution
 const ZOOM = { least: 0.1, most: 30 }; // of what fits
@@ -88,9 +89,10 @@ export function createRig(data, size) {
       return (Math.min(...along) + Math.max(...along)) / 2;
     });
     const below = Math.min(footRoom, 0.28 * size.height);
+    const above = matchMedia(STACKED.query).matches ? STACKED.top : MARGIN.top;
     const room = {
       x: Math.max(0.2, 1 - (2 * MARGIN.side) / Math.max(1, size.width)),
-      y: Math.max(0.2, 1 - (MARGIN.top + below) / Math.max(1, size.height)),
+      y: Math.max(0.2, 1 - (above + below) / Math.max(1, size.height)),
     };
     const aspect = size.width / Math.max(1, size.height);
     const deep = perspective ? Math.tan(HALF_ANGLE) : 0;
@@ -103,7 +105,7 @@ export function createRig(data, size) {
         );
       }),
     );
-    const lift = (fitted * (below - MARGIN.top)) / Math.max(1, size.height);
+    const lift = (fitted * (below - above)) / Math.max(1, size.height);
     target = [0, 1, 2].map(
       (k) => axes.reduce((sum, axis, i) => sum + axis[k] * middle[i], 0) - lift * look.up[k],
     );
