@@ -116,7 +116,7 @@ void hn_exercise_text(hn_strbuf *b, const hn_exercise *p, uint64_t seed, const c
     hn_paragraphs_join(b, p->statement);
     hn_strbuf_add(b, "\n");
     put_numbers(b, p, seed);
-    hn_strbuf_add(b, "\nHand in a JSON file: ");
+    hn_strbuf_add(b, "\nHand in a JSON file:\n  ");
     submission_form(b, p, student);
     hn_strbuf_add(b, "\nEach entry is a formula in quotes; names:");
     for (int i = 0; i < p->n_names; i++) {

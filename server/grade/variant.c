@@ -156,7 +156,7 @@ void hn_variant_notation(hn_strbuf *b, const hn_variant *x) {
 /// The shape of the submission, how formulas are written, and where the hints are.
 static void put_hand_in(hn_strbuf *b, const hn_variant *x) {
     const hn_exercise *p = x->exercise;
-    hn_strbuf_add(b, "\nHand in a JSON file: {");
+    hn_strbuf_add(b, "\nHand in a JSON file:\n  {");
     put_variant(b, x);
     for (int i = 0; i < x->n_parts; i++) {
         hn_strbuf_printf(b, "%s\"%s\": ...", i ? ", " : "", x->part[i].id);

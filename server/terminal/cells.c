@@ -136,20 +136,21 @@ int hn_cells_printf(hn_cells *c, hn_area area, int x, int y, int colour, int sty
     return hn_cells_put(c, area, x, y, colour, style, line);
 }
 
-/// Bytes of the longest beginning of text that fits, broken at a blank where there is one that may
-/// be.
+/// Bytes of the longest beginning of text that fits, broken at a blank where there is one, best
+/// at one where a line may end.
 static size_t fitting(const char *text, int columns) {
-    size_t bytes = 0, blank = 0;
+    size_t bytes = 0, blank = 0, other = 0;
     int used = 0;
     for (int n; (n = character_bytes(text + bytes)) > 0; bytes += (size_t)n) {
         if (text[bytes] == '\n') {
             return bytes;
         }
-        if (text[bytes] == ' ' && hn_line_may_break(text, bytes)) {
-            blank = bytes;
+        if (text[bytes] == ' ') {
+            other = bytes;
+            blank = hn_line_may_break(text, bytes) ? bytes : blank;
         }
         if (++used > columns) {
-            return blank > 0 ? blank : bytes;
+            return blank > 0 ? blank : other > 0 ? other : bytes;
         }
     }
     return bytes;

@@ -25,5 +25,7 @@ static bool begins_with_unit(const char *text) {
 
 bool hn_line_may_break(const char *text, size_t at) {
     const bool number = at > 0 && isdigit((unsigned char)text[at - 1]);
-    return !number || !begins_with_unit(text + at + 1);
+    const bool before_sign = text[at + 1] == '=' && text[at + 2] == ' ';
+    const bool behind_sign = at > 1 && text[at - 1] == '=' && text[at - 2] == ' ';
+    return !before_sign && !behind_sign && !(number && begins_with_unit(text + at + 1));
 }

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 /// Returns whether a line may end before the blank text[at]: not between a number and its unit, as
-/// in "27 mm" or "4 rad/s".
+/// in "27 mm" or "4 rad/s", nor beside an equals sign, as in "l1 = 0.5". Where no other blank is,
+/// those who fold break there all the same.
 bool hn_line_may_break(const char *text, size_t at);
 #endif

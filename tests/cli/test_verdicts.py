@@ -64,8 +64,8 @@ def statuses(folder):
 
 
 def hand_in_line(*words):
-    text = run("problem", "p1", "--wide", *words).stdout
-    return json.loads(text.split("Hand in a JSON file: ")[1].splitlines()[0].replace("...", "null"))
+    text = run("problem", "p1", *words).stdout
+    return json.loads(text.split("Hand in a JSON file:\n")[1].splitlines()[0].replace("...", "null"))
 
 
 def own_variant(folder):

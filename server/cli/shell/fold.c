@@ -34,16 +34,17 @@ int hn_fold_width(const char *text, size_t n) {
 }
 
 size_t hn_fold_line(const char *text, int columns) {
-    size_t n = 0, blank = 0, factor = 0;
+    size_t n = 0, blank = 0, other = 0, factor = 0;
     int width = 0;
     while (text[n] && text[n] != '\n') {
         // a word that is longer than the line is not broken, but a product is behind a factor
         const bool here = text[n] == ' ' && hn_line_may_break(text, n);
-        if (width >= columns && (blank > 0 || factor > 0 || here)) {
-            return here ? n : blank > 0 ? blank : factor;
+        if (width >= columns && (blank > 0 || factor > 0 || other > 0 || text[n] == ' ')) {
+            return here ? n : blank > 0 ? blank : factor > 0 ? factor : other > 0 ? other : n;
         }
         const size_t escape = escape_length(text + n);
         blank = here && width > 0 ? n : blank;
+        other = text[n] == ' ' && width > 0 ? n : other;
         width += escape == 0;
         n += escape ? escape : character_length(text + n);
         factor = text[n - 1] == '*' && text[n] != ' ' ? n : factor;
@@ -63,13 +64,15 @@ static void add_line(hn_strbuf *b, const char *line, int columns, int hang) {
     }
 }
 
-static void add_folded(hn_strbuf *b, const char *text, int columns, int hang_of_flush) {
+/// hang: of lines that begin at the left edge; `inset`: others are folded too.
+static void add_folded(hn_strbuf *b, const char *text, int columns, int hang, bool inset) {
     while (*text) {
         const size_t n = strcspn(text, "\n");
-        if (columns == 0 || hn_fold_width(text, n) <= columns) {
+        const bool flush = *text != ' ';
+        if (columns == 0 || hn_fold_width(text, n) <= columns || (!flush && !inset)) {
             hn_strbuf_add_n(b, text, n);
         } else {
-            add_line(b, text, columns, *text == ' ' ? HANG : hang_of_flush);
+            add_line(b, text, columns, flush ? hang : HANG);
         }
         text += n;
         if (*text == '\n') {
@@ -80,9 +83,13 @@ static void add_folded(hn_strbuf *b, const char *text, int columns, int hang_of_
 }
 
 void hn_fold_add(hn_strbuf *b, const char *text, int columns) {
-    add_folded(b, text, columns, HANG);
+    add_folded(b, text, columns, HANG, true);
 }
 
 void hn_fold_prose(hn_strbuf *b, const char *text, int columns) {
-    add_folded(b, text, columns, 0);
+    add_folded(b, text, columns, 0, true);
+}
+
+void hn_fold_paragraphs(hn_strbuf *b, const char *text, int columns) {
+    add_folded(b, text, columns, 0, false);
 }

@@ -16,4 +16,6 @@ size_t hn_fold_line(const char *text, int columns);
 void hn_fold_add(hn_strbuf *b, const char *text, int columns);
 /// The same for paragraphs: lines that begin at the left edge go on there.
 void hn_fold_prose(hn_strbuf *b, const char *text, int columns);
+/// The same, and lines that are set in stay as they are: formulas, and answers to be copied.
+void hn_fold_paragraphs(hn_strbuf *b, const char *text, int columns);
 #endif

@@ -94,5 +94,6 @@ hn_exit hn_cli_print_text(hn_strbuf *text) {
 }
 
 hn_exit hn_cli_print_prose(hn_strbuf *text) {
-    return print_folded(text, hn_terminal_prose(), hn_fold_prose);
+    const bool screen = hn_terminal_limit() > 0;
+    return print_folded(text, hn_terminal_prose(), screen ? hn_fold_prose : hn_fold_paragraphs);
 }

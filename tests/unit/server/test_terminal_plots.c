@@ -114,14 +114,15 @@ static void a_map_names_columns_below_a_tick_at_their_edge(void **state) {
     hn_cells_free(&c);
 }
 
-static void a_line_is_not_broken_between_a_number_and_its_unit(void **state) {
+static void a_line_is_not_broken_beside_a_unit_or_an_equals_sign(void **state) {
     (void)state;
-    const char *const whole[] = {"gap 27 mm", "after 4 s.", "right to 1 %",
-                                 "4 rad/s",   "3 1/s",      "12 µm"};
+    const char *const whole[] = {"gap 27 mm", "after 4 s.", "right to 1 %", "4 rad/s",
+                                 "3 1/s",     "12 µm",      "l1 = 0.5"};
     for (size_t i = 0; i < sizeof whole / sizeof *whole; i++) {
         const char *blank = strrchr(whole[i], ' ');
         assert_false(hn_line_may_break(whole[i], (size_t)(blank - whole[i])));
     }
+    assert_false(hn_line_may_break("l1 = 0.5", 2));
     const char *const broken[] = {"of 27 methods", "a m", "5 scenes", "in 2 sixth"};
     for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
         const char *blank = strrchr(broken[i], ' ');
@@ -131,6 +132,7 @@ static void a_line_is_not_broken_between_a_number_and_its_unit(void **state) {
     // one that fills the line alone is broken all the same, as nothing else can be
     assert_int_equal(hn_text_rows("worst gap 27 mm", 13), 2);
     assert_int_equal(hn_text_rows("27 mm", 3), 2);
+    assert_int_equal(hn_text_rows("with l1 = 0.5", 8), 2);
 }
 
 static void a_map_finds_the_nearest_cell_and_says_what_is_in_it(void **state) {
@@ -173,7 +175,7 @@ int main(void) {
         cmocka_unit_test(a_map_shades_what_ran_by_its_gap_and_marks_what_grew),
         cmocka_unit_test(marks_of_a_map_leave_the_outcome_of_their_cell),
         cmocka_unit_test(a_map_names_columns_below_a_tick_at_their_edge),
-        cmocka_unit_test(a_line_is_not_broken_between_a_number_and_its_unit),
+        cmocka_unit_test(a_line_is_not_broken_beside_a_unit_or_an_equals_sign),
         cmocka_unit_test(a_map_finds_the_nearest_cell_and_says_what_is_in_it),
         cmocka_unit_test(bars_have_lengths_in_proportion_and_a_negative_one_is_lighter),
     };
