@@ -72,7 +72,10 @@ test("where the loops allow no more, the last configuration is held and the reas
   await drag(page, "B", 60, -150);
   await until(page, (data) => data.drag?.held);
   await soon(async () =>
-    assert.match(await page.textContent(".drag-note"), /^Held here: no closed configuration near this one/),
+    assert.match(
+      await page.textContent(".drag-note"),
+      /^Held here: no closed configuration near this one/,
+    ),
   );
   await soon(async () => assert.equal(await page.locator(".leash").count(), 1));
   const finite = await read(page, (data) => data.drag.points.every(Number.isFinite));

@@ -190,4 +190,8 @@ test("a link that was changed or cut off names the field, and the rest is read",
     faults.map((fault) => fault.split(" ").slice(0, 2).join(" ")),
     ["l1 is", "method has", "frame is", "show names", "no field", "'build=%E2%8' is"],
   );
+  // the server takes no request with a zero character: it would cost the other entries too
+  const zero = decodeLink("scene=four-bar&method=index1@rk4:h=1e-3&method=projection@rk4:h%00=1");
+  assert.deepEqual(zero.link.methods, ["index1@rk4:h=1e-3"]);
+  assert.deepEqual(zero.faults, ["'method=projection@rk4:h%00=1' holds a zero character"]);
 });

@@ -20,7 +20,8 @@ const FARTHEST = 1e12;
  * empty; `zoom` [s] of the plots, or empty; `why`: the method whose card is open, or -1; `speed`: 0
  * where none is said; `study`, `map`, `panel`, `lesson`: what is open, or ""; `judged`, `until`,
  * `step`: the coordinate whose error the budget splits, or "", its end and its step [s], or 0;
- * `budget`: what of it is shown, or "": the error; `note`: what its author wrote; `pulls`: what a hand did, as the server's log has it.
+ * `budget`: what of it is shown, or "": the error; `note`: what its author wrote; `pulls`: what a
+ * hand did, as the server's log has it.
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
  *   selected: number, hidden: number[], show: string[], look: number[], camera: number[],
  *   upper: string[], lower: string[], zoom: number[], why: number, speed: number, study: string,
@@ -264,6 +265,8 @@ export function decodeLink(fragment) {
     const [key, value] = [item.split("=")[0], item.split("=").slice(1).join("=")].map(decode);
     if (key === null || value === null) {
       faults.push(`'${item.slice(0, 40)}' is cut off`);
+    } else if (`${key}${value}`.includes("\0")) {
+      faults.push(`'${item.slice(0, 40)}' holds a zero character`); // no request may have one
     } else if (key.startsWith("set.")) {
       const fault = putParameter(link, key.slice(4), value);
       faults.push(...(fault ? [`${key.slice(4)} ${fault}`] : []));
