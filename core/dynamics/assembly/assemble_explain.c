@@ -323,7 +323,7 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
 
     // what to try
     size_t used = strlen(hint);
-    const char *other = pins[0] ? "change a start value that is given as 'value'"
+    const char *other = pins[0] ? "change a start value that is held"
                                 : (used ? "" : "start from another guess, or change a length");
     (void)snprintf(hint + used, sizeof hint - used, "%s%s", used && other[0] ? ", or " : "", other);
 
