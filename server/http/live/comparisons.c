@@ -445,7 +445,7 @@ void hn_handle_comparison_patch(hn_request *r) {
 void hn_handle_comparison_delete(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
     hn_session *session = look_for_session(r);
-    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // one that has gone is deleted
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // the same for one that is gone
     if (!session) {
         return;
     }

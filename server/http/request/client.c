@@ -16,8 +16,8 @@ static hn_client client_of_ip4(struct in_addr a) {
     return ntohl(a.s_addr) == INADDR_LOOPBACK ? 0 : make_client(&a, sizeof a);
 }
 
-/// A socket for both families shows the addresses of the older one as ::ffff:a.b.c.d. Of the newer
-/// one a household has 2^64: all of them are one client.
+/// A socket for both families shows IPv4 addresses as ::ffff:a.b.c.d. A household has 2^64 IPv6
+/// addresses, which are one client.
 static hn_client client_of_ip6(const struct in6_addr *a) {
     if (IN6_IS_ADDR_V4MAPPED(a)) {
         struct in_addr inner;

@@ -90,8 +90,9 @@ static bool has_cut_value(const hn_request *r) {
 static bool check_headers(hn_request *r) {
     int n[N_ONCE] = {0};
     if (has_cut_value(r)) {
-        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
-                         "a header holds a zero byte or goes on in a second line; none may");
+        hn_reply_problem(
+            r, HN_PROBLEM_BAD_REQUEST, NULL,
+            "a header holds a zero byte or continues on a second line; neither is allowed");
         return false;
     }
     MHD_get_connection_values(r->connection, MHD_HEADER_KIND, count_header, n);

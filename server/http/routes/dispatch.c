@@ -126,7 +126,7 @@ static bool is_too_long_to_drain(const hn_request *r) {
            r->body_dropped > MAX_DRAINED;
 }
 
-/// A refusal in place of the reply that is there: a file of the page, or where else to look.
+/// Puts a refusal in place of the present reply, a file of the page or a redirect.
 static void refuse_body(hn_request *r) {
     if (r->response) {
         MHD_destroy_response(r->response);

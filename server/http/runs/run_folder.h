@@ -23,6 +23,6 @@ bool hn_run_folder_stamp(const char *folder, const char *id, hn_run_stamp *out);
 /// Calls `see` with the id of every file of the folder that has the name of a run. Whether the file
 /// is whole is seen when it is read.
 void hn_run_folder_each(const char *folder, void (*see)(void *user, const char *id), void *user);
-/// Removes the file of an id. One that there is not is legal.
+/// Removes the file of an id. An id without a file is legal.
 void hn_run_folder_delete(const char *folder, const char *id);
 #endif

@@ -40,7 +40,7 @@ hn_kept_run *hn_runs_find(hn_runs *all, const char *id);
 HN_MUST_CHECK hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client client,
                                       hn_kept_run **out, int *begun);
 void hn_runs_release(hn_runs *all, hn_kept_run *run);
-/// Stops it if it computes, and forgets it, in the folder too. One that there is not is legal.
+/// Stops it if it computes, and forgets it, in the folder too. An id that no run has is legal.
 void hn_runs_delete(hn_runs *all, const char *id);
 /// Returns the phase.
 hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run);

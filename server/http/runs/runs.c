@@ -210,7 +210,7 @@ void hn_handle_run_get(hn_request *r) {
 
 void hn_handle_run_delete(hn_request *r) {
     hn_runs_delete(r->context->runs, r->parts[0]);
-    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // one that has gone is deleted
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // the same for one that is gone
 }
 
 /// The document that `method` names by its index; 0 with a problem as reply.

@@ -567,7 +567,7 @@ void hn_handle_study_patch(hn_request *r) {
 void hn_handle_study_delete(hn_request *r) {
     study *s = look_for_study(r), *dead[1];
     int n_dead = 0;
-    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // one that has gone is deleted
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // the same for one that is gone
     if (!s) {
         return;
     }
