@@ -44,8 +44,7 @@ bool hn_graph_failed(const hn_graph *g);
 /// Returns HN_OK, HN_ERR_MEMORY, or HN_ERR_STOPPED where the interrupt ended the work.
 hn_status hn_graph_status(const hn_graph *g);
 /// Sets the callback that building a graph and compiling a tape ask now and then whether to stop.
-/// Sets the question that long work on the graph asks. The data that it reads must outlive the
-/// graph.
+/// The data that it reads must outlive the graph.
 void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt);
 /// Asks it now. Returns true where the graph has been interrupted, which marks it failed until
 /// hn_graph_go_on().

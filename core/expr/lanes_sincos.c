@@ -160,8 +160,8 @@ __attribute__((target("avx2,fma"))) static inline void rows_avx2(const void *ind
 
 __attribute__((target("avx2,fma"))) static void four_avx2(double a, double b, double c, double d,
                                                           double *sine, double *cosine) {
-    /// What this thread asked for last: the watch and the next step, or a projection and its
-    /// corrections, ask at one configuration by tapes of their own. At first: the angles +0.
+    // the angles that this thread asked for last, +0 at first: the watch and the next step, or a
+    // projection and its corrections, ask at one configuration by tapes of their own
     static _Thread_local struct { avx2_v angle, sine, cosine; } last = {.cosine = {1, 1, 1, 1}};
     const avx2_v x = {a, b, c, d};
     if (_mm256_movemask_pd((__m256d)((avx2_i)x != (avx2_i)last.angle)) != 0) {

@@ -181,7 +181,7 @@ static void put_head(const emitter *e) {
                         "typedef void (*hn_four)(double, double, double, double, double *, "
                         "double *);\n"
                         "extern double sin(double), cos(double);\n");
-    if (!e->width) {
+    if (!e->width) { // single numbers too: more registers, and results beside their operands
         hn_strbuf_printf(e->b,
                          "extern double sqrt(double);\n"
                          "extern void sincos(double, double *, double *);\n"

@@ -53,6 +53,7 @@ static double call(const hn_tape_instruction *i, const double *w) {
     X(TAPE_CALL2, w[i->v[0]] = call(i, w))
 #define TAPE_ARITHMETIC(X) HN_TAPE_OPS_BUT_END(X)
 
+/// Finds the angles, if four can be found at once; returns the instruction to go on with.
 static const hn_tape_instruction *begin(const hn_tape *tape, double *w) {
     return tape->four ? find_angles(tape, w) : tape->code;
 }

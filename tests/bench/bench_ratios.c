@@ -46,14 +46,20 @@ typedef struct subject {
     double t, sample[BATCHES];
 } subject;
 
+/// The next evaluation is at another state: angles that stay would be found once only.
+static void move_on(int n, double *q, double *v, const double *a) {
+    for (int i = 0; i < n; i++) {
+        q[i] += 1e-12 * v[i];
+        v[i] += 1e-12 * a[i];
+    }
+}
+
 static double time_hand_ladder(subject *s) {
     const int loops = s->n / 2;
     const double start = hn_clock_thread();
     for (int k = 0; k < s->evals; k++) {
         hn_hand_ladder(loops, s->q, s->v, s->a, s->lambda);
-        for (int i = 0; i < s->n; i++) {
-            s->v[i] += 1e-12 * s->a[i];
-        }
+        move_on(s->n, s->q, s->v, s->a);
     }
     return (hn_clock_thread() - start) / s->evals;
 }
@@ -65,9 +71,7 @@ static double time_hand(subject *s) {
     const double start = hn_clock_thread();
     for (int k = 0; k < EVALS; k++) {
         hn_hand_fourbar(q, v, a, lambda);
-        for (int i = 0; i < 3; i++) {
-            v[i] += 1e-12 * a[i];
-        }
+        move_on(3, q, v, a);
     }
     return (hn_clock_thread() - start) / EVALS;
 }
@@ -80,9 +84,7 @@ static double time_accel(subject *s) {
         if (hn_accel_eval(s->accel, 0, s->q, s->v, 0, 0, s->a, s->lambda, NULL) != HN_OK) {
             give_up(s->name, "there is no answer");
         }
-        for (int i = 0; i < s->n; i++) {
-            s->v[i] += 1e-12 * s->a[i];
-        }
+        move_on(s->n, s->q, s->v, s->a);
     }
     const double each = (hn_clock_thread() - start) / s->evals;
     if (hn_accel_fallbacks(s->accel) != fallbacks) {

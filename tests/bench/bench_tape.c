@@ -123,6 +123,7 @@ static double seconds(void) {
 
 static void feed_back(double *in, const double *out) {
     for (int i = 0; i < 3; i++) {
+        in[i] += 1e-12 * in[3 + i]; // angles that stay would be found once only
         in[3 + i] += 1e-12 * out[i];
     }
 }
