@@ -128,7 +128,7 @@ static void take_cheapest(hn_workbench *w) {
         hn_methods_add(w, spelling);
         hn_workbench_say(w, "%s runs beside the others", shown);
     } else {
-        hn_workbench_say(w, known ? "no run of this study is so accurate"
+        hn_workbench_say(w, known ? "no run of this study is accurate enough"
                                   : "the cheapest method is known when the study is done");
     }
 }
