@@ -53,12 +53,24 @@ class Completion(Tmux):
             self.keys("Tab")
             self.assertTrue(self.stands(wanted), f"{shell}: after '{typed}' and Tab there is\n{self.screen()}")
         for typed, name, says in LISTS:
-            self.keys("C-c")
+            self.drop_line()
             self.keys("C-l")
             self.keys("-l", typed)
             self.wait_for(rf"> {re.escape(typed)}?\s*\n")
             self.keys(*("Tab", "Tab")[:2 if shell.startswith("bash") else 1])
             self.wait_for(f"(?s)(?=.*{name})(?=.*{says})")
+
+    def drop_line(self):
+        """Ctrl-C until the prompt is alone on its line: a shell that is still listing candidates misses the first one."""
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            self.keys("C-c")
+            for _ in range(20):
+                screen = self.screen().split("\n")
+                if screen[int(self.tmux("display-message", "-p", "#{cursor_y}"))].rstrip() == ">":
+                    return
+                time.sleep(0.05)
+        self.fail(f"the line was not dropped\n{self.screen()}")
 
     def stands(self, line):
         """Whether the line of the cursor is this one, the cursor behind it."""
