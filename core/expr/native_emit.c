@@ -181,13 +181,15 @@ static void put_head(const emitter *e) {
                         "typedef void (*hn_four)(double, double, double, double, double *, "
                         "double *);\n"
                         "extern double sin(double), cos(double);\n");
-    if (!e->width) { // single numbers too: more registers, and results beside their operands
+    // single numbers: results beside their operands; compiled for AVX-512 some tapes differ from
+    // the interpreter in a last bit
+    if (!e->width) {
         hn_strbuf_printf(e->b,
                          "extern double sqrt(double);\n"
                          "extern void sincos(double, double *, double *);\n"
                          "typedef double lanes;\n"
                          "#define TARGET %s\n",
-                         targets[e->set]);
+                         targets[e->set == HN_LANES_PLAIN ? HN_LANES_PLAIN : HN_LANES_AVX2]);
         return;
     }
     hn_strbuf_printf(e->b,

@@ -60,7 +60,7 @@ expect 'the loop of index-1 opens, Baumgarte keeps it within a millimetre, proje
 sed 's/"four-bar"/"four-baar"/' "$work/example.c" >"$work/wrong.c"
 # shellcheck disable=SC2046
 gcc "$work/wrong.c" $(pkg-config --cflags --libs --static holonom) -o "$work/wrong"
-expect 'an unknown scene is reported with the nearest name' "/scene: no shipped scene is called 'four-baar' (four-bar)" \
+expect 'an unknown scene is reported with the nearest name' "/scene: no shipped scene is called 'four-baar' (did you mean 'four-bar'?)" \
     "$(HOLONOM_HOME="$home" "$work/wrong" 2>&1)"
 
 echo "1..$n"
