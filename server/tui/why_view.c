@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/why_view.h"
 
+#include "study/incidents/log.h"
 #include "tui/methods.h"
 
 #include <stdio.h>
@@ -45,6 +46,28 @@ bool hn_why_has_remedy(const hn_workbench *w) {
 /// Whether incident i is one more of the cause of the one before it.
 static bool is_again(const hn_incident *list, const int *whose, int i) {
     return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
+}
+
+/// Whether a run recorded a kind of incident as often as any may be: later ones are missing.
+static bool is_cut(const hn_incident *list, const int *whose, int n, int run) {
+    int count[HN_INCIDENT_COUNT] = {0};
+    bool cut = false;
+    for (int i = 0; i < n; i++) {
+        cut |= whose[i] == run && ++count[list[i].code] == HN_INCIDENT_MOST_OF_ONE_KIND;
+    }
+    return cut;
+}
+
+/// Says how many incidents are not shown of those that are recorded, and that some are not.
+static void draw_same(hn_cells *c, hn_area in, int y, int same, bool cut) {
+    char line[96];
+    snprintf(line, sizeof line, "and %d more of the same causes", same);
+    y = hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
+    if (cut) {
+        snprintf(line, sizeof line, "After %d of a kind none is recorded.",
+                 HN_INCIDENT_MOST_OF_ONE_KIND);
+        hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
+    }
 }
 
 static int first_shown(const hn_workbench *w) {
@@ -128,6 +151,6 @@ void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     if (below > 0) {
         hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more", below);
     } else if (same > 0 && y + 1 < in.rows) {
-        hn_cells_printf(c, in, 0, y + 1, HN_CELL_MUTED, 0, "and %d more of the same causes", same);
+        draw_same(c, in, y + 1, same, is_cut(list, whose, n, w->selected));
     }
 }

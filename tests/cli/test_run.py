@@ -239,6 +239,16 @@ class Run(Command):
             told = [i["message"] for i in json.loads(done.stdout)["incidents"] if i["code"] == code]
             self.assertEqual([("; further incidents of this kind are not listed" in m) for m in told], [False] * 4 + [True])
 
+    def test_where_a_kind_is_recorded_no_further_the_count_says_from_when_on(self):
+        words = ("parallelogram", "--time", "5")
+        said = r"and \d+ more incidents \(--json lists them; only the first 5 of a kind are recorded: rank-ahead until t = 1\.\d+ s, near-singular until t = 1\.9\d* s\)"
+        run = call("run", *words, "--method", "projection@rk4:h=1e-3", "--at", "5").stderr.decode()
+        self.assertRegex(run, said)
+        self.assertRegex(call("compare", *words, "--methods", "projection@rk4:h=1e-3").stdout.decode(), said)
+        # before the fifth of any kind all are listed
+        few = call("compare", "parallelogram", "--time", "1.3", "--methods", "projection@rk4:h=1e-3").stdout.decode()
+        self.assertRegex(few, r"and \d+ more incidents \(--json lists them all\)")
+
     def test_a_status_that_finds_fault_says_by_which_measure(self):
         done = call("compare", "four-bar", "--methods", "nullspace@rk4:h=0.01", "--time", "3").stdout.decode()
         self.assertRegex(done, r"(?m)^nullspace\S+ +inaccurate ")

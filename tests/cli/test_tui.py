@@ -404,6 +404,17 @@ class Keys(unittest.TestCase):
         card = " ".join("".join(line[67:149] for line in out.split("\n")[2:50]).split())
         self.assertNotRegex(card, r"(?<!\() try (?!\S+ \(tried until)")
 
+    def test_the_card_says_that_a_kind_of_incident_is_recorded_no_further(self):
+        def card(scene):
+            _, out, _ = once(scene, "--once", "--t", "3", "--size", "150x60", "--methods", "baumgarte@rk4:h=0.02", "--keys", "i" + 12 * "<PageDown>")
+            return " ".join("".join(line[67:149] for line in out.split("\n")[2:50]).split())
+        said = r"and \d more of the same causes\W+After 5 of a kind none is recorded\."
+        self.assertRegex(card("four-bar"), said)
+        # fewer than five of a kind: all are there
+        few = card("slider-crank")
+        self.assertRegex(few, r"and \d more of the same causes")
+        self.assertNotIn("is recorded", few)
+
     def test_the_cheapest_method_for_an_error_keeps_that_error(self):
         methods = ("--methods", "index1@rk4:h=0.02", "index1@euler:h=0.02")
         with tempfile.TemporaryDirectory() as cache:
@@ -411,6 +422,7 @@ class Keys(unittest.TestCase):
                 return once("pendulum", "--once", "--t", "0.5", "--size", "150x40", *methods, "--keys", "w" + keys, HOLONOM_CACHE=cache)[1]
             out = " ".join("".join(line[100:149] for line in study("").split("\n")[2:20]).split())
             self.assertRegex(out, r"For 1 mm at the end of [\d.]+ m, an error of \S+ up to t = 2 s of the scene's 10 s: index1@rk4 with h = \S+ s is the cheapest, (about|at most) \S+")
+            self.assertIn("In this study errors are the largest at 32 times", out)
             self.assertIn("is no error above 0; type one as 1 mm", study("e<CtrlU>0<Enter>"))
             self.assertIn("no run of this study is accurate enough", study("e<CtrlU>1e-15<Enter><Enter>"))
             # what is added by Enter has the error that was asked for, in the study's 2 s; half of it at least, as its size is read off a line between two points

@@ -200,6 +200,13 @@ const hn_model *hn_study_model(const hn_study *s) {
     return s->model;
 }
 
+void hn_study_put_times(hn_strbuf *b, const hn_study *s) {
+    hn_strbuf_printf(b,
+                     "errors are the largest at %d times, evenly over the run; between these times "
+                     "they can be larger, %.1f times as large in the four-bar",
+                     s->ref->n, HN_STUDY_BETWEEN);
+}
+
 bool hn_study_lost(const hn_study *s) {
     return s->journal.failed;
 }

@@ -456,13 +456,15 @@ void hn_study_put_measures(hn_strbuf *b, const hn_study *s, int level) {
                      "reactions. Errors below ten times their difference are given as bounds.</p>",
                      ref->means[0], ref->means[1], hn_ref_digits(ref),
                      ref->error[HN_ERROR_REACTION]);
+    hn_strbuf_add(b, "<p>In this study ");
+    hn_study_put_times(b, s);
     hn_strbuf_printf(
         b,
-        "<p>Errors are the largest over %d times. Coordinates: lengths over %.3g m, angles in rad, "
-        "never modulo a turn. Rates: over the largest of the reference, %.3g 1/s. Reactions: "
-        "J'(λ − λ_ref) over the largest J'λ_ref. Gaps: over the same length and rate. Energy: over "
-        "the largest kinetic energy plus the range of the potential, %.3g J.</p>",
-        ref->n, ref->scales.length, ref->scales.rate, ref->scales.energy);
+        ". Coordinates: lengths over %.3g m, angles in rad, never modulo a turn. Rates: over the "
+        "largest of the reference, %.3g 1/s. Reactions: J'(λ − λ_ref) over the largest J'λ_ref. "
+        "Gaps: over the same length and rate. Energy: over the largest kinetic energy plus the "
+        "range of the potential, %.3g J.</p>",
+        ref->scales.length, ref->scales.rate, ref->scales.energy);
 }
 
 void hn_page_timing(hn_strbuf *b) {

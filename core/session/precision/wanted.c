@@ -145,4 +145,7 @@ void hn_wanted_text(hn_strbuf *b, const hn_study *study, const hn_wanted *wanted
                          band.ratio);
     }
     put_others(b, wp, classes, error, wanted->error);
+    hn_strbuf_add(b, " In this study ");
+    hn_study_put_times(b, study);
+    hn_strbuf_add(b, ".");
 }

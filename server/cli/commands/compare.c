@@ -181,9 +181,9 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary, const cJSON *m, in
         hn_strbuf_printf(b, "! %s: %s\n", name, line);
     }
     if (list.n > MAX_INCIDENTS) {
-        const int more = list.n - MAX_INCIDENTS;
-        hn_strbuf_printf(b, "! %s: and %d more incident%s (--json lists them all)\n", name, more,
-                         more > 1 ? "s" : "");
+        hn_strbuf_printf(b, "! %s: ", name);
+        hn_incident_more(b, &list, MAX_INCIDENTS);
+        hn_strbuf_add(b, "\n");
     }
 }
 

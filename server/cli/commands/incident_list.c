@@ -2,6 +2,7 @@
 #include "cli/commands/incident_list.h"
 
 #include "cli/shell/document.h"
+#include "study/incidents/log.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -36,6 +37,35 @@ void hn_incident_list_take(hn_incident_list *list, const cJSON *incidents, int m
         }
     }
     sort_by_time(list);
+}
+
+/// Whether item k is the last of its kind that a run records.
+static bool is_last_recorded(const hn_incident_list *list, int k) {
+    const char *code = hn_document_text(list->item[k], "code");
+    int n = 0;
+    for (int i = 0; i <= k; i++) {
+        n += strcmp(hn_document_text(list->item[i], "code"), code) == 0;
+    }
+    return n == HN_INCIDENT_MOST_OF_ONE_KIND;
+}
+
+void hn_incident_more(hn_strbuf *b, const hn_incident_list *list, int told) {
+    const int more = list->n - told;
+    int full = 0;
+    hn_strbuf_printf(b, "and %d more incident%s (--json lists ", more, more > 1 ? "s" : "");
+    for (int k = 0; k < list->n; k++) {
+        if (!is_last_recorded(list, k)) {
+            continue;
+        }
+        if (full++ == 0) {
+            hn_strbuf_printf(b, "them; only the first %d of a kind are recorded: ",
+                             HN_INCIDENT_MOST_OF_ONE_KIND);
+        }
+        hn_strbuf_printf(b, "%s%s until t = %.4g s", full > 1 ? ", " : "",
+                         hn_document_text(list->item[k], "code"),
+                         hn_document_number(list->item[k], "t"));
+    }
+    hn_strbuf_add(b, full ? ")" : "them all)");
 }
 
 static bool begins_with_time(const char *sentence) {

@@ -4,6 +4,7 @@
 // The incidents of a run as a person reads them: in order of time, each once, the one that ended
 // the run apart from the others.
 
+#include "base/strbuf.h"
 #include "study/run/run.h"
 
 #include <cjson/cJSON.h>
@@ -29,6 +30,11 @@ void hn_incident_list_take(hn_incident_list *list, const cJSON *incidents, int m
 
 /// Writes "t = 0.3 s: MESSAGE", or the message alone where it begins with its time.
 void hn_incident_line(const cJSON *incident, char *out, size_t size);
+
+/// Writes "and 7 more incidents (--json lists them all)" behind the first `told` of the list. Kinds
+/// that were recorded as often as any may be are named, with the time of the last: later ones are
+/// in no list.
+void hn_incident_more(hn_strbuf *b, const hn_incident_list *list, int told);
 
 /// Writes " at t = 1.43 s: REASON", or ": REASON" where the reason says that time itself. Where an
 /// incident ended the run its message is the reason, with what was tried against it.

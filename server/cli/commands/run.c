@@ -93,7 +93,7 @@ static bool is_repeated(const hn_incident_list *list, int n, int k) {
 /// Says what was noticed on the way, in order of time; samples alone would hide it. A remedy of
 /// several incidents is said once, after the last of them.
 static void tell_incidents(const hn_incident_list *list) {
-    const int told = list->n < MOST ? list->n : MOST, more = list->n - told;
+    const int told = list->n < MOST ? list->n : MOST;
     for (int k = 0; k < told; k++) {
         char line[HN_INCIDENT_LINE];
         hn_incident_line(list->item[k], line, sizeof line);
@@ -102,9 +102,12 @@ static void tell_incidents(const hn_incident_list *list) {
             tell_remedy(list->item[k]);
         }
     }
-    if (more > 0) {
-        hn_cli_note("holonom: and %d more incident%s (--json lists them all)\n", more,
-                    more > 1 ? "s" : "");
+    if (list->n > told) {
+        hn_strbuf more;
+        hn_strbuf_init(&more);
+        hn_incident_more(&more, list, told);
+        hn_cli_note("holonom: %s\n", hn_strbuf_text(&more));
+        hn_strbuf_reset(&more);
     }
 }
 

@@ -266,7 +266,9 @@ static void put_head(hn_strbuf *b, const hn_study *study) {
         b, "Reference: %s and %s agree to %.1f digits; errors below %.0e cannot be measured.\n",
         ref->means[0], ref->means[1], hn_ref_digits(ref),
         HN_WP_ABOVE_REFERENCE * ref->error[HN_ERROR_Q]);
-    hn_strbuf_printf(b, "Chaos: %s.\n\n", hn_study_chaos(study)->why);
+    hn_strbuf_add(b, "Times: ");
+    hn_study_put_times(b, study);
+    hn_strbuf_printf(b, ".\nChaos: %s.\n\n", hn_study_chaos(study)->why);
 }
 
 void hn_study_text(hn_strbuf *b, const hn_study *study) {

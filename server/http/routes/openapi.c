@@ -139,8 +139,9 @@ static const struct {
      "value of these rows; null without rows, or where the smallest is 0\"}}}"},
     {"Incident",
      "{\"type\":\"object\",\"description\":\"data of the event incident; sent again with the same "
-     "method, code and t when its outcome is "
-     "known\",\"required\":[\"generation\",\"method\",\"code\",\"t\",\"message\"],\"properties\":{"
+     "method, code and t when its outcome is known; a run records the first 5 of a code, and the "
+     "message of the fifth says that later ones are missing\",\"required\":[\"generation\","
+     "\"method\",\"code\",\"t\",\"message\"],\"properties\":{"
      "\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":\"integer\"},\"code\":" TEXT
      ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
      "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT
