@@ -383,6 +383,16 @@ class Run(Command):
         for refused in ("car-axis", "eps=-0.01"), ("ring", "n=1000000"):
             self.assertEqual(call("run", refused[0], "--set", refused[1]).returncode, INPUT)
 
+    def test_a_start_value_that_the_loops_do_not_allow_is_told(self):
+        done = call("run", "four-bar", "--set", "start.th1=1.5", "--at", "0")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn(b"th1 starts at 1.32798, not at 1.5: assembly begins at the values that are set and changes them to close the loops; "
+                      b"set th1_0 to hold it", b" ".join(done.stderr.split()))
+        # a whole start that closes the loops is taken as it is
+        same = call("run", "four-bar", *(f"--set=start.{one}" for one in ("th1=1.5", "a2=-1.2688199598248793", "th3=1.313666497269339")), "--at", "0")
+        self.assertNotIn(b"starts at", same.stderr)
+        self.assertRegex(same.stdout, rb"\n0,1\.5,")
+
     def test_every_run_has_an_estimate_of_its_error(self):
         far = call("run", "four-bar", "--method", "index1@rk4:h=1e-2", "--at", "10")
         self.assertRegex(far.stderr.decode(), r"the motion is wrong: up to t = 10 s the coordinates are estimated to be off by up to 1\.8 .*; a smaller step may help\n")

@@ -5,9 +5,13 @@
 #include "base/units.h"
 #include "cli/shell/args.h"
 #include "cli/shell/notes.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/compile/system.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -36,6 +40,9 @@ hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_
     }
     return HN_OK;
 }
+
+/// A start that differs by less is the one that was asked for, to the digits of assembly.
+#define START_SAME 1e-9
 
 typedef struct settings {
     hn_diags *diags;
@@ -100,6 +107,46 @@ static void tell_beyond(const hn_model *model) {
     }
 }
 
+/// Says that a start value is not the one that was asked for. `param`: the scene holds it at this
+/// parameter's value, or NULL.
+static void tell_moved(const char *name, double asked, double found, const char *param) {
+    if (fabs(found - asked) <= START_SAME * fmax(1, fabs(asked))) {
+        return;
+    }
+    const int digits = hn_digits_apart(found, asked, 6);
+    hn_cli_note("holonom: %s starts at %.*g, not at %.*g: assembly begins at the values that are "
+                "set and changes them to close the loops%s%s%s\n",
+                name, digits, found, digits, asked, param ? "; set " : "", param ? param : "",
+                param ? " to hold it" : "");
+}
+
+/// Says which start values that were asked for the closed loops do not allow beside the others.
+static void tell_start(const hn_model *model, const settings *s) {
+    const hn_system *sys = hn_model_system(model);
+    const int n = hn_system_get_info(sys).nv;
+    double *q = calloc(2 * (size_t)n + 1, sizeof *q), *v = q ? q + n : NULL;
+    if (!q) {
+        return;
+    }
+
+    // the start as the scene's coordinates have it
+    hn_system_to_user(sys, hn_model_q(model), q);
+    hn_system_rates_to_user(sys, hn_model_v(model), v);
+    for (int k = 0; k < n; k++) {
+        const hn_coordinate *c =
+            &hn_model_scene(model)->coordinates[hn_system_user_coordinate(sys, k)];
+        for (int i = 0; i < s->n; i++) {
+            const char *name = hn_scene_start_name(s->item[i].name);
+            if (name && strcmp(name, c->name) == 0) {
+                tell_moved(name, s->item[i].value, q[k], c->q0_param);
+            } else if (name && strcmp(name, c->rate) == 0) {
+                tell_moved(name, s->item[i].value, v[k], c->v0_param);
+            }
+        }
+    }
+    free(q);
+}
+
 hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const char *word,
                              bool allow_open, hn_model **out, hn_diags *diags) {
     settings *s = calloc(1, sizeof *s);
@@ -138,6 +185,7 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
     }
     if (status == HN_OK && !args->json) {
         tell_beyond(*out);
+        tell_start(*out, s);
     }
     hn_strbuf_reset(&text);
     free(s);
