@@ -91,6 +91,9 @@ static const char *four_bar_kind(const double l[4]) {
         largest = fmax(largest, l[i]);
         sum += l[i];
     }
+    if (2 * largest > (1 + SAME_LENGTH) * sum) {
+        return "links that cannot close";
+    }
     double excess = 2 * (l[shortest] + largest) - sum;
     if (fabs(excess) < SAME_LENGTH * sum) {
         int parallel =

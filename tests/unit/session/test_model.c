@@ -284,6 +284,15 @@ static void a_parameter_changes_the_mechanism(void **state) {
     hn_model_caption(model, caption, sizeof caption);
     assert_string_equal(caption, "triple-rocker, 1 degree of freedom (3 \xe2\x88\x92 2)");
     hn_model_free(model);
+
+    // 5 > 0.8 + 1.2 + 1.0: no loop
+    const hn_setting torn = {"l1", 5};
+    const hn_model_source open = {
+        .name = "four-bar", .settings = &torn, .n_settings = 1, .allow_open = true};
+    assert_int_equal(hn_model_load(hn_test_library, &open, &model, &diags), HN_OK);
+    hn_model_caption(model, caption, sizeof caption);
+    assert_non_null(strstr(caption, "links that cannot close, "));
+    hn_model_free(model);
 }
 
 /// Whether every point of every fixed shape (`standing` of them solid bars) is told as ground, and
