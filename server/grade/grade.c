@@ -393,7 +393,10 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
 }
 
 /// `chosen`: the seed is the caller's.
-static hn_status grade_tree(hn_verdict *v, const cJSON *root, bool chosen) {
+static hn_status grade_tree(hn_verdict *v, cJSON *root, bool chosen) {
+    if (!hn_submission_read_student(v, root, chosen)) {
+        return v->kind == HN_VERDICT_UNGRADABLE ? HN_OK : HN_ERR_MEMORY;
+    }
     const char *student = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(root, "student"));
     snprintf(v->student, sizeof v->student, "%s", student ? student : "");
 

@@ -4,9 +4,13 @@
 #include "grade/repeated_member.h"
 #include "grade/student_name.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+/// Whole numbers up to 2^53 are exact as doubles.
+static const double LARGEST_WHOLE = 9007199254740992.0;
 
 int hn_submission_refuse(hn_verdict *v, const char *hint, const char *format, ...) {
     va_list args;
@@ -92,6 +96,36 @@ int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const
         }
     }
     return 1;
+}
+
+int hn_submission_read_student(hn_verdict *v, cJSON *root, bool chosen) {
+    static const char FIELD[] = "student";
+    static const char HINT[] = "write the name or number in quotes, as in \"student\": \"4711\"";
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(root, FIELD);
+    const char *text = cJSON_GetStringValue(m);
+    if (!m || cJSON_IsNull(m) || (text && (chosen || text[strspn(text, " \t\r\n")]))) {
+        return 1;
+    }
+    if (text) {
+        return hn_submission_refuse(v, "put your name into it, or leave it out",
+                                    "the field 'student' is an empty text");
+    }
+    if (!cJSON_IsNumber(m)) {
+        return hn_submission_refuse(v, HINT, "the field 'student' is %s, expected a text",
+                                    kind_of(m));
+    }
+
+    // a whole number that a double holds digit by digit
+    const double number = m->valuedouble;
+    if (!(number >= 0 && number <= LARGEST_WHOLE && number == floor(number))) {
+        return hn_submission_refuse(v, HINT,
+                                    "the field 'student' is %.17g, expected a text or a "
+                                    "whole number up to %.0f",
+                                    number, LARGEST_WHOLE);
+    }
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.0f", number);
+    return cJSON_ReplaceItemInObjectCaseSensitive(root, FIELD, cJSON_CreateString(digits));
 }
 
 void hn_submission_check_student(hn_verdict *v, const char *name) {

@@ -26,4 +26,8 @@ void hn_submission_check_student(hn_verdict *v, const char *name);
 /// Checks fields and shape. `answer` receives the list of rows, `transposed` whether its shape is
 /// that of the transposed matrix.
 int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, int *transposed);
+/// A student number, {"student": 4711}, becomes the text "4711" in `root`. Refuses what is no name:
+/// a list, an object, true or false, a number that is not whole; and an empty text unless `chosen`
+/// (the caller says whose variant it is). Returns 0 when refused or out of memory.
+int hn_submission_read_student(hn_verdict *v, cJSON *root, bool chosen);
 #endif

@@ -124,6 +124,33 @@ def other_numbers(folder):
     expect("and nobody else is accused", said.count("the variant of") == 1, said)
 
 
+def student_numbers(folder):
+    """A student number without quotes is the name in digits; what is no name is refused, not passed over."""
+    seed = json.loads(run("problem", "gears", "--student", "4711", "--json").stdout)["seed"]
+    for who in (4711, "4711"):
+        done = json.loads(run("grade", "gears", write(folder, "n.json", {"student": who, "c": 1}), "--json").stdout)
+        expect(f"student {who!r} has the variant of '4711'", (done["seed"], done["student"]) == (seed, "4711"), str(done))
+        done = run("grade", "gears", write(folder, "n.json", {"student": who, "c": 1}), "--student", "4712")
+        expect(f"student {who!r} is not graded as another", done.returncode == 2 and "4711" in done.stdout, done.stdout)
+    for who in (["ada"], {"name": "ada"}, True, "", " ", -4711, 47.11, 1e300):
+        for exercise in ("gears", "p3"):
+            done = run("grade", exercise, write(folder, "n.json", {"student": who, "c": 1}))
+            expect(f"{exercise}: student {who!r} is refused", done.returncode == 2 and "the field 'student' is" in done.stdout, done.stdout)
+    done = run("grade", "gears", write(folder, "n.json", {"student": "", "c": 1}), "--student", "4711")
+    expect("an empty name is filled by --student", done.returncode == 0, done.stdout)
+
+
+def two_signs(folder):
+    """A number with its uncertainty, or with two signs, is not computed as a sum."""
+    right = float(json.loads(run("grade", "trammel", write(folder, "n.json", {"b": 1e150}), "--json", "--show-expected").stdout)["entries"][1]["expected"].split()[0])
+    for text in (f"+-{right}", f"-+{right}", f"--{right}", f"{right + 0.56} +- 0.56", f"{right} ± 0.01", f"{right} +/- 0", f"{right} \\pm 0", f"+−{right}", f"{right}--0 kg m^2"):
+        done = run("grade", "trammel", write(folder, "n.json", {"b": text}))
+        expect(f"{text} is no number", done.returncode == 2 and "has two signs in a row" in done.stdout, done.stdout)
+    for text in (f"+{right}", f"{right} - 1e-9", f"2*{right}*(-1)*-0.5", f"{right + 1} + (-1)"):
+        found = json.loads(run("grade", "trammel", write(folder, "n.json", {"b": text}), "--json").stdout)["entries"][1]
+        expect(f"{text} is right", found["right"], str(found))
+
+
 def what_looks_like_an_answer(folder):
     """An example must have its shape; a count is not explained by two mistakes; small counts accuse nobody."""
     def entries(exercise, given):
@@ -205,5 +232,5 @@ def what_looks_like_an_answer(folder):
 if __name__ == "__main__":
     sys.exit(speak_tap([
         readings, rates_of_a_part, nothing_for_nothing, what_is_told_of_choices_hints_and_rods,
-        other_numbers, what_looks_like_an_answer,
+        other_numbers, student_numbers, two_signs, what_looks_like_an_answer,
     ]))

@@ -108,6 +108,32 @@ static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_res
     }
 }
 
+/// Whether two signs stand in a row, or one sign for a number with its uncertainty. Arithmetic with
+/// them would be a guess at what is meant.
+static bool has_two_signs(const char *text) {
+    static const char *const SIGNS[] = {"+", "-", "−", "–"};
+    static const char *const UNCERTAIN[] = {"±", "\\pm", "+/-", "+/−"};
+    for (; *text; text++) {
+        for (size_t i = 0; i < sizeof UNCERTAIN / sizeof *UNCERTAIN; i++) {
+            if (strncmp(text, UNCERTAIN[i], strlen(UNCERTAIN[i])) == 0) {
+                return true;
+            }
+        }
+
+        // a sign directly behind a sign
+        for (size_t i = 0; i < sizeof SIGNS / sizeof *SIGNS; i++) {
+            const size_t n = strlen(SIGNS[i]);
+            for (size_t k = 0; k < sizeof SIGNS / sizeof *SIGNS; k++) {
+                if (strncmp(text, SIGNS[i], n) == 0 &&
+                    strncmp(text + n, SIGNS[k], strlen(SIGNS[k])) == 0) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
 static const char *find_name(void *draw, const char *name) {
     return hn_draw_answer_name(draw, name);
 }
@@ -117,6 +143,13 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
                      hn_part_result *r) {
     hn_diag diag = {0};
     hn_strbuf plain;
+    if (!s->symbolic && has_two_signs(text)) {
+        hn_part_unreadable(r,
+                           "'%.60s' has two signs in a row, or a sign for both; write one number "
+                           "with one sign, without its uncertainty",
+                           text);
+        return 0;
+    }
     hn_strbuf_init(&plain);
     hn_status status = HN_ERR_INPUT;
 
