@@ -339,4 +339,30 @@ test("undo in the editor brings back the shipped scene, its parameters and the s
   await page.getByRole("button", { name: "undo", exact: true }).first().click();
   await until(page, (data) => data.document === null && data.scene.id === "four-bar");
   assert.deepEqual(await now(), { methods, settings });
+
+  // the methods on the page stay while its document is edited, though the document has its own
+  await replace(page, '"gravity"', ' "gravity"');
+  await until(page, (data) => data.document?.name === "four-bar");
+  assert.deepEqual((await now()).methods, methods);
+});
+
+test("a bar begun on the middle of another is pinned to it, not to the ground", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  await edit(page);
+  const old = await read(page, (data) => data.scene.joints.length);
+  await page.getByRole("button", { name: "bar", exact: true }).click();
+  const [x, y] = await page.evaluate(() => {
+    const coupler = document.querySelectorAll(".ghost.selected .outline")[1];
+    const { x, y, width, height } = coupler.getBoundingClientRect();
+    return [x + width / 2, y + height / 2];
+  });
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 20, y - 100, { steps: 4 });
+  await page.mouse.up();
+  await until(page, (data) => data.scene.bodies.length === 4);
+  const { parent } = await read(page, (data) => data.document.joints.at(-1));
+  assert.equal(await read(page, (data) => data.document.joints.length), old + 1);
+  assert.equal(parent.body, "coupler");
+  assert.ok(parent.at[0] > 0.3 && parent.at[0] < 0.9, `at ${parent.at[0]} m of 1.2 m`);
 });

@@ -118,6 +118,25 @@ test("the card that says why opens in sight, under its row, takes the focus and 
   }
 });
 
+test("a card that is opened out leaves the buttons over the list free", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  await playTo(page, 3);
+  for (const label of ["index-1", "reduced"]) {
+    await page.getByRole("button", { name: `Why? ${label}` }).click();
+    await page.locator(".card").waitFor();
+    await page.evaluate(() => {
+      document.querySelectorAll(".card details").forEach((part) => (part.open = true));
+    });
+    await soon(async () => {
+      const { card, title } = await boxesOf(page, { card: ".why-card", title: "#methods .title" });
+      assert.ok(card.top >= title.bottom && card.bottom <= 768, `${label}: ${card.top}`);
+    });
+    await page.getByRole("button", { name: "α, β map" }).click({ trial: true });
+    await page.keyboard.press("Escape");
+    await soon(async () => assert.equal(await page.locator(".card").count(), 0));
+  }
+});
+
 test("a notice covers no verdict, no button, no scale bar and no curve of the widest layout", async (t) => {
   const page = await open(t, { hash: "#scene=four-bar&zzz=1" });
   await page.locator(".note:not([hidden]) .notice").waitFor();

@@ -3,7 +3,14 @@
 // check, progress, print.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { flowing, formOf, matrixOf, readAnswer, readChoice } from "../../web/state/answers.js";
+import {
+  flowing,
+  formOf,
+  matrixOf,
+  readAnswer,
+  readChoice,
+  summaryOf,
+} from "../../web/state/answers.js";
 import { violations } from "./axe.mjs";
 import { createBench, read, screenshot, soon, until } from "./support.mjs";
 
@@ -118,6 +125,16 @@ test("what is asked is read from the exercise, what is typed is a value or a for
   assert.equal(matrixOf("none"), null);
 });
 
+test("where a choice has a reason, the count says that they are two answers", () => {
+  const summary = "4 of 5 answers are right";
+  const of = (...names) => summaryOf({ summary, entries: names.map((name) => ({ name })) });
+  assert.equal(
+    of("a", "d.choice", "d.reason"),
+    `${summary} (a choice and its reason are two answers)`,
+  );
+  assert.equal(of("a", "b", "reasons"), summary);
+});
+
 test("a field asks for no quotes: they belong to files of answers", () => {
   const form = (words) =>
     formOf({ id: "e", kind: "formula", points: 1, ask: "", answer_form: words });
@@ -205,7 +222,9 @@ for (const [theme, width] of [
       .check();
     await second.getByRole("button", { name: "Check" }).click();
     await page.waitForFunction(() =>
-      document.querySelectorAll(".verdict-list")[1].textContent.includes("of 9 points"),
+      /of 9 points.*\(a choice and its reason are two answers\)/.test(
+        document.querySelectorAll(".verdict-list")[1].textContent,
+      ),
     );
     // p3 belongs to this lesson, p1 to the next
     await soon(async () =>

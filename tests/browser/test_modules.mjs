@@ -14,7 +14,11 @@ import {
   scientific,
   withPowers,
 } from "../../web/state/format.js";
-import { createUndo } from "../../web/session/undo.js";
+import { keepsMethods } from "../../web/session/scenes.js";
+import { changeWords, createUndo } from "../../web/session/undo.js";
+import { GLOSSARY } from "../../web/state/glossary.js";
+import { otherSteps } from "../../web/state/own-step.js";
+import { quantityNamed } from "../../web/state/quantities.js";
 import { createStore } from "../../web/state/store.js";
 import { evaluate } from "../../web/state/formula.js";
 import { KEYS, bindingOf, findKey, isCharacter } from "../../web/state/keys.js";
@@ -96,16 +100,73 @@ test("an undo that fails changes nothing and can be asked for again", async () =
       throw new Error("no server");
     }
   };
-  const { undo } = createUndo(store, apply, () => undefined);
+  let told = "";
+  const { undo } = createUndo(store, apply, (text) => (told = text));
+  const counts = () => [store.data.undo.past, store.data.undo.future];
   store.emit("methods");
   store.data.settings = { l1: 2 };
   store.emit("methods");
-  assert.deepEqual(store.data.undo, { past: 1, future: 0 });
+  assert.deepEqual(counts(), [1, 0]);
+  assert.equal(store.data.undo.undoes, "the change of l1 to 2");
   await undo();
-  assert.deepEqual(store.data.undo, { past: 1, future: 0 });
+  assert.deepEqual(counts(), [1, 0]);
+  assert.equal(told, "no server");
   fails = false;
   await undo();
-  assert.deepEqual(store.data.undo, { past: 0, future: 1 });
+  assert.deepEqual(counts(), [0, 1]);
+  assert.equal(told, "undone: the change of l1 to 2");
+  assert.equal(store.data.undo.undoes, "");
+});
+
+test("a change that can be undone is named", () => {
+  const one = { scene: "four-bar", settings: { l1: 0.5 }, methods: ["index1@rk4"], pulls: [] };
+  const words = (change) => changeWords(one, { ...one, ...change });
+  assert.equal(words({ settings: { l1: 0.55 } }), "the change of l1 from 0.5 to 0.55");
+  assert.equal(words({ settings: {} }), "the change of l1 from 0.5");
+  assert.equal(words({ settings: { l1: 1, l2: 2 } }), "the change of l1 and l2");
+  assert.equal(words({ settings: { l1: 1, a: 1, b: 1, c: 1 } }), "the change of 4 parameters");
+  assert.equal(words({ settings: { l1: 0.5, "start.th1": 1 } }), "the change of the start");
+  assert.equal(words({ methods: [] }), "the change of the methods");
+  assert.equal(
+    words({ methods: [], settings: { l1: 1 } }),
+    "the change of l1 from 0.5 to 1 and the methods",
+  );
+  assert.equal(words({ pulls: [[1]] }), "the pull");
+  assert.equal(words({ scene: "stewart" }), "the choice of the scene stewart");
+  assert.equal(words({ scene: { name: "four-bar" } }), "the change of the document four-bar");
+});
+
+test("the methods stay while the shown scene's document is edited, not where another one comes", () => {
+  const document = { name: "four-bar", methods: ["index1@rk4:h=0.01"], gravity: [0, -9.81] };
+  const edited = { ...document, gravity: [0, 0] };
+  assert.equal(keepsMethods(document, edited, "four-bar"), true);
+  assert.equal(keepsMethods(document, edited, "stewart"), false, "it is not shown");
+  assert.equal(keepsMethods(document, { ...edited, name: "own" }, "four-bar"), false);
+  assert.equal(keepsMethods(document, { ...edited, methods: [] }, "four-bar"), false);
+  assert.equal(keepsMethods(null, document, "four-bar"), false);
+});
+
+test("methods that run at another step than the scene's texts tell of are named", () => {
+  const says = (...steps) =>
+    otherSteps({
+      scene: { step: 0.01 },
+      catalogue: CATALOGUE,
+      methods: steps.map((h, i) => ({ spelling: `index1@rk4:h=${h}`, label: `m${i}` })),
+    }).slice("The figures in these texts hold for the scene's own step of 0.01 s; ".length);
+  assert.equal(says(0.01, 0.01), "");
+  assert.equal(says(0.02, 0.02), "the methods run at 0.02 s now, so theirs differ.");
+  assert.equal(says(0.01, 0.0028), "m1 runs at 0.0028 s now, so theirs differ.");
+  assert.equal(
+    says(0.02, 0.02, 0.0028),
+    "m0 and m1 run at 0.02 s and m2 runs at 0.0028 s now, so theirs differ.",
+  );
+});
+
+test("tips say where α has its limit, and that a dip can lie between two frames", () => {
+  assert.match(GLOSSARY.alpha.means, /must stay below the integrator's stability limit: 2\.8/);
+  for (const name of ["sigma_min", "pivot_ratio"]) {
+    assert.match(quantityNamed(name).about, /the least value lies between two frames/);
+  }
 });
 
 test("a typed decimal stays one in another unit, with no rounding behind it", () => {

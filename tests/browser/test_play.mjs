@@ -204,6 +204,22 @@ test("a length that cannot close the loop is refused at its field with the reaso
       1.3,
     ),
   );
+
+  // a refused value is what an undo takes back first; the change before it stays
+  const undo = page.getByRole("button", { name: "Undo" });
+  await soon(async () =>
+    assert.match(await undo.getAttribute("data-tip"), /^undo the change of l2.* to 1\.3 \(Z\)$/),
+  );
+  await type(page, "#parameter-l2", "3");
+  await page.waitForFunction(
+    () => document.querySelector("#parameter-l2").getAttribute("aria-invalid") === "true",
+  );
+  await undo.click();
+  await until(page, (data) => /refused is taken back; nothing else/.test(data.notice));
+  await soon(async () => assert.equal(await page.inputValue("#parameter-l2"), "1.3"));
+  assert.equal(await read(page, (data) => data.settings.l2), 1.3);
+  await undo.click();
+  await until(page, (data) => data.settings.l2 !== 1.3 && /^undone: /.test(data.notice));
 });
 
 test("a negative Baumgarte constant is allowed with a warning", async (t) => {

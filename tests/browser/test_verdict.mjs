@@ -399,7 +399,7 @@ test("how the methods came through a singular configuration is said once for all
 test("a dead point is a coordinate that turns back while another one moves on", () => {
   const history = createHistory(1, 1, 2);
   for (let k = 0; k <= 60; k++) {
-    history.push(frame(k, 1, { q: [k, 0], v: [10, Math.cos(k / 10)] }));
+    history.push(frame(k, 0, { q: [k, 0], v: [10, Math.cos(k / 10)] }));
   }
   const coordinates = [
     { name: "th1", kind: "angle", actuated: true },
@@ -424,7 +424,7 @@ test("a dead point is a coordinate that turns back while another one moves on", 
   const [found, ...more] = deadPointsOf(data, 0, 40);
   assert.equal(found.coordinate, 1);
   assert.deepEqual(more, []);
-  const [line] = deadPointLines(data, 0, 60); // the second zero of cos is at 47.1 frames
+  const [line] = deadPointLines(data, 60); // the second zero of cos is at 47.1 frames
   assert.deepEqual([line.name, line.count, line.first], ["x", 2, found.t]);
   assert.match(line.words, /^x turns back there while the mechanism moves on\. A force along x /);
   assert.ok(Math.abs(found.t - (history.t[1] - history.t[0]) * 5 * Math.PI) < 1e-3);
@@ -445,6 +445,46 @@ test("a dead point is a coordinate that turns back while another one moves on", 
     swing.push(frame(k, 1, { q: [0, 0], v: [Math.cos(k / 10), 2 * Math.cos(k / 10)] }));
   }
   assert.deepEqual(deadPointsOf({ ...data, history: swing }, 0, 60), []);
+});
+
+test("dead points are those of the methods that are right, with their names where they differ", () => {
+  // zeros of cos until frame 60, at these velocities: 2 or 4; the third one's loop is open
+  const history = createHistory(3, 1, 2);
+  for (let k = 0; k <= 60; k++) {
+    const methods = [
+      [0, 10],
+      [1e-6, 10],
+      [1, 3],
+    ].map(([gap, slow]) => frame(k, gap, { q: [k, 0], v: [10, Math.cos(k / slow)] }).methods[0]);
+    history.push({ ...frame(k, 0), methods });
+  }
+  const coordinates = [
+    { name: "th1", kind: "angle", actuated: true },
+    { name: "x", kind: "length", actuated: false },
+  ];
+  const data = {
+    history,
+    duration: 10,
+    scene: { dof: 1, m: 2, coordinates },
+    methods: [{ label: "reduced" }, { label: "projection" }, { label: "index-1" }],
+  };
+  const lines = () => deadPointLines(data, 60).map(({ name, of, count }) => [name, of, count]);
+  assert.deepEqual(deadPointsOf(data, 2, 60).length, 6, "the torn one turns back as well");
+  assert.deepEqual(lines(), [["x", "", 2]]);
+
+  // a second method that is right finds another number
+  const other = createHistory(3, 1, 2);
+  for (let k = 0; k <= 60; k++) {
+    const methods = [10, 10, 3].map(
+      (slow) => frame(k, 0, { q: [k, 0], v: [10, Math.cos(k / slow)] }).methods[0],
+    );
+    other.push({ ...frame(k, 0), methods });
+  }
+  data.history = other;
+  assert.deepEqual(lines(), [
+    ["x", "reduced and projection", 2],
+    ["x", "index-1", 6],
+  ]);
 });
 
 test("a history keeps the state of each frame, and of a failed method its last one", () => {

@@ -128,7 +128,7 @@ export const api = {
   study: (id) => request("GET", `${BASE}/studies/${id}`),
   /** @param {string} id */
   stopStudy: (id) => request("PATCH", `${BASE}/studies/${id}`, { state: "stopped" }),
-  /** What is left of it is computed, with its whole time again. @param {string} id */
+  /** What is left of it is computed, with a time limit of its own. @param {string} id */
   resumeStudy: (id) => request("PATCH", `${BASE}/studies/${id}`, { state: "running" }),
   /** Nobody waits for it any more. @param {string} id */
   abandonStudy: (id) =>

@@ -84,6 +84,15 @@ export function dropRefused(left, error) {
 }
 
 /**
+ * Is a document the shown scene's own, edited elsewhere than in its list of methods?
+ * @param {any} before @param {any} after @param {string} id of the scene that is shown
+ */
+export const keepsMethods = (before, after, id) =>
+  before?.name === id &&
+  after?.name === id &&
+  JSON.stringify(before.methods) === JSON.stringify(after.methods);
+
+/**
  * @param {import("../state/store.js").Store} store
  * @param {import("./exchange.js").Exchange} exchange
  * @param {(text: string) => void} notice
@@ -298,14 +307,17 @@ export function createSceneActions(store, exchange, notice) {
     },
     /**
      * Opens a scene that is none of the shipped ones. The one that runs goes on when the server
-     * refuses it.
+     * refuses it. The methods on the page stay while a document is edited, with their steps;
+     * another document brings its own.
      * @param {any} document
      * @param {{settings: Record<string, number>, methods: string[], pulls?: number[][]}} [link]
+     * @param {any} [edited] the document before it was edited
      */
-    async loadDocument(document, link) {
+    async loadDocument(document, link, edited) {
       const present = data.methods.map(spellingOf);
       const suggested = document?.methods?.length ? document.methods : present;
-      const wanted = link?.methods ?? (data.document ? present : suggested);
+      const stays = data.document || keepsMethods(edited, document, data.scene?.id);
+      const wanted = link?.methods ?? (stays ? present : suggested);
       const methods = wanted.slice(0, limits().methods);
       const parameters = link?.settings ?? {};
       const { speed } = data;

@@ -39,6 +39,17 @@ export function createSession(store) {
         : scenes.loadDocument(scene, { settings, methods, pulls });
   const undo = createUndo(store, bringBack, notice);
   const pulls = createPullActions(store, exchange, notice);
+  /** each shows what runs in place of what was refused, and returns whether something was
+   * @type {Set<() => boolean>} */
+  const entries = new Set();
+  /** What was refused changed nothing: it goes first, alone. */
+  function undoRefused() {
+    const some = [...entries].filter((takeBack) => takeBack()).length > 0;
+    if (some) {
+      notice("the value that was refused is taken back; nothing else was changed");
+    }
+    return some;
+  }
   /** A hand lets go first: what it did is the last change. @param {() => Promise<void>} move */
   const afterHand = (move) => pulls.letGo().then(move);
 
@@ -47,8 +58,17 @@ export function createSession(store) {
     ...createDragActions(store, exchange, notice),
     ...pulls,
     bringBack,
-    undo: () => afterHand(undo.undo),
+    undo: async () => undoRefused() || afterHand(undo.undo),
     redo: () => afterHand(undo.redo),
+    /**
+     * Fields whose refused values an undo takes back.
+     * @param {() => boolean} takeBack
+     * @returns {() => void} removes them
+     */
+    withRefusals(takeBack) {
+      entries.add(takeBack);
+      return () => entries.delete(takeBack);
+    },
     ...createPlayback(store, exchange),
     ...createMethodActions(store, exchange, notice),
     studies,

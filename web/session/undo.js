@@ -3,10 +3,14 @@
 // Undo and redo of changes that start the runs anew (methods, parameters, the start, the scene) and
 // of what a hand pulled.
 import { sentenceOf } from "../api/client.js";
+import { plain } from "../state/format.js";
+import { isStart } from "../state/start.js";
 import { madeOf } from "../state/store.js";
+import { listed } from "../state/verdict.js";
 
 const MOST = 100; // changes that are remembered
 const TOGETHER = 1000; // [ms] between changes of one value, as by a slider: they are one change
+const MOST_NAMED = 3; // values that a tip names
 
 /** What differs between two snapshots. @param {string} a @param {string} b */
 function differenceOf(a, b) {
@@ -20,6 +24,40 @@ function differenceOf(a, b) {
     same("pulls") ? "" : "pulls",
     ...changed,
   ].join();
+}
+
+/** Which values changed, in words; "" where none did. */
+function settingWords(one, other) {
+  const names = [...new Set([...Object.keys(one), ...Object.keys(other)])];
+  const changed = names.filter((name) => one[name] !== other[name]);
+  const values = changed.filter((name) => !isStart(name));
+  const start = values.length < changed.length ? ["the start"] : [];
+  if (values.length === 1 && start.length === 0) {
+    const [name] = values;
+    const from = name in one ? ` from ${plain(one[name])}` : "";
+    return `${name}${from}${name in other ? ` to ${plain(other[name])}` : ""}`;
+  }
+  const named = values.length > MOST_NAMED ? [`${values.length} parameters`] : values;
+  return listed([...named, ...start]);
+}
+
+/**
+ * What was changed between two snapshots, in words.
+ * @param {any} one @param {any} other
+ */
+export function changeWords(one, other) {
+  const same = (name) => JSON.stringify(one[name]) === JSON.stringify(other[name]);
+  const nameOf = ({ scene }) => (typeof scene === "string" ? scene : (scene.name ?? "yours"));
+  if (!same("scene")) {
+    return nameOf(one) === nameOf(other)
+      ? `the change of the document ${nameOf(other)}`
+      : `the choice of the scene ${nameOf(other)}`;
+  }
+  const changed = [
+    settingWords(one.settings, other.settings),
+    same("methods") ? "" : "the methods",
+  ].filter(Boolean);
+  return changed.length > 0 ? `the change of ${listed(changed)}` : "the pull";
 }
 
 /**
@@ -40,7 +78,15 @@ export function createUndo(store, apply, notice) {
   const snapshot = () => JSON.stringify(madeOf(data));
 
   function tell() {
-    data.undo = { past: past.length, future: future.length };
+    const [before, now, after] = [past.at(-1), present, future.at(-1)].map((text) =>
+      text ? JSON.parse(text) : null,
+    );
+    data.undo = {
+      past: past.length,
+      future: future.length,
+      undoes: before ? changeWords(before, now) : "",
+      redoes: after ? changeWords(now, after) : "",
+    };
     store.emit("undo");
   }
 
@@ -64,8 +110,12 @@ export function createUndo(store, apply, notice) {
   // the log of a hand that let go; runs without any pull are told by "methods"
   store.on("hand", () => data.pulls.length > 0 && !data.hand && remember());
 
-  /** @param {string[]} from @param {string[]} to @param {string} word */
-  async function move(from, to, word) {
+  /**
+   * @param {string[]} from @param {string[]} to
+   * @param {string} word @param {string} done the same word, when it is done
+   */
+  async function move(from, to, word, done) {
+    const what = word === "undo" ? data.undo.undoes : data.undo.redoes;
     const wanted = from.pop();
     if (busy || !wanted) {
       notice(`there is nothing to ${word}`);
@@ -79,6 +129,7 @@ export function createUndo(store, apply, notice) {
       data.pulls = before.pulls;
       present = snapshot();
       store.emit("hand");
+      notice(`${done}: ${what}`);
     } catch (error) {
       to.pop();
       from.push(wanted); // nothing was changed, and it can be asked for again
@@ -89,7 +140,7 @@ export function createUndo(store, apply, notice) {
   }
 
   return {
-    undo: () => move(past, future, "undo"),
-    redo: () => move(future, past, "redo"),
+    undo: () => move(past, future, "undo", "undone"),
+    redo: () => move(future, past, "redo", "redone"),
   };
 }

@@ -62,6 +62,15 @@ export function matrixOf(submission) {
   }
 }
 
+/**
+ * How many answers are right, and why there can be more of them than parts.
+ * @param {{summary: string, entries: {name: string}[]}} verdict
+ */
+export const summaryOf = ({ summary, entries }) =>
+  entries.some(({ name }) => /\breason$/.test(name))
+    ? `${summary} (a choice and its reason are two answers)`
+    : summary;
+
 /** A line as long as this was broken because it was full, not because a sentence ended there. */
 const FULL = 60; // [characters]
 

@@ -4,6 +4,7 @@
 // singular configurations, in words for the card of a method.
 import { quantity, seconds } from "./format.js";
 import { cardOf } from "./spelling.js";
+import { listed, verdictAt } from "./verdict.js";
 import { sentenceCase } from "./words.js";
 
 /** Of its own greatest velocity so far: a coordinate that is slower does not move on. */
@@ -76,18 +77,44 @@ const atDeadPoint = (name) =>
   `A force along ${name} moves nothing then, and ${name} does not determine the configuration`;
 
 /**
- * Dead points of one coordinate as a line of the record of incidents.
- * @param {import("./store.js").Data} data @param {number} m @param {number} shown
- * @returns {{name: string, count: number, first: number, last: number, words: string}[]}
+ * The methods whose motion is the mechanism's own until the frame shown, the best first: a run that
+ * is torn, far off or wrong in its energy turns back where the mechanism does not.
+ * @param {import("./store.js").Data} data @param {number} shown
  */
-export function deadPointLines(data, m, shown) {
-  const all = deadPointsOf(data, m, shown);
+function soundMethods(data, shown) {
+  return data.methods
+    .map((_, m) => ({ m, verdict: verdictAt(data, m, shown) }))
+    .filter(({ verdict }) => verdict.tone !== "bad")
+    .sort((a, b) => a.verdict.badness - b.verdict.badness)
+    .map(({ m }) => m);
+}
+
+/**
+ * Dead points as lines of the record of incidents, by coordinate: those of the methods that are
+ * right. Methods that find the same number share a line, with the times of the best of them; `of`
+ * names them where others find another number, and is "" where all agree.
+ * @param {import("./store.js").Data} data @param {number} shown
+ * @returns {{
+ *   name: string, of: string, count: number, first: number, last: number, words: string,
+ * }[]}
+ */
+export function deadPointLines(data, shown) {
+  const found = soundMethods(data, shown).map((m) => ({ m, all: deadPointsOf(data, m, shown) }));
   return data.scene.coordinates.flatMap(({ name }, k) => {
-    const own = all.filter(({ coordinate }) => coordinate === k);
+    const own = found.map(({ m, all }) => ({
+      label: data.methods[m].label,
+      times: all.filter(({ coordinate }) => coordinate === k).map(({ t }) => t),
+    }));
     const words = `${name} turns back there while the mechanism moves on. ${atDeadPoint(name)}.`;
-    return own.length
-      ? [{ name, count: own.length, first: own[0].t, last: own[own.length - 1].t, words }]
-      : [];
+    const counts = [...new Set(own.map(({ times }) => times.length))];
+    return counts
+      .filter((count) => count > 0)
+      .map((count) => {
+        const same = own.filter(({ times }) => times.length === count);
+        const [{ times }] = same;
+        const of = counts.length > 1 ? listed(same.map(({ label }) => label)) : "";
+        return { name, of, count, first: times[0], last: times[count - 1], words };
+      });
   });
 }
 

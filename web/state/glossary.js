@@ -51,7 +51,7 @@ export const GLOSSARY = {
   alpha: {
     word: "α",
     means:
-      "Baumgarte's α damps the velocity of the gap (2α in front of φ̇), as a damper would. α = 0: the gap swings; α = β: it closes fastest without swinging (critical damping).",
+      "Baumgarte's α damps the velocity of the gap (2α in front of φ̇), as a damper would. α = 0: the gap swings; α = β: it closes fastest without swinging (critical damping). Larger than β: dt·(α + √(α² − β²)), nearly dt·2α, must stay below the integrator's stability limit: 2.8 for RK4.",
   },
   beta: {
     word: "β",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Places of a plane mechanism that a part can be joined to: ends of bars and joints, each on its
-// body, at the start of the motion.
+// Places of a plane mechanism that a part can be joined to: ends of bars and joints, or any place
+// along a bar, each on its body, at the start of the motion.
 import { WORLD, createKinematics, jointPlace } from "./kinematics.js";
 
 /** @typedef {import("./scene-parts.js").Place} Place */
@@ -12,21 +12,38 @@ function localOf({ origin, turn }, world) {
   return [0, 1, 2].map((k) => turn[k] * d[0] + turn[k + 3] * d[1] + turn[k + 6] * d[2]);
 }
 
+/**
+ * The place between two ends that is nearest to another place of the plane.
+ * @param {number[][]} ends @param {number[]} world
+ */
+function nearestOf(ends, [x, y]) {
+  const [p, q] = ends;
+  const [dx, dy] = [q[0] - p[0], q[1] - p[1]];
+  const share = ((x - p[0]) * dx + (y - p[1]) * dy) / (dx * dx + dy * dy || 1);
+  const at = Math.min(1, Math.max(0, share));
+  return p.map((c, k) => c + at * (q[k] - c));
+}
+
 /** @param {import("./types.js").Scene} scene */
 export function createPlaces(scene) {
   const frames = createKinematics(scene)(scene.coordinates.map(({ value }) => value ?? 0));
   const frameOf = (body) => (body < 0 ? WORLD : frames[body]);
   /** @type {Place[]} */
   const all = [];
-  const add = (body, world) => {
+  /** @type {{body: number, ends: number[][]}[]} */
+  const bars = [];
+  const placeOn = (body, world) => {
     const frame = frameOf(body);
-    if (frame && world.every(Number.isFinite)) {
-      all.push({ body, at: localOf(frame, world), world });
-    }
+    return frame && world.every(Number.isFinite)
+      ? [{ body, at: localOf(frame, world), world }]
+      : [];
   };
+  const add = (body, world) => all.push(...placeOn(body, world));
   for (const { kind, p, q, body } of scene.drawing.shapes) {
     if (kind === "bar" && body >= 0) {
-      [p, q].forEach((i) => add(body, scene.points.slice(3 * i, 3 * i + 3)));
+      const ends = [p, q].map((i) => scene.points.slice(3 * i, 3 * i + 3));
+      ends.forEach((end) => add(body, end));
+      bars.push({ body, ends });
     }
   }
   for (const joint of scene.joints) {
@@ -58,6 +75,17 @@ export function createPlaces(scene) {
         .sort((a, b) => distance(a, world) - distance(b, world) || b.body - a.body);
       const seen = new Set();
       return found.filter(({ body }) => !seen.has(body) && seen.add(body));
+    },
+    /**
+     * The nearest place along each bar within reach, the nearest first.
+     * @param {number[]} world @param {number} reach [m]
+     * @returns {Place[]}
+     */
+    alongBars(world, reach) {
+      return bars
+        .flatMap(({ body, ends }) => placeOn(body, nearestOf(ends, world)))
+        .filter((place) => distance(place, world) <= reach)
+        .sort((a, b) => distance(a, world) - distance(b, world));
     },
     /** The joint that is nearest within reach, by name, or null. */
     jointNear(world, reach) {

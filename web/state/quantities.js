@@ -17,6 +17,10 @@ import { GLOSSARY } from "./glossary.js";
 /** A column that is kept as it was received. @param {string} name */
 const received = (name) => (data, m) => data.history.columns[m][name];
 
+/** One point is drawn for each frame: a dip to 0 between two of them does not show its depth. */
+const BETWEEN_FRAMES =
+  "The curve has one point for each frame: where it dips, the least value lies between two frames and can be far below what is drawn.";
+
 /** @type {Quantity[]} */
 export const QUANTITIES = [
   {
@@ -76,7 +80,7 @@ export const QUANTITIES = [
     loop: true,
     reference: false,
     grey: "",
-    about: GLOSSARY.pivot.means,
+    about: `${GLOSSARY.pivot.means} ${BETWEEN_FRAMES}`,
     columnOf: received("pivot_ratio"),
   },
   {
@@ -88,7 +92,7 @@ export const QUANTITIES = [
     loop: true,
     reference: false,
     grey: "",
-    about: GLOSSARY.sigma.means,
+    about: `${GLOSSARY.sigma.means} ${BETWEEN_FRAMES}`,
     columnOf: received("sigma_min"),
   },
   {

@@ -134,7 +134,8 @@ function initialData() {
     pulls: [],
     /** the end that was asked for in place of the scene's [s]; 0: the scene's */
     askedEnd: 0,
-    /** changes that can be undone and redone */ undo: { past: 0, future: 0 },
+    /** how many changes can be undone and redone, and which comes first, in words */
+    undo: { past: 0, future: 0, undoes: "", redoes: "" },
     notice: "",
     /** what was written beside the comparison; it travels with the link */ note: "",
     /** the link to what was shown last in this browser, while it is offered */ offer: "",

@@ -191,10 +191,14 @@ export function createControls(el, store, actions) {
   }
 
   const stop = listen(store, { methods: show, stream: settle });
+  const free = actions.withRefusals(
+    () => [...fields.values()].filter((field) => field.takeBack()).length > 0,
+  );
   return {
     update() {},
     dispose() {
       stop();
+      free();
       fields.forEach((field) => field.dispose());
       list.remove();
       law.remove();

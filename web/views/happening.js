@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The record of incidents, one line for each method and cause with a count, the dead points of the
-// selected method, and what to know about the scene.
+// methods that are right, and what to know about the scene.
 import { incidentOf } from "../state/catalogue.js";
 import { groupIncidents, triesOfIncident } from "../state/cards.js";
 import { deadPointLines } from "../state/dead-point.js";
-import { plain, seconds } from "../state/format.js";
-import { settingOf } from "../state/spelling.js";
+import { seconds } from "../state/format.js";
+import { otherSteps } from "../state/own-step.js";
 import { listen } from "../state/store.js";
 import { sentenceCase } from "../state/words.js";
 import { h } from "../widgets/dom.js";
@@ -79,14 +79,14 @@ export function createHappening(el, store, actions) {
   function makeDeadPoint(line) {
     return h(
       "li",
-      { class: "dead-point", "data-key": `dead point ${line.name}` },
+      { class: "dead-point", "data-key": `dead point ${line.name} ${line.of}` },
       h(
         "details",
         {},
         h(
           "summary",
           {},
-          h("span", { class: "what" }, `dead point of ${line.name}`),
+          h("span", { class: "what" }, `${line.of && `${line.of}: `}dead point of ${line.name}`),
           h("span", { class: "number when" }, whenWords(line)),
           h("span", { class: "why-word" }, "Why?"),
         ),
@@ -98,11 +98,11 @@ export function createHappening(el, store, actions) {
   /** Looks for dead points in the frames that have come since the last time. */
   function findDeadPoints() {
     later = 0;
-    const { history, view, run } = data;
-    const now = `${run} ${view.selected} ${history?.count ?? 0} ${history?.stride}`;
+    const { history, reference, run } = data;
+    const now = `${run} ${reference?.state} ${history?.count ?? 0} ${history?.stride}`;
     if (now !== searched && data.scene && history?.count > 0) {
       searched = now;
-      const found = deadPointLines(data, view.selected, history.count - 1);
+      const found = deadPointLines(data, history.count - 1);
       if (JSON.stringify(found) !== JSON.stringify(dead)) {
         dead = found;
         show();
@@ -144,26 +144,8 @@ export function createHappening(el, store, actions) {
     }
   }
 
-  /** Texts of a scene tell of its own step: a run at another one is another run. */
-  function stepNote() {
-    const own = data.scene?.step ?? 0;
-    const steps = data.methods.map(({ spelling }) =>
-      Number(settingOf(data.catalogue, spelling, "h")?.value ?? 0),
-    );
-    const other = steps.find((step) => step > 0 && step !== own);
-    return own > 0 && other
-      ? [
-          h(
-            "p",
-            { class: "about" },
-            `The figures in these texts hold for the scene's own step of ${plain(own)} s; ` +
-              `the methods run at ${plain(other)} s now, so theirs differ.`,
-          ),
-        ]
-      : [];
-  }
-
   function showNotes() {
+    const steps = data.scene ? otherSteps(data) : "";
     const notes = [
       ["The scene", data.scene?.about],
       ["What to look for", data.scene?.look_for],
@@ -173,7 +155,7 @@ export function createHappening(el, store, actions) {
       ...notes
         .filter(([, text]) => text)
         .flatMap(([title, text]) => [h("h2", {}, String(title)), h("p", {}, String(text))]),
-      ...stepNote(),
+      ...(steps ? [h("p", { class: "about" }, steps)] : []),
     );
   }
 
@@ -185,7 +167,7 @@ export function createHappening(el, store, actions) {
       showNotes();
     },
     incident: showSoon,
-    view: findDeadPointsLater,
+    reference: findDeadPointsLater,
   });
   return {
     update: findDeadPointsLater,

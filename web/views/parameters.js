@@ -203,6 +203,9 @@ export function createParameters(homes, place, store, actions) {
     }
   }
 
+  const free = actions.withRefusals(
+    () => [...fields.values(), ...starts.values()].filter((field) => field.takeBack()).length > 0,
+  );
   const stop = listen(store, {
     scene: () => {
       if (scene !== data.scene?.id && data.view.parameters) {
@@ -223,6 +226,7 @@ export function createParameters(homes, place, store, actions) {
     update() {},
     dispose() {
       stop();
+      free();
       columns.removeEventListener("change", house);
       [...fields.values(), ...starts.values()].forEach((field) => field.dispose());
       drawer.remove();

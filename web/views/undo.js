@@ -2,7 +2,7 @@
 // @ts-check
 // Buttons that undo and redo changes of methods, parameters, start and scene.
 import { listen } from "../state/store.js";
-import { h } from "../widgets/dom.js";
+import { h, set } from "../widgets/dom.js";
 
 /**
  * @param {HTMLElement} place gets the buttons, over the drawing
@@ -24,16 +24,19 @@ export function createUndoButtons(place, store, actions) {
       },
       sign,
     );
-  const undo = button("Undo", "↶", "undo the last change (Z)", () => actions.undo());
-  const redo = button("Redo", "↷", "redo it (Y)", () => actions.redo());
+  const undo = button("Undo", "↶", "", () => actions.undo());
+  const redo = button("Redo", "↷", "", () => actions.redo());
   place.prepend(undo, redo);
 
-  const stop = listen(store, {
-    undo: () => {
-      undo.disabled = data.undo.past === 0;
-      redo.disabled = data.undo.future === 0;
-    },
-  });
+  function show() {
+    const { past, future, undoes, redoes } = data.undo;
+    undo.disabled = past === 0;
+    redo.disabled = future === 0;
+    set(undo, { "data-tip": `undo ${undoes || "the last change"} (Z)` });
+    set(redo, { "data-tip": `redo ${redoes || "what was undone"} (Y)` });
+  }
+  show();
+  const stop = listen(store, { undo: show });
   return {
     update() {},
     dispose() {

@@ -12,6 +12,7 @@ import { explained } from "../widgets/term.js";
 import { tryButtons } from "../widgets/tries.js";
 
 const EDGE = 8; // [px] between the card and the edges of what it lies in
+const LEAST = 200; // [px] of a card that is scrolled
 const MOST_GROUPS = 4;
 
 /**
@@ -109,15 +110,20 @@ export function createWhyCard(el, store, actions) {
     );
   }
 
-  /** Under the row, or above it where more room is there; never beyond the window. */
+  /**
+   * Under the row, or above it where more room is there; never beyond the window, nor over the
+   * buttons above the list: what is longer is scrolled.
+   */
   function place(m) {
     const row = /** @type {HTMLElement} */ (buttonOf(m)?.closest("tr"));
     const home = el.getBoundingClientRect();
     const at = row.getBoundingClientRect();
     const lowest = Math.min(home.bottom, innerHeight - EDGE);
+    const highest = el.querySelector(".title")?.getBoundingClientRect().bottom ?? home.top;
+    holder.style.maxHeight = `${Math.max(LEAST, lowest - highest)}px`;
     const height = holder.offsetHeight;
     const below = at.bottom + height <= lowest;
-    const top = below ? at.bottom : Math.max(home.top, lowest - height);
+    const top = below ? at.bottom : Math.max(highest, lowest - height);
     holder.style.top = `${top - home.top}px`;
   }
 

@@ -212,6 +212,16 @@ export function createSliderField(options) {
         show();
       }
     },
+    /** Shows what runs in place of a value in sight that was refused. Returns whether one was. */
+    takeBack() {
+      if (el.dataset.kind !== "error" || el.offsetParent === null) {
+        return false;
+      }
+      const verdict = options.check(value);
+      tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
+      show();
+      return true;
+    },
     dispose() {
       clearTimeout(timer);
       el.remove();

@@ -507,15 +507,14 @@ static const char *hindrance(const study *s) {
                                                 : NULL;
 }
 
-/// Lets a stopped study go on, for the time limit of the body or else for what is left of its own,
-/// where that is over for all that is left; never for longer than the computing time over all its
-/// runs leaves. The document of what is done stays until there is a new one. With the lock held.
+/// Lets a stopped study go on, for the time limit of the body or else for all the computing time
+/// that its runs have left, and never for longer. What was left of the limit before does not count.
+/// The document of what is done stays until there is a new one. With the lock held.
 static hn_status go_on(study *s, const cJSON *body) {
     const cJSON *limit = cJSON_GetObjectItemCaseSensitive(body, "time_limit");
     const double ran = s->ended - s->started, before = s->before + ran;
-    const double left = left_of(s);
-    const double rest = s->work.out_of_time ? left : s->work.request.limits.time_limit - ran;
-    hn_study_work_again(&s->work, fmax(LEAST_LEFT, fmin(left, limit ? limit->valuedouble : rest)));
+    const double left = left_of(s), wanted = limit ? fmin(left, limit->valuedouble) : left;
+    hn_study_work_again(&s->work, fmax(LEAST_LEFT, wanted));
     HN_TRY(start_thread(s));
     s->all->n_places++;
     s->all->n_threads++;

@@ -159,7 +159,7 @@ export function createEditor(el, store, actions, drawing) {
     }
     say(state, "asking the server");
     try {
-      await actions.loadDocument(value);
+      await actions.loadDocument(value, undefined, lastGood);
       if (number === asked) {
         lastGood = value;
         showFaults([]);
@@ -248,6 +248,7 @@ export function createEditor(el, store, actions, drawing) {
     showFaults([]);
     try {
       await actions.bringBack(last.ran);
+      lastGood = parseText(last.text).value ?? lastGood;
       say(state, `taken back; it runs as before: ${data.scene.caption}`);
     } catch (error) {
       say(state, sentenceOf(error));

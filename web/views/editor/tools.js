@@ -7,11 +7,12 @@ import { addBar, addMotor, addPin, addSlider } from "../../state/scene-parts.js"
 import { shownIndex } from "../../state/store.js";
 import { h, s, set } from "../../widgets/dom.js";
 
-const REACH = 18; // [px]
+const REACH = 18; // [px] to an end or a joint
+const BAR_REACH = 8; // [px] to the line between the ends of a bar
 const LEAST = 12; // [px] a shorter bar is a slip of the hand
 const GRID = 0.1; // of the scale bar
 const TOOLS = {
-  bar: "press where it is held, let go where it ends: on another part it is pinned there too",
+  bar: "press where it is held, on a part or on free ground; let go where it ends: on another part it is pinned there too",
   pin: "click where two parts meet, or where one is held by the ground",
   slider: "click a point of a part: it stays on a horizontal line",
   motor: "click a joint: a torque of 1 N·m turns it",
@@ -102,13 +103,22 @@ export function createEditorTools(data, { stage, frame, overlay }, { change, tel
     }
     const [x, y] = pixelOf(event);
     const world = worldAt(x, y);
-    const near = createPlaces(data.scene).near(world, REACH / stage.camera.scale);
     if (chosen === "bar") {
+      const near = placesAt(world);
       held = { places: near, world: near[0]?.world ?? snapped(world), x, y };
       frame.setPointerCapture(event.pointerId);
     } else {
-      put(near, world);
+      put(createPlaces(data.scene).near(world, REACH / stage.camera.scale), world);
     }
+  }
+
+  /** Where a bar is held: ends and joints first, then whatever place of a bar. */
+  function placesAt(world) {
+    const places = createPlaces(data.scene);
+    return [
+      ...places.near(world, REACH / stage.camera.scale),
+      ...places.alongBars(world, BAR_REACH / stage.camera.scale),
+    ];
   }
 
   /** A pin, a slider or a motor. @param {import("../../state/scene-parts.js").Place[]} near */
@@ -156,9 +166,7 @@ export function createEditorTools(data, { stage, frame, overlay }, { change, tel
     const world = worldAt(x, y);
     const places = createPlaces(data.scene);
     const start = from.places[0] ?? { body: -1, at: from.world, world: from.world };
-    const end = places
-      .near(world, REACH / stage.camera.scale)
-      .find(({ body }) => body !== start.body);
+    const end = placesAt(world).find(({ body }) => body !== start.body);
     change((scene) =>
       addBar(scene, start, end ?? null, end?.world ?? snapped(world), places.angleOf(start.body)),
     );

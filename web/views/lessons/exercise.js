@@ -4,7 +4,14 @@
 // and the check. It is fetched when it is opened.
 import { sentenceOf } from "../../api/client.js";
 import { documents } from "../../api/documents.js";
-import { flowing, formOf, matrixOf, readAnswer, readChoice } from "../../state/answers.js";
+import {
+  flowing,
+  formOf,
+  matrixOf,
+  readAnswer,
+  readChoice,
+  summaryOf,
+} from "../../state/answers.js";
 import { counted } from "../../state/format.js";
 import { h, say } from "../../widgets/dom.js";
 
@@ -202,7 +209,7 @@ export function createExercise({ id, about, progress, changed }) {
           "p",
           {},
           h("strong", {}, `${verdict.score} of ${counted(verdict.max_score, "point")}. `),
-          verdict.summary,
+          summaryOf(verdict),
         ),
         h(
           "ul",
