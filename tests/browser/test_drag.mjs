@@ -164,11 +164,11 @@ test("a joint that is dragged to where it stands changes nothing, and there is n
   await page.getByText("drag a square along its bar").waitFor();
   const { x, y } = await jointAt(page, "A");
   await page.mouse.move(x, y);
+  const waiting = countAsked(page, /drag/); // before the first of them is asked
   await page.mouse.down();
   // out to the side and back
   await page.mouse.move(x - 30, y, { steps: 3 });
   await until(page, (data) => data.drag?.moved);
-  const waiting = countAsked(page, /drag/);
   await page.mouse.move(x, y, { steps: 3 });
   await soon(async () => {
     await drawn(page); // an answer asks for the newest wish at once
