@@ -151,6 +151,32 @@ def two_signs(folder):
         expect(f"{text} is right", found["right"], str(found))
 
 
+def units_that_do_not_measure_it(folder):
+    """A frequency is turned into an angular rate; a count has no unit, and no angle in it."""
+    def told(exercise, part, answer):
+        verdict = json.loads(run("grade", exercise, write(folder, "u.json", {part: answer}), "--json", "--show-expected").stdout)
+        return next(e for e in verdict["entries"] if e["name"] == part)
+
+    def right(exercise, part):
+        return float(told(exercise, part, 1e150)["expected"].split()[0])
+
+    rate = right("gears", "a")
+    for text, good in ((f"{rate / 6.283185307:.6f} Hz", True), (f"{rate} Hz", False), (f"{rate} 1/s", True), (f"{rate} rad/sec", True), (f"{rate * 9.549297:.6f} rev/min", True)):
+        found = told("gears", "a", text)
+        expect(f"gears a {text}: right {good}", found["right"] == good, str(found))
+    expect("an angular rate in degrees is named", told("gears", "a", rate * 57.29577951)["mistake"] == "degrees")
+    expect("and one that was turned twice", told("gears", "a", rate / 57.29577951)["mistake"] == "radians")
+    count = right("ring", "a")
+    for text in (f"{count} rad", f"{count * 57.29577951} °", f"{count} turn"):
+        found = told("ring", "a", text)
+        expect(f"ring a {text} has another unit", found["mistake"] == "unit" and "without a unit" in found["explanation"], str(found))
+    for exercise, part, factors in (("ring", "a", (57.29577951, 1 / 57.29577951, 1000, 0.001)), ("gears", "b", (57.29577951, 1 / 57.29577951)), ("motors", "a", (57.29577951,))):
+        for factor in factors:
+            found = told(exercise, part, right(exercise, part) * factor)
+            expect(f"{exercise} {part} times {factor:.4g} is no slip of angles or units", found["mistake"] not in ("degrees", "radians", "milli", "kilo"), str(found))
+    expect("a factor of 1000 in a unit is named", told("gears", "b", right("gears", "b") * 1000)["mistake"] == "milli")
+
+
 def what_looks_like_an_answer(folder):
     """An example must have its shape; a count is not explained by two mistakes; small counts accuse nobody."""
     def entries(exercise, given):
@@ -232,5 +258,5 @@ def what_looks_like_an_answer(folder):
 if __name__ == "__main__":
     sys.exit(speak_tap([
         readings, rates_of_a_part, nothing_for_nothing, what_is_told_of_choices_hints_and_rods,
-        other_numbers, student_numbers, two_signs, what_looks_like_an_answer,
+        other_numbers, student_numbers, two_signs, units_that_do_not_measure_it, what_looks_like_an_answer,
     ]))

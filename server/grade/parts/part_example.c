@@ -76,7 +76,7 @@ static bool read_number(const hn_part *p, const cJSON *node, double *x) {
     const bool bare = !end[strspn(end, " ")];
     const bool known = hn_unit_parse(hn_part_text(p->node, "unit"), &own) &&
                        hn_unit_parse(bare ? hn_part_text(p->node, "unit") : end, &given);
-    *x *= known ? given.factor / own.factor : 1;
+    *x *= known ? hn_unit_ratio(&given, &own) : 1;
     return end > text && isfinite(*x) && known && hn_unit_fits(&given, &own);
 }
 

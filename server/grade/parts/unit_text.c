@@ -3,13 +3,14 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define DEGREE 0.017453292519943295
 
-// powers of m, kg, s, rad
+// powers of m, kg, s, rad, and of Hz, which is 1/s as well
 static const struct {
     const char *name;
     hn_unit unit;
@@ -26,6 +27,7 @@ static const struct {
     {"g", {1e-3, {0, 1, 0, 0}}},
     {"t", {1e3, {0, 1, 0, 0}}},
     {"s", {1, {0, 0, 1, 0}}},
+    {"sec", {1, {0, 0, 1, 0}}},
     {"ms", {1e-3, {0, 0, 1, 0}}},
     {"us", {1e-6, {0, 0, 1, 0}}},
     {"min", {60, {0, 0, 1, 0}}},
@@ -43,13 +45,17 @@ static const struct {
     {"deg", {DEGREE, {0, 0, 0, 1}}},
     {"°", {DEGREE, {0, 0, 0, 1}}},
     {"turn", {360 * DEGREE, {0, 0, 0, 1}}},
+    {"rev", {360 * DEGREE, {0, 0, 0, 1}}},
+    {"U", {360 * DEGREE, {0, 0, 0, 1}}},
     {"rpm", {6 * DEGREE, {0, 0, -1, 1}}},
-    {"Hz", {1, {0, 0, -1, 0}}},
-    {"kHz", {1e3, {0, 0, -1, 0}}},
+    {"Hz", {1, {0, 0, -1, 0, 1}}},
+    {"kHz", {1e3, {0, 0, -1, 0, 1}}},
     {"N", {1, {1, 1, -2, 0}}},
     {"kN", {1e3, {1, 1, -2, 0}}},
     {"mN", {1e-3, {1, 1, -2, 0}}},
     {"Nm", {1, {2, 1, -2, 0}}},
+    {"kNm", {1e3, {2, 1, -2, 0}}},
+    {"mNm", {1e-3, {2, 1, -2, 0}}},
     {"J", {1, {2, 1, -2, 0}}},
     {"kJ", {1e3, {2, 1, -2, 0}}},
     {"mJ", {1e-3, {2, 1, -2, 0}}},
@@ -139,9 +145,16 @@ int hn_unit_parse(const char *text, hn_unit *out) {
     return 1;
 }
 
+double hn_unit_ratio(const hn_unit *a, const hn_unit *b) {
+    const bool angles = a->power[HN_UNIT_ANGLE] || b->power[HN_UNIT_ANGLE];
+    const double turns =
+        angles ? pow(360 * DEGREE, a->power[HN_UNIT_CYCLE] - b->power[HN_UNIT_CYCLE]) : 1;
+    return turns * a->factor / b->factor;
+}
+
 int hn_unit_fits(const hn_unit *a, const hn_unit *b) {
     int same = 1;
-    for (int i = 0; i < HN_UNIT_BASES - 1; i++) {
+    for (int i = 0; i < HN_UNIT_ANGLE; i++) {
         same &= a->power[i] == b->power[i];
     }
     return same;

@@ -209,7 +209,8 @@ bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_
         hn_part_unreadable(r, "a number is asked for, not a formula");
         return false;
     }
-    if (!hn_unit_fits(&unit, &s->unit)) {
+    const bool angle = unit.power[HN_UNIT_ANGLE] != 0;
+    if (!hn_unit_fits(&unit, &s->unit) || (angle && hn_value_is_count(s))) {
         const char *own = hn_part_text(s->p->node, "unit");
         hn_part_wrong(r, "unit", 0, "this unit measures something else; asked for: %s",
                       own[0] ? own : "a plain number, without a unit");
@@ -217,9 +218,10 @@ bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_
     }
 
     // in the unit that is asked for
+    const double ratio = hn_unit_ratio(&unit, &s->unit);
     for (int i = 0; i < s->draw->n_states; i++) {
-        x[i] = hn_draw_eval(s->draw, *e, i) * unit.factor / s->unit.factor;
+        x[i] = hn_draw_eval(s->draw, *e, i) * ratio;
     }
-    *e = hn_scale(unit.factor / s->unit.factor, *e);
+    *e = hn_scale(ratio, *e);
     return true;
 }

@@ -14,23 +14,24 @@
 static const struct factor_row {
     const char *id, *says, *again;
     double factor, share;
-    int numbers; ///< of numbers alone
+    int numbers;                    ///< of numbers alone
+    enum { ANY, ANGLES, UNITS } of; ///< numbers in units of angle; numbers that are no counts
 } FACTORS[] = {
-    {"sign", "the sign is wrong", "the sign is wrong as well", -1, 0.5, 0},
+    {"sign", "the sign is wrong", "the sign is wrong as well", -1, 0.5, 0, ANY},
     {"half", "half of the right value: a factor 2 is missing", "a factor 2 is missing as well", 0.5,
-     0.25, 0},
+     0.25, 0, ANY},
     {"double", "twice the right value: a factor 1/2 is missing", "a factor 1/2 is missing as well",
-     2, 0.25, 0},
+     2, 0.25, 0, ANY},
     {"degrees", "this looks like degrees; radians are asked for",
-     "this looks like degrees as well; radians are asked for", 57.29577951308232, 0.5, 0},
+     "this looks like degrees as well; radians are asked for", 57.29577951308232, 0.5, 0, ANGLES},
     {"radians", "the angle was turned into radians twice",
-     "the angle was turned into radians twice as well", 0.017453292519943295, 0.5, 0},
+     "the angle was turned into radians twice as well", 0.017453292519943295, 0.5, 0, ANGLES},
     {"milli", "a factor of 1000: check the unit", "a factor of 1000 as well: check the unit", 1000,
-     0.5, 1},
+     0.5, 1, UNITS},
     {"kilo", "a factor of 1/1000: check the unit", "a factor of 1/1000 as well: check the unit",
-     0.001, 0.5, 1},
+     0.001, 0.5, 1, UNITS},
     {"gravity", "the acceleration of gravity is missing",
-     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 1},
+     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 1, ANY},
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
 
@@ -75,7 +76,12 @@ static hn_status try_listed(hn_value_search *f) {
 }
 
 static bool applies(const hn_value_sheet *s, int m) {
-    return !FACTORS[m].numbers || !s->symbolic;
+    if (s->symbolic) { // radians are in its names, and a formula has no unit of its own
+        return !FACTORS[m].numbers;
+    }
+    return FACTORS[m].of == ANGLES  ? s->unit.power[HN_UNIT_ANGLE] != 0
+           : FACTORS[m].of == UNITS ? !hn_value_is_count(s)
+                                    : true;
 }
 
 /// A listed mistake together with a factor.

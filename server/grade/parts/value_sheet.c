@@ -118,6 +118,16 @@ hn_status hn_value_open(hn_value_sheet *s, const hn_part *p, hn_draw *draw, hn_d
     return set_tolerance(s);
 }
 
+bool hn_value_is_count(const hn_value_sheet *s) {
+    bool count = !s->symbolic && s->reference.n > 0 && !hn_part_text(s->p->node, "unit")[0];
+    for (int k = 0; k < s->reference.n; k++) {
+        // a drawn whole number may be off by rounding, far below 1e-9
+        const double right = s->reference.x[k][0];
+        count = count && fabs(right - round(right)) < 1e-9;
+    }
+    return count;
+}
+
 int hn_value_is_right(const hn_value_sheet *s, int k, const double *given) {
     for (int i = 0; i < s->draw->n_states; i++) {
         if (!(fabs(given[i] - s->reference.x[k][i]) <= s->allowed[k])) {

@@ -133,7 +133,7 @@ static void mistakes_in_numbers_are_named(void **state) {
     expect(e, "a", with_number(e, "-l*w", "%.4f"), "sign");
     expect(e, "a", with_number(e, "l*w/2", "%.4f"), "half");
     expect(e, "a", with_number(e, "l*w*1000", "%.2f"), "milli");
-    expect(e, "a", with_number(e, "l*w*180/pi", "%.4f"), "degrees");
+    expect(e, "a", with_number(e, "l*w*180/pi", "%.4f"), "other"); // metres are no angle
     expect(e, "a", with_number(e, "l*w*1.1", "%.4f"), "other");
 
     // two at once: the listed mistake and the sign
@@ -296,6 +296,20 @@ static void units_are_what_they_measure(void **state) {
     assert_int_equal(hn_unit_parse("s⁻¹", &b), 1);
     assert_int_equal(b.power[2], -1);
     assert_int_equal(hn_unit_parse("degrees", &b), 1);
+    assert_int_equal(hn_unit_parse("kNm", &a), 1);
+    assert_int_equal(hn_unit_parse("J", &b), 1);
+    assert_int_equal(hn_unit_fits(&a, &b), 1);
+    assert_near(hn_unit_ratio(&a, &b), 1000, 1e-12);
+
+    // cycles are turns beside radians only
+    assert_int_equal(hn_unit_parse("Hz", &a), 1);
+    assert_int_equal(hn_unit_parse("rad/sec", &b), 1);
+    assert_near(hn_unit_ratio(&a, &b), 2 * acos(-1), 1e-14);
+    assert_near(hn_unit_ratio(&b, &a), 0.5 / acos(-1), 1e-15);
+    assert_int_equal(hn_unit_parse("1/s", &b), 1);
+    assert_near(hn_unit_ratio(&a, &b), 1, 1e-15);
+    assert_int_equal(hn_unit_parse("rev/min", &b), 1);
+    assert_near(hn_unit_ratio(&a, &b), 60, 1e-13);
     assert_int_equal(hn_unit_parse("furlong", &a), 0);
     assert_int_equal(hn_unit_parse("m^99", &a), 0);
 }
