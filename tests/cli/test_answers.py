@@ -177,6 +177,20 @@ def units_that_do_not_measure_it(folder):
     expect("a factor of 1000 in a unit is named", told("gears", "b", right("gears", "b") * 1000)["mistake"] == "milli")
 
 
+def whole_sentences(folder):
+    """A reason ends where its sentence ends; a minus of a word processor goes with a decimal comma."""
+    for exercise, part, answer in (("closure", "a", "-l1*diff(th1,t)*sin(th1)"), ("method", "b", "index3@euler:h=10"), ("method", "b", "index9@rk4:h=0.1")):
+        verdict = json.loads(run("grade", exercise, write(folder, "cut.json", {part: answer}), "--json").stdout)
+        said = verdict["hint"]
+        expect(f"the reason why {answer} cannot be read ends whole", said.endswith(("and their like", "list methods'", ", ...", "'index1'?")), said)
+    right = run("grade", "trammel", write(folder, "n.json", {"c": 1e150}), "--json", "--show-expected").stdout
+    right = next(e for e in json.loads(right)["entries"] if e["name"] == "c")["expected"].split()[0]
+    minus = "−" if float(right) < 0 else ""
+    for text in (minus + right.lstrip("-"), minus + right.lstrip("-").replace(".", ","), minus + right.lstrip("-").replace(".", ",") + " Nm"):
+        found = json.loads(run("grade", "trammel", write(folder, "n.json", {"c": text}), "--json").stdout)["entries"]
+        expect(f"trammel c {text} is right", minus and next(e for e in found if e["name"] == "c")["right"], str(found))
+
+
 def what_looks_like_an_answer(folder):
     """An example must have its shape; a count is not explained by two mistakes; small counts accuse nobody."""
     def entries(exercise, given):
@@ -258,5 +272,5 @@ def what_looks_like_an_answer(folder):
 if __name__ == "__main__":
     sys.exit(speak_tap([
         readings, rates_of_a_part, nothing_for_nothing, what_is_told_of_choices_hints_and_rods,
-        other_numbers, student_numbers, two_signs, units_that_do_not_measure_it, what_looks_like_an_answer,
+        other_numbers, student_numbers, two_signs, units_that_do_not_measure_it, whole_sentences, what_looks_like_an_answer,
     ]))

@@ -128,8 +128,9 @@ static hn_status grade_word(const hn_part *p, const char *word, hn_part_result *
             // is longer than a verdict
             const char *list = strstr(why.message, "; there are: ");
             const int length = list ? (int)(list - why.message) : 250;
-            const bool named = why.hint[0] && !hn_guest_is_named(word);
-            hn_part_unreadable(r, "%.*s; %.100s", length, why.message,
+            const bool fits = (size_t)length + strlen(why.hint) + 3 < sizeof r->explanation;
+            const bool named = why.hint[0] && fits && !hn_guest_is_named(word);
+            hn_part_unreadable(r, "%.*s; %s", length, why.message,
                                named ? why.hint : "choose one of 'holonom list methods'");
             status = tried == HN_ERR_MEMORY ? tried : status;
         }

@@ -40,6 +40,19 @@ static hn_status read_quantity(hn_value_sheet *s, const char *text, hn_ex *e, hn
     return status;
 }
 
+/// Puts the sign of ASCII for a minus or dash that a word processor writes before a number.
+static void plain_sign(char *number) {
+    static const char *const MINUS[] = {"−", "–", "—", "‐", "‑"};
+    for (size_t i = 0; i < sizeof MINUS / sizeof *MINUS; i++) {
+        const size_t n = strlen(MINUS[i]);
+        if (strncmp(number, MINUS[i], n) == 0) {
+            number[0] = '-';
+            memmove(number + 1, number + n, strlen(number + n) + 1);
+            return;
+        }
+    }
+}
+
 /// Copies a number without what students write before it ("= ", "x = ", "≈ "), and with a point
 /// for a decimal comma. A comma that may part thousands (1,234) stays: the number is refused.
 static void plain_number(const char *text, char *out, size_t size) {
@@ -52,6 +65,7 @@ static void plain_number(const char *text, char *out, size_t size) {
     }
     at += strspn(at, " ");
     snprintf(out, size, "%s", at);
+    plain_sign(out);
 
     // one comma between digits, and no point
     char *comma = strchr(out, ',');
@@ -75,7 +89,7 @@ static int uses_names(const hn_value_sheet *s, hn_ex e) {
 
 /// The reason why a formula cannot be read.
 static void refuse_formula(const char *text, const hn_diag *diag, hn_part_result *r) {
-    hn_part_unreadable(r, "'%.60s' cannot be read: %.180s%s%.80s", text, diag->message,
+    hn_part_unreadable(r, "'%.60s' cannot be read: %.180s%s%.120s", text, diag->message,
                        diag->hint[0] ? "; " : "", diag->hint);
 }
 
