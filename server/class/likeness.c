@@ -99,16 +99,32 @@ static void read_item(reader *r, const cJSON *item) {
     }
 }
 
+/// The answers of a submission: its members but those that say whose it is or how it was made.
+static void read_answers(reader *r, const cJSON *submission) {
+    static const char *const OTHERS[] = {"problem", "exercise", "student",
+                                         "seed",    "comment",  "hints"};
+    const cJSON *m;
+    cJSON_ArrayForEach(m, submission) {
+        bool answer = true;
+        for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
+            answer = answer && !(m->string && strcmp(m->string, OTHERS[i]) == 0);
+        }
+        if (answer) {
+            read_item(r, m);
+        }
+    }
+}
+
 uint64_t hn_likeness_texts(const cJSON *submission) {
     reader r = {.hash = HN_HASH_START};
-    read_item(&r, submission);
+    read_answers(&r, submission);
     return hn_hash_mix(r.hash);
 }
 
 uint64_t hn_likeness_shape(const cJSON *submission) {
     names list = {0};
     reader r = {.hash = HN_HASH_START, .names = &list};
-    read_item(&r, submission);
+    read_answers(&r, submission);
     return hn_hash_mix(r.hash);
 }
 

@@ -6,7 +6,7 @@
 #include <cjson/cJSON.h>
 #include <stdint.h>
 
-/// Hashes what a submission says: its texts without blanks and capitals, and its numbers.
+/// Hashes the answers of a submission: their texts without blanks and capitals, and their numbers.
 uint64_t hn_likeness_texts(const cJSON *submission);
 /// Hashes the same with every name replaced by its number in order of appearance; the names of
 /// functions stay. Two submissions that differ in their names alone are equal.

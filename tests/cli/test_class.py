@@ -117,6 +117,15 @@ class Class(unittest.TestCase):
         self.assertIn("copy1, copy2", text)
         self.assertNotRegex(text.split("equal wrong")[1], "right|own")
 
+    def test_fields_that_are_no_answers_hide_no_copy(self):
+        answers = json.loads(WRONG_SIGN)
+        more = {"plain": {}, "named": {"student": "named"}, "hinted": {"hints": 0}, "told": {"comment": "by myself", "problem": "p3"}}
+        for name, fields in more.items():
+            self.put(f"{name}.json", json.dumps(dict(fields, **answers)))
+        self.put("own.json", RIGHT.replace('"l3*sin(th3)"', '"l3*cos(th3)"'))
+        text = self.grade().stdout
+        self.assertIn("hinted, named, plain, told", text.split("equal wrong")[1], text)
+
     def test_a_row_says_why_no_answer_can_be_read(self):
         self.put("ann.json", '{"a": 1, "a": 2}')
         line = json.loads(call("grade", "closure", self.folder, "--json").stdout)
