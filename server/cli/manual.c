@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/shell/option_help.h"
 #include "cli/manual.h"
 
 #include "build.h"

@@ -51,10 +51,6 @@ typedef struct hn_args {
 HN_MUST_CHECK hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc,
                                       char **argv, hn_diag *diag);
 void hn_args_reset(hn_args *args);
-/// Columns of the help: those of the terminal behind standard output, 80 at most.
-int hn_help_width(void);
-/// "--set NAME=VALUE   a parameter that differs ...", a line an option of the command.
-void hn_args_describe(hn_strbuf *b, const hn_command *command);
 /// One option as help, manual and completion show it; argument NULL: a flag.
 typedef struct hn_option_row {
     char name[32];
@@ -63,8 +59,6 @@ typedef struct hn_option_row {
 } hn_option_row;
 /// The i-th option that a command reads; false: there are no more.
 bool hn_args_option(const hn_command *command, int i, hn_option_row *out);
-/// Appends the description of an option, after its choices where its argument does not list them.
-void hn_args_about(hn_strbuf *b, const hn_option_row *o);
 /// A finite number and nothing behind it; 0 otherwise.
 int hn_number_parse(const char *text, double *out);
 #endif

@@ -3,6 +3,7 @@
 
 #include "support/near.h"
 #include "cli/shell/args.h"
+#include "cli/shell/option_help.h"
 
 #include <math.h>
 #include <stdio.h>
