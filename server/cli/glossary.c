@@ -62,7 +62,7 @@ static const hn_term TERMS[] = {
     // errors
     {"error estimate, motion error, reaction error",
      "Largest difference of a run from its pilot run so far. Of the motion: angles in rad, lengths "
-     "over the mechanism's length. Of the reactions: over their largest value."},
+     "divided by the mechanism's length. Of the reactions: divided by their largest value."},
     {"right, inaccurate, WRONG",
      "The verdict of 'run' and 'compare', by the error estimate. right: motion error and reaction "
      "error are at most 0.01. inaccurate: one of them is larger. WRONG: the motion error is 1 or "
@@ -72,8 +72,8 @@ static const hn_term TERMS[] = {
      "cost too much, or was itself too uncertain. The reason is given."},
     {"right to 3 digits",
      "The verdict of the workbench and the page, at the time shown. It is the larger of two "
-     "errors: the distance of drawn points from the reference solution, over the mechanism's "
-     "length, and the energy change, over the range of the energies."},
+     "errors: the distance of drawn points from the reference solution, divided by the "
+     "mechanism's length, and the energy change, divided by the range of the energies."},
     {"incident, remedy",
      "An incident is an event that the program reports during a run, such as a loop that opens or "
      "an energy that jumps. A remedy is a change of method or step that removes it; 'tried' gives "

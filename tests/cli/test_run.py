@@ -163,11 +163,11 @@ class Run(Command):
         far = "projection@rk4:h=2"
         text = self.assert_exit(call("compare", "four-bar", "--methods", far, RK4, "--time", "1"), DONE)
         self.assertRegex(text, r"(?m)^projection@rk4\S* +WRONG +1.00 ")
-        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\S* \(angles in rad, lengths over the mechanism's length\)$")
+        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\S* \(angles in rad, lengths divided by the mechanism's length\)$")
         self.assertRegex(text, r"(?m)^index1@rk4\S* +right +1.00 ")
         self.assertNotRegex(text, r"index1@rk4\S* is wrong")
         told = call("run", "four-bar", "--method", far, "--time", "1", "--at", "1").stderr.decode()
-        self.assertRegex(told, r"the motion is wrong: up to t = 1 s the coordinates are estimated to be off by up to 19 \(angles in rad, lengths over the mechanism's length\), reactions by .*largest( value)?\n")
+        self.assertRegex(told, r"the motion is wrong: up to t = 1 s the coordinates are estimated to be off by up to 19 \(angles in rad, lengths divided by the mechanism's length\), reactions by .*largest( value)?\n")
         near = call("run", "four-bar", "--method", "index1@rk4:h=0.05", "--time", "1", "--at", "1").stderr.decode()
         self.assertNotIn("the motion is wrong", near)
 
@@ -259,18 +259,18 @@ class Run(Command):
 
     def test_a_scene_whose_methods_are_meant_to_go_wrong_says_so(self):
         own = " ".join(call("compare", "four-bar").stdout.decode().split())
-        self.assertIn("meant to go wrong: The step of 0.01 s is long on purpose", own)
+        self.assertIn("this is intended: The step of 0.01 s is long on purpose", own)
         # the figure of the note is the one of the run
         self.assertIn("within 10 s the angles are wrong by up to 1.8 rad", own)
         self.assertIn("index1@rk4:h=0.01 is wrong: its coordinates are off by up to 1.8 (", own)
         for words in ("--methods", "index1@rk4:h=0.01"), ("--time", "1"), ("--set", "l1=0.45"):
             # methods of somebody else; nothing has gone wrong; another mechanism
-            self.assertNotIn("meant to go wrong", call("compare", "four-bar", *words).stdout.decode())
+            self.assertNotIn("this is intended", call("compare", "four-bar", *words).stdout.decode())
         # a run by one of its methods says it too, wherever standard error leads
         own = call("run", "parallelogram", "--at", "5").stderr.decode()
-        self.assertIn("meant to go wrong: Index-1 and Baumgarte are here to be seen leaving the motion", own)
+        self.assertIn("this is intended: Index-1 and Baumgarte are here to be seen leaving the motion", own)
         for words in ("--method", "index1@rk4:h=2e-3"), ("--set", "w_0=3"):
-            self.assertNotIn("meant to go wrong", call("run", "parallelogram", "--at", "5", *words).stderr.decode())
+            self.assertNotIn("this is intended", call("run", "parallelogram", "--at", "5", *words).stderr.decode())
 
     def test_the_verdict_on_a_run_is_told_whoever_reads_it(self):
         for scene, time, says in ("bennett", "1", "right: up to t = 1 s the coordinates"), ("four-bar", "10", "not judged|inaccurate|wrong|right"):

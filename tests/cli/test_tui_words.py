@@ -90,7 +90,7 @@ class Messages(unittest.TestCase):
     def test_a_long_message_keeps_its_values_and_its_end(self):
         for size in ("120x40", "80x24"):
             _, out, _ = once("four-bar", "--once", "--t", "0.5", "--size", size, "--methods", "index1@rk4:h=0.02", "--keys", "p<Enter>2.5<Enter>")
-            self.assertIn("make rocker longer than 0.932719 m or coupler longer than 1.33272 m, or change a start value that is held", " ".join(out.split()), size)
+            self.assertIn("make rocker longer than 0.932719 m or coupler longer than 1.33272 m, or change what is held at the start (th1 = 1)", " ".join(out.split()), size)
 
     def test_why_says_how_the_gap_decays_where_alpha_is_above_beta(self):
         _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "200x40", "--methods", "baumgarte:alpha=13.61,beta=7.462@rk4", "--keys", "i")

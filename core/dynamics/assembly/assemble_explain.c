@@ -323,9 +323,13 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
 
     // what to try
     size_t used = strlen(hint);
-    const char *other = pins[0] ? "change a start value that is held"
-                                : (used ? "" : "start from another guess, or change a length");
-    (void)snprintf(hint + used, sizeof hint - used, "%s%s", used && other[0] ? ", or " : "", other);
+    const char * or = used ? ", or " : "";
+    if (pins[0]) {
+        (void)snprintf(hint + used, sizeof hint - used, "%schange what is held at the start (%s)",
+                       or, pins);
+    } else if (!used) {
+        (void)snprintf(hint, sizeof hint, "start from another guess, or change a length");
+    }
 
     // one sentence for each way of staying open
     const char *with = pins[0] ? " with " : "", *held = pins[0] ? " held" : "",

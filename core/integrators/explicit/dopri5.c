@@ -11,8 +11,9 @@ const hn_stepper hn_stepper_dopri5 = {
     .title = "Dormand-Prince 5(4)",
     .about = "Chooses its own step from rtol and atol; order 5, dense output of order 4. On stiff "
              "undamped springs it takes smaller steps than rk4. After 5 s the motion of a pole on "
-             "a cart is off by about 5 rtol; over the shipped scenes at rtol=1e-6 the median error "
-             "is 46 rtol, and one scene in ten has more than 2900 rtol.",
+             "a cart is off by about 5 times rtol; over the shipped scenes at rtol=1e-6 the median "
+             "error "
+             "is 46 times rtol, and one scene in ten has more than 2900 times rtol.",
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.4-II.6",
     .order = 5,
     .stages = 6,

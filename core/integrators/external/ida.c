@@ -499,8 +499,10 @@ const hn_stepper hn_stepper_ida = {
              "their multipliers are left out of the error test; index3 is offered to show how it "
              "fails. The library is given a thirtieth of rtol, because its local errors add up "
              "(option safety). rtol limits the error of one step, not that of the motion: after 5 "
-             "s the motion of a pole on a cart is off by about 30 rtol; over the shipped scenes at "
-             "rtol=1e-6 the median error is 27 rtol, and one scene in ten has more than 4300 rtol.",
+             "s the motion of a pole on a cart is off by about 30 times rtol; over the shipped "
+             "scenes at "
+             "rtol=1e-6 the median error is 27 times rtol, and one scene in ten has more than 4300 "
+             "times rtol.",
     .source = "Hindmarsh et al. 2005; Brenan, Campbell & Petzold 1996",
     .order = 5,
     .stages = 1,

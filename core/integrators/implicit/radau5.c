@@ -50,8 +50,10 @@ const hn_stepper hn_stepper_radau5 = {
         "Order 5, every stiff motion damped; chooses its own step from rtol and atol, or takes h "
         "as it is. The choice for stiff springs and dampers and for the differential-algebraic "
         "forms. rtol limits the error of one step, not that of the motion: after 5 s the motion of "
-        "a pole on a cart is off by about 60 rtol; over the shipped scenes at rtol=1e-6 the median "
-        "error is 17 rtol, and one scene in ten has more than 460 rtol (index3: 34 and 1200).",
+        "a pole on a cart is off by about 60 times rtol; over the shipped scenes at rtol=1e-6 the "
+        "median "
+        "error is 17 times rtol, and one scene in ten has more than 460 times rtol (index3: 34 and "
+        "1200).",
     .source = "Hairer & Wanner 1996, IV.5 and IV.8",
     .order = 5,
     .control_order = 4,

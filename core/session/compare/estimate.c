@@ -52,7 +52,7 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
         used = snprintf(
             text, sizeof text,
             "up to t = %.4g s the coordinates are estimated to be off by up to %.2g (angles in "
-            "rad, lengths over the mechanism's length), reactions by %s",
+            "rad, lengths divided by the mechanism's length), reactions by %s",
             e.t, e.q, reactions);
     }
     if (!(t_run > 0)) {

@@ -68,13 +68,13 @@ static void check(hn_watch *w) {
     const hn_incident *i = hn_incident_report(
         w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
         s->info.lowest < LOST * s->largest
-            ? "the constraints become dependent (J loses rank) in %.3g s, at t = %.4g s, where "
-              "a robust method run ahead (a pilot run) reaches a singular configuration; the "
-              "smallest singular value of J (sigma_min) is %.2g now, the largest %.2g"
-            : "the constraints become almost dependent (J almost loses rank) in %.3g s, at "
-              "t = %.4g s, where a robust method run ahead (a pilot run) passes close to a "
-              "singular configuration; the smallest singular value of J (sigma_min) is %.2g now, "
-              "the largest %.2g",
+            ? "a singular configuration (J loses rank) lies %.3g s ahead, at t = %.4g s, as a "
+              "pilot "
+              "run shows; the smallest singular value of J, sigma_min, is %.2g now, the largest "
+              "%.2g"
+            : "an almost singular configuration (J almost loses rank) lies %.3g s ahead, at "
+              "t = %.4g s, as a pilot run shows; the smallest singular value of J, sigma_min, is "
+              "%.2g now, the largest %.2g",
         s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
     if (i) {
         s->announced = 1 + (int)(i - w->log.list);

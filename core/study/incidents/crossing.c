@@ -80,9 +80,9 @@ static void report(hn_watch *w, double x, double sigma) {
     const double h = s->now.t - s->before.t, t = s->before.t + x * h;
     hn_incident *i = hn_incident_report(
         w, &hn_incident_near_singular, "sigma_min", sigma, SINGULAR * r->largest,
-        "one step of %.3g s went across a configuration in which the constraints are almost "
-        "dependent (J almost loses rank): the smallest singular value of J (sigma_min) is %.2g "
-        "there, the largest %.2g",
+        "one step of %.3g s went across an almost singular configuration (J almost loses rank): "
+        "the "
+        "smallest singular value of J, sigma_min, is %.2g there, the largest %.2g",
         h, sigma, r->info.sigma_max);
     if (i) {
         i->t = t;

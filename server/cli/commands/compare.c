@@ -163,7 +163,7 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
     hn_strbuf_printf(b,
                      "! %s is wrong: its coordinates are off by up to %.2g (angles in rad, lengths "
-                     "over the mechanism's length)%s\n",
+                     "divided by the mechanism's length)%s\n",
                      hn_document_text(m, "method"),
                      hn_document_number(hn_document_get(m, "error_estimate"), "q"),
                      hn_error_advice(m, hn_document_get(summary, "incidents"), i));
@@ -280,7 +280,7 @@ static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary,
     hn_table_write(b, &t);
     put_measure(b, summary);
     if (own && scene->exhibit[0] && is_at_fault(summary)) {
-        hn_strbuf_printf(b, "meant to go wrong: %s\n", scene->exhibit);
+        hn_strbuf_printf(b, "this is intended: %s\n", scene->exhibit);
     }
     put_remarks(b, summary);
     hn_table_reset(&t);

@@ -111,7 +111,7 @@ static void tell_incidents(const hn_incident_list *list) {
     }
 }
 
-/// Says whether the motion is right, by its error estimate, and what is meant to go wrong: on
+/// Says whether the motion is right, by its error estimate, and what the scene shows on purpose: on
 /// standard error wherever that leads, because samples show no error.
 static void tell_verdict(const cJSON *run, const char *exhibit) {
     const cJSON *verdict = hn_document_get(run, "verdict");
@@ -133,7 +133,7 @@ static void tell_verdict(const cJSON *run, const char *exhibit) {
                 right || unknown ? ""
                                  : hn_error_advice(run, hn_document_get(run, "incidents"), -1));
     if (!right && !unknown && exhibit[0]) {
-        hn_cli_note("holonom: meant to go wrong: %s\n", exhibit);
+        hn_cli_note("holonom: this is intended: %s\n", exhibit);
     }
 }
 

@@ -176,7 +176,7 @@ static void a_dyad_out_of_reach_says_what_is_missing(void **state) {
     diag_must_hold(&m, "0.2 m are missing");
     diag_must_hold(&m, "coupler longer than 1.4 m");
     diag_must_hold(&m, "rocker longer than 2 m");
-    diag_must_hold(&m, "change a start value that is held");
+    diag_must_hold(&m, "change what is held at the start (");
     hn_model_close(&m);
 }
 
