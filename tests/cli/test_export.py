@@ -12,13 +12,16 @@ NODE_MODULES, the whole of each Julia program is parsed by tree-sitter's grammar
 """
 
 import concurrent.futures
+import contextlib
 import functools
+import io
 import json
 import math
 import os
 import queue
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -34,6 +37,8 @@ SLOW = {("octave", "delta-robot"), ("octave ode15s", "delta-robot")}  # minutes 
 NOT_HELD = {("python petsc", "stiff-four-bar"): "rounding of a spring of 1e9 N/m is in the residual, and PETSc's Newton stops at 3e-6"}
 RESPELLED = ("wolfram", "modelica", "julia")
 FACTS = 5  # lines of a self-check
+CPU = 600  # [s] of computing for one program: the slowest takes 60 alone, and a machine that does other things too takes none of it
+WALL = 3600  # [s] for one that waits and computes nothing
 
 
 def find_python():
@@ -72,14 +77,16 @@ def languages():
 
 
 FORKS = """
-import os, runpy, sys
+import os, resource, runpy, sys
 import numpy, scipy.integrate
+CPU = int(sys.argv[1])
 for line in sys.stdin:
     file = line.rstrip()
     child = os.fork()
     if child == 0:
         os.dup2(os.open(file + ".out", os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 1)
         os.dup2(1, 2)
+        resource.setrlimit(resource.RLIMIT_CPU, (CPU, CPU))
         sys.argv = [file]
         runpy.run_path(file, run_name="__main__")
         os._exit(99)  # a program ends by itself
@@ -93,11 +100,11 @@ class Python:
     def __init__(self, python, n):
         self.idle = queue.Queue()
         for _ in range(n):
-            self.idle.put(subprocess.Popen([python, "-c", FORKS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+            self.idle.put(subprocess.Popen([python, "-c", FORKS, str(CPU)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
 
     def run(self, file):
         process = self.idle.get()
-        watch = threading.Timer(300, process.kill)
+        watch = threading.Timer(WALL, process.kill)
         watch.start()
         try:
             process.stdin.write(file + "\n")
@@ -117,13 +124,17 @@ class Python:
             process.stdout.close()
 
 
-def call(words):
+def call(words, cpu=CPU):
+    """Runs a program within its computing time [s]; one that is stopped says so in stderr."""
     if isinstance(words[0], Python):
         return words[0].run(words[1])
     try:
-        return subprocess.run(words, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(["prlimit", f"--cpu={cpu}", "--", *words], capture_output=True, text=True, timeout=WALL)
     except subprocess.TimeoutExpired:
-        return subprocess.CompletedProcess(words, -1, "", "not done after 300 s")
+        return subprocess.CompletedProcess(words, -1, "", f"not done after {WALL} s")
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        done.stderr += f"not done after {cpu} s of computing"
+    return done
 
 
 def faults_of(folder, scene, name, language, out_name=None):
@@ -238,6 +249,22 @@ def hostile_words(folder):
         if " " not in name:  # another solver has the same words
             faults += [f"{name}: {fault}" for fault in faults_of(folder, mine, name, known[name], "words")]
     return faults + [f"{name}: {fault}" for name in RESPELLED for fault in equations_faults(mine, name)]
+
+
+def limits():
+    """The limit counts computing alone: a program that waits is not stopped, whatever else the machine does."""
+    waits = call([sys.executable, "-c", "import time; time.sleep(3)"], cpu=2)
+    computes = call([sys.executable, "-c", "while True: pass"], cpu=1)
+    faults = [f"one that waits: {waits.returncode} {waits.stderr}"] if waits.returncode != 0 or waits.stderr else []
+    return faults + ([] if "not done after 1 s of computing" in computes.stderr else [f"one that computes: {computes}"])
+
+
+def ends():
+    """What the table of all languages ends with: an error, unless it names the reason of every scene that does not agree."""
+    (name, scene), _ = next(iter(NOT_HELD.items()))
+    with contextlib.redirect_stdout(io.StringIO()):
+        named, other = (table([("c", "run", "four-bar", []), (name, "run", at, ["x"])]) for at in (scene, "four-bar"))
+    return [] if (named, other) == (0, 1) else [f"named: {named}, another: {other}"]
 
 
 def refusals():
@@ -418,6 +445,8 @@ def main():
             return table(ran + (parsed(folder, scenes, modules) if modules else []))
         results = [(f"{name}: {scene} agrees with the workbench ({how})", faults) for name, how, scene, faults in ran]
         results.append(("a parameter that is off by 1e-7 is found by the self-check", slip(folder)))
+        results.append(("a limit on a program counts its computing alone", limits()))
+        results.append(("only a reason in the table excuses a scene", ends()))
         results.append(("a method says how the loops are held", methods(folder)))
         results.append(("a skeleton is the program without its self-check", skeleton()))
         results.append(("a program without its libraries says so in its first line", without_numpy()))
