@@ -383,6 +383,12 @@ class Malformed(driver.ServerCase):
                         b"Host: localhost\r\nX-A: a\r\n b\r\n" + end):  # it goes on in a second line, which is refused too
             reply = self.server.raw(b"GET /healthz HTTP/1.1\r\n" + headers)
             self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), (headers, reply[:200]))
+        # the library reads one that begins a line as the end of the head, and the rest as another request
+        for headers in (b"Host: localhost\r\n\0X-A: b\r\n" + end, b"Host: localhost\r\n\0\r\n" + end, b"Host: localhost\r\nX-A: b\r\n\0\r\n\r\n",
+                        b"Host: localhost\n\0X-A: b\n" + end, b"Host: localhost\r\nX-A: \r\n\0Host: evil.example\r\n" + end, b"\0X-A: b\r\nHost: localhost\r\n" + end):
+            reply = self.server.raw(b"GET /healthz HTTP/1.1\r\n" + headers)
+            self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), (headers, reply[:200]))
+            self.assertEqual(reply.count(b"HTTP/1.1 "), 1, headers)
         # other things between a value and the next name are none
         for headers in (b"Host: localhost\r\nX-A: a  \t \r\n" + end, b"Host: localhost\nX-A: a\nX-B:\nConnection: close\n\n", b"X-A:\r\nX-B:   \r\nHost:  localhost\r\n" + end):
             reply = self.server.raw(b"GET /healthz?x HTTP/1.1\r\n" + headers)
@@ -390,6 +396,19 @@ class Malformed(driver.ServerCase):
             self.assertIn(b"'x' is unknown here", reply)
         body = b"POST /api/v1/runs HTTP/1.1\nHost: localhost\nContent-Type: application/json\nContent-Length: 2\nConnection: close\n\n{}"
         self.assertTrue(self.server.raw(body).startswith(b"HTTP/1.1 422 "))
+
+    def test_blanks_around_the_value_of_a_header_are_no_part_of_it(self):
+        for head, status in ((b"GET /healthz HTTP/1.1\r\nHost: localhost \r\n", 200), (b"GET /healthz HTTP/1.1\r\nHost:\t localhost \t \r\n", 200),
+                             (b"GET http://localhost/healthz HTTP/1.1\r\nHost: localhost \r\n", 200),
+                             (b"GET /healthz HTTP/1.1\r\nHost: localhost \r\nOrigin: http://localhost \r\n", 200),
+                             (b"GET /api/v1/ HTTP/1.1\r\nHost: localhost \r\nAccept: application/json \r\n", 200),
+                             (b"POST /api/v1/terms HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json \r\nSec-Fetch-Site: same-origin \r\nContent-Length: 0\r\n", 400),
+                             (b"GET /healthz HTTP/1.1\r\nHost: local host \r\n", 421), (b"GET /healthz HTTP/1.1\r\nHost:  \t\r\n", 400)):
+            reply = self.server.raw(head + b"Connection: close \r\n\r\n")
+            self.assertTrue(reply.startswith(f"HTTP/1.1 {status} ".encode()), (head, reply[:300]))
+        etag = self.server.ask("GET", "/").headers["etag"]
+        reply = self.server.raw(b"GET / HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: " + etag.encode() + b" \r\nConnection: close\r\n\r\n")
+        self.assertTrue(reply.startswith(b"HTTP/1.1 304 "), reply[:300])
 
     def test_what_has_gone_is_deleted_once_more_without_a_fault(self):
         made = self.server.compare()["links"]["self"]

@@ -12,6 +12,7 @@
 #include <strings.h>
 
 enum { MAX_QUERY = 16 };
+enum { ENDS_OF_LINES = 4 }; ///< bytes of CR LF CR LF
 
 /// Length of an authority without a port that its scheme implies.
 static size_t trim_port(const char *authority) {
@@ -79,33 +80,52 @@ static enum MHD_Result look_for_cut(void *cls, enum MHD_ValueKind kind, const ch
     return MHD_YES;
 }
 
-/// Whether the value of a header has been cut. Behind the last one there is the end of its
-/// line, then that of the head.
-static bool has_cut_value(const hn_request *r) {
-    value_look look = {0};
-    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, look_for_cut, &look);
-    return look.found || (look.end && look.end[1] != '\0');
+/// Where the head of the request ends in the library's buffer; NULL where a library keeps its
+/// pieces elsewhere.
+static const char *find_end_of_head(const hn_request *r) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_REQUEST_HEADER_SIZE);
+    return info && r->head ? r->head + info->header_size : NULL;
 }
 
-static bool check_headers(hn_request *r) {
-    int n[N_ONCE] = {0};
-    if (has_cut_value(r)) {
-        hn_reply_problem(
-            r, HN_PROBLEM_BAD_REQUEST, NULL,
-            "a header holds a zero byte or continues on a second line; neither is allowed");
+/// Whether the library ended the head at a line that begins with a zero byte. Behind the last value
+/// there are two ends of lines, which are zeros now, and nothing else.
+static bool has_cut_head(const hn_request *r, const char *value_end) {
+    const char *end = find_end_of_head(r);
+    const ptrdiff_t apart = end && value_end ? end - value_end : 0;
+    bool found = apart > ENDS_OF_LINES;
+    if (apart <= 0 || apart > HN_HEAD_BYTES) {
         return false;
     }
-    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, count_header, n);
-    for (int i = 0; i < N_ONCE; i++) {
-        if (n[i] > 1) {
-            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
-                             "the header %s is given %d times; it may be given once", ONCE[i],
-                             n[i]);
-            return false;
-        }
+    for (ptrdiff_t i = 0; i < apart; i++) {
+        found |= value_end[i] != '\0';
     }
+    return found;
+}
 
-    // how long the body is may be said in one way, and in one that is known here
+/// Whether a zero byte cut the value of a header, or the head.
+static bool has_zero_byte(const hn_request *r) {
+    value_look look = {0};
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, look_for_cut, &look);
+    return look.found || (look.end && look.end[1] != '\0') || has_cut_head(r, look.end);
+}
+
+/// Takes the blanks off the end of a value, which are no part of it (RFC 9110, section 5.5). The
+/// value lies in the library's buffer, which may be written.
+static enum MHD_Result trim_value(void *cls, enum MHD_ValueKind kind, const char *key,
+                                  const char *value) {
+    (void)cls;
+    (void)kind;
+    (void)key;
+    for (size_t n = value ? strlen(value) : 0; n > 0 && strchr(" \t", value[n - 1]); n--) {
+        ((char *)value)[n - 1] = '\0';
+    }
+    return MHD_YES;
+}
+
+/// Checks how the length of the body is given: in one way, and in one that is known here. The value
+/// is as the library read it: it does not take "chunked" with a blank behind it.
+static bool check_length(hn_request *r) {
     const char *encoding = hn_request_header(r, "Transfer-Encoding");
     if (encoding && strcasecmp(encoding, "chunked") != 0) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "send a Content-Length",
@@ -121,13 +141,37 @@ static bool check_headers(hn_request *r) {
     return true;
 }
 
+bool hn_guard_headers(hn_request *r) {
+    int n[N_ONCE] = {0};
+    if (has_zero_byte(r)) {
+        hn_reply_problem(
+            r, HN_PROBLEM_BAD_REQUEST, NULL,
+            "a header holds a zero byte or continues on a second line; neither is allowed");
+        hn_reply_header_add(r, "Connection", "close"); // what follows is no request
+        return false;
+    }
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, count_header, n);
+    for (int i = 0; i < N_ONCE; i++) {
+        if (n[i] > 1) {
+            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                             "the header %s is given %d times; it may be given once", ONCE[i],
+                             n[i]);
+            return false;
+        }
+    }
+
+    if (!check_length(r)) {
+        return false;
+    }
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, trim_value, NULL);
+    return true;
+}
+
 int hn_guard_host(hn_request *r, const hn_hosts *hosts) {
     const char *host = hn_request_header(r, "Host");
-    if (!check_headers(r)) {
-        return 0;
-    }
     if (!host || !*host) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL, "the Host header is missing");
+        hn_reply_header_add(r, "Connection", "close");
         return 0;
     }
     if (!hn_host_is_ours(hosts, host)) {

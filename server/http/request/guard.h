@@ -14,6 +14,10 @@ int hn_accepts(const char *accept, const char *media_type);
 /// 1 for application/json, with or without parameters.
 bool hn_is_json_type(const char *content_type);
 
+/// Checks the form of the head, and takes blanks off the ends of its values; before any other look
+/// at a header. Returns false with a problem as reply.
+bool hn_guard_headers(hn_request *r);
+
 /// Each returns 1 when all is well; otherwise the reply is a problem.
 int hn_guard_host(hn_request *r, const hn_hosts *hosts);
 int hn_guard_site(hn_request *r);  ///< pages of other sites get no computing

@@ -54,6 +54,7 @@ typedef struct hn_request {
     bool has_begun;          ///< the head is complete
     bool has_zero;           ///< the address holds a zero byte
     const char *address_end; ///< in the library's buffer, until the head is complete
+    const char *head;        ///< its first byte in the library's buffer
     double drain_until; ///< stage SENT: the rest of the body is read until then [s, wall clock]
     cJSON *json;        ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue

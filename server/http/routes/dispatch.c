@@ -375,10 +375,11 @@ static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const 
         return false;
     }
     r->has_begun = true;
+    r->head = method;
     hn_request_identify(r);
     r->is_head = strcmp(method, "HEAD") == 0;
     hn_connection_reads_body(d->connections, r->watch);
-    if (take_path(r, url)) {
+    if (hn_guard_headers(r) && take_path(r, url)) {
         check_head(r, method);
     }
     if (r->stage != HN_STAGE_ANSWERED) {
