@@ -183,7 +183,7 @@ class Tolerances(unittest.TestCase):
             samples = ["--time", "5", "--every", "0.013"]
             reference = run(path, "index1@dop853:rtol=1e-13", *samples)["q"]
             for integrator, formulation in (("radau5", "ggl"), ("radau5", "index3"), ("ida", "index1"), ("dopri5", "index1"), ("dop853", "index1")):
-                said = float(re.search(r"off by about (\d+) rtol", cards[integrator])[1])
+                said = float(re.search(r"off by about (\d+) times rtol", cards[integrator])[1])
                 motion = run(path, f"{formulation}@{integrator}:rtol=1e-8", *samples)["q"]
                 error = max(abs(a - b) for p, q in zip(motion, reference) for a, b in zip(p, q))
                 # the samples between the steps included; a factor of three is what "about" allows
@@ -203,7 +203,7 @@ class Tolerances(unittest.TestCase):
                 if row:
                     rows.setdefault(row[1], []).append((float(row[2]), float(row[3])))
         for card in catalogue()["integrators"]:
-            said = re.search(r"at rtol=1e-6 the median error is ([\d.]+) rtol(?:, and one scene in ten has more than (\d+) rtol)?", card["about"])
+            said = re.search(r"at rtol=1e-6 the median error is ([\d.]+) times rtol(?:, and one scene in ten has more than (\d+) times rtol)?", card["about"])
             self.assertEqual(said is not None, card["name"] in rows, card["name"])
             if said:
                 # two digits, as the table has them

@@ -445,9 +445,9 @@ class Run(Command):
             said = done.stderr.decode().splitlines()
             # flat at 0.3448 s and at 0.679 s, announced before; at 0.6 s the second lies ahead still
             self.assertEqual(len(said), 4, said)
-            self.assertRegex(said[0], r"^holonom: t = 0\.20\d* s: the constraints become dependent \(J loses rank\) in .* at t = 0\.3448 s")
+            self.assertRegex(said[0], r"^holonom: t = 0\.20\d* s: a singular configuration \(J loses rank\) lies .* ahead, at t = 0\.3448 s")
             self.assertRegex(said[1], r"^holonom: t = 0\.34\d* s: one step of .* 2 degrees of freedom there instead of 1")
-            self.assertRegex(said[2], r"^holonom: t = 0\.3\d* s: the constraints become dependent .* at t = 0\.67\d* s")
+            self.assertRegex(said[2], r"^holonom: t = 0\.3\d* s: a singular configuration .* ahead, at t = 0\.67\d* s")
             self.assertRegex(said[3], r"^holonom: the motion is \w+: up to t = 0\.6 s ")
 
     def test_progress_is_shown_to_a_terminal_and_to_nobody_else(self):

@@ -144,7 +144,7 @@ class Messages(unittest.TestCase):
     def test_a_remedy_of_several_incidents_stands_once_on_the_card(self):
         status, out, err = once("parallelogram", "--once", "--size", "150x50", "--methods", "projection@rk4:h=0.01", "--keys", "i")
         self.assertEqual((status, err), (0, ""))
-        self.assertGreater(out.count("the constraints become dependent"), 1)
+        self.assertGreater(out.count("a singular configuration (J"), 1)
         self.assertEqual(out.count("projection@rk4:h=0.007: not tried"), 1)
 
     def test_a_remedy_that_runs_already_is_said_and_selected(self):

@@ -140,7 +140,7 @@ static void a_platform_carried_through_its_singular_yaw_is_warned_before(void **
     assert_int_equal(m.assembly.freedoms, 0); // its legs say where it is
     hn_run *run = hn_motion_start(&m, "projection@rk4:h=2e-3");
     (void)hn_motion_at(run, 1.5); // 1 rad/s: a right angle at pi/2
-    const hn_incident *ahead = find(run, HN_INCIDENT_RANK_AHEAD, "(J loses rank) in");
+    const hn_incident *ahead = find(run, HN_INCIDENT_RANK_AHEAD, "(J loses rank) lies");
     assert_non_null(ahead);
     assert_true(ahead->value > 0.2);
     assert_near(ahead->t + ahead->value, PI / 2, 0.01); // a parabola through what came before
