@@ -159,6 +159,47 @@ class FairShares(Timed):
             s.close()
         self.assertEqual(server.stop(), 0)
 
+    # ten seconds of computing and more
+    STUDY = {"scene": "four-bar", "kind": "work-precision", "methods": [RK4, "projection@rk4:h=1e-3"], "samples": 10, "time": 60, "levels": 7}
+    SHORT_STUDY = {**STUDY, "scene": "pendulum", "samples": 0, "time": 0.1, "levels": 2}
+    STUDIES = "/api/v1/studies"
+
+    def test_one_client_does_not_hold_every_place_for_studies(self):
+        server = driver.Server()
+        greedy, modest, third = (From(server, f"127.0.0.{k}") for k in (2, 3, 4))
+        first = greedy.ask("POST", self.STUDIES, self.STUDY)
+        self.assertEqual(first.status, 202)
+        refused = greedy.ask("POST", self.STUDIES, self.STUDY)
+        self.assertEqual(refused.status, 503)
+        self.assertIn("1 of 2 studies, which is its share", refused.json()["detail"])
+        # until its own study ends: by its limit of time at the latest
+        self.assertTrue(1 <= int(refused.headers["retry-after"]) <= 1 + first.json()["time_limit_s"], refused.headers)
+        self.assertEqual(modest.ask("POST", self.STUDIES, self.STUDY).status, 202)
+        refused = third.ask("POST", self.STUDIES, self.STUDY)
+        self.assertEqual(refused.status, 503)
+        self.assertIn("all places for studies are taken", refused.json()["detail"])
+        # nor does it by letting a study go on
+        stopped = f"{self.STUDIES}/{first.json()['id']}"
+        greedy.ask("PATCH", stopped, {"state": "stopped"})
+        self.assertTrue(driver.until(lambda: third.ask("POST", self.STUDIES, self.STUDY).status == 202))
+        self.assertEqual(modest.ask("PATCH", stopped, {"state": "running"}).status, 503)
+        self.assertEqual(server.stop(), 0)
+
+    def test_studies_of_one_client_make_no_room_by_those_of_another(self):
+        server = driver.Server()
+        greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")
+
+        def finish(client):
+            study = f"{self.STUDIES}/{client.ask('POST', self.STUDIES, self.SHORT_STUDY).json()['id']}"
+            self.assertTrue(driver.until(lambda: client.ask("GET", study).json()["state"] == "finished"))
+            return study
+
+        theirs = finish(modest)
+        many = [finish(greedy) for _ in range(server.ask("GET", "/api/v1/").json()["limits"]["studies_kept"] + 1)]
+        self.assertEqual(modest.ask("GET", theirs).status, 200)
+        self.assertEqual([greedy.ask("GET", many[k]).status for k in (0, -1)], [404, 200])
+        self.assertEqual(server.stop(), 0)
+
     def test_one_program_of_this_machine_fills_no_queue_alone(self):
         server = driver.Server()
         limits = server.ask("GET", "/api/v1/").json()["limits"]

@@ -5,7 +5,7 @@
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/studies/study_fields.h"
-#include "http/studies/study_work.h"
+#include "http/studies/study_places.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -14,34 +14,8 @@
 #include <string.h>
 #include <sys/random.h>
 
-enum { RETRY_AFTER = 5 };
-/// Below this share nothing is said of the time left: too little is known.
-static const double TELLING = 0.03;
 /// Less computing time than this is none: a study does not go on for it [s].
 static const double LEAST_LEFT = 0.05;
-
-typedef struct study {
-    char id[17];
-    int refs;       ///< under the lock of all, as is everything down to `work`
-    double started; ///< the present run, or the last one [s, wall clock]
-    double ended, touched;
-    double before; ///< wall time of earlier runs [s]
-    int done;
-    hn_study_result result;
-    hn_study_work work;
-    hn_studies *all;
-} study;
-
-struct hn_studies {
-    pthread_mutex_t lock;
-    pthread_cond_t changed; ///< a thread has ended
-    const hn_http_opts *opts;
-    const hn_library *lib;
-    study *list[HN_STUDIES_KEPT];
-    int n, stopping;
-    int n_places;  ///< taken by studies that are being read or computed
-    int n_threads; ///< that are at work, or on their way out
-};
 
 // ---- one study ----
 
@@ -50,7 +24,7 @@ static void reset_result(hn_study_result *result) {
     hn_strbuf_reset(&result->report);
 }
 
-static void free_study(study *s) {
+static void free_study(hn_study *s) {
     if (s) {
         reset_result(&s->result);
         hn_study_work_reset(&s->work);
@@ -58,7 +32,7 @@ static void free_study(study *s) {
     }
 }
 
-static void release(study *s) {
+static void release(hn_study *s) {
     hn_studies *all = s->all;
     pthread_mutex_lock(&all->lock);
     const int left = --s->refs;
@@ -69,7 +43,7 @@ static void release(study *s) {
 }
 
 static void *work(void *arg) {
-    study *s = arg;
+    hn_study *s = arg;
     hn_studies *all = s->all;
     hn_study_result result = {0};
     hn_strbuf_init(&result.document);
@@ -91,7 +65,7 @@ static void *work(void *arg) {
     s->result = result;
     s->done = 1;
     s->ended = s->touched = hn_clock_wall();
-    all->n_places--; // whoever sees the end finds the place free
+    hn_shares_give(all->places, s->client); // whoever sees the end finds the place free
     pthread_mutex_unlock(&all->lock);
 
     // one thread less
@@ -103,7 +77,7 @@ static void *work(void *arg) {
     return NULL;
 }
 
-static const char *state_name(const study *s) {
+static const char *state_name(const hn_study *s) {
     static const char *const names[] = {[HN_STUDY_RUNNING] = "running",
                                         [HN_STUDY_FINISHED] = "finished",
                                         [HN_STUDY_STOPPED] = "stopped",
@@ -111,29 +85,18 @@ static const char *state_name(const study *s) {
     return names[s->done ? s->result.state : HN_STUDY_RUNNING];
 }
 
-/// Seconds to go, by what was done so far and never beyond the time limit; NaN when too little is
-/// known.
-static double time_left(const study *s, double share, double elapsed) {
-    if (s->done) {
-        return 0;
-    }
-    const double by_share =
-        share > TELLING ? (s->before + elapsed) * (1 - share) / share : (double)NAN;
-    return fmin(by_share, fmax(0, s->work.request.limits.time_limit - elapsed));
-}
-
-static void put_progress(hn_strbuf *b, const study *s) {
+static void put_progress(hn_strbuf *b, const hn_study *s) {
     const double elapsed = (s->done ? s->ended : hn_clock_wall()) - s->started;
     const double share = s->done && s->result.state == HN_STUDY_FINISHED
                              ? 1
                              : fmin(1, fmax(0, atomic_load(&s->work.share)));
     hn_json_put_number(b, "progress", share);
     hn_json_put_number(b, "elapsed_s", s->before + elapsed);
-    hn_json_put_number(b, "time_left_s", time_left(s, share, elapsed));
+    hn_json_put_number(b, "time_left_s", hn_study_time_left(s, share, elapsed));
 }
 
 /// With the lock held.
-static void put_study(hn_strbuf *b, const study *s) {
+static void put_study(hn_strbuf *b, const hn_study *s) {
     const hn_job_request *r = &s->work.request;
     char self[64];
     snprintf(self, sizeof self, "/api/v1/studies/%s", s->id);
@@ -179,13 +142,19 @@ hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib) {
         pthread_cond_init(&all->changed, NULL);
         all->opts = opts;
         all->lib = lib;
+        all->places =
+            hn_shares_create(opts->max_studies, hn_http_opts_share(opts, opts->max_studies));
+    }
+    if (all && !all->places) {
+        hn_studies_free(all);
+        return NULL;
     }
     return all;
 }
 
 /// Takes the i-th out; its reference passes to the caller. With the lock held.
-static study *take_out(hn_studies *all, int i) {
-    study *s = all->list[i];
+static hn_study *take_out(hn_studies *all, int i) {
+    hn_study *s = all->list[i];
     memmove(&all->list[i], &all->list[i + 1], (size_t)(all->n - i - 1) * sizeof *all->list);
     all->n--;
     return s;
@@ -193,7 +162,7 @@ static study *take_out(hn_studies *all, int i) {
 
 /// Gives up one reference with the lock held; the study itself goes to `*dead` when it was the
 /// last.
-static void drop(study *s, study **dead, int *n_dead) {
+static void drop(hn_study *s, hn_study **dead, int *n_dead) {
     atomic_store(&s->work.stop, 1);
     if (--s->refs == 0) {
         dead[(*n_dead)++] = s;
@@ -201,7 +170,7 @@ static void drop(study *s, study **dead, int *n_dead) {
 }
 
 /// Lets go of what nobody touched for long. With the lock held.
-static void expire(hn_studies *all, study **dead, int *n_dead) {
+static void expire(hn_studies *all, hn_study **dead, int *n_dead) {
     const double now = hn_clock_wall();
     for (int i = all->n - 1; i >= 0; i--) {
         if (now - all->list[i]->touched > all->opts->expiry) {
@@ -210,22 +179,27 @@ static void expire(hn_studies *all, study **dead, int *n_dead) {
     }
 }
 
-/// Room for one more among the kept: the finished one that was longest untouched goes. With the
-/// lock held.
-static void make_room(hn_studies *all, study **dead, int *n_dead) {
-    int oldest = -1;
+/// Room for one more among the kept: the finished one that was longest untouched goes, of the same
+/// client where that has its share of them. With the lock held.
+static void make_room(hn_studies *all, hn_client client, hn_study **dead, int *n_dead) {
+    int of_client = 0, oldest = -1;
     for (int i = 0; i < all->n; i++) {
-        const study *s = all->list[i];
-        if (s->done && (oldest < 0 || s->touched < all->list[oldest]->touched)) {
+        of_client += client && all->list[i]->client == client;
+    }
+    const bool has_share = of_client >= hn_http_opts_share(all->opts, HN_STUDIES_KEPT);
+    for (int i = 0; i < all->n; i++) {
+        const hn_study *s = all->list[i];
+        if (s->done && (!has_share || s->client == client) &&
+            (oldest < 0 || s->touched < all->list[oldest]->touched)) {
             oldest = i;
         }
     }
-    if (all->n == HN_STUDIES_KEPT && oldest >= 0) {
+    if ((all->n == HN_STUDIES_KEPT || has_share) && oldest >= 0) {
         drop(take_out(all, oldest), dead, n_dead);
     }
 }
 
-static void free_all(study **dead, int n) {
+static void free_all(hn_study **dead, int n) {
     for (int i = 0; i < n; i++) {
         free_study(dead[i]);
     }
@@ -244,7 +218,7 @@ void hn_studies_stop(hn_studies *all) {
     if (!all) {
         return;
     }
-    study *dead[HN_STUDIES_KEPT];
+    hn_study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
@@ -263,11 +237,12 @@ void hn_studies_free(hn_studies *all) {
         hn_studies_stop(all);
         pthread_cond_destroy(&all->changed);
         pthread_mutex_destroy(&all->lock);
+        hn_shares_free(all->places);
         free(all);
     }
 }
 
-static void name_study(study *s) {
+static void name_study(hn_study *s) {
     uint64_t name = 0;
     if (getrandom(&name, sizeof name, 0) != (ssize_t)sizeof name) {
         name = (uint64_t)(hn_clock_wall() * 1e9);
@@ -275,51 +250,19 @@ static void name_study(study *s) {
     snprintf(s->id, sizeof s->id, "%016llx", (unsigned long long)name);
 }
 
-typedef enum place { PLACE_FREE, PLACES_TAKEN, PLACES_CLOSED } place;
-
-/// Whether one more thread may start. A study that was deleted holds its place until its thread has
-/// ended. With the lock held.
-static place find_place(const hn_studies *all) {
-    return all->stopping                             ? PLACES_CLOSED
-           : all->n_places >= all->opts->max_studies ? PLACES_TAKEN
-                                                     : PLACE_FREE;
-}
-
-/// The problem of a request that found no place.
-static void reply_no_place(hn_request *r, place p) {
-    if (p == PLACES_CLOSED) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
-    } else {
-        hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
-                         "%d studies are running, which is the largest number",
-                         r->context->studies->opts->max_studies);
-        hn_reply_header_add(r, "Retry-After", "%d", RETRY_AFTER);
-    }
-}
-
 /// Takes a thread's place. Returns false with a problem as reply.
 static bool reserve(hn_studies *all, hn_request *r) {
     pthread_mutex_lock(&all->lock);
-    const place p = find_place(all);
-    all->n_places += p == PLACE_FREE;
-    all->n_threads += p == PLACE_FREE;
+    const hn_study_place p = hn_study_take_place(all, r->client);
     pthread_mutex_unlock(&all->lock);
-    if (p != PLACE_FREE) {
-        reply_no_place(r, p);
+    if (p != HN_STUDY_PLACE_TAKEN) {
+        hn_study_reply_no_place(r, p);
     }
-    return p == PLACE_FREE;
-}
-
-static void give_back(hn_studies *all) {
-    pthread_mutex_lock(&all->lock);
-    all->n_places--;
-    all->n_threads--;
-    pthread_cond_broadcast(&all->changed);
-    pthread_mutex_unlock(&all->lock);
+    return p == HN_STUDY_PLACE_TAKEN;
 }
 
 /// Starts a thread that works on the study, with a reference of its own. With the lock held.
-static hn_status start_thread(study *s) {
+static hn_status start_thread(hn_study *s) {
     pthread_t thread;
     if (pthread_create(&thread, NULL, work, s) != 0) {
         return HN_ERR_MEMORY;
@@ -331,12 +274,12 @@ static hn_status start_thread(study *s) {
 }
 
 /// Puts it among the others and starts its thread; the caller keeps a reference too.
-static hn_status start(hn_studies *all, study *s) {
-    study *dead[HN_STUDIES_KEPT];
+static hn_status start(hn_studies *all, hn_study *s) {
+    hn_study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     pthread_mutex_lock(&all->lock);
     expire(all, dead, &n_dead);
-    make_room(all, dead, &n_dead);
+    make_room(all, s->client, dead, &n_dead);
     hn_status status = all->n < HN_STUDIES_KEPT && !all->stopping ? HN_OK : HN_ERR_LIMIT;
     s->refs = 2; // of the list and of the caller
     HN_THEN(status, start_thread(s));
@@ -351,9 +294,9 @@ static hn_status start(hn_studies *all, study *s) {
 // ---- handlers ----
 
 /// The study of the request's path, with a reference for the caller; NULL when there is none.
-static study *look_for_study(const hn_request *r) {
+static hn_study *look_for_study(const hn_request *r) {
     hn_studies *all = r->context->studies;
-    study *found = NULL, *dead[HN_STUDIES_KEPT];
+    hn_study *found = NULL, *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
 
     // with the lock held: what is too old goes, the rest is listed
@@ -372,8 +315,8 @@ static study *look_for_study(const hn_request *r) {
 }
 
 /// The same; NULL with a problem as reply.
-static study *find_study(hn_request *r) {
-    study *found = look_for_study(r);
+static hn_study *find_study(hn_request *r) {
+    hn_study *found = look_for_study(r);
     if (!found) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/studies makes one",
                          "there is no study '%.40s', or it was deleted", r->parts[0]);
@@ -381,7 +324,7 @@ static study *find_study(hn_request *r) {
     return found;
 }
 
-static void reply_study(hn_request *r, unsigned status, study *s) {
+static void reply_study(hn_request *r, unsigned status, hn_study *s) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     pthread_mutex_lock(&s->all->lock);
@@ -392,7 +335,7 @@ static void reply_study(hn_request *r, unsigned status, study *s) {
 
 void hn_handle_studies_list(hn_request *r) {
     hn_studies *all = r->context->studies;
-    study *dead[HN_STUDIES_KEPT];
+    hn_study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -426,10 +369,11 @@ void hn_handle_studies_create(hn_request *r) {
     }
 
     // the request, read and checked
-    study *s = calloc(1, sizeof *s);
+    hn_study *s = calloc(1, sizeof *s);
     hn_status status = HN_ERR_MEMORY;
     if (s) {
         s->all = all;
+        s->client = r->client;
         s->work.lib = all->lib;
         s->work.stopping = &r->context->stopping;
         name_study(s);
@@ -440,7 +384,9 @@ void hn_handle_studies_create(hn_request *r) {
     // what cannot be computed gives its place back
     if (status != HN_OK) {
         free_study(s);
-        give_back(all);
+        pthread_mutex_lock(&all->lock);
+        hn_study_give_back(all, r->client);
+        pthread_mutex_unlock(&all->lock);
         hn_reply_diags(r, status, &diags);
         return;
     }
@@ -450,7 +396,7 @@ void hn_handle_studies_create(hn_request *r) {
 }
 
 void hn_handle_study_get(hn_request *r) {
-    study *s = find_study(r);
+    hn_study *s = find_study(r);
     if (s) {
         reply_study(r, MHD_HTTP_OK, s);
         release(s);
@@ -458,7 +404,7 @@ void hn_handle_study_get(hn_request *r) {
 }
 
 void hn_handle_study_report(hn_request *r) {
-    study *s = find_study(r);
+    hn_study *s = find_study(r);
     if (!s) {
         return;
     }
@@ -479,7 +425,7 @@ void hn_handle_study_report(hn_request *r) {
 }
 
 /// With the lock held.
-static bool is_listed(const study *s) {
+static bool is_listed(const hn_study *s) {
     for (int i = 0; i < s->all->n; i++) {
         if (s->all->list[i] == s) {
             return true;
@@ -489,17 +435,17 @@ static bool is_listed(const study *s) {
 }
 
 /// Whether a study runs, or is finished: going on changes nothing. With the lock held.
-static bool has_no_need(const study *s) {
+static bool has_no_need(const hn_study *s) {
     return s->done ? s->result.state == HN_STUDY_FINISHED : !atomic_load(&s->work.stop);
 }
 
 /// Computing time that all its runs have left [s].
-static double left_of(const study *s) {
+static double left_of(const hn_study *s) {
     return hn_study_work_left(&s->work, s->all->opts->max_run_cpu);
 }
 
 /// Why a study cannot go on; NULL: it can. With the lock held.
-static const char *hindrance(const study *s) {
+static const char *hindrance(const hn_study *s) {
     return !s->done                             ? "it is still ending; ask again"
            : s->result.state == HN_STUDY_FAILED ? "it failed and kept nothing"
            : !is_listed(s)                      ? "it was deleted"
@@ -510,14 +456,12 @@ static const char *hindrance(const study *s) {
 /// Lets a stopped study go on, for the time limit of the body or else for all the computing time
 /// that its runs have left, and never for longer. What was left of the limit before does not count.
 /// The document of what is done stays until there is a new one. With the lock held.
-static hn_status go_on(study *s, const cJSON *body) {
+static hn_status go_on(hn_study *s, const cJSON *body) {
     const cJSON *limit = cJSON_GetObjectItemCaseSensitive(body, "time_limit");
     const double ran = s->ended - s->started, before = s->before + ran;
     const double left = left_of(s), wanted = limit ? fmin(left, limit->valuedouble) : left;
     hn_study_work_again(&s->work, fmax(LEAST_LEFT, wanted));
     HN_TRY(start_thread(s));
-    s->all->n_places++;
-    s->all->n_threads++;
     s->before = before;
     s->done = 0;
     s->result.reason[0] = s->result.hint[0] = 0;
@@ -525,23 +469,28 @@ static hn_status go_on(study *s, const cJSON *body) {
 }
 
 /// Answers a request that a study go on.
-static void resume(hn_request *r, study *s) {
+static void resume(hn_request *r, hn_study *s) {
     hn_studies *all = s->all;
     const char *why = NULL;
-    place p = PLACE_FREE;
+    hn_study_place p = HN_STUDY_PLACE_TAKEN;
     hn_status status = HN_OK;
 
     // one look, so that of two such requests one starts it
     pthread_mutex_lock(&all->lock);
-    if (!has_no_need(s) && (why = hindrance(s)) == NULL && (p = find_place(all)) == PLACE_FREE) {
+    if (!has_no_need(s) && (why = hindrance(s)) == NULL &&
+        (p = hn_study_take_place(all, r->client)) == HN_STUDY_PLACE_TAKEN) {
+        s->client = r->client;
         status = go_on(s, r->json);
+        if (status != HN_OK) {
+            hn_study_give_back(all, r->client);
+        }
     }
     pthread_mutex_unlock(&all->lock);
 
     if (why) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the study cannot go on: %s", why);
-    } else if (p != PLACE_FREE) {
-        reply_no_place(r, p);
+    } else if (p != HN_STUDY_PLACE_TAKEN) {
+        hn_study_reply_no_place(r, p);
     } else if (status != HN_OK) {
         hn_reply_diags(r, status, &(hn_diags){0});
     } else {
@@ -550,7 +499,7 @@ static void resume(hn_request *r, study *s) {
 }
 
 void hn_handle_study_patch(hn_request *r) {
-    study *s = find_study(r);
+    hn_study *s = find_study(r);
     if (!s) {
         return;
     }
@@ -564,7 +513,7 @@ void hn_handle_study_patch(hn_request *r) {
 }
 
 void hn_handle_study_delete(hn_request *r) {
-    study *s = look_for_study(r), *dead[1];
+    hn_study *s = look_for_study(r), *dead[1];
     int n_dead = 0;
     hn_reply_empty(r, MHD_HTTP_NO_CONTENT); // the same for one that is gone
     if (!s) {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_STUDY_PLACES_H
+#define HN_HTTP_STUDY_PLACES_H
+// The studies of a server, and the places of those that run: so many in all and so many for one
+// client.
+
+#include "http/ground/shares.h"
+#include "http/request/request.h"
+#include "http/studies/studies.h"
+#include "http/studies/study_work.h"
+
+#include <pthread.h>
+
+typedef struct hn_study {
+    char id[17];
+    int refs;       ///< under the lock of all, as is everything down to `work`
+    double started; ///< the present run, or the last one [s, wall clock]
+    double ended, touched;
+    double before; ///< wall time of earlier runs [s]
+    int done;
+    hn_study_result result;
+    hn_client client; ///< who holds its place while it runs, and who started it last
+    hn_study_work work;
+    hn_studies *all;
+} hn_study;
+
+struct hn_studies {
+    pthread_mutex_t lock;
+    pthread_cond_t changed; ///< a thread has ended
+    const hn_http_opts *opts;
+    const hn_library *lib;
+    hn_study *list[HN_STUDIES_KEPT];
+    int n, stopping;
+    hn_shares *places; ///< of studies that are being read or computed
+    int n_threads;     ///< that are at work, or on their way out
+};
+
+/// What became of the request for a place.
+typedef enum hn_study_place {
+    HN_STUDY_PLACE_TAKEN,
+    HN_STUDY_PLACES_FULL, ///< in all, or for this client
+    HN_STUDY_PLACES_CLOSED
+} hn_study_place;
+
+/// Returns the seconds to go, by what was done in `elapsed` seconds and never beyond the time
+/// limit; all that the limit leaves when too little is known.
+double hn_study_time_left(const hn_study *s, double share, double elapsed);
+/// Takes a place for one more thread, with the lock held. A study that was deleted holds its place
+/// until its thread has ended.
+hn_study_place hn_study_take_place(hn_studies *all, hn_client client);
+/// Gives back a place whose thread was never started, with the lock held.
+void hn_study_give_back(hn_studies *all, hn_client client);
+/// Makes the reply to a request that found no place: a problem, with the seconds until one of the
+/// running studies ends.
+void hn_study_reply_no_place(hn_request *r, hn_study_place place);
+#endif
