@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "build.h"
+#include "class/class_line.h"
 #include "class/likeness.h"
 #include "grade/grade.h"
 #include "grade/rubric.h"
@@ -170,16 +171,7 @@ static void put_graded(const grading *g, hn_strbuf *b, const hn_verdict *v, cons
     hn_json_put_string(b, "summary", v->summary);
     put_likeness(g, b, text);
     put_alike(b, v);
-    hn_json_key(b, "mistakes");
-    hn_json_array(b);
-    for (int k = 0; k < v->n_entries; k++) {
-        if (!v->entry[k].right && v->entry[k].mistake && v->entry[k].mistake[0]) {
-            char what[80];
-            snprintf(what, sizeof what, "%s in %s", v->entry[k].mistake, v->entry[k].name);
-            hn_json_string(b, what);
-        }
-    }
-    hn_json_end_array(b);
+    hn_class_line_put_mistakes(b, v);
 }
 
 /// A program from an archive or a folder, in a file of its own while it is graded.
@@ -240,6 +232,7 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
         }
         put_zero(g, b, failed ? hn_status_text(status) : there ? why : diag.message);
     }
+    hn_class_line_put_check(b);
     hn_json_end_object(b);
     hn_strbuf_add(b, "\n");
     hn_strbuf_reset(&text);
@@ -445,23 +438,22 @@ static bool is_in_place(const grading *g, const cJSON *line, int i) {
 }
 
 /// Takes the lines of an earlier run that still hold; a line that was cut off by a kill is dropped.
-static hn_status open_journal(grading *g, hn_diag *diag) {
+static hn_status take_lines(grading *g, const char *path, hn_diag *diag) {
     char *line = NULL;
     size_t cap = 0;
-    FILE *old = fopen(g->opts->journal, "re");
+    hn_status status = HN_OK;
+    FILE *old = fopen(path, "re");
     for (ssize_t n; old && (n = getline(&line, &cap, old)) > 0;) {
         cJSON *o = line[n - 1] == '\n' ? cJSON_Parse(line) : NULL;
         const char *student = cJSON_GetStringValue(cJSON_GetObjectItem(o, "student"));
         const char *hex = cJSON_GetStringValue(cJSON_GetObjectItem(o, "key"));
-        const char *status = cJSON_GetStringValue(cJSON_GetObjectItem(o, "status"));
-        const int i = student && hex && status && strcmp(status, "failed") != 0
-                          ? find_key(g, student, hex)
-                          : -1;
-        if (i >= 0 && is_in_place(g, o, i)) {
+        const char *was = cJSON_GetStringValue(cJSON_GetObjectItem(o, "status"));
+        const int i =
+            student && hex && was && strcmp(was, "failed") != 0 ? find_key(g, student, hex) : -1;
+        if (i >= 0 && is_in_place(g, o, i) && hn_class_line_is_unchanged(line, o)) {
             line[n - 1] = '\0';
-            if (keep_line(g, i, line, false, diag) == HN_OK) {
-                g->out->resumed++;
-            }
+            status = keep_line(g, i, line, false, diag);
+            g->out->resumed += status == HN_OK;
         }
         cJSON_Delete(o);
     }
@@ -469,8 +461,13 @@ static hn_status open_journal(grading *g, hn_diag *diag) {
     if (old) {
         fclose(old);
     }
+    return status;
+}
 
-    // begun anew with what holds
+/// Begins the journal anew, with what holds of an interrupted run and of a finished one.
+static hn_status open_journal(grading *g, hn_diag *diag) {
+    HN_TRY(take_lines(g, g->opts->journal, diag));
+    HN_TRY(g->opts->finished ? take_lines(g, g->opts->finished, diag) : HN_OK);
     g->journal = fopen(g->opts->journal, "we");
     if (!g->journal) {
         return say_journal_failed(g, diag);

@@ -23,6 +23,8 @@ typedef struct hn_class_opts {
     double time_limit;   ///< [s] for one submission
     uint64_t seed;       ///< of all; 0: each student's own for an exercise that draws numbers
     const char *journal; ///< NULL: nothing is kept
+    /// lines of a finished run, whose unchanged ones are taken too; NULL: none
+    const char *finished;
     /// called with each line as it is finished; resumed lines are not told again
     void (*tell)(void *user, const char *line);
     int (*stop)(void *user); ///< returns 1 to stop; may be NULL

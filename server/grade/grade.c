@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "expr/print.h"
 #include "grade/exam.h"
+#include "grade/list_text.h"
 #include "grade/mistakes.h"
 #include "grade/other_variant.h"
 #include "grade/parts/read_as.h"
@@ -392,8 +393,21 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
     return status;
 }
 
+/// Reads matrices that were pasted as one text, with a remark.
+static void expand_lists(hn_verdict *v, cJSON *root) {
+    char name[40], more[40] = "";
+    const int n = hn_list_text_expand(root, name, sizeof name);
+    if (n > 1) {
+        snprintf(more, sizeof more, ", and %d more likewise", n - 1);
+    }
+    if (n > 0) {
+        hn_submission_remark(v, "the text of '%s' was read as a list%s", name, more);
+    }
+}
+
 /// `chosen`: the seed is the caller's.
 static hn_status grade_tree(hn_verdict *v, cJSON *root, bool chosen) {
+    expand_lists(v, root);
     if (!hn_submission_read_student(v, root, chosen)) {
         return v->kind == HN_VERDICT_UNGRADABLE ? HN_OK : HN_ERR_MEMORY;
     }

@@ -279,6 +279,20 @@ static double share_of(const hn_rubric *rubric, const hn_part_result *r) {
     return r->right || isnan(said) ? r->share : lowered * said;
 }
 
+/// Puts a right answer behind the words that say what is expected, where many are right.
+static void add_example(hn_entry_verdict *e, const hn_part *p) {
+    hn_diag diag = {0};
+    cJSON *right = p->kind->is_open && !e->right ? p->kind->right(p, &diag) : NULL;
+    char *text = right && !cJSON_IsString(right) ? cJSON_PrintUnformatted(right) : NULL;
+    const char *example = text ? text : cJSON_GetStringValue(right);
+    const size_t used = strlen(e->expected);
+    if (example) {
+        snprintf(e->expected + used, sizeof e->expected - used, ", for example %s", example);
+    }
+    cJSON_free(text);
+    cJSON_Delete(right);
+}
+
 /// Copies what a kind of answer found into entries of the verdict.
 static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *results, int n) {
     for (int i = 0; i < n && v->n_entries < HN_GRADE_MAX_ENTRIES; i++) {
@@ -294,6 +308,7 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
         snprintf(e->explanation, sizeof e->explanation, "%s", r->explanation);
         snprintf(e->given, sizeof e->given, "%s", r->given);
         snprintf(e->expected, sizeof e->expected, "%s", r->expected);
+        add_example(e, p);
         snprintf(e->read_as, sizeof e->read_as, "%s", r->read_as);
         v->n_right += r->right;
         v->n_unreadable += r->unreadable;

@@ -37,19 +37,21 @@ void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_ver
     if (e->explanation[0]) {
         hn_strbuf_printf(b, "%s%s\n", indent, e->explanation);
     }
-    if (e->right || !e->given[0]) {
+    if (e->right || (!e->given[0] && !v->show_expected)) {
         return;
     }
-    hn_strbuf_printf(b, "%sgiven     %s", indent, e->given);
+    if (e->given[0]) {
+        hn_strbuf_printf(b, "%sgiven     %s", indent, e->given);
+    }
     if (e->state < 0 && e->expected[0] && e->max_points > 0 && v->show_expected) {
-        hn_strbuf_printf(b, "\n%sexpected  %s", indent, e->expected);
+        hn_strbuf_printf(b, "%s%sexpected  %s", e->given[0] ? "\n" : "", indent, e->expected);
     }
     if (e->state >= 0 && !is_number(e->given)) {
         hn_strbuf_add(b, " = ");
         add_number(b, e->given_value);
     }
     if (e->state >= 0 && v->show_expected) {
-        hn_strbuf_printf(b, "\n%sexpected  ", indent);
+        hn_strbuf_printf(b, "\n%sexpected  %s = ", indent, e->expected);
         add_number(b, e->expected_value);
         hn_strbuf_printf(b, ", a difference of %.2g is allowed", e->allowed);
     } else if (e->state >= 0) {

@@ -21,6 +21,11 @@ static int is_full(const hn_entry_verdict *e) {
     return e->points >= e->max_points;
 }
 
+/// Whether the answer that is expected is written beside an entry: for the teacher, who asked so.
+static bool shows_expected(const hn_verdict *v, const hn_entry_verdict *e) {
+    return v->show_expected && e->expected[0] && !e->right;
+}
+
 static void put_case(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
     hn_strbuf_add(b, "    <testcase classname=\"");
     hn_verdict_escape(b, v->problem->id);
@@ -34,6 +39,14 @@ static void put_case(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_verdict_escape(b, e->mistake);
     hn_strbuf_printf(b, "\" message=\"%g of %g points\">", e->points, e->max_points);
     hn_verdict_escape(b, e->explanation);
+    if (e->given[0]) {
+        hn_strbuf_add(b, "\ngiven     ");
+        hn_verdict_escape(b, e->given);
+    }
+    if (shows_expected(v, e)) {
+        hn_strbuf_add(b, "\nexpected  ");
+        hn_verdict_escape(b, e->expected);
+    }
     hn_strbuf_add(b, "</failure>\n    </testcase>\n");
 }
 
@@ -99,7 +112,7 @@ static void put_row(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e
     hn_strbuf_printf(b, "</td><td>%g of %g</td><td>", e->points, e->max_points);
     hn_verdict_escape(b, e->right && !e->explanation[0] ? "right" : e->explanation);
     put_code(b, "your answer", e->given);
-    put_code(b, "expected", v->show_expected && !e->right ? e->expected : "");
+    put_code(b, "expected", shows_expected(v, e) ? e->expected : "");
     hn_strbuf_add(b, "</td></tr>\n");
 }
 
@@ -181,9 +194,13 @@ void hn_verdict_csv(hn_strbuf *b, const hn_verdict *v, int head) {
     hn_strbuf mistakes;
     hn_strbuf_init(&mistakes);
     for (int k = 0; k < v->n_entries && graded; k++) {
-        if (!v->entry[k].right) {
-            hn_strbuf_printf(&mistakes, "%s%s: %s", mistakes.n ? "; " : "", v->entry[k].name,
-                             v->entry[k].mistake);
+        // a right entry in the transposed place has a mistake too
+        const hn_entry_verdict *e = &v->entry[k];
+        if (e->mistake[0]) {
+            hn_strbuf_printf(&mistakes, "%s%s: %s", mistakes.n ? "; " : "", e->name, e->mistake);
+        }
+        if (shows_expected(v, e)) {
+            hn_strbuf_printf(&mistakes, " (expected %s)", e->expected);
         }
     }
     hn_strbuf_add(b, head ? "problem,student,seed,status,score,max_score,mistakes\n" : "");

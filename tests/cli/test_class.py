@@ -137,7 +137,6 @@ class Class(unittest.TestCase):
             self.put(f"student{k:02d}.json", chance.choice((RIGHT, WRONG_SIGN, "{}", "nonsense")))
         one = self.lines("--jobs", "1")
         os.remove(self.out)
-        os.remove(self.out + ".part")
         self.assertEqual(self.lines("--jobs", "7"), one)
         table = os.path.join(self.temporary.name, "scores.csv")
         self.grade("--out", table)
@@ -155,7 +154,6 @@ class Class(unittest.TestCase):
         with open(self.out, "rb") as f:
             calm_bytes = f.read()
         os.remove(self.out)
-        os.remove(self.out + ".part")
         # its lines go into a pipe of one page that nobody reads: full, it holds the run in the middle, however fast the machine is
         for _ in range(10):
             process = subprocess.Popen([PROGRAM, "grade", "p3", self.folder, "--jobs", "2", "--out", self.out], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
@@ -172,13 +170,42 @@ class Class(unittest.TestCase):
         self.assertIn("were graded before", done.stderr)
         with open(self.out, "rb") as f:
             self.assertEqual(f.read(), calm_bytes)
-        with open(self.out + ".part", encoding="utf-8") as f:
-            students = [json.loads(line)["student"] for line in f]
+        self.assertFalse(os.path.exists(self.out + ".part"), "nothing is left of a finished run")
+        students = [json.loads(line)["student"] for line in calm_bytes.splitlines()]
         self.assertEqual(sorted(students), sorted(line["student"] for line in calm))
         # a submission that is changed is graded anew, the others are not
         self.put("student000.json", "{}")
         done = self.grade("--out", self.out)
         self.assertIn("999 of 1000 submissions were graded before", done.stderr)
+
+    def test_a_finished_run_leaves_its_scores_alone_and_a_mark_changed_by_hand_is_graded_again(self):
+        for name in ("ann", "bob", "cid"):
+            self.put(f"{name}.json", RIGHT)
+        table = os.path.join(self.temporary.name, "scores.csv")
+        self.grade("--out", table)
+        calm = self.lines()
+        self.assertEqual(sorted(os.listdir(self.temporary.name)), ["handed in", "scores.csv", "scores.ndjson"])
+        with open(self.out, encoding="utf-8") as f:
+            text = f.read()
+        with open(self.out, "w", encoding="utf-8") as f:
+            f.write(text.replace('"score":8', '"score":7', 1))
+        done = self.grade("--out", self.out)
+        self.assertIn("2 of 3 submissions were graded before", done.stderr)
+        with open(self.out, encoding="utf-8") as f:
+            self.assertEqual([json.loads(line) for line in f], calm)
+
+    def test_a_class_that_transposes_a_matrix_has_a_commonest_mistake(self):
+        rows = json.loads(RIGHT)["J"]
+        turned = [list(column) for column in zip(*rows)]
+        self.put("ann.json", json.dumps({"J": turned}))
+        turned[0][0] = "l1*sin(th1)"
+        self.put("bob.json", json.dumps({"J": turned}))
+        table = os.path.join(self.temporary.name, "scores.csv")
+        self.assertRegex(self.grade("--out", table).stdout, r"commonest mistakes\n +2  transposed in J\n")
+        with open(table, encoding="utf-8", newline="") as f:
+            self.assertEqual([row["mistakes"] for row in csv.DictReader(f)], ["transposed in J", "sign in J11; transposed in J"])
+        alone = call("grade", "p3", os.path.join(self.folder, "ann.json"), "--format", "csv").stdout
+        self.assertIn("J11: transposed; J12: transposed", alone)
 
     def test_every_entry_of_the_folder_has_a_row(self):
         self.put("ada.json", RIGHT)

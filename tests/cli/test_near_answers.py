@@ -2,6 +2,7 @@
 """Answers that only look right, and right ones in unusual spelling; the checks that an exercise must prove. Speaks TAP."""
 
 import json
+import math
 import os
 import sys
 
@@ -173,6 +174,77 @@ def names(folder):
     expect("an open loop has no number without unit", found["mistake"] == "not-assembled" and "off by" not in found["explanation"], found["explanation"])
 
 
+def slips_by_name(folder):
+    """Frequent slips are named; half a count is no missing factor; a value beside 0 is none of the curve."""
+    for exercise, part, answer, mistake in (
+            ("baumgarte", "b", 250, "one"), ("gap-plot", "a", 0.033, "other"), ("gap-plot", "a", 0.0212, "power-of-ten"),
+            ("gap-plot", "a", 0, "other-place"), ("loops", "b", 2, "other"), ("loops", "b", 8, "other"), ("loops", "b", -4, "sign")):  # fmt: skip
+        found = entry(folder, exercise, part, answer, "--seed", "1")
+        expect(f"{exercise} {part} = {answer} is {mistake}", found["mistake"] == mistake, str(found))
+    found = entry(folder, "gap-plot", "b", 0, "--seed", "1")["explanation"]
+    expect("a place on the axis that is asked for is named first", found.startswith("this is the time of the smallest value"), found)
+
+    # slips that are computed from the numbers of the variant
+    def numbers(exercise):
+        return json.loads(run("problem", exercise, "--seed", "1", "--json").stdout)["numbers"]
+
+    x, y = numbers("euler"), numbers("flywheel")
+    for exercise, part, answer, mistake in (
+            ("euler", "a", (x["om"] * x["h"] / 1000) ** 2, "fraction"), ("euler", "b", math.log(1 + (x["om"] * x["h"] / 1000) ** 2), "one-step"),
+            ("euler", "c", 100 / (x["T"] * x["om"] ** 2), "a-tenth"), ("flywheel", "b", y["w"] * (y["M1"] + y["If"]) / (y["M2"] + y["If"]), "momentum"),
+            ("flywheel", "b", y["w"] * math.sqrt((y["M1"] + y["If"]) / y["M2"]), "other-side")):  # fmt: skip
+        found = told(folder, exercise, part, f"{answer:.4g}", "--seed", "1")
+        expect(f"{exercise} {part} names {mistake}", found == mistake, found)
+
+    # two mistakes at once are named for a number that agrees with them closely: three digits may agree by chance
+    right = y["w"] * math.sqrt((y["M1"] + y["If"]) / y["M2"])
+    pair = entry(folder, "flywheel", "b", 2 * right, "--seed", "1")
+    expect("two mistakes are named for exact digits", pair["mistake"] == "other-side" and "1/2 is missing as well" in pair["explanation"], str(pair))
+    expect("and not for what is near", told(folder, "flywheel", "b", 2 * right * 1.003, "--seed", "1") == "other")
+
+
+def pasted(folder):
+    """A matrix that was pasted as one text is read, with a remark."""
+    rows = [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
+    python = "[[" + "], [".join(", ".join(row) for row in rows) + "]]"
+    matlab = "J = [" + "; ".join(" ".join(row) for row in rows) + "];"
+    wolfram = python.replace("[", "{").replace("]", "}").replace("sin(", "Sin[").replace("cos(", "Cos[").replace(")", "]")
+    for name, text in (("a list", python), ("numpy", f"np.array({python})".replace("sin", "np.sin")), ("MATLAB", matlab), ("Wolfram", wolfram)):
+        found = verdict(folder, "p3", {"J": text})
+        expect(f"{name} as one text is read", found["score"] == 8 and found["note"].startswith("the text of 'J' was read as a list"), found["note"] + found["summary"])
+    expect("a matrix of numbers too", told(folder, "singular", "a", {"J": "[1 2 3; 2 4 6]"}) == "right")
+    said = run("grade", "p3", write(folder, "answer.json", {"J": "[1, 2"})).stdout
+    expect("what is no list is refused as before", "'J' is a text, expected a list of 2 rows" in said, said)
+
+
+def shown(folder):
+    """--show-expected gives the answer in every form, and an example where many are right."""
+    rows = [["l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
+    for form, said in (("text", "expected  -l1*sin(th1) = "), ("csv", "J11: sign (expected -l1*sin(th1))"), ("junit", "\nexpected  -l1*sin(th1)</failure>")):
+        asked = run("grade", "p3", write(folder, "answer.json", {"J": rows}), "--format", form, "--show-expected").stdout
+        hidden = run("grade", "p3", write(folder, "answer.json", {"J": rows}), "--format", form).stdout
+        expect(f"the teacher's {form} has the formula", said in asked, asked)
+        expect(f"the student's {form} has not", "-l1*sin(th1)" not in hidden, hidden)
+    for exercise, part, said in (("basis", "a", "full rank, for example [["), ("p2", "b", "the formula, for example "), ("p5", "a", "at zero, for example [")):
+        found = entry(folder, exercise, part, None, "--show-expected")["expected"]
+        expect(f"{exercise} {part} shows an example", said in found, found)
+
+
+def branches(folder):
+    """A closed loop of the other branch is closed as exactly as the digits are, as the picture shows."""
+    verdicts = verdict(folder, "assemble", {"a": {"th2": -1.047, "th3": -2.489}}, "--seed", "1")["entries"]
+    found = next(e for e in verdicts if e["name"] == "a.th2")
+    expect("what the digits leave open is said", found["explanation"] == "the loop closes here too (your digits leave 155 µm open), but in the other assembly mode", str(found))
+
+
+def plots(folder):
+    """The plot of a question is a picture of its own: ink on paper."""
+    run("problem", "gap-plot", "--seed", "1", "-o", os.path.join(folder, "gap.svg"))
+    with open(os.path.join(folder, "gap-a.svg"), encoding="utf-8") as f:
+        svg = f.read()
+    expect("it has a background", 'class="paper" fill="none" width="640" height="300"' in svg and ".paper{fill:#fcfcfa}" in svg, svg[:400])
+
+
 def quaternions(folder):
     """-p is named, as what it is."""
     right = float(entry(folder, "quaternion", "a", 1e150, "--show-expected")["expected"].split()[0])
@@ -197,4 +269,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, quaternions, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, pasted, shown, branches, plots, quaternions, proofs]))

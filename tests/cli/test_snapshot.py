@@ -90,7 +90,7 @@ class Snapshot(Command):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "f.png")
             for scene, said in (("four-bar", "forces: O1 on crank, A on coupler, O3 on rocker, B on rocker"), ("fb0-lagrangian", "no force at any joint"),
-                                ("heavy-top", "no constraints; forces: foot on top"), ("stewart-6-6", "each on the second body of its joint")):  # fmt: skip
+                                ("heavy-top", "no constraints; forces: foot on top"), ("bennett", "forces, one set of many: J1 on crank"), ("stewart-6-6", "each on the second body of its joint")):  # fmt: skip
                 done = call("snapshot", scene, "--time", "0.1", "--forces", "-o", path, "--describe")
                 self.assertIn(said, strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"], scene)
 

@@ -259,20 +259,27 @@ static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
 
 // ---- forces ----
 
-/// Says in the legend at which joint each arrow acts, and on which body: "forces: A on coupler".
+/// Says in the legend at which joint each arrow acts, and on which body: "forces: A on coupler";
+/// and where redundant constraints leave them undetermined.
 static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w) {
     char *note = p->notes[0];
     double force[3], place[3];
     size_t used = strlen(note);
+    bool determined = true;
+    for (int i = 0; i < hn_reaction_writer_count(w); i++) {
+        determined = determined && hn_reaction_writer_is_determined(w, i);
+    }
+    const char *mark = determined ? "" : ", one set of many";
     if (p->n_loads > FORCES_NAMED) {
         snprintf(note + used, HN_PICTURE_NOTE - used,
-                 "; arrows: forces, each on the second body of its joint");
+                 "; arrows: forces%s, each on the second body of its joint", mark);
         return;
     }
     for (int i = 0; i < hn_reaction_writer_count(w) && used < HN_PICTURE_NOTE; i++) {
         const char *name = hn_reaction_writer_force(w, i, force, place);
-        used += (size_t)snprintf(note + used, HN_PICTURE_NOTE - used, "%s %.20s on %.20s",
-                                 i ? "," : "; forces:", name, hn_reaction_writer_body(w, i));
+        used += (size_t)snprintf(note + used, HN_PICTURE_NOTE - used, "%s%s%s %.20s on %.20s",
+                                 i ? "," : "; forces", i ? "" : mark, i ? "" : ":", name,
+                                 hn_reaction_writer_body(w, i));
     }
 }
 

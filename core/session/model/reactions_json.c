@@ -125,6 +125,10 @@ const char *hn_reaction_writer_force(const hn_reaction_writer *w, int i, double 
     return name_of(w, w->carrier[i]);
 }
 
+bool hn_reaction_writer_is_determined(const hn_reaction_writer *w, int i) {
+    return w->wrenches[w->carrier[i]].determined != 0;
+}
+
 static const char *body_of(const hn_reaction_writer *w, int k) {
     const int body = w->wrenches[k].body;
     return body < 0 ? "ground" : w->scene->bodies[body].name;

@@ -173,6 +173,7 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
     if (args->out) {
         snprintf(journal, sizeof journal, "%.1000s.part", args->out);
         opts.journal = journal;
+        opts.finished = hn_path_ends_in(args->out, ".csv") ? NULL : args->out;
     }
 
     // verdicts to the file, the summary to the terminal
@@ -189,6 +190,9 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
                         result.n - result.others);
         }
         exit = finish(args, &result, subject->programs != NULL);
+        if (exit == HN_EXIT_DONE && journal[0]) {
+            unlink(journal); // all of it is in the result
+        }
     }
 
     hn_class_result_reset(&result);

@@ -79,15 +79,18 @@ static void put_grid(hn_strbuf *b, const hn_motion_curve *c, double low, double 
     }
 }
 
+/// A page takes the style away and draws in its own colours; a file has ink and paper.
 void hn_curve_svg(hn_strbuf *b, const hn_motion_curve *c, const char *title) {
     double low, high;
     hn_curve_axis(c, &low, &high);
     hn_strbuf_printf(b,
                      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" "
-                     "role=\"img\"><title>%s</title><style>text{font:13px sans-serif;"
+                     "role=\"img\"><title>%s</title><style>svg{color:#1a1d21}"
+                     ".paper{fill:#fcfcfa}text{font:13px sans-serif;"
                      "fill:currentColor}path{fill:none;stroke:currentColor}.grid{opacity:.25}"
-                     ".curve{stroke-width:2}</style>\n",
-                     WIDTH, HEIGHT, title);
+                     ".curve{stroke-width:2}</style>\n"
+                     "<rect class=\"paper\" fill=\"none\" width=\"%d\" height=\"%d\"/>\n",
+                     WIDTH, HEIGHT, title, WIDTH, HEIGHT);
     hn_strbuf_printf(b, "<text x=\"%d\" y=\"18\">%s</text>\n", LEFT, title);
     put_grid(b, c, low, high);
     hn_strbuf_printf(b, "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">t [s]</text>\n", WIDTH - RIGHT,

@@ -53,6 +53,7 @@ typedef struct hn_part_view {
 typedef struct hn_part_kind {
     const char *name;
     const char *fields; ///< members of a node of this kind, separated by blanks
+    bool is_open;       ///< many answers are right: the one that is expected is an example
     /// One line: how to write the answer.
     void (*ask)(hn_strbuf *b, const hn_part *p);
     /// Grades an answer (NULL: none was handed in). Fails: HN_ERR_INPUT (the exercise is at fault),

@@ -339,6 +339,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 const hn_part_kind hn_part_blocks = {
     .name = "blocks",
     .fields = "sizes matrices unknowns answer second faults",
+    .is_open = true,
     .ask = ask,
     .grade = grade,
     .right = hn_part_right_answer,

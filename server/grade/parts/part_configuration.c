@@ -15,6 +15,7 @@
 #include "grade/parts/pose_solver.h"
 #include "grade/parts/value_entry.h"
 
+#include "base/units.h"
 #include "dynamics/compile/coordinates.h"
 #include "integrators/method/method_spec.h"
 #include "study/run/run.h"
@@ -327,18 +328,35 @@ static bool read_entries(const sheet *s, const cJSON *given, double *x, hn_part_
     return all;
 }
 
-/// How far the loops are open with the whole answer, as a sentence behind another; "" where closed.
-static void say_open(const sheet *s, const double *given, char *text, size_t size) {
+/// How far the loops are open with the whole answer [m], which stays in the solver.
+static double open_by(const sheet *s, const double *given) {
     double x[MAX];
     memcpy(x, s->expected, sizeof x);
     for (int k = 0; k < s->n_asked; k++) {
         x[s->asked[k]] = given[k];
     }
     hn_pose_solver_place(s->solver, x);
-    const double gap = hn_pose_solver_open(s->solver);
+    return hn_pose_solver_open(s->solver);
+}
+
+/// How far the loops are open with the whole answer, as a sentence behind another; "" where closed.
+static void say_open(const sheet *s, const double *given, char *text, size_t size) {
+    const double gap = open_by(s, given);
     text[0] = 0;
     if (hn_pose_solver_gap(s->solver) > s->within) {
         snprintf(text, size, "; with the whole answer the loop is open by %.3g m", gap);
+    }
+}
+
+/// How well the loops close with an answer of the other branch: the picture shows what rounded
+/// numbers leave open. "" where it is rounding.
+static void say_closed(const sheet *s, const double *given, char *text, size_t size) {
+    char gap[HN_SI_TEXT];
+    const double open = open_by(s, given);
+    text[0] = 0;
+    if (open > 1e-9 * hn_system_length(hn_model_system(s->model))) {
+        hn_si_format(open, "m", 2, gap);
+        snprintf(text, size, " (your digits leave %s open)", gap);
     }
 }
 
@@ -351,8 +369,9 @@ static void judge(const sheet *s, int k, const double *given, bool all, bool bra
         return;
     }
     if (branch) {
+        say_closed(s, given, open, sizeof open);
         hn_part_wrong(r, "other-branch", 0.5,
-                      "the loop closes here too, but in the other assembly mode");
+                      "the loop closes here too%s, but in the other assembly mode", open);
         return;
     }
     const int slip = find_slip(s, k, given[k]);

@@ -237,6 +237,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 const hn_part_kind hn_part_example = {
     .name = "example",
     .fields = "given shapes numbers unit checks answer faults",
+    .is_open = true,
     .ask = ask,
     .grade = grade,
     .right = hn_part_right_answer,

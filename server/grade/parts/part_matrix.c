@@ -166,6 +166,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 const hn_part_kind hn_part_matrix = {
     .name = "matrix",
     .fields = "sizes matrices answer second faults",
+    .is_open = true,
     .ask = ask,
     .grade = grade,
     .right = right,

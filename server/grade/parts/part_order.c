@@ -221,6 +221,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 const hn_part_kind hn_part_order = {
     .name = "order",
     .fields = "answer faults",
+    .is_open = true,
     .ask = ask,
     .grade = grade,
     .right = hn_part_right_answer,

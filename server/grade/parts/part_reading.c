@@ -18,6 +18,7 @@
 
 enum { COLUMNS = 78 };
 static const double COARSE = 2;      // times what is allowed: a coarse reading, not a slip
+static const double OF_SIZE = 0.5;   // of a slip's own value: beyond, it is another number
 static const double OF_RANGE = 0.03; // a twentieth of an interval between labels is 1 % of the axis
 
 /// The curve, what is asked, and the answer.
@@ -140,14 +141,26 @@ static bool get_slip(const sheet *s, int i, slip *out) {
     return true;
 }
 
-/// The first slip that gives a value; false: none does.
+/// Whether a value is that of a slip: as near as a reading is, and of its size. A number beside 0
+/// is no reading of a curve that is 0 there: it is another mistake, as a wrong unit.
+static bool is_slip(const slip *x, double value) {
+    const double apart = fabs(value - x->value);
+    return apart <= x->near && (value == 0 || apart <= OF_SIZE * fabs(x->value));
+}
+
+/// The first slip that gives a value, and of the readings one on the axis that is asked for; false:
+/// none does.
 static bool find_slip(const sheet *s, double value, slip *out) {
-    for (int i = 0; get_slip(s, i, out); i++) {
-        if (fabs(value - out->value) <= out->near) {
-            return true;
+    slip x;
+    bool found = false;
+    for (int i = 0; get_slip(s, i, &x); i++) {
+        const bool other_axis = strcmp(x.id, "other-axis") == 0;
+        if (is_slip(&x, value) && (!found || (!other_axis && !strcmp(out->id, "other-axis")))) {
+            *out = x;
+            found = true;
         }
     }
-    return false;
+    return found;
 }
 
 // ---- the functions of the kind ----

@@ -318,6 +318,7 @@ static void view(const hn_part *p, const cJSON *given, hn_part_view *out) {
 const hn_part_kind hn_part_scene = {
     .name = "scene",
     .fields = "scene set free limits checks answer faults",
+    .is_open = true,
     .ask = ask,
     .grade = grade,
     .right = right,

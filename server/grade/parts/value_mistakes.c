@@ -19,9 +19,9 @@ static const struct factor_row {
 } FACTORS[] = {
     {"sign", "the sign is wrong", "the sign is wrong as well", -1, 0.5, 0, ANY},
     {"half", "half of the right value: a factor 2 is missing", "a factor 2 is missing as well", 0.5,
-     0.25, 0, ANY},
+     0.25, 0, UNITS},
     {"double", "twice the right value: a factor 1/2 is missing", "a factor 1/2 is missing as well",
-     2, 0.25, 0, ANY},
+     2, 0.25, 0, UNITS},
     {"degrees", "this looks like degrees; radians are asked for",
      "this looks like degrees as well; radians are asked for", 57.29577951308232, 0.5, 0, ANGLES},
     {"radians", "the angle was turned into radians twice",
@@ -31,7 +31,7 @@ static const struct factor_row {
     {"kilo", "a factor of 1/1000: check the unit", "a factor of 1/1000 as well: check the unit",
      0.001, 0.5, 1, UNITS},
     {"gravity", "the acceleration of gravity is missing",
-     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 1, ANY},
+     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 1, UNITS},
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
 
@@ -79,6 +79,7 @@ static bool applies(const hn_value_sheet *s, int m) {
     if (s->symbolic) { // radians are in its names, and a formula has no unit of its own
         return !FACTORS[m].numbers;
     }
+    // half a count is another count, not the same one without a factor
     return FACTORS[m].of == ANGLES  ? s->unit.power[HN_UNIT_ANGLE] != 0
            : FACTORS[m].of == UNITS ? !hn_value_is_count(s)
                                     : true;
@@ -95,6 +96,7 @@ static hn_status try_listed_pairs(hn_value_search *f) {
             return HN_OK;
         }
         f->alone = hn_part_number(fault, "share", 0);
+        f->closely = true;
         for (int m = 0; m < N_FACTORS; m++) {
             if (applies(f->sheet, m)) {
                 hn_value_search_try(f, wrong.e[f->entry], FACTORS[m].factor,
@@ -124,6 +126,7 @@ static hn_status try_two_listed(hn_value_search *f) {
             const double share =
                 hn_part_number(first, "share", 0) * hn_part_number(second, "share", 0);
             f->alone = hn_part_number(second, "share", 0);
+            f->closely = true;
             for (int m = 0; m < 2 && differs[0] && differs[1]; m++) {
                 hn_value_search_try(f, both[m], 1, hn_part_text(second, "id"), share,
                                     "two mistakes at once: %s; and %s",

@@ -22,6 +22,8 @@ typedef struct hn_value_search {
     double first_factor;
     double alone; ///< of the candidates tried next: the share of the mistake that is named, where
                   ///< a second one beside it lowers the share; 0: nothing lowers it
+    bool closely; ///< two mistakes at once are tried, so many that a number must agree with one of
+                  ///< them ten times better than is asked for
 } hn_value_search;
 
 /// Begins the search for the mistake in entry k, whose values `given` are wrong.

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/list_text.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEEPEST = 3, MOST_ENTRIES = 4096 };
+
+/// A stretch of the text: from `at` up to `end`.
+typedef struct span {
+    const char *at, *end;
+} span;
+
+static span trim(span s) {
+    while (s.at < s.end && isspace((unsigned char)*s.at)) {
+        s.at++;
+    }
+    while (s.end > s.at && isspace((unsigned char)s.end[-1])) {
+        s.end--;
+    }
+    return s;
+}
+
+static bool is_opening(char c) {
+    return c == '[' || c == '(' || c == '{';
+}
+
+static bool is_closing(char c) {
+    return c == ']' || c == ')' || c == '}';
+}
+
+static bool is_list(span s) {
+    return s.at < s.end && (*s.at == '[' || *s.at == '{');
+}
+
+/// The bracket that closes the one at s.at; NULL: none.
+static const char *find_closing(span s) {
+    int depth = 0;
+    for (const char *c = s.at; c < s.end; c++) {
+        depth += is_opening(*c) - is_closing(*c);
+        if (depth == 0) {
+            return c;
+        }
+    }
+    return NULL;
+}
+
+// ---- what stands around a list ----
+
+/// Leaves "J =" before a list away, and the semicolon behind it.
+static span strip_assignment(span s) {
+    const char *c = s.at;
+    while (c < s.end && (isalnum((unsigned char)*c) || *c == '_')) {
+        c++;
+    }
+    const char *name_end = c;
+    while (c < s.end && *c == ' ') {
+        c++;
+    }
+    if (name_end > s.at && c < s.end && *c == '=') {
+        s.at = c + 1;
+    }
+    if (s.end > s.at && s.end[-1] == ';') {
+        s.end--;
+    }
+    return trim(s);
+}
+
+/// Leaves the call that makes a matrix of a list away: np.array([...], dtype=float).
+static span strip_call(span s) {
+    static const char *const MAKERS[] = {"np.array(",     "numpy.array(", "np.matrix(",
+                                         "numpy.matrix(", "array(",       "matrix(",
+                                         "sympy.Matrix(", "sp.Matrix(",   "Matrix("};
+    for (size_t i = 0; i < sizeof MAKERS / sizeof *MAKERS; i++) {
+        const size_t n = strlen(MAKERS[i]);
+        if ((size_t)(s.end - s.at) > n && strncmp(s.at, MAKERS[i], n) == 0 && s.end[-1] == ')') {
+            const span inside = trim((span){s.at + n, s.end - 1});
+            const char *close = is_list(inside) ? find_closing(inside) : NULL;
+            const span rest = close ? trim((span){close + 1, inside.end}) : inside;
+            const bool whole = close && (rest.at == rest.end || *rest.at == ',');
+            return whole ? (span){inside.at, close + 1} : s;
+        }
+    }
+    return s;
+}
+
+// ---- entries of a row ----
+
+/// Whether a sign that makes an operator, so that blanks about it part nothing.
+static bool is_operator(char c) {
+    return c != '\0' && strchr("+-*/^=@", c) != NULL;
+}
+
+/// Whether blanks part two entries: "a -b" does, "a - b" and "a * b" do not.
+static bool blanks_part(const char *before, const char *after, span s) {
+    if (before <= s.at || after >= s.end || is_operator(before[-1])) {
+        return false;
+    }
+    const char second = after + 1 < s.end ? after[1] : '\0';
+    const bool sign = *after == '+' || *after == '-',
+               entrywise = *after == '.' && is_operator(second);
+    return sign ? !isspace((unsigned char)second) : !is_operator(*after) && !entrywise;
+}
+
+/// The end of the first piece of `s`: at a mark outside all brackets, or with mark ' ' at blanks
+/// that part entries. *next is where the rest begins.
+static const char *find_end(span s, char mark, const char **next) {
+    int depth = 0;
+    for (const char *c = s.at; c < s.end; c++) {
+        depth += is_opening(*c) - is_closing(*c);
+        if (depth != 0) {
+            continue;
+        }
+        if (*c == mark && mark != ' ') {
+            *next = c + 1;
+            return c;
+        }
+        if (mark == ' ' && isspace((unsigned char)*c)) {
+            const char *after = c;
+            while (after < s.end && isspace((unsigned char)*after)) {
+                after++;
+            }
+            if (blanks_part(c, after, s)) {
+                *next = after;
+                return c;
+            }
+            c = after - 1;
+        }
+    }
+    *next = s.end;
+    return s.end;
+}
+
+static bool holds(span s, char mark) {
+    const char *next;
+    return find_end(s, mark, &next) < s.end;
+}
+
+static cJSON *make_entry(span s) {
+    s = trim(s);
+    char *text = strndup(s.at, (size_t)(s.end - s.at)), *end = NULL;
+    const double number = text ? strtod(text, &end) : 0;
+    const bool is_number =
+        text && end > text && !*end && strspn(text, "+-.0123456789eE") == strlen(text);
+    cJSON *out = is_number ? cJSON_CreateNumber(number) : text ? cJSON_CreateString(text) : NULL;
+    free(text);
+    return out;
+}
+
+static cJSON *read_list(span s, int depth);
+
+/// One piece of a list: a list itself, a row between semicolons, or an entry.
+static cJSON *read_piece(span s, char mark, int depth) {
+    s = trim(s);
+    if (is_list(s) && find_closing(s) == s.end - 1 && depth < DEEPEST) {
+        return read_list((span){s.at + 1, s.end - 1}, depth + 1);
+    }
+    return mark == ';' || mark == '\n' ? read_list(s, depth + 1) : make_entry(s);
+}
+
+/// What stands between the brackets of a list. NULL: an empty piece, or too much of it.
+static cJSON *read_list(span s, int depth) {
+    s = trim(s);
+    const char mark = holds(s, ';') ? ';' : holds(s, ',') ? ',' : holds(s, '\n') ? '\n' : ' ';
+    cJSON *out = cJSON_CreateArray();
+    int n = 0;
+    while (out && s.at < s.end) {
+        const char *next;
+        // rows on lines of their own may be lists: [[1 2]\n [3 4]]
+        const span piece = {s.at, find_end(s, mark, &next)};
+        cJSON *entry = n++ < MOST_ENTRIES ? read_piece(piece, mark, depth) : NULL;
+        if (!entry || !cJSON_AddItemToArray(out, entry)) {
+            cJSON_Delete(entry);
+            cJSON_Delete(out);
+            return NULL;
+        }
+        s.at = next;
+        s = mark == ';' ? trim(s) : s;
+    }
+    return out;
+}
+
+/// Whether a list has more than one entry, or rows: "[a + b]" is a formula in brackets.
+static bool is_several(const cJSON *list) {
+    return cJSON_GetArraySize(list) > 1 || cJSON_IsArray(list ? list->child : NULL);
+}
+
+cJSON *hn_list_text_read(const char *text) {
+    span s = strip_call(strip_assignment(trim((span){text, text + strlen(text)})));
+    if (!is_list(s) || find_closing(s) != s.end - 1) {
+        return NULL;
+    }
+    cJSON *list = read_list((span){s.at + 1, s.end - 1}, 1);
+    if (!is_several(list)) {
+        cJSON_Delete(list);
+        return NULL;
+    }
+    return list;
+}
+
+/// Replaces the texts among the members of an object; those of its objects too.
+static int expand(cJSON *object, int depth, char *name, int size) {
+    static const char *const OTHERS[] = {"student", "comment", "problem", "exercise", "seed"};
+    int n = 0;
+    for (cJSON *m = object->child, *next; m; m = next) {
+        bool other = false;
+        next = m->next;
+        for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
+            other |= depth == 0 && strcmp(m->string, OTHERS[i]) == 0;
+        }
+        cJSON *list = cJSON_IsString(m) && !other ? hn_list_text_read(m->valuestring) : NULL;
+        if (list) {
+            if (!name[0]) {
+                snprintf(name, (size_t)size, "%s", m->string);
+            }
+            char *key = strdup(m->string);
+            n += key && cJSON_ReplaceItemInObjectCaseSensitive(object, key, list);
+            free(key);
+        } else if (cJSON_IsObject(m) && depth == 0) {
+            n += expand(m, depth + 1, name, size);
+        }
+    }
+    return n;
+}
+
+int hn_list_text_expand(cJSON *submission, char *name, int size) {
+    name[0] = '\0';
+    return cJSON_IsObject(submission) ? expand(submission, 0, name, size) : 0;
+}
