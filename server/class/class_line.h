@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLASS_CLASS_LINE_H
 #define HN_CLASS_CLASS_LINE_H
-// Fields of the line that a class has for each submission: its mistakes, and a hash by which a later
-// run knows that nobody changed the line by hand.
+// Fields of the line that a class has for each submission: its mistakes, and a hash by which a
+// later run knows that nobody changed the line by hand.
 
 #include "grade/verdict.h"
 

@@ -3,7 +3,8 @@
 #define HN_GRADE_LIST_TEXT_H
 // Matrices and lists that a student pasted as one text, from the program in which they stand:
 //
-//     [[a, b], [c, d]]    np.array([[a, b], [c, d]])    Matrix([[a, b], [c, d]])    {{a, b}, {c, d}}
+//     [[a, b], [c, d]]    np.array([[a, b], [c, d]])    Matrix([[a, b], [c, d]])
+//     {{a, b}, {c, d}}
 //     [a, b; c, d]        [a b; c d]                    [[1 2]\n [3 4]]             J = [a b; c d];
 //
 // In a row without commas blanks part the entries, as in MATLAB: "a -b" are two, "a - b" is one.
