@@ -22,7 +22,7 @@ PATIENCE = 20.0  # [s] a crowded machine; what is waited for comes in a fraction
 def once(*words, **environment):
     """(status, standard output, standard error) of one frame as text."""
     env = {**os.environ, "LC_ALL": "C.UTF-8", "XDG_STATE_HOME": STATE.name, **environment}
-    done = subprocess.run([PROGRAM, "tui", *words], capture_output=True, timeout=60, env=env, stdin=subprocess.DEVNULL)
+    done = subprocess.run([PROGRAM, "tui", *words], capture_output=True, timeout=600, env=env, stdin=subprocess.DEVNULL)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 

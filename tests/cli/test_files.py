@@ -249,7 +249,7 @@ class Files(Command):
             for words in ((), ("--json",)):
                 with open("/dev/full", "w") as full:
                     done = subprocess.run([driver.PROGRAM, "run", "four-bar", "--time", "2", "--every", "0.001", *words], stdout=full,
-                                          stderr=subprocess.PIPE, timeout=60)
+                                          stderr=subprocess.PIPE, timeout=600)
                 self.assertEqual((done.returncode, b"cannot write to standard output: No space left" in done.stderr, b"memory" in done.stderr), (PROGRAM, True, False))
 
     def test_what_somebody_wrote_is_kept_beside_an_export(self):

@@ -100,7 +100,7 @@ class Kept(unittest.TestCase):
                 time.sleep(1)
                 process.send_signal(how)
                 told = process.stderr.read().decode()
-                self.assertEqual(process.wait(timeout=60), studies.ENDED, told)
+                self.assertEqual(process.wait(timeout=600), studies.ENDED, told)
             self.assertIn("the finished part could not be written and is lost", told)
             self.assertNotIn("continues from here", told)
 

@@ -113,7 +113,7 @@ class StartingPoints(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "mine.py"), "w", encoding="utf-8") as f:
                 f.write(call("program", "python").stdout.replace("import numpy as np", "import no_such_module as np"))
-            done = subprocess.run([sys.executable, "mine.py"], cwd=folder, input="", capture_output=True, text=True, timeout=60)
+            done = subprocess.run([sys.executable, "mine.py"], cwd=folder, input="", capture_output=True, text=True, timeout=600)
             self.assertEqual(done.returncode, 1)
             self.assertEqual(done.stderr.splitlines(), ["This program needs numpy (apt install python3-numpy): No module named 'no_such_module'"])
 

@@ -23,7 +23,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 
 def call(*words):
-    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=60)
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=600)
 
 
 def candidates(*words):
@@ -117,7 +117,7 @@ class Help(unittest.TestCase):
     def test_help_fits_a_narrower_terminal(self):
         env = {**os.environ, "COLUMNS": "60", "LC_ALL": "C.UTF-8"}
         for words in (["help"], ["help", "words"], ["help", "serve"], ["run", "--help"], []):
-            done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=60, env=env)
+            done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=600, env=env)
             lines = (done.stdout or done.stderr).splitlines()
             self.assertGreater(len(lines), 8, words)
             # one word that is longer than a line stays whole
@@ -181,7 +181,7 @@ class Help(unittest.TestCase):
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 10, 80, 0, 0))
         env = {**os.environ, "PAGER": "sed -n 's/^/paged /;1p'", "LC_ALL": "C.UTF-8"}
         with subprocess.Popen([PROGRAM, "list", "scenes"], stdin=slave, stdout=slave, env=env) as process:
-            process.wait(timeout=60)
+            process.wait(timeout=600)
         os.close(slave)
         self.assertTrue(os.read(master, 4096).startswith(b"paged "))
         os.close(master)
@@ -218,10 +218,10 @@ class Width(unittest.TestCase):
             shutil.copy(os.path.join(ROOT, "tests", "import", "four-bar.urdf"), os.path.join(folder, "robot.urdf"))
             env = {**os.environ, "LC_ALL": "C.UTF-8", "COLUMNS": str(columns), "HOLONOM_CACHE": os.path.join(folder, "cache")}
             if words[0] == "rubric":
-                subprocess.run([PROGRAM, "rubric", "write", "p3", "-o", "rubric.json"], timeout=60, cwd=folder, env=env, check=True)
+                subprocess.run([PROGRAM, "rubric", "write", "p3", "-o", "rubric.json"], timeout=600, cwd=folder, env=env, check=True)
             if words[0] == "regrade":
                 with open(os.path.join(folder, "verdict.json"), "w", encoding="utf-8") as file:
-                    subprocess.run([PROGRAM, "grade", "p3", "bad.json", "--json"], stdout=file, timeout=60, cwd=folder, env=env, check=True)
+                    subprocess.run([PROGRAM, "grade", "p3", "bad.json", "--json"], stdout=file, timeout=600, cwd=folder, env=env, check=True)
             done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300, env=env, cwd=folder)
         return done.stdout.splitlines() + done.stderr.splitlines()
 
@@ -252,13 +252,13 @@ class Width(unittest.TestCase):
 
     def test_a_pipe_gets_every_column(self):
         env = {k: v for k, v in os.environ.items() if k != "COLUMNS"}
-        done = subprocess.run([PROGRAM, "compare", "four-bar", "--time", "0.5"], capture_output=True, text=True, timeout=60, env=env)
+        done = subprocess.run([PROGRAM, "compare", "four-bar", "--time", "0.5"], capture_output=True, text=True, timeout=600, env=env)
         self.assertIn("evals", done.stdout)
         self.assertNotIn("\033", done.stdout)
 
     def test_a_pipe_gets_paragraphs_of_eighty_columns_unless_it_is_wide(self):
         env = {k: v for k, v in os.environ.items() if k != "COLUMNS"}
-        narrow, wide = (subprocess.run([PROGRAM, "problem", "p3", *more], capture_output=True, text=True, timeout=60, env=env).stdout for more in ([], ["--wide"]))
+        narrow, wide = (subprocess.run([PROGRAM, "problem", "p3", *more], capture_output=True, text=True, timeout=600, env=env).stdout for more in ([], ["--wide"]))
         paragraphs = lambda text: [len(line) for line in text.splitlines() if not line.startswith(" ")]
         self.assertLessEqual(max(paragraphs(narrow)), 80)
         self.assertGreater(max(paragraphs(wide)), 100)
@@ -274,7 +274,7 @@ class Width(unittest.TestCase):
             if "NO_COLOR" not in more:
                 env.pop("NO_COLOR", None)
             with subprocess.Popen([PROGRAM, "list", "problems"], stdin=subprocess.DEVNULL, stdout=slave, env=env) as process:
-                process.wait(timeout=60)
+                process.wait(timeout=600)
             os.close(slave)
             self.assertEqual(b"\033[1m" in os.read(master, 4096), coloured, more)
             os.close(master)
@@ -303,7 +303,7 @@ class Plots(unittest.TestCase):
     def test_compare_draws_every_method_within_the_width(self):
         env = {**os.environ, "COLUMNS": "70", "LC_ALL": "C.UTF-8"}
         done = subprocess.run([PROGRAM, "compare", "four-bar", "--time", "2", "--plot"], capture_output=True, text=True,
-                              timeout=60, env=env)
+                              timeout=600, env=env)
         self.assertEqual(done.returncode, 0, done.stderr)
         plot = done.stdout[done.stdout.index("loop gap (constraint violation)"):]
         self.assertLessEqual(max(map(len, plot.splitlines())), 70)
@@ -315,7 +315,7 @@ class Plots(unittest.TestCase):
 
     def test_run_draws_in_place_of_samples_and_in_ascii_where_the_locale_asks(self):
         env = {**os.environ, "LC_ALL": "C"}
-        done = subprocess.run([PROGRAM, "run", "pendulum", "--time", "1", "--plot"], capture_output=True, text=True, timeout=60,
+        done = subprocess.run([PROGRAM, "run", "pendulum", "--time", "1", "--plot"], capture_output=True, text=True, timeout=600,
                               env=env)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(done.stdout.isascii())
@@ -395,7 +395,7 @@ class Manual(unittest.TestCase):
                 self.assertIn(f".B {option}", text)
 
     def test_groff_sets_it_without_a_warning(self):
-        done = subprocess.run(["groff", "-ww", "-man", "-Tascii", "-P-cbou", "-rLL=80n"], input=call("manual").stdout, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["groff", "-ww", "-man", "-Tascii", "-P-cbou", "-rLL=80n"], input=call("manual").stdout, capture_output=True, text=True, timeout=600)
         self.assertEqual(done.stderr, "")
         self.assertIn("SYNOPSIS", done.stdout)
         self.assertEqual([line for line in done.stdout.splitlines() if len(line) > 80], [])

@@ -345,7 +345,7 @@ class Keys(unittest.TestCase):
 
     def test_a_program_is_exported(self):
         with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([PROGRAM, "tui", "four-bar", "--once", "--keys", "x<Down><Enter><Enter>"], capture_output=True, timeout=60, cwd=folder,
+            done = subprocess.run([PROGRAM, "tui", "four-bar", "--once", "--keys", "x<Down><Enter><Enter>"], capture_output=True, timeout=600, cwd=folder,
                                   stdin=subprocess.DEVNULL, env={**os.environ, "LC_ALL": "C.UTF-8"})
             self.assertEqual(done.returncode, 0, done.stderr)
             with open(os.path.join(folder, "four_bar.py"), encoding="utf-8") as file:

@@ -79,7 +79,7 @@ class Frame(unittest.TestCase):
 
     def test_the_help_and_the_manual_say_how_ctrl_c_ends(self):
         for word in ("help", "manual"):
-            said = subprocess.run([PROGRAM, word], capture_output=True, text=True, timeout=60).stdout
+            said = subprocess.run([PROGRAM, word], capture_output=True, text=True, timeout=600).stdout
             self.assertRegex(said, r"130\s+Ctrl\\?-C\s+ended\s+the\s+workbench\s+in\s+the\s+terminal", word)
 
     def test_json_is_refused(self):

@@ -27,7 +27,7 @@ class Tmux(unittest.TestCase):
     def tmux(self, *words, check=True):
         env = {**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm-256color", "HOLONOM_CACHE": self.folder.name}
         env.pop("TMUX", None)
-        done = subprocess.run(["tmux", "-u", "-S", self.socket, "-f", "/dev/null", *words], capture_output=True, text=True, env=env, timeout=60)
+        done = subprocess.run(["tmux", "-u", "-S", self.socket, "-f", "/dev/null", *words], capture_output=True, text=True, env=env, timeout=600)
         if check:
             self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout

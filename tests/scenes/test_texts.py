@@ -238,7 +238,7 @@ def shown_slips(facts):
 def unreadable_in_ascii(texts):
     """Lessons with characters that a terminal without UTF-8 shows as question marks."""
     def marks(text, locale):
-        done = subprocess.run([PROGRAM, "lesson", text.split("/")[1]], capture_output=True, text=True, timeout=60, env={**os.environ, "LC_ALL": locale})
+        done = subprocess.run([PROGRAM, "lesson", text.split("/")[1]], capture_output=True, text=True, timeout=600, env={**os.environ, "LC_ALL": locale})
         return done.stdout.count("?")
 
     return [t for t in texts if marks(t, "C") != marks(t, "C.UTF-8")]
