@@ -89,13 +89,15 @@ test("the cheapest method for an accuracy lies between its measured points", () 
   const dot = (m, size, error, cost) => ({ m, k: 0, size, error, cost, sizeName: "h" });
   const steep = [dot(0, 1, Infinity, 1), dot(0, 0.1, 1e-2, 10), dot(0, 0.01, 1e-6, 100)];
   const lucky = [dot(1, 1, 1e-5, 2), dot(1, 0.1, 1e-1, 20), dot(1, 0.01, 1e-3, 200)];
-  const [first, ...others] = cheapestFor([steep, lucky], 1e-4);
+  const [first, ...others] = cheapestFor([steep, lucky], 2e-4);
   assert.equal(first.m, 0);
-  assert.ok(Math.abs(first.cost - Math.sqrt(1000)) < 1e-9, "half-way in decades");
+  assert.ok(Math.abs(first.cost - Math.sqrt(1000)) < 1e-9, "half-way in decades, for half the error");
   assert.ok(Math.abs(first.size - Math.sqrt(1e-3)) < 1e-9);
   assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
   const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
   assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
+  const [measured] = cheapestFor([steep], 1.5e-6);
+  assert.deepEqual([measured.size, measured.cost], [0.01, 100], "no finer than what is measured");
 });
 
 test("times that cannot be told apart are not ranked, counts are", () => {

@@ -200,11 +200,30 @@ const hn_model *hn_study_model(const hn_study *s) {
     return s->model;
 }
 
+int hn_study_times(const hn_study *s) {
+    int least = 0;
+    for (int m = 0; m < s->wp->n_methods; m++) {
+        for (int k = 0; k < s->wp->n_levels; k++) {
+            const hn_wp_point *p = &s->wp->methods[m].point[k];
+            if (p->state == HN_WP_DONE && (least == 0 || p->times < least)) {
+                least = p->times;
+            }
+        }
+    }
+    return least;
+}
+
 void hn_study_put_times(hn_strbuf *b, const hn_study *s) {
-    hn_strbuf_printf(b,
-                     "errors are the largest at %d times, evenly over the run; between these times "
-                     "they can be larger, %.1f times as large in the four-bar",
-                     s->ref->n, HN_STUDY_BETWEEN);
+    const int times = hn_study_times(s);
+    if (times == 0) {
+        hn_strbuf_add(b, "no run came to its end, so that there are no errors");
+        return;
+    }
+    hn_strbuf_printf(b, "errors are the largest at %d times", times);
+    hn_strbuf_add(b, times % s->ref->n == 0
+                         ? ", evenly over the run"
+                         : "; in parts of the run at few times, as no method finds the true "
+                           "motion between these");
 }
 
 bool hn_study_lost(const hn_study *s) {

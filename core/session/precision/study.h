@@ -59,10 +59,9 @@ bool hn_study_lost(const hn_study *study);           ///< the journal could not 
 int hn_study_resumed(const hn_study *study);         ///< points resumed from an interrupted study
 bool hn_study_kept_reference(const hn_study *study); ///< read, not computed
 
-/// What the largest error between the times of a study is of the largest at them: measured in the
-/// four-bar over 10 s, with steps of 2.4 ms, by four methods.
-#define HN_STUDY_BETWEEN 1.5
-/// Writes the times that errors are taken at and what that misses, a sentence without its stop.
+/// Returns at how many times the errors of every complete run were taken; 0: there is none.
+int hn_study_times(const hn_study *study);
+/// Writes the times that errors are taken at, a sentence without its stop.
 void hn_study_put_times(hn_strbuf *b, const hn_study *study);
 
 // documents

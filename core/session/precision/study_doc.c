@@ -33,7 +33,7 @@ static void put_reference(hn_strbuf *b, const hn_study *s) {
     hn_json_end_array(b);
     hn_json_put_number(b, "digits", hn_ref_digits(s->ref));
     put_errors(b, "error", s->ref->error);
-    hn_json_put_int(b, "times", s->ref->n);
+    hn_json_put_int(b, "times", hn_study_times(s));
     if (s->ref->refused[0]) {
         hn_json_put_string(b, "refused", s->ref->refused);
     }

@@ -18,7 +18,7 @@ bool hn_wanted_read(const char *text, double length, hn_wanted *out);
 
 /// Writes one sentence: the method with the fewest operations that is accurate enough, with its
 /// step or tolerance, the next one, and the methods that do not reach the error. The size is read
-/// off between two points of the study by a straight line in the logarithms.
+/// off between two points of the study by a straight line in the logarithms, for half the error.
 ///
 /// spelling  out  the cheapest method with that size, rounded down to two digits; "": no method
 ///                reaches the error

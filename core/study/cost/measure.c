@@ -12,7 +12,8 @@
 
 enum { RESERVED_SAMPLES = 5, RETRIES = 1 };
 static const double GROWTH = 3; // of the cost from a tolerance to the next, before it is known
-static const double POINT_SHARE = 0.2; // of the time limit that one run may take
+static const double POINT_SHARE = 0.2;  // of the time limit that one run may take
+static const double REFINE_SHARE = 0.1; // of it that states between those of the reference may take
 
 // ---- one point ----
 
@@ -39,15 +40,42 @@ typedef struct looker {
     hn_wp_point *point;
 } looker;
 
+/// Takes the errors at a time between two of the reference, as far as they are above what the state
+/// there may itself be off; gaps always. A NaN at a state that is not known adds nothing.
+static void look_between(looker *l, const hn_state_seen *at, int k, const double *off) {
+    hn_wp_point *p = l->point;
+    const hn_wp *wp = l->wp;
+    const hn_state_seen reference = hn_refined_at(wp->refined, k);
+    double e[HN_ERROR_COUNT];
+    hn_errors_calc(wp->errors, at, &reference, &wp->ref->scales, e);
+    for (int i = 0; i < HN_ERROR_COUNT; i++) {
+        const bool is_gap = i == HN_ERROR_GAP || i == HN_ERROR_VELOCITY_GAP;
+        if (e[i] > p->worst[i] && (is_gap || e[i] > HN_WP_ABOVE_REFERENCE * off[i])) {
+            p->worst[i] = e[i];
+        }
+    }
+    p->times++;
+}
+
 static int look(void *user, int k, const hn_sample *s) {
     looker *l = user;
     hn_wp_point *p = l->point;
+    const hn_refined *refined = l->wp->refined;
     const hn_state_seen at = {s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
-    const hn_state_seen reference = hn_ref_at(l->wp->ref, k);
+    const double *off = hn_refined_error(refined, k);
+    if (off) {
+        if (isfinite(off[HN_ERROR_Q])) {
+            look_between(l, &at, k, off);
+        }
+        return 1;
+    }
+
+    const hn_state_seen reference = hn_refined_at(refined, k);
     hn_errors_calc(l->wp->errors, &at, &reference, &l->wp->ref->scales, p->end);
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         p->worst[i] = isnan(p->end[i]) || p->end[i] > p->worst[i] ? p->end[i] : p->worst[i];
     }
+    p->times++;
     memcpy(p->end_q, s->q, (size_t)l->wp->ref->n_user * sizeof(double));
     return isfinite(p->end[HN_ERROR_Q]) && isfinite(p->end[HN_ERROR_V]);
 }
@@ -101,7 +129,8 @@ static bool measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     looker l = {wp, p};
     const hn_walk_limits limits = {POINT_SHARE * wp->opts.time_limit, hooks->stop, hooks->user};
     memset(p->worst, 0, sizeof p->worst);
-    hn_walk_end end = hn_walk(run, wp->ref->T, wp->ref->n, &limits, look, &l);
+    p->times = 0;
+    hn_walk_end end = hn_walk(run, wp->ref->T, wp->ref->n * wp->refined->parts, &limits, look, &l);
     if (end == HN_WALK_DONE) {
         end = hn_run_reset(run) == HN_OK ? hn_walk(run, wp->ref->T, wp->ref->n, &limits, NULL, NULL)
                                          : HN_WALK_FAILED;
@@ -292,8 +321,18 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
     }
 }
 
+/// The states between those of the reference, once. Returns 0 if stopped.
+static bool refine(hn_wp *wp, const hn_wp_hooks *hooks) {
+    const hn_walk_limits limits = {REFINE_SHARE * wp->opts.time_limit, hooks->stop, hooks->user};
+    return wp->refined || hn_refined_create(wp->sys, wp->ref, wp->errors, &limits, wp->arena,
+                                            &wp->refined) == HN_OK;
+}
+
 /// Runs every size of every method, coarse ones first. Returns 0 if stopped.
 static bool run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
+    if (!refine(wp, hooks)) {
+        return false;
+    }
     for (int k = 0; k < wp->n_levels; k++) {
         for (int m = 0; m < wp->n_methods; m++) {
             hn_wp_point *p = &wp->methods[m].point[k];

@@ -11,7 +11,7 @@
 
 #include "study/run/ending.h"
 #include "study/truth/errors.h"
-#include "study/truth/reference.h"
+#include "study/truth/refined.h"
 
 #include <stdbool.h>
 
@@ -35,7 +35,8 @@ typedef struct hn_wp_point {
     char reason[HN_DIAG_MESSAGE];
     hn_ending ending;             ///< of a failed point, as data
     double t_reached;             ///< [s]
-    double worst[HN_ERROR_COUNT]; ///< over the reference's times
+    double worst[HN_ERROR_COUNT]; ///< over the reference's times and those between (refined.h)
+    int times;                    ///< how many these are
     double end[HN_ERROR_COUNT];
     /// how far the end's coordinates are from those of the next coarser point; NaN: there is none
     double own;
@@ -74,6 +75,7 @@ typedef struct hn_wp {
     const hn_system *sys;
     const double *q, *v; ///< where runs start, system coordinates
     const hn_ref *ref;
+    hn_refined *refined; ///< made when the first point is run; NULL before
     hn_errors *errors;
     hn_wp_opts opts;
     int n_methods, n_levels;
