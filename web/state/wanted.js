@@ -44,9 +44,9 @@ export function wantedError(text, error, length) {
 
 /**
  * @typedef {import("./study-documents.js").Dot} Dot
- * @typedef {{m: number, cost: number, size: number, dot: Dot, atMost: boolean, coarser?: Dot}}
+ * @typedef {{m: number, cost: number, size: number, dot: Dot, atMost: boolean, measured: boolean, coarser?: Dot}}
  *   Reach
- *   atMost: the coarsest run is already accurate enough
+ *   atMost: the coarsest run is already accurate enough; measured: it is the size of a run
  */
 
 /** The step or tolerance is read off for this share of the error that is wanted. */
@@ -70,7 +70,7 @@ function reachOf(dots, wanted) {
     return null;
   }
   const last = fine[away < 0 ? fine.length - 1 : away - 1];
-  const reach = { m: last.m, cost: last.cost, size: last.size, dot: last, atMost: away < 0 };
+  const reach = { m: last.m, cost: last.cost, size: last.size, dot: last, atMost: away < 0, measured: true };
   if (away < 0) {
     return reach;
   }
@@ -81,6 +81,7 @@ function reachOf(dots, wanted) {
   );
   return {
     ...reach,
+    measured: share === 0,
     coarser: coarse,
     cost: between(last.cost, coarse.cost, share),
     size: between(last.size, coarse.size, share),
@@ -91,8 +92,8 @@ function reachOf(dots, wanted) {
  * The step or tolerance that is told and run: of two digits, not larger than what was found.
  * @param {Reach} reach
  */
-export const sizeToRun = ({ size, atMost }) =>
-  atMost ? size : Number((size * 0.995).toPrecision(2));
+export const sizeToRun = ({ size, measured }) =>
+  measured ? size : Number((size * 0.995).toPrecision(2));
 
 /**
  * Who reaches an accuracy, the cheapest first.

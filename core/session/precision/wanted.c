@@ -5,6 +5,7 @@
 #include "session/model/model.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,13 +65,14 @@ bool hn_wanted_read(const char *text, double length, hn_wanted *out) {
 // ---- the answer ----
 
 // A size between two points is read off a straight line in the logarithms for this share of the
-// error that is wanted: the error between two points was up to 1.6 times that of the line. The finer
-// point itself is measured, so no smaller size is ever needed.
+// error that is wanted: between two points it was up to 1.6 times that of the line. The finer point
+// itself is measured, so no smaller size is ever needed.
 static const double MARGIN = 0.5;
 
 /// A size to run with, and what it costs.
 typedef struct choice {
     double size, ops;
+    bool measured; ///< a point of the study, else read off between two
 } choice;
 
 /// The size at a place, between its point and the coarser one.
@@ -78,33 +80,35 @@ static choice choose(const hn_wp *wp, const hn_place *place, hn_error_kind error
     const hn_wp_point *points = wp->methods[place->method].point;
     const hn_wp_point *fine = &points[place->level];
     if (place->from < 0) {
-        return (choice){fine->size, fine->cost.ops};
+        return (choice){fine->size, fine->cost.ops, true};
     }
     const hn_wp_point *coarse = &points[place->from];
     const double least = hn_wp_claimed(wp, fine, error);
     const double share =
         fmax(0, log(MARGIN * wanted / least) / log(hn_wp_claimed(wp, coarse, error) / least));
+    if (share == 0) {
+        return (choice){fine->size, fine->cost.ops, true};
+    }
     const double size = fine->size * pow(coarse->size / fine->size, share);
 
     // two digits, and not larger than what was found
     const double digit = pow(10, floor(log10(size)) - 1);
     return (choice){floor(size / digit) * digit,
-                    fine->cost.ops * pow(coarse->cost.ops / fine->cost.ops, share)};
+                    fine->cost.ops * pow(coarse->cost.ops / fine->cost.ops, share), false};
 }
 
 /// "baumgarte@rk4 with h = 0.014 s"; `spelling`: the same as one spelling.
-static void put_method(hn_strbuf *b, const hn_wp *wp, const hn_place *place, double size,
+static void put_method(hn_strbuf *b, const hn_wp_method *m, const choice *best,
                        char spelling[HN_SPEC_MAX]) {
-    const hn_wp_method *m = &wp->methods[place->method];
     hn_method_spec spec = m->spec;
     double *option = hn_method_find_option(&spec, m->adaptive ? "rtol" : "h", NULL);
     if (option) {
         char text[32];
-        snprintf(text, sizeof text, "%.2g", size);
-        *option = place->from < 0 ? size : strtod(text, NULL);
+        snprintf(text, sizeof text, "%.2g", best->size);
+        *option = best->measured ? best->size : strtod(text, NULL);
     }
     hn_method_format(&spec, spelling);
-    hn_strbuf_printf(b, "%s with %s = %.3g%s", m->spelling, m->adaptive ? "rtol" : "h", size,
+    hn_strbuf_printf(b, "%s with %s = %.3g%s", m->spelling, m->adaptive ? "rtol" : "h", best->size,
                      m->adaptive ? "" : " s");
 }
 
@@ -150,7 +154,7 @@ void hn_wanted_text(hn_strbuf *b, const hn_study *study, const hn_wanted *wanted
     }
     hn_strbuf_add(b, ": ");
     const choice best = choose(wp, &band.best, error, wanted->error);
-    put_method(b, wp, &band.best, best.size, spelling);
+    put_method(b, &wp->methods[band.best.method], &best, spelling);
     hn_strbuf_printf(b, " is the cheapest, %s ", band.best.from < 0 ? "at most" : "about");
     put_operations(b, best.ops);
     if (band.next.level >= 0) {
