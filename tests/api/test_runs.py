@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import socket
 import subprocess
 import sys
 import tempfile
@@ -106,6 +107,19 @@ class Runs(unittest.TestCase):
             rows = self.server.ask("GET", document["links"]["samples"] + f"?method={i}&fields=gap").json()["rows"]
             self.assertEqual([g for g, in rows], run["samples"]["gap"])
 
+    def test_the_pages_of_a_method_are_followed_by_pages_of_that_method(self):
+        """The second page was that of the first method."""
+        document = self.ask({"scene": "four-bar", "methods": ["index1@rk4:h=1e-2", "projection@rk4:h=1e-2"], "time": 0.5, "every": 0.01}).json()
+        address = document["links"]["samples"] + "?method=1&from=0.1&to=0.4"
+        whole, pages, following = self.server.ask("GET", address).json()["rows"], [], address + "&limit=7"
+        while following:
+            page = self.server.ask("GET", following)
+            pages += page.json()["rows"]
+            link = page.headers.get("link")
+            following = link and link[1:link.index(">")]
+        self.assertEqual(pages, whole)
+        self.assertEqual(len(whole), 31)
+
     def test_a_long_run_is_told_of_and_waited_for(self):
         answer = self.ask(LONG, "?wait=0", 202)
         address = answer.headers["location"]
@@ -177,6 +191,22 @@ class Events(unittest.TestCase):
             self.assertTrue(100 <= n <= 201, n)
         middle = live[len(live) // 2][1]
         self.assertEqual(self.read(address, middle, "?mode=live")[1:], [e for e in live[1:] if e[1] > middle])
+
+    def test_a_long_run_is_sent_in_small_pieces_of_reading(self):
+        """One look at a run of 51 MB kept the event loop from its other connections for 0.15 s."""
+        run = driver.run_to_end(self.server, {"scene": "four-bar", "method": "index1@rk4:h=1e-3", "time": 20, "every": 1e-3, "reactions": True}).json()
+        size = sum(len(json.dumps(column)) for column in run["samples"].values())
+        with socket.create_connection(("127.0.0.1", self.server.port), timeout=60 * driver.SLOW) as s:
+            s.sendall(f"GET {run['links']['events']}?mode=live HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode())
+            head, _, body = b"".join(iter(lambda: s.recv(65536), b"")).partition(b"\r\n\r\n")
+        self.assertIn(b"chunked", head)
+        chunks, events = 0, b""
+        while not body.startswith(b"0\r\n"):
+            length, _, body = body.partition(b"\r\n")
+            events, body, chunks = events + body[:int(length, 16)], body[int(length, 16) + 2:], chunks + 1
+        self.assertEqual(events.count(b"event: sample"), 199 + 2)
+        # a quarter of a megabyte is read for each, whose columns the server writes without the blanks of json.dumps
+        self.assertGreater(chunks, size / 2 / (1 << 18), size)
 
     def test_a_run_that_goes_on_tells_its_progress(self):
         made = self.server.ask("POST", "/api/v1/runs?wait=0", LONG).json()

@@ -24,6 +24,18 @@ const char *hn_json_skip(const char *at) {
     return at;
 }
 
+const char *hn_json_next_member(const char **at, const char **key, size_t *n) {
+    const char *member = *at + (**at == '{' || **at == ',');
+    if (*member != '"') {
+        return NULL;
+    }
+    const char *colon = skip_string(member), *value = colon + (*colon == ':');
+    *key = member + 1;
+    *n = (size_t)(colon - 1 - *key);
+    *at = hn_json_skip(value);
+    return value;
+}
+
 const char *hn_json_member(const char *object, const char *name) {
     const size_t n = strlen(name);
     for (const char *at = object + 1; *at == '"';) {

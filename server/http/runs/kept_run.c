@@ -22,7 +22,7 @@ void hn_kept_run_free(hn_kept_run *run) {
         return;
     }
     for (int i = 0; i < run->n; i++) {
-        free(run->documents[i]);
+        hn_run_document_reset(&run->documents[i]);
     }
     hn_run_question_reset(&run->question);
     free(run->request);
@@ -30,12 +30,12 @@ void hn_kept_run_free(hn_kept_run *run) {
 }
 
 bool hn_kept_run_add_document(hn_kept_run *run, hn_strbuf *text) {
-    const size_t n = text->n;
-    char *taken = hn_strbuf_take(text);
-    if (!taken) {
+    hn_run_document *document = &run->documents[run->n];
+    if (!hn_run_document_take(document, text)) {
+        hn_run_document_reset(document);
         return false;
     }
-    run->documents[run->n++] = taken;
-    run->bytes += n;
+    run->bytes += document->n;
+    run->n++;
     return true;
 }

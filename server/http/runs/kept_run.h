@@ -5,6 +5,7 @@
 
 #include "base/strbuf.h"
 #include "http/ground/shares.h"
+#include "http/runs/run_document.h"
 #include "http/runs/run_question.h"
 
 #include <stdatomic.h>
@@ -31,9 +32,9 @@ typedef struct hn_kept_run {
     atomic_int stop;
     hn_client client;
     hn_run_question question;
-    char *request;                              ///< the question as the body of a request
-    int n;                                      ///< documents: one for each method
-    char *documents[HN_COMPARISON_MAX_METHODS]; ///< hn_model_run_json()
+    char *request; ///< the question as the body of a request
+    int n;         ///< documents: one for each method
+    hn_run_document documents[HN_COMPARISON_MAX_METHODS];
     size_t bytes;
     bool is_cut;       ///< the computing time was used up; asked again it is computed again
     hn_status refused; ///< why there is none
@@ -45,6 +46,6 @@ typedef struct hn_kept_run {
 hn_kept_run *hn_kept_run_create(const char *id, hn_client client);
 /// NULL is legal.
 void hn_kept_run_free(hn_kept_run *run);
-/// Takes the text of a document. Returns false when memory is out.
+/// Takes the text of a document. Returns false when memory is out or it is no document of a run.
 HN_MUST_CHECK bool hn_kept_run_add_document(hn_kept_run *run, hn_strbuf *text);
 #endif

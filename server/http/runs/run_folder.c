@@ -37,7 +37,7 @@ void hn_run_folder_keep(const char *folder, const hn_kept_run *run) {
     hn_strbuf_printf(&body, "{\"request\":%s,\"documents\":", run->request);
     for (int i = 0; i < run->n; i++) {
         hn_strbuf_add(&body, i ? "," : "[");
-        hn_strbuf_add(&body, run->documents[i]);
+        hn_strbuf_add(&body, run->documents[i].text);
     }
     hn_strbuf_add(&body, "]}\n");
     hn_sha256_base64(hn_strbuf_text(&body), body.n, hash);

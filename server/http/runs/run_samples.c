@@ -9,73 +9,60 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_COLUMNS = 16, NAME = 40 };
+enum { MAX_COLUMNS = HN_RUN_COLUMNS };
 
-/// A column of the document, and how far it has been read.
-typedef struct column {
-    char name[NAME];
-    const char *at;
-} column;
-
+/// Columns of a document, and how far each has been read.
 typedef struct reader {
-    const char *document;
+    const hn_run_document *document;
     int n;
-    column columns[MAX_COLUMNS];
+    hn_run_column columns[MAX_COLUMNS];
     const char *time; ///< likewise, of the column t
+    size_t walked;    ///< bytes of columns that were read so far
 } reader;
 
 // ---- columns ----
 
-static void add_column(reader *r, const char *name, size_t n, const char *at) {
-    if (r->n < MAX_COLUMNS && n < NAME) {
-        column *c = &r->columns[r->n++];
-        memcpy(c->name, name, n);
-        c->name[n] = 0;
-        c->at = at;
-    }
-}
-
-/// Every column of the document, in its order.
-static void add_all(reader *r, const char *samples) {
-    for (const char *at = samples + 1; *at == '"';) {
-        const size_t n = strcspn(at + 1, "\"");
-        const char *value = at + n + 3;
-        add_column(r, at + 1, n, value);
-        at = hn_json_skip(value);
-        at += *at == ',';
-    }
-}
-
-static hn_status refuse_column(const char *name, const char *samples, hn_diags *diags) {
-    reader all = {0};
+static hn_status refuse_column(const char *name, const hn_run_document *d, hn_diags *diags) {
     const char *names[MAX_COLUMNS];
     char hint[HN_DIAG_HINT];
-    add_all(&all, samples);
-    for (int i = 0; i < all.n; i++) {
-        names[i] = all.columns[i].name;
+    for (int i = 0; i < d->n_columns; i++) {
+        names[i] = d->columns[i].name;
     }
-    hn_suggest_or_list(hint, name, names, all.n, "columns: ");
+    hn_suggest_or_list(hint, name, names, d->n_columns, "columns: ");
     return hn_diags_add(diags, HN_ERR_INPUT, "/fields", hint, "the run has no column '%s'", name);
 }
 
-static hn_status choose_columns(reader *r, const char *fields, const char *samples,
-                                hn_diags *diags) {
+/// The columns that `fields` names, NULL: all.
+static hn_status choose_columns(reader *r, const char *fields, hn_diags *diags) {
+    const hn_run_document *d = r->document;
     if (!fields) {
-        add_all(r, samples);
+        memcpy(r->columns, d->columns, sizeof r->columns);
+        r->n = d->n_columns;
         return HN_OK;
     }
     for (const char *at = fields; *at;) {
         const size_t n = strcspn(at, ",");
-        char name[NAME];
-        snprintf(name, sizeof name, "%.*s", (int)(n < NAME ? n : NAME - 1), at);
-        const char *value = hn_json_member(samples, name);
-        if (!value || *value != '[') {
-            return refuse_column(name, samples, diags);
+        char name[HN_RUN_COLUMN_NAME];
+        snprintf(name, sizeof name, "%.*s", (int)(n < sizeof name ? n : sizeof name - 1), at);
+        const hn_run_column *column = hn_run_document_find_column(d, name);
+        if (!column) {
+            return refuse_column(name, d, diags);
         }
-        add_column(r, name, strlen(name), value);
+        if (r->n == MAX_COLUMNS) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/fields", NULL,
+                                "'fields' names more than %d columns", MAX_COLUMNS);
+        }
+        r->columns[r->n++] = *column;
         at += n + (at[n] == ',');
     }
     return HN_OK;
+}
+
+/// Opens the columns for reading. Fails: HN_ERR_INPUT, HN_ERR_INTERNAL (there are no samples).
+static hn_status open_columns(reader *r, const hn_run_document *d, const char *fields,
+                              hn_diags *diags) {
+    *r = (reader){.document = d, .time = d->time};
+    return d->time ? choose_columns(r, fields, diags) : HN_ERR_INTERNAL;
 }
 
 // ---- rows ----
@@ -97,9 +84,9 @@ static const char *head_list(const char *name) {
 
 /// "th1,a2,th3" for q, "reaction_force[0],..." where numbers have no names of their own.
 static void put_heads(hn_strbuf *b, const reader *r, int i) {
-    const column *c = &r->columns[i];
+    const hn_run_column *c = &r->columns[i];
     const char *list = head_list(c->name), *first = c->at;
-    const char *names = list ? hn_json_member(r->document, list) : NULL;
+    const char *names = list ? hn_json_member(r->document->text, list) : NULL;
     const char *row = hn_json_next(&first);
     hn_strbuf_add(b, i ? "," : "");
     if (!row || *row != '[') {
@@ -161,11 +148,18 @@ static void put_row(hn_strbuf *b, const reader *r, const char *const *values,
     hn_strbuf_add(b, csv ? "\n" : "]");
 }
 
+/// Steps to the next item of an array, and counts its bytes.
+static const char *next_item(reader *r, const char **at) {
+    const char *before = *at, *item = hn_json_next(at);
+    r->walked += (size_t)(*at - before);
+    return item;
+}
+
 /// Steps all columns to their next row; 0 at the end.
 static bool next_row(reader *r, const char **values, double *t) {
-    const char *time = hn_json_next(&r->time);
+    const char *time = next_item(r, &r->time);
     for (int i = 0; i < r->n; i++) {
-        values[i] = hn_json_next(&r->columns[i].at);
+        values[i] = next_item(r, &r->columns[i].at);
         if (!values[i]) {
             return false;
         }
@@ -192,15 +186,11 @@ static long long put_rows(hn_strbuf *b, reader *r, const hn_samples_request *q) 
     return -1;
 }
 
-hn_status hn_run_samples_write(hn_strbuf *b, const char *document,
+hn_status hn_run_samples_write(hn_strbuf *b, const hn_run_document *document,
                                const hn_samples_request *request, long long *next,
                                hn_diags *diags) {
-    const char *samples = hn_json_member(document, "samples");
-    reader r = {.document = document, .time = samples ? hn_json_member(samples, "t") : NULL};
-    if (!r.time) {
-        return HN_ERR_INTERNAL;
-    }
-    HN_TRY(choose_columns(&r, request->fields, samples, diags));
+    reader r;
+    HN_TRY(open_columns(&r, document, request->fields, diags));
 
     // heads, rows, and what closes them
     if (request->form == HN_SAMPLES_CSV) {
@@ -234,16 +224,11 @@ struct hn_sample_rows {
     const char *values[MAX_COLUMNS];
 };
 
-hn_status hn_sample_rows_open(const char *document, const char *fields, hn_sample_rows **out,
-                              hn_diags *diags) {
-    const char *samples = hn_json_member(document, "samples");
-    const char *time = samples ? hn_json_member(samples, "t") : NULL;
-    hn_sample_rows *rows = time ? calloc(1, sizeof *rows) : NULL;
-    if (!rows) {
-        return time ? HN_ERR_MEMORY : HN_ERR_INTERNAL;
-    }
-    rows->reader = (reader){.document = document, .time = time};
-    const hn_status status = choose_columns(&rows->reader, fields, samples, diags);
+hn_status hn_sample_rows_open(const hn_run_document *document, const char *fields,
+                              hn_sample_rows **out, hn_diags *diags) {
+    hn_sample_rows *rows = calloc(1, sizeof *rows);
+    hn_status status = rows ? HN_OK : HN_ERR_MEMORY;
+    HN_THEN(status, open_columns(&rows->reader, document, fields, diags));
     if (status != HN_OK) {
         hn_sample_rows_free(rows);
         return status;
@@ -264,12 +249,6 @@ void hn_sample_rows_put(const hn_sample_rows *rows, hn_strbuf *b) {
     put_members(b, &rows->reader, rows->values);
 }
 
-long long hn_sample_rows_count(const char *document) {
-    const char *samples = hn_json_member(document, "samples");
-    const char *at = samples ? hn_json_member(samples, "t") : NULL;
-    long long n = 0;
-    while (at && hn_json_next(&at)) {
-        n++;
-    }
-    return n;
+size_t hn_sample_rows_walked(const hn_sample_rows *rows) {
+    return rows->reader.walked;
 }

@@ -15,6 +15,9 @@
 #include <string.h>
 
 enum { CHUNK = 1 << 16, SCHEMA = 1, LIVE_SAMPLES = 201 };
+/// Bytes of a document that are read before something is sent, at least a comment, and the event
+/// loop serves its other connections: some half a millisecond.
+enum { MOST_WALKED = 1 << 18 };
 static const double PROGRESS = 0.5; // between two events `progress` [s]
 
 typedef struct run_stream {
@@ -39,6 +42,7 @@ typedef struct run_stream {
     double last_progress;
     hn_strbuf text; ///< from `at` on
     size_t at;
+    size_t walked; ///< bytes of documents that were read for this text
 } run_stream;
 
 // ---- events ----
@@ -61,13 +65,15 @@ static bool count_event(run_stream *s, const char *name) {
 }
 
 static void step_row(run_stream *s) {
+    const size_t before = hn_sample_rows_walked(s->rows);
     s->has_row = hn_sample_rows_step(s->rows, &s->t);
+    s->walked += hn_sample_rows_walked(s->rows) - before;
     s->row++;
 }
 
 /// Begins the next document. A column that it does not have ends the stream.
 static void begin_method(run_stream *s) {
-    const char *document = s->reader.run->documents[s->method];
+    const hn_run_document *document = &s->reader.run->documents[s->method];
     hn_diags diags = {0};
     if (hn_sample_rows_open(document, s->fields, &s->rows, &diags) != HN_OK) {
         hn_strbuf_add(&s->text, "event: problem\ndata: {\"detail\":");
@@ -77,8 +83,8 @@ static void begin_method(run_stream *s) {
         return;
     }
     s->row = -1;
-    s->stride = s->live ? (hn_sample_rows_count(document) + LIVE_SAMPLES - 1) / LIVE_SAMPLES : 1;
-    s->incidents = hn_json_member(document, "incidents");
+    s->stride = s->live ? (document->n_rows + LIVE_SAMPLES - 1) / LIVE_SAMPLES : 1;
+    s->incidents = document->incidents;
     s->incident = s->incidents ? hn_json_next(&s->incidents) : NULL;
     step_row(s);
 }
@@ -160,8 +166,12 @@ static void fill(run_stream *s) {
                          stopped ? "stopped" : hn_run_phase_name(phase));
         s->ended = true;
     }
-    while (phase == HN_RUN_DONE && !s->ended && s->text.n < CHUNK) {
+    for (s->walked = 0;
+         phase == HN_RUN_DONE && !s->ended && s->text.n < CHUNK && s->walked < MOST_WALKED;) {
         put_next(s);
+    }
+    if (s->text.n == 0 && s->walked > 0) {
+        hn_strbuf_add(&s->text, ":\n\n");
     }
 }
 

@@ -27,15 +27,14 @@ const char *hn_run_phase_name(hn_run_phase phase) {
 }
 
 /// The document of one method from its byte `from` on, with or without its samples.
-static void put_document(hn_strbuf *b, const char *document, int from, int with_samples) {
-    const char *samples = with_samples ? NULL : hn_json_member(document, "samples");
-    if (!samples) {
-        hn_strbuf_add(b, document + from);
+static void put_document(hn_strbuf *b, const hn_run_document *d, int from, int with_samples) {
+    if (with_samples || !d->samples) {
+        hn_strbuf_add_n(b, d->text + from, d->n - (size_t)from);
         return;
     }
     // the comma behind the samples goes with them
-    const char *key = samples - strlen("\"samples\":"), *end = hn_json_skip(samples);
-    hn_strbuf_add_n(b, document + from, (size_t)(key - document - from));
+    const char *key = d->samples - strlen("\"samples\":"), *end = d->samples_end;
+    hn_strbuf_add_n(b, d->text + from, (size_t)(key - d->text - from));
     hn_strbuf_add(b, end + (*end == ','));
 }
 
@@ -62,7 +61,7 @@ void hn_run_put_json(hn_strbuf *b, const hn_kept_run *run, hn_run_phase phase, b
 
     if (phase == HN_RUN_DONE && run->n == 1) {
         hn_strbuf_add(b, ",");
-        put_document(b, run->documents[0], 1, with_samples); // its closing brace ends the object
+        put_document(b, &run->documents[0], 1, with_samples); // its closing brace ends the object
         return;
     }
     if (phase == HN_RUN_DONE) {
@@ -70,7 +69,7 @@ void hn_run_put_json(hn_strbuf *b, const hn_kept_run *run, hn_run_phase phase, b
         hn_json_array(b);
         for (int i = 0; i < run->n; i++) {
             hn_strbuf_add(b, i ? "," : "");
-            put_document(b, run->documents[i], 0, with_samples);
+            put_document(b, &run->documents[i], 0, with_samples);
         }
         hn_json_end_array(b);
     }
@@ -82,7 +81,7 @@ void hn_run_put_json(hn_strbuf *b, const hn_kept_run *run, hn_run_phase phase, b
 /// 1 when the client has this version: the reply is made.
 static bool is_unchanged(hn_request *r, const char *etag) {
     const char *known = hn_request_header(r, "If-None-Match");
-    if (!known || !strstr(known, etag)) {
+    if (!known || (strcmp(known, "*") != 0 && !strstr(known, etag))) {
         return false;
     }
     hn_reply_empty(r, MHD_HTTP_NOT_MODIFIED);
@@ -214,12 +213,13 @@ void hn_handle_run_delete(hn_request *r) {
 }
 
 /// The document that `method` names by its index; 0 with a problem as reply.
-static bool choose_document(hn_request *r, const hn_kept_run *run, const char **document) {
+static bool choose_document(hn_request *r, const hn_kept_run *run,
+                            const hn_run_document **document) {
     double method = 0;
     if (!hn_request_query_number(r, "method", 0, run->n - 1, 1, &method)) {
         return false;
     }
-    *document = run->documents[(int)method];
+    *document = &run->documents[(int)method];
     return true;
 }
 
@@ -250,6 +250,10 @@ static void add_next(hn_request *r, const hn_samples_request *q, long long next)
     char address[HN_HEADER_TEXT];
     int n = snprintf(address, sizeof address, "%s?cursor=%lld&stride=%lld&limit=%lld", r->path,
                      next, q->stride, q->limit);
+    const char *method = hn_request_query(r, "method");
+    if (method && n < (int)sizeof address) {
+        n += snprintf(address + n, sizeof address - (size_t)n, "&method=%s", method);
+    }
     if (q->fields && n < (int)sizeof address) {
         n += snprintf(address + n, sizeof address - (size_t)n, "&fields=%s", q->fields);
     }
@@ -265,7 +269,7 @@ static void reply_samples(hn_request *r, const hn_kept_run *run) {
     static const char *const types[] = {"application/json", "application/x-ndjson",
                                         "text/csv; charset=utf-8"};
     hn_samples_request q;
-    const char *document;
+    const hn_run_document *document;
     long long next = -1;
     hn_diags diags = {0};
     hn_strbuf b;
