@@ -168,6 +168,7 @@ test("S7 the map of α and β holds the present point and the limit of h β; a c
   await soon(async () => {
     assert.match(await page.textContent(".legend"), /predicted boundary: h β = 2\.7\d on α = β/);
     assert.match(await page.textContent(".legend"), /present values: drag the ring/);
+    assert.doesNotMatch(await page.textContent(".maps"), /\b1 (runs|cells|columns)\b/);
   });
   const { run } = await read(page, ({ run }) => ({ run }));
   await page.locator('.maps [data-spot="4 4"]').first().click();

@@ -10,6 +10,7 @@ import {
   deadPointAt,
   deadPointLines,
   deadPointsOf,
+  noDeadPointWords,
   singularWords,
 } from "../../web/state/dead-point.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
@@ -82,6 +83,18 @@ test("thinning keeps the largest value and the order of time", () => {
   assert.ok(tt.length <= 200);
   assert.ok(tt.every((v, i) => i === 0 || v > tt[i - 1]));
   assert.equal(Math.max(...yy), 100);
+});
+
+test("a zoomed plot has all frames of its part, and one more on either side", () => {
+  const history = createHistory(1, 1);
+  for (let k = 0; k <= 60; k++) {
+    history.push(frame(k, 1));
+  }
+  const inSight = (zoom) => history.inSight(zoom);
+  assert.deepEqual(inSight(null), [0, 61]);
+  assert.deepEqual(inSight([10 / 60, 20 / 60]), [9, 22]);
+  assert.deepEqual(inSight([0, 59.8 / 60]), [0, 61]);
+  assert.deepEqual(inSight([2, 3]), [59, 61], "nothing has come there yet");
 });
 
 test("growth with time and with its square is growth, an oscillation is not", () => {
@@ -445,6 +458,13 @@ test("a dead point is a coordinate that turns back while another one moves on", 
     swing.push(frame(k, 1, { q: [0, 0], v: [Math.cos(k / 10), 2 * Math.cos(k / 10)] }));
   }
   assert.deepEqual(deadPointsOf({ ...data, history: swing }, 0, 60), []);
+
+  // where none is listed the record says why
+  const why = (change) => noDeadPointWords({ ...data, ...change }, 15);
+  assert.match(why({}), /^No dead point until 0\.25 s: no coordinate turned back/);
+  assert.match(why({ history: swing }), /^Dead points are not listed: until 0\.25 s every method /);
+  assert.match(why({ scene: { dof: 2, m: 2, coordinates } }), /; this one has 2\.$/);
+  assert.equal(why({ scene: { dof: 1, m: 0, coordinates } }), "", "no loop, no dead point");
 });
 
 test("dead points are those of the methods that are right, with their names where they differ", () => {

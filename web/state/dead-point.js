@@ -118,6 +118,25 @@ export function deadPointLines(data, shown) {
   });
 }
 
+/**
+ * Why the record lists no dead point until the frame shown; "" where a mechanism has no loop, and so
+ * none.
+ * @param {import("./store.js").Data} data @param {number} shown
+ */
+export function noDeadPointWords(data, shown) {
+  const { scene, history, duration } = data;
+  if (!(scene?.m > 0) || shown < 1) {
+    return "";
+  }
+  if (scene.dof !== 1) {
+    return `Dead points are listed for mechanisms with one degree of freedom; this one has ${scene.dof}.`;
+  }
+  const until = seconds(history.t[shown], duration);
+  return soundMethods(data, shown).length > 0
+    ? `No dead point until ${until}: no coordinate turned back while the mechanism moved on.`
+    : `Dead points are not listed: until ${until} every method has left the true motion, and a wrong motion turns back at other places. A smaller step lists them.`;
+}
+
 /** How a method fares at a dead point of a coordinate. */
 function fateWords({ formulation, label }) {
   if (formulation === "partitioning") {

@@ -210,6 +210,14 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
       }
       return low > 0 && time - t[low - 1] < t[low] - time ? low - 1 : low;
     },
+    /**
+     * The frames that an axis of time holds, and one more on either side: [from, to).
+     * @param {[number, number] | null} zoom [s] null: all of them
+     */
+    inSight(zoom) {
+      const [from, to] = zoom ? zoom.map((time) => this.indexAt(time)) : [1, count];
+      return [Math.max(0, from - 1), Math.min(count, to + 2)];
+    },
     /** The place of a time among the kept frames, with its fraction. @param {number} time */
     placeAt(time) {
       const near = this.indexAt(time);

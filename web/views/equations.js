@@ -132,7 +132,10 @@ export function createEquations(el, store, actions) {
     const values = valuesAt(answer, data.scene, state);
     for (const { text, node } of nodes) {
       const value = evaluate(text, values);
-      say(node, Number.isFinite(value) ? `= ${plain(Number(value.toPrecision(4)))}` : "");
+      say(
+        node,
+        Number.isFinite(value) ? `= ${plain(Number(value.toPrecision(4))).replace(/-/g, "−")}` : "",
+      );
     }
   }
 

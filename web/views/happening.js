@@ -4,12 +4,12 @@
 // methods that are right, and what to know about the scene.
 import { incidentOf } from "../state/catalogue.js";
 import { groupIncidents, triesOfIncident } from "../state/cards.js";
-import { deadPointLines } from "../state/dead-point.js";
+import { deadPointLines, noDeadPointWords } from "../state/dead-point.js";
 import { seconds } from "../state/format.js";
 import { otherSteps } from "../state/own-step.js";
 import { listen } from "../state/store.js";
 import { sentenceCase } from "../state/words.js";
-import { h } from "../widgets/dom.js";
+import { h, say } from "../widgets/dom.js";
 import { explained } from "../widgets/term.js";
 import { tryButtons } from "../widgets/tries.js";
 
@@ -25,9 +25,17 @@ export function createHappening(el, store, actions) {
   const data = store.data;
   const list = h("ol", { class: "incidents", "aria-labelledby": "happening-title" });
   const none = h("p", { class: "none" }, "nothing so far");
+  const noDead = h("p", { class: "about no-dead-point", hidden: true });
   const about = h("div", { class: "scene-notes" });
   el.replaceChildren(
-    h("div", { class: "record" }, h("h2", { id: "happening-title" }, "Incidents"), none, list),
+    h(
+      "div",
+      { class: "record" },
+      h("h2", { id: "happening-title" }, "Incidents"),
+      none,
+      list,
+      noDead,
+    ),
     about,
   );
   let timer = 0;
@@ -107,7 +115,14 @@ export function createHappening(el, store, actions) {
         dead = found;
         show();
       }
+      sayNoDeadPoint(history.count - 1);
     }
+  }
+
+  /** Why no dead point is listed, where none is. @param {number} shown */
+  function sayNoDeadPoint(shown) {
+    say(noDead, dead.length > 0 ? "" : noDeadPointWords(data, shown));
+    noDead.hidden = noDead.textContent === "";
   }
 
   function show() {
@@ -163,6 +178,8 @@ export function createHappening(el, store, actions) {
     methods: () => {
       list.replaceChildren();
       dead = [];
+      searched = "";
+      sayNoDeadPoint(0);
       show();
       showNotes();
     },

@@ -11,7 +11,7 @@ import { h, icon, set } from "../widgets/dom.js";
 import { createPhase } from "../widgets/phase.js";
 import { createPlot } from "../widgets/plot.js";
 
-const BUCKETS = 240;
+const LEAST_BUCKETS = 240; // of two points each; a wider plot has one for each pixel
 const PHASE = "phase"; // the choice that is no quantity over time
 /** A value of rounding has one digit: more of them mean nothing. */
 const cellWords = (value, unit) => quantity(value, unit, Math.abs(value) < ROUNDING ? 1 : 2);
@@ -297,7 +297,10 @@ export function createPlotPane(data, actions, { id, onHover, onZoom }) {
       ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor))
       : (v) => (Number.isNaN(v) ? null : v);
     const last = history.t[history.count - 1];
-    const thinned = thin(history.t, columns, history.count, BUCKETS, map);
+    const [from, to] = history.inSight(data.view.zoom);
+    const seen = (column) => column.subarray(from, to);
+    const buckets = Math.max(LEAST_BUCKETS, canvas.clientWidth);
+    const thinned = thin(seen(history.t), columns.map(seen), to - from, buckets, map);
     plot.draw(thinned, last, history.t[shownIndex(data)]);
   }
 

@@ -10,7 +10,8 @@ import { FRONT } from "../state/look.js";
 /** [px] room for hatching, labels and the scale bar */
 const MARGIN = { left: 36, right: 36, top: 32, bottom: 56 };
 const MOST_MARGIN = 0.28; // of the height or width
-const SCALE_BAR = 150; // [px] at most
+const SCALE_BAR = { most: 150, least: 40 }; // [px] wanted, and where there is hardly room
+const BESIDE_SCALE = 304; // [px] of the width are left of the bar, and the lens with its words
 
 const dot = (a, x, y, z) => a[0] * x + a[1] * y + a[2] * z;
 
@@ -32,26 +33,45 @@ export function seenBox(points, look) {
 }
 
 /**
+ * A round length for the scale bar, that ends before the words beside the lens begin.
+ * @param {number} scale [px/m]
+ * @param {number} width [px] of the drawing
+ */
+export function scaleBarOf(scale, width) {
+  const longest = Math.min(SCALE_BAR.most, Math.max(SCALE_BAR.least, width - BESIDE_SCALE));
+  const metres = niceBelow(longest / scale);
+  return { metres, pixels: metres * scale };
+}
+
+/**
  * @param {number[]} box [left, bottom, right, top] in metres, as seen
  * @param {number} width [px]
  * @param {number} height [px]
  * @param {Look} look
  * @param {number} foot [px] room below for what lies over the drawing
+ * @param {number} head [px] room above
  */
-export function createCamera(box, width, height, look = FRONT, foot = MARGIN.bottom) {
+export function createCamera(
+  box,
+  width,
+  height,
+  look = FRONT,
+  foot = MARGIN.bottom,
+  head = MARGIN.top,
+) {
   const w = Math.max(box[2] - box[0], 1e-9);
   const h = Math.max(box[3] - box[1], 1e-9);
   const below = Math.min(foot, MOST_MARGIN * height);
+  const above = Math.min(head, MOST_MARGIN * height);
   const room = {
     w: Math.max(40, width - MARGIN.left - MARGIN.right),
-    h: Math.max(40, height - MARGIN.top - below),
+    h: Math.max(40, height - above - below),
   };
   const scale = Math.min(room.w / w, room.h / h);
   const cx = MARGIN.left + room.w / 2;
-  const cy = MARGIN.top + room.h / 2;
+  const cy = above + room.h / 2;
   const mx = (box[0] + box[2]) / 2;
   const my = (box[1] + box[3]) / 2;
-  const length = niceBelow(SCALE_BAR / scale);
   const { right, up } = look;
   return {
     scale,
@@ -60,7 +80,7 @@ export function createCamera(box, width, height, look = FRONT, foot = MARGIN.bot
     toward: [0, 1, 2].map(
       (k) => right[(k + 1) % 3] * up[(k + 2) % 3] - right[(k + 2) % 3] * up[(k + 1) % 3],
     ),
-    scaleBar: { metres: length, pixels: length * scale },
+    scaleBar: scaleBarOf(scale, width),
     /**
      * @param {ArrayLike<number>} points flat x, y, z
      * @param {number} i

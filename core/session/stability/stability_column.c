@@ -429,10 +429,12 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
                          a.unseen);
     }
     if (a.earlier) {
-        hn_strbuf_printf(b, "; in %d runs ended earlier than predicted", a.earlier);
+        hn_strbuf_printf(b, "; %d run%s ended earlier than predicted", a.earlier,
+                         a.earlier == 1 ? "" : "s");
         put_first_earlier(b, map, m);
     }
     if (a.later) {
-        hn_strbuf_printf(b, "; in %d runs were stable beyond the prediction", a.later);
+        hn_strbuf_printf(b, "; %d run%s stable beyond the prediction", a.later,
+                         a.later == 1 ? " was" : "s were");
     }
 }

@@ -9,6 +9,7 @@ import { createNamePlaces } from "../../widgets/name-places.js";
 import { baseOf, createPen } from "../../widgets/pieces.js";
 
 const GLASS_ROOM = 104; // [px] for the magnified cut joint, below the mechanism
+const TOOLS_ROOM = 52; // [px] for the buttons over the drawing, and half a joint below them
 
 /**
  * @param {SVGSVGElement} svg
@@ -71,7 +72,7 @@ export function createStage(svg, layers, data) {
     const box = data.scene.extremes
       ? seenBox(data.scene.extremes, from)
       : boxAround(data.scene.envelope, data.scene.points);
-    return createCamera(box, size.width, size.height, from, stage.foot);
+    return createCamera(box, size.width, size.height, from, stage.foot, TOOLS_ROOM);
   }
 
   /** Camera and pen of now, and what they draw once. */

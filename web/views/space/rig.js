@@ -2,14 +2,13 @@
 // @ts-check
 // Where the viewer stands in space: direction from the store, and besides it zoom, place, and
 // perspective. It is the camera of the drawing's SVG too, so that names and arrows fit the solids.
-import { niceBelow } from "../../state/format.js";
 import { lookOf } from "../../state/look.js";
+import { scaleBarOf } from "../../widgets/camera.js";
 import { drawnPoints } from "../../widgets/pieces.js";
 
 const HALF_ANGLE = 0.3; // [rad] half the vertical angle of view
 const MARGIN = { side: 44, top: 36, bottom: 48 }; // [px]
 const STACKED = { query: "(max-width: 639.5px)", top: 96 }; // [px] two rows of buttons lie there
-const SCALE_BAR = 150; // [px] at most
 const MOST_POSES = 100; // of the reference solution
 const ZOOM = { least: 0.1, most: 30 }; // of what fits
 
@@ -184,12 +183,11 @@ export function createRig(data, size) {
       const toward = towardOf(look);
       const scale = size.height / 2 / halfHeight();
       const far = distance();
-      const metres = niceBelow(SCALE_BAR / scale);
       return {
         scale,
         look,
         toward,
-        scaleBar: { metres, pixels: metres * scale },
+        scaleBar: scaleBarOf(scale, size.width),
         /** @param {ArrayLike<number>} points @param {number} i @returns {[number, number]} */
         point(points, i) {
           const v = [0, 1, 2].map((k) => points[3 * i + k] - target[k]);

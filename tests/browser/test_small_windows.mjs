@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What small windows and long content must not do: hide buttons below an edge, cut off names, lay
+// words over a scale or a panel over the mechanism.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { createBench, drawn, playTo, soon } from "./support.mjs";
+
+const { open } = createBench();
+const NARROW = { width: 360, height: 740 };
+const TABLET = { width: 768, height: 1024 };
+const LAPTOP = { width: 1366, height: 768 };
+
+/** The box of the first element that a selector finds. */
+const boxOf = (page, selector) =>
+  page.evaluate((wanted) => {
+    const { left, top, right, bottom } = document.querySelector(wanted).getBoundingClientRect();
+    return { left, top, right, bottom };
+  }, selector);
+
+for (const viewport of [LAPTOP, NARROW]) {
+  test(`the buttons of a long dialog are in sight, ${viewport.width} wide`, async (t) => {
+    const page = await open(t, { viewport });
+    const { height } = viewport;
+    const isInSight = async (name) => {
+      const button = page.locator("dialog[open]").getByRole("button", { name, exact: true });
+      const box = await button.boundingBox();
+      assert.ok(box && box.y >= 0 && box.y + box.height <= height, `${name}: ${box?.y}`);
+      await button.click({ trial: true });
+    };
+    await page.getByRole("button", { name: "add a method" }).click();
+    await soon(() => isInSight("Add"));
+    await soon(() => isInSight("Cancel"));
+    await page.keyboard.press("Escape");
+    await page.focus("#play");
+    await page.keyboard.press("F1");
+    await soon(() => isInSight("Close"));
+  });
+}
+
+test("the caption of a scene is there in full beside its buttons", async (t) => {
+  for (const hash of ["", "#bennett", "#parallelogram"]) {
+    const page = await open(t, { viewport: LAPTOP, hash });
+    await soon(async () => {
+      const cut = await page.evaluate(() => {
+        const { scrollWidth, clientWidth } = document.querySelector(".caption");
+        return scrollWidth > clientWidth;
+      });
+      assert.equal(cut, false, hash);
+      const [caption, over] = [await boxOf(page, ".caption"), await boxOf(page, ".over")];
+      assert.ok(caption.bottom <= over.bottom + 1 && over.bottom - over.top <= 38, hash);
+    });
+  }
+});
+
+test("the name of the coordinate of a phase plot can be read", async (t) => {
+  for (const viewport of [LAPTOP, NARROW]) {
+    const page = await open(t, { viewport });
+    await playTo(page, 0.5);
+    await page.selectOption("#plot-lower", "phase");
+    const menu = page.getByLabel("Coordinate of the phase plot").last();
+    await soon(async () => {
+      // the text and the arrow of the menu: "th1" takes some 20 px
+      const { width } = await menu.boundingBox();
+      assert.ok(width >= 56, `${width} px`);
+    });
+  }
+});
+
+test("at 1024 px the names of the plotted quantities can be read", async (t) => {
+  const page = await open(t, { viewport: { width: 1024, height: 768 } });
+  for (const id of ["upper", "lower"]) {
+    const { words, room } = await page.evaluate((at) => {
+      const menu = document.querySelector(`#plot-${at}`);
+      const { fontSize, fontFamily } = getComputedStyle(menu);
+      const pen = document.createElement("canvas").getContext("2d");
+      pen.font = `${fontSize} ${fontFamily}`;
+      const words = pen.measureText(menu.selectedOptions[0].textContent).width;
+      return { words, room: menu.clientWidth - 8 - 16 }; // its padding, and its arrow
+    }, id);
+    assert.ok(words <= room, `${id}: ${words} px of words in ${room} px`);
+  }
+  await page.getByRole("button", { name: "table" }).first().click();
+  await page.locator(".twin .numbers").first().waitFor();
+});
+
+test("at 360 px the buttons of the page share one line", async (t) => {
+  const page = await open(t, { viewport: NARROW });
+  const tops = await page.evaluate(() =>
+    [...document.querySelectorAll(".top > .choices button")].map(
+      (button) => button.getBoundingClientRect().top,
+    ),
+  );
+  assert.equal(new Set(tops).size, 1, tops.join(" "));
+});
+
+test("the scale bar ends before the words beside the lens begin", async (t) => {
+  for (const hash of ["", "#stewart-6-6"]) {
+    const page = await open(t, { viewport: NARROW, hash });
+    await playTo(page, 0.5);
+    await drawn(page);
+    await soon(async () => {
+      const scale = await boxOf(page, ".picture .scale");
+      const words = await boxOf(page, ".tear-inset figcaption");
+      assert.ok(scale.right <= words.left + 1, `${scale.right} to ${words.left}`);
+    });
+  }
+});
+
+test("joints keep clear of the buttons that lie over the drawing", async (t) => {
+  for (const viewport of [NARROW, TABLET, LAPTOP]) {
+    const page = await open(t, { viewport });
+    await drawn(page);
+    await soon(async () => {
+      const pins = await boxOf(page, ".ghosts .ghost.selected .pins");
+      const tools = await boxOf(page, ".undo-tools .quiet");
+      assert.ok(pins.top >= tools.bottom, `${viewport.width}: ${pins.top} to ${tools.bottom}`);
+    });
+  }
+});
+
+test("a panel over the lower half leaves the mechanism and the transport in sight", async (t) => {
+  for (const viewport of [NARROW, TABLET]) {
+    const page = await open(t, { viewport });
+    for (const [button, panel] of [
+      ["lessons", ".lesson-panel"],
+      ["edit", ".editor"],
+    ]) {
+      await page.getByRole("button", { name: button, exact: true }).click();
+      await page.locator(panel).waitFor();
+      await soon(async () => {
+        const over = await boxOf(page, panel);
+        const ghost = await boxOf(page, ".ghosts .ghost.selected");
+        const transport = await boxOf(page, "#transport");
+        const said = `${viewport.width}, ${button}: ${JSON.stringify([ghost, over, transport])}`;
+        assert.ok(ghost.top > 0 && ghost.bottom <= over.top, said);
+        assert.ok(over.bottom <= transport.top + 1 && over.bottom >= transport.top - 1, said);
+      });
+      await page.locator(panel).getByRole("button", { name: "close" }).click();
+      await page.locator(panel).waitFor({ state: "hidden" });
+    }
+  }
+});
+
+test("where no dead point is listed the record says why", async (t) => {
+  const page = await open(t);
+  await playTo(page, 9.9);
+  await soon(async () =>
+    assert.match(
+      await page.textContent(".no-dead-point"),
+      /^Dead points are not listed: until 9\.9\d s every method has left the true motion/,
+    ),
+  );
+});
