@@ -42,11 +42,11 @@ static void take_point(hn_cost_plot *p, const hn_wp *wp, int m, int k) {
     }
 }
 
-void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp) {
+void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time) {
     _Static_assert((int)HN_SCATTER_SERIES >= (int)HN_WP_METHODS &&
                        (int)HN_SCATTER_POINTS >= (int)HN_WP_LEVELS,
                    "every point of a study has room");
-    *p = (hn_cost_plot){.by_time = hn_cost_plot_has_times(wp), .levels = wp->n_levels};
+    *p = (hn_cost_plot){.by_time = by_time, .levels = wp->n_levels};
     p->scatter.n = wp->n_methods;
     p->scatter.y_high = 1;
     p->scatter.x_unit = p->by_time ? "s" : "op";

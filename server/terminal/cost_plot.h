@@ -16,8 +16,8 @@ typedef struct hn_cost_plot {
 
 /// Whether CPU time was measured.
 bool hn_cost_plot_has_times(const hn_wp *wp);
-/// Copies what is done so far.
-void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp);
+/// Copies what is done so far, over CPU time or over operations.
+void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time);
 /// "error of the coordinates over CPU time, both logarithmic; ╳: ended early"
 const char *hn_cost_plot_title(const hn_cost_plot *p);
 /// Draws the points. Returns false, and draws nothing, while they span no range.

@@ -6,6 +6,7 @@
 #include "tui/panels.h"
 #include "tui/prompt.h"
 #include "tui/reactions_view.h"
+#include "tui/views.h"
 #include "tui/why_view.h"
 #include "tui/remedies.h"
 #include "tui/text_panel.h"
@@ -160,7 +161,8 @@ void hn_controls_key(hn_workbench *w, int key) {
     } else if (key == HN_KEY_ENTER && w->why) {
         hn_remedies_open(w);
     } else if (w->why && (key == HN_KEY_PAGE_UP || key == HN_KEY_PAGE_DOWN)) {
-        hn_why_scroll(w, key == HN_KEY_PAGE_DOWN ? 1 : -1);
+        hn_why_scroll(w, hn_views_places(w->columns, w->rows, w).plot,
+                      key == HN_KEY_PAGE_DOWN ? 1 : -1);
     } else if (w->reactions && (key == HN_KEY_PAGE_UP || key == HN_KEY_PAGE_DOWN)) {
         hn_reactions_scroll(w, key == HN_KEY_PAGE_DOWN ? 1 : -1);
     } else {

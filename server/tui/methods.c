@@ -80,6 +80,23 @@ static bool is_adaptive(const char *spelling) {
     return hn_method_parse(spelling, &spec, &diag) == HN_OK && hn_method_is_adaptive(&spec);
 }
 
+double hn_methods_step(const hn_workbench *w) {
+    double common = (double)NAN;
+    for (int i = 0; i < w->n_methods; i++) {
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        if (hn_method_parse(w->methods[i], &spec, &diag) != HN_OK || hn_method_is_adaptive(&spec)) {
+            continue;
+        }
+        const double h = hn_method_option(&spec, "h", (double)NAN);
+        if (isfinite(common) && h != common) {
+            return (double)NAN;
+        }
+        common = h;
+    }
+    return common;
+}
+
 void hn_methods_set_step(hn_workbench *w, const char *text) {
     kept before;
     double h;

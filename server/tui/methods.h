@@ -6,6 +6,8 @@
 
 #include "tui/workbench.h"
 
+/// The step that all methods of fixed step have [s]; NaN: they differ, or there are none.
+double hn_methods_step(const hn_workbench *w);
 /// Another step for every method of fixed step: "0.01", "0,01" or "20 ms".
 void hn_methods_set_step(hn_workbench *w, const char *text);
 /// Replaces method `at`, or adds one behind the last.

@@ -278,12 +278,22 @@ static void find_letter(hn_workbench *w, int key) {
     }
 }
 
+/// The list stays open, so that a second x does not ask for something else.
+static void remove_method(hn_workbench *w) {
+    const int cursor = w->cursor;
+    hn_methods_remove(w, cursor);
+    if (w->panel == HN_PANEL_MAIN) {
+        list_methods(w);
+        w->cursor = cursor < w->n_items ? cursor : w->n_items - 1;
+    }
+}
+
 static void list_key(hn_workbench *w, int key) {
     const int to = w->cursor + hn_list_step(key);
     if (key == HN_KEY_ENTER && w->n_items > 0) {
         choose(w);
     } else if (key == 'x' && w->list == HN_LIST_METHODS) {
-        hn_methods_remove(w, w->cursor);
+        remove_method(w);
     } else if (key == HN_KEY_LEFT || key == HN_KEY_RIGHT) {
         nudge(w, key == HN_KEY_RIGHT ? 1 : -1);
     } else if (hn_list_step(key) != 0) {
@@ -326,7 +336,11 @@ void hn_panel_open(hn_workbench *w, hn_tui_action action) {
 
     // a line to type, the studies
     if (action == HN_TUI_STEP) {
-        hn_workbench_ask(w, HN_PROMPT_STEP, "");
+        char text[HN_SHORTEST_TEXT] = "";
+        if (isfinite(hn_methods_step(w))) {
+            hn_shortest_write(hn_methods_step(w), text);
+        }
+        hn_workbench_ask(w, HN_PROMPT_STEP, text);
     } else if (action == HN_TUI_STUDY || action == HN_TUI_MAP) {
         hn_study_panel_open(w, action == HN_TUI_STUDY ? HN_TUI_COST : HN_TUI_STABILITY);
     }

@@ -9,6 +9,7 @@
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,8 +90,8 @@ static void write_number(FILE *file, const char *before, double value) {
 static void write_recording(hn_workbench *w) {
     FILE *file = fopen(w->input, "wx");
     if (!file) {
-        hn_workbench_say(w, "%.200s: cannot be written, or is there already; type another name",
-                         w->input);
+        hn_workbench_say(w, "%.200s: %s; type another name", w->input,
+                         errno == EEXIST ? "is there already" : strerror(errno));
         return;
     }
     fprintf(file, "t");

@@ -31,7 +31,7 @@ static bool has_word(const char *text, const char *word, size_t n) {
 
 /// Texts of a scene that are searched: its names first.
 static const char *const TEXTS[] = {"id", "title", "about", "look_for", "kind", "caption"};
-enum { N_TEXTS = sizeof TEXTS / sizeof *TEXTS, N_NAMES = 2 };
+enum { N_TEXTS = sizeof TEXTS / sizeof *TEXTS, N_NAMES = 2, RANKS = 4 };
 
 /// Whether every word of the search is in one of the first n texts of the scene.
 static bool fits(const cJSON *scene, const char *search, int n_texts) {
@@ -76,19 +76,27 @@ static void list_scene(hn_workbench *w, const cJSON *scene) {
     }
 }
 
-/// The scenes that fit, from the document that is read once: first those that have every word in
-/// their name or title.
+/// How well a scene fits the search, 0 best: its name is what was typed; its name begins so; every
+/// word is in its name or title; every word is somewhere. RANKS: it does not fit.
+static int rank(const cJSON *scene, const char *search) {
+    const char *id = text_of(scene, TEXTS[0]);
+    const bool begins = strncmp(id, search, strlen(search)) == 0;
+    return strcmp(id, search) == 0        ? 0
+           : begins                       ? 1
+           : fits(scene, search, N_NAMES) ? 2
+           : fits(scene, search, N_TEXTS) ? 3
+                                          : RANKS;
+}
+
+/// The scenes that fit, from the document that is read once, the best ones first.
 static void list_fitting(hn_workbench *w) {
     const cJSON *scene, *scenes = cJSON_GetObjectItem(w->scenes, "scenes");
     hn_list_begin(w, HN_LIST_SCENES, "");
-    cJSON_ArrayForEach(scene, scenes) {
-        if (fits(scene, w->search, N_NAMES)) {
-            list_scene(w, scene);
-        }
-    }
-    cJSON_ArrayForEach(scene, scenes) {
-        if (!fits(scene, w->search, N_NAMES) && fits(scene, w->search, N_TEXTS)) {
-            list_scene(w, scene);
+    for (int r = 0; r < RANKS; r++) {
+        cJSON_ArrayForEach(scene, scenes) {
+            if (rank(scene, w->search) == r) {
+                list_scene(w, scene);
+            }
         }
     }
     write_title(w, cJSON_GetArraySize(scenes));

@@ -44,7 +44,8 @@ static int must_stop(void *user) {
 static void take(hn_tui_study *s) {
     pthread_mutex_lock(&s->lock);
     if (s->kind == HN_TUI_COST) {
-        hn_cost_plot_take(&s->cost, hn_study_wp(hn_job_work(s->job)));
+        // over operations, as the sentences beside it: few samples rank no times
+        hn_cost_plot_take(&s->cost, hn_study_wp(hn_job_work(s->job)), false);
     } else {
         hn_map_plot_take(&s->map, hn_job_work(s->job), 0);
     }
@@ -176,6 +177,10 @@ hn_status hn_tui_study_start(const hn_tui_study_request *r, hn_tui_study **out, 
 
 void hn_tui_study_stop(hn_tui_study *s) {
     atomic_store(&s->stop, true);
+}
+
+bool hn_tui_study_stopping(const hn_tui_study *s) {
+    return atomic_load(&s->stop);
 }
 
 void hn_tui_study_free(hn_tui_study *s) {

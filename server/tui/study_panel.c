@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/study_panel.h"
 
+#include "base/shortest.h"
 #include "render/look.h"
 #include "terminal/short_spelling.h"
 #include "tui/keys.h"
@@ -49,6 +50,13 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
     const char *methods[HN_COMPARISON_MAX_METHODS];
     hn_diags diags = {0};
     int n = 0;
+    if (kind == HN_TUI_STABILITY && hn_system_get_info(hn_model_system(w->model)).nc == 0) {
+        hn_workbench_say(w,
+                         "%s has no loop: there is nothing to stabilise, and no map of alpha "
+                         "and beta",
+                         hn_model_scene(w->model)->id);
+        return;
+    }
     for (; kind == HN_TUI_COST && n < w->n_methods; n++) {
         methods[n] = w->methods[n];
     }
@@ -150,6 +158,30 @@ static void move_cursor(hn_workbench *w, int dx, int dy) {
     w->at.row = row < 0 ? 0 : row >= map.y.n ? map.y.n - 1 : row;
 }
 
+/// All that there is to read: the answer about the wanted error, then the words of the study.
+static void add_words(hn_strbuf *b, const hn_workbench *w) {
+    char spelling[HN_SPEC_MAX];
+    if (hn_tui_study_wanted(w->study, w->wanted, b, spelling)) {
+        hn_strbuf_add(b, "\n\n");
+    }
+    hn_tui_study_words(w->study, b);
+}
+
+/// The last lines stay in sight.
+static void scroll(hn_workbench *w, int by) {
+    enum { STAY = 3 };
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    add_words(&b, w);
+    int lines = 0;
+    for (const char *at = hn_strbuf_text(&b); *at; at++) {
+        lines += *at == '\n';
+    }
+    hn_strbuf_reset(&b);
+    const int last = lines > STAY ? lines - STAY : 0, to = w->scroll + by;
+    w->scroll = to < 0 ? 0 : to > last ? last : to;
+}
+
 void hn_study_panel_key(hn_workbench *w, int key) {
     const bool map = hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY;
     const int down = (key == HN_KEY_DOWN) - (key == HN_KEY_UP);
@@ -167,11 +199,13 @@ void hn_study_panel_key(hn_workbench *w, int key) {
     } else if (!map && key == 'e') {
         hn_workbench_ask(w, HN_PROMPT_WANTED, w->wanted);
     } else if (key == 't') {
-        hn_workbench_ask(w, HN_PROMPT_STUDY_TIME, "");
+        char text[HN_SHORTEST_TEXT];
+        hn_shortest_write(hn_tui_study_time(w->study), text);
+        hn_workbench_ask(w, HN_PROMPT_STUDY_TIME, text);
     } else if (map && (down || across)) {
         move_cursor(w, across, -down);
     } else if (down) {
-        w->scroll = w->scroll + down < 0 ? 0 : w->scroll + down;
+        scroll(w, down);
     }
 }
 
@@ -180,11 +214,7 @@ void hn_study_panel_key(hn_workbench *w, int key) {
 static void draw_words(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    char spelling[HN_SPEC_MAX];
-    if (hn_tui_study_wanted(w->study, w->wanted, &b, spelling)) {
-        hn_strbuf_add(&b, "\n\n");
-    }
-    hn_tui_study_words(w->study, &b);
+    add_words(&b, w);
     const char *text = hn_strbuf_text(&b);
     for (int line = 0; line < w->scroll && strchr(text, '\n'); line++) {
         text = strchr(text, '\n') + 1;
@@ -280,7 +310,9 @@ void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     const char *moves = cost ? "" : "arrows move, ★ is now, ";
     char title[HN_TUI_LINE];
     const double time = hn_tui_study_time(w->study);
-    if (running) {
+    if (running && hn_tui_study_stopping(w->study)) {
+        snprintf(title, sizeof title, "%s in %g s: stopping, what is done stays", name, time);
+    } else if (running) {
         snprintf(title, sizeof title, "%s in %g s: %.0f %% done, %sEsc stops", name, time,
                  100 * hn_tui_study_share(w->study), moves);
     } else {

@@ -150,6 +150,7 @@ static bool show(hn_workbench *w, view *v, const hn_tui_opts *opts) {
     w->rows = rows;
     ask(hn_pictures_resize(&w->pictures, columns, rows, width, height));
     judge_line(w);
+    hn_views_update(w);
     make_picture(w, v);
     hn_views_draw(&v->cells, w);
     hn_screen_show(&v->cells, opts->ascii, &v->sequence);
@@ -235,6 +236,7 @@ void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts) {
     type_keys(w, opts);
     hn_workbench_tick(w, 0);
     if (hn_cells_resize(&cells, w->columns, w->rows)) {
+        hn_views_update(w);
         hn_views_draw(&cells, w);
         hn_cells_text(b, &cells, opts->colours);
         hn_cells_free(&cells);

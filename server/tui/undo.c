@@ -34,9 +34,9 @@ void hn_undo_go(hn_workbench *w, int by) {
     }
     if (good) {
         char change[HN_TUI_LINE];
+        hn_versions_change(v, v->now, to, change, sizeof change);
         v->now = to;
-        hn_versions_change(v, by < 0 ? to : to - 1, change, sizeof change);
-        hn_workbench_say(w, "%s: change %d of %d (%s)", by < 0 ? "undone" : "done again",
+        hn_workbench_say(w, "%s: change %d of %d; now %s", by < 0 ? "undone" : "done again",
                          by < 0 ? to + 1 : to, v->n - 1, change);
     }
 }

@@ -82,11 +82,11 @@ static int change_of_methods(const hn_version *a, const hn_version *b, char *out
         const bool differ =
             i >= a->n_methods || i >= b->n_methods || strcmp(a->methods[i], b->methods[i]) != 0;
         if (differ && a->n_methods > b->n_methods) {
-            snprintf(out, size, "%s removed", a->methods[i]);
+            snprintf(out, size, "without %s", a->methods[i]);
             return 1;
         }
         if (differ && a->n_methods < b->n_methods) {
-            snprintf(out, size, "%s added", b->methods[i]);
+            snprintf(out, size, "with %s", b->methods[i]);
             return 1;
         }
         if (differ && n++ == 0) {
@@ -96,8 +96,8 @@ static int change_of_methods(const hn_version *a, const hn_version *b, char *out
     return n;
 }
 
-void hn_versions_change(const hn_versions *v, int i, char *out, size_t size) {
-    const hn_version *a = &v->at[i], *b = &v->at[i + 1];
+void hn_versions_change(const hn_versions *v, int from, int to, char *out, size_t size) {
+    const hn_version *a = &v->at[from], *b = &v->at[to];
     char what[HN_TUI_LINE] = "";
     if (strcmp(a->scene, b->scene) != 0) {
         snprintf(out, size, "scene %.100s", b->scene);

@@ -27,6 +27,6 @@ void hn_versions_free(hn_versions *v); ///< NULL is legal
 /// Keeps what is open now as the newest version; those that were undone are forgotten. What equals
 /// the present version is not kept again.
 void hn_versions_keep(hn_workbench *w);
-/// Writes the change from version i to the next one: "l1 = 2.5".
-void hn_versions_change(const hn_versions *v, int i, char *out, size_t size);
+/// Writes what is otherwise in version `to` than in version `from`: "l1 = 2.5".
+void hn_versions_change(const hn_versions *v, int from, int to, char *out, size_t size);
 #endif

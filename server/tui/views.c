@@ -6,6 +6,7 @@
 #include "terminal/plot.h"
 #include "tui/keys.h"
 #include "tui/mechanism_view.h"
+#include "tui/methods.h"
 #include "tui/reactions_view.h"
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"
@@ -17,8 +18,8 @@
 
 enum { NUMBER_DIGITS = 2 }; // significant, as in the page
 enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
-enum { MESSAGE_LINES = 6, INCIDENT_LINES = 3 };                // at most
-enum { NOTICE_ROWS = 2 };                                      // kept free below the views
+enum { MESSAGE_LINES = 6, INCIDENT_LINES = 5 }; // at most
+enum { NOTICE_ROWS = 2 };                       // kept free below the views, at least
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
 enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
@@ -39,9 +40,18 @@ static hn_area header_area(const hn_cells *c) {
     return (hn_area){1, 0, c->columns - 2, 1};
 }
 
+/// Rows below the views: a long incident takes more of them, as far as the views can be spared.
+static int notice_rows(int columns, int rows, const hn_workbench *w) {
+    const int needed = hn_text_rows(w->notice, columns - 2);
+    const int most = rows - 1 - (w->n_methods + 2) - 1 - LEAST_VIEW_ROWS;
+    const int wanted = needed < INCIDENT_LINES ? needed : INCIDENT_LINES;
+    const int given = wanted < most ? wanted : most;
+    return given > NOTICE_ROWS ? given : NOTICE_ROWS;
+}
+
 static hn_area table_area(int columns, int rows, const hn_workbench *w) {
     const int height = w->n_methods + 2;
-    return (hn_area){0, rows - 1 - NOTICE_ROWS - height, columns, height};
+    return (hn_area){0, rows - 1 - notice_rows(columns, rows, w) - height, columns, height};
 }
 
 hn_places hn_views_places(int columns, int rows, const hn_workbench *w) {
@@ -80,11 +90,19 @@ static void draw_header(hn_cells *c, const hn_workbench *w) {
     const hn_area area = header_area(c);
     const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     const hn_scene *scene = hn_model_scene(w->model);
+    const double h = hn_methods_step(w);
+    // time stands still behind a panel
+    const bool runs = w->playing && w->panel == HN_PANEL_MAIN;
     int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, "holonom  ");
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "%.30s  ", scene->id);
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "t %.3f s of %.4g s  ×%g  %s  ", t,
                          hn_recording_duration(w->recording), w->speed,
-                         w->playing ? "▶ running" : "■ paused");
+                         runs ? "▶ running" : "■ paused");
+    if (isfinite(h)) {
+        char step[HN_SI_TEXT];
+        hn_si_format(h, "s", 3, step);
+        x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "dt %s  ", step);
+    }
     const double slow =
         hn_recording_frame_seconds(w->recording) / hn_recording_frame_dt(w->recording);
     if (w->playing && slow > 2 && w->late >= LATE) {
@@ -103,6 +121,10 @@ static const char *keys_line(const hn_workbench *w, int columns) {
         "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q";
     static const char long_line[] = "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  "
                                     "w cost  m methods  s scene  p values  ? menu  q";
+    static const char short_stop[] =
+        "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu q";
+    static const char long_stop[] = "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  "
+                                    "w cost  m methods  s scene  p values  ? menu  q";
     static const char *const lists[] = {
         [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
         [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
@@ -119,17 +141,30 @@ static const char *keys_line(const hn_workbench *w, int columns) {
     case HN_PANEL_EXERCISE:
         return "↑↓ part  Enter type  c check  h hint  PageUp PageDown  Esc back";
     case HN_PANEL_STUDY:
+        if (hn_tui_study_running(w->study)) {
+            return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
+                       ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc stop"
+                       : "e error wanted  t time  ↑↓ scroll  Esc stop";
+        }
         return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
                    ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc back"
                    : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  Esc back";
     default:
-        if (w->why) {
+        if (w->why && hn_why_has_more(hn_views_places(w->columns, w->rows, w).plot, w)) {
             return hn_why_has_remedy(w)
                        ? "Enter try a remedy  ↑↓ another method  PageDown more  i close  ? menu  q"
                        : "↑↓ another method  PageDown more  i close  Space run  ? menu  q";
         }
+        if (w->why) {
+            return hn_why_has_remedy(w)
+                       ? "Enter try a remedy  ↑↓ another method  i close  ? menu  q"
+                       : "↑↓ another method  i close  Space run  ? menu  q";
+        }
         if (w->reactions) {
             return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";
+        }
+        if (w->playing) {
+            return hn_text_columns(long_stop) <= columns ? long_stop : short_stop;
         }
         return hn_text_columns(long_line) <= columns ? long_line : short_line;
     }
@@ -137,14 +172,13 @@ static const char *keys_line(const hn_workbench *w, int columns) {
 
 /// The last line: what is typed, or the keys.
 static void draw_footer(hn_cells *c, const hn_workbench *w) {
-    static const char *const asks[] = {[HN_PROMPT_STEP] = "dt of every method [s, or 20 ms]: ",
+    static const char *const asks[] = {[HN_PROMPT_STEP] = "dt of every method, as 0.02 or 20 ms: ",
                                        [HN_PROMPT_METHOD] = "method: ",
                                        [HN_PROMPT_PARAMETER] = "value: ",
                                        [HN_PROMPT_EXPORT] = "write to: ",
                                        [HN_PROMPT_ANSWER] = "answer: ",
                                        [HN_PROMPT_WANTED] = "error wanted: ",
-                                       [HN_PROMPT_STUDY_TIME] =
-                                           "study so much of the motion [s]: "};
+                                       [HN_PROMPT_STUDY_TIME] = "length of motion to study [s]: "};
     const hn_area area = {1, c->rows - 1, c->columns - 2, 1};
     if (w->prompt != HN_PROMPT_NONE) {
         const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);
@@ -202,16 +236,9 @@ static bool is_news(const hn_workbench *w, const hn_incident *incident, int meth
     return incident->t <= t && !w->hidden[method] && (!late || (ill && method == w->selected));
 }
 
-/// The latest incident that is news, of the selected method first; or what was said.
-static void draw_notice(hn_cells *c, const hn_workbench *w) {
+void hn_views_update(hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS];
-    const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
-    if (w->message[0]) {
-        // a long one takes the place of the keys, and of rows above
-        draw_lines(c, area, area.y + needs_two_lines(c, w), MESSAGE_LINES, HN_CELL_INK, w->message);
-        return;
-    }
 
     // the last one so far, of the selected method if it has any
     const int frame = hn_workbench_frame(w);
@@ -225,13 +252,22 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
             last = i;
         }
     }
-    if (last >= 0) {
-        char line[640];
-        snprintf(line, sizeof line, "! %s at %.4g s: %s",
+    w->notice[0] = '\0';
+    if (last >= 0 && w->panel == HN_PANEL_MAIN) {
+        snprintf(w->notice, sizeof w->notice, "! %s at %.4g s: %s",
                  hn_recording_track(w->recording, whose[last])->name, list[last].t,
                  list[last].message);
-        draw_lines(c, area, area.y, w->panel == HN_PANEL_MAIN ? INCIDENT_LINES : 1, HN_CELL_ALARM,
-                   line);
+    }
+}
+
+/// What was said; else the incident that is news.
+static void draw_notice(hn_cells *c, const hn_workbench *w) {
+    const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
+    if (w->message[0]) {
+        // a long one takes the place of the keys, and of rows above
+        draw_lines(c, area, area.y + needs_two_lines(c, w), MESSAGE_LINES, HN_CELL_INK, w->message);
+    } else if (w->notice[0]) {
+        draw_lines(c, area, area.y, notice_rows(c->columns, c->rows, w), HN_CELL_ALARM, w->notice);
     }
 }
 
@@ -449,7 +485,10 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const hn_area in = {frame.x, frame.y, pictured ? picture.x - 1 - frame.x : frame.columns,
                         frame.rows};
     const int width = name_width(w);
-    const int below = pictured ? 3 + in.rows / 6 : 3, rows = in.rows - below;
+    // rows that the items leave go to the words below them
+    const int spare = in.rows - w->n_items;
+    const int below = pictured ? 3 + in.rows / 6 : spare > 8 ? 8 : spare > 3 ? spare : 3;
+    const int rows = in.rows - below;
     const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
     for (int i = first; i < w->n_items && i - first < rows; i++) {
         const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;

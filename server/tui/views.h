@@ -17,6 +17,8 @@
 /// pair nothing but the size that is needed.
 enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24, HN_TUI_LEAST_COLUMNS = 20, HN_TUI_LEAST_ROWS = 8 };
 
+/// Chooses the incident that is told, which takes its rows from the views; before each drawing.
+void hn_views_update(hn_workbench *w);
 /// Draws the whole screen.
 void hn_views_draw(hn_cells *c, const hn_workbench *w);
 /// The places where the last frame of this size has its table and plot, for the mouse.

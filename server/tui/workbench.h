@@ -110,9 +110,10 @@ typedef struct hn_workbench {
     hn_pictures pictures; ///< in place of characters, for the mechanism
     hn_placing place;     ///< of the mechanism in the picture; across 0: no picture yet
     char message[HN_TUI_MESSAGE];
-    hn_strbuf link;    ///< for the clipboard
-    bool copy;         ///< the screen takes the link and puts this back
-    int columns, rows; ///< of the screen
+    char notice[HN_TUI_MESSAGE]; ///< the incident that is news; "": none
+    hn_strbuf link;              ///< for the clipboard
+    bool copy;                   ///< the screen takes the link and puts this back
+    int columns, rows;           ///< of the screen
     hn_tui_drag drag;
 
     // the panel over it

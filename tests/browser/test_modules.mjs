@@ -210,6 +210,8 @@ test("a spelling taken apart and put together is the same", () => {
     "index1@rk4:h=1e-3",
     "baumgarte:alpha=20,beta=5@rk4:h=0.01",
     "reduced@dop853:rtol=1e-10",
+    "program:mine.py@rk4:h=0.01",
+    "program:a=b.py@own:h=0.01",
   ]) {
     assert.equal(formatSpelling(parseSpelling(spelling)), spelling);
   }

@@ -34,11 +34,25 @@ test("a server that allows programs offers them in the dialog of methods, and on
   const offered = await page.locator("#pick-program option").allTextContents();
   assert.deepEqual(offered, ["none", "mine.py, accelerations", "mine.py, its own steps"]);
   await page.selectOption("#pick-program", { label: "mine.py, accelerations" });
+  // with the step of the methods beside it
+  const steps = await page.evaluate(() =>
+    globalThis.holonom.data.methods.map(({ spelling }) => spelling.match(/h=([^,]+)/)?.[1]),
+  );
   await soon(async () =>
-    assert.equal(await page.inputValue("#pick-spelling"), "program:mine.py@rk4:h=0.01"),
+    assert.equal(await page.inputValue("#pick-spelling"), `program:mine.py@rk4:h=${steps[0]}`),
+  );
+
+  // another integrator and another step keep the program
+  await page.selectOption("#pick-integrator", "heun");
+  await page.fill("#pick-integrator-h", "0.005");
+  await page.locator("#pick-integrator-h").blur();
+  await soon(async () =>
+    assert.equal(await page.inputValue("#pick-spelling"), "program:mine.py@heun:h=0.005"),
   );
   await page.getByRole("button", { name: "Add", exact: true }).click();
-  await until(page, (data) => data.methods.some((m) => m.spelling.startsWith("program:mine.py")));
+  await until(page, (data) =>
+    data.methods.some((m) => m.spelling === "program:mine.py@heun:h=0.005"),
+  );
 });
 
 test("a server that allows none shows no list of programs", async (t) => {

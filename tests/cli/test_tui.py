@@ -23,7 +23,7 @@ KEY_NAMES = {"HN_KEY_RIGHT": "<Right>", "HN_KEY_LEFT": "<Left>", "HN_KEY_SHIFT_R
 # what is seen after each key, typed at t = 0.5 s while the second of the methods is selected
 SEEN = {"PLAY": "running", "NEXT": r"t 0\.520 s", "BACK": r"t 0\.480 s", "NEXT_TEN": r"t 0\.700 s", "BACK_TEN": r"t 0\.300 s",
         "START": r"t 0\.000 s", "SLOWER": "×0.5", "FASTER": "×2", "UP": "why: index-1", "DOWN": "why: projection", "CYCLE": "why: projection",
-        "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "REACTIONS": r"joint forces: Baumgarte .*\n.*multipliers lambda: determined", "STEP": r"dt of every method \[s, or 20 ms\]:",
+        "PICTURES": "does not say that it shows pictures", "HIDE": r"Baumgarte .*\(hidden\)", "PLOT": r"error against the reference", "WHY": "why: Baumgarte", "REACTIONS": r"joint forces: Baumgarte .*\n.*multipliers lambda: determined", "STEP": r"dt of every method, as 0.02 or 20 ms:",
         "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "Where do the links stand",
         "STUDY": "what accuracy costs in 2 s: Esc goes back", "MAP": "stability over alpha and beta in 3 s: arrows", "BUDGET": "their sum",
         "LINK": r"sent to the terminal's clipboard \(OSC 52\)[^#]+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",
@@ -390,7 +390,9 @@ class Keys(unittest.TestCase):
         def card(keys):
             return once("parallelogram", "--once", "--size", "100x30", "--keys", keys)[1]
         before, after = card("1i"), card("1i<PageDown>")
-        self.assertEqual(int(re.search(r"PageDown: (\d+) more", before).group(1)) - 1, int(re.search(r"PageDown: (\d+) more", after).group(1)))
+        self.assertGreater(int(re.search(r"PageDown: (\d+) more", before).group(1)), int(re.search(r"PageDown: (\d+) more", after).group(1)))
+        # what became of the motion stands first, then errors, then warnings
+        self.assertIn("worst so far: open by", before)
         self.assertNotIn("PageDown: ", card("1i" + 40 * "<PageDown>").split("methods")[0])
         self.assertEqual(card("1i<PageDown><PageUp>"), before)
 

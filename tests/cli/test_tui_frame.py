@@ -86,6 +86,7 @@ class Frame(unittest.TestCase):
         status, out, err = once("--json")
         self.assertEqual(status, 2)
         self.assertIn("tui draws text and has no --json", out + err)
+        self.assertNotIn("--json", subprocess.run([PROGRAM, "tui", "--help"], capture_output=True, text=True).stdout)
 
     def test_a_text_ends_with_a_full_page(self):
         def lesson(keys):
@@ -101,7 +102,7 @@ class Frame(unittest.TestCase):
             return once("four-bar", "--once", "--t", "0.1", "--set", "l1=0.55", "--keys", keys)[1].rstrip("\n").split("\n")[-1].strip()
         self.assertEqual(line("p<Enter>"), "value: 0.55")
         self.assertEqual(line("p<Enter><CtrlU>0.6"), "value: 0.6")
-        self.assertEqual(line("d20 ms<CtrlW>s"), "dt of every method [s, or 20 ms]: 20 s")
+        self.assertEqual(line("d20 ms<CtrlW>s"), "dt of every method, as 0.02 or 20 ms: 20 s")
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "r.csv")
             once("pendulum", "--once", "--t", "0.1", "--methods", "index1@rk4:h=0.017", "--keys", "x<Enter><CtrlU>" + path + "<Enter>")

@@ -76,16 +76,16 @@ class Messages(unittest.TestCase):
             self.assertEqual((status, err), (0, ""))
             return out
         undone = after("d0.01<Enter>z")
-        self.assertIn("undone: change 1 of 1 (method 1 is index1@rk4:h=0.01)", undone)
+        self.assertIn("undone: change 1 of 1; now method 1 is index1@rk4:h=0.02", undone)
         self.assertIn("t 0.500 s", undone)
         self.assertIn("done again: change 1 of 1", after("d0.01<Enter>zy"))
-        self.assertIn("undone: change 1 of 2 (method 1 is index1@rk4:h=0.01)", after("d0.01<Enter>d0.005<Enter>zz"))
+        self.assertIn("undone: change 1 of 2; now method 1 is index1@rk4:h=0.02", after("d0.01<Enter>d0.005<Enter>zz"))
         # frames of 50 ms have none at 0.54 s: the moment asked for comes back with the old step
         moved = "<Right>" * 2 + "d50 ms<Enter>"
         self.assertIn("t 0.550 s", after(moved))
         self.assertIn("t 0.540 s", after(moved + "z"))
         self.assertIn("t 0.560 s", after(moved + "z<Right>"))
-        self.assertIn("undone: change 1 of 1 (l = 0.5)", after("p<Enter>0.5<Enter><Esc>z"))
+        self.assertIn("undone: change 1 of 1; now l as the scene has it", after("p<Enter>0.5<Enter><Esc>z"))
 
     def test_a_long_message_keeps_its_values_and_its_end(self):
         for size in ("120x40", "80x24"):
@@ -114,7 +114,7 @@ class Messages(unittest.TestCase):
 
     def test_times_are_read_as_people_type_them(self):
         for typed, said in (("20 ms", "dt = 0.02 s"), ("0,02", "dt = 0.02 s"), ("0.02 s", "dt = 0.02 s"), ("2e-2s", "dt = 0.02 s"), ("5 m", "dt must be above 0"),
-                            ("-1", "dt must be above 0"), ("", "dt must be above 0"), ("0.02 seconds", "dt must be above 0"), ("nan", "dt must be above 0")):
+                            ("-1", "dt must be above 0"), ("", "dt = 0.001 s"), ("0.02 seconds", "dt must be above 0"), ("nan", "dt must be above 0")):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", f"d{typed}<Enter>", "--methods", "index1@rk4")
             self.assertTrue(message(out).startswith(said), (typed, message(out)))
 
@@ -140,6 +140,42 @@ class Messages(unittest.TestCase):
         for keys, wanted in (("m<Enter>7", "method: 7"), ("m<Enter><Right>7", "method: index1@rk4:h=0.027"), ("m<Enter>", "method: index1@rk4:h=0.02"),
                              ("m<Enter><Backspace>5", "method: index1@rk4:h=0.05"), ("m<Enter>75", "method: 75")):
             self.assertEqual(line(keys), wanted, keys)
+
+    def test_a_long_incident_is_whole_and_covers_nothing(self):
+        _, out, _ = once("parallelogram", "--once", "--t", "1", "--size", "80x24")
+        self.assertIn("largest 1.3\n", out)
+        self.assertRegex(out, r"(?m)^└─+┘\n !")
+
+    def test_a_method_that_went_wrong_is_not_said_to_be_well(self):
+        for keys in ("d5<Enter>2i", "d5<Enter>2i<PageDown>"):
+            _, out, _ = once("four-bar", "--once", "--size", "150x50", "--keys", keys)
+            self.assertNotIn("nothing is wrong so far", " ".join(out.split()))
+            self.assertIn("stopped at", out)
+
+    def test_what_became_of_the_motion_comes_before_warnings(self):
+        _, out, _ = once("parallelogram", "--once", "--size", "150x50", "--keys", "2i")
+        card = " ".join("".join(line[67:149] for line in out.split("\n")[2:40]).split())
+        self.assertIn("worst so far: open by", card)
+        self.assertLess(card.index("the energy changed by"), card.find("a singular configuration (J") % 10**6)
+
+    def test_the_scene_of_the_typed_name_is_first(self):
+        _, out, _ = once("pendulum", "--once", "--keys", "sfour-bar<Enter>")
+        self.assertRegex(out, r"^ holonom  four-bar  ")
+
+    def test_a_scene_without_a_loop_has_no_map_of_alpha_and_beta(self):
+        _, out, _ = once("double-pendulum", "--once", "--t", "0.1", "--keys", "b")
+        self.assertIn("double-pendulum has no loop: there is nothing to stabilise", out)
+
+    def test_the_list_of_methods_stays_open_when_one_goes(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", "100x30", "--keys", "mxx")
+        self.assertIn("─ methods: Enter changes", out)
+        self.assertNotIn("index1@rk4", out)
+        self.assertNotIn("baumgarte", out)
+
+    def test_the_step_is_on_the_screen_and_in_its_prompt(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "d")
+        self.assertIn("dt 10.0 ms", out)
+        self.assertTrue(out.rstrip().endswith("20 ms: 0.01"))
 
     def test_a_remedy_of_several_incidents_stands_once_on_the_card(self):
         status, out, err = once("parallelogram", "--once", "--size", "150x50", "--methods", "projection@rk4:h=0.01", "--keys", "i")

@@ -4,7 +4,8 @@
 // checks it; the page only takes it apart to change a setting.
 
 /**
- * @typedef {{name: string, settings: [string, string][]}} Part
+ * A setting without "=" has no value: the file of `program:FILE`.
+ * @typedef {{name: string, settings: [string, string | undefined][]}} Part
  * @typedef {{formulation: Part, integrator: Part}} Spelling
  */
 
@@ -16,13 +17,11 @@ function parsePart(text) {
   const settings = rest
     .split(",")
     .filter((item) => item !== "")
-    .map(
-      (item) =>
-        /** @type {[string, string]} */ ([
-          item.split("=")[0].trim(),
-          item.split("=").slice(1).join("=").trim(),
-        ]),
-    );
+    .map((item) => {
+      const equals = item.indexOf("=");
+      const value = equals < 0 ? undefined : item.slice(equals + 1).trim();
+      return /** @type {[string, string | undefined]} */ ([item.split("=")[0].trim(), value]);
+    });
   return { name: name.trim(), settings };
 }
 
@@ -35,9 +34,14 @@ export function parseSpelling(text) {
   };
 }
 
+/** @param {[string, string | undefined]} setting */
+function formatSetting([key, value]) {
+  return value === undefined ? key : `${key}=${value}`;
+}
+
 /** @param {Part} part */
 function formatPart(part) {
-  const list = part.settings.map(([key, value]) => `${key}=${value}`).join(",");
+  const list = part.settings.map(formatSetting).join(",");
   return list ? `${part.name}:${list}` : part.name;
 }
 
@@ -114,6 +118,6 @@ function wordsOf(spelling) {
   const { formulation, integrator } = parseSpelling(spelling);
   return [
     integrator.name,
-    ...formulation.settings.concat(integrator.settings).map(([key, value]) => `${key}=${value}`),
+    ...formulation.settings.concat(integrator.settings).map(formatSetting),
   ];
 }

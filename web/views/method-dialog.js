@@ -13,10 +13,12 @@ import {
   misfitsOf,
   partnersOf,
 } from "../state/pairs.js";
-import { cardOf, formatSpelling, parseSpelling } from "../state/spelling.js";
+import { cardOf, formatSpelling, parseSpelling, settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
 
+/** The formulation of a program of one's own: program:FILE. */
+const PROGRAM = "program";
 const MOST_NAMED = 12; // coordinates in a hint
 
 /**
@@ -93,8 +95,8 @@ export function createMethodDialog(el, store, actions) {
     programs.replaceChildren(
       h("option", { value: "" }, "none"),
       ...known.flatMap((/** @type {string} */ name) => [
-        h("option", { value: `${name}@rk4:h=0.01` }, `${name.slice(8)}, accelerations`),
-        h("option", { value: `${name}@own:h=0.01` }, `${name.slice(8)}, its own steps`),
+        h("option", { value: `${name}@rk4` }, `${name.slice(8)}, accelerations`),
+        h("option", { value: `${name}@own` }, `${name.slice(8)}, its own steps`),
       ]),
     );
   }
@@ -102,9 +104,18 @@ export function createMethodDialog(el, store, actions) {
   /** A program of the server's folder: it gives accelerations, or makes its own steps. */
   function onProgram() {
     if (programs.value) {
-      spelling.value = programs.value;
-      tell("");
+      spelling.value = `${programs.value}:h=${stepOfOthers()}`;
+      integrator.value = parseSpelling(spelling.value).integrator.name;
+      showParts();
     }
+  }
+
+  /** The step of the methods beside it: with another one it would not be compared, but its step. */
+  function stepOfOthers() {
+    const written = data.methods
+      .filter(({ integrator: name }) => !cardOf(data.catalogue, "integrator", name)?.adaptive)
+      .map((method) => settingOf(data.catalogue, method.spelling, "h")?.value);
+    return written.find(Boolean) ?? (data.scene?.step || 0.01);
   }
 
   /** Only what fits the formulation can be chosen; for the rest the reason is told. */
@@ -139,8 +150,14 @@ export function createMethodDialog(el, store, actions) {
     const shared = data.methods.map((method) => method.integrator);
     fillIntegrators();
     integrator.value = choosePartner(data.catalogue, formulation.value, before, shared);
+    if (runsProgram(parseSpelling(spelling.value))) {
+      spelling.value = ""; // a formulation of the list takes the place of the program
+    }
     compose();
   }
+
+  /** @param {import("../state/spelling.js").Spelling} parsed */
+  const runsProgram = (parsed) => parsed.formulation.name === PROGRAM;
 
   /** Keeps what was set under the same key when the choice changes. */
   function compose() {
@@ -165,7 +182,7 @@ export function createMethodDialog(el, store, actions) {
       return { name, settings: list };
     };
     spelling.value = formatSpelling({
-      formulation: part("formulation", formulation.value),
+      formulation: runsProgram(old) ? old.formulation : part("formulation", formulation.value),
       integrator: part("integrator", integrator.value),
     });
     showParts();
@@ -204,8 +221,14 @@ export function createMethodDialog(el, store, actions) {
     const parsed = parseSpelling(spelling.value);
     const card = cardOf(data.catalogue, "formulation", formulation.value);
     const stepper = cardOf(data.catalogue, "integrator", integrator.value);
-    say(about, withPowers(card?.rule ?? ""));
-    const notes = [
+    if (runsProgram(parsed)) {
+      formulation.selectedIndex = -1; // none of the list
+    } else {
+      programs.value = "";
+    }
+    const own = "The equations are those of your program.";
+    say(about, runsProgram(parsed) ? own : withPowers(card?.rule ?? ""));
+    const notes = runsProgram(parsed) ? [] : [
       card?.when_not && `Not suitable: ${card.when_not}.`,
       card?.limits && `${capital(card.limits)}.`,
       card?.order_note && `Order: ${card.order_note}.`,

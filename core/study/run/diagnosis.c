@@ -161,8 +161,8 @@ static void describe_part(const hn_stepping *s, const fastest_part *part, char *
     } else if (!part->at_rest && describe_speed(s, &s->earlier, speed, sizeof speed)) {
         snprintf(out, size, "%s; a deviation from this motion %s", speed, verb);
     } else {
-        snprintf(out, size, "a %s of the mechanism %s", decays ? "damped motion" : "vibration",
-                 verb);
+        snprintf(out, size, "a %s %s",
+                 decays ? "deviation from the motion" : "vibration of the mechanism", verb);
     }
 }
 
@@ -449,13 +449,30 @@ static bool tells_error(const hn_watch *w, const hn_incident *i) {
     return hn_incident_kinds()[i->code]->is_wrong || (ended && i == &w->log.list[w->log.n - 1]);
 }
 
-/// Says why the remedies of a report that is about no error are offered without a trial.
-static void leave_untried(hn_watch *w, hn_incident *i) {
-    for (int k = 0; k < HN_REMEDIES && i->remedy[k][0]; k++) {
-        snprintf(i->tried[k], sizeof i->tried[k],
-                 "not tried, as nothing is wrong so far; use it if the run goes wrong later");
+/// Why the remedies of a warning are offered without a trial: while the run is well, and once it
+/// has gone wrong.
+static const char WELL[] =
+    "not tried, as nothing is wrong so far; use it if the run goes wrong later";
+static const char WRONG[] = "not tried; it may help, as the run went wrong";
+
+static bool went_wrong(const hn_watch *w) {
+    bool wrong = false;
+    for (int k = 0; k < w->log.n; k++) {
+        wrong |= tells_error(w, &w->log.list[k]);
     }
-    i->revision = ++w->log.revision;
+    return wrong;
+}
+
+/// Says why remedies of a report have no trial: when it came it was about no error. The words
+/// follow the run, which was well then and may have gone wrong since.
+static void leave_untried(hn_watch *w, hn_incident *i, bool wrong) {
+    for (int k = 0; k < HN_REMEDIES && i->remedy[k][0]; k++) {
+        const bool fresh = !i->tried[k][0];
+        if (fresh || (wrong && strcmp(i->tried[k], WELL) == 0)) {
+            snprintf(i->tried[k], sizeof i->tried[k], "%s", wrong ? WRONG : WELL);
+            i->revision = ++w->log.revision;
+        }
+    }
 }
 
 /// The reports of the run that a remedy removes.
@@ -529,9 +546,11 @@ void hn_run_diagnose(hn_run *run) {
         hn_incident *i = &w->log.list[w->diagnosed];
         if (i->remedy[0][0] && tells_error(w, i)) {
             try_remedies(run, i);
-        } else if (i->remedy[0][0]) {
-            leave_untried(w, i);
         }
+    }
+    const bool wrong = went_wrong(w);
+    for (int k = 0; k < w->log.n; k++) {
+        leave_untried(w, &w->log.list[k], wrong);
     }
     for (int k = 0; k < w->log.n; k++) {
         hn_incident *i = &w->log.list[k];

@@ -169,7 +169,7 @@ static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i)
                      hn_error_advice(m, hn_document_get(summary, "incidents"), i));
 }
 
-/// The first incidents of one method, in order of time; the rest are counted.
+/// The first incidents of one method, errors before warnings; the rest are counted.
 static void put_incidents(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
     const char *name = hn_document_text(m, "method");
     hn_incident_list list;

@@ -2,18 +2,37 @@
 #include "cli/commands/incident_list.h"
 
 #include "cli/shell/document.h"
+#include "study/incidents/kinds.h"
 #include "study/incidents/log.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-static void sort_by_time(hn_incident_list *list) {
+static bool is_wrong(const cJSON *incident) {
+    const hn_incident_kind *const *kinds = hn_incident_kinds();
+    const char *code = hn_document_text(incident, "code");
+    for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
+        if (strcmp(kinds[i]->spelling, code) == 0) {
+            return kinds[i]->is_wrong;
+        }
+    }
+    return false;
+}
+
+/// Whether an incident stands behind another: what is wrong comes before a warning, then the
+/// earlier before the later.
+static bool is_behind(const cJSON *one, const cJSON *other) {
+    const bool wrong = is_wrong(one);
+    return wrong == is_wrong(other) ? hn_document_number(one, "t") > hn_document_number(other, "t")
+                                    : !wrong;
+}
+
+static void sort(hn_incident_list *list) {
     for (int i = 1; i < list->n; i++) {
         const cJSON *moved = list->item[i];
-        const double t = hn_document_number(moved, "t");
         int j = i;
-        for (; j > 0 && hn_document_number(list->item[j - 1], "t") > t; j--) {
+        for (; j > 0 && is_behind(list->item[j - 1], moved); j--) {
             list->item[j] = list->item[j - 1];
         }
         list->item[j] = moved;
@@ -36,7 +55,7 @@ void hn_incident_list_take(hn_incident_list *list, const cJSON *incidents, int m
             list->item[list->n++] = incident;
         }
     }
-    sort_by_time(list);
+    sort(list);
 }
 
 /// Whether item k is the last of its kind that a run records.

@@ -19,7 +19,8 @@ typedef struct hn_incident_list {
     const cJSON *end; ///< the incident that ended the run; NULL: none did
 } hn_incident_list;
 
-/// Takes the incidents of one run. A sample inside a step may find an incident later than the end
+/// Takes the incidents of one run: first what is wrong, then the warnings, each in order of time.
+/// A sample inside a step may find an incident later than the end
 /// of the run; those of one time keep their order.
 ///
 /// incidents  in  list of incidents of a document; NULL: none

@@ -90,8 +90,8 @@ static bool is_repeated(const hn_incident_list *list, int n, int k) {
     return false;
 }
 
-/// Says what was noticed on the way, in order of time; samples alone would hide it. A remedy of
-/// several incidents is said once, after the last of them.
+/// Says what was noticed on the way, errors before warnings; samples alone would hide it. A remedy
+/// of several incidents is said once, after the last of them.
 static void tell_incidents(const hn_incident_list *list) {
     const int told = list->n < MOST ? list->n : MOST;
     for (int k = 0; k < told; k++) {

@@ -187,7 +187,21 @@ static bool is_offered(const hn_command *command, const option *o) {
            strcmp(o->name, "--no-native") == 0 || find_listed(command->options, o->name);
 }
 
+/// Whether help, the manual and completion name an option: all that are offered, but --json where
+/// a command draws and refuses it with a hint.
+static bool is_listed(const hn_command *command, const option *o) {
+    const bool drawn = strcmp(command->name, "tui") == 0 && strcmp(o->name, "--json") == 0;
+    return is_offered(command, o) && !drawn;
+}
+
+/// Another spelling of an option: the results of a class are one JSON object a line.
+static const char ONE_A_LINE[] = "--ndjson";
+
 static const option *find_option(const hn_command *command, const char *name, size_t n) {
+    if (strcmp(command->name, "grade") == 0 && n == strlen(ONE_A_LINE) &&
+        memcmp(name, ONE_A_LINE, n) == 0) {
+        return find_option(command, "--json", strlen("--json"));
+    }
     for (int i = 0; i < N_OPTIONS; i++) {
         if (strlen(OPTIONS[i].name) == n && memcmp(OPTIONS[i].name, name, n) == 0 &&
             is_offered(command, &OPTIONS[i])) {
@@ -528,7 +542,7 @@ bool hn_args_option(const hn_command *command, int i, hn_option_row *out) {
     const hn_field *fields[MOST_FIELDS];
     for (int k = 0; k < N_OPTIONS; k++) {
         const option *o = &OPTIONS[k];
-        if (is_offered(command, o) && i-- == 0) {
+        if (is_listed(command, o) && i-- == 0) {
             *out = (hn_option_row){.argument = o->argument, .about = o->about};
             snprintf(out->name, sizeof out->name, "%s", o->name);
             take_choices(out, command, o);

@@ -105,7 +105,7 @@ static void put_plot(hn_strbuf *b, const hn_wp *wp, bool legend) {
         b->failed = 1;
         return;
     }
-    hn_cost_plot_take(plot, wp);
+    hn_cost_plot_take(plot, wp, hn_cost_plot_has_times(wp));
     hn_cost_plot_text(b, plot, hn_terminal_columns(), legend, hn_terminal_colours());
     free(plot);
 }
