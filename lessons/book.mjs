@@ -149,13 +149,13 @@ const STYLE = `
 @page :first { @bottom-center { content: none; } }
 body { font: 10.5pt/1.42 "DejaVu Serif", Georgia, serif; max-width: 42em; margin: 2em auto; color: #1a1a1a; }
 h1, h2, h3, h4 { font-family: "DejaVu Sans", sans-serif; line-height: 1.2; break-after: avoid; }
-section { margin-top: 3.5em; border-top: 2px solid #333; } section h2 { margin-top: .8em; } ol + section { break-before: page; border: 0; } p, li { orphans: 3; widows: 3; }
+section { break-before: page; } section h2 { margin-top: .8em; } p, li { orphans: 3; widows: 3; } pre, pre code { orphans: 6; widows: 4; }
 pre, code { font: 8.5pt/1.35 "DejaVu Sans Mono", monospace; }
 pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5em 0; }
 .box { border: 1px solid #9aa5b1; border-radius: 3px; padding: .5em .8em; margin: 1em 0; break-inside: avoid; }
 .slip { border-left: 3px solid #b5472f; padding: .1em .8em; margin: 1em 0; break-inside: avoid; }
 .box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
-.exercise { break-inside: auto; } .exercise > p { display: block; break-after: avoid; orphans: 9; widows: 9; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
+.exercise { break-inside: auto; } .exercise > p { display: block; } .exercise > p:first-child { break-after: avoid; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
 .form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
 .exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
 .exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; }
