@@ -174,28 +174,6 @@ static void put_graded(const grading *g, hn_strbuf *b, const hn_verdict *v, cons
     hn_class_line_put_mistakes(b, v);
 }
 
-/// A program from an archive or a folder, in a file of its own while it is graded.
-static hn_status grade_program(const grading *g, const char *file, const hn_strbuf *text,
-                               hn_verdict *v) {
-    const char *dot = strrchr(file, '.');
-    const char *folder = getenv("TMPDIR");
-    char path[HN_ROSTER_PATH];
-    if (!dot || !hn_filled_program_is(file)) {
-        dot = "";
-    }
-    snprintf(path, sizeof path, "%.900s/holonom-XXXXXX%.8s", folder ? folder : "/tmp", dot);
-    const int fd = mkstemps(path, (int)strlen(dot));
-    if (fd < 0) {
-        return HN_ERR_IO;
-    }
-    const bool written = write(fd, hn_strbuf_text((hn_strbuf *)text), text->n) == (ssize_t)text->n;
-    close(fd);
-    const hn_status status =
-        written ? hn_filled_program_grade(g->opts->programs, path, v) : HN_ERR_IO;
-    unlink(path);
-    return status;
-}
-
 /// The line of submission i.
 static void grade_one(const grading *g, int i, hn_strbuf *b) {
     const hn_roster_entry *e = &g->roster->entry[i];
@@ -208,7 +186,8 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
     const bool there = status == HN_OK;
     if (status == HN_OK) {
         status = g->opts->programs
-                     ? grade_program(g, file, &text, v)
+                     ? hn_filled_program_grade_text(g->opts->programs, file, hn_strbuf_text(&text),
+                                                    text.n, v)
                      : hn_grade_json(g->exercise, hn_strbuf_text(&text), text.n, seed_of(g, e), v);
     }
 

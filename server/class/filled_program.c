@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // mkstemps
 #include "class/filled_program.h"
 
 #include "base/file.h"
@@ -10,8 +11,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 static const double POINTS = 2; // of a part
 /// Difference that is allowed, relative to the largest entry of the part or 1: the two programs
@@ -290,6 +293,7 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
         snprintf(place, sizeof place, "%s[%d]", name, entry + first);
     }
     snprintf(e->given, sizeof e->given, "%s", place);
+    snprintf(e->expected, sizeof e->expected, "%s", place);
     if (!e->mistake[0]) {
         e->mistake = "other";
         snprintf(e->explanation, sizeof e->explanation,
@@ -330,7 +334,32 @@ static void compare_all(const hn_filled_exam *f, const hn_language *language, co
 
 // ---- the whole ----
 
-hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path, hn_verdict *v) {
+static void keep_program(hn_graded_program *kept, const char *path, const hn_strbuf *text) {
+    const char *slash = strrchr(path, '/');
+    snprintf(kept->file, sizeof kept->file, "%.79s", slash ? slash + 1 : path);
+    hn_strbuf_clear(&kept->text);
+    hn_strbuf_add_n(&kept->text, hn_strbuf_text((hn_strbuf *)text), text->n);
+}
+
+hn_status hn_filled_program_grade_text(const hn_filled_exam *f, const char *name, const char *text,
+                                       size_t n, hn_verdict *v) {
+    const char *dot = hn_filled_program_is(name) ? strrchr(name, '.') : "";
+    const char *folder = getenv("TMPDIR");
+    char path[1024];
+    snprintf(path, sizeof path, "%.900s/holonom-XXXXXX%.8s", folder ? folder : "/tmp", dot);
+    const int fd = mkstemps(path, (int)strlen(dot));
+    if (fd < 0) {
+        return HN_ERR_IO;
+    }
+    const bool written = write(fd, text, n) == (ssize_t)n;
+    close(fd);
+    const hn_status status = written ? hn_filled_program_grade(f, path, NULL, v) : HN_ERR_IO;
+    unlink(path);
+    return status;
+}
+
+hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
+                                  hn_graded_program *kept, hn_verdict *v) {
     const hn_language *language = language_of(path);
     hn_diag diag = {0};
     hn_strbuf text;
@@ -344,10 +373,14 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path, hn_
         return HN_OK;
     }
 
-    // the text is kept as its hash alone
+    // the text is kept for who asks for it, else as its hash alone
     hn_strbuf_init(&text);
     hn_status status = hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
     v->submission_hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, hn_strbuf_text(&text), text.n));
+    if (kept) {
+        keep_program(kept, path, &text);
+        v->program = kept;
+    }
     hn_strbuf_reset(&text);
 
     // its answers, compared part by part

@@ -19,10 +19,15 @@ typedef struct hn_filled_exam {
 HN_MUST_CHECK hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model,
                                             hn_diags *diags);
 void hn_filled_exam_reset(hn_filled_exam *f);
-/// Grades a program file. A program that cannot be started, breaks a limit or answers something
+/// Grades a program file, and keeps its name and text in *kept (NULL: nowhere), to which the
+/// verdict then points. A program that cannot be started, breaks a limit or answers something
 /// else is ungradable, with the reason. Fails: HN_ERR_MEMORY, HN_ERR_IO (no process).
 HN_MUST_CHECK hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
-                                                hn_verdict *v);
+                                                hn_graded_program *kept, hn_verdict *v);
+/// Grades the text (n bytes) of a program whose file had this name. It stands in a file of its own
+/// meanwhile. Fails: as above.
+HN_MUST_CHECK hn_status hn_filled_program_grade_text(const hn_filled_exam *f, const char *name,
+                                                     const char *text, size_t n, hn_verdict *v);
 /// Whether a file has the ending of a program that can be graded.
 bool hn_filled_program_is(const char *path);
 

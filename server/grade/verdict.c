@@ -32,6 +32,22 @@ static bool is_number(const char *given) {
     return end != given && !end[strspn(end, " ")];
 }
 
+void hn_verdict_given(hn_strbuf *b, const hn_entry_verdict *e) {
+    hn_strbuf_add(b, e->given);
+    if (e->state >= 0 && !is_number(e->given)) {
+        hn_strbuf_add(b, " = ");
+        add_number(b, e->given_value);
+    }
+}
+
+void hn_verdict_expected(hn_strbuf *b, const hn_entry_verdict *e) {
+    hn_strbuf_add(b, e->expected);
+    if (e->state >= 0 && !is_number(e->expected)) {
+        hn_strbuf_add(b, " = ");
+        add_number(b, e->expected_value);
+    }
+}
+
 void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
                            const char *indent) {
     if (e->explanation[0]) {
@@ -41,18 +57,15 @@ void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_ver
         return;
     }
     if (e->given[0]) {
-        hn_strbuf_printf(b, "%sgiven     %s", indent, e->given);
+        hn_strbuf_printf(b, "%sgiven     ", indent);
+        hn_verdict_given(b, e);
     }
     if (e->state < 0 && e->expected[0] && e->max_points > 0 && v->show_expected) {
         hn_strbuf_printf(b, "%s%sexpected  %s", e->given[0] ? "\n" : "", indent, e->expected);
     }
-    if (e->state >= 0 && !is_number(e->given)) {
-        hn_strbuf_add(b, " = ");
-        add_number(b, e->given_value);
-    }
     if (e->state >= 0 && v->show_expected) {
-        hn_strbuf_printf(b, "\n%sexpected  %s = ", indent, e->expected);
-        add_number(b, e->expected_value);
+        hn_strbuf_printf(b, "\n%sexpected  ", indent);
+        hn_verdict_expected(b, e);
         hn_strbuf_printf(b, ", a difference of %.2g is allowed", e->allowed);
     } else if (e->state >= 0) {
         hn_strbuf_printf(b, ", off by more than the %.2g allowed", e->allowed);
@@ -175,6 +188,18 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     }
 }
 
+/// The program, and the parameters of the scene that it was graded with.
+static void put_program(hn_strbuf *b, const hn_graded_program *p) {
+    hn_json_put_string(b, "submission", hn_strbuf_text((hn_strbuf *)&p->text));
+    hn_json_put_string(b, "submission_file", p->file);
+    hn_json_key(b, "set");
+    hn_json_array(b);
+    for (int i = 0; i < p->n_set; i++) {
+        hn_json_string(b, p->set[i]);
+    }
+    hn_json_end_array(b);
+}
+
 void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
     // what was graded, and the outcome
     hn_json_object(b);
@@ -191,7 +216,11 @@ void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
     // what holds for every outcome
     hn_json_put_number(b, "max_score", v->max_score);
     hn_json_put_string(b, "note", v->note);
-    hn_json_put_string(b, "submission", v->submission);
+    if (v->program) {
+        put_program(b, v->program);
+    } else {
+        hn_json_put_string(b, "submission", v->submission);
+    }
 
     // the verdict on each entry
     hn_json_key(b, "entries");

@@ -25,6 +25,14 @@ typedef struct hn_entry_verdict {
     double given_value, expected_value, allowed; ///< at that state; meaningless while state is -1
 } hn_entry_verdict;
 
+/// The program of a scene that was graded: with it the verdict can be made again.
+typedef struct hn_graded_program {
+    char file[80]; ///< its name, without folders
+    hn_strbuf text;
+    const char *const *set; ///< "l1=0.45": parameters of the scene that were changed; borrowed
+    int n_set;
+} hn_graded_program;
+
 typedef enum hn_verdict_kind { HN_VERDICT_GRADED, HN_VERDICT_UNGRADABLE } hn_verdict_kind;
 
 typedef struct hn_verdict {
@@ -46,7 +54,8 @@ typedef struct hn_verdict {
     hn_part_view view; ///< of an exercise with parts: the scene of the picture; scene NULL: none
     int n_states;      ///< states at which entries were compared
     uint64_t seed;
-    const hn_exercise *problem; ///< borrowed
+    const hn_exercise *problem;       ///< borrowed
+    const hn_graded_program *program; ///< in place of `submission`; borrowed, NULL: no program
     bool show_expected; ///< the reference's formulas and numbers are written too: not for students
     char student[80];   ///< whose variant it is; "" when the seed was given
     uint64_t submission_hash;
@@ -60,6 +69,11 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v);
 void hn_verdict_json(hn_strbuf *b, const hn_verdict *v);
 /// Gradescope's results.json. execution_time [s] is written if >= 0.
 void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_time);
+/// Writes what was handed in for an entry, with its value where that is no number as it stands:
+/// "force[0] = 6.475".
+void hn_verdict_given(hn_strbuf *b, const hn_entry_verdict *e);
+/// Writes what is expected of a wrong entry: the reference formula, or the value at its state.
+void hn_verdict_expected(hn_strbuf *b, const hn_entry_verdict *e);
 /// Writes the lines under one entry, each after `indent`; nothing for an entry that is right.
 void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
                            const char *indent);

@@ -111,8 +111,20 @@ static void put_row(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e
     hn_verdict_escape(b, e->name);
     hn_strbuf_printf(b, "</td><td>%g of %g</td><td>", e->points, e->max_points);
     hn_verdict_escape(b, e->right && !e->explanation[0] ? "right" : e->explanation);
-    put_code(b, "your answer", e->given);
-    put_code(b, "expected", shows_expected(v, e) ? e->expected : "");
+    hn_strbuf given, expected;
+    hn_strbuf_init(&given);
+    hn_strbuf_init(&expected);
+    if (e->given[0]) {
+        hn_verdict_given(&given, e);
+    }
+    if (shows_expected(v, e)) {
+        hn_verdict_expected(&expected, e);
+    }
+    put_code(b, "your answer", hn_strbuf_text(&given));
+    put_code(b, "expected", hn_strbuf_text(&expected));
+    b->failed |= given.failed | expected.failed;
+    hn_strbuf_reset(&given);
+    hn_strbuf_reset(&expected);
     hn_strbuf_add(b, "</td></tr>\n");
 }
 
@@ -153,6 +165,22 @@ static void put_outcome(hn_strbuf *b, const hn_verdict *v, bool graded) {
     put_remark(b, v->note);
 }
 
+/// Which variant was graded, or which program with which parameters, and whose it is.
+static void put_origin(hn_strbuf *b, const hn_verdict *v) {
+    const hn_graded_program *program = v->program;
+    hn_strbuf_add(b, program ? "program " : "exercise ");
+    hn_verdict_escape(b, program ? program->file : v->problem->id);
+    hn_strbuf_add(b, v->student[0] ? ", handed in by " : "");
+    hn_verdict_escape(b, v->student);
+    if (!program) {
+        hn_strbuf_printf(b, "; variant of seed %llu", (unsigned long long)v->seed);
+    }
+    for (int i = 0; program && i < program->n_set; i++) {
+        hn_strbuf_add(b, i == 0 ? "; graded with " : ", ");
+        hn_verdict_escape(b, program->set[i]);
+    }
+}
+
 void hn_verdict_html(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) {
     const bool graded = v->kind == HN_VERDICT_GRADED;
     hn_strbuf_add(b, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
@@ -160,11 +188,9 @@ void hn_verdict_html(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) {
     hn_verdict_escape(b, v->problem->title);
     hn_strbuf_printf(b, "</title>\n<style>%s</style></head>\n<body><h1>", STYLE);
     hn_verdict_escape(b, v->problem->title);
-    hn_strbuf_add(b, "</h1>\n<p class=\"muted\">exercise ");
-    hn_verdict_escape(b, v->problem->id);
-    hn_strbuf_add(b, v->student[0] ? ", handed in by " : "");
-    hn_verdict_escape(b, v->student);
-    hn_strbuf_printf(b, "; variant of seed %llu</p>\n", (unsigned long long)v->seed);
+    hn_strbuf_add(b, "</h1>\n<p class=\"muted\">");
+    put_origin(b, v);
+    hn_strbuf_add(b, "</p>\n");
     put_outcome(b, v, graded);
     if (graded) {
         hn_strbuf_add(b, "<table><thead><tr><th>part</th><th>points</th><th>verdict</th></tr>"

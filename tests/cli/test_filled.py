@@ -4,6 +4,7 @@
 import concurrent.futures
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -116,6 +117,37 @@ class Filled(unittest.TestCase):
             self.assertTrue(entries[part]["explanation"])
             self.assertEqual("no known mistake; force[2] differs most" in entries[part]["explanation"], mistake == "other")
             self.assertNotIn("expected_value", entries[part])
+
+    def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
+        _, filled = blank_and_filled("four-bar", "c")
+        last = filled.rindex("    energy[0] =")
+        spoilt = (filled[:last] + "    force[1] += 0.5;\n" + filled[last:]).replace("l1 = 0.5", "l1 = 0.45")
+        path = self.put("folder/spoilt.c", spoilt)
+        done = call("grade", "four-bar", path, "--set", "l1=0.45", "--student", "Ann", "--json")
+        verdict = json.loads(done.stdout)
+        self.assertEqual((verdict["score"], verdict["submission"], verdict["submission_file"], verdict["set"]), (POINTS - 2, spoilt, "spoilt.c", ["l1=0.45"]))
+        kept = self.put("verdict.json", done.stdout)
+        os.remove(path)
+        again = json.loads(call("regrade", kept, "--json").stdout)
+        self.assertEqual((again["same"], again["score"]), (True, POINTS - 2))
+        self.assertIn("the same score: 6 of 8 before, 6 of 8 now", call("regrade", kept).stdout)
+
+        # another program in its place
+        right = self.put("right.c", filled.replace("l1 = 0.5", "l1 = 0.45"))
+        done = call("regrade", kept, right)
+        self.assertIn("ANOTHER SCORE: 6 of 8 before, 8 of 8 now", done.stdout)
+        self.assertIn("the submission is another one than was graded", done.stdout)
+
+    def test_the_page_of_a_verdict_says_what_was_given_and_expected(self):
+        _, filled = blank_and_filled("four-bar", "c")
+        last = filled.rindex("    energy[0] =")
+        path = self.put("spoilt.c", filled[:last] + "    force[0] += 0.5;\n" + filled[last:])
+        page = call("grade", "four-bar", path, "--student", "Ann", "--format", "html", "--show-expected").stdout
+        self.assertIn("program spoilt.c, handed in by Ann", page)
+        self.assertNotIn("variant of seed", page)
+        given, expected = (float(x) for x in re.findall(r"<code>force\[0\] = ([-\d.]+)</code>", page))
+        self.assertAlmostEqual(given - expected, 0.5, 7)
+        self.assertNotIn("expected", call("grade", "four-bar", path, "--format", "html").stdout.split("<body>")[1])
 
     def test_a_program_has_no_variant_to_choose(self):
         done = call("grade", "four-bar", self.put("any.py", "x"), "--seed", "7")

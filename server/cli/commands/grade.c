@@ -133,13 +133,16 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
 static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
+    hn_graded_program program = {.set = t->args->set.word, .n_set = t->args->set.n};
+    hn_strbuf_init(&program.text);
 
     // the variant of this student, or of the seed given, or what the file says
     const uint64_t seed = hn_cli_variant_seed(t->args, t->subject.exercise);
-    hn_status status = !v ? HN_ERR_MEMORY
-                       : t->subject.programs
-                           ? hn_filled_program_grade(t->subject.programs, t->submission, v)
-                           : hn_grade_file(t->subject.exercise, t->submission, seed, v);
+    hn_status status =
+        !v ? HN_ERR_MEMORY
+        : t->subject.programs
+            ? hn_filled_program_grade(t->subject.programs, t->submission, &program, v)
+            : hn_grade_file(t->subject.exercise, t->submission, seed, v);
 
     // a submission that cannot be graded is the fault of the input
     hn_exit result = HN_EXIT_PROGRAM;
@@ -160,6 +163,7 @@ static hn_exit grade_one(const task *t) {
                     v && v->reason[0] ? v->reason : hn_status_text(status));
         hn_report_diag(t->args, &diag);
     }
+    hn_strbuf_reset(&program.text);
     free(v);
     return result;
 }

@@ -4,11 +4,13 @@
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "build.h"
+#include "class/filled_program.h"
 #include "cli/commands/exercise_word.h"
 #include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
+#include "cli/shell/scene_word.h"
 #include "grade/grade.h"
 #include "grade/rubric.h"
 
@@ -127,12 +129,6 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
 static hn_status load_exercise(const hn_library *lib, const cJSON *old, hn_exercise **out,
                                hn_diags *diags) {
     const char *id = text_of(old, "problem"), *file = text_of(old, "problem_file");
-    if (!file[0] && !hn_library_problem_path(lib, id) && hn_library_scene_path(lib, id)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/problem", "holonom grade SCENE PROGRAM",
-                            "'%.60s' is a scene: a verdict does not hold the program that was "
-                            "graded; grade it again",
-                            id);
-    }
     if (file[0] && access(file, F_OK) != 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/problem_file",
                             "put the file there, or call regrade where grade was called",
@@ -143,8 +139,57 @@ static hn_status load_exercise(const hn_library *lib, const cJSON *old, hn_exerc
     return hn_cli_load_exercise(lib, file[0] ? file : id, out, diags);
 }
 
+/// Reads the parameters of the scene that the verdict names into the words of --set.
+static void take_settings(const cJSON *old, hn_words *out) {
+    const cJSON *one;
+    out->n = 0;
+    cJSON_ArrayForEach(one, cJSON_GetObjectItemCaseSensitive(old, "set")) {
+        if (cJSON_IsString(one) && out->n < (int)(sizeof out->word / sizeof *out->word)) {
+            out->word[out->n++] = one->valuestring;
+        }
+    }
+}
+
+/// The program of a scene: the file named, or the text that the verdict holds.
+static hn_exit grade_program_again(const hn_library *lib, const hn_args *args, const cJSON *old,
+                                   hn_verdict *v) {
+    const char *id = text_of(old, "problem"), *text = text_of(old, "submission");
+    hn_model *model = NULL;
+    hn_filled_exam exam = {0};
+    hn_diags diags = {0};
+    hn_args with = *args;
+    take_settings(old, &with.set);
+
+    // graded as it was, with the parameters of then
+    hn_status status = hn_args_load_model(lib, &with, id, 0, &model, &diags);
+    HN_THEN(status, hn_filled_exam_init(&exam, model, &diags));
+    if (status == HN_OK && args->words.n > 1) {
+        status = hn_filled_program_grade(&exam, args->words.word[1], NULL, v);
+    } else if (status == HN_OK && text[0]) {
+        status = hn_filled_program_grade_text(&exam, text_of(old, "submission_file"), text,
+                                              strlen(text), v);
+    } else if (status == HN_OK) {
+        status = hn_diags_add(&diags, HN_ERR_INPUT, "/submission", "name its file as second word",
+                              "the verdict does not hold the program");
+    }
+    if (status == HN_OK) {
+        snprintf(v->student, sizeof v->student, "%s", text_of(old, "student"));
+    }
+    hn_exit result =
+        status == HN_OK ? compare(args, old, v) : hn_report_diags(args, status, &diags);
+    if (result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE) {
+        result = HN_EXIT_INPUT;
+    }
+    hn_filled_exam_reset(&exam);
+    hn_model_free(model);
+    return result;
+}
+
 static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJSON *old,
                            hn_verdict *v) {
+    if (text_of(old, "submission_file")[0]) {
+        return grade_program_again(lib, args, old, v);
+    }
     hn_exercise *e = NULL;
     hn_diags diags = {0};
     const char *submission = text_of(old, "submission");
