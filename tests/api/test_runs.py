@@ -55,7 +55,16 @@ class Runs(unittest.TestCase):
         self.assertEqual(summary, whole)
         self.assertLess(len(answer.body), 3000)
         again = self.server.ask("GET", first.headers["location"], headers={"If-None-Match": answer.headers["etag"]})
-        self.assertEqual((again.status, again.body), (304, b""))
+        self.assertEqual((again.status, again.body, again.headers["cache-control"]), (304, b"", "no-cache"))
+        # so are its rows, each form by a name of its own
+        address, etags = whole["links"]["samples"] + "?fields=t,gap", set()
+        for form in ("application/json", "application/x-ndjson", "text/csv"):
+            etag = self.server.ask("GET", address, headers={"Accept": form}).headers["etag"]
+            again = self.server.ask("GET", address, headers={"Accept": form, "If-None-Match": etag})
+            self.assertEqual((again.status, again.body), (304, b""))
+            etags.add(etag)
+        self.assertEqual(len(etags), 3)
+        self.assertEqual(self.server.ask("GET", address, headers={"If-None-Match": answer.headers["etag"]}).status, 200)
 
     def test_samples_come_in_three_forms_with_every_digit(self):
         document = self.ask(RUN).json()
@@ -89,7 +98,8 @@ class Runs(unittest.TestCase):
 
     def test_faults_of_a_query_are_told(self):
         address = self.ask(RUN).json()["links"]["samples"]
-        for query, status, word in (("?stride=0", 422, "stride"), ("?fields=t,qq", 422, "did you mean 'q'"), ("?strid=2", 400, "did you mean 'stride'"),
+        for query, status, word in (("?stride=0", 422, "stride"), ("?fields=t,qq", 422, "did you mean 'q'"), ("?fields=", 422, "columns: t, "),
+                                    ("?fields=" + "t," * 30, 422, "more than"), ("?strid=2", 400, "did you mean 'stride'"),
                                     ("?from=x", 422, "from"), ("?limit=1e9", 422, "limit"), ("?method=1", 422, "method"), ("?cursor=-1", 422, "cursor")):
             answer = self.server.ask("GET", address + query)
             self.assertEqual((answer.status, answer.type), (status, "application/problem+json"), query)

@@ -258,6 +258,21 @@ class FairShares(Timed):
         for t in threads:
             t.join()
 
+    def test_who_is_refused_beside_long_runs_is_told_to_come_back_later(self):
+        """After a hundred runs of some milliseconds, runs of 20 s filled the queue: it said 1 s to each, whatever it had seen of them."""
+        server = driver.Server()
+        greedy = From(server, "127.0.0.2")
+        for i in range(30):
+            self.assertEqual(greedy.ask("POST", "/api/v1/runs", {**self.SHORT, "every": 0.01 / (1 + i)}).status, 201)
+        runs = [{**self.LONG, "time": 1000 + i} for i in range(40)]
+        self.assertIn(429, [greedy.ask("POST", "/api/v1/runs?wait=0", run).status for run in runs])
+        time.sleep(6)
+        refused = [a for a in (greedy.ask("POST", "/api/v1/runs?wait=0", {**run, "every": 0.5}) for run in runs) if a.status == 429]
+        self.assertTrue(refused)
+        # some 20 before it, on three threads that have given each of them a second and more
+        self.assertGreater(int(refused[-1].headers["retry-after"]), 3)
+        self.assertEqual(server.stop(), 0)
+
     def test_a_run_that_was_set_aside_has_the_same_samples(self):
         question = {**RING, "methods": ["projection@rk4:h=1e-3", "ggl@radau5:rtol=1e-6"], "time": 0.5}
         alone = driver.Server()

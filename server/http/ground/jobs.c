@@ -23,6 +23,7 @@ struct hn_job_turn {
     void *work;
     hn_client client;
     long long place; ///< in the order of those that wait, while it is aside
+    double taken_up; ///< under the lock too [s, wall clock]
     double look;     ///< it asks the pool then; of its own thread [s, wall clock]
     double begun;    ///< of its present slice; of its own thread [s, wall clock]
     double used;     ///< by its slices before; of its own thread [s]
@@ -143,6 +144,7 @@ static void begin(hn_jobs *jobs, int index) {
     t->work = jobs->waiting[index].work;
     t->client = jobs->waiting[index].client;
     t->state = TURN_AT_WORK;
+    t->taken_up = hn_clock_wall();
     jobs->n--;
     memmove(&jobs->waiting[index], &jobs->waiting[index + 1],
             (size_t)(jobs->n - index) * sizeof *jobs->waiting);
@@ -270,10 +272,26 @@ int hn_jobs_push(hn_jobs *jobs, void *work_item, hn_client client) {
     return taken;
 }
 
+/// What the jobs that go on have used so far, on average, where they share the threads evenly [s].
+/// With the lock held.
+static double mean_so_far(const hn_jobs *jobs) {
+    const double now = hn_clock_wall();
+    double sum = 0;
+    int n = 0;
+    for (int i = 0; i < jobs->n_threads; i++) {
+        if (jobs->turns[i].state != TURN_IDLE) {
+            sum += now - jobs->turns[i].taken_up;
+            n++;
+        }
+    }
+    return n == 0 ? 0 : sum / n * fmin(1, (double)jobs->opts.at_once / n);
+}
+
 int hn_jobs_wait(hn_jobs *jobs) {
     pthread_mutex_lock(&jobs->lock);
+    // jobs that went on for long will go on for long, whatever those before them took
     const int n = jobs->n + count_turns(jobs, TURN_ASIDE) + 1;
-    const double seconds = jobs->mean * n / jobs->opts.at_once;
+    const double seconds = fmax(jobs->mean, mean_so_far(jobs)) * n / jobs->opts.at_once;
     pthread_mutex_unlock(&jobs->lock);
     return (int)fmin(60, fmax(1, ceil(seconds)));
 }

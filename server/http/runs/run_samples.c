@@ -40,6 +40,9 @@ static hn_status choose_columns(reader *r, const char *fields, hn_diags *diags) 
         r->n = d->n_columns;
         return HN_OK;
     }
+    if (!*fields) {
+        return refuse_column(fields, d, diags);
+    }
     for (const char *at = fields; *at;) {
         const size_t n = strcspn(at, ",");
         char name[HN_RUN_COLUMN_NAME];

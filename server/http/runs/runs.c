@@ -86,6 +86,7 @@ static bool is_unchanged(hn_request *r, const char *etag) {
     }
     hn_reply_empty(r, MHD_HTTP_NOT_MODIFIED);
     hn_reply_header_add(r, "ETag", "%s", etag);
+    hn_reply_header_add(r, "Cache-Control", "no-cache");
     return true;
 }
 
@@ -277,6 +278,12 @@ static void reply_samples(hn_request *r, const hn_kept_run *run) {
     if (!choose_document(r, run, &document) || !read_samples_request(r, &q)) {
         return;
     }
+    char etag[HN_RUN_ID + 8];
+    snprintf(etag, sizeof etag, "\"%s.%d\"", run->id, q.form);
+    if (is_unchanged(r, etag)) {
+        hn_reply_header_add(r, "Vary", "Accept");
+        return;
+    }
 
     // one page
     const hn_status status = hn_run_samples_write(&b, document, &q, &next, &diags);
@@ -286,6 +293,7 @@ static void reply_samples(hn_request *r, const hn_kept_run *run) {
         return;
     }
     hn_reply_bytes(r, MHD_HTTP_OK, types[q.form], &b);
+    hn_reply_header_add(r, "ETag", "%s", etag);
     hn_reply_header_add(r, "Cache-Control", "no-cache");
     hn_reply_header_add(r, "Vary", "Accept");
     if (next >= 0) {
