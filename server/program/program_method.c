@@ -213,6 +213,8 @@ static program *find_program(const char *name, const char *file) {
     p->formulation = FORMULATION;
     p->formulation.name = p->name;
     p->formulation.title = p->name;
+    const char *slash = strrchr(p->name, '/');
+    p->formulation.short_name = slash ? slash + 1 : p->name + strlen(HN_GUEST_PREFIX);
     // the option that tells create() which program it is; it has this value alone, so that no
     // spelling shows it
     p->formulation.options[0] = (hn_option){.key = "number",

@@ -10,7 +10,8 @@ import { sourceOf } from "../state/store.js";
 import { showLinked, shownOf } from "../state/shown.js";
 import { noStudy } from "../state/studies.js";
 import { nearest } from "../state/near.js";
-import { cardOf, parseSpelling } from "../state/spelling.js";
+import { isProgram } from "../state/program-card.js";
+import { cardOf, parseSpelling, settingOf, withSetting } from "../state/spelling.js";
 import { isStart } from "../state/start.js";
 import { createKeeper } from "./keeper.js";
 import { SHORT, firstSpeed } from "./speeds.js";
@@ -110,6 +111,19 @@ export function createSceneActions(store, exchange, notice) {
       );
     });
     return scene?.methods?.length ? scene.methods : known;
+  }
+
+  /** The programs of one's own stay when another scene is opened, at the step of its methods. */
+  function withPrograms(methods) {
+    const step = methods
+      .map((spelling) => settingOf(data.catalogue, spelling, "h"))
+      .find((held) => held && held.value > 0)?.value;
+    const programs = data.methods
+      .map(spellingOf)
+      .filter(isProgram)
+      .map((text) => (step ? withSetting(data.catalogue, text, "h", String(step)) : text))
+      .filter((text) => !methods.includes(text));
+    return [...methods.slice(0, limits().methods - programs.length), ...programs];
   }
 
   /** @param {import("../state/link.js").Linked} link */
@@ -297,7 +311,7 @@ export function createSceneActions(store, exchange, notice) {
         id === FIRST_SCENE ? chooseMethods(null) : api.scene(id).then(chooseMethods);
       const methods = link?.methods.length
         ? link.methods.slice(0, limits().methods)
-        : await suggested();
+        : withPrograms(await suggested());
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
       const speed = link?.speed || firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
       const parameters = link?.settings ?? {};

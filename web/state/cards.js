@@ -6,6 +6,7 @@ import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 import { deadPointAt, singularWords } from "./dead-point.js";
 import { errorsOf } from "./errors.js";
 import { jumpWords } from "./jump.js";
+import { isProgram } from "./program-card.js";
 import { listed, trendOf, verdictAt } from "./verdict.js";
 import { stopReason } from "./words.js";
 
@@ -228,9 +229,10 @@ export function cardOfMethod(data, m, shown) {
     rule: withPowers(method.rule),
     drift: withPowers(method.drift ?? ""),
     remedies,
-    // of a run that has stopped the engine knows what helps; the general list is a guess
+    // of a run that has stopped the engine knows what helps; the general list is a guess, and for
+    // a program that broke a rule none helps
     tries:
-      stopped && remedies.length > 0
+      stopped && (remedies.length > 0 || isProgram(method.formulation))
         ? []
         : triesOf(data, m).filter((item) => !remedies.some((other) => sameTry(item, other))),
   };

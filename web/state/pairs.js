@@ -2,6 +2,7 @@
 // @ts-check
 // Which formulation and integrator fit, from their cards, and why others do not.
 import { parseQuantity, plain, prettyUnit } from "./format.js";
+import { isProgram, ownSteps } from "./program-card.js";
 import { cardOf } from "./spelling.js";
 
 /** What each form asks an integrator for, as the end of a sentence. */
@@ -13,6 +14,7 @@ const FORMS = {
   ggl: "the stabilised equations of index 2",
   index3: "the equations of index 3, the loop at position level",
   augmented: "the equations with an augmented Lagrangian",
+  program: "a program that makes its own steps",
 };
 const wordsOf = (form) => FORMS[form] ?? form;
 
@@ -25,7 +27,8 @@ const wordsOf = (form) => FORMS[form] ?? form;
  */
 export function partnersOf(catalogue, formulation) {
   const names = cardOf(catalogue, "formulation", formulation)?.integrators ?? [];
-  return catalogue.integrators.filter(({ name }) => names.includes(name));
+  const known = catalogue.integrators.filter(({ name }) => names.includes(name));
+  return isProgram(formulation) ? [...known, ownSteps] : known;
 }
 
 /** One and another and a third. @param {string[]} list */

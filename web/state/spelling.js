@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The one spelling of a method: FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]. The server
-// checks it; the page only takes it apart to change a setting.
+// checks it; the page only takes it apart to change a setting. A program of one's own is spelled
+// program:FILE@INTEGRATOR; its file is part of its name.
+import { cardOfProgram, isProgram, ownSteps } from "./program-card.js";
 
 /**
  * A setting without "=" has no value: the file of `program:FILE`.
@@ -28,8 +30,9 @@ function parsePart(text) {
 /** @param {string} text @returns {Spelling} */
 export function parseSpelling(text) {
   const at = text.indexOf("@");
+  const left = at < 0 ? text : text.slice(0, at);
   return {
-    formulation: parsePart(at < 0 ? text : text.slice(0, at)),
+    formulation: isProgram(left) ? { name: left.trim(), settings: [] } : parsePart(left),
     integrator: parsePart(at < 0 ? "" : text.slice(at + 1)),
   };
 }
@@ -47,15 +50,23 @@ function formatPart(part) {
 
 /** @param {Spelling} spelling */
 export function formatSpelling(spelling) {
-  return `${formatPart(spelling.formulation)}@${formatPart(spelling.integrator)}`;
+  const right = formatPart(spelling.integrator);
+  return `${formatPart(spelling.formulation)}${right ? `@${right}` : ""}`;
 }
 
 /**
+ * What is known of a formulation or an integrator; a program of one's own has a card too.
  * @param {{formulations: any[], integrators: any[]}} catalogue
  * @param {"formulation" | "integrator"} kind
  * @param {string} name
  */
 export function cardOf(catalogue, kind, name) {
+  if (kind === "formulation" && isProgram(name)) {
+    return cardOfProgram(catalogue, name);
+  }
+  if (kind === "integrator" && name === ownSteps.name) {
+    return ownSteps;
+  }
   return (kind === "formulation" ? catalogue.formulations : catalogue.integrators).find(
     (card) => card.name === name,
   );

@@ -13,12 +13,11 @@ import {
   misfitsOf,
   partnersOf,
 } from "../state/pairs.js";
+import { isProgram } from "../state/program-card.js";
 import { cardOf, formatSpelling, parseSpelling, settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
 
-/** The formulation of a program of one's own: program:FILE. */
-const PROGRAM = "program";
 const MOST_NAMED = 12; // coordinates in a hint
 
 /**
@@ -46,13 +45,6 @@ export function createMethodDialog(el, store, actions) {
     "aria-describedby": "pick-error",
     oninput: onTyped,
   });
-  const programs = h("select", { id: "pick-program", onchange: onProgram });
-  const programRow = h(
-    "p",
-    { hidden: true },
-    h("label", { for: "pick-program" }, "A program of your own"),
-    programs,
-  );
   const error = h("p", { id: "pick-error", class: "hint", role: "alert" });
   const remove = h("button", { type: "button", class: "plain", onclick: onRemove }, "Remove");
   const save = h("button", { type: "submit", class: "primary" });
@@ -69,7 +61,6 @@ export function createMethodDialog(el, store, actions) {
     steps,
     others,
     settings,
-    programRow,
     h("label", { for: "pick-spelling" }, "Spelling"),
     spelling,
     error,
@@ -88,34 +79,17 @@ export function createMethodDialog(el, store, actions) {
 
   const option = (card) => h("option", { value: card.name }, card.title);
 
+  /** The catalogue, then the programs of the server's folder and those that run already. */
   function fillLists() {
-    formulation.replaceChildren(...data.catalogue.formulations.map(option));
-    const known = data.catalogue.programs ?? [];
-    programRow.hidden = known.length === 0; // a server that allows none lists none
-    programs.replaceChildren(
-      h("option", { value: "" }, "none"),
-      ...known.flatMap((/** @type {string} */ name) => [
-        h("option", { value: `${name}@rk4` }, `${name.slice(8)}, accelerations`),
-        h("option", { value: `${name}@own` }, `${name.slice(8)}, its own steps`),
-      ]),
+    const running = data.methods.map((method) => method.formulation).filter(isProgram);
+    const names = new Set([...(data.catalogue.programs ?? []), ...running]);
+    const cards = [...names].map((name) => cardOf(data.catalogue, "formulation", name));
+    formulation.replaceChildren(
+      ...data.catalogue.formulations.map(option),
+      ...(cards.length
+        ? [h("optgroup", { label: "programs of your own" }, ...cards.map(option))]
+        : []),
     );
-  }
-
-  /** A program of the server's folder: it gives accelerations, or makes its own steps. */
-  function onProgram() {
-    if (programs.value) {
-      spelling.value = `${programs.value}:h=${stepOfOthers()}`;
-      integrator.value = parseSpelling(spelling.value).integrator.name;
-      showParts();
-    }
-  }
-
-  /** The step of the methods beside it: with another one it would not be compared, but its step. */
-  function stepOfOthers() {
-    const written = data.methods
-      .filter(({ integrator: name }) => !cardOf(data.catalogue, "integrator", name)?.adaptive)
-      .map((method) => settingOf(data.catalogue, method.spelling, "h")?.value);
-    return written.find(Boolean) ?? (data.scene?.step || 0.01);
   }
 
   /** Only what fits the formulation can be chosen; for the rest the reason is told. */
@@ -150,14 +124,8 @@ export function createMethodDialog(el, store, actions) {
     const shared = data.methods.map((method) => method.integrator);
     fillIntegrators();
     integrator.value = choosePartner(data.catalogue, formulation.value, before, shared);
-    if (runsProgram(parseSpelling(spelling.value))) {
-      spelling.value = ""; // a formulation of the list takes the place of the program
-    }
     compose();
   }
-
-  /** @param {import("../state/spelling.js").Spelling} parsed */
-  const runsProgram = (parsed) => parsed.formulation.name === PROGRAM;
 
   /** Keeps what was set under the same key when the choice changes. */
   function compose() {
@@ -182,7 +150,7 @@ export function createMethodDialog(el, store, actions) {
       return { name, settings: list };
     };
     spelling.value = formatSpelling({
-      formulation: runsProgram(old) ? old.formulation : part("formulation", formulation.value),
+      formulation: part("formulation", formulation.value),
       integrator: part("integrator", integrator.value),
     });
     showParts();
@@ -195,17 +163,20 @@ export function createMethodDialog(el, store, actions) {
   const keeps = (setting, kept) =>
     kept.has(setting.key) && faultOf(setting, kept.get(setting.key)) === "";
 
-  /** The step of the scene; else the default, or the least that is allowed. */
+  /** The step of the other methods, or of the scene; else the default, or the least allowed. */
   function firstOf(setting) {
+    const others = data.methods.map(({ spelling: other }) => settingOf(data.catalogue, other, "h"));
+    const step = others.find((other) => other && other.value > 0)?.value;
     return setting.key === "h"
-      ? String(data.scene?.step || setting.default || 1e-3)
+      ? String(step || data.scene?.step || setting.default || 1e-3)
       : String(setting.default ?? setting.min);
   }
 
   function onTyped() {
     const parsed = parseSpelling(spelling.value);
-    if (cardOf(data.catalogue, "formulation", parsed.formulation.name)) {
-      formulation.value = parsed.formulation.name;
+    const { name } = parsed.formulation;
+    if ([...formulation.options].some(({ value }) => value === name)) {
+      formulation.value = name;
     }
     fillIntegrators();
     if (cardOf(data.catalogue, "integrator", parsed.integrator.name)) {
@@ -221,14 +192,8 @@ export function createMethodDialog(el, store, actions) {
     const parsed = parseSpelling(spelling.value);
     const card = cardOf(data.catalogue, "formulation", formulation.value);
     const stepper = cardOf(data.catalogue, "integrator", integrator.value);
-    if (runsProgram(parsed)) {
-      formulation.selectedIndex = -1; // none of the list
-    } else {
-      programs.value = "";
-    }
-    const own = "The equations are those of your program.";
-    say(about, runsProgram(parsed) ? own : withPowers(card?.rule ?? ""));
-    const notes = runsProgram(parsed) ? [] : [
+    say(about, withPowers(card?.rule ?? ""));
+    const notes = [
       card?.when_not && `Not suitable: ${card.when_not}.`,
       card?.limits && `${capital(card.limits)}.`,
       card?.order_note && `Order: ${card.order_note}.`,
@@ -361,6 +326,7 @@ export function createMethodDialog(el, store, actions) {
       say(title, m < 0 ? "Add a method" : `Change ${model.label}`);
       say(save, m < 0 ? "Add" : "Change");
       remove.hidden = m < 0 || data.methods.length < 2;
+      fillLists();
       spelling.value = model.spelling;
       onTyped();
       dialog.showModal();

@@ -3,6 +3,7 @@
 
 #include "base/units.h"
 #include "dynamics/compile/coordinates.h"
+#include "integrators/method/guest.h"
 #include "study/incidents/energy.h"
 #include "study/spectrum/load_share.h"
 #include "study/spectrum/region.h"
@@ -333,6 +334,11 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
     hn_diag diag = {0};
 
     if (!read_remedy(s, text, &spec)) {
+        return UNKNOWN;
+    }
+    if (hn_guest_is_named(spec.formulation->name)) {
+        // every step crosses a pipe: a trial would take longer than the run, and others wait for it
+        snprintf(said, sizeof(hn_remedy), "not tried: a trial would ask your program too often");
         return UNKNOWN;
     }
     opts.max_steps = pilot_start(w, k) == from ? PILOT_STEPS : START_STEPS;
