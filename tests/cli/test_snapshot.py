@@ -94,6 +94,13 @@ class Snapshot(Command):
                 done = call("snapshot", scene, "--time", "0.1", "--forces", "-o", path, "--describe")
                 self.assertIn(said, strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"], scene)
 
+    def test_an_exercise_with_one_configuration_says_that_times_are_not_used(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for times in (["--time", "0.5"], ["--at", "0.5"], ["--at", "0,0.5", "--ghosts"]):
+                done = call("snapshot", "p3", "--seed", "42", *times, "-o", os.path.join(folder, "p.png"))
+                self.assert_exit(done, DONE)
+                self.assertIn(b"one configuration and no motion", done.stderr)
+
     def test_several_loops_have_a_gap_over_all_constraints(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "g.png")

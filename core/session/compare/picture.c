@@ -253,7 +253,11 @@ static hn_status write_file(hn_strbuf *out, const sheet *p, hn_diags *diags) {
 static hn_status make_moments(sheet *p, hn_status *ended, hn_diags *diags) {
     const hn_picture_request *r = p->request;
     hn_status status = HN_OK;
-    if (r->n_times > HN_PICTURE_TIMES || (r->n_times > 0 && !r->methods)) {
+    if (r->n_times > 0 && !r->methods) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/at", "name a method, or leave the times out",
+                            "a picture without a method has one moment, and times were asked for");
+    }
+    if (r->n_times > HN_PICTURE_TIMES) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
                             "%d times were asked for; a picture can show 1 to %d", r->n_times,
                             HN_PICTURE_TIMES);

@@ -183,6 +183,8 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     if (status == HN_OK && s.view.n_entries > 0) {
         request.entries = s.entries;
         request.n_entries = s.view.n_entries;
+        request.n_times = 0; // one configuration has no other moments
+        request.ghosts = false;
     } else if (status == HN_OK) {
         choose_methods(args, hn_model_scene(s.model), &request);
     }
