@@ -45,14 +45,22 @@ static void blend(unsigned char *under, uint32_t rgb, double alpha) {
     }
 }
 
+static double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /// Widens the span of row `y` by the edge from p to q, where it crosses that row.
 static void cross_row(const double *p, const double *q, double y, double span[2]) {
     if ((p[1] <= y) == (q[1] <= y)) {
         return;
     }
     const double x = p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
-    span[0] = fmin(span[0], x);
-    span[1] = fmax(span[1], x);
+    span[0] = smaller(span[0], x);
+    span[1] = larger(span[1], x);
 }
 
 /// The samples of these columns of a row are paper where their pixels had no shape yet.
@@ -74,8 +82,8 @@ static void touch(tile *t, int row, int from, int to) {
 /// Samples of a triangle (in samples of the tile) that no shape of this layer has taken yet.
 static void fill_triangle(tile *t, double corner[3][2], const window *w, int number,
                           hn_paint paint) {
-    const double top = fmin(corner[0][1], fmin(corner[1][1], corner[2][1]));
-    const double bottom = fmax(corner[0][1], fmax(corner[1][1], corner[2][1]));
+    const double top = smaller(corner[0][1], smaller(corner[1][1], corner[2][1]));
+    const double bottom = larger(corner[0][1], larger(corner[1][1], corner[2][1]));
     const int first = clamp(ceil(top - 0.5), w->y0, w->y1);
     const int end = clamp(floor(bottom - 0.5) + 1, w->y0, w->y1);
     for (int row = first; row < end; row++) {
@@ -96,6 +104,29 @@ static void fill_triangle(tile *t, double corner[3][2], const window *w, int num
     }
 }
 
+/// A box around points [px]: least x, y, largest x, y.
+typedef struct bounds {
+    float low[2], high[2];
+} bounds;
+
+static bounds bounds_of(const float *xy, int n) {
+    bounds out = {{xy[0], xy[1]}, {xy[0], xy[1]}};
+    for (int i = 1; i < n; i++) {
+        for (int k = 0; k < 2; k++) {
+            const float x = xy[2 * i + k];
+            out.low[k] = x < out.low[k] ? x : out.low[k];
+            out.high[k] = x > out.high[k] ? x : out.high[k];
+        }
+    }
+    return out;
+}
+
+/// Whether a box lies beside the tile, further than a pixel away: what is in it takes no sample.
+static bool is_beside(const tile *t, bounds box) {
+    return box.high[0] < (float)(t->x0 - 1) || box.low[0] > (float)(t->x0 + TILE + 1) ||
+           box.high[1] < (float)(t->y0 - 1) || box.low[1] > (float)(t->y0 + TILE + 1);
+}
+
 static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, int number) {
     const int n = HN_CANVAS_SAMPLES;
     const window w = {
@@ -104,6 +135,9 @@ static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, in
     const hn_paint paint = {s->paint.rgb, s->paint.alpha * c->layers[s->layer]};
     for (int v = 0; v + 2 < s->count; v += 3) {
         double corner[3][2];
+        if (is_beside(t, bounds_of(c->xy + 2 * (s->first + v), 3))) {
+            continue;
+        }
         for (int i = 0; i < 3; i++) {
             const float *xy = c->xy + 2 * (s->first + v + i);
             corner[i][0] = n * ((double)xy[0] - t->x0);
@@ -114,7 +148,7 @@ static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, in
 }
 
 /// Layers in their order; within a layer the last shape first, so that it lies on top.
-static void draw_tile(tile *t, const hn_canvas *c) {
+static void draw_tile(tile *t, const hn_canvas *c, const bounds *box) {
     t->paper = hn_surface_get(c->theme)->paper;
     memset(t->touched, 0, sizeof t->touched);
     int number = 0;
@@ -126,7 +160,9 @@ static void draw_tile(tile *t, const hn_canvas *c) {
             number = 1;
         }
         for (int i = end - 1; i >= first; i--) {
-            draw_shape(t, c, &c->shapes[i], number);
+            if (c->shapes[i].count > 0 && !is_beside(t, box[i])) {
+                draw_shape(t, c, &c->shapes[i], number);
+            }
         }
     }
 }
@@ -141,12 +177,18 @@ static void average(const tile *t, const hn_canvas *c, unsigned char *rgb) {
                 set_sample(pixel, t->paper);
                 continue;
             }
-            for (int k = 0; k < 3; k++) {
-                int sum = area / 2;
-                for (int j = 0; j < area; j++) {
-                    sum += t->rgb[(n * (y - t->y0) + j / n) * SIDE + n * (x - t->x0) + j % n][k];
+            int sum[3] = {area / 2, area / 2, area / 2};
+            for (int row = 0; row < n; row++) {
+                const unsigned char *sample =
+                    t->rgb[(n * (y - t->y0) + row) * SIDE + n * (x - t->x0)];
+                for (int j = 0; j < 3 * n; j += 3) {
+                    sum[0] += sample[j];
+                    sum[1] += sample[j + 1];
+                    sum[2] += sample[j + 2];
                 }
-                pixel[k] = (unsigned char)(sum / area);
+            }
+            for (int k = 0; k < 3; k++) {
+                pixel[k] = (unsigned char)(sum[k] / area);
             }
         }
     }
@@ -154,15 +196,25 @@ static void average(const tile *t, const hn_canvas *c, unsigned char *rgb) {
 
 hn_status hn_raster_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
     tile *t = malloc(sizeof *t);
-    if (!t) {
+    bounds *box = malloc((size_t)(c->n_shapes + 1) * sizeof *box);
+    if (!t || !box) {
+        free(t);
+        free(box);
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
+    }
+    for (int i = 0; i < c->n_shapes; i++) {
+        const hn_canvas_shape *s = &c->shapes[i];
+        if (s->count > 0) {
+            box[i] = bounds_of(c->xy + 2 * s->first, s->count);
+        }
     }
     for (t->y0 = 0; t->y0 < c->height; t->y0 += TILE) {
         for (t->x0 = 0; t->x0 < c->width; t->x0 += TILE) {
-            draw_tile(t, c);
+            draw_tile(t, c, box);
             average(t, c, rgb);
         }
     }
+    free(box);
     free(t);
     return HN_OK;
 }

@@ -129,6 +129,12 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
 static hn_status load_exercise(const hn_library *lib, const cJSON *old, hn_exercise **out,
                                hn_diags *diags) {
     const char *id = text_of(old, "problem"), *file = text_of(old, "problem_file");
+    if (!file[0] && !hn_library_problem_path(lib, id) && hn_library_scene_path(lib, id)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/problem", "holonom grade SCENE PROGRAM",
+                            "'%.60s' is a scene, and this verdict does not hold the program that "
+                            "was graded; grade it again",
+                            id);
+    }
     if (file[0] && access(file, F_OK) != 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/problem_file",
                             "put the file there, or call regrade where grade was called",
