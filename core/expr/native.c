@@ -118,11 +118,13 @@ static uint64_t hash_of(const hn_tape *t) {
     uint64_t hash = 0;
     hash = hn_hash_bytes(hash, t->code, ((size_t)t->info.instructions + 1) * sizeof *t->code);
     hash = hn_hash_bytes(hash, t->constants, (size_t)t->n_constants * sizeof *t->constants);
+    hash = hn_hash_bytes(hash, &t->check.pair, sizeof t->check.pair);
     return hn_hash_bytes(hash, t->outputs, (size_t)t->info.n_outputs * sizeof *t->outputs);
 }
 
 static bool same_tape(const hn_tape *a, const hn_tape *b) {
     return memcmp(&a->info, &b->info, sizeof a->info) == 0 && a->n_constants == b->n_constants &&
+           hn_tape_check_equals(&a->check, &b->check) &&
            memcmp(a->code, b->code, ((size_t)a->info.instructions + 1) * sizeof *a->code) == 0 &&
            memcmp(a->constants, b->constants, (size_t)a->n_constants * sizeof *a->constants) == 0 &&
            memcmp(a->outputs, b->outputs, (size_t)a->info.n_outputs * sizeof *a->outputs) == 0;

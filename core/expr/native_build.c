@@ -25,7 +25,7 @@ static const char *const COMPILERS[] = {"gcc", "clang", "tcc"};
 // the same bits as the interpreter: no fused multiply-add; sqrt without errno is one instruction
 static const char *const FLAGS[] = {"-ffp-contract=off", "-fno-math-errno", "-fno-plt",
                                     "-shared",           "-fPIC",           "-w"};
-enum { N_FLAGS = sizeof FLAGS / sizeof *FLAGS, FORMAT = 2 };
+enum { N_FLAGS = sizeof FLAGS / sizeof *FLAGS, FORMAT = 3 };
 // -O2 up to so many bytes of text, -O1 beyond: straight-line code in pieces runs as fast, and gcc
 // takes two thirds of the time (3.2 in place of 5 s for the ladder of 200 loops)
 enum { LONG_TEXT = 400000 };

@@ -22,9 +22,9 @@ enum {
     HN_NATIVE_CALLS
 };
 
-/// Compiled code: evaluates a tape on its workspace.
+/// Compiled code: evaluates a tape on its workspace. Returns an hn_tape_verdict.
 typedef double (*hn_native_call)(const double *);
-typedef void (*hn_native_code)(double *work, const hn_native_call *call);
+typedef int (*hn_native_code)(double *work, const hn_native_call *call);
 
 /// A compiler and the folder for its results.
 typedef struct hn_native_builder {

@@ -48,16 +48,34 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
     }
 }
 
-void hn_tape_run(const hn_tape *tape, double *work) {
+/// The native code, if it is there; else the evaluation is counted.
+static inline hn_native_code find_code(const hn_tape *tape) {
+    hn_native_code code = NULL;
     if (tape->native) {
-        const hn_native_code code = atomic_load_explicit(&tape->native->code, memory_order_acquire);
-        if (code) {
-            code(work, tape->native->calls);
-            return;
+        code = atomic_load_explicit(&tape->native->code, memory_order_acquire);
+        if (!code) {
+            hn_native_count(tape, tape->native);
         }
-        hn_native_count(tape, tape->native);
+    }
+    return code;
+}
+
+void hn_tape_run(const hn_tape *tape, double *work) {
+    const hn_native_code code = find_code(tape);
+    if (code) {
+        code(work, tape->native->calls);
+    } else {
+        hn_tape_interpret(tape, work);
+    }
+}
+
+hn_tape_verdict hn_tape_run_checked(const hn_tape *tape, double *work) {
+    const hn_native_code code = find_code(tape);
+    if (code) {
+        return (hn_tape_verdict)code(work, tape->native->calls);
     }
     hn_tape_interpret(tape, work);
+    return HN_TAPE_UNCHECKED;
 }
 
 const uint16_t *hn_tape_output_slots(const hn_tape *tape) {

@@ -8,6 +8,7 @@
 // compilation and may be shared by threads; slots are per thread.
 
 #include "expr/graph.h"
+#include "expr/tape_check.h"
 
 #include <stddef.h>
 
@@ -28,6 +29,10 @@ typedef struct hn_tape_info {
 /// live values). The graph keeps the code: the same outputs and inputs again are compiled once.
 HN_MUST_CHECK hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out,
                                         const int *symbols, int n_sym, hn_tape **out);
+/// The same with a check of its answer, for hn_tape_run_checked(); its outputs are the first ones.
+HN_MUST_CHECK hn_status hn_tape_compile_checked(hn_graph *g, const hn_ex *outputs, int n_out,
+                                                const int *symbols, int n_sym,
+                                                const hn_tape_check *check, hn_tape **out);
 void hn_tape_free(hn_tape *tape);
 hn_tape_info hn_tape_get_info(const hn_tape *tape);
 /// Doubles that hn_tape_eval() needs as `work`; call hn_tape_prepare() once on a fresh workspace
@@ -41,6 +46,9 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
 /// and stay as they are; output k is work[hn_tape_output_slots()[k]] afterwards (borrowed,
 /// n_outputs).
 void hn_tape_run(const hn_tape *tape, double *work);
+/// The same, and returns what is known of the tape's check: native code of a short tape looks, on
+/// the way and for next to nothing; else it is left to the caller.
+hn_tape_verdict hn_tape_run_checked(const hn_tape *tape, double *work);
 const uint16_t *hn_tape_output_slots(const hn_tape *tape);
 
 struct hn_strbuf;

@@ -84,6 +84,7 @@ struct hn_tape {
     int32_t n_angles;          ///< the first instructions: each TAPE_SINCOS of an input
     hn_lanes_sincos_four four; ///< finds four of those at once; NULL: each by itself
     hn_tape_info info;
+    hn_tape_check check;            ///< of a tape without one: of no outputs
     struct hn_native_state *native; ///< NULL: the interpreter alone, see native.h
 };
 

@@ -421,6 +421,13 @@ static hn_status compile_and_keep(hn_graph *g, const hn_tape_key *key, hn_tape *
 
 hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const int *symbols,
                           int n_sym, hn_tape **out) {
+    const hn_tape_check none = {0};
+    return hn_tape_compile_checked(g, outputs, n_out, symbols, n_sym, &none, out);
+}
+
+hn_status hn_tape_compile_checked(hn_graph *g, const hn_ex *outputs, int n_out, const int *symbols,
+                                  int n_sym, const hn_tape_check *check, hn_tape **out) {
+    HN_ASSERT(check->n_answer + 2 * check->n_pairs + check->n_rows <= n_out);
     const hn_tape_key key = {outputs, n_out, symbols, n_sym};
     hn_tape *tape = NULL;
     if (!g->failed) {
@@ -429,6 +436,7 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
     if (!tape) {
         HN_TRY(compile_and_keep(g, &key, &tape));
     }
+    tape->check = *check;
     tape->native = hn_native_state_create(tape, HN_NATIVE_SINGLE);
     *out = tape;
     return HN_OK;

@@ -508,10 +508,10 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
 
     // the tape first
     if (s->tape.available) {
-        hn_tape_run(s->in.tape, s->in.x);
         s->ops += s->tape_ops;
-        if (!info && hn_accel_tape_take_sure(&s->tape, &s->in, HN_ACCEL_SURE_PIVOT,
-                                             HN_ACCEL_SURE_ROW, a, lambda)) {
+        if (info) {
+            hn_tape_run(s->in.tape, s->in.x);
+        } else if (hn_accel_tape_solve(&s->tape, &s->in, a, lambda)) {
             return HN_OK;
         }
     }

@@ -60,7 +60,7 @@ typedef struct verdicts {
     hn_lane_half zero[HALVES];
 } verdicts;
 
-/// The checks of hn_accel_tape_take_sure(), or stricter ones, on all lanes: rows are compared with
+/// The checks of hn_accel_tape_solve(), or stricter ones, on all lanes: rows are compared with
 /// the sum in place of the largest. Differences and signs, for compilers split comparisons of
 /// vectors that the processor does not have into single ones.
 HN_LANES_BODY judge_body(const hn_accel_lanes *l, verdicts *out) {

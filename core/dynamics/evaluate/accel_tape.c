@@ -58,6 +58,20 @@ static hn_ex *list_outputs(hn_accel_tape *tape, const hn_system *sys, const hn_l
     return outputs;
 }
 
+static hn_tape_check check_of(const hn_accel_tape *tape) {
+    return (hn_tape_check){.n_answer = tape->n_answer,
+                           .n_pairs = tape->n_guards,
+                           .n_rows = tape->n_out - tape->n_answer - 2 * tape->n_guards,
+                           .pair = HN_ACCEL_SURE_PIVOT,
+                           .row = HN_ACCEL_SURE_ROW};
+}
+
+static hn_status compile_checked(const hn_system *sys, const hn_ex *outputs,
+                                 const hn_accel_tape *tape, hn_arena *arena, hn_inputs *inputs) {
+    const hn_tape_check check = check_of(tape);
+    return hn_inputs_compile_checked(sys, outputs, tape->n_out, &check, arena, inputs);
+}
+
 hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool baumgarte,
                                 hn_arena *arena, hn_inputs *inputs, hn_accel_tape *tape) {
     hn_arena *scratch = hn_arena_create(0);
@@ -81,8 +95,7 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
         closure_rhs(sys, baumgarte, x + sys->nv);
         status = hn_ldl_solve(sys->g, ldl, x, x);
         outputs = status == HN_OK ? list_outputs(tape, sys, ldl, x, want_lambda) : NULL;
-        status =
-            outputs ? hn_inputs_compile(sys, outputs, tape->n_out, arena, inputs) : HN_ERR_MEMORY;
+        status = outputs ? compile_checked(sys, outputs, tape, arena, inputs) : HN_ERR_MEMORY;
     }
 
     free(outputs);
@@ -122,25 +135,21 @@ bool hn_accel_tape_take(const hn_accel_tape *tape, const hn_inputs *in, double *
     return zero + copy_outputs(in, in->nv, tape->n_answer, lambda) == 0;
 }
 
-bool hn_accel_tape_take_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
-                             double row, double *a, double *lambda) {
-    const double *const x = in->x;
-    const uint16_t *at = in->slots + tape->n_answer;
-    const uint16_t *const rows = at + 2 * tape->n_guards, *const end = in->slots + tape->n_out;
-    bool sure = true;
-    for (; at < rows; at += 2) { // a NaN is not above anything
-        sure &= fabs(x[at[0]]) > pivot * fabs(x[at[1]]);
+bool hn_accel_tape_solve(const hn_accel_tape *tape, const hn_inputs *in, double *a,
+                         double *lambda) {
+    const hn_tape_verdict verdict = hn_tape_run_checked(in->tape, in->x);
+    if (verdict == HN_TAPE_UNCHECKED) {
+        const hn_tape_check check = check_of(tape);
+        return hn_accel_tape_take(tape, in, a, lambda) &
+               hn_tape_check_guards_hold(&check, in->slots, in->x);
     }
 
-    // squares of rows: one that is not finite leaves NaN in `zero`
-    double least = HUGE_VAL, most = 0, zero = 0;
-    for (; at < end; at++) {
-        const double square = fabs(x[*at]);
-        least = square < least ? square : least;
-        most = square > most ? square : most;
-        zero += 0 * square;
+    // that the numbers are finite is known
+    for (int k = 0; k < in->nv; k++) {
+        a[k] = in->x[in->slots[k]];
     }
-    sure &= least > row * most;
-    zero += copy_outputs(in, 0, in->nv, a);
-    return sure && zero + copy_outputs(in, in->nv, tape->n_answer, lambda) == 0;
+    for (int k = in->nv; lambda && k < tape->n_answer; k++) {
+        lambda[k - in->nv] = in->x[in->slots[k]];
+    }
+    return verdict == HN_TAPE_SURE;
 }

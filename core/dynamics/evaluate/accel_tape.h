@@ -32,11 +32,10 @@ HN_MUST_CHECK hn_status hn_accel_tape_compile(const hn_system *sys, bool want_la
                                               bool baumgarte, hn_arena *arena, hn_inputs *inputs,
                                               hn_accel_tape *out);
 
-/// Takes the answer as hn_accel_tape_take() does. Returns whether it is finite, every pivot above
-/// `pivot` times its reference and every row's squared length above `row` times the largest:
-/// compares without a division, so `true` is sure and `false` is not.
-bool hn_accel_tape_take_sure(const hn_accel_tape *tape, const hn_inputs *in, double pivot,
-                             double row, double *a, double *lambda);
+/// Runs the tape and copies its answer as hn_accel_tape_take() does. Returns whether the answer is
+/// finite, every pivot above HN_ACCEL_SURE_PIVOT times its reference and every row's squared length
+/// above HN_ACCEL_SURE_ROW times the largest: `true` is sure, `false` asks for a closer look.
+bool hn_accel_tape_solve(const hn_accel_tape *tape, const hn_inputs *in, double *a, double *lambda);
 
 /// The smallest pivot relative to its reference after a run of the tape [-]; 0: not a number.
 double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in);

@@ -50,6 +50,12 @@ static void list_symbols(const hn_system *sys, int *symbols) {
 
 hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_out, hn_arena *arena,
                             hn_inputs *in) {
+    const hn_tape_check none = {0};
+    return hn_inputs_compile_checked(sys, outputs, n_out, &none, arena, in);
+}
+
+hn_status hn_inputs_compile_checked(const hn_system *sys, const hn_ex *outputs, int n_out,
+                                    const hn_tape_check *check, hn_arena *arena, hn_inputs *in) {
     set_sizes(sys, in);
     int *symbols = malloc((size_t)in->n * sizeof *symbols);
     if (!symbols) {
@@ -57,7 +63,8 @@ hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_ou
     }
 
     list_symbols(sys, symbols);
-    hn_status status = hn_tape_compile(sys->g, outputs, n_out, symbols, in->n, &in->tape);
+    hn_status status =
+        hn_tape_compile_checked(sys->g, outputs, n_out, symbols, in->n, check, &in->tape);
     free(symbols);
     if (status != HN_OK) {
         return status;

@@ -21,6 +21,10 @@ HN_MUST_CHECK hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, 
 /// The same with a tape for `outputs` and its workspace.
 HN_MUST_CHECK hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_out,
                                           hn_arena *arena, hn_inputs *in);
+/// The same with a check of the first outputs, see hn_tape_run_checked().
+HN_MUST_CHECK hn_status hn_inputs_compile_checked(const hn_system *sys, const hn_ex *outputs,
+                                                  int n_out, const hn_tape_check *check,
+                                                  hn_arena *arena, hn_inputs *in);
 void hn_inputs_free(hn_inputs *in);                ///< the tape
 void hn_inputs_put_pulls(hn_inputs *in, double t); ///< their values at t, the last inputs
 /// q (nq); v (nv) or NULL for zero. For a handful of numbers loops are quicker than a call.

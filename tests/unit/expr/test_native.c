@@ -293,6 +293,98 @@ static void angles_found_together_have_the_bits_of_single_ones(void **state) {
     }
 }
 
+// x and y are the answer, then a pivot x beside its reference z, then rows y and z
+static hn_tape *tape_with_check(void) {
+    const hn_tape_check check = {.n_answer = 2, .n_pairs = 1, .n_rows = 2, .pair = 0.5, .row = 0.1};
+    const int symbols[] = {0, 1, 2};
+    hn_tape *tape = NULL;
+    hn_graph *g = hn_graph_of_xyz();
+    hn_ex of[3], out[6];
+    for (int i = 0; i < 3; i++) { // products, so that the code has something to find
+        const hn_ex x = hn_graph_symbol_expr(g, i);
+        of[i] = hn_mul(g, x, hn_mul(g, x, x));
+    }
+    const int order[6] = {0, 1, 0, 2, 1, 2};
+    for (int i = 0; i < 6; i++) {
+        out[i] = of[order[i]];
+    }
+    assert_int_equal(hn_tape_compile_checked(g, out, 6, symbols, 3, &check, &tape), HN_OK);
+    hn_graph_free(g);
+    return tape;
+}
+
+static bool is_sure(const hn_tape *tape, double x, double y, double z) {
+    double work[32] = {0};
+    assert_true(hn_tape_work_size(tape) <= 32);
+    hn_tape_prepare(tape, work);
+    work[0] = x, work[1] = y, work[2] = z;
+    const hn_tape_verdict verdict = hn_tape_run_checked(tape, work);
+    const bool holds = hn_tape_check_holds(&tape->check, hn_tape_output_slots(tape), work);
+    if (verdict == HN_TAPE_UNCHECKED) {
+        return holds;
+    }
+    assert_int_equal(verdict == HN_TAPE_SURE, holds); // the code says what the library says
+    return verdict == HN_TAPE_SURE;
+}
+
+static void assert_checks(const hn_tape *tape) {
+    assert_true(is_sure(tape, 1, 1, 1));
+    assert_true(is_sure(tape, -1, 1, -1));  // sizes, not signs
+    assert_true(is_sure(tape, 2, 1, 1));    // a pivot may be large
+    assert_false(is_sure(tape, 0.7, 1, 1)); // 0.343 of its reference
+    assert_false(is_sure(tape, 1, 0.4, 1)); // a row of 0.064 beside 1
+    assert_false(is_sure(tape, 1, 1, 0.4));
+    assert_false(is_sure(tape, 0, 0, 0)); // nothing is above nothing
+    const double not_numbers[] = {nan(""), HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < 3; i++) {
+        const double x = not_numbers[i];
+        assert_false(is_sure(tape, x, 1, 1));
+        assert_false(is_sure(tape, 1, x, 1));
+        assert_false(is_sure(tape, 1, 1, x));
+        assert_false(is_sure(tape, x, x, x));
+    }
+}
+
+/// Made and compiled: looked up at its first run, built at its second.
+static hn_tape *native_tape_with_check(void) {
+    hn_native_start_eager(NULL);
+    hn_tape *tape = tape_with_check();
+    is_sure(tape, 1, 1, 1);
+    is_sure(tape, 1, 1, 1);
+    hn_native_wait();
+    assert_int_equal(hn_native_get_counts().ready, 1);
+    return tape;
+}
+
+static void native_code_says_whether_the_answer_is_sure(void **state) {
+    (void)state;
+    hn_tape *plain = tape_with_check();
+    assert_checks(plain);
+    hn_tape *tape = native_tape_with_check();
+    double work[32] = {0};
+    hn_tape_prepare(tape, work);
+    assert_int_not_equal(hn_tape_run_checked(tape, work), HN_TAPE_UNCHECKED); // it looks by itself
+    assert_checks(tape);
+    hn_tape_free(tape);
+    hn_tape_free(plain);
+}
+
+// The same operations with another check are other code.
+static void tapes_with_other_checks_have_each_its_own_code(void **state) {
+    (void)state;
+    hn_tape *tape = native_tape_with_check();
+    hn_tape *other = tape_with_check();
+    assert_non_null(other->native->loaded);
+    other->check.pair = 0.9;
+    hn_native_state_release(other->native);
+    other->native = hn_native_state_create(other, HN_NATIVE_SINGLE);
+    assert_null(other->native->loaded);
+    assert_true(is_sure(tape, 0.9, 1, 1)); // 0.729
+    assert_false(is_sure(other, 0.9, 1, 1));
+    hn_tape_free(other);
+    hn_tape_free(tape);
+}
+
 #define ROW(name) \
     cmocka_unit_test_setup_teardown(name, hn_native_tapes_set_up, hn_native_tapes_tear_down)
 
@@ -302,6 +394,8 @@ int main(void) {
         ROW(angles_found_together_have_the_bits_of_single_ones),
         ROW(a_tape_in_pieces_gives_the_bits_of_the_interpreter),
         ROW(an_equal_tape_has_the_code_that_is_loaded_from_the_start),
+        ROW(native_code_says_whether_the_answer_is_sure),
+        ROW(tapes_with_other_checks_have_each_its_own_code),
         ROW(a_suspended_thread_compiles_no_native_tapes),
         ROW(a_short_run_asks_for_nothing),
         ROW(costs_are_measured),
