@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -108,6 +109,18 @@ class Runs(unittest.TestCase):
         for question, pointer in (({"scene": "four-bar", "time": 1}, "/method"), ({**RUN, "methods": [RUN["method"]]}, "/method"),
                                   ({**RUN, "method": "indx1@rk4:h=1e-3"}, "/method")):
             self.assertEqual(self.ask(question, status=422).json()["errors"][0]["pointer"], pointer)
+
+    def test_who_waits_for_a_run_is_told_when_the_server_ends(self):
+        """The answer was a finished run whose computing time was used up, after a second of it."""
+        server, answers = driver.Server(), []
+        threads = [threading.Thread(target=lambda q=q: answers.append(server.ask("POST", "/api/v1/runs?wait=50", q, timeout=90))) for q in (LONG, {**LONG, "time": 999})]
+        for t in threads:
+            t.start()
+        time.sleep(1)
+        self.assertEqual(server.stop(), 0)
+        for t in threads:
+            t.join()
+        self.assertEqual([(a.status, a.json()["type"]) for a in answers], [(503, "/api/v1/errors/stopping")] * 2)
 
     def test_several_methods_are_one_run(self):
         methods = ["index1@rk4:h=1e-3", "projection@rk4:h=1e-3"]

@@ -245,6 +245,17 @@ class Streams(driver.ServerCase):
         incidents = [d for n, _, d in seen if n == "incident"]
         self.assertTrue(any(i["method"] == 0 for i in incidents))
 
+    def test_the_end_of_the_server_is_told_to_its_readers(self):
+        server = driver.Server()
+        readers = [Events(server, server.compare(paused=paused, duration=600)["id"]) for paused in (True, False)]
+        for reader in readers:
+            reader.take(2)
+        self.assertEqual(server.stop(), 0)
+        for reader in readers:
+            events = [(name, data) for name, _, data in reader if name != "comment"]
+            self.assertEqual(events[-1], ("stopping", {"detail": "the server is going down"}))
+            reader.close()
+
     def test_deleting_ends_the_stream_with_an_end(self):
         c = self.server.compare(paused=False, duration=100)
         reader = Events(self.server, c["id"])

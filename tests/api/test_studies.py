@@ -516,6 +516,7 @@ class Bounded(unittest.TestCase):
             start(server, body)
         time.sleep(0.5)
         self.assertEqual(server.stop(), 0, "".join(server.errors))
+        self.assertIn("the server ends while 2 of its studies run; their results are lost", "".join(server.errors))
 
 
 if __name__ == "__main__":

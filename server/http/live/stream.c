@@ -123,6 +123,11 @@ static void fill(hn_stream *s) {
         hn_strbuf_add(&s->text, "event: end\ndata: {\"deleted\":true}\n\n");
         s->said_end = 1;
     }
+    if (s->text.n == 0 && s->session->ending && !s->said_end) {
+        hn_strbuf_add(&s->text,
+                      "event: stopping\ndata: {\"detail\":\"the server is going down\"}\n\n");
+        s->said_end = 1;
+    }
     if (s->text.n == 0 && !is_at_end(s) &&
         hn_clock_wall() - s->last_sent >= s->session->opts->keep_alive) {
         hn_strbuf_add(&s->text, ": still here\n\n");

@@ -305,7 +305,10 @@ static void compute(void *arg, hn_job_turn *turn) {
 
     // a run that was stopped is not the answer to its question
     const int stopped = atomic_load(&run->stop);
-    const bool is_kept = run->refused == HN_OK && !stopped && !run->is_cut;
+    if (stopped) {
+        run->refused = HN_ERR_STOPPED;
+    }
+    const bool is_kept = run->refused == HN_OK && !run->is_cut;
     if (is_kept) {
         hn_run_folder_keep(all->opts->runs_folder, run);
     }
@@ -313,7 +316,7 @@ static void compute(void *arg, hn_job_turn *turn) {
     run->phase = run->refused == HN_OK ? HN_RUN_DONE : HN_RUN_REFUSED;
     hn_kept_run **place = find_place(all, run->id);
     const int known = *place == run;
-    if (known && run->phase == HN_RUN_DONE && !stopped) {
+    if (known && run->phase == HN_RUN_DONE) {
         all->bytes += run->bytes;
     } else if (known) {
         run->bytes = 0;

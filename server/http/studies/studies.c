@@ -206,12 +206,20 @@ static void free_all(hn_study **dead, int n) {
 }
 
 void hn_studies_tell_end(hn_studies *all) {
+    int n_running = 0;
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
     for (int i = 0; i < all->n; i++) {
         atomic_store(&all->list[i]->work.stop, 1);
+        n_running += !all->list[i]->done;
     }
     pthread_mutex_unlock(&all->lock);
+    if (n_running > 0) {
+        fprintf(stderr,
+                "holonom: the server ends while %d of its studies %s; their results are lost; "
+                "'holonom study' keeps what it has done\n",
+                n_running, n_running == 1 ? "runs" : "run");
+    }
 }
 
 void hn_studies_stop(hn_studies *all) {

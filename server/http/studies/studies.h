@@ -15,7 +15,7 @@ struct hn_request;
 
 /// `opts` and `lib` must outlive it. NULL when memory is out.
 hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib);
-/// Asks every study to stop, and waits for nothing.
+/// Asks every study to stop, waits for nothing, and reports on standard error how many ran.
 void hn_studies_tell_end(hn_studies *all);
 /// Asks every study to stop and waits for their threads. NULL is legal.
 void hn_studies_stop(hn_studies *all);
