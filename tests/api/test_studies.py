@@ -269,6 +269,11 @@ class Studies(driver.ServerCase):
         self.assertEqual(presets["limits"]["units"], [])
         self.assertEqual(kinds["budget"]["title"], "where the error comes from")
         self.assertEqual(kinds["work-precision"]["chooses"], ["h", "rtol"])
+        parts = kinds["budget"]["parts"]
+        self.assertEqual([p["letter"] for p in parts["error"]], list("TFPDLR"))
+        self.assertEqual([p["letter"] for p in parts["energy"]], list("TFPOW"))
+        self.assertTrue(all(p["name"] and p["word"] and p["about"] for of in parts.values() for p in of))
+        self.assertNotIn("parts", kinds["stability"])
         for kind in kinds.values():
             for field in kind["fields"]:
                 self.assertTrue(field["about"], field)

@@ -237,6 +237,33 @@ test("a map of steps whose axis ends before the present step is made again with 
   );
 });
 
+test("the parts of a budget have the server's names, letters and words", async (t) => {
+  const page = await open(t, { hash: "#scene=four-bar&method=index1@rk4:h=1e-3" });
+  const index = await (await fetch(new URL("/api/v1/", page.url()))).json();
+  const { parts } = index.studies.find(({ name }) => name === "budget");
+  await page.focus("#play");
+  await page.keyboard.press("e");
+  await until(page, (data) => data.studies.budget.state === "finished", LONG);
+  const panel = page.locator("#study-budget");
+  for (const [of, word] of [
+    ["error", "position error"],
+    ["energy", "energy"],
+  ]) {
+    await panel.getByRole("button", { name: word, exact: true }).click();
+    await soon(async () => {
+      assert.deepEqual(
+        await panel.locator(".legend li").allTextContents(),
+        parts[of].map(({ letter, about }) => `${letter}${about}`),
+      );
+      assert.deepEqual(await panel.locator("thead th").allTextContents(), [
+        "method",
+        "all",
+        ...parts[of].map(({ word: over }) => over),
+      ]);
+    });
+  }
+});
+
 test("E shows the parts of each method's error, that add up to it", async (t) => {
   const page = await open(t, { hash: "#scene=pendulum&method=index1@rk4:h=0.05&study=budget" });
   await until(page, hasEnded("budget"), LONG);

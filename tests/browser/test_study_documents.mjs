@@ -91,7 +91,10 @@ test("the cheapest method for an accuracy lies between its measured points", () 
   const lucky = [dot(1, 1, 1e-5, 2), dot(1, 0.1, 1e-1, 20), dot(1, 0.01, 1e-3, 200)];
   const [first, ...others] = cheapestFor([steep, lucky], 2e-4);
   assert.equal(first.m, 0);
-  assert.ok(Math.abs(first.cost - Math.sqrt(1000)) < 1e-9, "half-way in decades, for half the error");
+  assert.ok(
+    Math.abs(first.cost - Math.sqrt(1000)) < 1e-9,
+    "half-way in decades, for half the error",
+  );
   assert.ok(Math.abs(first.size - Math.sqrt(1e-3)) < 1e-9);
   assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
   const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
@@ -131,7 +134,8 @@ test("a method of a document keeps its name where the page has others before it"
 });
 
 test("the step that runs has two digits and is not larger than what was found", () => {
-  const of = (size, atMost) => sizeToRun({ m: 0, cost: 1, size, dot: null, atMost });
+  const of = (size, measured) =>
+    sizeToRun({ m: 0, cost: 1, size, dot: null, atMost: measured, measured });
   assert.equal(of(2.86e-3, false), 2.8e-3);
   assert.equal(of(0.0625, true), 0.0625, "a measured step is run as it is");
 });

@@ -9,9 +9,11 @@
  * @typedef {{
  *   name: string, about: string, chooses: string[], stabilised: boolean, units: string[],
  * }} Preset
+ * `parts`: what the parts of its numbers are called, by the member of the document that has them.
+ * @typedef {{name: string, letter: string, word: string, about: string}} Part
  * @typedef {{
  *   name: string, title: string, about: string, chooses: string[], presets: Preset[],
- *   fields: {name: string, max?: number}[],
+ *   fields: {name: string, max?: number}[], parts?: Record<string, Part[]>,
  * }} StudyKind
  * @typedef {{code: string, name: string, rule: string}} IncidentKind
  */
@@ -51,6 +53,9 @@ export function presets() {
   const list = studyOf("stability")?.presets ?? [];
   return [...list].sort((a, b) => Number(b.stabilised) - Number(a.stabilised));
 }
+
+/** Parts of a budget, in the server's order. @param {string} of "error" or "energy" */
+export const partsOfBudget = (of) => studyOf("budget")?.parts?.[of] ?? [];
 
 /**
  * How many methods a study takes at most.

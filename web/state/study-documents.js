@@ -261,53 +261,6 @@ export function frameOf(dots, floor) {
   };
 }
 
-export const CAUSES = [
-  { name: "truncation", word: "steps", letter: "T", about: "steps of the integrator" },
-  {
-    name: "formulation",
-    word: "formulation",
-    letter: "F",
-    about: "terms that the formulation adds to the equations",
-  },
-  {
-    name: "projection",
-    word: "projection",
-    letter: "P",
-    about: "displacement by the projection along the motion",
-  },
-  {
-    name: "drift",
-    word: "drift",
-    letter: "D",
-    about: "error caused by constraint violation, accumulated",
-  },
-  { name: "solve", word: "solve", letter: "L", about: "rounding of the linear solve" },
-  { name: "rounding", word: "rounding", letter: "R", about: "rounding of the sums" },
-];
-
-export const BILL = [
-  { name: "truncation", word: "steps", letter: "T", about: "steps of the integrator" },
-  {
-    name: "formulation",
-    word: "formulation",
-    letter: "F",
-    about: "terms that the formulation adds",
-  },
-  { name: "projection", word: "projection", letter: "P", about: "work of the projection" },
-  {
-    name: "loops",
-    word: "loops",
-    letter: "O",
-    about: "loop forces, where the loops have a velocity violation",
-  },
-  {
-    name: "outside",
-    word: "loads",
-    letter: "W",
-    about: "work of dampers, drives and loads: intended",
-  },
-];
-
 /**
  * Where the parts of a sum stand on a line: negative ones to the left of 0, positive ones to the
  * right, in shares of the longer side.

@@ -44,8 +44,10 @@ export function wantedError(text, error, length) {
 
 /**
  * @typedef {import("./study-documents.js").Dot} Dot
- * @typedef {{m: number, cost: number, size: number, dot: Dot, atMost: boolean, measured: boolean, coarser?: Dot}}
- *   Reach
+ * @typedef {{
+ *   m: number, cost: number, size: number, dot: Dot, atMost: boolean, measured: boolean,
+ *   coarser?: Dot,
+ * }} Reach
  *   atMost: the coarsest run is already accurate enough; measured: it is the size of a run
  */
 
@@ -70,7 +72,14 @@ function reachOf(dots, wanted) {
     return null;
   }
   const last = fine[away < 0 ? fine.length - 1 : away - 1];
-  const reach = { m: last.m, cost: last.cost, size: last.size, dot: last, atMost: away < 0, measured: true };
+  const reach = {
+    m: last.m,
+    cost: last.cost,
+    size: last.size,
+    dot: last,
+    atMost: away < 0,
+    measured: true,
+  };
   if (away < 0) {
     return reach;
   }

@@ -2,9 +2,10 @@
 // @ts-check
 // Where the error at the end comes from, and who put energy in: the parts of each method as a bar
 // that adds up, and as numbers.
+import { partsOfBudget } from "../state/catalogue.js";
 import { parseQuantity, plain, quantity, scientific, seconds } from "../state/format.js";
 import { BUDGETS } from "../state/shown.js";
-import { BILL, CAUSES, barsOf } from "../state/study-documents.js";
+import { barsOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
 const HEIGHT = 30;
@@ -12,12 +13,14 @@ const DIGITS = 3; // so that the parts add up as they are printed
 const ABSURD = 10; // times the whole: parts that add up to more say nothing
 const LETTERED = 16; // [px] a part at least so long has its letter
 
-/** By the names that a link has for them. */
-const SHOWS = BUDGETS.map((name) =>
-  name === "error"
-    ? { name, word: "position error", order: CAUSES }
-    : { name, word: "energy", order: BILL },
-);
+/** By the names that a link has for them; `order`: their parts, as the server lists them. */
+const SHOWS = BUDGETS.map((name) => ({
+  name,
+  word: name === "error" ? "position error" : "energy",
+  get order() {
+    return partsOfBudget(name);
+  },
+}));
 
 /** @param {number | null} value @param {string} unit */
 const numberOf = (value, unit) =>

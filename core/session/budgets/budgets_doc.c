@@ -29,7 +29,7 @@ static void put_error(hn_strbuf *b, const hn_budget_row *row, const hn_coordinat
     hn_json_key(b, "parts");
     hn_json_object(b);
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-        hn_json_put_number(b, hn_cause_name((hn_cause)i), hn_budget_part(row, 0, i));
+        hn_json_put_number(b, hn_cause_words((hn_cause)i)->name, hn_budget_part(row, 0, i));
     }
     hn_json_end_object(b);
     hn_json_end_object(b);
@@ -46,7 +46,8 @@ static void put_energy(hn_strbuf *b, const hn_budget_row *row) {
     hn_json_key(b, "parts");
     hn_json_object(b);
     for (int i = 0; i < HN_ENERGY_COUNT; i++) {
-        hn_json_put_number(b, hn_energy_item_name((hn_energy_item)i), hn_budget_part(row, 1, i));
+        hn_json_put_number(b, hn_energy_item_words((hn_energy_item)i)->name,
+                           hn_budget_part(row, 1, i));
     }
     hn_json_end_object(b);
     hn_json_end_object(b);
@@ -131,11 +132,11 @@ static void put_row(hn_strbuf *b, const hn_budgets *a, const hn_budget_row *row)
 void hn_budgets_csv(hn_strbuf *b, const hn_budgets *a) {
     hn_strbuf_add(b, "method,state,t,steps,coordinate,unit,error,error_sum,mismatch");
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-        hn_strbuf_printf(b, ",error_%s", hn_cause_name((hn_cause)i));
+        hn_strbuf_printf(b, ",error_%s", hn_cause_words((hn_cause)i)->name);
     }
     hn_strbuf_add(b, ",energy_change,energy_swing");
     for (int i = 0; i < HN_ENERGY_COUNT; i++) {
-        hn_strbuf_printf(b, ",energy_%s", hn_energy_item_name((hn_energy_item)i));
+        hn_strbuf_printf(b, ",energy_%s", hn_energy_item_words((hn_energy_item)i)->name);
     }
     hn_strbuf_add(b, ",reason\n");
     for (int i = 0; i < a->n; i++) {

@@ -27,8 +27,8 @@ static void put_head(hn_strbuf *b, int energy) {
                             : "error of</th><th class=\"n\">at the end");
     for (int k = 0; k < (energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT); k++) {
         hn_strbuf_printf(b, "</th><th class=\"n\">%s%s",
-                         energy ? hn_energy_item_name((hn_energy_item)k)
-                                : hn_cause_name((hn_cause)k),
+                         energy ? hn_energy_item_words((hn_energy_item)k)->name
+                                : hn_cause_words((hn_cause)k)->name,
                          energy ? " [J]" : "");
     }
     hn_strbuf_add(b, energy ? "</th></tr></thead>"
@@ -103,12 +103,12 @@ static void put_reasons(hn_strbuf *b, const hn_budgets *a) {
 static void put_legend(hn_strbuf *b) {
     hn_strbuf_add(b, "<h2>What the words mean</h2><dl>");
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_cause_name((hn_cause)i),
-                         hn_cause_about((hn_cause)i));
+        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_cause_words((hn_cause)i)->name,
+                         hn_cause_words((hn_cause)i)->about);
     }
     for (int i = HN_ENERGY_LOOPS; i < HN_ENERGY_COUNT; i++) {
-        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_energy_item_name((hn_energy_item)i),
-                         hn_energy_item_about((hn_energy_item)i));
+        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_energy_item_words((hn_energy_item)i)->name,
+                         hn_energy_item_words((hn_energy_item)i)->about);
     }
     hn_strbuf_add(b, "</dl><p class=\"quiet\">Some integrators solve the constraint equations "
                      "themselves, as in ggl@radau5: there truncation is the error of formulation "

@@ -40,7 +40,8 @@ static int take_parts(const hn_model *model, const hn_budget_row *row, int energ
     snprintf(p->of, sizeof p->of, energy ? "change of energy" : "error of %.60s",
              energy ? "" : c->name);
     for (int i = 0; i < p->n; i++) {
-        p->name[i] = energy ? hn_energy_item_name((hn_energy_item)i) : hn_cause_name((hn_cause)i);
+        p->name[i] = energy ? hn_energy_item_words((hn_energy_item)i)->name
+                            : hn_cause_words((hn_cause)i)->name;
         p->value[i] = hn_budget_part(row, energy, i);
     }
     return isfinite(p->whole);

@@ -226,6 +226,10 @@ void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit) {
         hn_json_end_array(b);
 
         put_presets(b, KINDS[i]);
+        if (KINDS[i]->put_parts) {
+            hn_json_key(b, "parts");
+            KINDS[i]->put_parts(b);
+        }
         hn_json_end_object(b);
     }
     hn_json_end_array(b);

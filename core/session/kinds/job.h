@@ -47,6 +47,9 @@ typedef struct hn_job_kind {
     bool opens_slowly;      ///< open() computes for seconds
     const hn_field *fields; ///< beside the scene
     const hn_job_preset *(*preset)(int i); ///< choices of its field "preset"; NULL: none
+    /// Appends what the parts of its numbers are called, by the member of the document that has
+    /// them: {"error": [{"name","letter","word","about"}...]}. NULL: its numbers have no parts.
+    void (*put_parts)(hn_strbuf *b);
     hn_job_form forms[HN_JOB_FORMS];
     /// Checks the request and takes up what an interrupted job of the same request left. Returns
     /// owned in *work. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_IO and others, reported in diags.
@@ -92,9 +95,9 @@ void hn_job_free(hn_job *job);              ///< NULL is legal
 
 /// The list for the index of the API:
 /// [{"name","title","about","chooses","fields":[{"name","type","min","max","choices","about"}...],
-/// "presets":[{"name","about","chooses","stabilised","units"}...]}...], kinds that a server offers,
-/// bounds as they hold there. `time_limit`: the server's own field of that name,
-/// in place of each kind's.
+/// "presets":[{"name","about","chooses","stabilised","units"}...],"parts"}...], kinds that a server
+/// offers, with "parts" where the kind has put_parts(), and bounds as they hold there.
+/// `time_limit`: the server's own field of that name, in place of each kind's.
 void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit);
 
 // fields that several kinds have

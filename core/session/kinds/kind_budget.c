@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Error budget: where the error at the end of a run comes from, and where its energy goes.
+#include "base/json_text.h"
 #include "session/budgets/budgets.h"
 #include "session/kinds/job.h"
 #include "session/budgets/budgets_doc.h"
@@ -42,6 +43,32 @@ static void release(void *work) {
     hn_budgets_free(work);
 }
 
+static void put_part(hn_strbuf *b, const hn_budget_part_words *words) {
+    hn_json_object(b);
+    hn_json_put_string(b, "name", words->name);
+    hn_json_put_string(b, "letter", words->letter);
+    hn_json_put_string(b, "word", words->word);
+    hn_json_put_string(b, "about", words->about);
+    hn_json_end_object(b);
+}
+
+static void put_parts(hn_strbuf *b) {
+    hn_json_object(b);
+    hn_json_key(b, "error");
+    hn_json_array(b);
+    for (int i = 0; i < HN_CAUSE_COUNT; i++) {
+        put_part(b, hn_cause_words((hn_cause)i));
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "energy");
+    hn_json_array(b);
+    for (int i = 0; i < HN_ENERGY_COUNT; i++) {
+        put_part(b, hn_energy_item_words((hn_energy_item)i));
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
+
 HN_JOB_FORM(html, hn_budgets, hn_budgets_html)
 HN_JOB_FORM(json, hn_budgets, hn_budgets_json)
 HN_JOB_FORM(csv, hn_budgets, hn_budgets_csv)
@@ -56,6 +83,7 @@ const hn_job_kind hn_kind_budget = {
     .chooses = "",
     .served = true,
     .fields = FIELDS,
+    .put_parts = put_parts,
     .forms = {{".html", put_html}, {".json", put_json}, {".csv", put_csv}},
     .open = open_budgets,
     .resumed = resumed,

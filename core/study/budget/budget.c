@@ -16,31 +16,23 @@ enum { MOST_STEPS = 200000, NODES = 3 };
 #define MOST_DOUBLES 40e6 // of memory for the steps: 320 MB
 #define FLOW_TOL 1e-14    // of the flows beside each step
 
-static const char *const cause_names[HN_CAUSE_COUNT][2] = {
-#define HN_CAUSE_ROW(code, name, about) {name, about},
+static const hn_budget_part_words cause_words[HN_CAUSE_COUNT] = {
+#define HN_CAUSE_ROW(code, name, letter, word, about) {name, letter, word, about},
     HN_CAUSE_LIST(HN_CAUSE_ROW)
 #undef HN_CAUSE_ROW
 };
-static const char *const energy_item_names[HN_ENERGY_COUNT][2] = {
-#define HN_ENERGY_ROW(code, name, about) {name, about},
+static const hn_budget_part_words energy_item_words[HN_ENERGY_COUNT] = {
+#define HN_ENERGY_ROW(code, name, letter, word, about) {name, letter, word, about},
     HN_ENERGY_LIST(HN_ENERGY_ROW)
 #undef HN_ENERGY_ROW
 };
 
-const char *hn_cause_name(hn_cause cause) {
-    return cause_names[cause][0];
+const hn_budget_part_words *hn_cause_words(hn_cause cause) {
+    return &cause_words[cause];
 }
 
-const char *hn_cause_about(hn_cause cause) {
-    return cause_names[cause][1];
-}
-
-const char *hn_energy_item_name(hn_energy_item item) {
-    return energy_item_names[item][0];
-}
-
-const char *hn_energy_item_about(hn_energy_item item) {
-    return energy_item_names[item][1];
+const hn_budget_part_words *hn_energy_item_words(hn_energy_item item) {
+    return &energy_item_words[item];
 }
 
 // ---- the equations of motion as index 1, defined off the loops too ----

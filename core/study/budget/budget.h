@@ -32,41 +32,53 @@
 
 #include <stdbool.h>
 
-#define HN_CAUSE_LIST(X)                                                                       \
-    X(HN_CAUSE_TRUNCATION, "truncation", "error of the integrator's steps")                    \
-    X(HN_CAUSE_FORMULATION, "formulation", "terms that the formulation adds to the equations") \
-    X(HN_CAUSE_PROJECTION, "projection", "displacement by the projection along the motion")    \
-    X(HN_CAUSE_DRIFT, "drift",                                                                 \
-      "error of the steps off the loops, less what the projection removes of it")              \
-    X(HN_CAUSE_SOLVE, "solve", "rounding in the linear solve, against another solver")         \
-    X(HN_CAUSE_ROUNDING, "rounding", "rounding in the sums, against compensated sums")
+/// What a part of a budget is called: name in documents, letter on its bar, word over its column,
+/// and what it is.
+typedef struct hn_budget_part_words {
+    const char *name;
+    const char *letter;
+    const char *word;
+    const char *about;
+} hn_budget_part_words;
+
+#define HN_CAUSE_LIST(X)                                                                  \
+    X(HN_CAUSE_TRUNCATION, "truncation", "T", "steps", "error of the integrator's steps") \
+    X(HN_CAUSE_FORMULATION, "formulation", "F", "formulation",                            \
+      "terms that the formulation adds to the equations")                                 \
+    X(HN_CAUSE_PROJECTION, "projection", "P", "projection",                               \
+      "displacement by the projection along the motion")                                  \
+    X(HN_CAUSE_DRIFT, "drift", "D", "drift",                                              \
+      "error of the steps off the loops, less what the projection removes of it")         \
+    X(HN_CAUSE_SOLVE, "solve", "L", "solve",                                              \
+      "rounding in the linear solve, against another solver")                             \
+    X(HN_CAUSE_ROUNDING, "rounding", "R", "rounding",                                     \
+      "rounding in the sums, against compensated sums")
 
 typedef enum hn_cause {
-#define HN_CAUSE_ENUM(code, name, about) code,
+#define HN_CAUSE_ENUM(code, name, letter, word, about) code,
     HN_CAUSE_LIST(HN_CAUSE_ENUM)
 #undef HN_CAUSE_ENUM
         HN_CAUSE_COUNT
 } hn_cause;
-/// Columns 2 and 3 of HN_CAUSE_LIST.
-const char *hn_cause_name(hn_cause cause);
-const char *hn_cause_about(hn_cause cause);
+/// The words of a row of HN_CAUSE_LIST.
+const hn_budget_part_words *hn_cause_words(hn_cause cause);
 
-#define HN_ENERGY_LIST(X)                                                             \
-    X(HN_ENERGY_TRUNCATION, "truncation", "error of the integrator's steps")          \
-    X(HN_ENERGY_FORMULATION, "formulation", "terms that the formulation adds")        \
-    X(HN_ENERGY_PROJECTION, "projection", "work of the projection")                   \
-    X(HN_ENERGY_LOOPS, "loops", "constraint forces, where velocities open the loops") \
-    X(HN_ENERGY_OUTSIDE, "outside", "work of dampers, drives and loads: no error")
+#define HN_ENERGY_LIST(X)                                                                          \
+    X(HN_ENERGY_TRUNCATION, "truncation", "T", "steps", "error of the integrator's steps")         \
+    X(HN_ENERGY_FORMULATION, "formulation", "F", "formulation", "terms that the formulation adds") \
+    X(HN_ENERGY_PROJECTION, "projection", "P", "projection", "work of the projection")             \
+    X(HN_ENERGY_LOOPS, "loops", "O", "loops",                                                      \
+      "constraint forces, where velocities open the loops")                                        \
+    X(HN_ENERGY_OUTSIDE, "outside", "W", "loads", "work of dampers, drives and loads: no error")
 
 typedef enum hn_energy_item {
-#define HN_ENERGY_ENUM(code, name, about) code,
+#define HN_ENERGY_ENUM(code, name, letter, word, about) code,
     HN_ENERGY_LIST(HN_ENERGY_ENUM)
 #undef HN_ENERGY_ENUM
         HN_ENERGY_COUNT
 } hn_energy_item;
-/// Columns 2 and 3 of HN_ENERGY_LIST.
-const char *hn_energy_item_name(hn_energy_item item);
-const char *hn_energy_item_about(hn_energy_item item);
+/// The words of a row of HN_ENERGY_LIST.
+const hn_budget_part_words *hn_energy_item_words(hn_energy_item item);
 
 typedef struct hn_budget {
     hn_run_state state; ///< of the run; a budget of a failed one goes to where it got

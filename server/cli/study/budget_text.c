@@ -39,7 +39,8 @@ static sheet gather(const hn_budgets *a, int energy) {
 }
 
 static const char *name_of(const sheet *s, int part) {
-    return s->energy ? hn_energy_item_name((hn_energy_item)part) : hn_cause_name((hn_cause)part);
+    return s->energy ? hn_energy_item_words((hn_energy_item)part)->name
+                     : hn_cause_words((hn_cause)part)->name;
 }
 
 static const char *unit_of(const sheet *s, int i) {
@@ -245,12 +246,12 @@ static void put_notes(hn_strbuf *b, const hn_budgets *a) {
 static void put_legend(hn_strbuf *b) {
     hn_strbuf_add(b, "\n");
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-        hn_strbuf_printf(b, "  %-12s %s\n", hn_cause_name((hn_cause)i),
-                         hn_cause_about((hn_cause)i));
+        hn_strbuf_printf(b, "  %-12s %s\n", hn_cause_words((hn_cause)i)->name,
+                         hn_cause_words((hn_cause)i)->about);
     }
     for (int i = HN_ENERGY_LOOPS; i < HN_ENERGY_COUNT; i++) {
-        hn_strbuf_printf(b, "  %-12s %s\n", hn_energy_item_name((hn_energy_item)i),
-                         hn_energy_item_about((hn_energy_item)i));
+        hn_strbuf_printf(b, "  %-12s %s\n", hn_energy_item_words((hn_energy_item)i)->name,
+                         hn_energy_item_words((hn_energy_item)i)->about);
     }
     hn_strbuf_add(
         b, "  Some integrators solve the constraint equations themselves, as in ggl@radau5: there "
