@@ -266,7 +266,7 @@ static bool is_read_as_own(const hn_part *p, int i, const cJSON *states) {
 }
 
 /// The names that a formula may use: the part's own, then those of the numbers that the exercise
-/// gives. What follows from other names is left out: it may be what is asked for.
+/// gives, with these: the question may give them without a name. What follows from other names is left out: it may be what is asked for.
 static void put_names(hn_strbuf *b, const hn_part *p) {
     const cJSON *states = cJSON_GetObjectItemCaseSensitive(p->node, "states"), *m;
     if (!states) {
@@ -280,8 +280,11 @@ static void put_names(hn_strbuf *b, const hn_part *p) {
     for (int i = 0; p->draw && i < p->draw->n_names; i++) {
         const bool own = cJSON_GetObjectItemCaseSensitive(states, p->draw->name[i]) != NULL;
         if (p->draw->origin[i] != HN_DRAW_DERIVED && !own && !is_read_as_own(p, i, states)) {
-            hn_strbuf_printf(b, "%s %s", before, p->draw->name[i]);
-            before = "";
+            char number[80];
+            snprintf(number, sizeof number, "%.30s = {%.30s}", p->draw->name[i], p->draw->name[i]);
+            hn_strbuf_printf(b, "%s ", before);
+            hn_draw_text(b, p->draw, number);
+            before = ",";
         }
     }
 }
