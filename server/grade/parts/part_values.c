@@ -266,7 +266,8 @@ static bool is_read_as_own(const hn_part *p, int i, const cJSON *states) {
 }
 
 /// The names that a formula may use: the part's own, then those of the numbers that the exercise
-/// gives, with these: the question may give them without a name. What follows from other names is left out: it may be what is asked for.
+/// gives, with these: the question may give them without a name. What follows from other names is
+/// left out: it may be what is asked for.
 static void put_names(hn_strbuf *b, const hn_part *p) {
     const cJSON *states = cJSON_GetObjectItemCaseSensitive(p->node, "states"), *m;
     if (!states) {
