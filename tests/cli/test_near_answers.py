@@ -234,6 +234,8 @@ def branches(folder):
     """A closed loop of the other branch is closed as exactly as the digits are, as the picture shows."""
     verdicts = verdict(folder, "assemble", {"a": {"th2": -1.047, "th3": -2.489}}, "--seed", "1")["entries"]
     found = next(e for e in verdicts if e["name"] == "a.th2")
+    huge = next(e for e in verdict(folder, "assemble", {"a": {"th2": 1e99, "th3": 1}}, "--seed", "1")["entries"] if e["name"] == "a.th2")
+    expect("a huge angle is no direction", "says no direction" in huge["explanation"] and "away from" not in huge["explanation"], str(huge))
     expect("what the digits leave open is said", found["explanation"] == "the loop closes here too (your digits leave 155 µm open), but in the other assembly mode", str(found))
 
 

@@ -28,6 +28,7 @@
 enum { MAX = HN_PART_ENTRIES, MAX_ASKED = HN_PART_RESULTS, MAX_TRIES = 40, MAX_STEPS = 200000 };
 static const double PI = 3.14159265358979324;
 static const double WITHIN = 0.03, STRIDE = 0.05;
+static const double LARGEST_ANGLE = 1e6; // [rad] beyond, nobody means a direction
 
 /// The mechanism, what is asked, and the configuration that is expected.
 typedef struct sheet {
@@ -364,6 +365,13 @@ static void judge(const sheet *s, int k, const double *given, bool all, bool bra
                   hn_part_result *r) {
     const int i = s->asked[k];
     char open[100] = "";
+    if (is_angle(s, i) && fabs(given[k]) > LARGEST_ANGLE) {
+        hn_part_wrong(r, "other", 0,
+                      "an angle of %.3g rad says no direction: after so many turns its last digits "
+                      "are missing",
+                      given[k]);
+        return;
+    }
     if (apart(s, i, given[k], s->expected[i]) <= s->within) {
         hn_part_right(r);
         return;
