@@ -188,7 +188,61 @@ static bool is_several(const cJSON *list) {
     return cJSON_GetArraySize(list) > 1 || cJSON_IsArray(list ? list->child : NULL);
 }
 
+// ---- LaTeX ----
+
+/// What stands in the matrix of LaTeX that is the whole of `s`; false: there is none.
+static bool find_latex(span s, span *inside) {
+    static const char BEGIN[] = "\\begin{", END[] = "\\end{";
+    const char *open = (size_t)(s.end - s.at) > strlen(BEGIN) ? strstr(s.at, BEGIN) : NULL;
+    const char *name_end = open == s.at ? strchr(s.at, '}') : NULL;
+    const char *close = name_end ? strstr(name_end, END) : NULL;
+    const size_t n = name_end ? (size_t)(name_end - s.at) - strlen(BEGIN) : 0;
+    const bool matrix = n >= 6 && strncmp(name_end - 6, "matrix", 6) == 0;
+    if (!matrix || !close || strncmp(close + strlen(END), name_end - n, n) != 0 ||
+        close + strlen(END) + n + 1 != s.end) {
+        return false;
+    }
+    *inside = trim((span){name_end + 1, close});
+    return true;
+}
+
+/// The end of a row: two backslashes, or the one before a blank that JSON made of them.
+static const char *find_row_end(span s, const char **next) {
+    for (const char *c = s.at; c < s.end; c++) {
+        const bool two = c[0] == '\\' && c + 1 < s.end && c[1] == '\\';
+        if (two || (c[0] == '\\' && c + 1 < s.end && isspace((unsigned char)c[1]))) {
+            *next = c + (two ? 2 : 1);
+            return c;
+        }
+    }
+    *next = s.end;
+    return s.end;
+}
+
+/// The rows between the two ends of the matrix, parted by & into entries.
+static cJSON *read_latex(span s) {
+    cJSON *out = cJSON_CreateArray();
+    int n = 0;
+    while (out && s.at < s.end && n < MOST_ENTRIES) {
+        const char *next, *after;
+        span row = {s.at, find_row_end(s, &next)};
+        cJSON *list = cJSON_CreateArray();
+        cJSON_AddItemToArray(out, list);
+        do {
+            const span entry = {row.at, find_end(row, '&', &after)};
+            cJSON_AddItemToArray(list, make_entry(entry));
+            row.at = after;
+        } while (row.at < row.end && n++ < MOST_ENTRIES);
+        s = trim((span){next, s.end});
+    }
+    return out;
+}
+
 cJSON *hn_list_text_read(const char *text) {
+    span inside;
+    if (find_latex(strip_assignment(trim((span){text, text + strlen(text)})), &inside)) {
+        return read_latex(inside);
+    }
     span s = strip_call(strip_assignment(trim((span){text, text + strlen(text)})));
     if (!is_list(s) || find_closing(s) != s.end - 1) {
         return NULL;

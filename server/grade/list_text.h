@@ -6,6 +6,7 @@
 //     [[a, b], [c, d]]    np.array([[a, b], [c, d]])    Matrix([[a, b], [c, d]])
 //     {{a, b}, {c, d}}
 //     [a, b; c, d]        [a b; c d]                    [[1 2]\n [3 4]]             J = [a b; c d];
+//     \begin{pmatrix} a & b \\ c & d \end{pmatrix}
 //
 // In a row without commas blanks part the entries, as in MATLAB: "a -b" are two, "a - b" is one.
 

@@ -74,9 +74,9 @@ hn_status hn_submission_decode(hn_strbuf *out, const char *bytes, size_t n, bool
 // ---- slips ----
 
 /// Commands of LaTeX whose first letter makes an escape of JSON: \b \f \n \r \t \u.
-static const char *const COMMANDS[] = {"bar",        "beta",  "big",   "bigl", "bigr", "bm",
-                                       "boldsymbol", "frac",  "right", "tan",  "tanh", "text",
-                                       "tfrac",      "times", "top",   "rho",  "nu",   NULL};
+static const char *const COMMANDS[] = {
+    "bar", "begin", "beta", "big",   "bigl",  "bigr", "bm",  "boldsymbol", "frac", "right",
+    "tan", "tanh",  "text", "tfrac", "times", "top",  "rho", "nu",         NULL};
 
 /// Whether the backslash at `at` begins a command of LaTeX where JSON would read an escape, or
 /// nothing that it knows. `end` is that of the text, which is no string of C.

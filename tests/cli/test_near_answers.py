@@ -212,6 +212,10 @@ def pasted(folder):
     for name, text in (("a list", python), ("numpy", f"np.array({python})".replace("sin", "np.sin")), ("MATLAB", matlab), ("Wolfram", wolfram)):
         found = verdict(folder, "p3", {"J": text})
         expect(f"{name} as one text is read", found["score"] == 8 and found["note"].startswith("the text of 'J' was read as a list"), found["note"] + found["summary"])
+    latex = r"\begin{pmatrix} -l_1\sin\theta_1 & -l_2\sin\theta_2 & l_3\sin\theta_3 & l_4\sin\theta_4 \\ l_1\cos\theta_1 & l_2\cos\theta_2 & -l_3\cos\theta_3 & -l_4\cos\theta_4 \end{pmatrix}"
+    for name, text in (("LaTeX", json.dumps({"J": latex})), ("LaTeX without doubled backslashes", '{"J": "' + latex + '"}')):
+        said = json.loads(run("grade", "p3", write(folder, "latex.json", text), "--json", "--no-pictures").stdout)
+        expect(f"{name} as one text is read", said["score"] == 8, said["note"] + said.get("reason", ""))
     expect("a matrix of numbers too", told(folder, "singular", "a", {"J": "[1 2 3; 2 4 6]"}) == "right")
     said = run("grade", "p3", write(folder, "answer.json", {"J": "[1, 2"})).stdout
     expect("what is no list is refused as before", "'J' is a text, expected a list of 2 rows" in said, said)

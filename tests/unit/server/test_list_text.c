@@ -26,6 +26,9 @@ static void lists_of_every_program_are_read(void **state) {
         {"[[1. 2.]\n [3. 4.]]", "[[1,2],[3,4]]"},
         {"[1 2\n 3 4]", "[[1,2],[3,4]]"},
         {"[a .* b .5; c' d]", "[[\"a .* b\",0.5],[\"c'\",\"d\"]]"},
+        {"\\begin{pmatrix} a & -\\sin x \\\\ c & 2 \\end{pmatrix}",
+         "[[\"a\",\"-\\\\sin x\"],[\"c\",2]]"},
+        {"J = \\begin{bmatrix} a \\ b \\end{bmatrix}", "[[\"a\"],[\"b\"]]"},
         {"[a; b]", "[[\"a\"],[\"b\"]]"},
         {" [1.5, 2,] ", "[1.5,2]"},
         {"[a, , b]", "[\"a\",\"\",\"b\"]"},
@@ -43,9 +46,27 @@ static void lists_of_every_program_are_read(void **state) {
 
 static void formulas_and_broken_brackets_are_no_lists(void **state) {
     (void)state;
-    static const char *const rows[] = {"",       "[",       "[]",     "[a + b]",    "[a+b]*c",
-                                       "[a, b",  "a, b]",   "(a, b)", "[1, 2] + 1", "N' M N",
-                                       "1.2 kg", "[[a, b]", "=",      "[a](b)",     "]["};
+    static const char *const rows[] = {"",
+                                       "[",
+                                       "[]",
+                                       "[a + b]",
+                                       "[a+b]*c",
+                                       "[a, b",
+                                       "a, b]",
+                                       "(a, b)",
+                                       "[1, 2] + 1",
+                                       "N' M N",
+                                       "\\begin{pmatrix} a",
+                                       "\\begin{cases} a & b \\end{cases}",
+                                       "\\begin{pmatrix} a \\end{pmatrix} b",
+                                       "\\begin{}\\end{}",
+                                       "\\begin{pmatrix} a \\end{bmatrix}",
+                                       "\\begin{",
+                                       "1.2 kg",
+                                       "[[a, b]",
+                                       "=",
+                                       "[a](b)",
+                                       "]["};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         cJSON *list = hn_list_text_read(rows[i]);
         if (list) {
