@@ -299,6 +299,9 @@ static hn_status say_journal_failed(const grading *g, hn_diag *diag) {
 
 static hn_status keep_line(grading *g, int i, const char *line, bool told, hn_diag *diag) {
     g->out->line[i] = strdup(line);
+    if (!g->out->line[i]) {
+        return HN_ERR_MEMORY;
+    }
     g->done++;
     if (told) {
         g->out->graded++;
@@ -309,7 +312,7 @@ static hn_status keep_line(grading *g, int i, const char *line, bool told, hn_di
             g->opts->tell(g->opts->user, line);
         }
     }
-    return g->out->line[i] ? HN_OK : HN_ERR_MEMORY;
+    return HN_OK;
 }
 
 /// A line for a submission whose worker has ended.
@@ -422,7 +425,7 @@ static hn_status take_lines(grading *g, const char *path, hn_diag *diag) {
     size_t cap = 0;
     hn_status status = HN_OK;
     FILE *old = fopen(path, "re");
-    for (ssize_t n; old && (n = getline(&line, &cap, old)) > 0;) {
+    for (ssize_t n; status == HN_OK && old && (n = getline(&line, &cap, old)) > 0;) {
         cJSON *o = line[n - 1] == '\n' ? cJSON_Parse(line) : NULL;
         const char *student = cJSON_GetStringValue(cJSON_GetObjectItem(o, "student"));
         const char *hex = cJSON_GetStringValue(cJSON_GetObjectItem(o, "key"));

@@ -40,9 +40,9 @@ bool hn_class_line_is_unchanged(const char *line, const cJSON *o) {
     return strcmp(said, hex) == 0;
 }
 
-/// The name of the matrix that an entry is of: "J" of "J11", "b" of "b.11".
-static int matrix_name_length(const char *name) {
-    return (int)strcspn(name, ".0123456789");
+/// Whether two entries are of one matrix or of one part.
+static bool are_of_one(const hn_entry_verdict *a, const hn_entry_verdict *b) {
+    return a->n_whole == b->n_whole && strncmp(a->name, b->name, (size_t)a->n_whole) == 0;
 }
 
 /// "sign in J11". A matrix that is transposed is one mistake of the whole: "transposed in J"; its
@@ -54,10 +54,9 @@ static void put_mistake(hn_strbuf *b, const hn_verdict *v, int k) {
     }
     char what[80];
     const bool whole = strcmp(e->mistake, "transposed") == 0;
-    const int n = whole ? matrix_name_length(e->name) : (int)strlen(e->name);
+    const int n = whole ? e->n_whole : (int)strlen(e->name);
     for (; whole && before && before >= v->entry; before--) {
-        if (strcmp(before->mistake, e->mistake) == 0 &&
-            strncmp(before->name, e->name, (size_t)n) == 0) {
+        if (strcmp(before->mistake, e->mistake) == 0 && are_of_one(before, e)) {
             return; // named by an entry before
         }
     }

@@ -315,6 +315,7 @@ static void begin_entry(hn_verdict *v, const hn_exam *exam, int k) {
                             .mistake = "",
                             .state = -1};
     snprintf(e->name, sizeof e->name, "%.8s%d%d", p->answer, e->row + 1, e->column + 1);
+    e->n_whole = (int)strnlen(p->answer, 8);
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_print(&b, exam->graph, exam->reference[k], HN_PRINT_TEXT, 0);

@@ -298,7 +298,8 @@ static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *r
     for (int i = 0; i < n && v->n_entries < HN_GRADE_MAX_ENTRIES; i++) {
         const hn_part_result *r = &results[i];
         hn_entry_verdict *e = &v->entry[v->n_entries++];
-        *e = (hn_entry_verdict){.row = v->n_entries - 1, .state = -1};
+        *e =
+            (hn_entry_verdict){.row = v->n_entries - 1, .state = -1, .n_whole = (int)strlen(p->id)};
         snprintf(e->name, sizeof e->name, "%s%s%.12s", p->id, r->name[0] ? "." : "", r->name);
         e->max_points = p->points / n;
         e->points = e->max_points * share_of(v->problem->rubric, r);

@@ -10,6 +10,7 @@ enum { HN_VERDICT_KEPT = 16384 };
 /// The verdict on one entry.
 typedef struct hn_entry_verdict {
     char name[32]; ///< "J11", or a part with its entry: "b.2"
+    int n_whole;   ///< bytes of the name that name the matrix or the part: 1 of "J11"
     int row, column;
     double points, max_points;
     int right;

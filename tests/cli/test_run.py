@@ -338,6 +338,15 @@ class Run(Command):
             self.assertIn("take values closer to l1 = 0.5, or", told)
             self.assertNotIn("make ", told)  # a rocker of 48 m
 
+    def test_a_loop_that_cannot_be_closed_cuts_no_name_of_what_was_changed(self):
+        changed = {"l1": 50, "l2": 1.23456, "l3": 2.345, "l4": 0.8765, "m1": 2, "m2": 3.25, "m3": 1.2345, "g": 3.71}
+        done = call("run", "four-bar", *(word for name, value in changed.items() for word in ("--set", f"{name}={value}")))
+        self.assert_exit(done, INPUT)
+        whole = r"\w+ = [\d.]+(?: \S+)? \([\d.]+ in the scene\)"
+        listed = re.match(rf"holonom: with ({whole}(?:, {whole})*)(?: and (\d+) more)?, loop B cannot be closed", done.stderr.decode())
+        self.assertTrue(listed, done.stderr)
+        self.assertEqual(len(re.findall(whole, listed[1])) + int(listed[2] or 0), len(changed))
+
     def test_compare_keeps_a_method_that_failed_and_says_which(self):
         done = call("compare", "four-bar", "--methods", "index1@euler:h=0.05", "projection@rk4:h=1e-3", "--time", "60")
         text = self.assert_exit(done, ENDED)

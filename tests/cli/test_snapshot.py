@@ -27,10 +27,10 @@ class Snapshot(Command):
             at += 12 + size
         return names
 
-    def picture(self, folder, name, *words, **env):
-        """The bytes of a snapshot of the four-bar, and the document that describes it."""
+    def picture(self, folder, name, *words, scene="four-bar", **env):
+        """The bytes of a snapshot of the scene, and the document that describes it."""
         path = os.path.join(folder, name)
-        done = call("snapshot", "four-bar", "--method", RK4, "--width", "600", "--height", "400", "-o", path, "--describe", *words, environment=env)
+        done = call("snapshot", scene, "--method", RK4, "--width", "600", "--height", "400", "-o", path, "--describe", *words, environment=env)
         document = strict(self.assert_exit(done, DONE))
         with open(path, "rb") as f:
             return f.read(), document, done.stderr
@@ -93,6 +93,12 @@ class Snapshot(Command):
                                 ("heavy-top", "no constraints; forces: foot on top"), ("bennett", "forces, one set of many: J1 on crank"), ("stewart-6-6", "each on the second body of its joint")):  # fmt: skip
                 done = call("snapshot", scene, "--time", "0.1", "--forces", "-o", path, "--describe")
                 self.assertIn(said, strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"], scene)
+
+    def test_the_legend_names_the_forces_that_are_drawn_and_no_others(self):
+        with tempfile.TemporaryDirectory() as folder:  # the shafts of this gear carry no force
+            picture = self.picture(folder, "f.png", "--time", "0.3", "--forces", scene="planetary-gear")[1]["picture"]
+            self.assertEqual(len(picture["loads"]), 3)
+            self.assertRegex(picture["poses"][0]["note"], r"forces(, one set of many)?: pin 1 on planet1, pin 2 on planet2, pin 3 on planet3$")
 
     def test_an_exercise_with_one_configuration_says_that_times_are_not_used(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -260,14 +260,14 @@ static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
 // ---- forces ----
 
 /// Says in the legend at which joint each arrow acts, and on which body: "forces: A on coupler";
-/// and where redundant constraints leave them undetermined.
-static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w) {
+/// and where redundant constraints leave them undetermined. `drawn` are the indices of the arrows.
+static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w, const int *drawn) {
     char *note = p->notes[0];
     double force[3], place[3];
     size_t used = strlen(note);
     bool determined = true;
-    for (int i = 0; i < hn_reaction_writer_count(w); i++) {
-        determined = determined && hn_reaction_writer_is_determined(w, i);
+    for (int i = 0; i < p->n_loads; i++) {
+        determined = determined && hn_reaction_writer_is_determined(w, drawn[i]);
     }
     const char *mark = determined ? "" : ", one set of many";
     if (p->n_loads > FORCES_NAMED) {
@@ -275,16 +275,17 @@ static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w) {
                  "; arrows: forces%s, each on the second body of its joint", mark);
         return;
     }
-    for (int i = 0; i < hn_reaction_writer_count(w) && used < HN_PICTURE_NOTE; i++) {
-        const char *name = hn_reaction_writer_force(w, i, force, place);
+    for (int i = 0; i < p->n_loads && used < HN_PICTURE_NOTE; i++) {
+        const char *name = hn_reaction_writer_force(w, drawn[i], force, place);
         used += (size_t)snprintf(note + used, HN_PICTURE_NOTE - used, "%s%s%s %.20s on %.20s",
                                  i ? "," : "; forces", i ? "" : mark, i ? "" : ":", name,
-                                 hn_reaction_writer_body(w, i));
+                                 hn_reaction_writer_body(w, drawn[i]));
     }
 }
 
-/// An arrow for each force of the writer but those that are zero to rounding.
-static void add_loads(hn_picture_moment *p, const hn_reaction_writer *w) {
+/// Adds an arrow for each force of the writer but those that are zero to rounding. `drawn` has room
+/// for all of them.
+static void add_loads(hn_picture_moment *p, const hn_reaction_writer *w, int *drawn) {
     double largest = 0, size;
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < hn_reaction_writer_count(w); i++) {
@@ -293,13 +294,14 @@ static void add_loads(hn_picture_moment *p, const hn_reaction_writer *w) {
             size = hypot(hypot(load.force[0], load.force[1]), load.force[2]);
             largest = fmax(largest, size);
             if (pass == 1 && size > SMALLEST_FORCE * largest) {
+                drawn[p->n_loads] = i;
                 p->loads[p->n_loads++] = load;
             }
         }
     }
     const size_t used = strlen(p->notes[0]);
     if (p->n_loads > 0) {
-        note_forces(p, w);
+        note_forces(p, w, drawn);
     } else {
         snprintf(p->notes[0] + used, HN_PICTURE_NOTE - used, "; no force at any joint");
     }
@@ -311,6 +313,10 @@ static hn_status eval_forces(hn_picture_moment *p, hn_reaction_writer *w, double
     hn_sample sample = {0};
     const hn_system *sys = hn_model_system(p->model);
     const int nq = hn_system_get_info(sys).nq;
+    int *drawn = hn_arena_get(p->arena, ((size_t)hn_reaction_writer_count(w) + 1) * sizeof *drawn);
+    if (!drawn) {
+        return HN_ERR_MEMORY;
+    }
     hn_comparison_sample(p->comparison, 0, &sample);
     if (!sample.q) {
         return HN_OK; // the legend says that the method has ended
@@ -319,7 +325,7 @@ static hn_status eval_forces(hn_picture_moment *p, hn_reaction_writer *w, double
     hn_system_rates_from_user(sys, sample.v, state + nq);
     const hn_status status = hn_reaction_writer_eval(w, sample.t, state, state + nq);
     if (status == HN_OK) {
-        add_loads(p, w);
+        add_loads(p, w, drawn);
     } else if (status != HN_ERR_MEMORY) {
         const size_t used = strlen(p->notes[0]);
         snprintf(p->notes[0] + used, HN_PICTURE_NOTE - used, "; no forces: %s",

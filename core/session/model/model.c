@@ -72,40 +72,55 @@ static int whole_parts(const char *list, size_t room, const char *separator) {
     return (int)n;
 }
 
-/// Puts what was changed of the scene before the reason of a loop that stands open, which names
-/// bodies and starts: "with l1 = 50 m (0.5 in the scene), loop B ..."; and its undoing before what
-/// else to try. Nothing where nothing was changed.
+/// Appends "NAME = VALUE" parts to a list of at most `room` bytes, while a remark on those left out
+/// still fits behind them. Returns whether the part was appended.
+static bool add_part(char *list, size_t room, const char *part) {
+    const size_t used = strlen(list);
+    if (used + strlen(part) + sizeof " and 1000 more" > room) {
+        return false;
+    }
+    snprintf(list + used, room - used, "%s", part);
+    return true;
+}
+
+/// Puts the parameters that were changed before the reason why a loop is open: "with l1 = 50 m (0.5
+/// in the scene), loop B ...", and their former values before what else to try. Parameters that do
+/// not fit are counted. Nothing where nothing was changed.
 static void put_changes(const hn_scene *scene, hn_diag *why) {
     static const char OR[] = ", or ";
-    char changes[HN_DIAG_MESSAGE] = "", back[HN_DIAG_HINT] = "";
-    size_t used = 0, used_back = 0;
+    char changes[HN_DIAG_MESSAGE / 2] = "", back[HN_DIAG_HINT / 2] = "", part[200];
+    int left_out = 0;
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
-        if (p->value == p->initial || used >= sizeof changes || used_back >= sizeof back) {
+        if (p->value == p->initial) {
             continue;
         }
         const char *space = p->unit[0] ? " " : "";
         const int digits = hn_digits_apart(p->value, p->initial, 6);
-        used += (size_t)snprintf(changes + used, sizeof changes - used,
-                                 "%s%.40s = %.*g%s%s (%.*g in the scene)", used ? ", " : "with ",
-                                 p->name, digits, p->value, space, p->unit, digits, p->initial);
-        used_back += (size_t)snprintf(back + used_back, sizeof back - used_back, "%s%.40s = %.*g",
-                                      used_back ? ", " : "take values closer to ", p->name, digits,
-                                      p->initial);
+        snprintf(part, sizeof part, "%s%.40s = %.*g%s%s (%.*g in the scene)",
+                 changes[0] ? ", " : "with ", p->name, digits, p->value, space, p->unit, digits,
+                 p->initial);
+        left_out += left_out > 0 || !add_part(changes, sizeof changes, part);
+        snprintf(part, sizeof part, "%s%.40s = %.*g", back[0] ? ", " : "take values closer to ",
+                 p->name, digits, p->initial);
+        add_part(back, sizeof back, part);
     }
-    if (used > 0) {
+    if (changes[0]) {
         const hn_diag said = *why;
-        snprintf(why->message, sizeof why->message, "%.250s, %.250s", changes, said.message);
-        const int n_back = whole_parts(back, sizeof why->hint / 2, ", ");
-        const size_t room = sizeof why->hint - 1 - (size_t)n_back - (sizeof OR - 1);
+        if (left_out > 0) {
+            const size_t used = strlen(changes);
+            snprintf(changes + used, sizeof changes - used, " and %d more", left_out);
+        }
+        hn_diag_set(why, said.status, said.pointer, NULL, "%s, %s", changes, said.message);
+        const size_t room = sizeof why->hint - 1 - strlen(back) - (sizeof OR - 1);
         const int n_said = whole_parts(said.hint, room, OR);
-        snprintf(why->hint, sizeof why->hint, "%.*s%s%.*s", n_back, back, n_said > 0 ? OR : "",
-                 n_said, said.hint);
+        snprintf(why->hint, sizeof why->hint, "%s%s%.*s", back, n_said > 0 ? OR : "", n_said,
+                 said.hint);
     }
 }
 
 /// Computes consistent starting values. An open loop is an error unless allow_open is set.
-static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
+static hn_status assemble(hn_model *model, const hn_model_source *source, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(model->system);
     model->q = hn_arena_doubles(model->arena, (size_t)info.nq);
     model->v = hn_arena_doubles(model->arena, (size_t)info.nv);
@@ -116,10 +131,10 @@ static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
     hn_status status =
         hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, &why);
     int open = status == HN_ERR_UNREACHABLE || status == HN_ERR_INCONSISTENT;
-    if (open) {
+    if (open && !source->hides_changes) {
         put_changes(model->scene, &why.item[0]);
     }
-    if (open && allow_open) {
+    if (open && source->allow_open) {
         model->open = why.item[0];
         return HN_OK;
     }
@@ -159,7 +174,7 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     hn_system_opts opts = hn_system_opts_default();
     opts.interrupt = source->interrupt;
     HN_THEN(status, hn_system_compile(model->scene, &opts, &model->system, diags));
-    HN_THEN(status, assemble(model, source->allow_open, diags));
+    HN_THEN(status, assemble(model, source, diags));
 
     // the compiler's limit has no message of its own
     if (status == HN_ERR_LIMIT && diags && diags->n == 0) {

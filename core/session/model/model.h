@@ -28,6 +28,8 @@ typedef struct hn_model_source {
     int n_settings;
     /// 1: a scene that cannot be assembled still gives a model, for `inspect`, which reports why
     bool allow_open;
+    /// 1: the reason of an open loop does not name the parameters that differ from the scene's
+    bool hides_changes;
     const int *pulls; ///< drawn points that a hand may pull while it runs (hn_scene_add_pull)
     int n_pulls;
     /// ends the work early, now or when the model is used later: HN_ERR_STOPPED

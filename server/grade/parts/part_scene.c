@@ -76,16 +76,6 @@ static bool is_late(void *user) {
     return hn_clock_thread() > *(const double *)user;
 }
 
-/// The reason behind what was changed of the scene: "with l1 = 50 m (0.5 in the scene), d = ...".
-static const char *without_changes(const char *reason) {
-    static const char end[] = " in the scene), ";
-    for (const char *at = strncmp(reason, "with ", 5) == 0 ? strstr(reason, end) : NULL; at;
-         at = strstr(reason, end)) {
-        reason = at + sizeof end - 1;
-    }
-    return reason;
-}
-
 /// Makes the model of an answer, which asks for the time until it is freed: `end` [s] of computing.
 /// HN_OK with NULL: the result says why there is none.
 static hn_status load(const hn_part *p, const hn_setting *settings, int n, const cJSON *given,
@@ -97,6 +87,7 @@ static hn_status load(const hn_part *p, const hn_setting *settings, int n, const
                                     .n_text = text ? strlen(text) : 0,
                                     .settings = settings,
                                     .n_settings = text ? 0 : n,
+                                    .hides_changes = true,
                                     .interrupt = {.must_end = is_late, .user = end}};
     hn_status status =
         is_scene(given) && !text ? HN_ERR_MEMORY : hn_model_load(p->lib, &source, model, &diags);
@@ -106,10 +97,9 @@ static hn_status load(const hn_part *p, const hn_setting *settings, int n, const
         if (status == HN_ERR_STOPPED) {
             hn_diags_add(&diags, status, NULL, NULL, "it takes more than %g s to compile", SECONDS);
         }
-        // what differs from the scene that is shipped means nothing to a student; nor does the gap
-        // of constraints that are formulas: it has no unit
+        // the gap of constraints that are formulas has no unit and means nothing to a student
         static const char formulas[] = "the constraints cannot all be met";
-        const char *why = without_changes(diags.item[0].message);
+        const char *why = diags.item[0].message;
         why = open && strncmp(why, formulas, strlen(formulas)) == 0 ? "no pose has these lengths"
                                                                     : why;
         hn_part_wrong(r, open ? "not-assembled" : "no-scene", 0, "%s: %.250s",

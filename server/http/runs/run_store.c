@@ -324,10 +324,10 @@ static void compute(void *arg, hn_job_turn *turn) {
     }
     hn_request *due = take_waiting(all, run, 0, 1);
     wake_readers(all, run, HUGE_VAL);
-    pthread_mutex_unlock(&all->lock);
-    if (is_kept && !known) { // it was deleted while its file was written
+    if (is_kept && !*find_place(all, run->id)) { // it was deleted while its file was written
         hn_run_folder_delete(all->opts->runs_folder, run->id);
     }
+    pthread_mutex_unlock(&all->lock);
     answer_all(all, run, due);
     hn_runs_release(all, run);
 }
@@ -483,9 +483,9 @@ void hn_runs_delete(hn_runs *all, const char *id) {
         atomic_store(&(*place)->stop, 1);
         dead = drop(take_out(all, place));
     }
+    hn_run_folder_delete(all->opts->runs_folder, id); // before anybody asks the question again
     pthread_mutex_unlock(&all->lock);
     hn_kept_run_free(dead);
-    hn_run_folder_delete(all->opts->runs_folder, id);
 }
 
 hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run) {

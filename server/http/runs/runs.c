@@ -251,9 +251,10 @@ static void add_next(hn_request *r, const hn_samples_request *q, long long next)
     char address[HN_HEADER_TEXT];
     int n = snprintf(address, sizeof address, "%s?cursor=%lld&stride=%lld&limit=%lld", r->path,
                      next, q->stride, q->limit);
-    const char *method = hn_request_query(r, "method");
-    if (method && n < (int)sizeof address) {
-        n += snprintf(address + n, sizeof address - (size_t)n, "&method=%s", method);
+    double method = 0;
+    if (hn_request_query(r, "method") && n < (int)sizeof address &&
+        hn_request_query_number(r, "method", 0, 1e9, 1, &method)) {
+        n += snprintf(address + n, sizeof address - (size_t)n, "&method=%d", (int)method);
     }
     if (q->fields && n < (int)sizeof address) {
         n += snprintf(address + n, sizeof address - (size_t)n, "&fields=%s", q->fields);
