@@ -173,6 +173,12 @@ test("an exhibit runs beside its text, a prediction is kept", async (t) => {
       [30, true],
     ),
   );
+  // another scene, and undo: the exhibit again, to its own end
+  await page.selectOption("#scene", "pendulum");
+  await until(page, (data) => data.scene.id === "pendulum" && data.history.count > 0);
+  await page.getByRole("button", { name: /^Undo/ }).first().click();
+  await until(page, (data) => data.scene.id === "slider-crank" && data.history.count > 0);
+  await soon(async () => assert.equal(await read(page, (data) => data.duration), 30));
   await page.waitForSelector(".exhibit .thumbnail");
 
   const after = page.locator(".prediction-after");

@@ -37,7 +37,9 @@ const spellingsOf = (page) => read(page, (data) => data.methods.map((m) => m.spe
 async function openDialog(page) {
   await page.getByRole("button", { name: "add a method" }).click();
   // the list of methods may still be on its way
-  await page.locator('#pick-formulation option[value="program:mine.py"]').waitFor({ state: "attached" });
+  await page
+    .locator('#pick-formulation option[value="program:mine.py"]')
+    .waitFor({ state: "attached" });
 }
 
 async function add(page, name) {
@@ -62,7 +64,10 @@ test("programs stand among the formulations, each once, with the step of the oth
   );
 
   // the rest of the dialog speaks of the program, and changes it
-  assert.match(await page.locator(".dialog .about").first().textContent(), /^Your program computes/);
+  assert.match(
+    await page.locator(".dialog .about").first().textContent(),
+    /^Your program computes/,
+  );
   await page.selectOption("#pick-integrator", "heun");
   assert.equal(await page.inputValue("#pick-spelling"), `program:mine.py@heun:h=${step}`);
   await page.selectOption("#pick-integrator", "own");

@@ -459,6 +459,16 @@ test("a dead point is a coordinate that turns back while another one moves on", 
   }
   assert.deepEqual(deadPointsOf({ ...data, history: swing }, 0, 60), []);
 
+  // frames that were looked at are not looked at again
+  let asked = 0;
+  const counted = Object.create(history, {
+    stateAt: { value: (m, i) => (asked++, history.stateAt(m, i)) },
+  });
+  const until = (shown) => deadPointsOf({ ...data, history: counted }, 0, shown).length;
+  assert.deepEqual([until(40), asked], [1, 80]);
+  assert.deepEqual([until(60), asked], [2, 120]);
+  assert.deepEqual([until(40), until(15), asked], [1, 0, 120], "an earlier frame is shown");
+
   // where none is listed the record says why
   const why = (change) => noDeadPointWords({ ...data, ...change }, 15);
   assert.match(why({}), /^No dead point until 0\.25 s: no coordinate turned back/);

@@ -30,12 +30,12 @@ export function createSession(store) {
 
   const scenes = createSceneActions(store, exchange, notice);
 
-  /** Runs what ran before: scene, parameters, methods with their steps, pulls. */
-  const bringBack = ({ scene, settings, methods, pulls }) =>
-    JSON.stringify(scene) === JSON.stringify(sourceOf(store.data))
+  /** Runs what ran before: scene, parameters, methods with their steps, pulls, to the same end. */
+  const bringBack = ({ scene, settings, methods, pulls, end }) =>
+    JSON.stringify(scene) === JSON.stringify(sourceOf(store.data)) && end === store.data.askedEnd
       ? exchange.restart({ parameters: settings, methods, pulls })
       : typeof scene === "string"
-        ? scenes.loadScene(scene, { settings, methods, pulls })
+        ? scenes.loadScene(scene, { settings, methods, pulls, end })
         : scenes.loadDocument(scene, { settings, methods, pulls });
   const undo = createUndo(store, bringBack, notice);
   const pulls = createPullActions(store, exchange, notice);

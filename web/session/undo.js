@@ -12,16 +12,20 @@ const MOST = 100; // changes that are remembered
 const TOGETHER = 1000; // [ms] between changes of one value, as by a slider: they are one change
 const MOST_NAMED = 3; // values that a tip names
 
-/** What differs between two snapshots. @param {string} a @param {string} b */
+/**
+ * What differs between two snapshots. Each choice of a shipped scene is a difference of its own.
+ * @param {string} a @param {string} b
+ */
 function differenceOf(a, b) {
   const [one, other] = [a, b].map((text) => JSON.parse(text));
   const names = new Set([...Object.keys(one.settings), ...Object.keys(other.settings)]);
   const changed = [...names].filter((name) => one.settings[name] !== other.settings[name]);
   const same = (name) => JSON.stringify(one[name]) === JSON.stringify(other[name]);
   return [
-    same("scene") ? "" : "scene",
+    same("scene") ? "" : `scene ${typeof other.scene === "string" ? other.scene : ""}`,
     same("methods") ? "" : "methods",
     same("pulls") ? "" : "pulls",
+    same("end") ? "" : "end",
     ...changed,
   ].join();
 }
@@ -56,6 +60,7 @@ export function changeWords(one, other) {
   const changed = [
     settingWords(one.settings, other.settings),
     same("methods") ? "" : "the methods",
+    same("end") ? "" : "the end of the run",
   ].filter(Boolean);
   return changed.length > 0 ? `the change of ${listed(changed)}` : "the pull";
 }

@@ -41,11 +41,29 @@ function turning(before, v, greatest) {
 }
 
 /**
+ * How far each recording was walked through, and what was found: frames that come later are looked
+ * at once, until the recording keeps every second frame only.
+ * @type {WeakMap<object, {stride: number, of: {next: number, greatest: number[],
+ *   found: DeadPoint[]}[]}>}
+ */
+const walked = new WeakMap();
+
+/** @param {import("./history.js").History} history @param {number} m @param {number} n coordinates */
+function walkOf(history, m, n) {
+  const { stride } = history;
+  const known = walked.get(history);
+  const walks = known?.stride === stride ? known : { stride, of: [] };
+  walked.set(history, walks);
+  return (walks.of[m] ??= { next: 1, greatest: Array(n).fill(0), found: [] });
+}
+
+/**
  * The dead points until the frame shown of a mechanism with one degree of freedom, in the order of
  * time: the velocity of a coordinate changes its sign while another coordinate moves on. There the
  * null vector of J has a zero in that place, so J without that column is singular.
- * @typedef {{coordinate: number, t: number, leads: number, speed: number}} DeadPoint
- * leads: the coordinate that moves on, speed: its velocity [rad/s or m/s]
+ * @typedef {{coordinate: number, t: number, frame: number, leads: number, speed: number}} DeadPoint
+ * frame: index of the first frame after it, leads: the coordinate that moves on, speed: its
+ * velocity [rad/s or m/s]
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
  * @returns {DeadPoint[]}
  */
@@ -53,10 +71,10 @@ export function deadPointsOf({ history, scene }, m, shown) {
   if (scene?.dof !== 1 || !(scene.m > 0)) {
     return [];
   }
-  const greatest = scene.coordinates.map(() => 0);
-  /** @type {DeadPoint[]} */
-  const found = [];
-  for (let i = 1; i <= shown && !(history.ended[m] <= history.t[i]); i++) {
+  const walk = walkOf(history, m, scene.coordinates.length);
+  const { greatest, found } = walk;
+  for (; walk.next <= shown && !(history.ended[m] <= history.t[walk.next]); walk.next++) {
+    const i = walk.next;
     const [before, v] = [history.stateAt(m, i - 1).v, history.stateAt(m, i).v];
     greatest.forEach((speed, k) => (greatest[k] = Math.max(speed, Math.abs(v[k]))));
     const { at, share } = turning(before, v, greatest);
@@ -65,11 +83,11 @@ export function deadPointsOf({ history, scene }, m, shown) {
       const leads = leader(scene, there, greatest);
       const t = history.t[i - 1] + share * (history.t[i] - history.t[i - 1]);
       if (leads >= 0) {
-        found.push({ coordinate: at, t, leads, speed: there[leads] });
+        found.push({ coordinate: at, t, frame: i, leads, speed: there[leads] });
       }
     }
   }
-  return found;
+  return found.filter(({ frame }) => frame <= shown);
 }
 
 /** What is true at every dead point. @param {string} name of the coordinate that turns back */

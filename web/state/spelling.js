@@ -127,8 +127,5 @@ export function labelsOf(methods) {
 /** @param {string} spelling */
 function wordsOf(spelling) {
   const { formulation, integrator } = parseSpelling(spelling);
-  return [
-    integrator.name,
-    ...formulation.settings.concat(integrator.settings).map(formatSetting),
-  ];
+  return [integrator.name, ...formulation.settings.concat(integrator.settings).map(formatSetting)];
 }

@@ -189,6 +189,7 @@ export const madeOf = (data) => ({
   settings: data.settings,
   methods: data.methods.map(({ spelling }) => spelling),
   pulls: data.pulls,
+  end: data.askedEnd,
 });
 
 /**
