@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/shell/option_help.h"
 #include "cli/manual.h"
 
 #include "build.h"
 #include "cli/command_table.h"
 #include "cli/examples.h"
+#include "cli/shell/option_help.h"
 #include "cli/shell/print.h"
 
 /// Text of a table in roff: backslashes, hyphens and a leading dot or quote are no commands.
@@ -93,7 +93,11 @@ hn_exit hn_command_manual(const hn_library *lib, const hn_args *args) {
     hn_strbuf_add(&b, ".TH HOLONOM 1 \"\" \"holonom " HN_VERSION
                       "\"\n.SH NAME\nholonom \\- simulates mechanisms with closed loops by several "
                       "methods at once\n.SH SYNOPSIS\n.B holonom\n\\fICOMMAND\\fR "
-                      "[\\fIWORD\\fR...] [\\fIOPTION\\fR...]\n.SH COMMANDS\n");
+                      "[\\fIWORD\\fR...] [\\fIOPTION\\fR...]\n.SH DESCRIPTION\n"
+                      "holonom runs one mechanism by several methods at once, and says which of "
+                      "them can be believed, what they cost, and why the others fail. Its page "
+                      "(holonom serve), its workbench in the terminal (holonom tui) and its "
+                      "commands show the same scenes, methods and verdicts.\n.SH COMMANDS\n");
     for (int i = 0; i < hn_command_count(); i++) {
         put_command(&b, hn_command_at(i));
     }

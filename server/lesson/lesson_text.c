@@ -62,6 +62,11 @@ static void put_node(hn_strbuf *b, const cJSON *node) {
         put_math(b, node);
     } else if (is_kind(node, "break")) {
         hn_strbuf_add(b, "\n");
+    } else if (is_kind(node, "figure")) {
+        // one of several in a paragraph: a line of its own
+        hn_strbuf_add(b, PICTURE);
+        put_line(b, children_of(node));
+        hn_strbuf_printf(b, " (%s)\n", text_of(node, "src"));
     } else if (is_kind(node, "strong")) {
         hn_strbuf_add(b, "*");
         put_line(b, children_of(node));

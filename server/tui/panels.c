@@ -4,7 +4,9 @@
 #include "base/shortest.h"
 #include "base/units.h"
 #include "dynamics/compile/coordinates.h"
+#include "formulations/list/formulation_list.h"
 #include "grade/exercise_shelf.h"
+#include "integrators/list/stepper_list.h"
 #include "lesson/lesson.h"
 #include "lesson/lesson_text.h"
 #include "session/export/export.h"
@@ -45,8 +47,43 @@ static void list_methods(hn_workbench *w) {
         hn_list_add(w, shown, hn_recording_track(w->recording, i)->rule);
     }
     if (w->n_methods < HN_COMPARISON_MAX_METHODS) {
-        hn_list_add(w, "add a method", "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]");
+        hn_list_add(w, "add a method",
+                    "Enter lists the formulations; one chosen is completed with "
+                    "an integrator that fits, and can be changed");
     }
+}
+
+static void list_formulations(hn_workbench *w) {
+    hn_list_begin(w, HN_LIST_FORMULATIONS, "add a method: Enter chooses, Esc goes back");
+    for (int i = 0; i < hn_formulation_count(); i++) {
+        const hn_formulation *f = hn_formulation_at(i);
+        hn_list_add(w, f->name, f->rule);
+    }
+}
+
+/// Asks for the spelling of a method, beginning with this formulation, an integrator that fits it
+/// and the step of the others.
+static void ask_method_of(hn_workbench *w, const char *formulation) {
+    static const char *const first[] = {"rk4", "radau5"};
+    enum { N_FIRST = sizeof first / sizeof *first };
+    const double h = isfinite(hn_methods_step(w)) ? hn_methods_step(w) : 0.01;
+    char text[HN_SPEC_MAX];
+    for (int i = 0; i < N_FIRST + hn_stepper_count(); i++) {
+        const char *name = i < N_FIRST ? first[i] : hn_stepper_at(i - N_FIRST)->name;
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        snprintf(text, sizeof text, "%.100s@%.100s", formulation, name);
+        if (hn_method_parse(text, &spec, &diag) == HN_OK) {
+            double *step = hn_method_find_option(&spec, "h", NULL);
+            if (step && !hn_method_is_adaptive(&spec)) {
+                *step = h;
+            }
+            hn_method_format(&spec, text);
+            break;
+        }
+    }
+    hn_workbench_ask(w, HN_PROMPT_METHOD, text);
+    w->replaces = false; // it is to be completed
 }
 
 /// A number that can be changed, with its range.
@@ -224,8 +261,14 @@ static void choose(hn_workbench *w) {
 
     // a value to be typed, beginning with the present one
     case HN_LIST_METHODS:
-        hn_workbench_ask(w, HN_PROMPT_METHOD,
-                         w->cursor < w->n_methods ? w->methods[w->cursor] : "");
+        if (w->cursor < w->n_methods) {
+            hn_workbench_ask(w, HN_PROMPT_METHOD, w->methods[w->cursor]);
+        } else {
+            list_formulations(w);
+        }
+        break;
+    case HN_LIST_FORMULATIONS:
+        ask_method_of(w, item->name);
         break;
     case HN_LIST_PARAMETERS:
         hn_shortest_write(item->value, text);

@@ -44,7 +44,8 @@ static void accept_step(hn_workbench *w) {
 }
 
 static void accept_method(hn_workbench *w) {
-    hn_methods_put(w, w->cursor < w->n_methods ? w->cursor : w->n_methods, w->input);
+    const bool there = w->list == HN_LIST_METHODS && w->cursor < w->n_methods;
+    hn_methods_put(w, there ? w->cursor : w->n_methods, w->input);
 }
 
 void hn_prompt_set_parameter(hn_workbench *w, const char *name, double value) {

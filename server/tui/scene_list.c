@@ -68,7 +68,9 @@ static void list_scene(hn_workbench *w, const cJSON *scene) {
         if (n >= (int)sizeof item->more) {
             item->more[sizeof item->more - sizeof ellipsis] = '\0';
             char *blank = strrchr(item->more, ' ');
-            snprintf(blank, sizeof ellipsis, "%s", ellipsis);
+            if (blank) {
+                snprintf(blank, sizeof ellipsis, "%s", ellipsis);
+            }
         }
     }
     if (item && w->n_search == 0 && strcmp(item->name, w->scene) == 0) {

@@ -44,6 +44,7 @@ static struct {
 
     // pictures wait until the terminal has read the one before
     bool asks, asked, answers, early; ///< early: the question before the first picture is open
+    double early_at;                  ///< [s] when that was asked
     double first_asked, asked_at;     ///< [s]
     uint64_t shown;                   ///< hash of the last picture
     bool with_sequence;               ///< the last picture had one
@@ -134,6 +135,7 @@ static void ask_early(void) {
     if (screen.asks) {
         put_sequence(QUESTION);
         screen.early = true;
+        screen.early_at = hn_clock_wall();
     }
 }
 
@@ -233,7 +235,10 @@ bool hn_screen_ready(void) {
 /// The last answer is read here rather than by the shell.
 static void await_answer(double seconds) {
     const double end = hn_clock_wall() + seconds;
-    while (((screen.asked && screen.answers) || screen.questions > 0) && hn_clock_wall() < end) {
+    // the first question too, while it is not known that the terminal answers none
+    const bool early = screen.early && hn_clock_wall() - screen.early_at < UNKNOWN;
+    while (((screen.asked && screen.answers) || (early && screen.early) || screen.questions > 0) &&
+           hn_clock_wall() < end) {
         timeout(20);
         const int key = getch();
         if (key == KEY_ANSWER) {

@@ -17,7 +17,7 @@
 #include <string.h>
 
 enum { NUMBER_DIGITS = 2 }; // significant, as in the page
-enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 47, MOST_INCIDENTS = 512 };
+enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 51, MOST_INCIDENTS = 512 };
 enum { MESSAGE_LINES = 6, INCIDENT_LINES = 5 }; // at most
 enum { NOTICE_ROWS = 2 };                       // kept free below the views, at least
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
@@ -128,6 +128,7 @@ static const char *keys_line(const hn_workbench *w, int columns) {
     static const char *const lists[] = {
         [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
         [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
+        [HN_LIST_FORMULATIONS] = "↑↓ choose  Enter types the rest  a letter finds  Esc back",
         [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  a letter finds  Esc back",
         [HN_LIST_LESSONS] = "↑↓ choose  Enter open  a letter finds  Esc back",
         [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",

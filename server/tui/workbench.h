@@ -27,6 +27,7 @@ typedef enum hn_panel {
 typedef enum hn_list_kind {
     HN_LIST_SCENES,
     HN_LIST_METHODS,
+    HN_LIST_FORMULATIONS, ///< of a method that is added
     HN_LIST_PARAMETERS,
     HN_LIST_LESSONS,
     HN_LIST_EXPORTS,

@@ -172,6 +172,15 @@ class Messages(unittest.TestCase):
         self.assertNotIn("index1@rk4", out)
         self.assertNotIn("baumgarte", out)
 
+    def test_a_method_is_added_from_a_list(self):
+        def after(keys):
+            return once("four-bar", "--once", "--t", "0.1", "--size", "120x40", "--keys", keys, "--methods", "index1@rk4:h=0.02")[1]
+        self.assertRegex(after("m<End><Enter>"), r"(?m)^│ nullspace-as-printed +\S")
+        self.assertIn("method: ggl@radau5", after("m<End><Enter>g<Enter>"))
+        added = after("m<End><Enter>pp<Enter><Enter>m")
+        self.assertRegex(added, r"(?m)^│ p\S+@rk4:h=0\.02 ")
+        self.assertRegex(added, r"(?m)^│ index1@rk4:h=0\.02 ")
+
     def test_the_step_is_on_the_screen_and_in_its_prompt(self):
         _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "d")
         self.assertIn("dt 10.0 ms", out)

@@ -114,6 +114,18 @@ static void a_prediction_has_its_right_choice(void **state) {
     cJSON_Delete(lesson);
 }
 
+static void pictures_of_one_paragraph_have_lines_of_their_own(void **state) {
+    (void)state;
+    cJSON *lesson = cJSON_CreateObject();
+    cJSON_AddItemToObject(lesson, "blocks", parse("Two.\n\n![One](a.png)\n![Two](b.png)\n"));
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_lesson_text(&b, lesson, 80);
+    assert_non_null(strstr(hn_strbuf_text(&b), "\n[picture] One (a.png)\n[picture] Two (b.png)\n"));
+    hn_strbuf_reset(&b);
+    cJSON_Delete(lesson);
+}
+
 static void faults_of_a_text_are_named(void **state) {
     (void)state;
     static const char *const texts[][2] = {
@@ -209,6 +221,7 @@ int main(void) {
         cmocka_unit_test(formulas_that_are_torn_end),
         cmocka_unit_test(an_exhibit_says_its_command),
         cmocka_unit_test(a_prediction_has_its_right_choice),
+        cmocka_unit_test(pictures_of_one_paragraph_have_lines_of_their_own),
         cmocka_unit_test(faults_of_a_text_are_named),
         cmocka_unit_test(lines_keep_to_the_width),
         cmocka_unit_test(tables_and_commands_keep_to_the_width),
