@@ -49,25 +49,26 @@ static bool is_again(const hn_incident *list, const int *whose, int i) {
     return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
 }
 
-/// Whether a run recorded a kind of incident as often as any may be: later ones are missing.
-static bool is_cut(const hn_incident *list, const int *whose, int n, int run) {
-    int count[HN_INCIDENT_COUNT] = {0};
-    bool cut = false;
-    for (int i = 0; i < n; i++) {
-        cut |= whose[i] == run && ++count[list[i].code] == HN_INCIDENT_MOST_OF_ONE_KIND;
-    }
-    return cut;
-}
-
-/// Says how many incidents are not shown of those that are recorded, and that some are not.
-static void draw_same(hn_cells *c, hn_area in, int y, int same, bool cut) {
+/// Says how many of the incidents listed are not shown.
+static int draw_same(hn_cells *c, hn_area in, int y, int same) {
     char line[96];
     snprintf(line, sizeof line, "and %d more of the same causes", same);
-    y = hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
-    if (cut) {
-        snprintf(line, sizeof line, "After %d of a kind none is recorded.",
-                 HN_INCIDENT_MOST_OF_ONE_KIND);
-        hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
+    return hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
+}
+
+/// Says how often each kind came of which not all are listed.
+static void draw_counts(hn_cells *c, hn_area in, int y, const hn_incident *list, const int *whose,
+                        int n, int run) {
+    int count[HN_INCIDENT_COUNT] = {0};
+    char line[160];
+    for (int i = 0; i < n; i++) {
+        const hn_incident *last = &list[i];
+        if (whose[i] == run && ++count[last->code] == HN_INCIDENT_MOST_OF_ONE_KIND &&
+            last->times > HN_INCIDENT_MOST_OF_ONE_KIND) {
+            snprintf(line, sizeof line, "%s: %d times, the first %d are listed",
+                     hn_incident_spelling(last->code), last->times, HN_INCIDENT_MOST_OF_ONE_KIND);
+            y = hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
+        }
     }
 }
 
@@ -177,8 +178,9 @@ static int draw_card(hn_cells *c, hn_area area, const hn_workbench *w, int first
     }
     if (e < entries) {
         hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more", entries - e);
-    } else if (same > 0 && y + 1 < in.rows) {
-        draw_same(c, in, y + 1, same, is_cut(list, whose, n, w->selected));
+    } else if (y + 1 < in.rows) {
+        y = same > 0 ? draw_same(c, in, y + 1, same) : y + 1;
+        draw_counts(c, in, y, list, whose, n, w->selected);
     }
     return entries - e;
 }

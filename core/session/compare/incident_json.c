@@ -13,6 +13,7 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
     hn_json_put_string(b, "quantity", incident->quantity);
     hn_json_put_number(b, "value", incident->value);
     hn_json_put_number(b, "limit", incident->limit);
+    hn_json_put_int(b, "times", incident->times);
     hn_json_put_string(b, "message", incident->message);
 
     // remedies, and the result of the trial of each

@@ -76,8 +76,8 @@ static void check(hn_watch *w) {
               "t = %.4g s, as a pilot run shows; the smallest singular value of J, sigma_min, is "
               "%.2g now, the largest %.2g",
         s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
-    if (i) {
-        s->announced = 1 + (int)(i - w->log.list);
+    if (i || !s->announced) { // without a place in the list it is counted, and over likewise
+        s->announced = i ? 1 + (int)(i - w->log.list) : HN_RUN_MAX_INCIDENTS + 1;
         s->lowest = s->info.sigma_min;
         s->due = s->info.predicted;
     }

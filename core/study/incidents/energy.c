@@ -97,14 +97,14 @@ static void check_jump(hn_watch *w) {
         hn_incident_over(&w->log, HN_INCIDENT_ENERGY_JUMP);
         return;
     }
-    if (!hn_incident_is_taken(&w->log, HN_INCIDENT_ENERGY_JUMP)) { // before its text is made
+    if (!hn_incident_begins(&w->log, HN_INCIDENT_ENERGY_JUMP)) { // before its text is made
         return;
     }
     const int digits = hn_digits_apart(fabs(e->change), limit, 3);
-    hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
-                       "the energy changed by %.*g J in one step, more than %.*g J, and no load "
-                       "does work; since the start it has changed by %.3g J",
-                       digits, e->change, digits, limit, e->last - e->start);
+    hn_incident_put(w, &hn_incident_energy_jump, "energy change", e->change, limit,
+                    "the energy changed by %.*g J in one step, more than %.*g J, and no load "
+                    "does work; since the start it has changed by %.3g J",
+                    digits, e->change, digits, limit, e->last - e->start);
 }
 
 /// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed

@@ -13,14 +13,14 @@ static void check(hn_watch *w) {
         hn_incident_over(&w->log, HN_INCIDENT_GAP_OPEN);
         return;
     }
-    if (!hn_incident_is_taken(&w->log, HN_INCIDENT_GAP_OPEN)) { // before its text is made
+    if (!hn_incident_begins(&w->log, HN_INCIDENT_GAP_OPEN)) { // before its text is made
         return;
     }
     const int digits = hn_digits_apart(gap, limit, 3);
-    hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
-                       "the loop has opened: the constraint violation of %.*g m exceeds the limit "
-                       "of %.*g m",
-                       digits, gap, digits, limit);
+    hn_incident_put(w, &hn_incident_gap_open, "gap", gap, limit,
+                    "the loop has opened: the constraint violation of %.*g m exceeds the limit "
+                    "of %.*g m",
+                    digits, gap, digits, limit);
 }
 
 const hn_incident_kind hn_incident_gap_open = {

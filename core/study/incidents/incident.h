@@ -47,6 +47,7 @@ typedef struct hn_incident {
     double t;
     const char *quantity; ///< "gap", "pivot ratio": static text
     double value, limit;
+    int times; ///< how often its kind has come so far in this run, those that are not listed too
     char message[400];             ///< what happened in this run, with numbers and units
     hn_remedy remedy[HN_REMEDIES]; ///< what to try, best first; "" ends the list
     /// "tried ...": what each of them gave in a trial; "not tried: ...": why there was none; "":

@@ -9,6 +9,7 @@ void hn_incident_log_clear(hn_incident_log *log) {
     log->n = 0;
     log->active = 0;
     memset(log->reported, 0, sizeof log->reported);
+    memset(log->times, 0, sizeof log->times);
 }
 
 bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code) {
@@ -19,20 +20,31 @@ void hn_incident_over(hn_incident_log *log, hn_incident_code code) {
     log->active &= ~(1u << code);
 }
 
-bool hn_incident_is_taken(const hn_incident_log *log, hn_incident_code code) {
-    return !hn_incident_holds(log, code) && log->reported[code] < HN_INCIDENT_MOST_OF_ONE_KIND &&
-           log->n < HN_RUN_MAX_INCIDENTS;
+static bool has_room(const hn_incident_log *log, hn_incident_code code) {
+    return log->reported[code] < HN_INCIDENT_MOST_OF_ONE_KIND && log->n < HN_RUN_MAX_INCIDENTS;
+}
+
+bool hn_incident_begins(hn_incident_log *log, hn_incident_code code) {
+    if (hn_incident_holds(log, code)) {
+        return false;
+    }
+    log->active |= 1u << code;
+    log->times[code]++;
+    for (int i = 0; i < log->n; i++) {
+        log->list[i].times = log->list[i].code == code ? log->times[code] : log->list[i].times;
+    }
+    return has_room(log, code);
 }
 
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report) {
     const hn_incident_code code = report->code;
-    if (!hn_incident_is_taken(log, code)) {
+    if (!has_room(log, code)) {
         return NULL;
     }
-    log->active |= 1u << code;
     log->reported[code]++;
     hn_incident *i = &log->list[log->n++];
     *i = *report;
+    i->times = log->times[code];
     i->revision = ++log->revision;
     return i;
 }

@@ -13,7 +13,8 @@ enum { HN_INCIDENT_MOST_OF_ONE_KIND = 5 };
 typedef struct hn_incident_log {
     hn_incident list[HN_RUN_MAX_INCIDENTS];
     int n;
-    int reported[HN_INCIDENT_COUNT]; ///< so far, by kind
+    int reported[HN_INCIDENT_COUNT]; ///< in the list, by kind
+    int times[HN_INCIDENT_COUNT];    ///< how often each condition has begun, listed or not
     unsigned active;                 ///< a bit per kind whose condition holds at present
     unsigned revision;               ///< of the report written or completed last; never set back
 } hn_incident_log;
@@ -24,10 +25,10 @@ void hn_incident_log_clear(hn_incident_log *log);
 bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code);
 /// Records that the condition no longer holds: it is reported again when it next begins.
 void hn_incident_over(hn_incident_log *log, hn_incident_code code);
-/// Returns whether a report of this kind would be kept: its condition is new, and there is room.
-bool hn_incident_is_taken(const hn_incident_log *log, hn_incident_code code);
-/// Adds a report without remedies. Returns NULL where the condition is known already or no room is
-/// left.
+/// Counts a condition that begins to hold, unless it holds already. Returns whether a report of it
+/// would be kept: it is new, and there is room. To be asked before a text is made, once.
+bool hn_incident_begins(hn_incident_log *log, hn_incident_code code);
+/// Adds a report without remedies of a condition that has begun. Returns NULL where no room is left.
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report);
 /// Makes room for one report of this kind, for the end of a run, which is always reported.
 void hn_incident_make_room(hn_incident_log *log, hn_incident_code code);

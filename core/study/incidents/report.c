@@ -27,11 +27,8 @@ static void keep_before(hn_watch *w, const hn_incident *i) {
     w->before_at[k] = run->steps + run->rejected;
 }
 
-hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
-                                double value, double limit, const char *format, ...) {
-    if (!hn_incident_is_taken(&w->log, kind->code)) { // a condition that goes on costs nothing
-        return NULL;
-    }
+static hn_incident *put(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
+                        double value, double limit, const char *format, va_list args) {
     hn_incident *i = hn_incident_add(&w->log, &(hn_incident){.code = kind->code,
                                                              .t = w->run->now.t,
                                                              .quantity = quantity,
@@ -40,14 +37,32 @@ hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const
     if (!i) {
         return NULL;
     }
-    va_list args;
-    va_start(args, format);
     vsnprintf(i->message, sizeof i->message, format, args);
-    va_end(args);
     if (w->log.reported[kind->code] == HN_INCIDENT_MOST_OF_ONE_KIND) {
-        hn_incident_append(&w->log, i, "; further incidents of this kind are not listed");
+        hn_incident_append(&w->log, i, "; later incidents of this kind are counted, not listed");
     }
     offer_remedies(w, kind, i);
     keep_before(w, i);
+    return i;
+}
+
+hn_incident *hn_incident_put(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
+                             double value, double limit, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    hn_incident *i = put(w, kind, quantity, value, limit, format, args);
+    va_end(args);
+    return i;
+}
+
+hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
+                                double value, double limit, const char *format, ...) {
+    if (!hn_incident_begins(&w->log, kind->code)) { // a condition that goes on costs nothing
+        return NULL;
+    }
+    va_list args;
+    va_start(args, format);
+    hn_incident *i = put(w, kind, quantity, value, limit, format, args);
+    va_end(args);
     return i;
 }

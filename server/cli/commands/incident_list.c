@@ -58,8 +58,8 @@ void hn_incident_list_take(hn_incident_list *list, const cJSON *incidents, int m
     sort(list);
 }
 
-/// Whether item k is the last of its kind that a run records.
-static bool is_last_recorded(const hn_incident_list *list, int k) {
+/// Whether item k is the last of its kind that a run lists.
+static bool is_last_listed(const hn_incident_list *list, int k) {
     const char *code = hn_document_text(list->item[k], "code");
     int n = 0;
     for (int i = 0; i <= k; i++) {
@@ -73,16 +73,15 @@ void hn_incident_more(hn_strbuf *b, const hn_incident_list *list, int told) {
     int full = 0;
     hn_strbuf_printf(b, "and %d more incident%s (--json lists ", more, more > 1 ? "s" : "");
     for (int k = 0; k < list->n; k++) {
-        if (!is_last_recorded(list, k)) {
+        const int times = (int)hn_document_number(list->item[k], "times");
+        if (!is_last_listed(list, k) || times <= HN_INCIDENT_MOST_OF_ONE_KIND) {
             continue;
         }
         if (full++ == 0) {
-            hn_strbuf_printf(b, "them; only the first %d of a kind are recorded: ",
-                             HN_INCIDENT_MOST_OF_ONE_KIND);
+            hn_strbuf_printf(b, "them, the first %d of a kind: ", HN_INCIDENT_MOST_OF_ONE_KIND);
         }
-        hn_strbuf_printf(b, "%s%s until t = %.4g s", full > 1 ? ", " : "",
-                         hn_document_text(list->item[k], "code"),
-                         hn_document_number(list->item[k], "t"));
+        hn_strbuf_printf(b, "%s%s came %d times", full > 1 ? ", " : "",
+                         hn_document_text(list->item[k], "code"), times);
     }
     hn_strbuf_add(b, full ? ")" : "them all)");
 }

@@ -139,13 +139,14 @@ static const struct {
      "value of these rows; null without rows, or where the smallest is 0\"}}}"},
     {"Incident",
      "{\"type\":\"object\",\"description\":\"data of the event incident; sent again with the same "
-     "method, code and t when its outcome is known; a run records the first 5 of a code, and the "
-     "message of the fifth says that later ones are missing\",\"required\":[\"generation\","
+     "method, code and t when its outcome is known; a run lists the first 5 of a code, and times "
+     "counts all of them up to then\",\"required\":[\"generation\","
      "\"method\",\"code\",\"t\",\"message\"],\"properties\":{"
      "\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":\"integer\"},\"code\":" TEXT
      ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
-     "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT
-     ",\"remedies\":" TEXTS ",\"tried\":" TEXTS "}}"},
+     "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER
+     ",\"times\":{\"type\":\"integer\"},\"message\":" TEXT ",\"remedies\":" TEXTS
+     ",\"tried\":" TEXTS "}}"},
     {"Comparison",
      "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\","
      "\"duration\",\"generation\","
