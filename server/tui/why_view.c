@@ -50,26 +50,10 @@ static bool is_again(const hn_incident *list, const int *whose, int i) {
 }
 
 /// Says how many of the incidents listed are not shown.
-static int draw_same(hn_cells *c, hn_area in, int y, int same) {
+static void draw_same(hn_cells *c, hn_area in, int y, int same) {
     char line[96];
     snprintf(line, sizeof line, "and %d more of the same causes", same);
-    return hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
-}
-
-/// Says how often each kind came of which not all are listed.
-static void draw_counts(hn_cells *c, hn_area in, int y, const hn_incident *list, const int *whose,
-                        int n, int run) {
-    int count[HN_INCIDENT_COUNT] = {0};
-    char line[160];
-    for (int i = 0; i < n; i++) {
-        const hn_incident *last = &list[i];
-        if (whose[i] == run && ++count[last->code] == HN_INCIDENT_MOST_OF_ONE_KIND &&
-            last->times > HN_INCIDENT_MOST_OF_ONE_KIND) {
-            snprintf(line, sizeof line, "%s: %d times, the first %d are listed",
-                     hn_incident_spelling(last->code), last->times, HN_INCIDENT_MOST_OF_ONE_KIND);
-            y = hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
-        }
-    }
+    hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
 }
 
 /// What an incident is to its method, in the order of the card.
@@ -118,12 +102,25 @@ static bool is_said(const hn_incident *list, const int *entry, int first, int e,
     return false;
 }
 
+/// Whether entry e is the first of its kind, and not all of that kind are listed.
+static bool tells_count(const hn_incident *list, const int *entry, int e) {
+    bool is_first = true;
+    for (int k = 0; k < e; k++) {
+        is_first = is_first && list[entry[k]].code != list[entry[e]].code;
+    }
+    return is_first && list[entry[e]].times > HN_INCIDENT_MOST_OF_ONE_KIND;
+}
+
 /// Entry e with what to try that is not said from `first` on; returns the row below.
 static int draw_entry(hn_cells *c, hn_area in, int y, const hn_workbench *w,
                       const hn_incident *list, const int *entry, int first, int e) {
     const hn_incident *incident = &list[entry[e]];
     char line[512], words[HN_WHY_WORDS];
-    snprintf(line, sizeof line, "%.4g s: %s", incident->t, incident->message);
+    const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, incident->message);
+    if (tells_count(list, entry, e) && n < (int)sizeof line) {
+        snprintf(line + n, sizeof line - (size_t)n, "; one of %d, the first %d are listed",
+                 incident->times, HN_INCIDENT_MOST_OF_ONE_KIND);
+    }
     y = hn_cells_fold(c, in, y, HN_CELL_ALARM, line);
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
         const hn_area inset = {in.x + 2, in.y, in.columns - 2, in.rows};
@@ -178,9 +175,8 @@ static int draw_card(hn_cells *c, hn_area area, const hn_workbench *w, int first
     }
     if (e < entries) {
         hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more", entries - e);
-    } else if (y + 1 < in.rows) {
-        y = same > 0 ? draw_same(c, in, y + 1, same) : y + 1;
-        draw_counts(c, in, y, list, whose, n, w->selected);
+    } else if (same > 0 && y + 1 < in.rows) {
+        draw_same(c, in, y + 1, same);
     }
     return entries - e;
 }

@@ -408,14 +408,12 @@ class Keys(unittest.TestCase):
 
     def test_the_card_counts_incidents_that_are_not_listed(self):
         def card(scene, method):
-            _, out, _ = once(scene, "--once", "--t", "3", "--size", "150x60", "--methods", method, "--keys", "i" + 12 * "<PageDown>")
-            return " ".join("".join(line[67:149] for line in out.split("\n")[2:50]).split())
+            _, out, _ = once(scene, "--once", "--t", "3", "--size", "150x60", "--methods", method, "--keys", "i")
+            return " ".join("".join(line[68:149] for line in out.split("\n")[2:58]).replace("│", " ").split())
         # flat twelve times in 5 s
-        self.assertRegex(card("parallelogram", "projection@rk4:h=1e-3"), r"near-singular: 12 times, the first 5[ │]+are listed|near-singular: 12 times")
+        self.assertIn("one of 12, the first 5 are listed", card("parallelogram", "projection@rk4:h=1e-3"))
         # five of a kind at most: all are there
-        few = card("four-bar", "baumgarte@rk4:h=0.02")
-        self.assertRegex(few, r"and \d more of the same causes")
-        self.assertNotIn("are listed", few)
+        self.assertNotIn("are listed", card("four-bar", "baumgarte@rk4:h=0.02"))
 
     def test_the_cheapest_method_for_an_error_keeps_that_error(self):
         methods = ("--methods", "index1@rk4:h=0.02", "index1@euler:h=0.02")
