@@ -28,7 +28,8 @@ void hn_incident_over(hn_incident_log *log, hn_incident_code code);
 /// Counts a condition that begins to hold, unless it holds already. Returns whether a report of it
 /// would be kept: it is new, and there is room. To be asked before a text is made, once.
 bool hn_incident_begins(hn_incident_log *log, hn_incident_code code);
-/// Adds a report without remedies of a condition that has begun. Returns NULL where no room is left.
+/// Adds a report without remedies of a condition that has begun. Returns NULL where no room is
+/// left.
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report);
 /// Makes room for one report of this kind, for the end of a run, which is always reported.
 void hn_incident_make_room(hn_incident_log *log, hn_incident_code code);
