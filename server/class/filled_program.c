@@ -305,6 +305,7 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
 static void compare_part(const part_view *p, const hn_language *language, hn_entry_verdict *e) {
     int state = 0, entry = 0;
     snprintf(e->name, sizeof e->name, "%s", hn_export_part_name((hn_export_part)p->part));
+    e->n_whole = (int)strlen(e->name);
     e->max_points = POINTS;
     e->mistake = "";
     e->state = -1;

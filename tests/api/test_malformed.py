@@ -443,7 +443,8 @@ class Malformed(driver.ServerCase):
     def test_an_address_in_absolute_form_is_taken_with_its_own_host(self):
         host = f"localhost:{self.server.port}".encode()
         for address, named, status in ((b"http://" + host + b"/healthz", host, 200), (b"HTTP://" + host.upper() + b"/api/v1/scenes/four-bar?set=l1:0.6", host, 200),
-                                       (b"http://" + host, host, 200), (b"http://evil.example/healthz", host, 400),
+                                       (b"http://" + host, host, 200), (b"http://localhost/healthz", b"localhost:80", 200), (b"http://localhost:80/healthz", b"localhost", 200),
+                                       (b"http://evil.example/healthz", host, 400), (b"http://localhost:81/healthz", b"localhost", 400),
                                        (b"http://evil.example/healthz", b"evil.example", 421), (b"http://" + host + b"/nothing", host, 404)):
             reply = self.server.raw(b"GET " + address + b" HTTP/1.1\r\nHost: " + named + b"\r\nConnection: close\r\n\r\n")
             self.assertTrue(reply.startswith(f"HTTP/1.1 {status} ".encode()), (address, reply[:200]))

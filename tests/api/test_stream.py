@@ -253,7 +253,7 @@ class Streams(driver.ServerCase):
         self.assertEqual(server.stop(), 0)
         for reader in readers:
             events = [(name, data) for name, _, data in reader if name != "comment"]
-            self.assertEqual(events[-1], ("stopping", {"detail": "the server is going down"}))
+            self.assertEqual(events[-1], ("stopping", {"detail": "the server is shutting down"}))
             reader.close()
 
     def test_deleting_ends_the_stream_with_an_end(self):

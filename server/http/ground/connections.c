@@ -3,9 +3,12 @@
 
 #include "base/clock.h"
 #include "base/strbuf.h"
+#include "http/ground/closing_head.h"
 #include "http/ground/problem_document.h"
 
+#include <linux/tcp.h>
 #include <math.h>
+#include <netinet/in.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -14,6 +17,8 @@
 enum { LOOK_MS = 250 };
 /// The part of the library's own limit after which a request that stands still is answered.
 static const double QUIET = 0.9;
+/// [s] An answer has been on its way for this long at least, where its reader's pace is taken.
+static const double SHORTEST = 1e-3;
 
 /// What a connection does; one whose place is needed is looked for in this order.
 typedef enum connection_state {
@@ -28,8 +33,10 @@ struct hn_connection_watch {
     bool has_place; ///< it is counted; under the lock, as is all that follows
     connection_state state;
     double since;    ///< it has been in this state since then [s, wall clock]
+    double n_read;   ///< what its client had acknowledged by then [byte]
     double deadline; ///< it is closed then [s, wall clock]
     bool asks;       ///< a request has begun that has no answer yet
+    bool has_ended;  ///< it has been shut down: nothing is begun for it any more
     double last;     ///< something of that request came then [s, wall clock]
     hn_connection_watch *next, *before;
 };
@@ -40,7 +47,8 @@ struct hn_connections {
     const hn_http_opts *opts;
     hn_connection_watch *first;
     hn_shares *places;
-    hn_strbuf late; ///< the answer to a request that comes too slowly
+    hn_strbuf late;   ///< the answer to a request that comes too slowly
+    double last_slow; ///< a slow reader was ended last then [s, wall clock]
     pthread_t thread;
     int has_thread, stop;
 };
@@ -49,6 +57,7 @@ struct hn_connections {
 /// held.
 static void end(hn_connections *all, hn_connection_watch *w) {
     shutdown(w->fd, SHUT_RDWR);
+    w->has_ended = true;
     w->deadline = HUGE_VAL;
     if (w->has_place) {
         hn_shares_give(all->places, w->client);
@@ -88,12 +97,9 @@ static void write_late(hn_strbuf *b) {
     hn_strbuf_init(&document);
     hn_http_problem_json(&document, HN_PROBLEM_LATE, "the request stopped coming in", NULL, NULL,
                          -1, NULL);
-    hn_strbuf_printf(b,
-                     "HTTP/1.1 %u \r\nContent-Type: application/problem+json\r\n"
-                     "Content-Length: %zu\r\nConnection: close\r\n"
-                     "X-Content-Type-Options: nosniff\r\nCache-Control: no-store\r\n\r\n%s",
-                     hn_http_problem_get_info(HN_PROBLEM_LATE)->status, document.n,
-                     hn_strbuf_text(&document));
+    hn_closing_head_put(b, hn_http_problem_get_info(HN_PROBLEM_LATE)->status,
+                        "application/problem+json", document.n);
+    hn_strbuf_printf(b, "\r\n%s", hn_strbuf_text(&document));
     b->failed |= document.failed;
     hn_strbuf_reset(&document);
 }
@@ -126,6 +132,7 @@ hn_connections *hn_connections_create(const hn_http_opts *opts) {
     pthread_condattr_destroy(&attr);
     pthread_mutex_init(&all->lock, NULL);
     all->opts = opts;
+    all->last_slow = -HUGE_VAL;
     hn_strbuf_init(&all->late);
     write_late(&all->late);
     all->places =
@@ -155,6 +162,15 @@ void hn_connections_free(hn_connections *all) {
     hn_shares_free(all->places);
     hn_strbuf_reset(&all->late);
     free(all);
+}
+
+/// Bytes that the other side of a connection has acknowledged so far; 0 where the system does not
+/// count them.
+static double bytes_read(int fd) {
+    struct tcp_info info = {0};
+    socklen_t n = sizeof info;
+    return getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &n) == 0 ? (double)info.tcpi_bytes_acked
+                                                                 : 0;
 }
 
 /// Whether `a` is to give up its place rather than `b`.
@@ -197,18 +213,26 @@ bool hn_connections_make_room(hn_connections *all, hn_client client) {
 
 bool hn_connections_end_slowest(hn_connections *all, double seconds) {
     hn_connection_watch *slowest = NULL;
+    double least = HUGE_VAL; // [byte/s]
     pthread_mutex_lock(&all->lock);
-    for (hn_connection_watch *w = all->first; w; w = w->next) {
-        if (w->has_place && w->state == STATE_SENDS && (!slowest || w->since < slowest->since)) {
-            slowest = w;
+    const double now = hn_clock_wall();
+    const bool is_due = now >= all->last_slow + all->opts->unread_pause;
+    for (hn_connection_watch *w = all->first; is_due && w; w = w->next) {
+        const double waits = now - w->since;
+        if (w->has_place && w->state == STATE_SENDS && waits >= seconds) {
+            const double rate = (bytes_read(w->fd) - w->n_read) / fmax(waits, SHORTEST);
+            if (!slowest || rate < least || (rate == least && w->since < slowest->since)) {
+                slowest = w;
+                least = rate;
+            }
         }
     }
-    const bool ends = slowest && hn_clock_wall() - slowest->since >= seconds;
-    if (ends) {
+    if (slowest) {
+        all->last_slow = now;
         end(all, slowest);
     }
     pthread_mutex_unlock(&all->lock);
-    return ends;
+    return slowest != NULL;
 }
 
 hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client) {
@@ -246,24 +270,29 @@ void hn_connections_remove(hn_connections *all, hn_connection_watch *w) {
     free(w);
 }
 
-/// What the connection does from now on, and for how long it may [s].
-static void set_state(hn_connections *all, hn_connection_watch *w, connection_state state,
+/// What the connection does from now on, and for how long it may [s]. Returns false where it has
+/// been ended.
+static bool set_state(hn_connections *all, hn_connection_watch *w, connection_state state,
                       double seconds) {
+    bool goes_on = true;
     if (w) {
         pthread_mutex_lock(&all->lock);
+        goes_on = !w->has_ended;
         w->state = state;
         w->since = hn_clock_wall();
-        w->deadline = w->since + seconds;
+        w->deadline = goes_on ? w->since + seconds : HUGE_VAL;
+        w->n_read = bytes_read(w->fd);
         pthread_mutex_unlock(&all->lock);
     }
+    return goes_on;
 }
 
 void hn_connection_reads_body(hn_connections *all, hn_connection_watch *w) {
     set_state(all, w, STATE_IDLE, all->opts->request_deadline);
 }
 
-void hn_connection_is_served(hn_connections *all, hn_connection_watch *w) {
-    set_state(all, w, STATE_SERVED, HUGE_VAL);
+bool hn_connection_is_served(hn_connections *all, hn_connection_watch *w) {
+    return set_state(all, w, STATE_SERVED, HUGE_VAL);
 }
 
 void hn_connection_sends(hn_connections *all, hn_connection_watch *w) {

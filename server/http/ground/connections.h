@@ -8,6 +8,7 @@
 // else of the oldest one that has not read its answer: of the same client where its share is used
 // up, otherwise of the client with the most.
 
+#include "base/status.h"
 #include "http/ground/http_opts.h"
 #include "http/ground/shares.h"
 
@@ -23,8 +24,9 @@ void hn_connections_free(hn_connections *all); ///< NULL is legal; no connection
 /// Makes room for one more connection of a client: closes one that is not being served where no
 /// place is left. Returns false when the client has its share and each of them is being served.
 bool hn_connections_make_room(hn_connections *all, hn_client client);
-/// Closes the connection whose answer has been waiting for its reader for longest, where that is
-/// so many seconds at least. Returns false when there is none.
+/// Closes the connection whose client reads its answer most slowly, in bytes a second; of those
+/// that are on their way for so many seconds at least. Returns false when there is none, and within
+/// unread_pause after the last one.
 bool hn_connections_end_slowest(hn_connections *all, double seconds);
 /// A connection has been accepted. NULL when memory is out: it then has no deadline of its own.
 hn_connection_watch *hn_connections_add(hn_connections *all, int fd, hn_client client);
@@ -40,7 +42,9 @@ void hn_connection_goes_on(hn_connections *all, hn_connection_watch *w);
 /// The request has its answer, whatever else it sends.
 void hn_connection_is_answered(hn_connections *all, hn_connection_watch *w);
 void hn_connection_reads_body(hn_connections *all, hn_connection_watch *w);
-void hn_connection_is_served(hn_connections *all, hn_connection_watch *w); ///< no deadline
+/// Its request is whole and has no deadline. Returns false where the connection has been ended, for
+/// example because the request was late: it is not to be carried out.
+HN_MUST_CHECK bool hn_connection_is_served(hn_connections *all, hn_connection_watch *w);
 /// The answer goes out, one with an end.
 void hn_connection_sends(hn_connections *all, hn_connection_watch *w);
 void hn_connection_is_idle(hn_connections *all, hn_connection_watch *w);

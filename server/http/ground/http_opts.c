@@ -41,6 +41,7 @@ hn_http_opts hn_http_opts_default(void) {
                           .keep_alive = 10,
                           .connection_timeout = 30,
                           .unread_patience = 20,
+                          .unread_pause = 1,
                           .head_deadline = 10,
                           .request_deadline = 60};
 }

@@ -51,6 +51,7 @@ typedef struct hn_http_opts {
     double keep_alive;       ///< between comment lines of a quiet stream [s]
     int connection_timeout;  ///< without any progress [s]
     double unread_patience;  ///< with an answer's reader when too many bytes are unread [s]
+    double unread_pause;     ///< between two readers that are closed for that [s]
     double head_deadline;    ///< for a head, in all; a later one counts from its first line [s]
     double request_deadline; ///< for a body, in all, and between two requests [s]
 } hn_http_opts;

@@ -25,8 +25,9 @@
     X(HN_PROBLEM_NOT_ACCEPTABLE, 406, "not-acceptable", "The answer has another media type",       \
       "The Accept header rules out what this address offers; the detail names what it offers.")    \
     X(HN_PROBLEM_LATE, 408, "timeout", "The request came too slowly",                              \
-      "The head of a request must arrive within 10 s and the body within 60 s, without a pause "   \
-      "of 30 s.")                                                                                  \
+      "Head and body of a request have a time in all, and no pause in them may be long; the "      \
+      "index "                                                                                     \
+      "lists the limits.")                                                                         \
     X(HN_PROBLEM_CONFLICT, 409, "conflict", "The present state does not allow this request",       \
       "The request does not fit the state of the comparison, run or study; nothing was changed.")  \
     X(HN_PROBLEM_TOO_LARGE, 413, "too-large", "The body is too large",                             \

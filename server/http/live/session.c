@@ -111,7 +111,7 @@ static void reply_gone(hn_session *session, hn_request *r) {
     if (session->deleted) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, NULL, "the comparison was deleted");
     } else {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
     }
     hn_request_finish(r);
 }

@@ -125,7 +125,7 @@ static void fill(hn_stream *s) {
     }
     if (s->text.n == 0 && s->session->ending && !s->said_end) {
         hn_strbuf_add(&s->text,
-                      "event: stopping\ndata: {\"detail\":\"the server is going down\"}\n\n");
+                      "event: stopping\ndata: {\"detail\":\"the server is shutting down\"}\n\n");
         s->said_end = 1;
     }
     if (s->text.n == 0 && !is_at_end(s) &&

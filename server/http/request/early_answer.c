@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/early_answer.h"
 
-#include "build.h"
+#include "http/ground/closing_head.h"
 
 #include <sys/socket.h>
 
@@ -11,15 +11,14 @@ void hn_answer_early(hn_request *r) {
     HN_ASSERT(r->stage == HN_STAGE_ANSWERED && !r->response);
     hn_strbuf answer;
     hn_strbuf_init(&answer);
-    hn_strbuf_printf(&answer, "HTTP/1.1 %u \r\nContent-Type: %s\r\nContent-Length: %zu\r\n",
-                     r->status, r->media_type ? r->media_type : "text/plain", r->text.n);
+    hn_closing_head_put(&answer, r->status, r->media_type ? r->media_type : "text/plain",
+                        r->text.n);
     for (int i = 0; i < r->n_headers; i++) {
-        hn_strbuf_printf(&answer, "%s: %s\r\n", r->headers[i].name, r->headers[i].value);
+        if (!hn_closing_head_has(r->headers[i].name)) {
+            hn_strbuf_printf(&answer, "%s: %s\r\n", r->headers[i].name, r->headers[i].value);
+        }
     }
-    hn_strbuf_printf(&answer,
-                     "Connection: close\r\nHolonom-Build: %s\r\nX-Content-Type-Options: nosniff"
-                     "\r\nCache-Control: no-store\r\n\r\n",
-                     hn_build_name());
+    hn_strbuf_add(&answer, "\r\n");
     hn_strbuf_add_n(&answer, hn_strbuf_text(&r->text), r->text.n);
 
     // it fits into what the system keeps for a socket; a client that has gone needs none

@@ -14,12 +14,16 @@
 enum { MAX_QUERY = 16 };
 enum { ENDS_OF_LINES = 4 }; ///< bytes of CR LF CR LF
 
-/// Length of an authority without a port that its scheme implies.
-static size_t trim_port(const char *authority) {
-    const size_t n = strlen(authority);
-    return n > 3 && strcmp(authority + n - 3, ":80") == 0    ? n - 3
-           : n > 4 && strcmp(authority + n - 4, ":443") == 0 ? n - 4
-                                                             : n;
+/// Length of an authority of n bytes without a port that its scheme implies.
+static size_t trim_port(const char *authority, size_t n) {
+    return n > 3 && strncmp(authority + n - 3, ":80", 3) == 0    ? n - 3
+           : n > 4 && strncmp(authority + n - 4, ":443", 4) == 0 ? n - 4
+                                                                 : n;
+}
+
+bool hn_guard_is_same_host(const char *a, size_t n_a, const char *b, size_t n_b) {
+    const size_t n = trim_port(a, n_a);
+    return n == trim_port(b, n_b) && strncasecmp(a, b, n) == 0;
 }
 
 /// Returns whether an Origin header names the host and port of the Host header.
@@ -28,8 +32,7 @@ static bool is_same_origin(const char *origin, const char *host) {
                           : strncmp(origin, "https://", 8) == 0 ? 8
                                                                 : 0;
     const char *authority = origin + scheme;
-    const size_t n = trim_port(authority);
-    return scheme > 0 && n == trim_port(host) && strncasecmp(authority, host, n) == 0;
+    return scheme > 0 && hn_guard_is_same_host(authority, strlen(authority), host, strlen(host));
 }
 
 /// A page may call the server that it came from: same name, same port.

@@ -4,6 +4,7 @@
 
 #include "build.h"
 #include "base/strbuf.h"
+#include "http/ground/closing_head.h"
 #include "http/ground/problem_document.h"
 #include "http/request/early_answer.h"
 
@@ -60,11 +61,8 @@ static enum MHD_Result answer_and_close(struct MHD_Connection *connection, unsig
         connection, MHD_CONNECTION_INFO_CONNECTION_FD);
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_strbuf_printf(&b,
-                     "HTTP/1.1 %u \r\nContent-Type: application/problem+json\r\n"
-                     "Content-Length: %zu\r\nConnection: close\r\nHolonom-Build: %s\r\n"
-                     "X-Content-Type-Options: nosniff\r\nCache-Control: no-store\r\n\r\n%s",
-                     status, document->n, hn_build_name(), hn_strbuf_text(document));
+    hn_closing_head_put(&b, status, "application/problem+json", document->n);
+    hn_strbuf_printf(&b, "\r\n%s", hn_strbuf_text(document));
     if (info && !b.failed) {
         hn_answer_last(info->connect_fd, hn_strbuf_text(&b), b.n);
     }

@@ -96,7 +96,7 @@ void hn_reply_header_add(hn_request *r, const char *name, const char *format, ..
 /// The reply to what was ended early.
 static void reply_interrupted(hn_request *r) {
     if (atomic_load(&r->context->stopping)) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
     } else {
         hn_reply_problem(r, HN_PROBLEM_INPUT, "take fewer bodies, or shorter chains",
                          "the equations of this scene take more than %g s of computing",

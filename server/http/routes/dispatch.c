@@ -100,7 +100,7 @@ static void check_head(hn_request *r, const char *method) {
     if (!r->route) {
         reply_off_routes(r, method, &match);
     } else if (atomic_load(&r->context->stopping)) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
     } else if (hn_guard_site(r) && hn_guard_query(r) && hn_guard_accept(r) &&
                hn_guard_body_type(r) && text && sscanf(text, "%lld", &length) == 1 &&
                length > r->context->opts.max_body) {
@@ -185,7 +185,7 @@ void hn_dispatch_job(void *job, hn_job_turn *turn) {
     r->turn = turn;
     hn_request_add_time(r);
     if (atomic_load(&r->context->stopping)) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
     } else if (hn_request_read_body(r)) {
         const int own = r->route->work == HN_WORK_QUICK_OWN;
         r->route->handle(r);
@@ -210,10 +210,11 @@ static void push(hn_dispatch *d, hn_request *r, hn_jobs *jobs) {
         hn_reply_header_add(r, "Retry-After", "5");
         hn_request_finish(r);
     } else if (!hn_jobs_push(jobs, r, r->queues_as)) {
+        const hn_http_opts *opts = &r->context->opts;
         hn_reply_problem(
             r, HN_PROBLEM_BUSY, NULL,
             "%d requests of this kind are waiting already, or your client has its share of them",
-            r->context->opts.queue);
+            jobs == d->quick ? opts->quick_queue : opts->queue);
         hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
         hn_request_finish(r);
     }
@@ -236,7 +237,6 @@ static bool is_quick(const hn_request *r) {
 
 /// Arranges the reply. Returns 1 when it is there, 0 when another thread owns the request.
 static bool start_work(hn_dispatch *d, hn_request *r) {
-    hn_connection_is_served(d->connections, r->watch);
     switch (r->route->work) {
     case HN_WORK_LIGHT:
         r->route->handle(r);
@@ -360,7 +360,7 @@ static bool take_path(hn_request *r, const char *url) {
     const size_t n = scheme ? strcspn(authority, "/") : 0;
     const char *path = scheme && !authority[n] ? "/" : authority + n;
     snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, path);
-    if (scheme && (!host || strlen(host) != n || strncasecmp(authority, host, n) != 0)) {
+    if (scheme && (!host || !hn_guard_is_same_host(authority, n, host, strlen(host)))) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
                          "the address names the host '%.*s', the Host header '%.100s'",
                          (int)(n < 100 ? n : 100), authority, host ? host : "");
@@ -423,7 +423,13 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
         return MHD_NO; // answered already: the connection closes
     }
 
-    // its end, or the reply of another thread
+    // its end; a request that was told that it is late is not carried out
+    if (r->stage == HN_STAGE_BODY &&
+        !hn_connection_is_served(((hn_dispatch *)cls)->connections, r->watch)) {
+        return MHD_NO;
+    }
+
+    // its work, or the reply of another thread
     if (r->stage == HN_STAGE_BODY && !start_work(cls, r)) {
         return MHD_YES;
     }

@@ -92,7 +92,7 @@ static bool is_unchanged(hn_request *r, const char *etag) {
 
 static void reply_refused(hn_request *r, const hn_kept_run *run) {
     if (atomic_load(&r->context->stopping)) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
     } else if (run->refused == HN_ERR_STOPPED || run->refused == HN_OK) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the run was deleted while it was computed");
     } else {

@@ -56,7 +56,7 @@ static double time_to_place(const hn_studies *all, hn_client client) {
 void hn_study_reply_no_place(hn_request *r, hn_study_place p) {
     hn_studies *all = r->context->studies;
     if (p == HN_STUDY_PLACES_CLOSED) {
-        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
         return;
     }
     const int share = hn_http_opts_share(all->opts, all->opts->max_studies);
