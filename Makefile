@@ -14,7 +14,7 @@ say  = $(if $(V),,@echo '$(if $(filter release,$(VARIANT)),,[$(VARIANT)] )$(1)')
 # all processors, unless make was told how many
 JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
 
-VERSION := 1.0
+VERSION := $(shell sed -n 's/^.define HN_VERSION "\(.*\)"/\1/p' server/build.h)
 PREFIX ?= /usr/local
 PORT   ?= 8080
 
@@ -282,8 +282,7 @@ Name: holonom
 Description: Mechanisms with closed kinematic loops, by many methods
 Version: $(VERSION)
 Cflags: -I$${prefix}/include
-Libs: -L$${prefix}/lib -lholonom
-Libs.private: -pthread $(LDLIBS)
+Libs: -L$${prefix}/lib -lholonom -pthread $(LDLIBS)
 endef
 export PKG_CONFIG
 
@@ -291,8 +290,12 @@ INSTALLED := $(DESTDIR)$(PREFIX)
 install: all
 	install -D -m 755 build/holonom $(INSTALLED)/bin/holonom
 	install -D -m 644 build/libholonom.a $(INSTALLED)/lib/libholonom.a
+	@$(CC) $(CFLAGS) -Icore -DHN_INSTALLED_HOME='"$(abspath $(PREFIX))/share/holonom"' \
+	    -c -o $(OUT)/generated/installed.o core/session/model/installed.c
+	@ar r $(INSTALLED)/lib/libholonom.a $(OUT)/generated/installed.o
 	install -D -m 644 core/session/face/holonom.h $(INSTALLED)/include/holonom.h
 	install -D -m 644 server/python/holonom.py $(INSTALLED)/share/holonom/python/holonom.py
+	install -D -m 644 tests/library/example.c $(INSTALLED)/share/holonom/example.c
 	@mkdir -p $(INSTALLED)/share/man/man1 $(INSTALLED)/share/bash-completion/completions \
 	    $(INSTALLED)/share/zsh/site-functions $(INSTALLED)/share/fish/vendor_completions.d
 	@build/holonom manual >$(INSTALLED)/share/man/man1/holonom.1

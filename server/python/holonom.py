@@ -6,8 +6,8 @@
     motion.t, motion["th1"], motion.gap          # numpy arrays where numpy is installed, else lists
     table = holonom.compare("four-bar", ["index1@rk4:h=1e-2", "ggl@radau5:rtol=1e-6"], time=5, set={"l1": 0.45})
 
-One file and no build step: it calls the command and reads its JSON. The command is the one named by HOLONOM, else the `holonom`
-of PATH, else the build/holonom of the folder that this file lies in.
+One file and no build step: it calls the command and reads its JSON. The command is the one named by HOLONOM, else the one that
+was installed or built with this file, else the `holonom` of PATH.
 """
 
 import json
@@ -21,7 +21,7 @@ try:
 except ImportError:  # lists then
     numpy = None
 
-__all__ = ["HolonomError", "Motion", "run", "compare", "study", "scenes", "scene", "terms", "equations", "problems", "grade"]
+__all__ = ["HolonomError", "Motion", "run", "compare", "study", "scenes", "scene", "terms", "equations", "problems", "export", "grade"]
 
 DONE, ENDED = 0, 4
 
@@ -37,8 +37,12 @@ class HolonomError(Exception):
 
 def command():
     """The path of the command that is called."""
-    here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "holonom")
-    found = os.environ.get("HOLONOM") or shutil.which("holonom") or (here if os.path.exists(here) else None)
+    found = os.environ.get("HOLONOM")
+    # beside this file: bin/ of an installation (PREFIX/share/holonom/python), build/ of a checkout
+    for place in (("..", "..", "..", "bin"), ("..", "..", "build")):
+        here = os.path.join(os.path.dirname(os.path.abspath(__file__)), *place, "holonom")
+        found = found or (here if os.access(here, os.X_OK) else None)
+    found = found or shutil.which("holonom")
     if not found:
         raise HolonomError(127, [], "there is no command holonom in PATH; name it in the variable HOLONOM")
     return found
@@ -52,8 +56,18 @@ def _call(*words):
     except ValueError:
         raise HolonomError(done.returncode, [], done.stderr or done.stdout) from None
     if done.returncode not in (DONE, ENDED):
-        raise HolonomError(done.returncode, answer.get("errors", []), done.stderr)
+        # a submission that cannot be graded is told in the verdict
+        refused = [{"detail": answer["reason"], "hint": answer.get("hint", "")}] if answer.get("reason") else []
+        raise HolonomError(done.returncode, answer.get("errors") or refused, done.stderr)
     return answer
+
+
+def _text(*words):
+    """Runs the command; the text that it writes."""
+    done = subprocess.run([command(), *map(str, words)], capture_output=True, text=True, check=False)
+    if done.returncode != DONE:
+        raise HolonomError(done.returncode, [], done.stderr or done.stdout)
+    return done.stdout
 
 
 def _options(**given):
@@ -106,19 +120,22 @@ class Motion:
         return f"<{self.document['scene']} by {self.method}: {len(self.t)} samples to t = {self.t[-1]:g} s>"
 
 
-def run(scene, method=None, time=None, at=None, every=None, set=None, reactions=False):
-    """One method; a Motion. A run that ended early is one too: `reason` says why."""
-    return Motion(_call("run", scene, *_options(method=method, time=time, every=every, reactions=reactions,
+def run(scene, method=None, time=None, at=None, every=None, set=None, reactions=False, allow_programs=False):
+    """One method; a Motion. A run that ended early is one too: `reason` says why.
+
+    allow_programs=True lets the method be a program of your own, in a sandbox: "program:./mine.py@rk4:h=1e-2".
+    """
+    return Motion(_call("run", scene, *_options(method=method, time=time, every=every, reactions=reactions, allow_programs=allow_programs,
                                                 at=None if at is None else ",".join(repr(float(t)) for t in at)), *_settings(set)))
 
 
-def compare(scene, methods=None, time=None, set=None):
+def compare(scene, methods=None, time=None, set=None, allow_programs=False):
     """Several methods on one clock: {"methods": [{"method", "state", "worst_gap", "worst_energy_change", "evals", ...}], "incidents": [...]}."""
-    return _call("compare", scene, *_options(methods=methods, time=time), *_settings(set))
+    return _call("compare", scene, *_options(methods=methods, time=time, allow_programs=allow_programs), *_settings(set))
 
 
 def study(scene, kind="work-precision", methods=None, time=None, set=None, **options):
-    """A study: kind work-precision, budget or stability; options as on the command line (levels=5, time_limit=20, over="h=1e-4..1e-1")."""
+    """A study: kind work-precision, budget or stability; options as on the command line (levels=5, time_limit=20, over="h=1e-4..1e-1", allow_programs=True)."""
     return _call("study", scene, kind, *_options(methods=methods, time=time, **options), *_settings(set))
 
 
@@ -148,10 +165,18 @@ def problems():
     return _call("list", "problems")["problems"]
 
 
-def grade(problem, submission, seed=None):
-    """The verdict on a submission: a dictionary, or the path of a file."""
+def export(scene, language="python", set=None, **options):
+    """The text of a program that solves the equations of the scene; options as on the command line (style="skeleton", blanks=True)."""
+    return _text("export", scene, *_options(language=language, **options), *_settings(set))
+
+
+def grade(problem, submission, seed=None, set=None):
+    """The verdict on a submission: a dictionary, or the path of a file.
+
+    `problem` is an exercise, or a scene whose program with blanks the file is: `set` then holds the parameters it was written with.
+    """
     if isinstance(submission, (str, os.PathLike)):
-        return _call("grade", problem, submission, *_options(seed=seed))
+        return _call("grade", problem, submission, *_options(seed=seed), *_settings(set))
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "submission.json")
         with open(path, "w", encoding="utf-8") as f:

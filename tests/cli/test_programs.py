@@ -159,6 +159,26 @@ class OneFile(unittest.TestCase):
         return call("compare", "pendulum", "--methods", method, "baumgarte@rk4:h=1e-2", "--time", "0.2", *words, *allow, cwd=folder)
 
 
+# the equations of index 1 by elimination, without numpy
+INDEX1 = """import json, sys
+sys.stdin.readline()
+print(json.dumps({"holonom": 1, "provides": "accelerations", "wants": ["M", "f", "J", "gamma"]}), flush=True)
+for line in sys.stdin:
+    ask = json.loads(line)
+    M, f, J, g = ask["M"], ask["f"], ask["J"], ask["gamma"]
+    n, m = len(f), len(g)
+    A = [M[i] + [J[k][i] for k in range(m)] + [f[i]] for i in range(n)] + [J[k] + [0.0] * m + [-g[k]] for k in range(m)]
+    for i in range(n + m):
+        p = max(range(i, n + m), key=lambda r: abs(A[r][i]))
+        A[i], A[p] = A[p], A[i]
+        for r in range(n + m):
+            if r != i and A[i][i]:
+                c = A[r][i] / A[i][i]
+                A[r] = [x - c * y for x, y in zip(A[r], A[i])]
+    print(json.dumps({"id": ask["id"], "a": [A[i][-1] / A[i][i] for i in range(n)]}), flush=True)
+"""
+
+
 class Services(OneFile):
     def test_steps_and_whole_runs_are_the_same_motion(self):
         step, solve = (json.loads(self.run_program(text, "--json").stdout)["methods"][0] for text in (STEP, SOLVE))
@@ -193,6 +213,17 @@ class Services(OneFile):
         self.assertRegex(done.stdout.splitlines()[0], r": every method ended before t = 0\.2 s$")
         end = json.loads(call("run", "pendulum", "--method", method, "--time", "0.2", "--json", ALLOW, cwd=self.folder.name).stdout)["incidents"][-1]
         self.assertEqual((end["code"], end["remedies"]), ("program-failed", []))
+
+    def test_no_trial_of_a_remedy_asks_the_program(self):
+        """A trial takes thousands of steps, each across a pipe, while everybody waits for the end of the run."""
+        with open(os.path.join(self.folder.name, "mine.py"), "w", encoding="utf-8") as f:
+            f.write(INDEX1)
+        done = call("compare", "four-bar", "--methods", "program:./mine.py@rk4:h=2e-2", "--time", "4", "--json", ALLOW, cwd=self.folder.name)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        tried = [text for incident in json.loads(done.stdout)["incidents"] for text in incident.get("tried", [])]
+        self.assertTrue(any("your program" in text for text in tried), done.stdout[-2000:])
+        # 200 steps of 4 questions, and what is sampled between
+        self.assertLess(int(re.search(r"asked (\d+) times", done.stderr).group(1)), 1200)
 
     def test_they_are_off_until_the_command_line_allows_them(self):
         done = self.run_program(STEP, allow=None)

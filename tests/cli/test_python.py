@@ -96,6 +96,29 @@ class Module(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(len(re.findall(r"gap +\S+ m", done.stdout)), 5)
 
+    def test_a_program_of_ones_own_runs_and_refusals_have_their_reason(self):
+        text = "import json, sys\nsys.stdin.readline()\nprint(json.dumps({'holonom': 1, 'provides': 'accelerations'}), flush=True)\n" \
+               "for line in sys.stdin:\n    print(json.dumps({'id': json.loads(line)['id'], 'a': [-2.0]}), flush=True)\n"
+        code = "import holonom, sys\n" \
+               "motion = holonom.run('pendulum', 'program:' + sys.argv[1] + '@rk4:h=1e-2', time=0.1, allow_programs=True)\n" \
+               "print(motion.rates and round(float(motion[motion.rates[0]][-1] - motion[motion.rates[0]][0]), 9))\n" \
+               "print(len(holonom.compare('pendulum', ['program:' + sys.argv[1] + '@rk4:h=1e-2'], time=0.1, allow_programs=True)['methods']))\n" \
+               "print('l1 = 0.45' in holonom.export('four-bar', 'c', set={'l1': 0.45}))\n" \
+               "for wrong in (lambda: holonom.grade('p3', {'a': 1}), lambda: holonom.export('four-bar', 'cobol')):\n" \
+               "    try:\n        wrong()\n    except holonom.HolonomError as fault:\n        print(fault)\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mine.py")
+            with open(path, "w", encoding="utf-8") as f:
+                f.write(text)
+            done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, timeout=300, env={**os.environ, "PYTHONPATH": MODULE})
+        if "untrusted programs run in a sandbox" in done.stderr:
+            self.skipTest("no sandbox here")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = done.stdout.splitlines()
+        self.assertEqual(said[:3], ["-0.2", "1", "True"])
+        self.assertRegex(done.stdout, "the field 'J' is missing; rename 'a' to 'J'")
+        self.assertIn("'cobol' is not a language of export", done.stdout)
+
     def test_the_script_runs(self):
         with tempfile.TemporaryDirectory() as folder:
             env = {**os.environ, "PYTHONPATH": MODULE}

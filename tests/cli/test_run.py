@@ -458,6 +458,17 @@ class Run(Command):
             self.assertRegex(said[2], r"^holonom: t = 0\.3\d* s: a singular configuration .* ahead, at t = 0\.67\d* s")
             self.assertRegex(said[3], r"^holonom: the motion is \w+: up to t = 0\.6 s ")
 
+    def test_run_and_compare_estimate_the_same_error(self):
+        """The forces peak for 0.02 s: what is compared at few times sees too little, and divides by too little."""
+        words = ["four-bar", "--time", "2", "--json"]
+        run = json.loads(call("run", *words, "--method", "index1@rk4:h=1e-2").stdout)["error_estimate"]
+        pair = json.loads(call("compare", *words, "--methods", "index1@rk4:h=1e-2", "projection@rk4:h=5e-3").stdout)["methods"][0]["error_estimate"]
+        for key in ("q", "v", "reaction"):
+            # the pilot makes the same steps but for the last bits
+            self.assertAlmostEqual(run[key] / pair[key], 1, delta=1e-6, msg=key)
+        # compared at each step of 0.5 ms, and divided by the peak of the pilot at such steps, it is 0.00123
+        self.assertAlmostEqual(run["reaction"] / 0.00123, 1, delta=0.1)
+
     def test_progress_is_shown_to_a_terminal_and_to_nobody_else(self):
         words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=4e-5", "--time", "200", "--at", "200"]
         piped = subprocess.run(words, capture_output=True, timeout=300 * driver.SLOW)

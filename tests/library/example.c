@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A first program with the library: load a four-bar, look at it, run it, compare methods.
 //
-//     gcc example.c $(pkg-config --cflags --libs --static holonom) -o example
+//     gcc example.c $(pkg-config --cflags --libs holonom) -o example
 //     HOLONOM_HOME=$(pkg-config --variable=home holonom) ./example
 #include <holonom.h>
 

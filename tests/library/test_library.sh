@@ -29,20 +29,25 @@ expect 'scenes and page are where pkg-config says' yes "$([ -d "$home/lessons" ]
 expect 'the manual and the completion of three shells are installed' '5 files' \
     "$(cd "$work/share" && ls man/man1/holonom.1 bash-completion/completions/holonom zsh/site-functions/_holonom \
         fish/vendor_completions.d/holonom.fish holonom/python/holonom.py 2>/dev/null | wc -l) files"
-expect 'no C source is installed' '' "$(find "$work/share" -name '*.[ch]')"
+expect 'the only C source that is installed is the example' 'example.c' "$(find "$work/share" -name '*.[ch]' -printf '%f\n')"
 expect 'the installed program runs a shipped scene' 0 \
     "$(cd / && "$work/bin/holonom" inspect four-bar >/dev/null 2>&1; echo $?)"
 
 cp tests/library/example.c "$work"
 # shellcheck disable=SC2046
 gcc -std=c17 -Wall -Wextra -Wpedantic -Wconversion -Wstrict-prototypes -Werror "$work/example.c" \
-    $(pkg-config --cflags --libs --static holonom) -o "$work/example" >"$work/log" 2>&1
+    $(pkg-config --cflags --libs holonom) -o "$work/example" >"$work/log" 2>&1
 expect 'the example compiles with what pkg-config prints, without a warning' '' "$(cat "$work/log")"
 printf '#include <holonom.h>\nint main() { return HOLONOM_OK; }\n' >"$work/face.cpp"
 expect 'the header is C++ too' '' "$(g++ -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$work/include" "$work/face.cpp" 2>&1)"
 
 (cd / && HOLONOM_HOME="$home" "$work/example") >"$work/out" 2>"$work/err"
 expect 'the example runs' '0 ' "$? $(cat "$work/err")"
+expect 'it finds the installed scenes without being told' "0 " \
+    "$(cd / && env -u HOLONOM_HOME "$work/example" 2>&1 >/dev/null | head -n 1; cd / && env -u HOLONOM_HOME "$work/example" >/dev/null 2>&1; echo $?) "
+expect 'pkg-config and the program name one version' "$(build/holonom --version | cut -d' ' -f2)" "$(pkg-config --modversion holonom)"
+expect 'the module finds the command that was installed with it' 'four-bar' \
+    "$(cd / && env -u HOLONOM PATH=/usr/bin:/bin PYTHONPATH="$work/share/holonom/python" python3 -c 'import holonom; print(holonom.run("four-bar", "index1@rk4:h=1e-2", time=0.1).document["scene"])' 2>&1 | tail -n 1)"
 expect 'it counts the degrees of freedom' '3 coordinates - 2 constraints + 0 redundant = 1 degree of freedom' \
     "$(head -n 1 "$work/out")"
 # the same numbers from the command line, to the six digits that the example prints
@@ -59,7 +64,7 @@ expect 'the loop of index-1 opens, Baumgarte keeps it within a millimetre, proje
 
 sed 's/"four-bar"/"four-baar"/' "$work/example.c" >"$work/wrong.c"
 # shellcheck disable=SC2046
-gcc "$work/wrong.c" $(pkg-config --cflags --libs --static holonom) -o "$work/wrong"
+gcc "$work/wrong.c" $(pkg-config --cflags --libs holonom) -o "$work/wrong"
 expect 'an unknown scene is reported with the nearest name' "/scene: no shipped scene is called 'four-baar' (did you mean 'four-bar'?)" \
     "$(HOLONOM_HOME="$home" "$work/wrong" 2>&1)"
 

@@ -38,6 +38,7 @@ struct hn_comparison {
     int n;
     entry entries[HN_COMPARISON_MAX_METHODS];
     double frame_dt, duration, cpu_limit;
+    double next_inside; ///< when methods are compared that have no step end at a frame [s]
     long long frame;
     hn_accuracy *accuracy; ///< one for all methods
     int in_frame;          ///< the frame after the present one was begun, and interrupted
@@ -322,23 +323,45 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method) {
     return cost;
 }
 
-/// Compares the methods with the run of the accuracy watch, where that is due and within its share.
-static void watch_accuracy(hn_comparison *c) {
-    const double t = (double)c->frame * c->frame_dt;
+/// Whether t is at the end of a step of a method with fixed steps.
+static bool is_on_grid(const entry *e, double t) {
+    return e->h > 0 && fabs(t - round(t / e->h) * e->h) <= 1e-9 * e->h;
+}
+
+/// Compares the methods at t with the run of the accuracy watch, where that is due and within its
+/// share. Methods that have no step end there are compared at some frames alone.
+static void watch_accuracy(hn_comparison *c, double t, bool at_frame) {
+    const bool inside =
+        at_frame && (t >= c->next_inside || t >= c->duration * (1 - 1e-9)); // a frame of these
     double ops = 0;
     for (int i = 0; i < c->n; i++) {
         ops += hn_run_ops(c->entries[i].run);
     }
-    if (!hn_accuracy_reach(c->accuracy, t, ops)) {
+    if ((!inside && !hn_accuracy_is_due(c->accuracy, t)) ||
+        !hn_accuracy_reach(c->accuracy, t, ops)) {
         return;
     }
     for (int i = 0; i < c->n; i++) {
         entry *e = &c->entries[i];
         hn_sample sample;
-        if (is_live(e) && hn_run_sample(e->run, t, &sample) == HN_OK) {
+        if (is_live(e) && (inside || is_on_grid(e, t)) &&
+            hn_run_sample(e->run, t, &sample) == HN_OK) {
             hn_accuracy_see(c->accuracy, &sample, &e->track);
         }
     }
+    c->next_inside = inside ? t + c->duration / HN_ACCURACY_LOOKS_INSIDE : c->next_inside;
+}
+
+/// The next time before t at which methods with fixed steps are compared, the end of one of the
+/// longest of these steps; t where there is none.
+static double next_look(const hn_comparison *c, double t, double after) {
+    double h = 0;
+    for (int i = 0; i < c->n; i++) {
+        h = fmax(h, c->entries[i].h);
+    }
+    const double look = h > 0 ? ceil(hn_accuracy_next(c->accuracy) / h - 1e-9) * h : HUGE_VAL;
+    // one that the watch could not make is not asked for twice
+    return look > after && look < t * (1 - 1e-9) ? look : t;
 }
 
 // ---- the hand ----
@@ -391,6 +414,24 @@ static void do_pulls(hn_comparison *c) {
     tell_loads_changed(c, HUGE_VAL);
 }
 
+/// Brings all methods to t; those with fixed steps are compared with the accuracy watch on the way.
+/// Returns false when `stop` asked for it.
+static bool advance_all(hn_comparison *c, double t, int (*stop)(void *user), void *user) {
+    double to = -1;
+    do {
+        to = next_look(c, t, to);
+        for (int k = 0; k < c->n; k++) {
+            // the order rotates, so that no method always starts with cold caches
+            entry *e = &c->entries[(k + c->frame) % c->n];
+            if (is_live(e) && (to == t || e->h > 0) && !advance_entry(c, e, to, stop, user)) {
+                return false;
+            }
+        }
+        watch_accuracy(c, to, to == t);
+    } while (to < t);
+    return true;
+}
+
 bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && !c->in_frame; i++) {
         const hn_run_summary s = hn_run_get_summary(c->entries[i].run);
@@ -405,19 +446,14 @@ bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     }
     c->in_frame = 1;
     const double t = (double)(c->frame + 1) * c->frame_dt;
-    for (int k = 0; k < c->n; k++) {
-        // the order rotates, so that no method always starts with cold caches
-        entry *e = &c->entries[(k + c->frame) % c->n];
-        if (is_live(e) && !advance_entry(c, e, t, stop, user)) {
-            return false;
-        }
+    if (!advance_all(c, t, stop, user)) {
+        return false;
     }
     for (int i = 0; i < c->n; i++) {
         measure_frame(c, &c->entries[i]);
     }
     c->in_frame = 0;
     c->frame++;
-    watch_accuracy(c);
     for (int i = 0; i < c->n && hn_comparison_finished(c); i++) {
         hn_run_diagnose(c->entries[i].run);
     }
@@ -431,6 +467,7 @@ void hn_comparison_next(hn_comparison *c) {
 void hn_comparison_reset(hn_comparison *c) {
     c->frame = 0;
     c->in_frame = 0;
+    c->next_inside = 0;
     hn_hand_rewind(&c->hand);
     hn_accuracy_reset(c->accuracy);
     for (int i = 0; i < c->n; i++) {

@@ -28,7 +28,8 @@ typedef struct recorder {
 
 /// Shows the accuracy watch a sample, where it wants one.
 static void watch_accuracy(recorder *rec, const hn_sample *s, const hn_run *run) {
-    if (hn_accuracy_reach(rec->accuracy, s->t, hn_run_ops(run))) {
+    if (hn_accuracy_is_due(rec->accuracy, s->t) &&
+        hn_accuracy_reach(rec->accuracy, s->t, hn_run_ops(run))) {
         hn_accuracy_see(rec->accuracy, s, &rec->track);
     }
 }

@@ -360,9 +360,10 @@ static void name_loops(urdf *u) {
     bool is_at_zero = true, has_gravity = true;
     for (int i = 0; i < u->scene->n_joints; i++) {
         if (hn_system_joint_is_cut(hn_model_system(u->model), i)) {
-            hn_xml_leave_out(
-                u->left_out, "joint", u->scene->joints[i].name,
-                "it closes a loop, and a URDF is a tree: --loops FILE writes it to a second file");
+            hn_xml_leave_out(u->left_out, "joint", u->scene->joints[i].name,
+                             "it closes a loop, and a URDF is a tree: the option loops of holonom "
+                             "export writes it "
+                             "to a second file");
         }
     }
     for (int i = 0; i < u->scene->n_coordinates; i++) {
@@ -374,12 +375,13 @@ static void name_loops(urdf *u) {
     if (!is_at_zero) {
         hn_xml_leave_out(
             u->left_out, "start", NULL,
-            "a URDF starts at 0 and at rest: --loops FILE writes the start to a second file");
+            "a URDF starts at 0 and at rest: the option loops of holonom export writes the "
+            "start to a second file");
     }
     if (!has_gravity) {
         hn_xml_leave_out(u->left_out, "gravity", NULL,
-                         "programs that read URDF take 9.81 m/s^2 along -z: --loops FILE writes "
-                         "gravity to a second file");
+                         "programs that read URDF take 9.81 m/s^2 along -z: the option loops of "
+                         "holonom export writes gravity to a second file");
     }
 }
 

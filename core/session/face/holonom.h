@@ -10,7 +10,7 @@
 //         fprintf(stderr, "%s\n", fault.message);
 //     }
 //
-// Link with what `pkg-config --libs --static holonom` prints. Units are SI: m, kg, s, rad, N.
+// Link with what `pkg-config --libs holonom` prints. Units are SI: m, kg, s, rad, N.
 // Coordinates are those of the scene, in its order. tests/library/example.c is a first program.
 //
 // Memory: every object is freed by its own function, and NULL may be freed. Pointers that a

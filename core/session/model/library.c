@@ -4,6 +4,7 @@
 
 #include "base/bundle.h"
 #include "base/folder.h"
+#include "session/model/installed.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -85,6 +86,15 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
         note_place(tried, n_tried, real);
         snprintf(out, MAX_PATH_CHARS, "%s", real);
         free(real);
+        if (is_home(out)) {
+            return 1;
+        }
+    }
+
+    // a program that only links the library: where make install put the files
+    if (hn_installed_home[0]) {
+        snprintf(out, MAX_PATH_CHARS, "%s", hn_installed_home);
+        note_place(tried, n_tried, out);
         if (is_home(out)) {
             return 1;
         }

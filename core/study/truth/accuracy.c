@@ -13,7 +13,8 @@ struct hn_accuracy {
     hn_arena *arena;
     hn_run *run[RUNS]; ///< the first NULL: the scene has no such run
     hn_errors *errors;
-    double t_end, next;         ///< end of the runs, and the time of the next comparison [s]
+    double t_end;               ///< end of the runs [s]
+    int looks;                  ///< comparisons so far: the next one is at looks * t_end / LOOKS
     hn_scales scales;           ///< largest rate and reaction of the pilot so far
     hn_sample sample;           ///< of the pilot, at the time reached last
     double own[HN_ERROR_COUNT]; ///< what it may be off itself, the largest so far, without scales
@@ -26,7 +27,7 @@ static const hn_scales unity = {.length = 1, .rate = 1, .reaction = 1, .energy =
 
 /// Forgets what was compared. The states of the runs are set back by the caller.
 static void begin(hn_accuracy *a) {
-    a->next = 0;
+    a->looks = 0;
     a->t_out = HUGE_VAL;
     a->lost = false;
     a->scales = (hn_scales){0};
@@ -126,6 +127,18 @@ double hn_accuracy_ops(const hn_accuracy *a) {
 
 // ---- pilot and rough run ----
 
+static hn_state_seen seen_of(const hn_sample *s) {
+    return (hn_state_seen){s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
+}
+
+/// What errors are divided by in the end: the largest rate and reaction of the motion so far.
+static void raise_scales(hn_accuracy *a, const hn_sample *s) {
+    const hn_state_seen at = seen_of(s);
+    a->scales.rate = fmax(a->scales.rate, hn_errors_rate(a->errors, at.v));
+    // a state without multipliers has no reaction
+    a->scales.reaction = fmax(a->scales.reaction, hn_errors_reaction(a->errors, &at, at.lambda));
+}
+
 /// Steps one of the two to t within the operations allowed.
 static bool step_to(hn_accuracy *a, hn_run *run, double t, double ops) {
     const double allowed = HN_ACCURACY_FREE + HN_ACCURACY_SHARE * ops;
@@ -138,16 +151,18 @@ static bool step_to(hn_accuracy *a, hn_run *run, double t, double ops) {
             snprintf(a->reason, sizeof a->reason, HN_ACCURACY_METHOD " ended: %.150s",
                      hn_run_get_summary(run).reason);
         } else {
+            hn_sample sample;
+            const bool within = hn_run_time(run) <= a->t_end; // its last step may end beyond
+            if (run == a->run[PILOT] && within &&
+                hn_run_sample(run, hn_run_time(run), &sample) == HN_OK) {
+                raise_scales(a, &sample);
+            }
             continue;
         }
         a->t_out = fmin(a->t_out, hn_run_time(run));
         return false;
     }
     return true;
-}
-
-static hn_state_seen seen_of(const hn_sample *s) {
-    return (hn_state_seen){s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
 }
 
 /// Returns the possible error of the pilot at the time reached: a share of its difference from the
@@ -187,22 +202,26 @@ static bool has_ended(const hn_accuracy *a) {
            hn_run_get_state(a->run[ROUGH]) == HN_RUN_FAILED;
 }
 
+double hn_accuracy_next(const hn_accuracy *a) {
+    const bool none = !is_there(a) || has_ended(a) || a->looks > HN_ACCURACY_LOOKS;
+    return none ? HUGE_VAL : a->looks * a->t_end / HN_ACCURACY_LOOKS;
+}
+
 bool hn_accuracy_is_due(const hn_accuracy *a, double t) {
-    return is_there(a) && !has_ended(a) && (t >= a->next || t >= a->t_end * (1 - 1e-9));
+    return t >= hn_accuracy_next(a) * (1 - 1e-9); // rounding of t
 }
 
 bool hn_accuracy_reach(hn_accuracy *a, double t, double ops) {
-    if (!hn_accuracy_is_due(a, t) || !step_to(a, a->run[ROUGH], t, ops) ||
+    if (!is_there(a) || has_ended(a) || !step_to(a, a->run[ROUGH], t, ops) ||
         !step_to(a, a->run[PILOT], t, ops) ||
         hn_run_sample(a->run[PILOT], t, &a->sample) != HN_OK) {
         return false;
     }
-    a->next = t + a->t_end / HN_ACCURACY_LOOKS;
-
-    // what errors are divided by in the end: the largest rate and reaction of the motion
+    while (hn_accuracy_is_due(a, t)) {
+        a->looks++;
+    }
+    raise_scales(a, &a->sample);
     const hn_state_seen at = seen_of(&a->sample);
-    a->scales.rate = fmax(a->scales.rate, hn_errors_rate(a->errors, at.v));
-    a->scales.reaction = fmax(a->scales.reaction, hn_errors_reaction(a->errors, &at, at.lambda));
     return measure_own(a, &at);
 }
 
@@ -213,9 +232,7 @@ void hn_accuracy_see(hn_accuracy *a, const hn_sample *s, hn_accuracy_track *trac
     if (!s->q) {
         return;
     }
-    const hn_sample *r = &a->sample;
-    const hn_state_seen at = {s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap},
-                        truth = {r->t, r->q, r->v, r->lambda, r->energy, r->gap, r->velocity_gap};
+    const hn_state_seen at = seen_of(s), truth = seen_of(&a->sample);
     hn_errors_calc(a->errors, &at, &truth, &unity, error);
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         track->worst[i] =

@@ -10,6 +10,8 @@
 // run by the pilot's own method, which hardly differs from the pilot, gets that number. Local
 // errors of single steps would be cheaper, but they say nothing about the error at the end.
 //
+// Scales are the largest values at the steps of the pilot, which are short where the motion is fast.
+//
 // Cost: at most HN_ACCURACY_SHARE of the operations of the runs watched, and HN_ACCURACY_FREE
 // operations (some milliseconds) in any case. Where that is not enough the estimate ends, and says
 // at which time. One pilot serves all methods of a comparison. The runs themselves are read only:
@@ -29,7 +31,11 @@
 #define HN_ACCURACY_SHARE 0.1 ///< of the operations of the runs
 #define HN_ACCURACY_FREE 5e6  ///< operations
 enum {
-    HN_ACCURACY_LOOKS = 64,   ///< times of a run at which it is compared, at most
+    /// Times of a run at which it is compared, evenly spaced: those of the output of a run that
+    /// names none. The forces of a four-bar peak for a hundredth of its period.
+    HN_ACCURACY_LOOKS = 200,
+    /// Of a comparison whose frames lie inside steps: a sample there counts in gap and energy too.
+    HN_ACCURACY_LOOKS_INSIDE = 64,
     HN_ACCURACY_NODES = 6000, ///< of the system's graph: compiling two runs takes 50 ms there
 };
 
@@ -61,10 +67,13 @@ void hn_accuracy_reset(hn_accuracy *a);
 /// The time that the pilot and the rough run have reached [s].
 double hn_accuracy_time(const hn_accuracy *a);
 void hn_accuracy_loads_changed(hn_accuracy *a, double t); ///< see hn_run_loads_changed()
-/// Whether a comparison is due at t.
+/// Whether a comparison is due at t: the times depend on t_end alone, so that a run has the same
+/// estimate whoever makes it.
 bool hn_accuracy_is_due(const hn_accuracy *a, double t);
-/// Brings the pilot to t, where a comparison is due there; `ops` are the operations of the
-/// runs watched, so far. Returns true when samples of time t can be compared now.
+/// The time of the next comparison [s], HUGE_VAL: there is none.
+double hn_accuracy_next(const hn_accuracy *a);
+/// Brings the pilot to t; `ops` are the operations of the runs watched, so far. Returns true when
+/// samples of time t can be compared now.
 bool hn_accuracy_reach(hn_accuracy *a, double t, double ops);
 /// Compares a sample of the time reached last. `track` starts as zeros.
 void hn_accuracy_see(hn_accuracy *a, const hn_sample *sample, hn_accuracy_track *track);
