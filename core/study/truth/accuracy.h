@@ -10,7 +10,7 @@
 // run by the pilot's own method, which hardly differs from the pilot, gets that number. Local
 // errors of single steps would be cheaper, but they say nothing about the error at the end.
 //
-// Scales are the largest values at the steps of the pilot, which are short where the motion is fast.
+// Scales are the largest values at the steps of the pilot, short where the motion is fast.
 //
 // Cost: at most HN_ACCURACY_SHARE of the operations of the runs watched, and HN_ACCURACY_FREE
 // operations (some milliseconds) in any case. Where that is not enough the estimate ends, and says
