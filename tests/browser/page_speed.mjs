@@ -4,11 +4,12 @@
 // status 1 where a figure is beyond its bound. The machine should do nothing else.
 import { readFileSync, readdirSync } from "node:fs";
 import { availableParallelism, loadavg } from "node:os";
-import { startBrowser, startServer } from "./support.mjs";
+import { jointAt, startBrowser, startServer } from "./support.mjs";
 import { mainThreadTime } from "./trace.mjs";
 
 const SECONDS = 4; // of playing that are traced: the run on the platform ends at 5 s
 const LOADS = 9; // of the page: the median counts
+const CIRCLE = 20; // [px] of the pointer that drags a joint, once a second
 const TRACED = [
   "devtools.timeline",
   "disabled-by-default-devtools.timeline",
@@ -104,6 +105,44 @@ async function playing(browser, url, solid) {
   };
 }
 
+/**
+ * Pictures a second while a joint of the four-bar is dragged, the pointer moving with each of them,
+ * and how many of them have another configuration, as the server closed it.
+ */
+async function dragging(browser, url) {
+  const page = await openPage(browser, url, false);
+  const { x, y } = await jointAt(page, "A");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await browser.startTracing(page, { categories: TRACED });
+  const closed = await page.evaluate(
+    ({ x, y, r, seconds }) =>
+      new Promise((done) => {
+        const svg = document.querySelector(".picture");
+        const began = performance.now();
+        let drawn = "";
+        let count = 0;
+        const next = () => {
+          const now = document.querySelector(".picture .drag")?.innerHTML ?? "";
+          count += Number(now !== drawn);
+          drawn = now;
+          const spent = (performance.now() - began) / 1000;
+          const turn = 2 * Math.PI * spent;
+          const place = { clientX: x + r * Math.sin(turn), clientY: y + r * (1 - Math.cos(turn)) };
+          svg.dispatchEvent(new PointerEvent("pointermove", place));
+          spent < seconds ? requestAnimationFrame(next) : done(count / spent);
+        };
+        requestAnimationFrame(next);
+      }),
+    { x, y, r: CIRCLE, seconds: SECONDS },
+  );
+  const { traceEvents } = JSON.parse(String(await browser.stopTracing()));
+  const shown = traceEvents.filter(({ name }) => name === "DrawFrame").map(({ ts }) => ts / 1e6);
+  await page.mouse.up();
+  await page.context().close();
+  return { shown: (shown.length - 1) / (Math.max(...shown) - Math.min(...shown)), closed };
+}
+
 /** First paint [ms], and what was on the line before anybody did anything [bytes]. */
 async function loading(browser, url) {
   const paints = [];
@@ -135,6 +174,7 @@ const flat = await startBrowser();
 const solid = await startBrowser(SOFTWARE);
 const load = await loading(flat, server.url);
 const fb0 = await playing(flat, server.url + FB0, false);
+const drag = await dragging(flat, server.url);
 const stewart = await playing(solid, server.url + STEWART, true);
 await Promise.all([flat.close(), solid.close()]);
 await server.stop();
@@ -150,6 +190,8 @@ const ROWS = [
   ["Stewart 6-6, solids by software: pictures shown", stewart.shown, 30, true, "1/s"],
   ["  computing of the main thread for a picture", stewart.computing, 1000 / 30, false, "ms"],
   ["  computing of browser and server for a picture", stewart.all, share(30), false, "ms"],
+  ["dragging a joint of the four-bar: pictures shown", drag.shown, 55, true, "1/s"],
+  ["  other configurations closed by the server", drag.closed, 20, true, "1/s"],
   [`first paint, median of ${LOADS} empty caches`, load.paint, 200, false, "ms"],
   ["on the line before the first interaction", load.bytes / 1000, 500, false, "kB"],
 ];
