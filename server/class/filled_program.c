@@ -268,7 +268,9 @@ static void name_mistake(const part_view *p, hn_entry_verdict *e) {
             return;
         }
     }
-    const double factor = factor_of(p);
+    // no mistake explains a number that is none
+    const bool is_number = is_like(p, given_at, &state, &entry);
+    const double factor = is_number ? factor_of(p) : 0;
     if (factor != 0) {
         e->mistake = "factor";
         snprintf(e->explanation, sizeof e->explanation, "every entry is %.6g times the right one",
@@ -294,7 +296,12 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     }
     snprintf(e->given, sizeof e->given, "%s", place);
     snprintf(e->expected, sizeof e->expected, "%s", place);
-    if (!e->mistake[0]) {
+    if (!isfinite(e->given_value)) {
+        e->mistake = "number";
+        snprintf(e->explanation, sizeof e->explanation,
+                 "%s is not a finite number at state %d of %d (t = %.4g s)", place, state + 1,
+                 HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
+    } else if (!e->mistake[0]) {
         e->mistake = "other";
         snprintf(e->explanation, sizeof e->explanation,
                  "no known mistake; %s differs most, at state %d of %d (t = %.4g s)", place,

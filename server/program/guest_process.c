@@ -243,6 +243,11 @@ static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
     while (n > 0 && errors[n - 1] == '\n') {
         n--;
     }
+    // of a compiler, the line that says what is wrong: a picture of the place comes after it
+    const char *fault = strstr(errors, "error: ");
+    if (fault) {
+        n = (size_t)(fault - errors) + strcspn(fault, "\n");
+    }
     size_t from = n;
     while (from > 0 && errors[from - 1] != '\n') {
         from--;

@@ -108,6 +108,7 @@ class Filled(unittest.TestCase):
                  "empty": ("bias", "bias[0] = bias[1] = 0;"),
                  "velocity": ("force", "{ double still[NV] = {-0.5*g*l1*(m1 + 2*m2)*cos(th1), -0.5*g*l2*m2*cos(theta_coupler), -0.5*g*l3*m3*cos(th3)}; "
                                        "memcpy(force, still, sizeof still); }"),
+                 "number": ("force", "force[0] = sqrt(-1.0);"),
                  "other": ("force", "force[2] += 0.001;")}  # fmt: skip
         jobs = [("four-bar", self.put(f"{mistake}.c", filled[:last] + "    " + statement + "\n" + filled[last:]))
                 for mistake, (_, statement) in cases.items()]  # fmt: skip
@@ -117,6 +118,12 @@ class Filled(unittest.TestCase):
             self.assertTrue(entries[part]["explanation"])
             self.assertEqual("no known mistake; force[2] differs most" in entries[part]["explanation"], mistake == "other")
             self.assertNotIn("expected_value", entries[part])
+
+    def test_a_program_that_does_not_compile_is_told_the_line_with_the_error(self):
+        path = self.put("syntax.c", "int main(void) {\n    return ((0);\n}\n")
+        status, verdict = self.grade("four-bar", path)
+        self.assertEqual((status, verdict["status"]), (2, "ungradable"), verdict)
+        self.assertRegex(verdict["reason"], r"syntax\.c:2:\d+: error: expected")
 
     def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
         _, filled = blank_and_filled("four-bar", "c")
