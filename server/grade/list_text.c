@@ -161,7 +161,8 @@ static cJSON *read_piece(span s, char mark, int depth) {
     return mark == ';' || mark == '\n' ? read_list(s, depth + 1) : make_entry(s);
 }
 
-/// What stands between the brackets of a list. NULL: an empty piece, or too much of it.
+/// Reads what stands between the brackets of a list. An empty piece between two marks is the empty
+/// text, which is graded as an entry that was not handed in. NULL: too many entries, or no memory.
 static cJSON *read_list(span s, int depth) {
     s = trim(s);
     const char mark = holds(s, ';') ? ';' : holds(s, ',') ? ',' : holds(s, '\n') ? '\n' : ' ';
@@ -271,7 +272,11 @@ static int expand(cJSON *object, int depth, char *name, int size) {
                 snprintf(name, (size_t)size, "%s", m->string);
             }
             char *key = strdup(m->string);
-            n += key && cJSON_ReplaceItemInObjectCaseSensitive(object, key, list);
+            if (key && cJSON_ReplaceItemInObjectCaseSensitive(object, key, list)) {
+                n++;
+            } else {
+                cJSON_Delete(list);
+            }
             free(key);
         } else if (cJSON_IsObject(m) && depth == 0) {
             n += expand(m, depth + 1, name, size);

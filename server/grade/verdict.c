@@ -53,19 +53,19 @@ void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_ver
     if (e->explanation[0]) {
         hn_strbuf_printf(b, "%s%s\n", indent, e->explanation);
     }
-    if (e->right || (!e->given[0] && !v->show_expected)) {
+    const bool shows = v->show_expected && (e->state >= 0 || (e->expected[0] && e->max_points > 0));
+    if (e->right || (!e->given[0] && !shows)) {
         return;
     }
     if (e->given[0]) {
         hn_strbuf_printf(b, "%sgiven     ", indent);
         hn_verdict_given(b, e);
     }
-    if (e->state < 0 && e->expected[0] && e->max_points > 0 && v->show_expected) {
-        hn_strbuf_printf(b, "%s%sexpected  %s", e->given[0] ? "\n" : "", indent, e->expected);
-    }
-    if (e->state >= 0 && v->show_expected) {
-        hn_strbuf_printf(b, "\n%sexpected  ", indent);
+    if (shows) {
+        hn_strbuf_printf(b, "%s%sexpected  ", e->given[0] ? "\n" : "", indent);
         hn_verdict_expected(b, e);
+    }
+    if (shows && e->state >= 0) {
         hn_strbuf_printf(b, ", a difference of %.2g is allowed", e->allowed);
     } else if (e->state >= 0) {
         hn_strbuf_printf(b, ", off by more than the %.2g allowed", e->allowed);

@@ -234,6 +234,13 @@ class CommandLine(Command):
             with self.subTest(words=words):
                 said = call(*words, stdin='{"holonom": 1, "title": 3}').stderr.decode()
                 self.assertIn(place, said.replace("\n", " "))
+        # a member of a file that is called like an option
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mine.json")
+            with open(path, "w", encoding="utf-8") as f:
+                f.write('{"holonom": 1, "title": "mine", "methods": 5}')
+            for words in ((), ("--methods", RK4)):
+                self.assertIn("(at /methods)", call("compare", path, *words).stderr.decode().replace("\n", " "))
         # what a program reads has pointers
         told = strict(call("run", "four-bar", "--method", "foo", "--json").stdout)
         self.assertEqual(told["errors"][0]["pointer"], "/method")

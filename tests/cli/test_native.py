@@ -67,13 +67,13 @@ class Native(unittest.TestCase):
 
 class Start(unittest.TestCase):
     def test_a_start_does_not_load_what_pictures_need(self):
-        needed = subprocess.run(["ldd", driver.PROGRAM], capture_output=True, text=True).stdout
+        needed = subprocess.run(["ldd", driver.PROGRAM], capture_output=True, text=True, check=True).stdout
         self.assertIn("libc.so", needed)
         for library in "OSMesa", "LLVM":
             self.assertNotIn(library, needed)
 
     def test_a_start_does_not_load_what_lies_in_the_program(self):
-        needed = subprocess.run(["ldd", driver.PROGRAM], capture_output=True, text=True).stdout
+        needed = subprocess.run(["ldd", driver.PROGRAM], capture_output=True, text=True, check=True).stdout
         for library in "gsl", "sundials_ida", "klu", "png":
             if glob.glob(f"/usr/lib/*/lib{library}.a") or glob.glob(f"/usr/lib/lib{library}.a"):
                 self.assertNotIn(f"lib{library}", needed)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_INCIDENT_LIST_H
 #define HN_CLI_INCIDENT_LIST_H
-// The incidents of a run as a person reads them: in order of time, each once, the one that ended
-// the run apart from the others.
+// The incidents of a run as a person reads them: first what is wrong, then the warnings, each in
+// order of time; the one that ended the run is apart from the others.
 
 #include "base/strbuf.h"
 #include "study/run/run.h"
@@ -20,8 +20,8 @@ typedef struct hn_incident_list {
 } hn_incident_list;
 
 /// Takes the incidents of one run: first what is wrong, then the warnings, each in order of time.
-/// A sample inside a step may find an incident later than the end
-/// of the run; those of one time keep their order.
+/// Those of one time keep their order. A sample inside a step may find an incident later than the
+/// end of the run.
 ///
 /// incidents  in  list of incidents of a document; NULL: none
 /// method     in  number of the method in the list of a comparison; -1: the list is all of one run

@@ -456,6 +456,9 @@ static hn_status take_option(hn_args *args, const hn_command *command, int argc,
                            o->name);
     }
 
+    // of a field the table of the jobs holds the name
+    HN_TRY(add_word(&args->given, field ? field->name : o->name + strspn(o->name, "-"), diag));
+
     // its value: none, behind '=', or the words that follow
     if (o->kind == OPTION_FLAG) {
         return word[n] ? hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes no value", o->name)

@@ -28,6 +28,7 @@ typedef struct hn_numbers {
 typedef struct hn_args {
     const hn_command *command; ///< borrowed: whose options these are
     hn_words words;            ///< what is neither command nor option
+    hn_words given;            ///< names of the options that were typed, without the hyphens
     hn_words set;              ///< each parameter once
     hn_words set_over_set;     ///< by the program itself: stronger than `set`
     hn_words methods, traces, state_q, state_v, allow_hosts;

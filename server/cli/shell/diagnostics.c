@@ -34,11 +34,24 @@ static bool sets(const hn_words *typed, const char *name) {
     return false;
 }
 
-/// Whether the command reads the option of this name, without the hyphens.
-static bool has_option(const hn_command *command, const char *name) {
+/// Whether the option of this name, without the hyphens, was typed.
+static bool was_typed(const hn_args *args, const char *name) {
     hn_option_row o;
-    for (int i = 0; hn_args_option(command, i, &o); i++) {
-        if (strcmp(o.name + strspn(o.name, "-"), name) == 0) {
+    bool is_option = false, typed = false;
+    for (int i = 0; hn_args_option(args->command, i, &o); i++) {
+        is_option |= strcmp(o.name + strspn(o.name, "-"), name) == 0;
+    }
+    for (int i = 0; i < args->given.n; i++) {
+        typed |= strcmp(args->given.word[i], name) == 0;
+    }
+    return is_option && typed;
+}
+
+/// Whether a message is of a file that was named: "wheel.json: ...".
+static bool is_of_file(const hn_args *args, const char *message) {
+    for (int i = 0; args && i < args->words.n; i++) {
+        const size_t n = strlen(args->words.word[i]);
+        if (strncmp(message, args->words.word[i], n) == 0 && strncmp(message + n, ": ", 2) == 0) {
             return true;
         }
     }
@@ -66,7 +79,7 @@ static void put_place(hn_strbuf *b, const hn_args *args, const char *pointer) {
                *state = name_behind(pointer, states);
     const char *before = "at ", *place = pointer;
     const bool typed_methods = args && args->methods.n > 0 && strncmp(pointer, "/methods/", 9) == 0;
-    if (args && args->command && has_option(args->command, pointer + 1)) {
+    if (args && args->command && was_typed(args, pointer + 1)) {
         before = "in --";
         place = pointer + 1;
     } else if (strcmp(pointer, "/scene") == 0) {
@@ -101,7 +114,7 @@ static void tell(const hn_args *args, const hn_diag *d) {
     hn_visible_add(&b, d->message, true);
     if (d->pointer[0]) {
         hn_strbuf_add(&b, " (");
-        put_place(&b, args, d->pointer);
+        put_place(&b, is_of_file(args, d->message) ? NULL : args, d->pointer);
         if (d->column > 0) {
             hn_strbuf_printf(&b, ", column %d", d->column);
         }

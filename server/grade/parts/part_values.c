@@ -38,8 +38,9 @@ static void write_expected(const hn_value_sheet *s, int k, hn_part_result *r) {
     if (s->symbolic && formula) {
         snprintf(r->expected, sizeof r->expected, "%s", formula);
     } else {
-        snprintf(r->expected, sizeof r->expected, "%.6g %s", s->reference.x[k][0],
-                 hn_part_text(s->p->node, "unit"));
+        const char *unit = hn_part_text(s->p->node, "unit");
+        snprintf(r->expected, sizeof r->expected, "%.6g%s%s", s->reference.x[k][0],
+                 unit && unit[0] ? " " : "", unit ? unit : "");
     }
 }
 
