@@ -385,6 +385,11 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
     hn_strbuf_init(&text);
     hn_status status = hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
     v->submission_hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, hn_strbuf_text(&text), text.n));
+    if (status == HN_OK && strspn(hn_strbuf_text(&text), " \t\r\n") == text.n) {
+        status = hn_diag_set(&diag, HN_ERR_INPUT, NULL,
+                             "hand in the file that export --blanks wrote, filled in",
+                             "the file is empty");
+    }
     if (kept) {
         keep_program(kept, path, &text);
         v->program = kept;

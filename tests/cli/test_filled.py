@@ -124,6 +124,8 @@ class Filled(unittest.TestCase):
         status, verdict = self.grade("four-bar", path)
         self.assertEqual((status, verdict["status"]), (2, "ungradable"), verdict)
         self.assertRegex(verdict["reason"], r"syntax\.c:2:\d+: error: expected")
+        status, verdict = self.grade("four-bar", self.put("empty.py", "\n"))
+        self.assertEqual((status, verdict["reason"]), (2, "the file is empty"), verdict)
 
     def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
         _, filled = blank_and_filled("four-bar", "c")
