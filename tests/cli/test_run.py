@@ -446,6 +446,14 @@ class Run(Command):
         self.assertLess(abs(samples["energy_change"][0]), 1e-8)
         self.assertLess(driven["worst_energy_change"], 1e-8)
 
+    def test_no_sample_is_beyond_the_last_state_that_was_sound(self):
+        # the step from 0.5 s grows beyond every bound, and so does the motion inside it
+        done = call("run", "bennett", "--method", "index1@rk4:h=0.1", "--time", "5", "--at", "0.5,0.525")
+        self.assert_exit(done, ENDED)
+        rows = done.stdout.decode().splitlines()[1:]
+        self.assertEqual([row.split(",")[0] for row in rows], ["0.5"])
+        self.assertIn("up to t = 0.5 s the coordinates are estimated", done.stderr.decode())
+
     def test_what_was_noticed_is_said_beside_the_samples(self):
         for form in "csv", "ndjson":
             done = call("run", "parallelogram", "--method", "projection@dop853:rtol=1e-6", "--time", "0.6", "--at", "0.6", "--format", form)

@@ -89,6 +89,14 @@ static bool is_present(const hn_stepping *run, double t) {
     return run->adaptive ? ahead >= 0 && ahead <= ROUNDED_TIME * fabs(t) : fabs(ahead) <= tol;
 }
 
+/// A state between steps must be as sane as one at the end of a step.
+static hn_status sane(const hn_sampling *s, hn_status status) {
+    const hn_stepping *run = s->run;
+    const bool is = status != HN_OK || (hn_stepping_is_sane(run->info.nq, s->q) &&
+                                        hn_stepping_is_sane(run->info.nv, s->v));
+    return is ? status : HN_ERR_DIVERGED;
+}
+
 static hn_status locate(hn_sampling *s, double t, bool failed) {
     const hn_stepping *run = s->run;
     if (is_present(run, t)) {
@@ -97,7 +105,7 @@ static hn_status locate(hn_sampling *s, double t, bool failed) {
     }
     if (t >= run->now.t) {
         const bool allowed = !run->adaptive && t < run->now.t + run->h_next && !failed;
-        return allowed ? side_steps_ahead(s, t) : HN_ERR_INPUT;
+        return allowed ? sane(s, side_steps_ahead(s, t)) : HN_ERR_INPUT;
     }
     if (!run->has_step || t < run->before.t) {
         return HN_ERR_INPUT;
@@ -105,7 +113,7 @@ static hn_status locate(hn_sampling *s, double t, bool failed) {
     // the scheme's own multipliers belong to the end of a step
     const bool dense =
         run->dense_valid && !(s->raw_lambda && hn_engine_has_raw_lambda(&run->engine));
-    return dense ? interpolate(s, t) : side_step(s, &run->before, t);
+    return sane(s, dense ? interpolate(s, t) : side_step(s, &run->before, t));
 }
 
 // ---- what a sample holds ----
