@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "class/filled_origin.h"
 #include "export/language.h"
 #include "grade/submission.h"
 #include "program/guest_process.h"
@@ -37,7 +38,7 @@ static bool is_asked(const hn_export_exam *exam, int part) {
 hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model, hn_diags *diags) {
     const hn_walk_limits none = {0};
     hn_diag diag = {0};
-    *f = (hn_filled_exam){0};
+    *f = (hn_filled_exam){.scene = hn_model_scene(model)};
     if (hn_sandbox_check(&diag) != HN_OK) {
         return hn_diags_add(diags, diag.status, NULL, diag.hint, "%s", diag.message);
     }
@@ -369,7 +370,7 @@ hn_status hn_filled_program_grade_text(const hn_filled_exam *f, const char *name
 hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
                                   hn_graded_program *kept, hn_verdict *v) {
     const hn_language *language = language_of(path);
-    hn_diag diag = {0};
+    hn_diag diag = {0}, origin = {0};
     hn_strbuf text;
     memset(v, 0, sizeof *v);
     v->problem = &f->exercise;
@@ -394,6 +395,7 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
         keep_program(kept, path, &text);
         v->program = kept;
     }
+    const bool is_other = hn_filled_origin_check(f->scene, hn_strbuf_text(&text), &origin) != HN_OK;
     hn_strbuf_reset(&text);
 
     // its answers, compared part by part
@@ -412,5 +414,13 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
         hn_submission_refuse(v, diag.hint, "%s", diag.message);
     }
     free(given.value);
+
+    // numbers of another scene or other parameters say nothing about what was filled in
+    if (is_other && (status != HN_OK || v->n_right < v->n_entries)) {
+        v->n_entries = v->n_right = 0;
+        v->score = 0;
+        v->summary[0] = '\0';
+        hn_submission_refuse(v, origin.hint, "%s", origin.message);
+    }
     return HN_OK;
 }

@@ -10,6 +10,7 @@
 
 typedef struct hn_filled_exam {
     hn_export_exam exam;
+    const hn_scene *scene;
     hn_exercise exercise; ///< for verdicts: id, title and points; it has no file
     char title[HN_GRADE_TEXT];
 } hn_filled_exam;

@@ -127,6 +127,18 @@ class Filled(unittest.TestCase):
         status, verdict = self.grade("four-bar", self.put("empty.py", "\n"))
         self.assertEqual((status, verdict["reason"]), (2, "the file is empty"), verdict)
 
+    def test_a_program_of_other_parameters_or_another_scene_is_no_zero(self):
+        for language in ("c", "python" if has_numpy() else "c"):
+            _, filled = blank_and_filled("four-bar", language)
+            path = self.put(f"right.{ENDINGS[language][0]}", filled)
+            done = call("grade", "four-bar", path, "--set", "l1=0.45", "--json")
+            verdict = json.loads(done.stdout)
+            self.assertEqual((done.returncode, verdict["status"], verdict["score"]), (2, "ungradable", 0), verdict)
+            self.assertEqual(verdict["reason"], "this program has l1 = 0.5; it is graded with l1 = 0.45")
+            self.assertIn("--set l1=0.5", verdict["hint"])
+            status, verdict = self.grade("slider-crank", path)
+            self.assertEqual((status, verdict["reason"]), (2, "this is the program of the scene 'four-bar'; it is graded as one of 'slider-crank'"), verdict)
+
     def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
         _, filled = blank_and_filled("four-bar", "c")
         last = filled.rindex("    energy[0] =")

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLASS_FILLED_ORIGIN_H
+#define HN_CLASS_FILLED_ORIGIN_H
+// Of which scene, and with which parameters, a program with blanks was written: its text says both.
+
+#include "base/diag.h"
+#include "scene/scene.h"
+
+/// Compares what the text says with the scene that it is graded against. A parameter that the text
+/// does not define by a plain number is not compared. Fails: HN_ERR_INPUT where they differ, with
+/// the difference and what to try in diag.
+HN_MUST_CHECK hn_status hn_filled_origin_check(const hn_scene *scene, const char *text,
+                                               hn_diag *diag);
+
+#endif
