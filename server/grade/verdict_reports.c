@@ -232,7 +232,8 @@ void hn_verdict_csv(hn_strbuf *b, const hn_verdict *v, int head) {
     hn_strbuf_add(b, head ? "problem,student,seed,status,score,max_score,mistakes\n" : "");
     put_field(b, v->problem->id);
     hn_strbuf_add(b, ",");
-    put_field(b, v->student);
+    // a program without a student is known by its file
+    put_field(b, v->student[0] || !v->program ? v->student : v->program->file);
     hn_strbuf_printf(b, ",%llu,%s,%g,%g,", (unsigned long long)v->seed,
                      graded ? "graded" : "ungradable", graded ? v->score : 0, v->max_score);
     put_field(b, graded ? hn_strbuf_text(&mistakes) : v->reason);

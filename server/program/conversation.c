@@ -68,7 +68,10 @@ static cJSON *ask(hn_conversation *c, double seconds) {
     cJSON *answer = cJSON_Parse(line);
     if (!cJSON_IsObject(answer)) {
         cJSON_Delete(answer);
-        REFUSE(c, "answer %lld is no JSON object: '%s'", c->id, begin);
+        // what Python and others write for numbers that JSON does not have
+        const bool is_nan = strstr(line, "NaN") || strstr(line, "Infinity");
+        REFUSE(c, "answer %lld %s: '%s'", c->id,
+               is_nan ? "holds NaN or Infinity, which are no numbers" : "is no JSON object", begin);
         return NULL;
     }
     return answer;

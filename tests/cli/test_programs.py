@@ -304,7 +304,7 @@ HOSTILE = {
     "sends no numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'])", "has no list q"),
     "sends words for numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=['x'], v=ask['v'])", "q[0] is not a finite number"),
     "sends nested lists": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[[1]], v=ask['v'])", "q[0] is not a finite number"),
-    "sends NaN": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[float('nan')], v=ask['v'])", "NaN"),
+    "sends NaN": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[float('nan')], v=ask['v'])", "holds NaN or Infinity, which are no numbers"),
     "sends numbers beyond all bounds": ("greet('step')\nfor ask in questions(): print('{\"id\":%d,\"q\":[1e999],\"v\":[0]}' % ask['id'], flush=True)", "q[0] is not a finite number"),
     "answers out of order": ("greet('step')\nfor ask in questions(): say(id=ask['id'] + 1, q=ask['q'], v=ask['v'])", "has the id 2; question 1 was asked"),
     "answers without an id": ("greet('step')\nfor ask in questions(): say(q=ask['q'], v=ask['v'])", "has no id"),
