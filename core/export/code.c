@@ -2,6 +2,7 @@
 #include "export/code.h"
 
 #include <ctype.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,12 +26,40 @@ typedef struct writer {
 
 // ---- numbers, names, forms ----
 
+enum { LARGEST_DENOMINATOR = 24 }; // of the fractions that inertias of simple bodies bring
+
+/// Writes a number that is a fraction to the last bit, 1/3, as one; false where it is none.
+static bool put_fraction(hn_strbuf *b, const hn_language *language, double value) {
+    char above[16], below[16];
+    for (int d = 3; d <= LARGEST_DENOMINATOR && fabs(value) < 1000; d++) {
+        const double n = round(fabs(value) * d);
+        if (n >= 1 && n / d == fabs(value) && round(1000 * value) != 1000 * value) {
+            snprintf(above, sizeof above, "%.0f", n);
+            snprintf(below, sizeof below, "%d", d);
+            hn_strbuf_add(b, value < 0 ? "-" : "");
+            hn_code_fill(b, language->fraction, (const char *[]){above, below});
+            return true;
+        }
+    }
+    return false;
+}
+
 void hn_code_number(hn_strbuf *b, const hn_language *language, double value) {
     char text[40];
+    if (language->fraction && put_fraction(b, language, value)) {
+        return;
+    }
     for (int digits = 1; digits <= 17; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);
         if (strtod(text, NULL) == value) {
             break;
+        }
+    }
+    // a number of few digits needs no power of ten to be read
+    if (language->fraction && fabs(value) >= 1e-3 && fabs(value) < 1e6) {
+        snprintf(text, sizeof text, "%.*g", (int)DBL_DIG, value);
+        if (strtod(text, NULL) != value) {
+            snprintf(text, sizeof text, "%.17g", value);
         }
     }
     char *const e = language->power ? strchr(text, 'e') : NULL;

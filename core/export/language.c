@@ -222,6 +222,7 @@ static const hn_language LANGUAGES[] = {
      .first = 1,
      .times = "\\, ",
      .power = "\\ensuremath{#1\\cdot 10^{#2}}",
+     .fraction = "\\ensuremath{\\tfrac{#1}{#2}}",
      .reserved = "",
      .put_name = hn_print_latex_name,
      .put_words = put_latex_words,

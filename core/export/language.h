@@ -30,6 +30,7 @@ typedef struct hn_language {
     int first;               ///< index of the first entry
     bool needs_point;        ///< 1 / 2 would divide whole numbers
     const char *times;       ///< between factors; NULL: "*"
+    const char *fraction;    ///< #1 over #2, for numbers to read; NULL: decimals
     const char *power;       ///< a number with a power of ten: #1 times 10^#2; NULL: as 1e-7
     const char *reserved;    ///< words that no symbol may have, separated by spaces
     /// writes a name of the scene, the name of an array, words in a comment; NULL: as they are

@@ -179,6 +179,17 @@ static const hn_stepper STEPPER = {
 
 // ---- names ----
 
+/// In a server a message names a program as its reader does: without the folder, which is nobody's
+/// business.
+static void hide_folder(hn_diag *diag) {
+    const size_t n = options.folder ? strlen(options.folder) : 0;
+    char *const at = n > 0 && diag ? strstr(diag->message, options.folder) : NULL;
+    if (at) {
+        const size_t more = at[n] == '/';
+        memmove(at, at + n + more, strlen(at + n + more) + 1);
+    }
+}
+
 /// The file of a name; in a folder of the server a name is no path.
 static hn_status find_file(const char *name, char file[1024], hn_diag *diag) {
     if (!options.folder) {
@@ -234,7 +245,11 @@ static hn_status find(const char *name, hn_guest *out, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "the name of the program is too long");
     }
     HN_TRY(find_file(name + strlen(HN_GUEST_PREFIX), file, diag));
-    HN_TRY(hn_sandbox_build(&command, file, NULL, options.trusted, &limits, diag));
+    const hn_status status = hn_sandbox_build(&command, file, NULL, options.trusted, &limits, diag);
+    if (status != HN_OK) {
+        hide_folder(diag);
+        return status;
+    }
     pthread_mutex_lock(&lock);
     program *p = find_program(name, file);
     pthread_mutex_unlock(&lock);

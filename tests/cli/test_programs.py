@@ -411,12 +411,14 @@ class InTheServer(OneFile):
             f.write("no program")
         body = {"scene": "pendulum", "method": "program:mine.py@own:h=1e-2", "time": 0.1}
         for options, methods in (([], {"program:mine.py@own:h=1e-2": 422}),
-                                 (["--programs", self.folder.name], {"program:mine.py@own:h=1e-2": 201, "program:../mine.py": 422, "program:/bin/true": 422})):
+                                 (["--programs", self.folder.name], {"program:mine.py@own:h=1e-2": 201, "program:../mine.py": 422, "program:/bin/true": 422, "program:gone.py@own": 422})):
             server = driver.Server(*options)
             try:
                 for method, status in methods.items():
                     answer = server.ask("POST", "/api/v1/runs", {**body, "method": method})
                     self.assertIn(answer.status, (status, 200 if status == 201 else status), answer.body[:300])
+                    # no answer tells where the folder is
+                    self.assertNotIn(self.folder.name.encode(), answer.body)
                 # the page offers what the server lists: files that can be started, of the folder that was given
                 listed = server.ask("GET", "/api/v1/methods").json()["programs"]
                 self.assertEqual(listed, ["program:mine.py"] if options else [])

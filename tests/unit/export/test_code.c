@@ -119,6 +119,13 @@ static void names_and_numbers_are_spelled_as_the_language_reads_them(void **stat
     assert_string_equal(words_of(&f, "wolfram", hn_code_name, "K"), "K$");
     assert_string_equal(words_of(&f, "latex", hn_code_name, "th12"), "\\theta_{12}");
     assert_string_equal(code_of(&f, "wolfram", hn_num(-1e-7)), "m[[1]] = -1*^-7;\n");
+    // numbers to read: fractions that are exact, and no power of ten where a few digits do
+    assert_string_equal(code_of(&f, "latex", hn_num(1.0 / 3)),
+                        "\\eq{\\term{m}_{1}}{\\ensuremath{\\tfrac{1}{3}}}\n");
+    assert_string_equal(code_of(&f, "latex", hn_num(-1.0 / 6)),
+                        "\\eq{\\term{m}_{1}}{-\\ensuremath{\\tfrac{1}{6}}}\n");
+    assert_string_equal(code_of(&f, "latex", hn_num(10)), "\\eq{\\term{m}_{1}}{10}\n");
+    assert_string_equal(code_of(&f, "latex", hn_num(0.25)), "\\eq{\\term{m}_{1}}{0.25}\n");
     assert_string_equal(code_of(&f, "latex", hn_num(2.5e+20)),
                         "\\eq{\\term{m}_{1}}{\\ensuremath{2.5\\cdot 10^{20}}}\n");
     end(&f);
