@@ -23,7 +23,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_JOBS = 64, TICK = 100 }; // [ms] between two looks at the clock
+enum {
+    MOST_JOBS = 64,
+    TICK = 100,       ///< [ms] between two looks at the clock
+    MOST_ATTEMPTS = 3 ///< workers that are offered one submission
+};
 
 typedef struct worker {
     pid_t pid;
@@ -315,14 +319,14 @@ static hn_status keep_line(grading *g, int i, const char *line, bool told, hn_di
     return HN_OK;
 }
 
-/// A line for a submission whose worker has ended.
-static hn_status keep_loss(grading *g, worker *w, const char *reason, hn_diag *diag) {
+/// A line for a submission that no worker graded.
+static hn_status keep_loss(grading *g, int i, const char *reason, hn_diag *diag) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    begin_line(g, w->index, &b, "failed");
+    begin_line(g, i, &b, "failed");
     put_zero(g, &b, reason);
     hn_json_end_object(&b);
-    const hn_status status = keep_line(g, w->index, hn_strbuf_text(&b), true, diag);
+    const hn_status status = keep_line(g, i, hn_strbuf_text(&b), true, diag);
     hn_strbuf_reset(&b);
     return status;
 }
@@ -356,7 +360,7 @@ static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
         snprintf(reason, sizeof reason,
                  late ? "grading took longer than %g s" : "the grader ended while it graded this",
                  g->opts->time_limit);
-        const hn_status status = w->index >= 0 ? keep_loss(g, w, reason, diag) : HN_OK;
+        const hn_status status = w->index >= 0 ? keep_loss(g, w->index, reason, diag) : HN_OK;
         end_worker(w, true);
         HN_TRY(status);
         return start_worker(g, w, diag);
@@ -364,18 +368,36 @@ static hn_status look_at(grading *g, worker *w, bool ready, hn_diag *diag) {
     return HN_OK;
 }
 
-static void give_work(grading *g) {
+/// Hands submission i to a worker. A worker that takes no work has ended and is replaced; a
+/// submission that no worker takes gets a line that says so.
+static hn_status give_to(grading *g, worker *w, int i, hn_diag *diag) {
+    for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+        ssize_t sent;
+        do {
+            sent = write(w->ask, &i, sizeof i);
+        } while (sent < 0 && errno == EINTR);
+        if (sent == (ssize_t)sizeof i) {
+            w->index = i;
+            w->since = hn_clock_wall();
+            return HN_OK;
+        }
+        end_worker(w, true);
+        HN_TRY(start_worker(g, w, diag));
+    }
+    return keep_loss(g, i, "no process took this submission; grade it again", diag);
+}
+
+static hn_status give_work(grading *g, hn_diag *diag) {
     for (int k = 0; k < g->n_workers; k++) {
         worker *w = &g->workers[k];
         while (w->index < 0 && g->next < g->roster->n) {
             const int i = g->next++;
-            if (!g->out->line[i] && is_mine(g, i) &&
-                write(w->ask, &i, sizeof i) == (ssize_t)sizeof i) {
-                w->index = i;
-                w->since = hn_clock_wall();
+            if (!g->out->line[i] && is_mine(g, i)) {
+                HN_TRY(give_to(g, w, i, diag));
             }
         }
     }
+    return HN_OK;
 }
 
 static hn_status run(grading *g, hn_diag *diag) {
@@ -385,7 +407,7 @@ static hn_status run(grading *g, hn_diag *diag) {
         if (g->opts->stop && g->opts->stop(g->opts->user)) {
             return HN_ERR_STOPPED;
         }
-        give_work(g);
+        HN_TRY(give_work(g, diag));
         for (int k = 0; k < g->n_workers; k++) {
             wait[k] = (struct pollfd){.fd = g->workers[k].answer, .events = POLLIN};
         }

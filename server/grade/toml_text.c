@@ -50,51 +50,64 @@ static hn_status end_line(reader *r) {
     return *r->at && *r->at != '\n' ? fault(r, "something stands behind the value") : HN_OK;
 }
 
-/// Copies text in quotes as JSON: "with escapes", 'as it stands'.
-static hn_status copy_text(reader *r) {
+/// Copies text in quotes to `out` as JSON, without quotes: "with escapes", 'as it stands'.
+static hn_status copy_quoted(reader *r, hn_strbuf *out) {
     const char quote = *r->at++;
-    hn_strbuf_add(r->out, "\"");
     while (*r->at && *r->at != quote && *r->at != '\n') {
         const bool escape = *r->at == '\\' && quote == '"' && r->at[1] && r->at[1] != '\n';
         if (quote == '\'' && strchr("\\\"", *r->at)) {
-            hn_strbuf_add(r->out, "\\");
+            hn_strbuf_add(out, "\\");
         }
         if (*r->at == '\t') {
-            hn_strbuf_add(r->out, "\\t"); // JSON has no tabs in texts
+            hn_strbuf_add(out, "\\t"); // JSON has no tabs in texts
             r->at++;
             continue;
         }
-        hn_strbuf_add_n(r->out, r->at, escape ? 2 : 1);
+        hn_strbuf_add_n(out, r->at, escape ? 2 : 1);
         r->at += escape ? 2 : 1;
     }
     if (*r->at != quote) {
         return fault(r, "a text has no end on its line");
     }
     r->at++;
+    return HN_OK;
+}
+
+static hn_status copy_text(reader *r) {
     hn_strbuf_add(r->out, "\"");
+    HN_TRY(copy_quoted(r, r->out));
+    hn_strbuf_add(r->out, "\"");
+    return HN_OK;
+}
+
+/// Keeps a name, as JSON has it between its quotes.
+static hn_status keep_name(reader *r, const char *text, size_t n, char name[MAX_NAME]) {
+    if (n >= MAX_NAME - 1) {
+        return fault(r, "a name is too long");
+    }
+    memcpy(name, text, n);
+    name[n] = 0;
+    skip(r, false);
     return HN_OK;
 }
 
 /// A name: letters, digits, _ and -, or in quotes.
 static hn_status read_name(reader *r, char name[MAX_NAME]) {
-    const bool quoted = *r->at == '"' || *r->at == '\'';
-    const char quote = *r->at;
-    size_t n = 0;
-    r->at += quoted;
-    while (*r->at && n < MAX_NAME - 1 &&
-           (quoted ? !strchr("\"'\\\n", *r->at)
-                   : isalnum((unsigned char)*r->at) || strchr("_-", *r->at))) {
-        name[n++] = *r->at++;
+    if (*r->at == '"' || *r->at == '\'') {
+        hn_strbuf text;
+        hn_strbuf_init(&text);
+        hn_status status = copy_quoted(r, &text);
+        status = status == HN_OK && text.failed ? HN_ERR_MEMORY : status;
+        HN_THEN(status, keep_name(r, hn_strbuf_text(&text), text.n, name));
+        hn_strbuf_reset(&text);
+        return status;
     }
-    name[n] = 0;
-    if (n == MAX_NAME - 1) {
-        return fault(r, "a name is too long");
+    const char *start = r->at;
+    while (isalnum((unsigned char)*r->at) || *r->at == '_' || *r->at == '-') {
+        r->at++;
     }
-    if (n == 0 || (quoted && *r->at++ != quote)) {
-        return fault(r, "a name was expected");
-    }
-    skip(r, false);
-    return HN_OK;
+    return r->at == start ? fault(r, "a name was expected")
+                          : keep_name(r, start, (size_t)(r->at - start), name);
 }
 
 /// Opens a member of the object that is open.
@@ -226,13 +239,27 @@ hn_status hn_toml_to_json(hn_strbuf *out, const char *text, hn_diag *diag) {
 
 static void put_value(hn_strbuf *out, const cJSON *value);
 
+/// Numbers and texts of JSON are those of TOML.
+static void put_scalar(hn_strbuf *out, const cJSON *value) {
+    char *text = cJSON_PrintUnformatted(value);
+    hn_strbuf_add(out, text ? text : "");
+    out->failed |= !text;
+    cJSON_free(text);
+}
+
 /// A name as it stands where TOML allows it, else in quotes.
 static void put_key(hn_strbuf *out, const char *name) {
     bool bare = name[0] != 0;
     for (const char *at = name; *at; at++) {
         bare &= isalnum((unsigned char)*at) || *at == '_' || *at == '-';
     }
-    hn_strbuf_printf(out, bare ? "%s" : "\"%s\"", name);
+    if (bare) {
+        hn_strbuf_add(out, name);
+        return;
+    }
+    cJSON *text = cJSON_CreateStringReference(name);
+    put_scalar(out, text);
+    cJSON_Delete(text);
 }
 
 static void put_members(hn_strbuf *out, const cJSON *value) {
@@ -250,16 +277,12 @@ static void put_members(hn_strbuf *out, const cJSON *value) {
     hn_strbuf_add(out, list ? "]" : "}");
 }
 
-/// Numbers and texts of JSON are those of TOML.
 static void put_value(hn_strbuf *out, const cJSON *value) {
     if (cJSON_IsArray(value) || cJSON_IsObject(value)) {
         put_members(out, value);
-        return;
+    } else {
+        put_scalar(out, value);
     }
-    char *text = cJSON_PrintUnformatted(value);
-    hn_strbuf_add(out, text ? text : "");
-    out->failed |= !text;
-    cJSON_free(text);
 }
 
 static void put_lines(hn_strbuf *out, const cJSON *object, bool tables) {
