@@ -43,7 +43,6 @@ static hn_status check_steps(const hn_workbench *w, int m, hn_diags *diags) {
 static bool record_again(hn_workbench *w, const kept *before) {
     hn_diags diags = {0};
     hn_status status = HN_OK;
-    w->panel = HN_PANEL_MAIN;
     for (int m = 0; m < w->n_methods && status == HN_OK; m++) {
         status = check_steps(w, m, &diags);
     }
@@ -51,6 +50,7 @@ static bool record_again(hn_workbench *w, const kept *before) {
         status = hn_workbench_record(w, &diags);
     }
     if (status == HN_OK) {
+        w->panel = HN_PANEL_MAIN;
         hn_versions_keep(w);
         return true;
     }
@@ -97,7 +97,7 @@ double hn_methods_step(const hn_workbench *w) {
     return common;
 }
 
-void hn_methods_set_step(hn_workbench *w, const char *text) {
+bool hn_methods_set_step(hn_workbench *w, const char *text) {
     kept before;
     double h;
     if (!hn_seconds_read(text, &h)) {
@@ -107,7 +107,7 @@ void hn_methods_set_step(hn_workbench *w, const char *text) {
                                  "Try 0.01 or 20 ms"
                                : "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms",
                          text);
-        return;
+        return false;
     }
     keep(&before, w);
     int n = 0;
@@ -116,24 +116,28 @@ void hn_methods_set_step(hn_workbench *w, const char *text) {
     }
     if (n == 0) {
         hn_workbench_say(w, "no method here has a fixed step: all choose it by a tolerance (m)");
-    } else if (record_again(w, &before)) {
+        return true; // no other step would be taken
+    }
+    const bool taken = record_again(w, &before);
+    if (taken) {
         hn_workbench_say(w, "dt = %g s for %s%s", h,
                          n == w->n_methods ? "every method" : "the methods of fixed step",
                          n == w->n_methods ? "" : "; the others choose it by a tolerance");
     }
+    return taken;
 }
 
-void hn_methods_put(hn_workbench *w, int at, const char *spelling) {
+bool hn_methods_put(hn_workbench *w, int at, const char *spelling) {
     kept before;
     keep(&before, w);
     if (at >= HN_COMPARISON_MAX_METHODS) {
         hn_workbench_say(w, "%d methods are compared at most; remove one first (m, then x)",
                          HN_COMPARISON_MAX_METHODS);
-        return;
+        return false;
     }
     snprintf(w->methods[at], HN_SPEC_MAX, "%.250s", spelling);
     w->n_methods = at == w->n_methods ? at + 1 : w->n_methods;
-    record_again(w, &before);
+    return record_again(w, &before);
 }
 
 /// The one way to spell a method; false: it is no spelling of any.

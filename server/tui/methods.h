@@ -8,10 +8,11 @@
 
 /// The step that all methods of fixed step have [s]; NaN: they differ, or there are none.
 double hn_methods_step(const hn_workbench *w);
-/// Another step for every method of fixed step: "0.01", "0,01" or "20 ms".
-void hn_methods_set_step(hn_workbench *w, const char *text);
-/// Replaces method `at`, or adds one behind the last.
-void hn_methods_put(hn_workbench *w, int at, const char *spelling);
+/// Another step for every method of fixed step: "0.01", "0,01" or "20 ms". false: the text
+/// or the step was refused, and the fault is said.
+bool hn_methods_set_step(hn_workbench *w, const char *text);
+/// Replaces method `at`, or adds one behind the last. false: it was refused, and the fault is said.
+bool hn_methods_put(hn_workbench *w, int at, const char *spelling);
 /// The place of a method with the same formulation, integrator and options, however it is spelled;
 /// -1: it is not compared.
 int hn_methods_find(const hn_workbench *w, const char *spelling);

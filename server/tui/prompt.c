@@ -39,16 +39,16 @@ void hn_prompt_export(hn_workbench *w) {
 
 // ---- what is done with a line ----
 
-static void accept_step(hn_workbench *w) {
-    hn_methods_set_step(w, w->input);
+static bool accept_step(hn_workbench *w) {
+    return hn_methods_set_step(w, w->input);
 }
 
-static void accept_method(hn_workbench *w) {
+static bool accept_method(hn_workbench *w) {
     const bool there = w->list == HN_LIST_METHODS && w->cursor < w->n_methods;
-    hn_methods_put(w, there ? w->cursor : w->n_methods, w->input);
+    return hn_methods_put(w, there ? w->cursor : w->n_methods, w->input);
 }
 
-void hn_prompt_set_parameter(hn_workbench *w, const char *name, double value) {
+bool hn_prompt_set_parameter(hn_workbench *w, const char *name, double value) {
     hn_setting settings[HN_TUI_SETTINGS + 1];
     int n = 0;
     for (int i = 0; i < w->n_settings; i++) {
@@ -58,13 +58,13 @@ void hn_prompt_set_parameter(hn_workbench *w, const char *name, double value) {
     }
     if (n == HN_TUI_SETTINGS) {
         hn_workbench_say(w, "%d changed parameters are kept at most", n);
-        return;
+        return false;
     }
     settings[n++] = (hn_setting){name, value};
-    hn_workbench_set(w, settings, n);
+    return hn_workbench_set(w, settings, n);
 }
 
-static void accept_parameter(hn_workbench *w) {
+static bool accept_parameter(hn_workbench *w) {
     char *end, name[HN_TUI_LINE];
     for (char *c = w->input; *c; c++) {
         *c = *c == ',' ? '.' : *c;
@@ -73,9 +73,9 @@ static void accept_parameter(hn_workbench *w) {
     snprintf(name, sizeof name, "%s", w->items[w->cursor].name);
     if (end == w->input || end[strspn(end, " ")] || !isfinite(value)) {
         hn_workbench_say(w, "%s: '%.40s' is not a number", name, w->input);
-        return;
+        return false;
     }
-    hn_prompt_set_parameter(w, name, value);
+    return hn_prompt_set_parameter(w, name, value);
 }
 
 /// The shortest text that reads back the same; what is not known stays empty.
@@ -88,12 +88,12 @@ static void write_number(FILE *file, const char *before, double value) {
 }
 
 /// One row a frame: time, then gap, energy and error of each method, in a file that was not there.
-static void write_recording(hn_workbench *w) {
+static bool write_recording(hn_workbench *w) {
     FILE *file = fopen(w->input, "wx");
     if (!file) {
         hn_workbench_say(w, "%.200s: %s; type another name", w->input,
                          errno == EEXIST ? "is there already" : strerror(errno));
-        return;
+        return false;
     }
     fprintf(file, "t");
     for (int m = 0; m < w->n_methods; m++) {
@@ -121,41 +121,49 @@ static void write_recording(hn_workbench *w) {
     const bool good = fclose(file) == 0;
     hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames",
                      w->input, n);
+    return good;
 }
 
 /// The recording, or the scene as a program in the chosen language.
-static void accept_export(hn_workbench *w) {
+static bool accept_export(hn_workbench *w) {
     const char *chosen = w->items[w->cursor].name;
     if (strcmp(chosen, HN_TUI_RECORDING) == 0) {
-        w->panel = HN_PANEL_MAIN;
-        write_recording(w);
-        return;
+        const bool written = write_recording(w);
+        w->panel = written ? HN_PANEL_MAIN : w->panel;
+        return written;
     }
     FILE *there = fopen(w->input, "r");
     if (there) {
         fclose(there);
         hn_workbench_say(w, "%.200s: is there already; type another name", w->input);
-        return;
+        return false;
     }
     const char *const words[] = {"export", w->scene, "--language", chosen, "--out", w->input};
     hn_text_panel_run(w, "export: Esc goes back", words, 6);
     snprintf(w->writes, sizeof w->writes, "%s", w->input);
+    return true;
 }
 
 /// The error for which the cheapest method is wanted; the study says which that is.
-static void accept_wanted(hn_workbench *w) {
+static bool accept_wanted(hn_workbench *w) {
     hn_wanted read;
     if (!hn_wanted_read(w->input, 1, &read)) {
         hn_workbench_say(w, "'%.40s' is no error above 0; type one as 1 mm, 0.1 %%, 1 mrad or 1e-3",
                          w->input);
-        return;
+        return false;
     }
     snprintf(w->wanted, sizeof w->wanted, "%.31s", w->input);
     w->scroll = 0;
+    return true;
 }
 
-static void accept_study_time(hn_workbench *w) {
-    hn_study_panel_set_time(w, w->input);
+static bool accept_study_time(hn_workbench *w) {
+    return hn_study_panel_set_time(w, w->input);
+}
+
+static bool accept_answer(hn_workbench *w) {
+    hn_exercise_panel_accept(w);
+    return true;
 }
 
 /// Cuts the line after its first n characters.
@@ -188,24 +196,24 @@ static void add_letter(hn_workbench *w, bool replaces, char letter) {
 }
 
 void hn_prompt_key(hn_workbench *w, int key) {
-    static void (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
+    static bool (*const accept[])(hn_workbench *) = {[HN_PROMPT_STEP] = accept_step,
                                                      [HN_PROMPT_METHOD] = accept_method,
                                                      [HN_PROMPT_PARAMETER] = accept_parameter,
                                                      [HN_PROMPT_EXPORT] = accept_export,
-                                                     [HN_PROMPT_ANSWER] = hn_exercise_panel_accept,
+                                                     [HN_PROMPT_ANSWER] = accept_answer,
                                                      [HN_PROMPT_WANTED] = accept_wanted,
                                                      [HN_PROMPT_STUDY_TIME] = accept_study_time};
 
     const bool replaces = w->replaces;
     w->replaces = false;
 
-    // Escape forgets the line, Enter hands it over
+    // Escape forgets the line, Enter hands it over; one that is refused stays as it was typed
     if (key == HN_KEY_ESCAPE) {
         w->prompt = HN_PROMPT_NONE;
     } else if (key == HN_KEY_ENTER) {
         const hn_prompt_kind kind = w->prompt;
         w->prompt = HN_PROMPT_NONE;
-        accept[kind](w);
+        w->prompt = accept[kind](w) ? w->prompt : kind;
     } else if (key == HN_KEY_BACKSPACE && w->n_input > 0) {
         cut_input(w, w->n_input - 1);
     } else if (key == HN_KEY_CTRL_U) {

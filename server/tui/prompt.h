@@ -10,9 +10,11 @@
 
 /// Asks for the file that the chosen item of the list of exports goes to.
 void hn_prompt_export(hn_workbench *w);
-/// A key while a line is typed: Escape forgets it, Enter hands it over. The first letter replaces
+/// A key while a line is typed: Escape forgets it, Enter hands it over; a line
+/// that is refused stays open, as it was typed. The first letter replaces
 /// what was filled in; after an arrow or Backspace letters are added to it.
 void hn_prompt_key(hn_workbench *w, int key);
-/// Another value of a parameter or start; everything starts again.
-void hn_prompt_set_parameter(hn_workbench *w, const char *name, double value);
+/// Another value of a parameter or start; everything starts again. Returns whether it was
+/// taken; else the fault is said.
+bool hn_prompt_set_parameter(hn_workbench *w, const char *name, double value);
 #endif

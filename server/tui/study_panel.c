@@ -88,17 +88,18 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
     w->at = (hn_map_place){-1, -1};
 }
 
-void hn_study_panel_set_time(hn_workbench *w, const char *text) {
+bool hn_study_panel_set_time(hn_workbench *w, const char *text) {
     const hn_tui_study_kind kind = hn_tui_study_get_kind(w->study);
     const double most = hn_model_scene(w->model)->duration;
     double time;
     if (!hn_seconds_read(text, &time) || time > most) {
         hn_workbench_say(w, "'%.40s' is no time of motion above 0 and up to %g s; type one as 5",
                          text, most);
-        return;
+        return false;
     }
     w->study_time[kind] = time;
     hn_study_panel_open(w, kind);
+    return true;
 }
 
 // ---- keys ----

@@ -4,7 +4,7 @@
 #include "base/units.h"
 #include "render/look.h"
 #include "terminal/plot.h"
-#include "tui/keys.h"
+#include "tui/key_line.h"
 #include "tui/mechanism_view.h"
 #include "tui/methods.h"
 #include "tui/reactions_view.h"
@@ -21,8 +21,9 @@ enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 51, MOST
 enum { MESSAGE_LINES = 6, INCIDENT_LINES = 5 }; // at most
 enum { NOTICE_ROWS = 2 };                       // kept free below the views, at least
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
-enum { LEAST_VIEW_ROWS = 5 };  // of mechanism and plot, with their frame: fewer would be empty
-enum { PREVIEW_COLUMNS = 60 }; // of the list of scenes, from which on it has a picture
+enum { LEAST_VIEW_COLUMNS = 32 }; // from which on the plot has room for its labels
+enum { LEAST_VIEW_ROWS = 6 };     // of mechanism and plot, with their frame: fewer would be empty
+enum { PREVIEW_COLUMNS = 60 };    // of the list of scenes, from which on it has a picture
 
 /// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
 static const double SMALLEST_PREFIXED = 1e-9;
@@ -115,62 +116,6 @@ static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
     return w->prompt == HN_PROMPT_NONE && hn_text_columns(w->message) > c->columns - 2;
 }
 
-/// The keys of what is shown.
-static const char *keys_line(const hn_workbench *w, int columns) {
-    static const char short_line[] =
-        "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q";
-    static const char long_line[] = "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  "
-                                    "w cost  m methods  s scene  p values  ? menu  q";
-    static const char short_stop[] =
-        "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu q";
-    static const char long_stop[] = "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  "
-                                    "w cost  m methods  s scene  p values  ? menu  q";
-    static const char *const lists[] = {
-        [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
-        [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
-        [HN_LIST_FORMULATIONS] = "↑↓ choose  Enter types the rest  a letter finds  Esc back",
-        [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  a letter finds  Esc back",
-        [HN_LIST_LESSONS] = "↑↓ choose  Enter open  a letter finds  Esc back",
-        [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
-        [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back",
-        [HN_LIST_REMEDIES] = "↑↓ choose  Enter try it  Esc back"};
-    switch (w->panel) {
-    case HN_PANEL_LIST:
-        return lists[w->list];
-    case HN_PANEL_TEXT:
-        return "↑↓ line  PageUp PageDown Space page  Home End  Esc back";
-    case HN_PANEL_EXERCISE:
-        return "↑↓ part  Enter type  c check  h hint  PageUp PageDown  Esc back";
-    case HN_PANEL_STUDY:
-        if (hn_tui_study_running(w->study)) {
-            return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                       ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc stop"
-                       : "e error wanted  t time  ↑↓ scroll  Esc stop";
-        }
-        return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                   ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc back"
-                   : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  Esc back";
-    default:
-        if (w->why && hn_why_has_more(hn_views_places(w->columns, w->rows, w).plot, w)) {
-            return hn_why_has_remedy(w)
-                       ? "Enter try a remedy  ↑↓ another method  PageDown more  i close  ? menu  q"
-                       : "↑↓ another method  PageDown more  i close  Space run  ? menu  q";
-        }
-        if (w->why) {
-            return hn_why_has_remedy(w)
-                       ? "Enter try a remedy  ↑↓ another method  i close  ? menu  q"
-                       : "↑↓ another method  i close  Space run  ? menu  q";
-        }
-        if (w->reactions) {
-            return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";
-        }
-        if (w->playing) {
-            return hn_text_columns(long_stop) <= columns ? long_stop : short_stop;
-        }
-        return hn_text_columns(long_line) <= columns ? long_line : short_line;
-    }
-}
-
 /// The last line: what is typed, or the keys.
 static void draw_footer(hn_cells *c, const hn_workbench *w) {
     static const char *const asks[] = {[HN_PROMPT_STEP] = "dt of every method, as 0.02 or 20 ms: ",
@@ -189,7 +134,10 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
         const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, style, w->input + from);
         hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
     } else if (!needs_two_lines(c, w)) {
-        hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0, keys_line(w, area.columns));
+        char keys[HN_TUI_LINE];
+        const hn_area plot = hn_views_places(w->columns, w->rows, w).plot;
+        hn_key_line(w, w->why && hn_why_has_more(plot, w), area.columns, keys);
+        hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0, keys);
     }
 }
 
@@ -529,19 +477,31 @@ static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
     }
 }
 
-/// Whether the views would be empty, or lie over each other.
-static bool is_too_small(const hn_cells *c, const hn_workbench *w) {
-    const hn_places places = hn_views_places(c->columns, c->rows, w);
+/// The least size of a screen for what is shown: with less the views would be empty, or lie over
+/// each other.
+static void find_least_size(const hn_workbench *w, int *columns, int *rows) {
     const bool views = w->panel == HN_PANEL_MAIN;
-    return c->columns < HN_TUI_LEAST_COLUMNS || c->rows < HN_TUI_LEAST_ROWS ||
-           (views && places.plot.rows < LEAST_VIEW_ROWS);
+    // the header, the views, the table with its frame, the notice, the keys
+    const int needed = 1 + LEAST_VIEW_ROWS + w->n_methods + 2 + NOTICE_ROWS + 1;
+    *columns = views ? LEAST_VIEW_COLUMNS : HN_TUI_LEAST_COLUMNS;
+    *rows = views ? needed : HN_TUI_LEAST_ROWS;
+}
+
+/// Says the least size where the screen is smaller.
+static bool draw_too_small(hn_cells *c, const hn_workbench *w) {
+    int columns, rows;
+    find_least_size(w, &columns, &rows);
+    if (c->columns >= columns && c->rows >= rows) {
+        return false;
+    }
+    hn_cells_printf(c, (hn_area){0, 0, c->columns, 1}, 0, 0, HN_CELL_ALARM, 0, "%s%dx%d is needed",
+                    c->columns < 27 ? "" : "too small: ", columns, rows);
+    return true;
 }
 
 void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     hn_cells_clear(c);
-    if (is_too_small(c, w)) {
-        hn_cells_put(c, (hn_area){0, 0, c->columns, 1}, 0, 0, HN_CELL_ALARM, 0,
-                     c->columns < 26 ? "80x24 is needed" : "too small: 80x24 is needed");
+    if (draw_too_small(c, w)) {
         return;
     }
     draw_header(c, w);

@@ -13,8 +13,8 @@
 
 #include "tui/workbench.h"
 
-/// Least size of a screen that shows everything; smaller ones show what fits, and below the second
-/// pair nothing but the size that is needed.
+/// Least size of a screen that shows everything; smaller ones show what fits. The second pair is
+/// the least size of a panel; the main view needs more, by its methods, and says how much.
 enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24, HN_TUI_LEAST_COLUMNS = 20, HN_TUI_LEAST_ROWS = 8 };
 
 /// Chooses the incident that is told, which takes its rows from the views; before each drawing.

@@ -128,7 +128,7 @@ class Keys(unittest.TestCase):
         terminal = self.open("four-bar")
         terminal.type("d0\r")
         self.assertTrue(terminal.wait_for(rb"dt must be above 0"))
-        terminal.type("d0,02\r")
+        terminal.type("\x150,02\r")  # the refused line is still there: Ctrl-U clears it
         terminal.clear()
         terminal.type("m")
         self.assertTrue(terminal.wait_for(rb"projection@rk4:h=0.02"))

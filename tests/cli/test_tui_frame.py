@@ -31,7 +31,7 @@ class Frame(unittest.TestCase):
     def test_every_shipped_scene_is_drawn_in_80_columns(self):
         names = subprocess.run([PROGRAM, "list", "scenes", "--json"], capture_output=True, text=True).stdout
         for name in re.findall(r'"id":"([^"]+)"', names):
-            status, out, err = once(name, "--once", "--t", "0.1")
+            status, out, err = once(name, "--once", "--t", "0.03")
             self.assertEqual((name, status, err), (name, 0, ""))
             self.assertTrue(all(len(line) <= 80 for line in out.split("\n")), name)
             self.assertRegex(out, "[\u2801-\u28ff]", name)

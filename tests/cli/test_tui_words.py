@@ -64,9 +64,25 @@ class Table(unittest.TestCase):
             self.assertRegex(out, r"methods ─* now: gap ─+ error ─.* worst so far ─", columns)
 
     def test_a_window_without_room_for_the_views_says_so(self):
-        for size, wanted in (("40x12", True), ("80x24", False)):
+        # one row or column less than the size that is named is too small, and that size is not
+        for size, small in (("40x12", True), ("32x16", True), ("31x17", True), ("32x17", False), ("80x24", False)):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", size)
-            self.assertEqual("80x24 is needed" in out, wanted, size)
+            self.assertEqual("too small: 32x17 is needed" in out, small, size)
+            self.assertEqual("e-17┤" in out, not small, size)
+
+    def test_a_narrow_line_of_keys_keeps_its_end(self):
+        for columns, keys, wanted in ((60, "", "Space run  ←→ step  1-8 method  d dt  g plot  ? menu  q"), (40, "", "Space run  ←→ step  ? menu  q"),
+                                      (60, "i", "Enter try a remedy  ↑↓ another method  ? menu  q"), (40, "s", "letters search  Backspace  Esc back"),
+                                      (40, "t", "↑↓ choose  Enter open  Esc back")):
+            _, out, _ = once("four-bar", "--once", "--t", "4", "--size", f"{columns}x24", "--keys", keys)
+            self.assertEqual(out.rstrip("\n").split("\n")[-1].strip(), wanted, (columns, keys))
+
+    def test_a_time_outside_the_motion_is_refused_with_the_range(self):
+        for t in ("-1", "10.001", "99"):
+            status, out, err = once("four-bar", "--once", "--t", t)
+            self.assertEqual((status, out), (2, ""), t)
+            self.assertIn(f"--t is {t} s; the motion of four-bar allows 0 to 10 s", err)
+        self.assertEqual([once("four-bar", "--once", "--t", t)[0] for t in ("0", "10")], [0, 0])
 
 
 class Messages(unittest.TestCase):
@@ -121,7 +137,7 @@ class Messages(unittest.TestCase):
     def test_a_step_without_end_or_too_short_is_refused_and_the_methods_stay(self):
         def after(step):
             frames = []
-            for more in ("", "m"):
+            for more in ("", "<Esc>m"):
                 status, out, err = once("four-bar", "--once", "--t", "0.1", "--size", "120x40", "--methods", "index1@rk4:h=0.02", "--keys", f"d{step}<Enter>{more}")
                 self.assertEqual((status, err), (0, ""))
                 frames.append(out)
@@ -131,6 +147,20 @@ class Messages(unittest.TestCase):
         self.assertIn("dt must be above 0 s; '-1' is not", after("-1"))
         # 10 s of motion in 50 million steps at most
         self.assertRegex(after("1e-12"), r"dt = 1e-12 s needs 1e\+13 steps to t = 10 s, and 5e\+07 are allowed; the shortest dt here is 2e-07 s")
+
+    def test_a_refused_line_stays_open_as_it_was_typed(self):
+        for keys, line, said in (("d-1<Enter>", "20 ms: -1", "dt must be above 0"), ("dabc<Enter>", "20 ms: abc", "dt must be above 0"),
+                                 ("m<Enter>nonsense@rk4<Enter>", "method: nonsense@rk4", "nonsense"), ("p<Enter>long<Enter>", "value: long", "is not a number"),
+                                 ("p<Enter>-3<Enter>", "value: -3", ""), ("x<Enter>/no/such/folder.csv<Enter>", "write to: /no/such/folder.csv", "No such file"),
+                                 ("bt99<Enter>", "to study [s]: 99", "no time of motion above 0")):
+            status, out, err = once("four-bar", "--once", "--t", "0.1", "--size", "120x30", "--methods", "baumgarte:alpha=10,beta=10@rk4:h=0.02", "--keys", keys)
+            self.assertEqual((status, err), (0, ""))
+            self.assertTrue(out.rstrip().endswith(line), (keys, out.rstrip()[-200:]))
+            self.assertTrue(message(out), keys)
+            self.assertIn(said, " ".join(out.split()), keys)
+        # it is mended there, and taken
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--methods", "index1@rk4", "--keys", "d-1<Enter><CtrlU>0.02<Enter>")
+        self.assertEqual(message(out), "dt = 0.02 s for every method")
 
     def test_the_first_letter_replaces_what_was_filled_in(self):
         def line(keys):

@@ -94,6 +94,16 @@ static bool colours_wanted(void) {
     return !(no && no[0]) && !(term && strcmp(term, "dumb") == 0);
 }
 
+/// --t is a time of the motion.
+static hn_status check_time(double t, const hn_workbench *w, hn_diags *diags) {
+    const double end = hn_recording_duration(w->recording);
+    if (t < 0 || t > end) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/t", NULL,
+                            "--t is %g s; the motion of %.60s allows 0 to %g s", t, w->scene, end);
+    }
+    return HN_OK;
+}
+
 /// `paused`: a link names the frame, which --t alone changes.
 static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, bool paused) {
     const bool terminal = isatty(STDOUT_FILENO) && isatty(STDIN_FILENO);
@@ -164,7 +174,9 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
         return hn_report_diags(args, status, &diags);
     }
     hn_workbench_go_to_link(&w, &o);
-    const hn_exit result = show(args, &w, &opts, o.frame >= 0);
+    status = check_time(args->t, &w, &diags);
+    const hn_exit result = status == HN_OK ? show(args, &w, &opts, o.frame >= 0)
+                                           : hn_report_diags(args, status, &diags);
     hn_workbench_close(&w);
     return result;
 }
