@@ -133,6 +133,21 @@ class Stability(unittest.TestCase):
             for method in study["methods"]:
                 self.assertNotIn("nan", method["columns"][0]["how"])
 
+    def test_the_first_step_that_fails_is_found_below_larger_ones_that_do_not(self):
+        # h = 0.06 s leaves the motion within 500 steps, h = 0.08 s does not: a bisection alone ends above both.
+        # The trials of both times are of 500 steps, so the answer is the same; what is right to 1 % depends on the time.
+        first = []
+        for time in ("1", "10"):
+            words = ["study", "four-bar", "stability", "--preset", "limits", "--time-limit", "0", "--methods", "projection@dop853"]
+            study = strict(self.call(*words, "--time", time, "--json").stdout)
+            column, said = study["methods"][0]["columns"][0], study["methods"][0]["agreement"]["text"]
+            self.assertLess(column["first_unstable"], 0.06)
+            self.assertLess(column["last_stable"], column["first_unstable"])
+            self.assertIn(f"over {time} s, the velocities are right to 1 % up to h = {column['accurate']:.3g} s", said)
+            self.assertIn(f"over 500 steps, the smallest step that failed is h = {column['first_unstable']:.3g} s", said)
+            first.append(column["first_unstable"])
+        self.assertLess(max(first) / min(first), 1.1)  # a step of the search is 1.09
+
     def test_energy_that_loads_put_in_is_no_instability(self):
         # the squeezer is driven: beyond the scene's 0.03 s its energy grows; half a millisecond a step is exact to 1 %
         study = strict(self.call("study", "seven-body-squeezer", "stability", "--preset", "limits", "--methods", "projection@rk4", "--time-limit", "0", "--json").stdout)

@@ -18,7 +18,8 @@
 enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSINGS = 4 };
 #define HN_MAP_STEPS 2e5 ///< most steps of one trial
 #define HN_MAP_REFINED \
-    1.02 ///< ratio of the steps between which an observed boundary lies in the end
+    1.02               ///< ratio of the steps between which an observed boundary lies in the end
+#define HN_MAP_BELOW 8 ///< steps tried in an octave below a boundary that accuracy sets
 #define HN_MAP_ACCURATE_WITHIN 1.1 ///< the same of the largest accurate step
 #define HN_MAP_ACCURATE_STEPS 5e4  ///< most steps of a trial for it
 #define HN_MAP_TURN 0.2            ///< [rad] in one step: further, no step is accurate
@@ -58,8 +59,10 @@ typedef struct hn_map_column {
         [HN_MAP_CROSSINGS]; ///< places on the vertical axis; one of a step may lie outside it
     double turn; ///< step axis: what one step at the first predicted limit moves the mechanism by,
                  ///< largest rate of a coordinate times the limit [rad, or lengths]
-    double visible;          ///< step axis: growth is seen from here on within a trial [s]
-    double stable, unstable; ///< step axis: the boundary observed lies between; NaN: not on the map
+    double visible; ///< step axis: growth is seen from here on within a trial [s]
+    double stable,
+        unstable;    ///< step axis: the boundary observed lies between; NaN: not on the map.
+                     ///< Not stiff, one column: `unstable` is the smallest step that failed
     double accurate; ///< map of one column: largest step whose error, and that of every smaller one
                      ///< tried, is at most HN_STABILITY_ACCURATE [s]; 0: none; NaN: not known
     char how[HN_STABILITY_REASON]; ///< how the run at `unstable` ended

@@ -140,6 +140,57 @@ static bool search_beyond(hn_map *map, int m, double *low, double *high, hn_map_
     return true;
 }
 
+/// Halves the interval between a stable and an unstable step until it is narrow, or a trial there
+/// observes nothing. Returns false when stopped.
+static bool narrow(hn_map *map, int m, int column, int row, double *low, double *high,
+                   hn_map_column *c) {
+    while (*low > 0 && *high / *low > HN_MAP_REFINED) {
+        const double middle = sqrt(*low * *high);
+        int over;
+        if (!try_step(map, m, column, row, middle, &over, c)) {
+            return false;
+        }
+        if (over < 0) {
+            break; // no observation there
+        }
+        *(over ? high : low) = middle;
+    }
+    return true;
+}
+
+/// Looks below a boundary that accuracy sets, and not stability: there, some steps fail and larger
+/// ones do not. Tries smaller and smaller steps until an octave of them in a row is stable, and
+/// moves the boundary below the smallest that failed. Returns false when stopped.
+static bool search_below(hn_map *map, int m, int column, double *low, double *high,
+                         hn_map_column *c) {
+    hn_map_predict_column(map, m, column);
+    const double limit = c->n_predicted ? c->predicted[0] : (double)NAN;
+    const bool is_accuracy = map->x.n == 1 && c->turn >= HN_MAP_TURN && *low > 0 &&
+                             fabs(sqrt(*low * *high) / limit - 1) > HN_MAP_AGREES;
+    const double finer = pow(2, -1.0 / HN_MAP_BELOW);
+    double last = *low;
+    for (int stable = 0; is_accuracy && stable < HN_MAP_BELOW; stable++) {
+        const double h = last * finer;
+        int over;
+        if (map->T / h > HN_MAP_STEPS) {
+            break;
+        }
+        if (!try_step(map, m, column, 0, h, &over, c)) {
+            return false;
+        }
+        if (over < 0) {
+            break; // no observation there
+        }
+        if (over) {
+            *high = h;
+            stable = -1;
+        }
+        *low = over ? 0 : *low > 0 ? *low : h;
+        last = h;
+    }
+    return narrow(map, m, column, 0, low, high, c);
+}
+
 bool hn_map_observe_column(hn_map *map, int m, int column) {
     hn_map_column *c = hn_map_column_at(map, m, column);
     if (!isnan(c->unstable)) {
@@ -167,16 +218,9 @@ bool hn_map_observe_column(hn_map *map, int m, int column) {
 
     // halve the interval until it is narrow
     const int row = j < map->y.n ? j : map->y.n - 1;
-    while (low > 0 && high / low > HN_MAP_REFINED) {
-        const double middle = sqrt(low * high);
-        int over;
-        if (!try_step(map, m, column, row, middle, &over, c)) {
-            return false;
-        }
-        if (over < 0) {
-            break; // no observation there
-        }
-        *(over ? &high : &low) = middle;
+    if (!narrow(map, m, column, row, &low, &high, c) ||
+        !search_below(map, m, column, &low, &high, c)) {
+        return false;
     }
     c->stable = low;
     c->unstable = high;
@@ -379,11 +423,17 @@ static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_colum
                      "%.3g s, one step moves the mechanism by %.2g rad",
                      c->predicted[0], c->turn);
     if (c->accurate > 0) {
-        hn_strbuf_printf(b, "; the velocities are right to %g %% up to h = %.3g s",
-                         100 * HN_STABILITY_ACCURATE, c->accurate);
+        hn_strbuf_printf(b, "; over %.4g s, the velocities are right to %g %% up to h = %.3g s",
+                         map->T, 100 * HN_STABILITY_ACCURATE, c->accurate);
     }
     if (c->stable > 0) {
-        hn_strbuf_printf(b, ", and the error ends the motion at h = %.3g s", c->unstable);
+        char span[64] = "";
+        if (map->T < HN_STABILITY_LEAST_STEPS * c->unstable) {
+            snprintf(span, sizeof span, "over %d steps", HN_STABILITY_LEAST_STEPS);
+        } else {
+            snprintf(span, sizeof span, "over %.4g s", map->T);
+        }
+        hn_strbuf_printf(b, "; %s, the smallest step that failed is h = %.3g s", span, c->unstable);
     }
     if (hn_map_telling(map) && !map->chose) {
         hn_strbuf_printf(b, "; the preset %s maps error and gap over alpha and beta",
