@@ -28,8 +28,11 @@ static int resumed(const void *work) {
 }
 
 static hn_status run(void *work, const hn_job_request *request, hn_job_end *end, hn_diags *diags) {
-    (void)request, (void)diags;
+    (void)request;
     hn_study_run(work);
+    if (hn_study_wp(work)->status != HN_OK) {
+        return hn_diags_add(diags, hn_study_wp(work)->status, NULL, NULL, "out of memory");
+    }
     end->stopped = hn_study_wp(work)->stopped;
     end->out_of_time = hn_study_wp(work)->out_of_time;
     end->lost = hn_study_lost(work);

@@ -200,27 +200,36 @@ const hn_model *hn_study_model(const hn_study *s) {
     return s->model;
 }
 
-int hn_study_times(const hn_study *s) {
-    int least = 0;
+/// The point whose errors were taken at the fewest times; NULL: no run came to its end.
+static const hn_wp_point *point_with_fewest_times(const hn_study *s) {
+    const hn_wp_point *least = NULL;
     for (int m = 0; m < s->wp->n_methods; m++) {
         for (int k = 0; k < s->wp->n_levels; k++) {
             const hn_wp_point *p = &s->wp->methods[m].point[k];
-            if (p->state == HN_WP_DONE && (least == 0 || p->times < least)) {
-                least = p->times;
+            if (p->state == HN_WP_DONE && (!least || p->times < least->times)) {
+                least = p;
             }
         }
     }
     return least;
 }
 
+int hn_study_times(const hn_study *s) {
+    const hn_wp_point *p = point_with_fewest_times(s);
+    return p ? p->times : 0;
+}
+
 void hn_study_put_times(hn_strbuf *b, const hn_study *s) {
-    const int times = hn_study_times(s);
-    if (times == 0) {
+    const hn_wp_point *p = point_with_fewest_times(s);
+    if (!p) {
         hn_strbuf_add(b, "no run came to its end, so that there are no errors");
         return;
     }
-    hn_strbuf_printf(b, "errors are the largest at %d times", times);
-    hn_strbuf_add(b, times % s->ref->n == 0
+    hn_strbuf_printf(b, "errors are the largest at %d times", p->times);
+    hn_strbuf_add(b, p->too_long
+                         ? "; in parts of the run at few times, as the true motion between these "
+                           "takes too long to compute"
+                     : p->times % s->ref->n == 0
                          ? ", evenly over the run"
                          : "; in parts of the run at few times, as no method finds the true "
                            "motion between these");

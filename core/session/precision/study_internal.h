@@ -8,7 +8,7 @@
 #include "session/precision/study.h"
 
 #define HN_PART_STUDY "part of work-precision" ///< member "study" of a part
-enum { HN_PART_FORMAT = 2 }; // counts up when the meaning of a part's fields changes
+enum { HN_PART_FORMAT = 3 }; // counts up when the meaning of a part's fields changes
 
 struct hn_study {
     const hn_model *model;

@@ -12,7 +12,7 @@
 #include <string.h>
 
 // counted up when the meaning of a line changes
-enum { FORMAT = 3 };
+enum { FORMAT = 4, N_NUMBERS = 5 };
 static const double LARGEST_COUNT = 9e15; // whole numbers are exact up to here
 
 /// Returns the hash of everything that determines the points; the time limit does not. A part of a
@@ -69,15 +69,15 @@ void hn_store_put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp_point *p = &s->wp->methods[m].point[k];
     double counts[N_COUNTS];
     counts_of(&p->cost, counts);
-    const double numbers[] = {p->t_reached, (double)p->steps, (double)p->rejected,
-                              (double)p->times};
+    const double numbers[N_NUMBERS] = {p->t_reached, (double)p->steps, (double)p->rejected,
+                                       (double)p->times, (double)p->too_long};
     hn_json_put_int(b, "m", m);
     hn_json_put_int(b, "k", k);
     hn_json_put_int(b, "state", p->state);
     hn_json_put_int(b, "status", p->status);
     hn_json_put_string(b, "reason", p->reason);
     hn_ending_put_json(b, &p->ending, p->reason, p->t_reached);
-    hn_json_put_numbers(b, "numbers", numbers, 4);
+    hn_json_put_numbers(b, "numbers", numbers, N_NUMBERS);
     hn_json_put_numbers(b, "worst", p->worst, HN_ERROR_COUNT);
     hn_json_put_numbers(b, "end", p->end, HN_ERROR_COUNT);
     hn_json_put_numbers(b, "q", p->end_q, (size_t)s->ref->n_user);
@@ -95,15 +95,17 @@ static int are_counts(const double *n, int count) {
 
 bool hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
     // every member must be there and in range
-    double state, status, numbers[4], counts[N_COUNTS];
+    double state, status, numbers[N_NUMBERS], counts[N_COUNTS];
     if (!hn_stored_number(o, "state", &state) || !hn_stored_number(o, "status", &status) ||
         !hn_stored_text(o, "reason", p->reason, sizeof p->reason) ||
-        !hn_ending_take_json(o, &p->ending) || !hn_stored_numbers(o, "numbers", numbers, 4) ||
+        !hn_ending_take_json(o, &p->ending) ||
+        !hn_stored_numbers(o, "numbers", numbers, N_NUMBERS) ||
         !hn_stored_numbers(o, "worst", p->worst, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "end", p->end, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "q", p->end_q, (size_t)s->ref->n_user) ||
-        !hn_stored_numbers(o, "cost", counts, N_COUNTS) || !are_counts(numbers + 1, 3) ||
-        !are_counts(counts, ENERGY) || !are_counts(counts + ENERGY + 1, N_COUNTS - ENERGY - 1) ||
+        !hn_stored_numbers(o, "cost", counts, N_COUNTS) ||
+        !are_counts(numbers + 1, N_NUMBERS - 1) || !are_counts(counts, ENERGY) ||
+        !are_counts(counts + ENERGY + 1, N_COUNTS - ENERGY - 1) ||
         !(status >= 0 && status < HN_STATUS_COUNT) ||
         (state != HN_WP_DONE && state != HN_WP_FAILED && state != HN_WP_SKIPPED)) {
         return false;
@@ -116,6 +118,7 @@ bool hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
     p->steps = (long long)numbers[1];
     p->rejected = (long long)numbers[2];
     p->times = (int)numbers[3];
+    p->too_long = numbers[4] != 0;
     p->cost = cost_of(counts);
     return true;
 }

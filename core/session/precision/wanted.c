@@ -69,10 +69,12 @@ bool hn_wanted_read(const char *text, double length, hn_wanted *out) {
 // itself is measured, so no smaller size is ever needed.
 static const double MARGIN = 0.5;
 
-/// A size to run with, and what it costs.
+/// A size of a method to run with, and what a run with that size costs.
 typedef struct choice {
+    int method; ///< -1: none
     double size, ops;
     bool measured; ///< a point of the study, else read off between two
+    bool coarsest; ///< no coarser one was accurate enough or tried: a larger size may do as well
 } choice;
 
 /// The size at a place, between its point and the coarser one.
@@ -80,21 +82,41 @@ static choice choose(const hn_wp *wp, const hn_place *place, hn_error_kind error
     const hn_wp_point *points = wp->methods[place->method].point;
     const hn_wp_point *fine = &points[place->level];
     if (place->from < 0) {
-        return (choice){fine->size, fine->cost.ops, true};
+        return (choice){place->method, fine->size, fine->cost.ops, true, true};
     }
     const hn_wp_point *coarse = &points[place->from];
     const double least = hn_wp_claimed(wp, fine, error);
     const double share =
         fmax(0, log(MARGIN * wanted / least) / log(hn_wp_claimed(wp, coarse, error) / least));
     if (share == 0) {
-        return (choice){fine->size, fine->cost.ops, true};
+        return (choice){place->method, fine->size, fine->cost.ops, true, false};
     }
     const double size = fine->size * pow(coarse->size / fine->size, share);
 
     // two digits, and not larger than what was found
     const double digit = pow(10, floor(log10(size)) - 1);
-    return (choice){floor(size / digit) * digit,
-                    fine->cost.ops * pow(coarse->cost.ops / fine->cost.ops, share), false};
+    return (choice){place->method, floor(size / digit) * digit,
+                    fine->cost.ops * pow(coarse->cost.ops / fine->cost.ops, share), false, false};
+}
+
+/// The cheapest choice and that of the next method, both by the cost of a run with the size that is
+/// told.
+static void rank(const hn_wp *wp, const hn_class *classes, hn_error_kind error, double wanted,
+                 choice *best, choice *next) {
+    *best = *next = (choice){.method = -1, .ops = HUGE_VAL};
+    for (int m = 0; m < wp->n_methods; m++) {
+        const hn_place place = hn_wp_reach(wp, classes, error, HN_COST_OPS, m, wanted);
+        if (place.level < 0) {
+            continue;
+        }
+        const choice here = choose(wp, &place, error, wanted);
+        if (here.ops < best->ops) {
+            *next = *best;
+            *best = here;
+        } else if (here.ops < next->ops) {
+            *next = here;
+        }
+    }
 }
 
 /// "baumgarte@rk4 with h = 0.014 s"; `spelling`: the same as one spelling.
@@ -138,10 +160,10 @@ void hn_wanted_text(hn_strbuf *b, const hn_study *study, const hn_wanted *wanted
     const hn_wp *wp = hn_study_wp(study);
     const hn_class *classes = hn_study_classes(study);
     const hn_error_kind error = hn_wp_ranked_error(wp);
-    hn_band band;
+    choice best, next;
     spelling[0] = '\0';
-    hn_wp_band(wp, classes, error, HN_COST_OPS, wanted->error, &band);
-    if (band.best.level < 0) {
+    rank(wp, classes, error, wanted->error, &best, &next);
+    if (best.method < 0) {
         hn_strbuf_printf(b, "For %s: no run of this study is accurate enough.", wanted->words);
         return;
     }
@@ -153,13 +175,15 @@ void hn_wanted_text(hn_strbuf *b, const hn_study *study, const hn_wanted *wanted
         hn_strbuf_printf(b, " of the scene's %.4g s", whole);
     }
     hn_strbuf_add(b, ": ");
-    const choice best = choose(wp, &band.best, error, wanted->error);
-    put_method(b, &wp->methods[band.best.method], &best, spelling);
-    hn_strbuf_printf(b, " is the cheapest, %s ", band.best.from < 0 ? "at most" : "about");
+    put_method(b, &wp->methods[best.method], &best, spelling);
+    hn_strbuf_printf(b, " is the cheapest, %s",
+                     best.coarsest   ? "at most "
+                     : best.measured ? ""
+                                     : "about ");
     put_operations(b, best.ops);
-    if (band.next.level >= 0) {
-        hn_strbuf_printf(b, " Next: %s, %.3g times that.", wp->methods[band.next.method].spelling,
-                         band.ratio);
+    if (next.method >= 0) {
+        hn_strbuf_printf(b, " Next: %s, %.3g times that.", wp->methods[next.method].spelling,
+                         next.ops / best.ops);
     }
     put_others(b, wp, classes, error, wanted->error);
     hn_strbuf_add(b, " In this study ");

@@ -97,7 +97,8 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     const hn_status status = hn_study_open(&q, &s->study, &diags);
     if (status == HN_OK) {
         hn_study_run(s->study);
-        return HN_OK;
+        r->no_memory |= hn_study_wp(s->study)->status == HN_ERR_MEMORY;
+        return hn_study_wp(s->study)->status;
     }
 
     // without a study: why

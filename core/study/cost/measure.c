@@ -12,8 +12,10 @@
 
 enum { RESERVED_SAMPLES = 5, RETRIES = 1 };
 static const double GROWTH = 3; // of the cost from a tolerance to the next, before it is known
-static const double POINT_SHARE = 0.2;  // of the time limit that one run may take
-static const double REFINE_SHARE = 0.1; // of it that states between those of the reference may take
+static const double POINT_SHARE = 0.2; // of the time limit that one run may take
+// Operations that states between those of the reference may take, some seconds. The dearest of the
+// built-in scenes takes a ninth of it.
+static const double REFINE_OPS = 4e9;
 
 // ---- one point ----
 
@@ -130,6 +132,7 @@ static bool measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {POINT_SHARE * wp->opts.time_limit, hooks->stop, hooks->user};
     memset(p->worst, 0, sizeof p->worst);
     p->times = 0;
+    p->too_long = wp->refined->too_long;
     hn_walk_end end = hn_walk(run, wp->ref->T, wp->ref->n * wp->refined->parts, &limits, look, &l);
     if (end == HN_WALK_DONE) {
         end = hn_run_reset(run) == HN_OK ? hn_walk(run, wp->ref->T, wp->ref->n, &limits, NULL, NULL)
@@ -321,11 +324,39 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
     }
 }
 
-/// The states between those of the reference, once. Returns 0 if stopped.
+/// Leaves out every point that is still to be run.
+static void leave_out_all(hn_wp *wp) {
+    char text[256];
+    snprintf(text, sizeof text,
+             "left out: the true motion at the times of the errors is not found within the time "
+             "limit of %.3g s",
+             wp->opts.time_limit);
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            hn_wp_point *p = &wp->methods[m].point[k];
+            if (hn_wp_is_mine(wp, m, k) &&
+                (p->state == HN_WP_PENDING || p->state == HN_WP_SKIPPED)) {
+                set_reason(p, HN_WP_SKIPPED, HN_ERR_STOPPED, text);
+                wp->out_of_time = true;
+            }
+        }
+    }
+}
+
+/// The states between those of the reference, once: a point is measured at all times or not at all.
+/// Returns 0 if stopped, out of time or out of memory.
 static bool refine(hn_wp *wp, const hn_wp_hooks *hooks) {
-    const hn_walk_limits limits = {REFINE_SHARE * wp->opts.time_limit, hooks->stop, hooks->user};
-    return wp->refined || hn_refined_create(wp->sys, wp->ref, wp->errors, &limits, wp->arena,
-                                            &wp->refined) == HN_OK;
+    const hn_walk_limits limits = {wp->opts.time_limit, hooks->stop, hooks->user};
+    if (wp->refined) {
+        return true;
+    }
+    const hn_status status = hn_refined_create(wp->sys, wp->ref, wp->errors, REFINE_OPS, &limits,
+                                               wp->arena, &wp->refined);
+    if (status == HN_ERR_LIMIT) {
+        leave_out_all(wp);
+    }
+    wp->status = status == HN_ERR_MEMORY ? status : HN_OK;
+    return status == HN_OK;
 }
 
 /// Runs every size of every method, coarse ones first. Returns 0 if stopped.
@@ -398,6 +429,7 @@ bool hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
     // times of methods are compared: all run by the interpreter, from the first step to the last
     hn_native_suspend();
     wp->out_of_time = 0;
+    wp->status = HN_OK;
     bool going = run_points(wp, h, started);
     for (int round = 0; going && round < wp->opts.n_samples; round++) {
         if (round == (wp->opts.n_samples + 1) / 2) {

@@ -25,8 +25,12 @@ typedef struct hn_wp_hooks {
     void (*sample)(void *user, int m, int k);
 } hn_wp_hooks;
 
+/// Before the first point the states between those of the reference are found; where the time limit
+/// does not let that come to its end, all points are left out.
+///
 /// Runs the pending points; those that are done, failed or timed already (as read from a file) are
-/// left as they are. Returns true when nothing is left, false when stopped or out of time. Each
+/// left as they are. Returns true when nothing is left, false when stopped, out of time, or out
+/// of memory (wp->status). Each
 /// call has the whole of opts.time_limit.
 bool hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks);
 

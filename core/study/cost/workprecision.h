@@ -37,6 +37,7 @@ typedef struct hn_wp_point {
     double t_reached;             ///< [s]
     double worst[HN_ERROR_COUNT]; ///< over the reference's times and those between (refined.h)
     int times;                    ///< how many these are
+    bool too_long; ///< there are no more of them because finding the true motion takes too long
     double end[HN_ERROR_COUNT];
     /// how far the end's coordinates are from those of the next coarser point; NaN: there is none
     double own;
@@ -92,6 +93,7 @@ typedef struct hn_wp {
     double horizon;
     bool out_of_time; ///< the time limit left something out
     bool stopped;     ///< stopped on request
+    hn_status status; ///< HN_ERR_MEMORY: the last hn_wp_run() could not go on; else HN_OK
     double elapsed;   ///< wall time of all hn_wp_run() [s]
 } hn_wp;
 

@@ -19,8 +19,10 @@ typedef struct refining {
     hn_refined *out;
     hn_errors *errors;
     const hn_walk_limits *limits;
-    double started; ///< [s] of this thread
-    double *q, *v;  ///< system coordinates of a stored state
+    double started;       ///< [s] of this thread
+    double ops, most_ops; ///< of all runs before; for all
+    hn_walk_end end;      ///< what the limits said last
+    double *q, *v;        ///< system coordinates of a stored state
 } refining;
 
 hn_state_seen hn_refined_at(const hn_refined *r, int k) {
@@ -40,10 +42,6 @@ const double *hn_refined_error(const hn_refined *r, int k) {
     return k % r->parts == 0 ? NULL : r->error + (size_t)(k / r->parts) * HN_ERROR_COUNT;
 }
 
-int hn_refined_times(const hn_refined *r) {
-    return r->ref->n + r->found * (r->parts - 1);
-}
-
 static void keep(hn_refined *r, int k, const hn_sample *s) {
     const size_t row = (size_t)k, nu = (size_t)r->ref->n_user, nc = (size_t)r->ref->nc;
     memcpy(r->q + row * nu, s->q, nu * sizeof(double));
@@ -54,9 +52,24 @@ static void keep(hn_refined *r, int k, const hn_sample *s) {
     r->energy[row] = s->energy;
 }
 
-/// Integrates interval number i with a run that stands at its start. HN_ERR_STOPPED: out of time,
-/// or on request.
-static hn_status follow(const refining *g, hn_run *run, int i) {
+/// Whether the limits let the whole go on; keeps what they said.
+static bool may_go_on(refining *g) {
+    g->end = hn_walk_ask(g->limits, g->started);
+    return g->end == HN_WALK_DONE;
+}
+
+/// Whether operations are left, a run counted that is under way (NULL: none). A count that is not
+/// known uses them up.
+static bool has_ops(refining *g, const hn_run *run) {
+    const double ops = g->ops + (run ? hn_run_get_summary(run).cost.ops : 0);
+    const bool enough = ops < g->most_ops;
+    g->out->too_long |= !enough;
+    return enough;
+}
+
+/// Integrates interval number i with a run that stands at its start. HN_ERR_LIMIT: the limits or
+/// the operations do not let it go on.
+static hn_status follow(refining *g, hn_run *run, int i) {
     hn_refined *r = g->out;
     double *error = r->error + (size_t)i * HN_ERROR_COUNT;
     for (int part = 1; part <= r->parts; part++) {
@@ -72,14 +85,14 @@ static hn_status follow(const refining *g, hn_run *run, int i) {
             const hn_state_seen stored = hn_ref_at(r->ref, i + 1);
             hn_errors_calc(g->errors, &end, &stored, &r->ref->scales, error);
         }
-        if (hn_walk_ask(g->limits, g->started) != HN_WALK_DONE) {
-            return HN_ERR_STOPPED;
+        if (!may_go_on(g) || (part < r->parts && !has_ops(g, run))) {
+            return HN_ERR_LIMIT;
         }
     }
     return isfinite(error[HN_ERROR_Q]) && isfinite(error[HN_ERROR_V]) ? HN_OK : HN_ERR_DIVERGED;
 }
 
-static hn_status refine_by(const refining *g, const char *method, int i) {
+static hn_status refine_by(refining *g, const char *method, int i) {
     const hn_ref *ref = g->out->ref;
     const hn_state_seen from = hn_ref_at(ref, i);
     hn_run_opts opts = hn_run_opts_default();
@@ -95,20 +108,20 @@ static hn_status refine_by(const refining *g, const char *method, int i) {
     if (status == HN_OK) {
         hn_run_watch(run, 0);
         status = follow(g, run, i);
+        g->ops += hn_run_get_summary(run).cost.ops;
     }
     hn_run_free(run);
     return status;
 }
 
-/// Refines interval number i by the first method that comes to its end.
-static hn_status refine(const refining *g, int i) {
+/// Refines interval number i by the first method that comes to its end. Fails as the whole does.
+static hn_status refine(refining *g, int i) {
     double *error = g->out->error + (size_t)i * HN_ERROR_COUNT;
-    for (int m = 0; m < N_METHODS; m++) {
-        const hn_walk_end left = hn_walk_ask(g->limits, g->started);
-        if (left != HN_WALK_DONE) {
-            return left == HN_WALK_STOPPED ? HN_ERR_STOPPED : HN_OK;
+    for (int m = 0; m < N_METHODS && has_ops(g, NULL); m++) {
+        const hn_status status = may_go_on(g) ? refine_by(g, METHODS[m], i) : HN_ERR_LIMIT;
+        if (g->end != HN_WALK_DONE) {
+            return g->end == HN_WALK_STOPPED ? HN_ERR_STOPPED : HN_ERR_LIMIT;
         }
-        const hn_status status = refine_by(g, METHODS[m], i);
         if (status == HN_OK) {
             g->out->found++;
             return HN_OK;
@@ -116,15 +129,16 @@ static hn_status refine(const refining *g, int i) {
         for (int kind = 0; kind < HN_ERROR_COUNT; kind++) {
             error[kind] = (double)NAN;
         }
-        if (status == HN_ERR_MEMORY) {
-            return status;
+        if (status == HN_ERR_MEMORY || status == HN_ERR_STOPPED) {
+            return status; // stopped: the run's equations were not made to the end
         }
     }
     return HN_OK;
 }
 
 hn_status hn_refined_create(const hn_system *sys, const hn_ref *ref, hn_errors *errors,
-                            const hn_walk_limits *limits, hn_arena *arena, hn_refined **out) {
+                            double most_ops, const hn_walk_limits *limits, hn_arena *arena,
+                            hn_refined **out) {
     const hn_system_info info = hn_system_get_info(sys);
     const size_t n = (size_t)ref->n, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
     int parts = HN_REFINED_PARTS;
@@ -149,6 +163,8 @@ hn_status hn_refined_create(const hn_system *sys, const hn_ref *ref, hn_errors *
                   .errors = errors,
                   .limits = limits,
                   .started = hn_clock_thread(),
+                  .most_ops = most_ops,
+                  .end = HN_WALK_DONE,
                   .q = hn_arena_doubles(arena, (size_t)info.nq),
                   .v = hn_arena_doubles(arena, (size_t)info.nv)};
     if (hn_arena_failed(arena)) {

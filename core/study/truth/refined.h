@@ -3,9 +3,13 @@
 #define HN_STUDY_REFINED_H
 // A reference solution between its stored times. Each interval is integrated anew from the stored
 // state at its start, and ends at the next stored state: how far it is away from that one is its
-// own error. Where no method comes to the end of an interval, only its ends are known.
+// own error. Where no method comes to the end of an interval, only its ends are known. What is
+// known does not depend on the speed of the machine: the work is limited in operations, and a
+// computation that a limit of time cuts off has no result.
 
 #include "study/truth/reference.h"
+
+#include <stdbool.h>
 
 /// parts of an interval, a power of two: times of the whole are those of the reference to the bit
 enum { HN_REFINED_PARTS = 32 };
@@ -14,23 +18,24 @@ typedef struct hn_refined {
     const hn_ref *ref;
     int parts;                       ///< of each interval, a power of two; 1: nothing lies between
     int found;                       ///< intervals that came to their end
+    bool too_long;                   ///< the operations did not suffice for the others
     double *q, *v, *lambda, *energy; ///< ref->n x parts rows; the first of an interval is not used
     /// ref->n x HN_ERROR_COUNT: how far the end of an interval is from the stored state; NaN: the
     /// interval did not come to its end
     double *error;
 } hn_refined;
 
-/// Memory from `arena`; the reference must outlive it. Intervals that the limits leave no time for
-/// are not refined. A system with many coordinates gets fewer parts, to bound the memory.
-/// Fails: HN_ERR_STOPPED on request, HN_ERR_MEMORY.
+/// Memory from `arena`; the reference must outlive it. Once all intervals have taken `most_ops`
+/// operations together, the rest is not refined. A system with many coordinates gets fewer parts,
+/// to bound the memory.
+/// Fails: HN_ERR_STOPPED on request, HN_ERR_LIMIT out of the limits' time, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_refined_create(const hn_system *sys, const hn_ref *ref,
-                                          hn_errors *errors, const hn_walk_limits *limits,
-                                          hn_arena *arena, hn_refined **out);
+                                          hn_errors *errors, double most_ops,
+                                          const hn_walk_limits *limits, hn_arena *arena,
+                                          hn_refined **out);
 /// The state at time number k, 0..ref->n x parts (borrowed).
 hn_state_seen hn_refined_at(const hn_refined *r, int k);
 /// How far the state at time number k may itself be off: HN_ERROR_COUNT entries, NaN where it is
 /// not known. NULL at a stored time: the reference says it.
 const double *hn_refined_error(const hn_refined *r, int k);
-/// The number of times after the start whose state is known.
-int hn_refined_times(const hn_refined *r);
 #endif

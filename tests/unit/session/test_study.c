@@ -3,6 +3,7 @@
 #include "support/near.h"
 
 #include "session/precision/study.h"
+#include "session/precision/wanted.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -124,6 +125,79 @@ static void a_study_goes_on_where_it_was_cut(void **state) {
     close_place(&p);
 }
 
+/// What a study says of its times, with these in the first point.
+static void assert_says(const hn_study *study, int times, bool too_long, const char *said) {
+    hn_wp_point *p = &hn_study_wp(study)->methods[0].point[0];
+    const hn_wp_point was = *p;
+    hn_strbuf b;
+    p->times = times;
+    p->too_long = too_long;
+    hn_strbuf_init(&b);
+    hn_study_put_times(&b, study);
+    assert_string_equal(hn_strbuf_text(&b), said);
+    hn_strbuf_reset(&b);
+    *p = was;
+}
+
+static void why_the_times_of_errors_are_few_is_told_as_it_is(void **state) {
+    (void)state;
+    place p;
+    open_place(&p, "fb0");
+    hn_study *study = open_study(&p, NULL);
+    assert_true(hn_study_run(study));
+    assert_says(study, 1024, false, "errors are the largest at 1024 times, evenly over the run");
+    assert_says(study, 187, false,
+                "errors are the largest at 187 times; in parts of the run at few times, as no "
+                "method finds the true motion between these");
+    assert_says(study, 187, true,
+                "errors are the largest at 187 times; in parts of the run at few times, as the "
+                "true motion between these takes too long to compute");
+    hn_study_free(study);
+    close_place(&p);
+}
+
+/// Gives the points of method m these errors and operations.
+static void set_points(const hn_study *study, int m, const double error[3], const double ops[3]) {
+    for (int k = 0; k < 3; k++) {
+        hn_wp_point *p = &hn_study_wp(study)->methods[m].point[k];
+        p->worst[HN_ERROR_Q] = error[k];
+        p->cost.ops = ops[k];
+    }
+}
+
+static void assert_cheapest(const hn_study *study, double error, const char *said) {
+    hn_wanted wanted = {.error = error};
+    char spelling[HN_SPEC_MAX];
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_wanted_text(&b, study, &wanted, spelling);
+    if (!strstr(hn_strbuf_text(&b), said)) {
+        fail_msg("%s", hn_strbuf_text(&b));
+    }
+    hn_strbuf_reset(&b);
+}
+
+static void the_next_method_costs_what_is_told_times_the_cost_that_is_told(void **state) {
+    (void)state;
+    place p;
+    open_place(&p, "fb0");
+    hn_study *study = open_study(&p, NULL);
+    assert_true(hn_study_run(study));
+
+    // a size for half the error, 1000 sqrt(20) operations by the line; 9000 / 4472
+    set_points(study, 0, (double[]){1e-1, 1e-3, 1e-5}, (double[]){1000, 10000, 100000});
+    set_points(study, 1, (double[]){5e-3, 1e-4, 1e-6}, (double[]){9000, 20000, 30000});
+    assert_cheapest(study, 1e-2,
+                    " is the cheapest, about 4472 operations. Next: projection@dopri5, 2.01 times "
+                    "that.");
+    // the line would go below the finer point, which was measured
+    assert_cheapest(study, 1.5e-3, " is the cheapest, 10000 operations.");
+    // no coarser size was tried
+    assert_cheapest(study, 0.2, " is the cheapest, at most 1000 operations.");
+    hn_study_free(study);
+    close_place(&p);
+}
+
 static void a_torn_line_costs_one_point_and_no_more(void **state) {
     (void)state;
     place p;
@@ -232,6 +306,8 @@ static void beyond_the_horizon_of_chaos_errors_are_not_ranked(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_goes_on_where_it_was_cut),
+        cmocka_unit_test(why_the_times_of_errors_are_few_is_told_as_it_is),
+        cmocka_unit_test(the_next_method_costs_what_is_told_times_the_cost_that_is_told),
         cmocka_unit_test(a_torn_line_costs_one_point_and_no_more),
         cmocka_unit_test(lines_of_another_hand_are_not_taken),
         cmocka_unit_test(the_same_study_twice_at_once_is_refused),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/cost/measure.h"
 
+#include "base/clock.h"
+#include "support/alloc.h"
 #include "support/near.h"
 #include "support/trial.h"
 
@@ -95,6 +97,98 @@ static void a_budget_that_is_too_small_leaves_points_out_and_says_so(void **stat
     hn_trial_close(&trial);
 }
 
+/// What a study finds must not depend on how much of its time limit was left for it.
+static void errors_are_taken_at_all_times_or_the_point_is_left_out(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[1] = {"projection@rk4"};
+    hn_wp_opts opts = {.n_levels = 3, .n_samples = -1};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 10);
+
+    // how long the states between those of the reference take here
+    hn_wp *wp = study_of(&trial, ref, spellings, 1, &opts);
+    const hn_walk_limits none = {0};
+    const double started = hn_clock_thread();
+    assert_int_equal(
+        hn_refined_create(trial.sys, ref, wp->errors, 1e10, &none, wp->arena, &wp->refined), HN_OK);
+    const double seconds = hn_clock_thread() - started;
+    assert_false(wp->refined->too_long);
+    hn_wp_free(wp);
+
+    // limits around it: the points that are done have all times
+    for (double share = 0.25; share < 20; share *= 2) {
+        opts.time_limit = share * seconds;
+        wp = study_of(&trial, ref, spellings, 1, &opts);
+        const bool finished = hn_wp_run(wp, NULL);
+        for (int again = 0; again < 2; again++) {
+            for (int k = 0; k < 3; k++) {
+                const hn_wp_point *p = &wp->methods[0].point[k];
+                assert_true(p->state == HN_WP_DONE || (!finished && p->state == HN_WP_SKIPPED));
+                assert_true(p->state != HN_WP_DONE || p->times == ref->n * HN_REFINED_PARTS);
+                assert_true(p->state == HN_WP_DONE || strstr(p->reason, "time limit"));
+            }
+            wp->opts.time_limit = 0;
+            assert_true(hn_wp_run(wp, NULL));
+        }
+        assert_int_equal(wp->methods[0].point[0].state, HN_WP_DONE);
+        hn_wp_free(wp);
+    }
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+/// The operations end it, at the same place on every machine.
+static void states_that_take_too_long_are_told(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[1] = {"projection@rk4"};
+    const hn_wp_opts opts = {.n_levels = 2, .n_samples = -1};
+    const hn_walk_limits none = {0};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 10);
+    int found[2];
+    for (int i = 0; i < 2; i++) {
+        hn_wp *wp = study_of(&trial, ref, spellings, 1, &opts);
+        assert_int_equal(
+            hn_refined_create(trial.sys, ref, wp->errors, 1e6, &none, wp->arena, &wp->refined),
+            HN_OK);
+        assert_true(wp->refined->too_long);
+        found[i] = wp->refined->found;
+        assert_true(found[i] > 0 && found[i] < ref->n);
+        assert_true(hn_wp_run(wp, NULL));
+        const hn_wp_point *p = &wp->methods[0].point[1];
+        assert_true(p->too_long);
+        assert_int_equal(p->times, ref->n + found[i] * (HN_REFINED_PARTS - 1));
+        hn_wp_free(wp);
+    }
+    assert_int_equal(found[0], found[1]);
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+static void memory_that_runs_out_before_the_first_point_is_told(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[1] = {"projection@rk4"};
+    const hn_wp_opts opts = {.n_levels = 2, .n_samples = -1};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 0.5);
+    for (int n = 1; n <= 4; n++) {
+        hn_wp *wp = study_of(&trial, ref, spellings, 1, &opts);
+        hn_alloc_fail_at(n);
+        assert_false(hn_wp_run(wp, NULL));
+        assert_true(hn_alloc_has_failed());
+        hn_alloc_fail_at(0);
+        assert_int_equal(wp->status, HN_ERR_MEMORY);
+        assert_false(wp->stopped || wp->out_of_time);
+        assert_int_equal(wp->methods[0].point[0].state, HN_WP_PENDING);
+        hn_wp_free(wp);
+    }
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
 static void count_point(void *user, int m, int k) {
     (void)m;
     (void)k;
@@ -168,6 +262,9 @@ int main(void) {
         cmocka_unit_test(counts_are_the_same_the_second_time),
         cmocka_unit_test(a_method_that_cannot_serve_the_scene_stays_with_its_reason),
         cmocka_unit_test(a_budget_that_is_too_small_leaves_points_out_and_says_so),
+        cmocka_unit_test(errors_are_taken_at_all_times_or_the_point_is_left_out),
+        cmocka_unit_test(states_that_take_too_long_are_told),
+        cmocka_unit_test(memory_that_runs_out_before_the_first_point_is_told),
         cmocka_unit_test(a_stopped_study_keeps_what_it_has_and_goes_on_from_there),
         cmocka_unit_test(samples_of_time_are_batches_above_the_clocks_grain),
     };
