@@ -67,12 +67,8 @@ static void put_node(hn_strbuf *b, const cJSON *node) {
         hn_strbuf_add(b, PICTURE);
         put_line(b, children_of(node));
         hn_strbuf_printf(b, " (%s)\n", text_of(node, "src"));
-    } else if (is_kind(node, "strong")) {
-        hn_strbuf_add(b, "*");
-        put_line(b, children_of(node));
-        hn_strbuf_add(b, "*");
     } else {
-        put_line(b, children_of(node));
+        put_line(b, children_of(node)); // emphasis has no sign of its own in plain text
     }
     if (is_kind(node, "link") && strstr(text_of(node, "href"), "://")) {
         hn_strbuf_printf(b, " <%s>", text_of(node, "href"));

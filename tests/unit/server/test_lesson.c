@@ -114,6 +114,18 @@ static void a_prediction_has_its_right_choice(void **state) {
     cJSON_Delete(lesson);
 }
 
+static void emphasis_leaves_no_asterisks(void **state) {
+    (void)state;
+    cJSON *lesson = cJSON_CreateObject();
+    cJSON_AddItemToObject(lesson, "blocks", parse("**Why.** The loop *is* **open**.\n"));
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_lesson_text(&b, lesson, 80);
+    assert_non_null(strstr(hn_strbuf_text(&b), "Why. The loop is open.\n"));
+    hn_strbuf_reset(&b);
+    cJSON_Delete(lesson);
+}
+
 static void pictures_of_one_paragraph_have_lines_of_their_own(void **state) {
     (void)state;
     cJSON *lesson = cJSON_CreateObject();
@@ -221,6 +233,7 @@ int main(void) {
         cmocka_unit_test(formulas_that_are_torn_end),
         cmocka_unit_test(an_exhibit_says_its_command),
         cmocka_unit_test(a_prediction_has_its_right_choice),
+        cmocka_unit_test(emphasis_leaves_no_asterisks),
         cmocka_unit_test(pictures_of_one_paragraph_have_lines_of_their_own),
         cmocka_unit_test(faults_of_a_text_are_named),
         cmocka_unit_test(lines_keep_to_the_width),
