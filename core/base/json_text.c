@@ -349,6 +349,8 @@ static int value(scan *s) {
     case ']':
     case '}':
         return expected(s, "remove the comma before it", "a value");
+    case ',':
+        return expected(s, "write the value that is missing before the comma", "a value");
     case 'N':
     case 'I':
         return expected(s, "NaN and Infinity are not numbers here", "a value");

@@ -6,6 +6,7 @@
 #include "expr/diff.h"
 #include "expr/parse.h"
 #include "grade/parts/spelling.h"
+#include "grade/parts/value_sheet.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -79,7 +80,7 @@ double hn_exam_value(hn_exam *exam, hn_ex e, int state) {
 }
 
 double hn_exam_allowed(const hn_exam *exam, double size) {
-    return exam->problem->absolute + exam->problem->relative * size;
+    return hn_value_allowed(exam->problem->relative, exam->problem->absolute, size);
 }
 
 /// The k-th random number in [0, 1) of a seed.

@@ -61,7 +61,7 @@ typedef struct hn_exercise {
     double points; ///< for each entry
     uint64_t seed, hash;
     int n_closed, n_open;
-    double relative, absolute; ///< allowed: absolute + relative * (size of the entry)
+    double relative, absolute; ///< of an entry of the matrix: hn_value_allowed()
     const char *why;           ///< reason for the tolerance
     // form 2
     cJSON *root;                       ///< owned: parts are read where they are used

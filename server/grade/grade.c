@@ -397,12 +397,17 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
 /// Reads matrices that were pasted as one text, with a remark.
 static void expand_lists(hn_verdict *v, cJSON *root) {
     char name[40], more[40] = "";
-    const int n = hn_list_text_expand(root, name, sizeof name);
+    int n_empty;
+    const int n = hn_list_text_expand(root, name, sizeof name, &n_empty);
     if (n > 1) {
         snprintf(more, sizeof more, ", and %d more likewise", n - 1);
     }
     if (n > 0) {
         hn_submission_remark(v, "the text of '%s' was read as a list%s", name, more);
+    }
+    if (n_empty > 0) {
+        hn_submission_remark(v, "nothing stands at %d place%s of it: write each entry, or 0",
+                             n_empty, n_empty == 1 ? "" : "s");
     }
 }
 

@@ -162,7 +162,8 @@ static cJSON *read_piece(span s, char mark, int depth) {
 }
 
 /// Reads what stands between the brackets of a list. An empty piece between two marks is the empty
-/// text, which is graded as an entry that was not handed in. NULL: too many entries, or no memory.
+/// text: it keeps its place, and hn_list_text_expand() counts it. NULL: too many entries, or no
+/// memory.
 static cJSON *read_list(span s, int depth) {
     s = trim(s);
     const char mark = holds(s, ';') ? ';' : holds(s, ',') ? ',' : holds(s, '\n') ? '\n' : ' ';
@@ -256,8 +257,18 @@ cJSON *hn_list_text_read(const char *text) {
     return list;
 }
 
+/// Returns how many entries of a list, and of the lists in it, are the empty text.
+static int count_empty(const cJSON *list) {
+    int n = 0;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, list) {
+        n += cJSON_IsArray(m) ? count_empty(m) : cJSON_IsString(m) && !m->valuestring[0];
+    }
+    return n;
+}
+
 /// Replaces the texts among the members of an object; those of its objects too.
-static int expand(cJSON *object, int depth, char *name, int size) {
+static int expand(cJSON *object, int depth, char *name, int size, int *n_empty) {
     static const char *const OTHERS[] = {"student", "comment", "problem", "exercise", "seed"};
     int n = 0;
     for (cJSON *m = object->child, *next; m; m = next) {
@@ -271,6 +282,7 @@ static int expand(cJSON *object, int depth, char *name, int size) {
             if (!name[0]) {
                 snprintf(name, (size_t)size, "%s", m->string);
             }
+            *n_empty += count_empty(list);
             char *key = strdup(m->string);
             if (key && cJSON_ReplaceItemInObjectCaseSensitive(object, key, list)) {
                 n++;
@@ -279,13 +291,14 @@ static int expand(cJSON *object, int depth, char *name, int size) {
             }
             free(key);
         } else if (cJSON_IsObject(m) && depth == 0) {
-            n += expand(m, depth + 1, name, size);
+            n += expand(m, depth + 1, name, size, n_empty);
         }
     }
     return n;
 }
 
-int hn_list_text_expand(cJSON *submission, char *name, int size) {
+int hn_list_text_expand(cJSON *submission, char *name, int size, int *n_empty) {
     name[0] = '\0';
-    return cJSON_IsObject(submission) ? expand(submission, 0, name, size) : 0;
+    *n_empty = 0;
+    return cJSON_IsObject(submission) ? expand(submission, 0, name, size, n_empty) : 0;
 }

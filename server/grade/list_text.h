@@ -18,6 +18,7 @@ cJSON *hn_list_text_read(const char *text);
 
 /// Replaces texts that hold lists by these: of the members of a submission, and of the members of
 /// its answers. Names, comments and seeds stay. Writes the first one's name to `name` ("" if none)
-/// and returns how many there are.
-int hn_list_text_expand(cJSON *submission, char *name, int size);
+/// and to *n_empty how many entries of all these lists are empty, as the second of "[a, , b]".
+/// Returns how many lists there are.
+int hn_list_text_expand(cJSON *submission, char *name, int size, int *n_empty);
 #endif

@@ -40,6 +40,11 @@ void hn_verdict_given(hn_strbuf *b, const hn_entry_verdict *e) {
     }
 }
 
+bool hn_verdict_shows_expected(const hn_verdict *v, const hn_entry_verdict *e) {
+    return v->show_expected && !e->right &&
+           (e->state >= 0 || (e->expected[0] && e->max_points > 0));
+}
+
 void hn_verdict_expected(hn_strbuf *b, const hn_entry_verdict *e) {
     hn_strbuf_add(b, e->expected);
     if (e->state >= 0 && !is_number(e->expected)) {
@@ -53,7 +58,7 @@ void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_ver
     if (e->explanation[0]) {
         hn_strbuf_printf(b, "%s%s\n", indent, e->explanation);
     }
-    const bool shows = v->show_expected && (e->state >= 0 || (e->expected[0] && e->max_points > 0));
+    const bool shows = hn_verdict_shows_expected(v, e);
     if (e->right || (!e->given[0] && !shows)) {
         return;
     }

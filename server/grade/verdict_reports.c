@@ -21,9 +21,16 @@ static int is_full(const hn_entry_verdict *e) {
     return e->points >= e->max_points;
 }
 
-/// Whether the answer that is expected is written beside an entry: for the teacher, who asked so.
-static bool shows_expected(const hn_verdict *v, const hn_entry_verdict *e) {
-    return v->show_expected && e->expected[0] && !e->right;
+typedef void put_entry(hn_strbuf *b, const hn_entry_verdict *e);
+
+/// Writes what was given or is expected, with its value, as text of XML.
+static void put_escaped(hn_strbuf *b, const hn_entry_verdict *e, put_entry *put) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    put(&text, e);
+    hn_verdict_escape(b, hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
 }
 
 static void put_case(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
@@ -41,11 +48,11 @@ static void put_case(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_verdict_escape(b, e->explanation);
     if (e->given[0]) {
         hn_strbuf_add(b, "\ngiven     ");
-        hn_verdict_escape(b, e->given);
+        put_escaped(b, e, hn_verdict_given);
     }
-    if (shows_expected(v, e)) {
+    if (hn_verdict_shows_expected(v, e)) {
         hn_strbuf_add(b, "\nexpected  ");
-        hn_verdict_escape(b, e->expected);
+        put_escaped(b, e, hn_verdict_expected);
     }
     hn_strbuf_add(b, "</failure>\n    </testcase>\n");
 }
@@ -117,7 +124,7 @@ static void put_row(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e
     if (e->given[0]) {
         hn_verdict_given(&given, e);
     }
-    if (shows_expected(v, e)) {
+    if (hn_verdict_shows_expected(v, e)) {
         hn_verdict_expected(&expected, e);
     }
     put_code(b, "your answer", hn_strbuf_text(&given));
@@ -225,8 +232,10 @@ void hn_verdict_csv(hn_strbuf *b, const hn_verdict *v, int head) {
         if (e->mistake[0]) {
             hn_strbuf_printf(&mistakes, "%s%s: %s", mistakes.n ? "; " : "", e->name, e->mistake);
         }
-        if (shows_expected(v, e)) {
-            hn_strbuf_printf(&mistakes, " (expected %s)", e->expected);
+        if (hn_verdict_shows_expected(v, e)) {
+            hn_strbuf_add(&mistakes, " (expected ");
+            hn_verdict_expected(&mistakes, e);
+            hn_strbuf_add(&mistakes, ")");
         }
     }
     hn_strbuf_add(b, head ? "problem,student,seed,status,score,max_score,mistakes\n" : "");

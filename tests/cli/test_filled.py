@@ -173,6 +173,12 @@ class Filled(unittest.TestCase):
         self.assertAlmostEqual(given - expected, 0.5, 7)
         self.assertNotIn("expected", call("grade", "four-bar", path, "--format", "html").stdout.split("<body>")[1])
 
+        # what is for a table or a robot says the same, and to the student nothing of what is expected
+        for form in ("csv", "junit"):
+            asked = call("grade", "four-bar", path, "--format", form, "--show-expected").stdout
+            self.assertAlmostEqual(float(re.search(r"expected +force\[0\] = ([-\d.]+)", asked)[1]), expected, 5)
+            self.assertNotIn("expected", call("grade", "four-bar", path, "--format", form).stdout)
+
     def test_a_program_has_no_variant_to_choose(self):
         done = call("grade", "four-bar", self.put("any.py", "x"), "--seed", "7")
         self.assertEqual((done.returncode, "the program of a scene has none" in done.stderr), (2, True), done.stderr)

@@ -216,6 +216,8 @@ def pasted(folder):
     for name, text in (("LaTeX", json.dumps({"J": latex})), ("LaTeX without doubled backslashes", '{"J": "' + latex + '"}')):
         said = json.loads(run("grade", "p3", write(folder, "latex.json", text), "--json", "--no-pictures").stdout)
         expect(f"{name} as one text is read", said["score"] == 8, said["note"] + said.get("reason", ""))
+    empty = verdict(folder, "p3", {"J": python.replace(rows[0][1], "")})
+    expect("an empty entry is told", empty["score"] == 7 and "nothing stands at 1 place of it" in empty["note"], empty["note"])
     expect("a matrix of numbers too", told(folder, "singular", "a", {"J": "[1 2 3; 2 4 6]"}) == "right")
     said = run("grade", "p3", write(folder, "answer.json", {"J": "[1, 2"})).stdout
     expect("what is no list is refused as before", "'J' is a text, expected a list of 2 rows" in said, said)
@@ -224,7 +226,7 @@ def pasted(folder):
 def shown(folder):
     """--show-expected gives the answer in every form, and an example where many are right."""
     rows = [["l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
-    for form, said in (("text", "expected  -l1*sin(th1) = "), ("csv", "J11: sign (expected -l1*sin(th1))"), ("junit", "\nexpected  -l1*sin(th1)</failure>")):
+    for form, said in (("text", "expected  -l1*sin(th1) = "), ("csv", "J11: sign (expected -l1*sin(th1) = "), ("junit", "\nexpected  -l1*sin(th1) = ")):
         asked = run("grade", "p3", write(folder, "answer.json", {"J": rows}), "--format", form, "--show-expected").stdout
         hidden = run("grade", "p3", write(folder, "answer.json", {"J": rows}), "--format", form).stdout
         expect(f"the teacher's {form} has the formula", said in asked, asked)

@@ -85,6 +85,10 @@ void hn_value_tolerance(const hn_part *p, double *relative, double *absolute) {
     *absolute = hn_part_number(tolerance, "absolute", symbolic ? 1e-9 : 1e-12);
 }
 
+double hn_value_allowed(double relative, double absolute, double size) {
+    return fmax(absolute, relative * size);
+}
+
 static hn_status set_tolerance(hn_value_sheet *s) {
     double relative, absolute;
     hn_value_tolerance(s->p, &relative, &absolute);
@@ -98,7 +102,7 @@ static hn_status set_tolerance(hn_value_sheet *s) {
             }
             size = fmax(size, fabs(s->reference.x[k][i]));
         }
-        s->allowed[k] = fmax(absolute, relative * size);
+        s->allowed[k] = hn_value_allowed(relative, absolute, size);
     }
     return HN_OK;
 }

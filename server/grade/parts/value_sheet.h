@@ -32,7 +32,10 @@ typedef struct hn_value_sheet {
 
 /// 1 for the kinds formula and formulas.
 int hn_value_is_symbolic(const hn_part *p);
-/// The difference that is allowed: the larger of absolute and relative * size of the entry.
+/// Returns the difference that a tolerance allows in an entry, of a matrix or of a part: the larger
+/// of `absolute` and `relative` times `size`, the entry's largest value over the states.
+double hn_value_allowed(double relative, double absolute, double size);
+/// Reads the tolerance of a part; what it leaves out has the values of the part's kind.
 void hn_value_tolerance(const hn_part *p, double *relative, double *absolute);
 /// The states and the reference. hn_draw_reset(s->draw) and free afterwards in any case.
 /// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.

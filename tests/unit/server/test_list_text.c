@@ -89,9 +89,11 @@ static void formulas_and_broken_brackets_are_no_lists(void **state) {
 static void only_answers_are_expanded(void **state) {
     (void)state;
     char name[16];
+    int n_empty;
     cJSON *root = cJSON_Parse("{\"student\":\"[a, b]\",\"comment\":\"[1, 2]\",\"a\":\"[1, 2]\","
                               "\"b\":{\"M\":\"[1 0; 0 1]\",\"x\":\"2\"},\"c\":\"x + 1\"}");
-    assert_int_equal(hn_list_text_expand(root, name, sizeof name), 2);
+    assert_int_equal(hn_list_text_expand(root, name, sizeof name, &n_empty), 2);
+    assert_int_equal(n_empty, 0);
     assert_string_equal(name, "a");
     char *text = cJSON_PrintUnformatted(root);
     assert_string_equal(text, "{\"student\":\"[a, b]\",\"comment\":\"[1, 2]\",\"a\":[1,2],"
@@ -100,11 +102,36 @@ static void only_answers_are_expanded(void **state) {
     cJSON_Delete(root);
 }
 
+static void empty_entries_are_counted(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        int n_empty;
+    } rows[] = {{"[[1, , 2], [3, 4, 5]]", 1},
+                {"[, a; b, c]", 1},
+                {"[[1, 2], , [3, 4]]", 1},
+                {"[a, , , b]", 2},
+                {"[1, 2, ]", 0},
+                {"\\begin{pmatrix} a & & b \\end{pmatrix}", 1}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char name[16];
+        int n_empty;
+        cJSON *root = cJSON_CreateObject();
+        cJSON_AddStringToObject(root, "J", rows[i].text);
+        assert_int_equal(hn_list_text_expand(root, name, sizeof name, &n_empty), 1);
+        if (n_empty != rows[i].n_empty) {
+            fail_msg("%s has %d empty entries", rows[i].text, n_empty);
+        }
+        cJSON_Delete(root);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_of_every_program_are_read),
         cmocka_unit_test(formulas_and_broken_brackets_are_no_lists),
         cmocka_unit_test(only_answers_are_expanded),
+        cmocka_unit_test(empty_entries_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
