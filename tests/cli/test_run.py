@@ -267,7 +267,7 @@ class Run(Command):
             self.assertNotIn("this is intended", call("compare", "four-bar", *words).stdout.decode())
         # a run by one of its methods says it too, wherever standard error leads
         own = call("run", "parallelogram", "--at", "5").stderr.decode()
-        self.assertIn("this is intended: Index-1 and Baumgarte are here to be seen leaving the motion", own)
+        self.assertIn("this is intended: Within 5 s, index-1 and Baumgarte leave the motion", own)
         for words in ("--method", "index1@rk4:h=2e-3"), ("--set", "w_0=3"):
             self.assertNotIn("this is intended", call("run", "parallelogram", "--at", "5", *words).stderr.decode())
 
@@ -419,6 +419,14 @@ class Run(Command):
             if estimate["q"] is not None:
                 self.assertIn(f"off by up to {estimate['q']:.2g} (angles in rad", done["verdict"]["text"])
         self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
+        # no motion is right that an incident calls wrong, however short the part that was compared
+        for method, t in ("projection@dop853:h=0.1", "40"), ("projection@dop853:h=0.1", "60"), ("projection@rk4:h=0.13", "60"):
+            done = json.loads(call("run", "four-bar", "--method", method, "--time", t, "--at", t, "--json").stdout)
+            self.assertIn("energy-jump", [i["code"] for i in done["incidents"]])
+            self.assertIn(done["verdict"]["is"], ("wrong", "inaccurate"), (method, t))
+            self.assertRegex(done["verdict"]["text"], r"; at t = [\d.]+ s the energy jumped$")
+            among = json.loads(call("compare", "four-bar", "--time", t, "--methods", method, "--json").stdout)["methods"][0]
+            self.assertIn(among["verdict"]["is"], ("wrong", "inaccurate"), (method, t))
         # a step longer than the run: its output is judged all the same
         long = ("four-bar", "--time", "1")
         alone = json.loads(call("run", *long, "--method", "projection@rk4:h=2", "--at", "1", "--json").stdout)

@@ -104,7 +104,7 @@ static void put_estimate(hn_strbuf *b, const hn_comparison *c, int method, doubl
     const hn_accuracy *accuracy = hn_comparison_accuracy(c, &track, method);
     hn_estimate_put_json(b, accuracy, hn_run_spec(hn_comparison_run(c, method)), track, t);
     if (with_verdict) {
-        hn_estimate_put_verdict(b, accuracy, track, t);
+        hn_estimate_put_verdict(b, accuracy, track, t, hn_comparison_run(c, method));
     }
 }
 

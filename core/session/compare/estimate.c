@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/estimate.h"
 
+#include "study/incidents/kinds.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -29,20 +31,38 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
 // An estimate that ends this share before the run says nothing of its end.
 static const double WHOLE = 0.99;
 
-static const char *verdict_of(const hn_estimate *e, double t_run) {
+/// The first incident up to t_run that calls the motion wrong and lets the run go on; NULL: none.
+static const hn_incident *find_wrong(const hn_run *run, double t_run) {
+    const hn_incident *list = NULL, *first = NULL;
+    const int n = hn_run_incidents(run, &list);
+    for (int i = 0; i < n; i++) {
+        const hn_incident_kind *kind = hn_incident_kinds()[list[i].code];
+        const bool goes_on = kind->is_wrong && kind->check;
+        if (goes_on && list[i].t <= t_run && (!first || list[i].t < first->t)) {
+            first = &list[i];
+        }
+    }
+    return first;
+}
+
+/// `wrong`: what find_wrong() returns. Where the estimate ends before it, the incident decides.
+static const char *verdict_of(const hn_estimate *e, double t_run, const hn_incident *wrong) {
     // a run that ended where it began shows no motion to be right
-    if (!e->known || !(t_run > 0)) {
+    if (!(t_run > 0) || (!e->known && !wrong)) {
         return "unknown";
     }
-    return e->q >= HN_ACCURACY_WRONG                    ? "wrong"
-           : fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? "inaccurate"
-           : e->t < WHOLE * t_run                       ? "unknown"
-                                                        : "right";
+    if (!e->known || e->q >= HN_ACCURACY_WRONG || (wrong && e->t < wrong->t)) {
+        return "wrong";
+    }
+    return wrong || fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? "inaccurate"
+           : e->t < WHOLE * t_run                              ? "unknown"
+                                                               : "right";
 }
 
 void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
-                             const hn_accuracy_track *track, double t_run) {
+                             const hn_accuracy_track *track, double t_run, const hn_run *run) {
     const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
+    const hn_incident *wrong = find_wrong(run, t_run);
     char text[560], reactions[64] = "more than their largest value";
     int used = 0;
     if (e.reaction <= 1) {
@@ -58,13 +78,18 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
     if (!(t_run > 0)) {
         snprintf(text, sizeof text, "nothing was computed beyond the start");
     } else if (!e.known || e.t < WHOLE * t_run) {
-        snprintf(text + used, sizeof text - (size_t)used, "%s (%s)",
-                 e.known ? "; the error after that was not estimated" : "the error is not known",
-                 e.reason[0] ? e.reason : "nothing was compared");
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s (%s)",
+                         e.known ? "; the error after that was not estimated"
+                                 : "the error is not known",
+                         e.reason[0] ? e.reason : "nothing was compared");
+    }
+    if (wrong && !(e.known && e.q >= HN_ACCURACY_WRONG) && used < (int)sizeof text) {
+        snprintf(text + used, sizeof text - (size_t)used, "; at t = %.4g s %s", wrong->t,
+                 hn_incident_kinds()[wrong->code]->name);
     }
     hn_json_key(b, "verdict");
     hn_json_object(b);
-    hn_json_put_string(b, "is", verdict_of(&e, t_run));
+    hn_json_put_string(b, "is", verdict_of(&e, t_run, wrong));
     hn_json_put_string(b, "text", text);
     hn_json_end_object(b);
 }

@@ -6,6 +6,7 @@
 
 #include "base/strbuf.h"
 #include "integrators/method/method_spec.h"
+#include "study/run/run.h"
 #include "study/truth/accuracy.h"
 
 #define HN_TOLERANCE_KEPT 10.0 ///< an error of so many times rtol is what a tolerance promises
@@ -20,8 +21,10 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
 
 /// Puts the member "verdict": {"is","text"}, what the estimate says of the motion: "wrong" from
 /// HN_ACCURACY_WRONG on, "inaccurate" above HN_ACCURACY_WARN, "right" below, "unknown" where there
-/// is no estimate, or none up to t_run and nothing wrong before. It is not the status of the run,
-/// which says only whether it reached its end.
+/// is no estimate, or none up to t_run and nothing wrong before. An incident of the run that calls
+/// the motion wrong makes the verdict "inaccurate" at least, and "wrong" where it comes after the
+/// end of the estimate. It is not the status of the run, which says only whether it reached its
+/// end.
 void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
-                             const hn_accuracy_track *track, double t_run);
+                             const hn_accuracy_track *track, double t_run, const hn_run *run);
 #endif

@@ -272,7 +272,7 @@ static void put_run(hn_strbuf *b, const hn_run *run, const hn_run_request *reque
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
     hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
     hn_estimate_put_json(b, rec->accuracy, hn_run_spec(run), &rec->track, reached);
-    hn_estimate_put_verdict(b, rec->accuracy, &rec->track, reached);
+    hn_estimate_put_verdict(b, rec->accuracy, &rec->track, reached, run);
     put_run_incidents(b, run);
     put_run_cost(b, &s);
     hn_json_end_object(b);

@@ -88,10 +88,10 @@ static bool has_failed(const cJSON *method) {
     return strcmp(hn_document_text(method, "state"), "failed") == 0;
 }
 
-/// Whether the coordinates are so far from the true motion that they say nothing of it.
+/// Whether the coordinates are so far from the true motion that they say nothing of it, or an
+/// incident calls the motion wrong after the end of the estimate.
 static bool is_wrong(const cJSON *method) {
-    const cJSON *e = hn_document_get(method, "error_estimate");
-    return hn_document_number(e, "q") >= HN_ACCURACY_WRONG;
+    return strcmp(hn_document_text(hn_document_get(method, "verdict"), "is"), "wrong") == 0;
 }
 
 /// The verdict on the motion, where the run came to its end.
@@ -161,12 +161,17 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 
 /// Says what WRONG stands for; i: number of the method in the summary.
 static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
-    hn_strbuf_printf(b,
-                     "! %s is wrong: its coordinates are off by up to %.2g (angles in rad, lengths "
-                     "divided by the mechanism's length)%s\n",
-                     hn_document_text(m, "method"),
-                     hn_document_number(hn_document_get(m, "error_estimate"), "q"),
-                     hn_error_advice(m, hn_document_get(summary, "incidents"), i));
+    const double q = hn_document_number(hn_document_get(m, "error_estimate"), "q");
+    hn_strbuf_printf(b, "! %s is wrong: ", hn_document_text(m, "method"));
+    if (q >= HN_ACCURACY_WRONG) {
+        hn_strbuf_printf(b,
+                         "its coordinates are off by up to %.2g (angles in rad, lengths divided by "
+                         "the mechanism's length)",
+                         q);
+    } else {
+        hn_strbuf_add(b, hn_document_text(hn_document_get(m, "verdict"), "text"));
+    }
+    hn_strbuf_printf(b, "%s\n", hn_error_advice(m, hn_document_get(summary, "incidents"), i));
 }
 
 /// The first incidents of one method, errors before warnings; the rest are counted.
@@ -231,12 +236,14 @@ static bool is_at_fault(const cJSON *summary) {
 /// Says by which measure the status judges, where it finds fault: the workbench has another.
 static void put_measure(hn_strbuf *b, const cJSON *summary) {
     if (is_at_fault(summary)) {
-        hn_strbuf_printf(b,
-                         "status: by the estimated errors of motion and reactions: right up to %g, "
-                         "WRONG from a motion error of %g on, inaccurate between. The workbench "
-                         "and the page judge by another measure: the distance of drawn points from "
-                         "the reference solution, and the energy ('holonom help right')\n",
-                         HN_ACCURACY_WARN, HN_ACCURACY_WRONG);
+        hn_strbuf_printf(
+            b,
+            "status: by the estimated errors of motion and reactions: right up to %g, "
+            "WRONG from a motion error of %g on, inaccurate between; no motion is right that an "
+            "incident calls wrong. The workbench "
+            "and the page judge by another measure: the distance of drawn points from "
+            "the reference solution, and the energy ('holonom help right')\n",
+            HN_ACCURACY_WARN, HN_ACCURACY_WRONG);
     }
 }
 
