@@ -218,6 +218,8 @@ def pasted(folder):
         expect(f"{name} as one text is read", said["score"] == 8, said["note"] + said.get("reason", ""))
     empty = verdict(folder, "p3", {"J": python.replace(rows[0][1], "")})
     expect("an empty entry is told", empty["score"] == 7 and "nothing stands at 1 place of it" in empty["note"], empty["note"])
+    said = run("grade", "p3", write(folder, "comma.json", '{"J": [[1,,2]]}')).stdout
+    expect("a value that is missing in JSON is told", "write the value that is missing before the comma" in said, said)
     expect("a matrix of numbers too", told(folder, "singular", "a", {"J": "[1 2 3; 2 4 6]"}) == "right")
     said = run("grade", "p3", write(folder, "answer.json", {"J": "[1, 2"})).stdout
     expect("what is no list is refused as before", "'J' is a text, expected a list of 2 rows" in said, said)

@@ -50,7 +50,7 @@ static void unsound_texts_are_told_with_line_and_column(void **state) {
         {"[1 2]", "expected ',' or ']', found '2'"},
         {"{\"a\" 1}", "':' after the name"},
         {"{a:1}", "name in double quotes"},
-        {"[1,,2]", "missing before the comma"},
+        {"[1,,2]", "line 1, column 4"},
         {"01", "found '1'"},
         {"1.", "after the decimal point"},
         {".5", "a value"},
