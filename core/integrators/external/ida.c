@@ -413,6 +413,26 @@ static int step_of_library(ida_stepper *s, double t, double t_stop, double *t_ne
     return IDASolve(s->ida, t + 1, t_new, s->y, s->ydot, IDA_ONE_STEP);
 }
 
+/// Starts again with other rows, as many as before: away from the start a state is off by the
+/// tolerance, and redundant rows would seem independent.
+static hn_status choose_rows_anew(ida_stepper *s, double t, const double *y) {
+    s->problem.most_kept = s->problem.n_kept;
+    const hn_status status = start(s, t, y);
+    s->problem.most_kept = 0;
+    return status;
+}
+
+/// Which formulation is solved where the equations left out do not let the corrector converge.
+static void add_remedy(ida_stepper *s, hn_status status) {
+    const int n = s->problem.nc - s->problem.n_kept;
+    const size_t used = strlen(s->why);
+    if (status == HN_ERR_NO_CONVERGENCE && n > 0 && s->problem.form != HN_FORM_GGL) {
+        snprintf(s->why + used, sizeof s->why - used,
+                 ": %d of %d constraint equations depend on the others; use ggl@ida or projection",
+                 n, s->problem.nc);
+    }
+}
+
 static hn_status advance(void *self, double t, double t_stop, const double *y, double *t_new,
                          double *y_new) {
     ida_stepper *s = self;
@@ -427,14 +447,21 @@ static hn_status advance(void *self, double t, double t_stop, const double *y, d
         }
     }
     s->changed = 0;
+    if (t > s->started && !hn_ida_problem_rows_hold(&s->problem, t, y)) {
+        HN_TRY(choose_rows_anew(s, t, y));
+    }
     int flag = step_of_library(s, t, t_stop, t_new);
 
     // of redundant rows others may be independent by now: they are chosen anew, once at a place
     if (flag == IDA_CONV_FAIL && s->problem.n_kept < s->problem.nc && t > s->started) {
-        HN_TRY(start(self, t, y));
+        HN_TRY(choose_rows_anew(s, t, y));
         flag = step_of_library(s, t, t_stop, t_new);
     }
-    HN_TRY(hn_ida_status(flag, t, s->why, sizeof s->why));
+    const hn_status status = hn_ida_status(flag, t, s->why, sizeof s->why);
+    if (status != HN_OK) {
+        add_remedy(s, status);
+        return status;
+    }
     memcpy(y_new, data_of(s->y), (size_t)(s->problem.nq + s->problem.nv) * sizeof *y_new);
     s->h = *t_new - t;
     s->t = *t_new;

@@ -15,6 +15,7 @@
 // a row of J shorter than this beside the others, once they are taken out of it, depends on
 // them
 #define ROW_RANK 1e-10
+#define WORSE_ROWS 0.1 // of the independence of the best rows: with less, rows are chosen anew
 
 static bool has_mu(const hn_ida_problem *p) {
     return p->form == HN_FORM_GGL;
@@ -92,6 +93,9 @@ int hn_ida_problem_room(const hn_ida_problem *p) {
 static void keep_independent_rows(hn_ida_problem *p, const double *J) {
     memcpy(p->qr.a, J, (size_t)p->nc * (size_t)p->nv * sizeof *J);
     hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
+    if (p->most_kept > 0 && p->qr.rank > p->most_kept) {
+        p->qr.rank = p->most_kept; // R of the first columns is that of the whole
+    }
     p->n_kept = 0;
     for (int row = 0; row < p->nc; row++) {
         p->place[row] = -1;
@@ -103,6 +107,31 @@ static void keep_independent_rows(hn_ida_problem *p, const double *J) {
         }
     }
     p->n = p->nq + p->nv + (has_mu(p) ? 2 : 1) * p->n_kept;
+}
+
+bool hn_ida_problem_rows_hold(hn_ida_problem *p, double t, const double *state) {
+    if (p->n_kept == p->nc || p->n_kept == 0) {
+        return true;
+    }
+    hn_eval_run(p->eval, t, state, state + p->nq);
+    const double *J = hn_eval_get(p->eval, HN_TERM_J);
+    const size_t nv = (size_t)p->nv;
+
+    // the same number of rows, the best ones
+    memcpy(p->qr.a, J, (size_t)p->nc * nv * sizeof *J);
+    hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
+    if (p->qr.rank < p->n_kept) {
+        return true; // a singular pose: there is no better choice
+    }
+    p->qr.rank = p->n_kept;
+    const double best = hn_qr_pivot_ratio(&p->qr);
+
+    // those that are kept
+    for (int k = 0; k < p->n_kept; k++) {
+        memcpy(p->qr.a + (size_t)k * nv, J + (size_t)p->kept[k] * nv, nv * sizeof *J);
+    }
+    hn_qr_factor(&p->qr, p->nv, p->n_kept, ROW_RANK);
+    return p->qr.rank == p->n_kept && hn_qr_pivot_ratio(&p->qr) > WORSE_ROWS * best;
 }
 
 // lambda of the kept rows from M a - f = J' lambda; needs the factors of keep_independent_rows()
@@ -118,20 +147,33 @@ static void solve_multipliers(hn_ida_problem *p) {
     }
 }
 
+// Rows that are new hold to the tolerance only, and would make velocities jump in the first step.
+static void close_velocity(hn_ida_problem *p, double *v) {
+    const double *J = hn_eval_get(p->eval, HN_TERM_J), *phi_t = hn_eval_get(p->eval, HN_TERM_PHI_T);
+    hn_mat_vec(p->nc, p->nv, J, v, p->lambda);
+    hn_axpy(p->nc, 1, phi_t, p->lambda);
+    hn_qr_least_norm(&p->qr, p->lambda, p->work);
+    hn_axpy(p->nv, -1, p->work, v);
+}
+
 hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state, double *y,
                                double *ydot) {
-    const double *q = state, *v = state + p->nq;
-    hn_accel_info info = {0};
-    HN_TRY(hn_accel_eval(p->accel, t, q, v, p->alpha, p->beta, p->a, p->lambda, &info));
-    hn_eval_run(p->eval, t, q, v);
-    keep_independent_rows(p, hn_eval_get(p->eval, HN_TERM_J));
-    if (p->n_kept < p->nc) {
-        solve_multipliers(p);
-    }
     const size_t room = (size_t)hn_ida_problem_room(p);
+    const double *q = y, *v = y + p->nq;
+    hn_accel_info info = {0};
     memset(y, 0, room * sizeof *y);
     memset(ydot, 0, room * sizeof *ydot);
     memcpy(y, state, (size_t)(p->nq + p->nv) * sizeof *y);
+    hn_eval_run(p->eval, t, q, v);
+    keep_independent_rows(p, hn_eval_get(p->eval, HN_TERM_J));
+    if (p->most_kept > 0 && p->form == HN_FORM_INDEX2) {
+        close_velocity(p, y + p->nq);
+        hn_eval_run(p->eval, t, q, v);
+    }
+    HN_TRY(hn_accel_eval(p->accel, t, q, v, p->alpha, p->beta, p->a, p->lambda, &info));
+    if (p->n_kept < p->nc) {
+        solve_multipliers(p);
+    }
     hn_system_kinematics(p->sys, q, v, ydot);
     memcpy(ydot + p->nq, p->a, (size_t)p->nv * sizeof *ydot);
     for (int k = 0; k < p->n_kept; k++) {

@@ -14,9 +14,10 @@
 //       GGL         J v + phi_t, and phi                                                      (3)
 //
 // Weighting the kinematics of (1) by M makes the correction M^-1 J' mu, the smallest one in the
-// sense of kinetic energy, without inverting M. Rows of J that depend on others at the start are
-// left out: their multipliers are 0, and the matrix of Newton's method stays regular. Source: Gear,
-// Leimkuhler & Gupta 1985; Brenan, Campbell & Petzold 1996, ch. 6.
+// sense of kinetic energy, without inverting M. Rows of J that depend on others are left out: their
+// multipliers are 0, and the matrix of Newton's method stays regular. Which ones is chosen at the
+// start, and anew where those that are kept come to depend on each other. Source: Gear, Leimkuhler
+// & Gupta 1985; Brenan, Campbell & Petzold 1996, ch. 6.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -28,6 +29,7 @@ typedef struct hn_ida_problem {
     hn_dae_form form;
     int nq, nv, nc;
     int n_kept, *kept; ///< rows of the constraints in use
+    int most_kept;     ///< as many are chosen at most; 0: all that are independent
     int n;             ///< nq + nv + n_kept, and n_kept again with mu
     double alpha, beta;
     hn_eval *eval;
@@ -47,6 +49,10 @@ HN_MUST_CHECK hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *
                                             hn_dae_form form, const double *form_options,
                                             hn_arena *arena, hn_diag *diag);
 void hn_ida_problem_free(hn_ida_problem *p);
+/// Whether the kept rows are still about as independent of each other as the best ones at (q, v).
+/// Rows that are not let the constraints open that were left out, or another branch of the motion
+/// in.
+bool hn_ida_problem_rows_hold(hn_ida_problem *p, double t, const double *state);
 /// The largest n that any choice of rows leads to.
 int hn_ida_problem_room(const hn_ida_problem *p);
 /// Chooses the rows and fills y and y' (room) at a state (q, v): speeds and accelerations, lambda
