@@ -23,9 +23,10 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS
      " --methods --once --t --keys --frames --size --ascii --blocks --pictures --theme",
      0, 1, hn_command_tui},
-    {"list", "scenes|methods|lessons|problems",
-     "list the scenes, methods, lessons or exercises, with one line on each", "--wide", 1, 1,
-     hn_command_list},
+    {"list", "scenes|methods [NAME]|lessons|problems",
+     "list the scenes, methods, lessons or exercises, with one line on each; with NAME, describe "
+     "one formulation or integrator and its settings",
+     "--wide", 1, 2, hn_command_list},
     {"inspect", "SCENE", "show degrees of freedom, loops, rank, and how the equations are solved",
      MODEL_OPTIONS " --wide", 1, 1, hn_command_inspect},
     {"equations", "SCENE", "write the equations of motion (--format text, latex or json)",

@@ -9,7 +9,7 @@ static const struct {
 } EXAMPLES[] = {
     {"serve", {"serve", "serve --port 8090 --open", "serve --max-comparisons 64 --run-cpu 5"}},
     {"tui", {"tui", "tui slider-crank --set l=0.9", "tui four-bar --once --t 3.5 --size 110x32"}},
-    {"list", {"list scenes", "list methods", "list scenes --json"}},
+    {"list", {"list scenes", "list methods baumgarte", "list scenes --json"}},
     {"inspect", {"inspect four-bar", "inspect bennett", "inspect four-bar --set l1=0.45 --json"}},
     {"equations",
      {"equations pendulum", "equations four-bar --format latex",

@@ -31,6 +31,16 @@ def candidates(*words):
 
 
 class Completion(unittest.TestCase):
+    def test_one_method_is_described_by_its_card(self):
+        card = call("list", "methods", "baumgarte").stdout
+        self.assertRegex(card, r"\Abaumgarte: .*\n  idea ")
+        self.assertIn("    alpha: damping of the gap [1/s]", card)
+        self.assertEqual(json.loads(call("list", "methods", "rk4", "--json").stdout)["order"], 4)
+        for words, said in ((("methods", "rk44"), "did you mean 'rk4'?"), (("scenes", "four-bar"), "'holonom inspect NAME' describes a scene")):
+            refused = call("list", *words)
+            self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+            self.assertIn(said, refused.stderr)
+
     def test_commands_options_scenes_and_words_are_offered(self):
         self.assertEqual(candidates("sna"), ["snapshot"])
         self.assertIn("--methods", candidates("compare", "four-bar", "--m"))

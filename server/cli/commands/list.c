@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom list scenes|methods|lessons|problems
+// holonom list scenes|methods [NAME]|lessons|problems
 #include "base/suggest.h"
 #include "cli/shell/commands.h"
 #include "integrators/method/catalogue.h"
@@ -20,7 +20,7 @@ static void methods_json(hn_strbuf *b, const hn_library *lib) {
     hn_methods_json(b);
 }
 
-enum { MAX_TABLES = 2, MAX_COLUMNS = 5 };
+enum { MAX_TABLES = 2, MAX_COLUMNS = 5, MAX_NAMES = 96 };
 
 /// What a card says below its title: the word in front, and the member it is read from.
 static const struct {
@@ -34,7 +34,7 @@ enum { N_CARD = sizeof CARD / sizeof *CARD };
 
 /// One thing that can be listed: its document, and the tables a person sees of it.
 static const struct {
-    const char *name;
+    const char *name, *one; ///< `one`: what shows a single one; NULL: its card, by this command
     void (*write)(hn_strbuf *b, const hn_library *lib);
     struct {
         const char *member;
@@ -44,6 +44,7 @@ static const struct {
     } tables[MAX_TABLES];
 } LISTS[] = {
     {"scenes",
+     "'holonom inspect NAME' describes a scene",
      hn_scenes_json,
      {{"scenes",
        4,
@@ -53,6 +54,7 @@ static const struct {
         {"description", "caption", NULL}},
        NULL}}},
     {"methods",
+     NULL,
      methods_json,
      {{"formulations",
        5,
@@ -71,9 +73,11 @@ static const struct {
         {"adaptive", "adaptive", NULL}},
        NULL}}},
     {"lessons",
+     "'holonom lesson NUMBER' prints a lesson",
      hn_lessons_json,
      {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}, NULL}}},
     {"problems",
+     "'holonom problem ID' prints an exercise",
      hn_shelf_exercises_json,
      {{"problems",
        5,
@@ -128,7 +132,7 @@ static void put_options(hn_strbuf *b, const cJSON *item) {
 }
 
 static void put_card(hn_strbuf *b, const cJSON *item) {
-    hn_strbuf_printf(b, "\n%s: %s\n", hn_document_text(item, "name"),
+    hn_strbuf_printf(b, "%s: %s\n", hn_document_text(item, "name"),
                      hn_document_text(item, "title"));
     for (int i = 0; i < N_CARD; i++) {
         const cJSON *said = hn_document_get(item, CARD[i].key);
@@ -148,6 +152,7 @@ static void put_cards(hn_strbuf *b, const cJSON *array) {
     const cJSON *item;
     cJSON_ArrayForEach(item, array) {
         if (hn_document_get(item, "source")) {
+            hn_strbuf_add(b, "\n");
             put_card(b, item);
         }
     }
@@ -176,6 +181,62 @@ static void put_faults(hn_strbuf *b, const cJSON *array) {
     }
 }
 
+/// The row called `name` in the tables of a list; NULL: none. The names met are kept in `names`.
+static const cJSON *find_named(const cJSON *document, int which, const char *name,
+                               const char *names[], int *n) {
+    const cJSON *item;
+    for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
+        const char *key = LISTS[which].tables[i].columns[0].key;
+        cJSON_ArrayForEach(item, hn_document_get(document, LISTS[which].tables[i].member)) {
+            const char *own = hn_document_text(item, key);
+            if (strcmp(own, name) == 0) {
+                return item;
+            }
+            if (*n < MAX_NAMES) {
+                names[(*n)++] = own;
+            }
+        }
+    }
+    return NULL;
+}
+
+/// `list methods NAME`: one card, with its options.
+static hn_exit print_one(const hn_args *args, int which, hn_strbuf *text) {
+    const char *name = args->words.word[1], *names[MAX_NAMES];
+    cJSON *document = hn_document_parse(text);
+    int n = 0;
+    const cJSON *item = find_named(document, which, name, names, &n);
+    hn_exit done = HN_EXIT_INPUT;
+    if (item && args->json) {
+        char *raw = cJSON_PrintUnformatted(item);
+        hn_strbuf_printf(text, "%s\n", raw ? raw : "");
+        text->failed |= raw == NULL;
+        cJSON_free(raw);
+        done = hn_cli_print(text);
+    } else if (item) {
+        put_card(text, item);
+        done = hn_cli_print_text(text);
+    } else {
+        char hint[HN_DIAG_HINT];
+        hn_diag diag;
+        hn_suggest(hint, name, names, n, "'holonom list methods' lists them");
+        hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint,
+                    "no formulation and no integrator is called '%.60s'", name);
+        done = hn_report_diag(args, &diag);
+        hn_strbuf_reset(text);
+    }
+    cJSON_Delete(document);
+    return done;
+}
+
+/// Only methods have cards; the other lists name the command that shows one of theirs.
+static hn_exit tell_no_cards(const hn_args *args, int which) {
+    hn_diag diag;
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, LISTS[which].one, "'list %s' takes no name",
+                LISTS[which].name);
+    return hn_report_diag(args, &diag);
+}
+
 hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     int which = 0;
     while (which < N_LISTS && strcmp(LISTS[which].name, args->words.word[0]) != 0) {
@@ -184,9 +245,16 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     if (which == N_LISTS) {
         return tell_unknown(args, args->words.word[0]);
     }
+    const bool one = args->words.n > 1;
+    if (one && LISTS[which].one) {
+        return tell_no_cards(args, which);
+    }
     hn_strbuf text;
     hn_strbuf_init(&text);
     LISTS[which].write(&text, lib);
+    if (one) {
+        return print_one(args, which, &text);
+    }
     if (args->json) {
         return hn_cli_print(&text);
     }
