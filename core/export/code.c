@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "export/code.h"
 
+#include "export/formula.h"
+
 #include <ctype.h>
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MAX_BYTES = 4 << 20, LONGEST = 160 }; // of all code; of a piece inside a line
+enum { SHORT = 24, REPEATED = 120 };         // letters seen: of a piece, of its copies in a formula
 
 /// How tightly a piece binds; a weaker piece inside a stronger one gets parentheses.
 typedef enum level { LEVEL_SUM, LEVEL_PRODUCT, LEVEL_ATOM } level;
@@ -23,112 +25,6 @@ typedef struct writer {
     int *variable;      ///< number of a shared node's variable, 0: none yet
     const char *prefix; ///< of variables, that no symbol of the scene begins with
 } writer;
-
-// ---- numbers, names, forms ----
-
-enum { LARGEST_DENOMINATOR = 24 }; // of the fractions that inertias of simple bodies bring
-
-/// Writes a number that is a fraction to the last bit, 1/3, as one; false where it is none.
-static bool put_fraction(hn_strbuf *b, const hn_language *language, double value) {
-    char above[16], below[16];
-    for (int d = 3; d <= LARGEST_DENOMINATOR && fabs(value) < 1000; d++) {
-        const double n = round(fabs(value) * d);
-        if (n >= 1 && n / d == fabs(value) && round(1000 * value) != 1000 * value) {
-            snprintf(above, sizeof above, "%.0f", n);
-            snprintf(below, sizeof below, "%d", d);
-            hn_strbuf_add(b, value < 0 ? "-" : "");
-            hn_code_fill(b, language->fraction, (const char *[]){above, below});
-            return true;
-        }
-    }
-    return false;
-}
-
-void hn_code_number(hn_strbuf *b, const hn_language *language, double value) {
-    char text[40];
-    if (language->fraction && put_fraction(b, language, value)) {
-        return;
-    }
-    for (int digits = 1; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value) {
-            break;
-        }
-    }
-    // a number of few digits needs no power of ten to be read
-    if (language->fraction && fabs(value) >= 1e-3 && fabs(value) < 1e6) {
-        snprintf(text, sizeof text, "%.*g", (int)DBL_DIG, value);
-        if (strtod(text, NULL) != value) {
-            snprintf(text, sizeof text, "%.17g", value);
-        }
-    }
-    char *const e = language->power ? strchr(text, 'e') : NULL;
-    if (e) {
-        // the power of ten as a number of its own, without its sign of plus and leading zeros
-        *e = '\0';
-        char exponent[16];
-        snprintf(exponent, sizeof exponent, "%d", atoi(e + 1));
-        hn_code_fill(b, language->power, (const char *[]){text, exponent});
-        return;
-    }
-    hn_strbuf_add(b, text);
-    if (language->needs_point && !strpbrk(text, ".e")) {
-        hn_strbuf_add(b, ".0");
-    }
-}
-
-/// Whether `word` is among the words of `list`.
-static bool lists(const char *list, const char *word) {
-    const size_t n = strlen(word);
-    for (const char *at = list; (at = strstr(at, word)) != NULL; at += n) {
-        const bool begins = at == list || at[-1] == ' ', ends = at[n] == ' ' || at[n] == '\0';
-        if (begins && ends) {
-            return true;
-        }
-    }
-    return false;
-}
-
-void hn_code_name(hn_strbuf *b, const hn_language *language, const char *name) {
-    char whole[128];
-    snprintf(whole, sizeof whole, "%s%s", name, lists(language->reserved, name) ? "_" : "");
-    if (language->put_name) {
-        language->put_name(b, whole);
-    } else {
-        hn_strbuf_add(b, whole);
-    }
-}
-
-void hn_code_words(hn_strbuf *b, const hn_language *language, const char *words) {
-    hn_strbuf plain;
-    hn_strbuf_init(&plain);
-    for (; *words; words++) {
-        const unsigned char c = (unsigned char)*words;
-        const char kept[2] = {(char)(c < 32 || c == 127 ? ' '
-                                     : c == '"'         ? '\''
-                                     : c == '\\'        ? '/'
-                                                        : c),
-                              0};
-        hn_strbuf_add(&plain, kept);
-    }
-    if (language->put_words) {
-        language->put_words(b, hn_strbuf_text(&plain));
-    } else {
-        hn_strbuf_add(b, hn_strbuf_text(&plain));
-    }
-    b->failed |= plain.failed;
-    hn_strbuf_reset(&plain);
-}
-
-void hn_code_fill(hn_strbuf *b, const char *form, const char *const *texts) {
-    for (const char *c = form; *c; c++) {
-        if (*c == '#' && isdigit((unsigned char)c[1])) {
-            hn_strbuf_add(b, texts[*++c - '1']);
-        } else {
-            hn_strbuf_add_n(b, c, 1);
-        }
-    }
-}
 
 // ---- which nodes get a variable ----
 
@@ -281,12 +177,27 @@ static void text_of(writer *w, hn_ex e, hn_strbuf *text) {
     hn_strbuf *outer = w->b;
     w->b = text;
     hn_strbuf_clear(text);
-    put_ex(w, e, LEVEL_SUM);
+    if (w->language->raised) {
+        const hn_formula formula = {text, w->g, w->language, w->variable, w->prefix};
+        hn_formula_write(&formula, e);
+    } else {
+        put_ex(w, e, LEVEL_SUM);
+    }
     w->b = outer;
 }
 
 static void begin_line(writer *w) {
     hn_strbuf_printf(w->b, "%*s", w->indent, "");
+}
+
+/// Whether a piece stands where it is used: where that is one place, or, in a formula to read,
+/// where its copies are short. Long pieces have a line of their own.
+static bool is_written_out(const writer *w, int uses, const hn_strbuf *text) {
+    if (!w->language->raised) {
+        return uses < 2 && text->n <= LONGEST;
+    }
+    const int length = hn_formula_length(hn_strbuf_text(text));
+    return length <= SHORT || (length <= LONGEST && length * (uses - 1) <= REPEATED);
 }
 
 /// Gives a variable to each node that is shared, or whose text is long. Arguments have smaller
@@ -297,7 +208,7 @@ static void write_shared(writer *w, hn_strbuf *text) {
             continue;
         }
         text_of(w, (hn_ex){1, node}, text);
-        if (w->uses[node] < 2 && text->n <= LONGEST) {
+        if (is_written_out(w, w->uses[node], text)) {
             continue;
         }
         hn_strbuf name;

@@ -6,6 +6,7 @@
 
 #include "base/strbuf.h"
 #include "export/language.h"
+#include "export/spelling.h"
 #include "expr/graph.h"
 
 /// One statement: `array`[row] or `array`[row][column] = value. Indices count from 0.
@@ -19,15 +20,5 @@ typedef struct hn_code_entry {
 /// is indented by `indent` spaces. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 4 MiB of text).
 HN_MUST_CHECK hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,
                                       const hn_code_entry *entries, int n, int indent);
-
-/// Writes a number so that it reads back to the same double.
-void hn_code_number(hn_strbuf *b, const hn_language *language, double value);
-/// Writes a symbol's name; a reserved word gets a '_' behind it.
-void hn_code_name(hn_strbuf *b, const hn_language *language, const char *name);
-/// Writes words of the scene (its title, what a parameter means) so that they stay inside a comment
-/// or a text: control characters become spaces, quotes single, and a backslash a slash.
-void hn_code_words(hn_strbuf *b, const hn_language *language, const char *words);
-/// Writes a form with #1, #2, ... replaced by the texts.
-void hn_code_fill(hn_strbuf *b, const char *form, const char *const *texts);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "expr/print.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -52,6 +53,47 @@ static void put_latex_words(hn_strbuf *b, const char *words) {
             hn_strbuf_add_n(b, words, 1);
         }
     }
+}
+
+/// A name whose index is upright where that is a word.
+static void put_latex_name(hn_strbuf *b, const char *name) {
+    hn_strbuf plain;
+    hn_strbuf_init(&plain);
+    hn_print_latex_name(&plain, name);
+    const char *text = hn_strbuf_text(&plain);
+    const char *index = strstr(text, "_{");
+    if (index && isalpha((unsigned char)index[2]) && isalpha((unsigned char)index[3])) {
+        const size_t n = strcspn(index + 2, "}");
+        hn_strbuf_add_n(b, text, (size_t)(index + 2 - text));
+        hn_strbuf_printf(b, "\\mathrm{%.*s}%s", (int)n, index + 2, index + 2 + n);
+    } else {
+        hn_strbuf_add(b, text);
+    }
+    b->failed |= plain.failed;
+    hn_strbuf_reset(&plain);
+}
+
+/// A unit in upright letters with powers, m/s^2 as $\mathrm{m/s^{2}}$; other words as words.
+static void put_latex_unit(hn_strbuf *b, const char *unit) {
+    if (!isalpha((unsigned char)unit[0]) ||
+        unit[strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/*^ ")]) {
+        put_latex_words(b, unit);
+        return;
+    }
+    hn_strbuf_add(b, "\\ensuremath{\\mathrm{");
+    while (*unit) {
+        const size_t digits = *unit == '^' ? strspn(unit + 1, "0123456789") : 0;
+        if (digits > 0) {
+            hn_strbuf_printf(b, "^{%.*s}", (int)digits, unit + 1);
+            unit += 1 + digits;
+            continue;
+        }
+        if (*unit != '^') {
+            hn_strbuf_printf(b, strchr("* ", *unit) ? "\\," : "%c", *unit);
+        }
+        unit++;
+    }
+    hn_strbuf_add(b, "}}");
 }
 
 static const hn_language_solver PYTHON_SOLVERS[] = {
@@ -222,10 +264,14 @@ static const hn_language LANGUAGES[] = {
      .first = 1,
      .times = "\\, ",
      .power = "\\ensuremath{#1\\cdot 10^{#2}}",
-     .fraction = "\\ensuremath{\\tfrac{#1}{#2}}",
+     .fraction = "\\tfrac{#1}{#2}",
+     .raised = "^{#1}",
+     .given = "\\ensuremath{#1}",
+     .named = "\\eq{#1}{#2}",
      .reserved = "",
-     .put_name = hn_print_latex_name,
+     .put_name = put_latex_name,
      .put_words = put_latex_words,
+     .put_unit = put_latex_unit,
      .call = {[HN_OP_RECIP] = "\\frac{1}{#1}",
               [HN_OP_POW] = "(#1)^{#2}",
               [HN_OP_SQRT] = "\\sqrt{#1}",

@@ -31,12 +31,17 @@ typedef struct hn_language {
     bool needs_point;        ///< 1 / 2 would divide whole numbers
     const char *times;       ///< between factors; NULL: "*"
     const char *fraction;    ///< #1 over #2, for numbers to read; NULL: decimals
-    const char *power;       ///< a number with a power of ten: #1 times 10^#2; NULL: as 1e-7
-    const char *reserved;    ///< words that no symbol may have, separated by spaces
+    /// a power, #1 the exponent, in a language of formulas to read (export/formula.h); else NULL
+    const char *raised;
+    const char *given;    ///< a given number of 6 digits, #1; NULL: with all its digits
+    const char *named;    ///< says what an entry is: #1 as `entry`, #2 the name; NULL: a comment
+    const char *power;    ///< a number with a power of ten: #1 times 10^#2; NULL: as 1e-7
+    const char *reserved; ///< words that no symbol may have, separated by spaces
     /// writes a name of the scene, the name of an array, words in a comment; NULL: as they are
     void (*put_name)(hn_strbuf *b, const char *name);
     void (*put_array)(hn_strbuf *b, const char *name);
     void (*put_words)(hn_strbuf *b, const char *words);
+    void (*put_unit)(hn_strbuf *b, const char *unit); ///< NULL: as words
     /// the ways to solve, behind each other up to one without a name; the first when none is asked
     /// for; NULL: there is one way only
     const hn_language_solver *solvers;

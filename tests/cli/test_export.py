@@ -231,6 +231,87 @@ def equations_faults(scene, language):
     return faults + [f"{key}: {theirs[key]!r} is not {value!r}" for key, value in ours.items() if key in theirs and not abs(theirs[key] - value) <= 1e-13 * max(1.0, abs(value))][:5]
 
 
+# ---- formulas to read, evaluated ----
+MACROS = {r"\sin": "sin", r"\cos": "cos", r"\tan": "tan", r"\arcsin": "asin", r"\arccos": "acos", r"\arctan": "atan", r"\sinh": "sinh", r"\cosh": "cosh",
+          r"\tanh": "tanh", r"\exp": "exp", r"\ln": "log", r"\min": "min", r"\max": "max", r"\sqrt": "sqrt", r"\,": "*", r"\cdot": "*", r"\lvert": "abs(", r"\rvert": ")"}  # fmt: skip
+
+
+def closing(text, at):
+    """Where the bracket that opens at `at` closes."""
+    depth = 0
+    for i in range(at, len(text)):
+        depth += text[i] in "({"
+        depth -= text[i] in ")}"
+        if depth == 0:
+            return i
+    raise ValueError(f"never closed: {text[at:at + 40]}")
+
+
+def formula(text, names):
+    """A formula as an expression of Python; `names` has the spelling of each symbol and its number."""
+    out, i = "", 0
+    group = lambda at: (formula(text[at + 1:closing(text, at)], names), closing(text, at) + 1)
+    while i < len(text):
+        name = next((n for n in names if text.startswith(n, i) and not (n[-1].isalpha() and n[0] == "\\" and text[i + len(n):i + len(n) + 1].isalpha())), None)
+        macro = re.match(r"\\operatorname\{\w+\}|\\[A-Za-z]+|\\,", text[i:])
+        if name:
+            out, i = f"{out}N[{names[name]}]", i + len(name)
+        elif macro and macro.group(0) in (r"\frac", r"\tfrac"):
+            above, i = group(i + macro.end())
+            below, i = group(i)
+            out += f"(({above})/({below}))"
+        elif macro and macro.group(0) == r"\ensuremath":
+            inner, i = group(i + macro.end())
+            out += f"({inner})"
+        elif macro:
+            word, i, power = macro.group(0), i + macro.end(), ""
+            word = MACROS.get(word) or word[14:-1]
+            if text[i:i + 2] == "^{":
+                power, i = group(i + 1)
+            if text[i:i + 1] in "({" and word.isalnum():
+                inner, i = group(i)
+                word = f"{word}({inner})"
+            out += f"{word}**({power})" if power else word
+        elif text[i] == "^":
+            power, i = group(i + 1)
+            out += f"**({power})"
+        else:
+            out, i = out + text[i], i + 1
+    return out
+
+
+def formulas_faults(scene):
+    """Where the formulas of the sheet differ from the program in Python. Symbols get the program's numbers, which have all digits."""
+    text, program = (call([PROGRAM, "export", scene, "--language", name]).stdout for name in ("latex", "python"))
+    numbers = [float(x) for x in re.findall(r"^\w+ = (\S+) # ", program.partition("def ")[0], re.M)]
+    for word in ("START_Q", "START_V"):
+        numbers += [float(x) for x in re.search(rf"{word} = np\.array\(\[(.*?)\]", program).group(1).split(",")]
+    lines = []
+    for line in (line for line in text.splitlines() if line.startswith(r"\eq{")):
+        end = closing(line, 3)
+        lines.append((line[4:end], line[end + 2:closing(line, end + 1)]))
+    first = next(i for i, (left, _) in enumerate(lines) if left == "q_{1}")
+    symbols = [left for left, _ in lines[:first]] + [right for left, right in lines[first:] if re.fullmatch(r"[qv]_\{\d+\}", left)]
+    if len(symbols) != len(numbers):
+        return [f"{len(symbols)} symbols, {len(numbers)} numbers"]
+    values, got = {**dict(zip(symbols, numbers)), "t": 0.0}, {}
+    for left, right in lines[len(symbols):]:
+        if left.startswith(r"\term{rate}"):
+            continue
+        spelled = sorted(values, key=len, reverse=True)
+        known = {name: i for i, name in enumerate(spelled)}
+        value = eval(formula(right, known), {**FUNCTIONS, "N": [values[name] for name in spelled]})  # noqa: S307 (the sheet's own formulas)
+        term = re.fullmatch(r"\\term\{(\w+)\}_\{([\d,]+)\}", left)
+        if term:
+            got[(term.group(1), *(int(k) - 1 for k in term.group(2).split(",")))] = value
+        else:
+            values[left] = value
+    wanted = {key: value for key, value in equations_in_python(scene).items() if key[0] != "mass" or key[1] <= key[2]}
+    faults = [f"entries that differ: {sorted(got.keys() ^ wanted.keys())[:5]}"] if got.keys() != wanted.keys() or not got else []
+    # the same terms in another order: each entry is rounded a few dozen times at the size of its largest term
+    return faults + [f"{key}: {got[key]!r} is not {value!r}" for key, value in wanted.items() if key in got and not abs(got[key] - value) <= 1e-11 * max(1.0, abs(value))][:5]
+
+
 def hostile_words(folder):
     """A title that would end the comment it stands in: every program stays the program it is."""
     scene = json.loads(call([PROGRAM, "inspect", "pendulum", "--json"]).stdout)
@@ -411,7 +492,8 @@ def table(results):
     print("Every shipped scene as a program in every language: run, and compared with the workbench by its own self-check")
     print("(accelerations and energy to 1e-10, the motion to 1e-6). Respelled: the equations alone were evaluated. Parsed: the whole")
     print("program was read by tree-sitter's grammar. Debian 12 has no Julia, Wolfram or Modelica; no parser of the last two was")
-    print("found there or in npm: how their programs solve, integrate and print was not tried.")
+    print("found there or in npm: how their programs solve, integrate and print was not tried. Evaluated: each formula of the sheet")
+    print("in LaTeX was read back and its value at the start compared with the program in Python.")
     print(f"{'language':14} {'how':10} {'scenes':>6} {'agree':>6}  those that do not")
     for name, how in dict.fromkeys((name, how) for name, how, *_ in results):
         mine = [(scene, faults) for n, h, scene, faults in results if (n, h) == (name, how)]
@@ -439,6 +521,7 @@ def main():
             pairs = [(scene, name) for name in RESPELLED for scene in scenes]
             faults = processes.map(equations_faults, *zip(*sorted(pairs)), chunksize=len(RESPELLED))
             ran += [(name, "respelled", scene, found) for (scene, name), found in zip(sorted(pairs), faults)]
+            ran += [("latex", "evaluated", scene, found) for scene, found in zip(scenes, processes.map(formulas_faults, scenes))]
         ran.sort(key=lambda row: row[1] == "respelled" and RESPELLED.index(row[0]) + 1)
         if every:
             modules = sys.argv[sys.argv.index("--parsers") + 1] if "--parsers" in sys.argv else None

@@ -50,6 +50,14 @@ static void end_comment(hn_strbuf *b, const hn_exporter *e) {
     hn_strbuf_printf(b, "%s\n", e->language->comment_end ? e->language->comment_end : "");
 }
 
+static void put_unit(hn_strbuf *b, const hn_exporter *e, const char *unit) {
+    if (e->language->put_unit) {
+        e->language->put_unit(b, unit);
+    } else {
+        hn_code_words(b, e->language, unit);
+    }
+}
+
 static void put_parameters(hn_strbuf *b, const hn_exporter *e, int indent) {
     const hn_scene *scene = hn_model_scene(e->model);
     for (int i = 0; i < scene->n_params; i++) {
@@ -60,33 +68,15 @@ static void put_parameters(hn_strbuf *b, const hn_exporter *e, int indent) {
         }
         hn_strbuf value;
         hn_strbuf_init(&value);
-        hn_code_number(&value, e->language, p->value);
+        hn_code_given(&value, e->language, p->value);
         put_constant(b, e, indent, p->name, hn_strbuf_text(&value));
         hn_strbuf_printf(b, " %s ", e->language->comment);
-        hn_code_words(b, e->language, p->unit);
+        put_unit(b, e, p->unit);
         hn_strbuf_add(b, p->unit[0] && p->about[0] ? ", " : "");
         hn_code_words(b, e->language, p->about);
         end_comment(b, e);
         b->failed |= value.failed;
         hn_strbuf_reset(&value);
-    }
-}
-
-/// A comment that says which symbol an entry is.
-static void put_name(hn_strbuf *b, const hn_exporter *e, int indent, const char *array, int index,
-                     const char *name) {
-    hn_strbuf_printf(b, "%*s%s %s[%d] ", indent, "", e->language->comment, array, index);
-    hn_code_words(b, e->language, name);
-    end_comment(b, e);
-}
-
-static void put_names(hn_strbuf *b, const hn_exporter *e, int indent) {
-    const int first = e->language->first;
-    for (int i = 0; i < e->info.nq; i++) {
-        put_name(b, e, indent, "q", i + first, symbol_name(e, e->x.q_symbols[i]));
-    }
-    for (int i = 0; i < e->info.nv; i++) {
-        put_name(b, e, indent, "v", i + first, symbol_name(e, e->x.v_symbols[i]));
     }
 }
 
@@ -99,6 +89,36 @@ static void entry_text(const hn_exporter *e, const char *array, int i, char out[
     hn_code_fill(&text, e->language->entry, (const char *[]){array, index});
     snprintf(out, 32, "%s", hn_strbuf_text(&text));
     hn_strbuf_reset(&text);
+}
+
+/// Says which symbol an entry is, in a comment or in a formula.
+static void put_name(hn_strbuf *b, const hn_exporter *e, int indent, const char *array, int index,
+                     const char *name) {
+    char entry[32];
+    entry_text(e, array, index, entry);
+    hn_strbuf_printf(b, "%*s", indent, "");
+    if (e->language->named) {
+        hn_strbuf kept;
+        hn_strbuf_init(&kept);
+        hn_code_name(&kept, e->language, name);
+        hn_code_fill(b, e->language->named, (const char *[]){entry, hn_strbuf_text(&kept)});
+        hn_strbuf_add(b, "\n");
+        b->failed |= kept.failed;
+        hn_strbuf_reset(&kept);
+        return;
+    }
+    hn_strbuf_printf(b, "%s %s ", e->language->comment, entry);
+    hn_code_words(b, e->language, name);
+    end_comment(b, e);
+}
+
+static void put_names(hn_strbuf *b, const hn_exporter *e, int indent) {
+    for (int i = 0; i < e->info.nq; i++) {
+        put_name(b, e, indent, "q", i, symbol_name(e, e->x.q_symbols[i]));
+    }
+    for (int i = 0; i < e->info.nv; i++) {
+        put_name(b, e, indent, "v", i, symbol_name(e, e->x.v_symbols[i]));
+    }
 }
 
 static void put_unpack(hn_strbuf *b, const hn_exporter *e, int indent) {
@@ -127,6 +147,18 @@ static int add_entries(hn_code_entry *list, int n, const char *array, const hn_e
         }
     }
     return n;
+}
+
+/// The mass matrix without its lower half, where a language is there to read.
+static int add_mass(hn_code_entry *list, const hn_exporter *e) {
+    const int nv = e->info.nv;
+    int n = add_entries(list, 0, "mass", e->M, nv, nv), kept = 0;
+    for (int i = 0; i < n; i++) {
+        if (!e->language->raised || list[i].row <= list[i].column) {
+            list[kept++] = list[i];
+        }
+    }
+    return kept;
 }
 
 /// Marks what is left to the student: a comment for each part, with its shape and meaning.
@@ -166,7 +198,7 @@ static hn_status put_terms(hn_strbuf *b, const hn_exporter *e, int indent) {
     if (e->blanks) {
         put_blanks(b, e, indent);
     } else {
-        n = add_entries(list, n, "mass", e->M, nv, nv);
+        n = add_mass(list, e);
         n = add_entries(list, n, "force", e->x.f, nv, 0);
         n = add_entries(list, n, "jacobian", e->J, nc, nv);
         n = add_entries(list, n, "bias", e->x.gamma, nc, 0);
@@ -189,12 +221,13 @@ static void put_quaternion_rates(hn_strbuf *b, const hn_exporter *e, int indent,
         hn_strbuf_init(&value);
 
         // the right-hand side
-        hn_strbuf_add(&value, "0.5*(");
+        const char *times = e->language->times ? e->language->times : "*";
+        hn_strbuf_printf(&value, "0.5%s(", times);
         for (int k = 0; k < 3; k++) {
             char e_text[32], w_text[32];
             entry_text(e, "q", q + place[row][k], e_text);
             entry_text(e, "v", v + k, w_text);
-            hn_strbuf_printf(&value, "%s%s*%s", sign[row][k], e_text, w_text);
+            hn_strbuf_printf(&value, "%s%s%s%s", sign[row][k], e_text, times, w_text);
         }
         hn_strbuf_add(&value, ")");
 
@@ -229,7 +262,7 @@ static void put_rates(hn_strbuf *b, const hn_exporter *e, int indent) {
 static void put_numbers(hn_strbuf *b, const hn_exporter *e, const double *x, int n) {
     for (int i = 0; i < n; i++) {
         hn_strbuf_add(b, i ? ", " : "");
-        hn_code_number(b, e->language, x[i]);
+        hn_code_given(b, e->language, x[i]);
     }
 }
 

@@ -121,13 +121,41 @@ static void names_and_numbers_are_spelled_as_the_language_reads_them(void **stat
     assert_string_equal(code_of(&f, "wolfram", hn_num(-1e-7)), "m[[1]] = -1*^-7;\n");
     // numbers to read: fractions that are exact, and no power of ten where a few digits do
     assert_string_equal(code_of(&f, "latex", hn_num(1.0 / 3)),
-                        "\\eq{\\term{m}_{1}}{\\ensuremath{\\tfrac{1}{3}}}\n");
+                        "\\eq{\\term{m}_{1}}{\\tfrac{1}{3}}\n");
     assert_string_equal(code_of(&f, "latex", hn_num(-1.0 / 6)),
-                        "\\eq{\\term{m}_{1}}{-\\ensuremath{\\tfrac{1}{6}}}\n");
+                        "\\eq{\\term{m}_{1}}{-\\tfrac{1}{6}}\n");
     assert_string_equal(code_of(&f, "latex", hn_num(10)), "\\eq{\\term{m}_{1}}{10}\n");
     assert_string_equal(code_of(&f, "latex", hn_num(0.25)), "\\eq{\\term{m}_{1}}{0.25}\n");
     assert_string_equal(code_of(&f, "latex", hn_num(2.5e+20)),
                         "\\eq{\\term{m}_{1}}{\\ensuremath{2.5\\cdot 10^{20}}}\n");
+    end(&f);
+}
+
+static void a_formula_to_read_has_powers_fractions_and_no_short_pieces(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    hn_graph *g = f.g;
+    const hn_ex m = hn_symbol(g, "m1", NULL), l = hn_symbol(g, "l1", NULL);
+    const hn_ex ml2 = hn_mul(g, m, hn_mul(g, l, l));
+
+    // a shared piece that is short stands where it is used, a number goes into the sum
+    const hn_ex sum = hn_add(g, ml2, hn_scale(3, hn_mul(g, f.x, hn_mul(g, l, l))));
+    const hn_code_entry entries[] = {{"m", 0, -1, hn_scale(1.0 / 3, sum)}, {"m", 1, -1, sum}};
+    assert_int_equal(hn_code_write(&f.b, g, hn_language_find("latex"), entries, 2, 0), HN_OK);
+    assert_string_equal(
+        hn_strbuf_text(&f.b),
+        "\\eq{\\term{m}_{1}}{\\tfrac{1}{3}\\, m_{1}\\, l_{1}^{2} + x\\, l_{1}^{2}}\n"
+        "\\eq{\\term{m}_{2}}{m_{1}\\, l_{1}^{2} + 3\\, x\\, l_{1}^{2}}\n");
+
+    // quotients, powers of functions and of sums
+    const hn_ex s = hn_sin(g, f.x), d = hn_sub(g, f.x, f.y);
+    assert_string_equal(code_of(&f, "latex", hn_scale(-0.5, hn_div(g, hn_mul(g, s, s), f.y))),
+                        "\\eq{\\term{m}_{1}}{-\\tfrac{1}{2}\\, \\frac{\\sin^{2}(x)}{y}}\n");
+    assert_string_equal(code_of(&f, "latex", hn_mul(g, d, d)),
+                        "\\eq{\\term{m}_{1}}{(x - y)^{2}}\n");
+    assert_string_equal(words_of(&f, "latex", hn_code_name, "theta_coupler"),
+                        "\\theta_{\\mathrm{coupler}}");
     end(&f);
 }
 
@@ -151,6 +179,7 @@ int main(void) {
         cmocka_unit_test(variables_keep_clear_of_the_scenes_names),
         cmocka_unit_test(a_number_reads_back_to_the_same_double),
         cmocka_unit_test(names_and_numbers_are_spelled_as_the_language_reads_them),
+        cmocka_unit_test(a_formula_to_read_has_powers_fractions_and_no_short_pieces),
         cmocka_unit_test(words_of_a_scene_do_not_leave_their_comment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
