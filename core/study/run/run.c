@@ -339,8 +339,15 @@ int hn_run_passed_singular(const hn_run *run, double *t) {
 }
 
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out) {
-    return isfinite(t) ? hn_sampling_at(&run->sampling, t, run->state == HN_RUN_FAILED, out)
-                       : HN_ERR_INPUT;
+    if (!isfinite(t)) {
+        return HN_ERR_INPUT;
+    }
+    const bool failed = run->state == HN_RUN_FAILED;
+    const hn_status status = hn_sampling_at(&run->sampling, t, failed, out);
+
+    // a motion that grows beyond every bound on the way to its next step has ended there
+    const bool ended = status == HN_ERR_DIVERGED && !failed && t > run->stepping.now.t;
+    return ended ? fail(run, status) : status;
 }
 
 hn_multiplier_mark hn_run_sample_mark(hn_run *run) {
