@@ -23,7 +23,8 @@ enum {
     HN_GRADE_MAX_FORMULA = 2000,  ///< characters of one entry
     HN_GRADE_TEXT = 400,
     HN_GRADE_MAX_PARTS = 12,
-    HN_GRADE_MAX_HINTS = 8
+    HN_GRADE_MAX_HINTS = 8,
+    HN_LETTERS = 2 ///< counts up when options are dealt in another order; verdicts hold it
 };
 
 /// A parameter or coordinate: random in [low, high], or a formula of those that closes the loop.
@@ -72,7 +73,8 @@ typedef struct hn_exercise {
     int n_owners;                   ///< of a class: whose numbers a wrong answer may be
     const hn_variant_owner *owners; ///< borrowed
     const hn_library *lib;          ///< scenes that parts run; NULL: none
-    struct hn_rubric *rubric;       ///< owned; NULL: the exercise's own points and shares
+    bool first_letters; ///< options in the order of letters 1, for verdicts that were made with it
+    struct hn_rubric *rubric; ///< owned; NULL: the exercise's own points and shares
 } hn_exercise;
 
 /// Reads an exercise (lessons/NN-topic/problems/ID.json). Returns owned.

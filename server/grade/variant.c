@@ -14,6 +14,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// The seed of the order of a part's options. The names of the exercise and of the part count: who
+/// has found the right letter of one part knows nothing of another's with the same seed.
+static uint64_t seed_letters(const hn_variant *x, const hn_part *p) {
+    if (x->exercise->first_letters) {
+        return p->seed ^ 0xdea1; // alike for the first parts of all exercises, for the second, ...
+    }
+    const uint64_t names = hn_hash_text(hn_hash_text(HN_HASH_START, x->exercise->id), p->id);
+    return hn_hash_mix(names ^ hn_hash_mix(x->seed));
+}
+
 hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t seed,
                           hn_diag *diag) {
     memset(x, 0, sizeof *x);
@@ -30,6 +40,7 @@ hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t s
         x->part[i].draw = &x->draw;
         x->part[i].lib = exercise->lib;
         x->part[i].seed = hn_hash_mix(x->seed + 7919 * (uint64_t)(i + 1));
+        x->part[i].letters = seed_letters(x, &x->part[i]);
     }
     return status;
 }

@@ -175,6 +175,9 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     hn_json_put_string(b, "problem_hash", hash);
     hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
     hn_json_put_int(b, "states", v->n_states);
+    if (v->problem->n_parts > 0) {
+        hn_json_put_int(b, "letters", v->problem->first_letters ? 1 : HN_LETTERS);
+    }
 
     if (v->problem->rubric) {
         hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);

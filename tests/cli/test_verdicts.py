@@ -63,6 +63,34 @@ def statuses(folder):
     expect("a verdict on a program says how it is graded again", again.returncode == 2 and "'four-bar' is a scene" in again.stderr, again.stderr)
 
 
+def letters_of_then(folder):
+    """A verdict that was made when options had other letters is graded by the letters of then."""
+    part = {"id": "a", "ask": "which?", "kind": "choice", "points": 2,
+            "options": [{"text": t, "right": t == "yes", "says": "no"} for t in ("yes", "no", "both", "none")],
+            "reasons": [{"text": t, "right": t == "so", "says": "no"} for t in ("so", "thus", "hence", "ergo")]}  # fmt: skip
+    path = write(folder, "mine.json", {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "parts": [part]})
+    # letters 1, as dealt by the program that wrote no "letters" into its verdicts
+    for seed, pair in ((1, "dd"), (2, "bd"), (3, "ad"), (4, "da")):
+        answer = write(folder, "a.json", {"a": list(pair)})
+        now = json.loads(run("grade", path, answer, "--seed", str(seed), "--json").stdout)
+        then = {key: value for key, value in now.items() if key != "letters"}
+        then.update(score=2, build="before")
+        kept = write(folder, "then.json", then)
+        done = run("regrade", kept)
+        expect(f"seed {seed}: letters 2 are others, letters 1 are right in a verdict without", now["letters"] == 2 and now["score"] < 2
+               and "the same score: 2 of 2 before" in done.stdout and "options have other letters since" in done.stdout, done.stdout + done.stderr)  # fmt: skip
+        done = run("regrade", kept, answer, "--json")
+        expect(f"seed {seed}: of a file too", json.loads(done.stdout)["same"], done.stdout)
+    done = run("regrade", write(folder, "now.json", now))
+    expect("a verdict of now is graded by the letters of now", "the same score" in done.stdout and "other letters" not in done.stdout, done.stdout)
+    done = run("regrade", write(folder, "later.json", dict(now, letters=3)))
+    expect("a verdict of letters that are not known is refused", done.returncode == 2 and "options in the order 3" in done.stderr, done.stderr)
+    old = json.loads(run("grade", "gears", write(folder, "g.json", {"c": 1}), "--json").stdout)
+    del old["letters"]
+    done = run("regrade", write(folder, "gears.json", old))
+    expect("an exercise without options has no letters", done.returncode == 0 and "letters" not in done.stdout, done.stdout)
+
+
 def hand_in_line(*words):
     text = run("problem", "p1", *words).stdout
     return json.loads(text.split("Hand in a JSON file:\n")[1].splitlines()[0].replace("...", "null"))
@@ -309,6 +337,6 @@ def in_a_students_words(folder):
 
 if __name__ == "__main__":
     sys.exit(speak_tap([
-        statuses, own_variant, whose_variant, forms, platforms, regrading_the_ungradable,
+        statuses, letters_of_then, own_variant, whose_variant, forms, platforms, regrading_the_ungradable,
         named_file, for_teachers, refusals, outputs, files_of_others, in_a_students_words,
     ]))

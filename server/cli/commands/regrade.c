@@ -64,6 +64,9 @@ static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     if (strcmp(text_of(old, "submission_hash"), hash) != 0) {
         hn_strbuf_add(b, "  the submission is another one than was graded\n");
     }
+    if (v->problem->first_letters) {
+        hn_strbuf_add(b, "  options have other letters since; graded by those of the verdict\n");
+    }
     if (strcmp(text_of(old, "build"), hn_build_name()) != 0) {
         hn_strbuf_printf(b, "  graded by %s, now by %s\n", text_of(old, "build"), hn_build_name());
     }
@@ -145,6 +148,26 @@ static hn_status load_exercise(const hn_library *lib, const cJSON *old, hn_exerc
     return hn_cli_load_exercise(lib, file[0] ? file : id, out, diags);
 }
 
+static bool has_options(const hn_exercise *e) {
+    bool found = false;
+    for (int i = 0; i < e->n_parts; i++) {
+        found |= cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "options") != NULL;
+    }
+    return found;
+}
+
+/// Has the options of the exercise dealt as they were for the verdict.
+static hn_status take_letters(const cJSON *old, hn_exercise *e, hn_diags *diags) {
+    const double letters = hn_part_number(old, "letters", 1);
+    if (letters != 1 && letters != HN_LETTERS) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/letters", "grade it again with a newer holonom",
+                            "the verdict has options in the order %g; this program knows 1 and %d",
+                            letters, HN_LETTERS);
+    }
+    e->first_letters = letters == 1 && has_options(e);
+    return HN_OK;
+}
+
 /// Reads the parameters of the scene that the verdict names into the words of --set.
 static void take_settings(const cJSON *old, hn_words *out) {
     const cJSON *one;
@@ -203,6 +226,7 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
 
     // the submission: the file named, or the copy that the verdict holds
     hn_status status = load_exercise(lib, old, &e, &diags);
+    HN_THEN(status, take_letters(old, e, &diags));
     HN_THEN(status, hn_cli_apply_rubric(args, e, &diags));
     if (status == HN_OK && args->words.n > 1) {
         status = hn_grade_file(e, args->words.word[1], seed, v);

@@ -33,6 +33,7 @@ typedef struct hn_part {
     const char *id;
     double points;
     uint64_t seed;         ///< of the variant
+    uint64_t letters;      ///< the seed of the order of options and of reasons
     hn_draw *draw;         ///< the numbers of the variant
     const hn_library *lib; ///< shipped scenes; NULL: kinds that run mechanisms cannot grade
 } hn_part;

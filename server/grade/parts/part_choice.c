@@ -10,7 +10,7 @@
 
 enum { MAX_OPTIONS = 10 };
 
-/// The options in the order of this seed.
+/// The options, or the reasons, in the order of this part of this exercise with this seed.
 static int deal(const hn_part *p, const char *key, const cJSON *order[MAX_OPTIONS]) {
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(p->node, key), *m;
     int n = 0;
@@ -22,7 +22,7 @@ static int deal(const hn_part *p, const char *key, const cJSON *order[MAX_OPTION
     const int reasons = strcmp(key, "reasons") == 0;
     for (int i = n - 1; i > 0; i--) { // Fisher and Yates
         const uint64_t k = (uint64_t)(100 * (reasons + 1) + i);
-        const int j = (int)(hn_draw_random(p->seed ^ 0xdea1, k) * (i + 1));
+        const int j = (int)(hn_draw_random(p->letters, k) * (i + 1));
         const cJSON *swap = order[i];
         order[i] = order[j];
         order[j] = swap;
