@@ -91,14 +91,19 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         return;
     }
 
-    // the sum, then entry by entry
+    // the sum, then entry by entry, in columns
+    int widest = 5;
+    for (int k = 0; k < v->n_entries; k++) {
+        const int width = (int)strlen(v->entry[k].name);
+        widest = width > widest ? width : widest;
+    }
     hn_strbuf_printf(b, "score %g of %g: %s\n", v->score, v->max_score, v->summary);
     if (v->note[0]) {
         hn_strbuf_printf(b, "note: %s\n", v->note);
     }
     for (int k = 0; k < v->n_entries; k++) {
         const hn_entry_verdict *e = &v->entry[k];
-        hn_strbuf_printf(b, "  %-5s %4g / %g  %s\n", e->name, e->points, e->max_points,
+        hn_strbuf_printf(b, "  %-*s %4g / %g  %s\n", widest, e->name, e->points, e->max_points,
                          e->mistake[0] ? e->mistake : "right");
         hn_verdict_entry_text(b, v, e, "        ");
         if (k == v->shown_entry && v->n_names > 0) {

@@ -41,6 +41,52 @@ static void quote(const char *text, char out[64]) {
     snprintf(out + n, (size_t)(64 - n), "%s", text[n] ? "..." : "");
 }
 
+/// Names the number of a line that JSON does not have, as Python and others write it: "a[2] is
+/// NaN", "q[0][2] is Infinity". Returns whether there is one.
+static bool name_nan(const char *line, char out[64]) {
+    const char *nan = strstr(line, "NaN"), *infinity = strstr(line, "Infinity");
+    const char *bad = !nan || (infinity && infinity < nan) ? infinity : nan;
+    if (!bad) {
+        return false;
+    }
+
+    // back to the name: the commas of the list, then the rows before it
+    int place[2] = {0, 0}, depth = 0, inside = 0;
+    const char *at = bad;
+    while (at > line && *at != ':') {
+        at--;
+        place[0] += *at == ',' && depth == 0;
+        place[1] += *at == ']';
+        inside += *at == ']';
+        if (*at == '[') {
+            depth += inside == 0;
+            inside -= inside > 0;
+        }
+    }
+    const char *end = at;
+    while (end > line && *end != '"') {
+        end--;
+    }
+    const char *name = end;
+    while (name > line && name[-1] != '"') {
+        name--;
+    }
+
+    // from outside to inside
+    const char *kind = bad == nan ? "NaN" : "Infinity";
+    const int n = (int)(end - name);
+    if (n <= 0 || n > 20 || n != (int)strspn(name, "abcdefghijklmnopqrstuvwxyz")) {
+        snprintf(out, 64, "it holds %s", kind);
+    } else if (depth == 0) {
+        snprintf(out, 64, "%.*s is %s", n, name, kind);
+    } else if (depth == 1) {
+        snprintf(out, 64, "%.*s[%d] is %s", n, name, place[0], kind);
+    } else {
+        snprintf(out, 64, "%.*s[%d][%d] is %s", n, name, place[1], place[0], kind);
+    }
+    return true;
+}
+
 // ---- asking ----
 
 /// Sends what is in c->text and reads the answer's object. Returns NULL after a failure.
@@ -68,10 +114,12 @@ static cJSON *ask(hn_conversation *c, double seconds) {
     cJSON *answer = cJSON_Parse(line);
     if (!cJSON_IsObject(answer)) {
         cJSON_Delete(answer);
-        // what Python and others write for numbers that JSON does not have
-        const bool is_nan = strstr(line, "NaN") || strstr(line, "Infinity");
-        REFUSE(c, "answer %lld %s: '%s'", c->id,
-               is_nan ? "holds NaN or Infinity, which are no numbers" : "is no JSON object", begin);
+        char wrong[64];
+        if (name_nan(line, wrong)) {
+            REFUSE(c, "answer %lld: %s; every number must be finite", c->id, wrong);
+        } else {
+            REFUSE(c, "answer %lld is no JSON object: '%s'", c->id, begin);
+        }
         return NULL;
     }
     return answer;

@@ -179,6 +179,11 @@ class Filled(unittest.TestCase):
             self.assertAlmostEqual(float(re.search(r"expected +force\[0\] = ([-\d.]+)", asked)[1]), expected, 5)
             self.assertNotIn("expected", call("grade", "four-bar", path, "--format", form).stdout)
 
+    def test_the_points_of_the_parts_stand_in_one_column(self):
+        path = self.put("empty.c", call("export", "four-bar", "--language", "c", "--blanks").stdout)
+        lines = re.findall(r"^  (?:mass|force|jacobian|bias) +\S+ / 2", call("grade", "four-bar", path).stdout, re.M)
+        self.assertEqual([len(line) for line in lines], 4 * [len(lines[0])], lines)
+
     def test_a_program_has_no_variant_to_choose(self):
         done = call("grade", "four-bar", self.put("any.py", "x"), "--seed", "7")
         self.assertEqual((done.returncode, "the program of a scene has none" in done.stderr), (2, True), done.stderr)

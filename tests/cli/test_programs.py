@@ -91,6 +91,14 @@ class StartingPoints(unittest.TestCase):
         opened = len(re.findall(r"^(function|for)\b", text, re.M))
         self.assertEqual((opened, len(re.findall(r"^end$", text, re.M))), (3, 3))
 
+    def test_the_help_and_every_starting_point_say_how_a_program_steps_by_itself(self):
+        texts = {language: call("program", language).stdout for language in ENDINGS}
+        texts["help"] = call("help", "program").stdout
+        for name, text in texts.items():
+            flat = re.sub(r"\s+", " ", text)
+            for words in ('"provides": "step"', "asked t, h, q, v", "q, v at t + h", "@own:h=", "server/program/README.md", "serve --programs DIR"):
+                self.assertIn(words, flat, name)
+
     def test_it_does_not_write_over_the_work_of_a_student(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "mine.py")
@@ -304,7 +312,9 @@ HOSTILE = {
     "sends no numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'])", "has no list q"),
     "sends words for numbers": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=['x'], v=ask['v'])", "q[0] is not a finite number"),
     "sends nested lists": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[[1]], v=ask['v'])", "q[0] is not a finite number"),
-    "sends NaN": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[float('nan')], v=ask['v'])", "holds NaN or Infinity, which are no numbers"),
+    "sends NaN": ("greet('step')\nfor ask in questions(): say(id=ask['id'], q=[float('nan')], v=ask['v'])", "answer 1: q[0] is NaN; every number must be finite"),
+    "sends NaN behind numbers": ("greet('step')\nfor ask in questions(): print('{\"id\":%d,\"q\":[0, 1.5, NaN]}' % ask['id'], flush=True)", "q[2] is NaN"),
+    "sends Infinity in a row": ("greet('solve')\nfor ask in questions(): print('{\"id\":%d,\"q\":[[0], [2, 3], [1, -Infinity]]}' % ask['id'], flush=True)", "q[2][1] is Infinity"),
     "sends numbers beyond all bounds": ("greet('step')\nfor ask in questions(): print('{\"id\":%d,\"q\":[1e999],\"v\":[0]}' % ask['id'], flush=True)", "q[0] is not a finite number"),
     "answers out of order": ("greet('step')\nfor ask in questions(): say(id=ask['id'] + 1, q=ask['q'], v=ask['v'])", "has the id 2; question 1 was asked"),
     "answers without an id": ("greet('step')\nfor ask in questions(): say(q=ask['q'], v=ask['v'])", "has no id"),

@@ -148,6 +148,12 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
            opts->token ? opts->token : "");
     printf(
         "Space play and pause   arrows step   - = speed   Backspace reset   Ctrl+C here ends it\n");
+    if (args->programs) {
+        printf(
+            "Programs in %s may run, as the method program:NAME; '+ add' on the page lists them. "
+            "'holonom help program' says how to write one\n",
+            args->programs);
+    }
     fflush(stdout);
 }
 
