@@ -523,6 +523,47 @@ class Bounded(unittest.TestCase):
         self.assertEqual(server.stop(), 0, "".join(server.errors))
         self.assertIn("the server ends while 2 of its studies run; their results are lost", "".join(server.errors))
 
+    def test_a_study_goes_on_in_the_next_server_with_the_same_folder(self):
+        body = {"scene": "four-bar", "kind": "work-precision", "time": 5, "samples": 0, "levels": 6,
+                "methods": ["projection@rk4", "index1@rk4", "ggl@radau5"]}
+
+        def points(document):
+            return {(m["method"], p["method"]): (p["worst"], p["steps"]) for m in document["methods"] for p in m["points"] if p["state"] == "done"}
+
+        with tempfile.TemporaryDirectory() as folder:
+            server = driver.Server("--runs", folder)
+            study = start(server, body)
+            kept = os.path.join(folder, "studies")
+
+            def lines():
+                return sum(open(os.path.join(kept, name), "rb").read().count(b"\n") for name in os.listdir(kept) if name.endswith(".ndjson"))
+
+            self.assertTrue(driver.until(lambda: lines() >= 3), os.listdir(kept))
+            self.assertEqual(server.stop(), 0, "".join(server.errors))
+            self.assertIn("what they have done is kept", "".join(server.errors))
+
+            # a second name for the journal, which goes when the study is whole
+            journal = [os.path.join(kept, name) for name in os.listdir(kept) if name.endswith(".ndjson")]
+            self.assertEqual(len(journal), 1)
+            with open(journal[0], "rb") as file:
+                before = file.read()
+            os.link(journal[0], os.path.join(folder, "seen"))
+
+            # the same question: the lines that were kept stand, with the times measured then, and the rest is computed
+            server = driver.Server("--runs", folder)
+            try:
+                study = wait(server, start(server, body))
+                self.assertEqual(study["state"], "finished", study["reason"])
+                self.assertEqual([n for n in os.listdir(kept) if n.endswith(".ndjson")], [])  # whole: nothing is left unfinished
+                with open(os.path.join(folder, "seen"), "rb") as file:
+                    whole = file.read()
+                self.assertTrue(whole.startswith(before[:before.rindex(b"\n") + 1]))
+                self.assertGreater(len(whole), len(before))
+                again = wait(server, start(server, body))
+                self.assertEqual(points(study["document"]), points(again["document"]))
+            finally:
+                self.assertEqual(server.stop(), 0)
+
 
 if __name__ == "__main__":
     driver.main()

@@ -158,7 +158,8 @@ static const option OPTIONS[] = {
      "token that clients must send; made and printed where --host is not this machine; none: no "
      "token"},
     {"--guests", NULL, OPTION_FLAG, AT(guests), "allow reading without the token"},
-    {"--runs", "DIR", OPTION_TEXT, AT(runs), "a folder in which finished runs are kept"},
+    {"--runs", "DIR", OPTION_TEXT, AT(runs),
+     "a folder in which finished runs and unfinished studies are kept"},
     {"--run-cpu", "S", OPTION_NUMBER, AT(run_cpu),
      "largest computing time of one long request [s]"},
     {"--idle-pause", "S", OPTION_NUMBER, AT(idle_pause),

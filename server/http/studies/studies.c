@@ -215,10 +215,13 @@ void hn_studies_tell_end(hn_studies *all) {
     }
     pthread_mutex_unlock(&all->lock);
     if (n_running > 0) {
-        fprintf(stderr,
-                "holonom: the server ends while %d of its studies %s; their results are lost; "
-                "'holonom study' keeps what it has done\n",
-                n_running, n_running == 1 ? "runs" : "run");
+        fprintf(stderr, "holonom: the server ends while %d of its studies %s; %s\n", n_running,
+                n_running == 1 ? "runs" : "run",
+                all->opts->runs_folder
+                    ? "what they have done is kept: the same request to a server "
+                      "with the same --runs continues from there"
+                    : "their results are lost; 'serve --runs DIR' keeps what "
+                      "studies have done");
     }
 }
 

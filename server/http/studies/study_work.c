@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/units.h"
+#include "http/studies/study_folder.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -97,6 +98,19 @@ static hn_status check_methods(const hn_job_request *r, hn_diags *diags) {
     return status;
 }
 
+/// Opens the job. What cannot be kept, because the same study runs already or the disk is full, is
+/// computed without being kept.
+static hn_status open_job(hn_study_work *w, hn_diags *diags) {
+    hn_diags kept = *diags;
+    hn_status status = hn_job_open(w->kind, &w->request, &w->job, diags);
+    if (status == HN_ERR_IO && w->request.limits.folder) {
+        *diags = kept;
+        w->request.limits.folder = NULL;
+        status = hn_job_open(w->kind, &w->request, &w->job, diags);
+    }
+    return status;
+}
+
 hn_status hn_study_work_read(hn_study_work *w, const cJSON *body, const hn_http_opts *opts,
                              hn_diags *diags) {
     w->request = hn_job_request_default(NULL);
@@ -125,7 +139,9 @@ hn_status hn_study_work_read(hn_study_work *w, const cJSON *body, const hn_http_
     w->request.limits.progress = keep_share;
     w->request.limits.user = w;
     w->cpu_end = HUGE_VAL;
-    return w->kind->opens_slowly ? HN_OK : hn_job_open(w->kind, &w->request, &w->job, diags);
+    const bool keeps = hn_study_folder_ready(opts->runs_folder, w->folder, sizeof w->folder);
+    w->request.limits.folder = keeps ? w->folder : NULL;
+    return w->kind->opens_slowly ? HN_OK : open_job(w, diags);
 }
 
 void hn_study_work_reset(hn_study_work *w) {
@@ -204,7 +220,7 @@ void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *ou
     w->wall_end = wall + w->request.limits.time_limit;
     w->computes = true;
     if (!w->job) {
-        status = hn_job_open(w->kind, &w->request, &w->job, &diags);
+        status = open_job(w, &diags);
     }
     HN_THEN(status, hn_job_run(w->job, &end, &diags));
     w->computes = false;

@@ -25,6 +25,7 @@ typedef struct hn_study_work {
     cJSON *body; ///< owned: the values of the kind's fields; the job borrows its texts
     hn_model *model;
     hn_job_request request;
+    char folder[512];           ///< where unfinished work is kept, if the server keeps runs
     hn_job *job;                ///< NULL before hn_study_work_run(), for kinds that open slowly
     double cpu_end;             ///< [s] of the thread's own clock
     const atomic_int *stopping; ///< the server ends
