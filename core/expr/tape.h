@@ -33,7 +33,7 @@ HN_MUST_CHECK hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n
 HN_MUST_CHECK hn_status hn_tape_compile_checked(hn_graph *g, const hn_ex *outputs, int n_out,
                                                 const int *symbols, int n_sym,
                                                 const hn_tape_check *check, hn_tape **out);
-void hn_tape_free(hn_tape *tape);
+void hn_tape_free(hn_tape *tape); ///< what a compilation returned in *out; NULL is legal
 hn_tape_info hn_tape_get_info(const hn_tape *tape);
 /// Doubles that hn_tape_eval() needs as `work`; call hn_tape_prepare() once on a fresh workspace
 /// (loads constants).

@@ -130,9 +130,9 @@ typedef enum hn_load_kind {
     HN_LOAD_COORDINATE,
     HN_LOAD_FORCE,  ///< force `value[3]` in world axes at point p, formula of t, q, v
     HN_LOAD_MOMENT, ///< moment `value[3]` [N m] in world axes on the body of point p
-    HN_LOAD_FOLLOW, ///< actuator on a coordinate x that follows value[0] = target(t):
-    /// < stiffness (target - x) + damping (target' - x'), no more than value[1] either way if that
-    /// is > 0
+    /// actuator on a coordinate x that follows value[0] = target(t): stiffness (target - x) +
+    /// damping (target' - x'), no more than value[1] either way if that is > 0
+    HN_LOAD_FOLLOW,
     HN_LOAD_TABLE, ///< on a coordinate: `table` over time
     /// a hand that holds point p while the mechanism runs (dynamics/compile/pull.h); never in a
     /// scene file

@@ -101,7 +101,8 @@ static const hn_command COMMANDS[] = {
     {"grade", "ID SUBMISSION...|FOLDER",
      "verdicts (SUBMISSION - is standard input) as --format text, json, gradescope, prairielearn, "
      "autolab, coderunner, lti-score, "
-     "junit, csv or html; into --out DIR. A folder is a class: a folder, file or zip for each "
+     "junit, csv or html; --out DIR/ "
+     "writes a file for each. A folder is a class: a folder, file or zip for each "
      "student, whose name chooses the variant unless --seed does; --out FILE.ndjson or .csv. ID is "
      "an exercise, or a scene whose program (export --blanks) was filled in",
      MODEL_OPTIONS

@@ -46,8 +46,9 @@ static const hn_term TERMS[] = {
      "The smallest singular value of J: how close the constraints are to dependent. It is 0 in a "
      "singular configuration, and is compared with the largest one, sigma_max."},
     {"pivot ratio",
-     "Smallest over largest pivot met in solving for the multipliers: another measure of how close "
-     "the constraints are to dependent. 1 is far, 0 is singular."},
+     "Smallest pivot met in solving for the multipliers, relative to the size of the terms that it "
+     "is the sum of: another measure of how close the constraints are to dependent. 1 is far, 0 is "
+     "singular."},
     {"condition number",
      "By how much the equations can magnify a relative error: with 1e6, six of sixteen digits of "
      "the multipliers are lost."},

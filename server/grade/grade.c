@@ -478,7 +478,8 @@ static void refuse_text(hn_verdict *v, const char *json, const hn_diag *diag) {
     if (*first > 0x20 && *first < 0x7F) {
         snprintf(begins, sizeof begins, ": it begins with '%c'", *first);
     }
-    snprintf(hint, sizeof hint, "hand in a file like {...}; 'holonom problem %.60s' shows the form",
+    snprintf(hint, sizeof hint,
+             "hand in a JSON file, which begins with '{'; 'holonom problem %.60s' shows the form",
              v->problem->id);
     hn_submission_refuse(v, hint, "the submission is not JSON%s", begins);
 }

@@ -84,7 +84,7 @@ export const GLOSSARY = {
     word: "distance from singular",
     match: /\bpivot ratio\b/i,
     means:
-      "Ratio of the smallest to the largest pivot of J: 1 is well conditioned, 0 is a singular configuration.",
+      "Smallest pivot met in solving for the multipliers, relative to the size of the terms that it is the sum of: 1 is well conditioned, 0 is a singular configuration.",
   },
   sigma: {
     word: "smallest singular value σ",

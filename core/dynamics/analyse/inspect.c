@@ -104,7 +104,7 @@ static void put_groups(hn_strbuf *b, const hn_system *sys) {
         hn_json_key(b, "bodies");
         hn_json_array(b);
         for (int i = 0; i < tree->n_links; i++) {
-            if (tree->links[i].group == k && tree->links[i].root == i) {
+            if (tree->links[i].group == k && tree->links[i].root == i && i != tree->ground) {
                 hn_json_string(b, link_name(sys, i));
             }
         }
@@ -203,15 +203,16 @@ void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
     }
 
     // motors against degrees of freedom
-    const char *reading = "fully actuated: as many motors as degrees of freedom";
+    const char *reading = "fully actuated: as many actuated coordinates as degrees of freedom";
     if (n == 0 && is_driven(sys)) {
         reading = "no motors: driven by loads or motions that are given over time";
     } else if (n == 0) {
         reading = "passive: nothing is driven";
     } else if (n < freedoms) {
-        reading = "under-actuated: fewer motors than degrees of freedom";
+        reading = "under-actuated: fewer actuated coordinates than degrees of freedom";
     } else if (n > freedoms) {
-        reading = "over-actuated: more motors than degrees of freedom, so they can work against "
+        reading = "over-actuated: more actuated coordinates than degrees of freedom, so motors can "
+                  "work against "
                   "each other";
     }
 
@@ -325,8 +326,8 @@ static void put_solver(hn_strbuf *b, const hn_system *sys, const counts *c) {
                            : "every order of elimination meets a zero pivot");
     if (c->factor.available) {
         hn_json_put_string(b, "behind_it",
-                           "iterative refinement where a pivot is below 1e-3 of its row; where one "
-                           "is below 1e-8 or a row is zero, the dense least-norm solver, which "
+                           "iterative refinement where the pivot ratio is below 1e-3; where it is "
+                           "below 1e-8 or a row is zero, the dense least-norm solver, which "
                            "finds the rank and allows dependent rows");
         hn_json_put_int(b, "pivots", c->factor.n_blocks);
     }

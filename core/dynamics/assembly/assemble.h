@@ -13,7 +13,7 @@
 #include "dynamics/compile/system.h"
 
 typedef struct hn_assembly {
-    int ok;
+    int ok; ///< 1: the loops are closed and the velocities fit them; 0: they are open
     double gap_before, gap; ///< ||phi|| at the guess and at the end [row units]
     double moved;           ///< largest change of a user coordinate from its guess
     double velocity_gap_before, velocity_gap; ///< ||J v + phi_t||

@@ -5,10 +5,14 @@
 //
 //     K [a; -lambda] = [f; -(gamma + 2 alpha (J v + phi_t) + beta^2 phi)],   K = [M J'; J 0]  (1)
 //
+// M a = f + J' lambda are the equations of motion. phi are the constraints, J their derivative by
+// the coordinates, phi_t the one by time; gamma is what the second derivative of phi has beside
+// J a, so J a + gamma = 0 closes the loops. alpha and beta are Baumgarte's.
+//
 // The system is solved by a tape (accel_tape.h) that contains a sparse LDL' factorisation of K
 // whose order of elimination is chosen when the system is compiled. Its pivots are checked at every
-// evaluation. Where a pivot is lost, or a value is not finite, the dense rank-revealing solve of
-// linalg/kkt.h is used instead, and hn_accel_info.fallback is set.
+// evaluation. Where a pivot is lost, or a value is not finite, the dense least-norm solver of
+// linalg/kkt.h, which finds the rank, is used instead, and hn_accel_info.fallback is set.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -21,7 +25,7 @@
 ///
 /// "auto" evaluates the tape. Where a pivot is below HN_PIVOT_DOUBT, iterative refinement with the
 /// sparse factor corrects the answer. Where a pivot is below HN_PIVOT_GUARD, or a row of J has
-/// nearly vanished, the least-norm solve replaces it. Each of the other solvers works alone and
+/// nearly vanished, the dense least-norm solver replaces it. Each of the other solvers works alone and
 /// fails on a matrix that it cannot solve (linalg/kkt.h).
 #define HN_SOLVER_LIST(X)                   \
     X(HN_SOLVER_AUTO, "auto")               \
@@ -48,16 +52,17 @@ typedef struct hn_accel_opts {
 } hn_accel_opts;
 
 typedef struct hn_accel_info {
-    bool fallback;    ///< the dense solve answered in place of the tape
+    bool fallback;    ///< the dense least-norm solver answered in place of the tape
     hn_solver solver; ///< the solver that answered; the tape counts as ldl
     int refinements;  ///< corrections of the answer that were kept
     int massless;     ///< the velocity without mass where the range space refused; else -1
-    int rank; ///< rank of J: nc where the tape answered, the numerical rank from the dense solve
-    /// smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
+    int rank; ///< rank of J: nc where the tape answered, the numerical rank from the dense solver
+    /// smallest pivot relative to its reference, the size of the terms that it is the sum of [-];
+    /// below HN_PIVOT_GUARD the dense least-norm solver answers
     double pivot_ratio;
     /// shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
     double row_ratio;
-    double residual; ///< dense solve only: max |J a + gamma|
+    double residual; ///< dense solver only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
 /// An answer with a smaller pivot is refined. With larger pivots the answer is right to 1e-13
@@ -115,7 +120,8 @@ hn_tape_info hn_accel_tape_info(const hn_accel *s);
 HN_MUST_CHECK hn_status hn_accel_measure_native(const hn_accel *s, hn_native_costs *costs,
                                                 hn_diag *diag);
 long long hn_accel_count(const hn_accel *s);
-long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of the tape's
+long long
+hn_accel_fallbacks(const hn_accel *s); ///< answers of the dense solver in place of the tape's
 long long hn_accel_refinements(const hn_accel *s); ///< answers corrected with the sparse factor
 /// Arithmetic operations so far, tape and linear algebra.
 double hn_accel_ops(const hn_accel *s);

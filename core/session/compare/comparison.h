@@ -46,7 +46,7 @@ bool hn_comparison_finished(
 /// Lets the hand hold a point from the present frame on, or let go (stiffness and damping 0). All
 /// methods feel it from the same time on: that of the frame, or the latest time beyond it that a
 /// method has stepped to. Stiffness and damping below 0 are chosen, and written to *pull. Events
-/// that were not done yet are forgotten. The point needs a load (hn_model_source.pulls). A
+/// of the log that lie ahead of the present frame, as after a reset, are forgotten. The point needs a load (hn_model_source.pulls). A
 /// comparison that does the same events at the same frames by the same methods gives the same bits.
 /// Fails as hn_hand_add() does.
 HN_MUST_CHECK hn_status hn_comparison_pull(hn_comparison *c, hn_pull *pull, hn_diag *diag);
@@ -61,7 +61,8 @@ void hn_comparison_next(hn_comparison *c);
 /// few milliseconds; may be NULL) returned 1. The next call continues the frame; until it is
 /// complete there are no samples. hn_comparison_reset() discards an unfinished frame.
 bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
-/// Back to frame 0. The log of pulls stays, and is done again.
+/// Back to frame 0. The log of pulls stays, and its events are done again at their frames, unless
+/// hn_comparison_pull() comes before them.
 void hn_comparison_reset(hn_comparison *c);
 /// Changes an option, such as "alpha", of one method while it runs; method -1: of all that have it.
 HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,

@@ -93,13 +93,13 @@ typedef struct holonom_run holonom_run;
 typedef struct holonom_sample {
     double t;
     const double *q, *v, *a; ///< one entry a coordinate
-    const double *lambda;    ///< one entry a constraint; NaN where they are not determined
+    const double *lambda;    ///< as of holonom_accelerations(); NaN where that fails
     const double *points;    ///< x, y, z of each point [m]
-    double gap;              ///< constraint violation of the positions
-    double velocity_gap;     ///< constraint violation of the velocities
-    /// change of kinetic plus potential energy since the start, less the work of drives, dampers
-    /// and loads, and that work [J]
-    double energy_change, work;
+    double gap; ///< constraint violation of the positions, ||phi|| [m | rad, as the constraints]
+    double velocity_gap; ///< constraint violation of the velocities, the same per second
+    /// change of kinetic plus potential energy since the start, less `work` [J]
+    double energy_change;
+    double work; ///< of drives, dampers and loads since the start [J]
 } holonom_sample;
 
 /// The cost of a run and its constraint violation, so far.

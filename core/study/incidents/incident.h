@@ -37,7 +37,8 @@ typedef enum hn_incident_code {
     HN_INCIDENT_COUNT
 } hn_incident_code;
 
-/// A spelling of a method, or "h=0.005" for the same method with another step; "" is none.
+/// A remedy: a spelling of a method, or "h=0.005" for the same method with another step. Also the
+/// sentence on its trial. "" is none.
 typedef char hn_remedy[128];
 enum { HN_REMEDIES = 3 };
 
@@ -79,7 +80,7 @@ typedef struct hn_incident_kind {
     void (*check)(hn_watch *w);
     bool each_step;             ///< checked after every step, not only where a full check is due
     hn_remedy_rule remedies[4]; ///< what is offered, best first
-    bool is_wrong;              ///< what the run shows from here on is wrong, or it ends
+    bool is_wrong; ///< from this incident on, the motion of the run is wrong; or the run ends
 } hn_incident_kind;
 
 #endif

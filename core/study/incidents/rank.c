@@ -79,8 +79,8 @@ static void check_near(hn_watch *w) {
     }
     hn_incident *i = hn_incident_report(
         w, &hn_incident_near_singular, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
-        "the constraint equations are almost dependent, with a smallest pivot of %.2g of the "
-        "largest (pivot ratio), less than %.0e",
+        "the constraint equations are almost dependent, with a smallest pivot of %.2g of its "
+        "terms (pivot ratio), less than %.0e",
         pivot, HN_RUN_WARN_PIVOT);
     if (i) {
         hn_pose_describe(w, i, s->now.t, s->now.q, w->singular.info.sigma_min);

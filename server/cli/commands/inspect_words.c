@@ -33,7 +33,8 @@ const hn_outline_word hn_inspect_words[] = {
     {"loops", "loops, each closed by a joint that was cut"},
     {"loops.why", "why this joint"},
 
-    {"groups", "groups of bodies whose angles are measured in the same frame"},
+    {"groups",
+     "groups of bodies that turn about parallel axes; their angles are measured in one frame"},
     {"groups.base", "frame fixed to"},
     {"groups.base_rotates", "which rotates"},
     {"coordinates", "coordinates of the equations"},

@@ -89,6 +89,12 @@ void hn_extreme_text(hn_strbuf *b, const hn_extreme *x) {
     for (int i = 0; i < x->n_cases; i++) {
         put_case(b, &x->cases[i]);
     }
+    if (hn_extreme_count(x, HN_EXTREME_WARN) > 0) {
+        hn_strbuf_add(b, "warn: the figure is a little beyond what was predicted\n");
+    }
+    if (hn_extreme_count(x, HN_EXTREME_LONG) > 0) {
+        hn_strbuf_add(b, "needs --long: not run, because it takes minutes; --long runs it too\n");
+    }
     for (int v = 0, first = 1; v < HN_EXTREME_VERDICTS; v++) {
         const hn_extreme_verdict verdict = (hn_extreme_verdict)v;
         const int n = hn_extreme_count(x, verdict);
