@@ -25,7 +25,8 @@
 ///
 /// "auto" evaluates the tape. Where a pivot is below HN_PIVOT_DOUBT, iterative refinement with the
 /// sparse factor corrects the answer. Where a pivot is below HN_PIVOT_GUARD, or a row of J has
-/// nearly vanished, the dense least-norm solver replaces it. Each of the other solvers works alone and
+/// nearly vanished, the dense least-norm solver replaces it.
+/// Each of the other solvers works alone and
 /// fails on a matrix that it cannot solve (linalg/kkt.h).
 #define HN_SOLVER_LIST(X)                   \
     X(HN_SOLVER_AUTO, "auto")               \

@@ -46,7 +46,8 @@ bool hn_comparison_finished(
 /// Lets the hand hold a point from the present frame on, or let go (stiffness and damping 0). All
 /// methods feel it from the same time on: that of the frame, or the latest time beyond it that a
 /// method has stepped to. Stiffness and damping below 0 are chosen, and written to *pull. Events
-/// of the log that lie ahead of the present frame, as after a reset, are forgotten. The point needs a load (hn_model_source.pulls). A
+/// of the log that lie ahead of the present frame, as after a reset, are forgotten.
+/// The point needs a load (hn_model_source.pulls). A
 /// comparison that does the same events at the same frames by the same methods gives the same bits.
 /// Fails as hn_hand_add() does.
 HN_MUST_CHECK hn_status hn_comparison_pull(hn_comparison *c, hn_pull *pull, hn_diag *diag);

@@ -326,7 +326,8 @@ static void files_that_cannot_be_graded_say_why(void **state) {
         {"   ", "white space"},
         {"\n# Heading\n", "is not JSON: it begins with '#'"},
         {"l1 = 3", "it begins with 'l'"},
-        {"\xE2\x80\x93", "hand in a JSON file, which begins with '{'; 'holonom problem p3' shows the form"},
+        {"\xE2\x80\x93", "hand in a JSON file, which begins with '{'; "
+         "'holonom problem p3' shows the form"},
         {"{}", "'J' is missing: the object is empty"},
         {"{\"j\": []}", "'J' is missing"},
         {"[]", "is a list, expected an object"},
