@@ -403,7 +403,7 @@ test("the numbers beside the entries are those of the state shown: with them J v
   await soon(async () => {
     first = await shown();
     assert.ok(
-      first.length > 0 && first.every((text) => /^= -?[\d.e-]+$/.test(text)),
+      first.length > 0 && first.every((text) => /^= −?[\d.]+(e[+−]?\d+)?$/.test(text)),
       String(first),
     );
   });

@@ -86,8 +86,10 @@ test("a hand pulls while it runs, its force is told, and the log done again give
 
   // the stored reference is of another motion; without the hand it is back
   await until(page, (data) => data.reference?.state === "none");
+  const { past } = await read(page, (data) => data.undo);
   await page.getByRole("button", { name: "forget the pulls" }).click();
   await until(page, (data) => !data.pulled && data.reference?.state === "ready");
+  await until(page, (data) => data.undo.undoes === "the pull");
 
   // forgetting is a change like others: undone, the same log is there again
   const log = JSON.stringify(pulls);

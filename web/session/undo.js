@@ -24,7 +24,8 @@ function differenceOf(a, b) {
   return [
     same("scene") ? "" : `scene ${typeof other.scene === "string" ? other.scene : ""}`,
     same("methods") ? "" : "methods",
-    same("pulls") ? "" : "pulls",
+    // pulls that are forgotten never go on the pull before them
+    same("pulls") ? "" : other.pulls.length > 0 ? "pulls" : "no pulls",
     same("end") ? "" : "end",
     ...changed,
   ].join();
