@@ -240,12 +240,14 @@ static void a_swing_that_turns_back_is_no_jump_of_its_speeds(void **state) {
 static void loops_that_stand_open_by_half_the_mechanism_end_a_run(void **state) {
     (void)state;
     hn_model m;
-    hn_model_open_closed(&m, "bennett", NULL);
-    hn_run *run = hn_motion_start(&m, "index2@ida:rtol=1e-6");
+    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "index1@rk4:h=0.3");
     assert_int_equal(hn_run_advance(run, 2), HN_ERR_DIVERGED);
     const hn_run_summary s = hn_run_get_summary(run);
     assert_non_null(strstr(s.reason, "no longer this mechanism's"));
-    assert_true(s.worst_gap > 0.5 * hn_system_length(m.sys) && s.worst_gap < 0.6);
+    // a step of a quarter of a turn opens it to nearly the whole length at once
+    assert_true(s.worst_gap > 0.5 * hn_system_length(m.sys) &&
+                s.worst_gap < hn_system_length(m.sys));
     assert_non_null(find(run, HN_INCIDENT_DIVERGED, "the loops are open"));
     hn_run_free(run);
     hn_model_close(&m);
