@@ -179,6 +179,17 @@ static void take_settings(const cJSON *old, hn_words *out) {
     }
 }
 
+/// Compares the new verdict with the old one, or reports why there is no new one.
+static hn_exit end_again(const hn_args *args, const cJSON *old, hn_verdict *v, hn_status status,
+                         const hn_diags *diags) {
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, diags);
+    }
+    snprintf(v->student, sizeof v->student, "%s", text_of(old, "student"));
+    const hn_exit result = compare(args, old, v);
+    return result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE ? HN_EXIT_INPUT : result;
+}
+
 /// The program of a scene: the file named, or the text that the verdict holds.
 static hn_exit grade_program_again(const hn_library *lib, const hn_args *args, const cJSON *old,
                                    hn_verdict *v) {
@@ -201,14 +212,7 @@ static hn_exit grade_program_again(const hn_library *lib, const hn_args *args, c
         status = hn_diags_add(&diags, HN_ERR_INPUT, "/submission", "name its file as second word",
                               "the verdict does not hold the program");
     }
-    if (status == HN_OK) {
-        snprintf(v->student, sizeof v->student, "%s", text_of(old, "student"));
-    }
-    hn_exit result =
-        status == HN_OK ? compare(args, old, v) : hn_report_diags(args, status, &diags);
-    if (result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE) {
-        result = HN_EXIT_INPUT;
-    }
+    const hn_exit result = end_again(args, old, v, status, &diags);
     hn_filled_exam_reset(&exam);
     hn_model_free(model);
     return result;
@@ -237,14 +241,7 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
                               "the verdict does not hold the submission");
     }
 
-    if (status == HN_OK) {
-        snprintf(v->student, sizeof v->student, "%s", text_of(old, "student"));
-    }
-    hn_exit result =
-        status == HN_OK ? compare(args, old, v) : hn_report_diags(args, status, &diags);
-    if (result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE) {
-        result = HN_EXIT_INPUT;
-    }
+    const hn_exit result = end_again(args, old, v, status, &diags);
     hn_exercise_free(e);
     return result;
 }
