@@ -320,7 +320,7 @@ help:
 	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make attacks      what a hostile client does, healthz beside it: tests/tables/attacks.txt'
 	@echo 'make load         300 streams, 30 browsers, 10,000 questions asked twice: a table, on a machine that does nothing else'
-	@echo 'make page-damage  10,000 damaged links opened by a browser, every bad scene put into its editor: over an hour'
+	@echo 'make page-damage  10,000 damaged links opened by a browser, every bad scene put into its editor: half an hour'
 	@echo 'make page-speed   frames a second, first paint and bytes of the page, on a machine that does nothing else: tests/tables/page_speed.txt'
 	@echo 'make compilers    the numbers of gcc and clang on every shipped scene, none may differ: tests/tables/compilers.txt'
 	@echo 'make bench        time the engine beside hand-written C: tests/tables/bench.csv'

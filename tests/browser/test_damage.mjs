@@ -12,6 +12,12 @@ import { createBench, playTo, read, ROOT, soon, until } from "./support.mjs";
 const LINKS = Number(process.env.DAMAGED_LINKS ?? 16);
 const EVERY = process.env.EVERY_SCENE ? 1 : 6;
 const FOLDER = join(ROOT, "tests/scenes/bad");
+/** The windows that open links side by side. */
+const WINDOWS = [
+  { width: 1280, height: 900 },
+  { width: 360, height: 740 },
+];
+const AT_ONCE = 8; // links that a page opens by itself
 const LONG = 60000; // [ms] that an answer may take on a busy machine
 
 const bench = createBench();
@@ -35,15 +41,43 @@ const ENTRIES = [
   "until=1.5",
   "note=say%20why",
 ];
-/** All that has to be of one run: what the page knows, and what it shows. */
-const whole = (page) =>
-  page.evaluate(() => {
+/**
+ * A damaged link, and what of it is not damaged.
+ * @typedef {{said: string, hash: string, methods: string[]}} Link methods: those that must run
+ */
+
+/** The same links each time, whoever opens them. @param {number} count @returns {Link[]} */
+function damagedLinks(count) {
+  const random = randomFrom(23);
+  return Array.from({ length: count }, () => {
+    const at = random(ENTRIES.length);
+    const changed = damaged(ENTRIES[at], random);
+    const entries = ENTRIES.map((entry, i) => (i === at ? changed : entry));
+    const sound = ENTRIES[at].startsWith("scene=") ? [] : ENTRIES.filter((_, i) => i !== at);
+    return {
+      said: `${ENTRIES[at]} as ${changed}`,
+      hash: `${entries.join("&")}&`,
+      methods: sound.filter((entry) => entry.startsWith("method=")).map((entry) => entry.slice(7)),
+    };
+  });
+}
+
+/** In the page, when it is loaded: what holds of the run it shows, and when a link has been read. */
+function watchLinks() {
+  const replace = history.replaceState;
+  history.replaceState = function (...args) {
+    replace.apply(this, args);
+    dispatchEvent(new Event("place"));
+  };
+  const text = (selector) => document.querySelector(selector)?.textContent ?? "";
+  /** All that has to be of one run: what the page knows, and what it shows. */
+  globalThis.whole = () => {
     const { data } = globalThis.holonom;
-    const text = (selector) => document.querySelector(selector)?.textContent ?? "";
     return {
       scene: data.scene.id,
       methods: data.methods.map(({ spelling }) => spelling),
       columns: data.history.nMethods,
+      frames: data.history.count,
       finite: [...data.history.pointsAt(0, data.history.count - 1)].every(Number.isFinite),
       selected: data.view.selected < data.methods.length,
       rows: document.querySelectorAll("#method-list tbody tr").length,
@@ -52,30 +86,81 @@ const whole = (page) =>
       ghosts: document.querySelectorAll(".ghosts .ghost").length + data.view.hidden.size,
       notice: data.notice,
     };
-  });
+  };
+}
+
+/**
+ * In the page: opens links one after the other, each when the one before is read and shown.
+ * @param {{links: Link[], limit: number}} what limit: how long one may take [ms]
+ * @returns {Promise<string[]>} a sentence for each that is not shown as it should be
+ */
+async function openLinks({ links, limit }) {
+  const faults = [];
+  const nextFrame = () => new Promise((done) => requestAnimationFrame(done));
+  /** What is not yet as it should be, or "". @param {string[]} wanted */
+  const missing = (wanted) => {
+    const now = globalThis.whole();
+    const n = now.methods.length;
+    const checks = {
+      "methods are lost": wanted.every((one) => now.methods.includes(one)) && n > 0,
+      "the selected method is none": now.selected,
+      "no frame is there": now.frames > 0,
+      "a point is no number": now.finite,
+      "the drawing has no title": now.title,
+      "the recording is of other methods": now.columns === n,
+      "the drawing is of other methods": now.ghosts === n,
+      "the table is of other methods": now.rows === n + now.refused,
+    };
+    const wrong = Object.keys(checks).filter((name) => !checks[name]);
+    return wrong.length ? `${wrong.join(", ")}: ${JSON.stringify(now)}` : "";
+  };
+  for (const { said, hash, methods } of links) {
+    const end = performance.now() + limit;
+    const read = new Promise((done) => {
+      const look = () => {
+        if (history.state !== null || performance.now() > end) {
+          removeEventListener("place", look);
+          clearTimeout(timer);
+          done(undefined);
+        }
+      };
+      const timer = setTimeout(look, limit + 1);
+      addEventListener("place", look);
+      location.hash = hash;
+      look(); // the address may be the one that was there
+    });
+    await read;
+    let wrong = history.state === null ? "the link was not read to its end" : missing(methods);
+    while (wrong && performance.now() < end) {
+      await nextFrame();
+      wrong = missing(methods);
+    }
+    if (wrong) {
+      faults.push(`${said}: ${wrong}`);
+    }
+  }
+  return faults;
+}
 
 test(`${LINKS} damaged links: the undamaged entries run, and what is shown is of one run`, async (t) => {
-  const page = await open(t, { hash: "#pendulum" });
-  const random = randomFrom(23);
-  for (let k = 0; k < LINKS; k++) {
-    const at = random(ENTRIES.length);
-    const changed = damaged(ENTRIES[at], random);
-    const hash = ENTRIES.map((entry, i) => (i === at ? changed : entry)).join("&");
-    const said = `${ENTRIES[at]} as ${changed}`;
-    await page.evaluate((text) => (location.hash = `${text}&`), hash);
-    await page.waitForFunction(() => history.state !== null, null, { timeout: LONG });
-    await soon(async () => {
-      const now = await whole(page);
-      const lost = ENTRIES.filter(
-        (entry, i) => i !== at && entry.startsWith("method=") && !/scene=/.test(ENTRIES[at]),
-      ).filter((entry) => !now.methods.includes(entry.slice(7)));
-      assert.deepEqual(lost, [], `${said}: methods that are lost`);
-      assert.ok(now.methods.length >= 1 && now.selected && now.finite && now.title, said);
-      assert.equal(now.columns, now.methods.length, `${said}: the recording is of these methods`);
-      assert.equal(now.ghosts, now.methods.length, `${said}: the drawing is of these methods`);
-      assert.equal(now.rows, now.methods.length + now.refused, `${said}: so is the table`);
-    });
-  }
+  const links = damagedLinks(LINKS);
+  const pages = await Promise.all(
+    WINDOWS.map((viewport) => open(t, { hash: "#pendulum", init: watchLinks, viewport })),
+  );
+  let opened = 0;
+  const work = pages.map(async (page) => {
+    while (links.length > 0) {
+      const some = links.splice(0, AT_ONCE);
+      assert.deepEqual(await page.evaluate(openLinks, { links: some, limit: LONG }), []);
+      assert.deepEqual(bench.faultsOf(page), [], "nothing on the console");
+      opened += some.length;
+      if (opened % 500 < AT_ONCE && LINKS > 500) {
+        t.diagnostic(`${opened} links opened, none lost`);
+      }
+    }
+  });
+  await Promise.all(work);
+  assert.equal(opened, LINKS);
 });
 
 test("scenes with every kind of error, put into the editor: each is said at a line, and the last good one runs", async (t) => {
@@ -128,7 +213,7 @@ test("scenes with every kind of error, put into the editor: each is said at a li
 
 test("two tabs and another client: each tab keeps its own run, equal to the bit; a change from outside is followed", async (t) => {
   const hash = "#scene=four-bar&method=index1@rk4:h=0.02&method=projection@rk4:h=0.02";
-  const one = await open(t, { hash });
+  const one = await open(t, { hash, init: watchLinks });
   const two = await open(t, { hash });
   await Promise.all([playTo(one, 0.5), playTo(two, 0.5)]);
   const state = (page) =>
@@ -152,7 +237,7 @@ test("two tabs and another client: each tab keeps its own run, equal to the bit;
   assert.equal(answer.status, 200);
   await until(one, (data) => data.methods.length === 1 && data.settings.l1 === 0.45);
   await soon(async () => {
-    const now = await whole(one);
+    const now = await one.evaluate(() => globalThis.whole());
     assert.deepEqual(now.methods, ["reduced@rk4:h=0.01"]);
     assert.deepEqual(
       [now.columns, now.ghosts, now.rows],
