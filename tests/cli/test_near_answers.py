@@ -203,6 +203,37 @@ def slips_by_name(folder):
     expect("and not for what is near", told(folder, "flywheel", "b", 2 * right * 1.003, "--seed", "1") == "other")
 
 
+def one_slip(folder):
+    """A slip at one place of the reference is named, of a formula and, where few are possible, of a number."""
+    for exercise, part, answer, mistake in (
+            ("closure", "a", "-l1*cos(th1)*u1-l2*sin(th2)*u2", "sine"), ("loops", "e", "-l1*cos(th1)*w1^2-l2*cos(th2)*w2+l3*cos(th3)*w3^2", "missing-name"),
+            ("code", "c", "9.81*(m1*l1/2*sin(th1)+m2*(l1*sin(th1)+l2*sin(th2))+m3*l3/2*sin(th3))", "double-term"),
+            ("code", "d", "m2/2*(l1^2*w1^2-l2^2*w2^2/3+l1*l2*cos(th1-th2)*w1*w2)", "sign-term"),
+            ("fourbar", "c", "-m2*l1*l2*sin(th1-th2)*u1/2+g*m2*l2*cos(th2)/2", "missing-name"),
+            ("drift", "e", "-gamma", "no-feedback"), ("drift", "e", "-gamma-alpha*J*v-beta*phi", "both-factors"), ("drift", "e", "gamma", "gamma-alone"),
+            ("drift", "f", "-inv(M)*J'*J*v", "no-multipliers"), ("loops", "b", 5, "tree"), ("code", "f", 0.4, "one-more")):  # fmt: skip
+        found = told(folder, exercise, part, answer, "--seed", "1")
+        expect(f"{exercise} {part} = {answer} is {mistake}", found == mistake, found)
+
+    def numbers(exercise):
+        return json.loads(run("problem", exercise, "--seed", "3", "--json").stdout)["numbers"]
+
+    x, y, z = numbers("energy"), numbers("slider"), numbers("trammel")
+    crank, coupler, rocker = (9.81 * x["m1"] * x["l1"] / 2 * math.sin(x["t1"]), 9.81 * x["m2"] * (x["l1"] * math.sin(x["t1"]) + x["l2"] / 2 * math.sin(x["t2"])),
+                              9.81 * x["m3"] * x["l3"] / 2 * math.sin(x["t3"]))  # fmt: skip
+    high = 9.81 * (x["m1"] * x["l1"] * math.sin(x["t1"]) + x["m2"] * (x["l1"] * math.sin(x["t1"]) + x["l2"] * math.sin(x["t2"])) + x["m3"] * x["l3"] * math.sin(x["t3"]))
+    rod = math.degrees(math.asin(y["r"] * math.sin(y["th"]) / y["l"]))
+    for exercise, part, answer, mistake in (
+            ("energy", "c", crank + coupler, "no-rocker"), ("energy", "c", coupler, "coupler-alone"), ("energy", "c", high, "no-half"),
+            ("energy", "c", crank + coupler - rocker, "sign-term"), ("energy", "a", coupler - 9.81 * x["m2"] * x["l2"] * math.sin(x["t2"]), "sign-term"),
+            ("slider", "a", y["r"] * math.cos(y["th"]) + y["l"], "horizontal"), ("slider", "b", rod, "degrees"), ("slider", "b", -rod, "degrees"),
+            ("trammel", "b", z["m"] * z["L"] ** 2 / 3, "uniform")):  # fmt: skip
+        found = entry(folder, exercise, part, f"{answer:.5g}", "--seed", "3")
+        expect(f"{exercise} {part} names {mistake}", found["mistake"] == mistake, str(found))
+        if mistake == "degrees":
+            expect("degrees turned the wrong way are two mistakes", ("sign is wrong as well" in found["explanation"]) == (answer > 0), found["explanation"])
+
+
 def pasted(folder):
     """A matrix that was pasted as one text is read, with a remark."""
     rows = [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]
@@ -273,10 +304,15 @@ def proofs(folder):
     expect("draws that were refused are listed with their condition", "drawn again" in done.stdout and "for not 3*b-2*j+0.5 > 0" in done.stdout, done.stdout)
     spread = [line for line in done.stdout.splitlines() if "right answers of part b" in line]
     expect("the spread of right answers is told, and is one", len(spread) == 1 and spread[0].split()[-3] != spread[0].split()[-1], done.stdout)
+    bad = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "l", "second": "2*l-l",
+           "faults": [{"id": "beyond", "answer": "acos(l)", "says": "no", "share": 0.5}]}  # fmt: skip
+    far = dict(exercise, parts=[bad], draw={"l": {"range": [2, 9], "digits": 2}})
+    done = run("problem", write(folder, "far.json", far), "--seeds", "1..2", "--check")
+    expect("so is a listed mistake without a finite value", done.returncode == 3 and "the mistake 'beyond' (null) is named unreadable" in done.stdout, done.stdout + done.stderr)
     part["faults"] = [{"id": "singular", "answer": {"M": ALIKE}}]
     done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..2", "--check")
     expect("with the mistake the exercise is sound", done.returncode == 0, done.stdout)
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, pasted, shown, branches, plots, quaternions, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, pasted, shown, branches, plots, quaternions, proofs]))

@@ -207,6 +207,10 @@ bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_
         hn_part_wrong(r, "blank", 0, "nothing was handed in here");
         return false;
     }
+    if (cJSON_IsNumber(node) && !isfinite(node->valuedouble)) {
+        hn_part_unreadable(r, "this number is not finite");
+        return false;
+    }
     if (cJSON_IsNumber(node)) {
         *e = hn_num(node->valuedouble);
     } else if (!cJSON_IsString(node)) {

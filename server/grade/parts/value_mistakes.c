@@ -4,6 +4,7 @@
 #include "expr/construct.h"
 #include "expr/diff.h"
 #include "grade/parts/value_search.h"
+#include "grade/parts/value_slips.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -146,6 +147,20 @@ static void try_factors(hn_value_search *f) {
                                 FACTORS[i].share, "%s", FACTORS[i].says);
         }
     }
+}
+
+/// The wrong sign together with another factor, as of an angle in degrees turned the wrong way.
+static void try_signed_factors(hn_value_search *f) {
+    f->closely = true;
+    for (int i = 1; i < N_FACTORS; i++) {
+        f->alone = FACTORS[i].share;
+        if (applies(f->sheet, i)) {
+            hn_value_search_try(f, f->sheet->reference.e[f->entry], -FACTORS[i].factor,
+                                FACTORS[i].id, FACTORS[i].share * FACTORS[0].share, "%s; and %s",
+                                FACTORS[i].says, FACTORS[0].again);
+        }
+    }
+    f->alone = 0;
 }
 
 /// The reference with some names replaced by a + b * itself.
@@ -346,6 +361,12 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
     const bool count = is_count(s, k, given);
     if (f.n_found == 0 && !count && find_rounded_number(s, k, given, r)) {
         return HN_OK;
+    }
+    if (f.n_found == 0 && !count && !is_zero(s, k, given)) {
+        hn_value_slips_try(&f);
+    }
+    if (f.n_found == 0 && !count) {
+        try_signed_factors(&f);
     }
     if (f.n_found == 0 && !count) {
         HN_TRY(try_listed_pairs(&f));
