@@ -7,16 +7,34 @@ import { incidentOf } from "./catalogue.js";
 import { ROUNDING, quantity, seconds } from "./format.js";
 import { errorsOf } from "./errors.js";
 
-/** A gap that more than doubles from the first half of the motion to the second grows. */
+/** A gap whose worst of the second half of the motion is so many times that of the first half grows. */
 const GROWTH = 1.5;
 /** One that has fallen below this share of the largest so far does not grow any more. */
 const FALLEN = 0.9;
+/** A last quarter of the motion so many times worse than the third one is a jump. */
+const JUMP = 10;
 const EARLIEST = 6; // [frames] before it there is nothing to judge
 const OPEN = 1e-2; // of the scene's length: a gap that is the first thing to say
 const VISIBLE = 1e-3; // of the scene's length: a gap or a distance that can be seen
 const WRONG = 1e-2; // of the scene's length or energy: one digit is right at most
 const CLOSED = 1e-12; // of the scene's length: rounding
 const MOST_DIGITS = 15;
+
+/**
+ * Whether the gap is large by one rise at the end of the motion: stabilised methods fall from there.
+ * A gap that grows exponentially rises by the same factor in each quarter.
+ * @param {import("./history.js").History} history
+ * @param {number} m
+ * @param {number} shown index of the frame shown
+ */
+function hasJumped(history, m, shown) {
+  const t = history.t[shown];
+  const [quarter, half, later] = [t / 4, t / 2, (3 * t) / 4].map((time) => history.indexAt(time));
+  const third = history.worst(m, "gap", half, later);
+  const rise = history.worst(m, "gap", later, shown) / third;
+  const before = third / history.worst(m, "gap", quarter, half);
+  return rise > JUMP && !(rise <= before * before);
+}
 
 /**
  * How the loop gap develops until the frame shown.
@@ -41,7 +59,7 @@ export function trendOf(history, m, shown) {
   }
   const early = history.worst(m, "gap", 0, half);
   const now = history.columns[m].gap[shown];
-  if (late > GROWTH * early && now >= FALLEN * late) {
+  if (late > GROWTH * early && now >= FALLEN * late && !hasJumped(history, m, shown)) {
     return { word: "growing", arrow: "↗", tone: "warn" };
   }
   return late < early / GROWTH

@@ -12,6 +12,10 @@
 static const double GROWTH = 1.5;
 /// A gap that has fallen below this share of its largest value does not grow any more.
 static const double FALLEN = 0.9;
+/// A last quarter of the motion whose largest gap is more than so many times that of the third one
+/// is a jump, unless the quarter before rose by the root of that: a gap that follows t^8 rises by
+/// 10, and one that grows exponentially rises by the same factor each time.
+static const double JUMP = 10;
 static const double OPEN = 1e-2;      // of the scene's length: a gap that is the first thing to say
 static const double VISIBLE = 1e-3;   // of the scene's length: a gap or distance that can be seen
 static const double WRONG = 1e-2;     // of the scene's length or energy: one digit is right at most
@@ -33,6 +37,15 @@ static double worst(const double *column, int from, int to) {
     return most;
 }
 
+/// Whether the gap is large by one rise at the end of the motion: stabilised methods fall from
+/// there.
+static bool has_jumped(const hn_motion_history *h) {
+    const int half = h->shown / 2, later = h->shown * 3 / 4;
+    const double second = worst(h->gap, h->shown / 4, half), third = worst(h->gap, half, later);
+    const double rise = worst(h->gap, later, h->shown) / third, before = third / second;
+    return rise > JUMP && !(rise <= before * before);
+}
+
 typedef enum trend { CLOSED_TREND, STARTED, GROWING, SHRINKING, HELD } trend;
 
 static trend trend_of(const hn_motion_history *h) {
@@ -45,7 +58,8 @@ static trend trend_of(const hn_motion_history *h) {
         return STARTED;
     }
     const double early = worst(h->gap, 0, half);
-    const bool grows = late > GROWTH * early && fabs(h->gap[h->shown]) >= FALLEN * late;
+    const bool rises = late > GROWTH * early && fabs(h->gap[h->shown]) >= FALLEN * late;
+    const bool grows = rises && !has_jumped(h);
     return grows ? GROWING : late < early / GROWTH ? SHRINKING : HELD;
 }
 
