@@ -200,6 +200,7 @@ static void read_parts(reader *r, cJSON *root) {
     // the parts and hints point into the tree, so the exercise keeps it
     p->seed = 1;
     p->root = root;
+    hn_contents_read(&p->contents, root);
 }
 
 /// What a person reads.

@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "base/diag.h"
 #include "base/strbuf.h"
+#include "grade/contents.h"
 #include "grade/parts/part.h"
 
 #include <stdbool.h>
@@ -22,7 +23,7 @@ enum {
     HN_GRADE_MAX_BYTES = 1 << 20, ///< of a submission
     HN_GRADE_MAX_FORMULA = 2000,  ///< characters of one entry
     HN_GRADE_TEXT = 400,
-    HN_GRADE_MAX_PARTS = 12,
+    HN_GRADE_MAX_PARTS = HN_CONTENTS_PARTS,
     HN_GRADE_MAX_HINTS = 8,
     HN_LETTERS = 2 ///< counts up when options are dealt in another order; verdicts hold it
 };
@@ -68,6 +69,7 @@ typedef struct hn_exercise {
     cJSON *root;                       ///< owned: parts are read where they are used
     int n_parts;                       ///< 0: form 1
     hn_part parts[HN_GRADE_MAX_PARTS]; ///< without a draw
+    hn_contents contents;              ///< hashes of the file's members
     int n_hints;
     const char *hints[HN_GRADE_MAX_HINTS];
     int n_owners;                   ///< of a class: whose numbers a wrong answer may be

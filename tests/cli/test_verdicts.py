@@ -63,6 +63,51 @@ def statuses(folder):
     expect("a verdict on a program says how it is graded again", again.returncode == 2 and "'four-bar' is a scene" in again.stderr, again.stderr)
 
 
+def changed_since(folder):
+    """A verdict of another build, of an older exercise, of another rubric: what has changed is said, and which parts it concerns."""
+    number = {"kind": "number", "points": 1, "answer": "2*x", "second": "x+x"}
+    mine = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "draw": {"x": {"range": [1, 9], "digits": 2}},
+            "parts": [dict(number, id=i, ask=f"{i}?") for i in "abc"]}  # fmt: skip
+    path, answer = write(folder, "mine.json", mine), write(folder, "a.json", {"seed": 3, "a": 1e6, "b": 3e6, "c": 1e6})
+    then = json.loads(run("grade", path, answer, "--json").stdout)
+
+    def again(verdict, *more):
+        kept = write(folder, "then.json", verdict)
+        return run("regrade", kept, *more).stdout, json.loads(run("regrade", kept, *more, "--json").stdout)
+
+    text, told = again(then)
+    expect("nothing has changed", told["same"] and told["changes"] == [] and text.splitlines()[1] == "mine: t", text)
+    text, told = again(dict(then, build="0.0.9 abc gcc 11"))
+    expect("another build is said", told["same"] and told["changes"][0].startswith("graded by 0.0.9 abc gcc 11, now by ") and len(told["changes"]) == 1, text)
+
+    mine["statement"], mine["parts"][1]["answer"], mine["parts"][1]["second"] = ["another"], "3e6+0*x", "3e6"
+    mine["parts"][2]["id"] = "d"
+    write(folder, "mine.json", mine)
+    text, told = again(then)
+    expect("what of the exercise has changed", told["changes"][0] == "the exercise has changed since the verdict: its statement, part b, part d (new), part c (gone)", text)
+    expect("and what that means for the parts", told["changes"][1:] == ["b: 0 of 1 (other) before, 1 of 1 (right) now", "d was not in the verdict"] and not told["same"], text)
+    mine["parts"] = mine["parts"][:1]
+    mine["statement"], mine["draw"]["x"]["range"] = ["s"], [1, 8]
+    write(folder, "mine.json", mine)
+    text, told = again(then)
+    expect("another way to draw the numbers is said", "verdict: how its numbers are drawn, part b (gone), part c (gone)" in told["changes"][0], text)
+    older = {key: value for key, value in then.items() if key != "contents"}
+    text, told = again(older)
+    expect("a verdict that does not say what it was made of", told["changes"][0] == "the exercise has changed since the verdict", text)
+
+    # a rubric that gives another share
+    write(folder, "a.json", {"seed": 1, "a": 1, "b": 20})
+    for share in (0.5, 0.25):
+        rubric = write(folder, "r.json", {"rubric": 1, "exercise": "drift", "shares": {"constant": share}})
+        right = json.loads(run("problem", "drift", "--seed", "1", "--json").stdout)["numbers"]["g"]
+        answer = write(folder, "g.json", {"seed": 1, "a": right})
+        if share == 0.5:
+            then = json.loads(run("grade", "drift", answer, "--json", "--rubric", rubric).stdout)
+    text, told = again(then, "--rubric", rubric)
+    expect("another rubric is said with the parts that it changes", told["changes"] == ["the rubric is another one than was used", "a: 0.5 of 1 (constant) before, 0.25 of 1 (constant) now"]
+           and not told["same"], text)  # fmt: skip
+
+
 def letters_of_then(folder):
     """A verdict that was made when options had other letters is graded by the letters of then."""
     part = {"id": "a", "ask": "which?", "kind": "choice", "points": 2,
@@ -337,6 +382,6 @@ def in_a_students_words(folder):
 
 if __name__ == "__main__":
     sys.exit(speak_tap([
-        statuses, letters_of_then, own_variant, whose_variant, forms, platforms, regrading_the_ungradable,
+        statuses, changed_since, letters_of_then, own_variant, whose_variant, forms, platforms, regrading_the_ungradable,
         named_file, for_teachers, refusals, outputs, files_of_others, in_a_students_words,
     ]))

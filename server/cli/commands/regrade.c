@@ -48,28 +48,99 @@ static cJSON *load_verdict(const char *path, hn_diags *diags) {
     return root;
 }
 
-/// Says what differs between the verdict and this program.
-static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
+/// The exercise has changed: what of it, where the verdict says what it was.
+static void add_exercise_change(hn_strbuf *b, const cJSON *old, const hn_exercise *e) {
+    hn_strbuf what;
+    hn_strbuf_init(&what);
+    hn_contents_put_changes(&what, &e->contents, e->parts,
+                            cJSON_GetObjectItemCaseSensitive(old, "contents"));
+    hn_strbuf_printf(b, "the exercise has changed since the verdict%s%s\n", what.n ? ": " : "",
+                     hn_strbuf_text(&what));
+    b->failed |= what.failed;
+    hn_strbuf_reset(&what);
+}
+
+/// The entry of this name in the verdict; NULL: none.
+static const cJSON *find_entry(const cJSON *old, const char *name) {
+    const cJSON *e;
+    cJSON_ArrayForEach(e, cJSON_GetObjectItemCaseSensitive(old, "entries")) {
+        if (strcmp(text_of(e, "name"), name) == 0) {
+            return e;
+        }
+    }
+    return NULL;
+}
+
+/// Entries that are judged in another way than before, a line each.
+static void add_entry_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
+    for (int k = 0; k < v->n_entries; k++) {
+        const hn_entry_verdict *now = &v->entry[k];
+        const cJSON *then = find_entry(old, now->name);
+        const double points = hn_part_number(then, "points", (double)NAN);
+        const double most = hn_part_number(then, "max_points", (double)NAN);
+        const char *mistake = text_of(then, "mistake");
+        if (!then) {
+            hn_strbuf_printf(b, "%s was not in the verdict\n", now->name);
+        } else if (!(fabs(points - now->points) <= 1e-9) ||
+                   !(fabs(most - now->max_points) <= 1e-9) || strcmp(mistake, now->mistake) != 0) {
+            hn_strbuf_printf(b, "%s: %g of %g (%s) before, %g of %g (%s) now\n", now->name, points,
+                             most, mistake[0] ? mistake : "right", now->points, now->max_points,
+                             now->mistake[0] ? now->mistake : "right");
+        }
+    }
+}
+
+/// Says what differs between the verdict and this program, a line each.
+static void add_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     char hash[17];
     hn_hash_hex(v->problem->hash, hash);
     if (strcmp(text_of(old, "problem_hash"), hash) != 0) {
-        hn_strbuf_add(b, "  the exercise has changed since the verdict\n");
+        add_exercise_change(b, old, v->problem);
     }
     hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);
     if (strcmp(text_of(old, "rubric_hash"), v->problem->rubric ? hash : "") != 0) {
-        hn_strbuf_printf(b, "  the rubric is another one than was used%s\n",
+        hn_strbuf_printf(b, "the rubric is another one than was used%s\n",
                          v->problem->rubric ? "" : ": name it with --rubric");
     }
     hn_hash_hex(v->submission_hash, hash);
     if (strcmp(text_of(old, "submission_hash"), hash) != 0) {
-        hn_strbuf_add(b, "  the submission is another one than was graded\n");
+        hn_strbuf_add(b, "the submission is another one than was graded\n");
     }
     if (v->problem->first_letters) {
-        hn_strbuf_add(b, "  options have other letters since; graded by those of the verdict\n");
+        hn_strbuf_add(b, "options have other letters since; graded by those of the verdict\n");
     }
     if (strcmp(text_of(old, "build"), hn_build_name()) != 0) {
-        hn_strbuf_printf(b, "  graded by %s, now by %s\n", text_of(old, "build"), hn_build_name());
+        hn_strbuf_printf(b, "graded by %s, now by %s\n", text_of(old, "build"), hn_build_name());
     }
+    if (v->kind == HN_VERDICT_GRADED && strcmp(text_of(old, "status"), "graded") == 0) {
+        add_entry_changes(b, old, v);
+    }
+}
+
+/// The changes as indented lines, or as texts in a list.
+static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v, bool json) {
+    hn_strbuf lines;
+    hn_strbuf_init(&lines);
+    add_changes(&lines, old, v);
+    if (json) {
+        hn_json_key(b, "changes");
+        hn_json_array(b);
+    }
+    char *rest = NULL, *text = strdup(hn_strbuf_text(&lines));
+    for (char *line = text ? strtok_r(text, "\n", &rest) : NULL; line;
+         line = strtok_r(NULL, "\n", &rest)) {
+        if (json) {
+            hn_json_string(b, line);
+        } else {
+            hn_strbuf_printf(b, "  %s\n", line);
+        }
+    }
+    if (json) {
+        hn_json_end_array(b);
+    }
+    b->failed |= lines.failed || !text;
+    free(text);
+    hn_strbuf_reset(&lines);
 }
 
 /// Both scores, each of its own maximum; a verdict without one says so in its place.
@@ -119,11 +190,12 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
         hn_json_put_number(&b, "max_score_before", hn_part_number(old, "max_score", (double)NAN));
         hn_json_put_number(&b, "score", v->kind == HN_VERDICT_GRADED ? v->score : (double)NAN);
         hn_json_put_number(&b, "max_score", v->max_score);
+        put_changes(&b, old, v, true);
         hn_json_end_object(&b);
         return hn_cli_print(&b);
     }
     put_scores(&b, old, v, same);
-    put_changes(&b, old, v);
+    put_changes(&b, old, v, false);
     hn_verdict_text(&b, v);
     return hn_cli_print_text(&b);
 }
