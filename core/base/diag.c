@@ -131,8 +131,8 @@ const char *hn_nearest_name(const char *word, const char *const *names, int n) {
         return NULL;
     }
 
-    // a short word may have one wrong letter, a long one a third of them
-    const int allowed = length < 6 ? 1 : (int)length / 3;
+    // a short word may have one wrong letter, a long one a third of them; a letter alone is none's
+    const int allowed = length < 2 ? 0 : length < 6 ? 1 : (int)length / 3;
     const char *best = NULL;
     int best_distance = allowed + 1;
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/shell/option_help.h"
 #include "cli/cli.h"
 
 #include "base/suggest.h"
@@ -9,13 +8,16 @@
 #include "cli/examples.h"
 #include "cli/glossary.h"
 #include "cli/manual.h"
+#include "cli/shell/cache_folder.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/fold.h"
+#include "cli/shell/option_help.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
-#include "cli/shell/cache_folder.h"
 #include "expr/native.h"
+#include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
 #include "program/program_method.h"
 #include "terminal/width.h"
 
@@ -129,8 +131,14 @@ static void join_words(hn_strbuf *b, const hn_words *words, int first) {
     }
 }
 
+/// The name of a formulation or of an integrator.
+static bool is_method_half(const char *name) {
+    return hn_formulation_find(name) || hn_stepper_find(name);
+}
+
 /// A term where there is no command of this name, or behind 'words'; all terms for 'words' alone.
-static hn_exit print_terms(const hn_args *args) {
+/// The name of half a method shows its card.
+static hn_exit print_terms(const hn_library *lib, const hn_args *args) {
     hn_strbuf b, word;
     hn_strbuf_init(&b);
     hn_strbuf_init(&word);
@@ -145,6 +153,10 @@ static hn_exit print_terms(const hn_args *args) {
         hn_diag_set(&diag, HN_ERR_INPUT, NULL, "'holonom help words' lists the terms",
                     "'%.60s' is not among the terms", hn_strbuf_text(&word));
         result = hn_report_diag(args, &diag);
+    } else if (is_method_half(hn_strbuf_text(&word))) {
+        hn_args card = *args;
+        card.words = (hn_words){2, {"methods", args->words.word[0]}};
+        result = hn_command_list(lib, &card);
     } else {
         hn_diag diag = unknown_command(hn_strbuf_text(&word));
         result = hn_report_diag(args, &diag);
@@ -165,7 +177,6 @@ static bool is_list(const char *word) {
 }
 
 static hn_exit print_help(const hn_library *lib, const hn_args *args) {
-    (void)lib;
     hn_strbuf b;
     hn_strbuf_init(&b);
     if (args->words.n == 0) {
@@ -176,7 +187,7 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
     const hn_command *command =
         args->words.n > 1 ? NULL : hn_command_find(is_list(word) ? "list" : word);
     if (!command) {
-        return print_terms(args);
+        return print_terms(lib, args);
     }
     describe_one(&b, command);
     return hn_cli_print_prose(&b);

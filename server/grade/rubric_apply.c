@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/rubric_apply.h"
 
+#include "base/suggest.h"
 #include "grade/mistakes.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/value_sheet.h"
@@ -97,22 +98,14 @@ static bool is_listed(const char *const *names, int n, const char *name) {
     return false;
 }
 
-/// What to write in the place of a name that is not known: the nearest one, else all where they are
-/// few.
-static void suggest_name(const char *word, const char *const *names, int n, char *out,
-                         size_t size) {
-    const char *near = strlen(word) > 1 ? hn_nearest_name(word, names, n) : NULL;
-    size_t used = 0;
-    if (near) {
-        snprintf(out, size, "did you mean '%s'?", near);
-        return;
-    }
+/// The name that was meant; where none is near, all of them, or who lists them where they are many.
+static void suggest_name(const char *word, const char *const *names, int n,
+                         char hint[HN_DIAG_HINT]) {
     if (n > FEW_NAMES) {
-        snprintf(out, size, "'holonom rubric check' lists those of a rubric without faults");
-        return;
-    }
-    for (int i = 0; i < n && used < size; i++) {
-        used += (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "one of: ", names[i]);
+        hn_suggest(hint, word, names, n,
+                   "'holonom rubric check' lists those of a rubric without faults");
+    } else {
+        hn_suggest_or_list(hint, word, names, n, "one of: ");
     }
 }
 
@@ -125,8 +118,8 @@ static hn_status check_names(const hn_rubric *r, const char *section, const char
         const bool known = is_listed(names, n, m->string) ||
                            (strcmp(section, "shares") == 0 && hn_grade_is_mistake(m->string));
         if (!known) {
-            char hint[160];
-            suggest_name(m->string, names, n, hint, sizeof hint);
+            char hint[HN_DIAG_HINT];
+            suggest_name(m->string, names, n, hint);
             status =
                 hn_rubric_fault(r, diags, section, m->string, hint, "exercise %s has no %s '%.40s'",
                                 hn_rubric_exercise(r), what, m->string);

@@ -83,7 +83,7 @@ static hn_status copy_text(reader *r) {
 /// Keeps a name, as JSON has it between its quotes.
 static hn_status keep_name(reader *r, const char *text, size_t n, char name[MAX_NAME]) {
     if (n >= MAX_NAME - 1) {
-        return fault(r, "a name is too long");
+        return fault(r, "a name is longer than 78 bytes");
     }
     memcpy(name, text, n);
     name[n] = 0;

@@ -185,7 +185,7 @@ class Run(Command):
         self.assertNotIn("smaller step", vain)
         # where a trial from the start is too long the sentence says so
         late = call("run", "slider-crank", "--method", "projection@euler:h=1e-3", "--time", "8", "--at", "8").stderr.decode()
-        self.assertRegex(late, r"tried in vain from t = 7\.\d* s on \(where the state already holds the errors so far; a trial from the start would take too many steps\): h=")
+        self.assertRegex(late, r"tried in vain from t = 7\.\d* s on \(where the state already holds the errors so far; a trial from the start would take too many steps\): this method with h=")
         # equations that lack a term are wrong at any step
         for method, word in ("rk4:h=0.01", "step"), ("dopri5:rtol=1e-5", "tolerance"):
             method = f"nullspace-as-printed@{method}"
@@ -199,7 +199,7 @@ class Run(Command):
         done = call("run", "four-bar", "--method", "reduced@rk4:h=1e-2", "--set", "l1=5e-324", "--json")
         end = json.loads(done.stdout)["incidents"][-1]
         self.assertEqual((end["code"], end["t"], end["remedies"]), ("rank-loss", 0, []))
-        self.assertIn("; tried in vain: projection@rk4:h=0.01, h=0.005", end["message"])
+        self.assertIn("; tried in vain: projection@rk4:h=0.01, this method with h=0.005", end["message"])
 
     def test_a_trial_stops_at_the_end_of_the_run_unless_the_event_is_near_it(self):
         # the energy is reported at 9.18 s
@@ -333,8 +333,9 @@ class Run(Command):
             done = call(*words)
             self.assert_exit(done, INPUT)
             told = done.stderr.decode()
-            self.assertIn("with l1 = 50 m (0.5 in the scene), loop B cannot be closed with th1 = 1 held; ground+crank spans", told)
-            self.assertIn("take values closer to l1 = 0.5, or", told)
+            self.assertIn("with l1 = 50 m (0.5 in the scene), loop B cannot be closed: ground+crank spans", told)
+            self.assertIn("m are missing with th1 = 1 held", told)
+            self.assertIn("go back towards l1 = 0.5, or", told)
             self.assertNotIn("make ", told)  # a rocker of 48 m
 
     def test_a_loop_that_cannot_be_closed_cuts_no_name_of_what_was_changed(self):

@@ -292,6 +292,12 @@ class Width(unittest.TestCase):
 
 
 class NearMisses(unittest.TestCase):
+    def test_help_on_half_a_method_shows_its_card(self):
+        for half in ("projection", "radau5"):
+            card = call("help", half)
+            self.assertEqual((card.returncode, card.stdout), (0, call("list", "methods", half).stdout))
+            self.assertIn("source", card.stdout)
+
     def test_what_is_typed_wrong_is_answered_with_what_was_meant(self):
         for words, meant in ((["compar", "four-bar"], "compare"), (["compare", "fuor-bar"], "four-bar"), (["study", "four-bar", "stabilty"], "stability"),
                              (["study", "four-bar", "work-precison"], "work-precision"), (["list", "scnes"], "scenes"), (["help", "rum"], "run"),
@@ -300,8 +306,8 @@ class NearMisses(unittest.TestCase):
                              (["run", "four-bar", "--method", "baumgarte:alpa=3@rk4"], "alpha"), (["problem", "p33"], "p3"),
                              (["grade", "p33", "x.json"], "p3"), (["export", "four-bar", "--language", "pyton"], "python"),
                              (["run", "four-bar", "--format", "cvs"], "csv"), (["equations", "four-bar", "--format", "latx"], "latex"),
-                             (["snapshot", "four-bar", "-o", "/tmp/a.png", "--view", "fornt"], "front"),
-                             (["snapshot", "four-bar", "-o", "/tmp/a.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
+                             (["snapshot", "four-bar", "-o", "never-written.png", "--view", "fornt"], "front"),
+                             (["snapshot", "four-bar", "-o", "never-written.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
                              (["terms", "four-bar", "--q", "ht1=1"], "th1"), (["extreme", "xx1"], "x1"),
                              (["run", "four-bar.json"], "the shipped scene is called 'four-bar'"),
                              (["run", "nosuch.json"], "there is no file 'nosuch.json'")):

@@ -209,7 +209,7 @@ static void explain_polygon(const hn_assembler *s, const side *sides, int n, cha
     }
     (void)snprintf(
         text, size,
-        "; %s spans %.6g m and the other sides together reach %.6g m, so %.6g m are missing",
+        ": %s spans %.6g m and the other sides together reach %.6g m, so %.6g m are missing",
         sides[longest].name, sides[longest].length, others, missing);
     list_remedies(sides, n, longest, missing, hint, hint_size);
 }
@@ -355,8 +355,8 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
     // the missing length is the gap that is left
     if (reason[0]) {
         hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer, hint,
-                     "loop %s cannot be closed%s%s%s%s", hn_system_loop_name(s->sys, loop), with,
-                     pins, held, reason);
+                     "loop %s cannot be closed%s%s%s%s", hn_system_loop_name(s->sys, loop), reason,
+                     with, pins, held);
         return;
     }
     hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer, hint,

@@ -117,7 +117,8 @@ void hn_model_caption(const hn_model *model, char *out, size_t size) {
     int n = snprintf(out, size, "%s%s%d degree%s of freedom", kind ? kind : "", kind ? ", " : "",
                      a->freedoms, a->freedoms == 1 ? "" : "s");
     if (info.nc > 0 && n > 0 && (size_t)n < size) {
-        n += snprintf(out + n, size - (size_t)n, " (%d \xe2\x88\x92 %d)", info.nv, a->rank);
+        n += snprintf(out + n, size - (size_t)n, " (%d \xe2\x88\x92 %d independent constraint%s)",
+                      info.nv, a->rank, a->rank == 1 ? "" : "s");
     }
     if (a->redundant > 0 && n > 0 && (size_t)n < size) {
         snprintf(out + n, size - (size_t)n, ", %d redundant constraint%s", a->redundant,

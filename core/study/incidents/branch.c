@@ -42,7 +42,7 @@ static void check_mode(hn_watch *w) {
         hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[loop],
                            HN_RUN_WARN_MODE,
                            "the loop%s%s jumped to its other assembly mode in one step (the number "
-                           "whose sign is the mode went from %.2g to %.2g)",
+                           "whose sign tells the modes apart went from %.2g to %.2g)",
                            named ? " " : "", named ? hn_system_loop_name(sys, loop) : "",
                            w->last_modes[loop], w->modes[loop]);
     } else {

@@ -414,8 +414,13 @@ static void tell_in_vain(hn_watch *w, hn_incident *i, hn_remedy texts[], const t
                        : " (where the state already holds the errors so far; a trial from the "
                          "start would take too many steps)");
     }
-    hn_incident_append(&w->log, i, IN_VAIN "%s: %s%s%s%s%s", begun, texts[0], n > 1 ? ", " : "",
-                       n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
+
+    // a setting alone is one of this method
+    hn_incident_append(&w->log, i, IN_VAIN "%s:", begun);
+    for (int k = 0; k < n; k++) {
+        hn_incident_append(&w->log, i, "%s%s%s", k > 0 ? ", " : " ",
+                           strchr(texts[k], '@') ? "" : "this method with ", texts[k]);
+    }
 }
 
 /// Keeps the remedies of a report that remove it, the tried ones first.
