@@ -156,7 +156,7 @@ static hn_exit print_terms(const hn_library *lib, const hn_args *args) {
     } else if (is_method_half(hn_strbuf_text(&word))) {
         hn_args card = *args;
         card.words = (hn_words){2, {"methods", args->words.word[0]}};
-        result = hn_command_list(lib, &card);
+        result = hn_command_find("list")->run(lib, &card);
     } else {
         hn_diag diag = unknown_command(hn_strbuf_text(&word));
         result = hn_report_diag(args, &diag);

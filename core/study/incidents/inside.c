@@ -61,7 +61,8 @@ static void check_branch(hn_watch *w, const hn_state_at *at) {
                 hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[k],
                                    HN_RUN_WARN_MODE,
                                    "the loop jumped to its other assembly mode inside a step (the "
-                                   "number whose sign tells the modes apart went from %.2g to %.2g)",
+                                   "number whose sign tells the modes apart went from %.2g to "
+                                   "%.2g)",
                                    w->last_modes[k], w->modes[k]),
                 at->t);
             return;
