@@ -388,12 +388,16 @@ static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
     }
 }
 
-static void put_blocks(hn_strbuf *b, const cJSON *nodes, int indent, int width) {
-    const cJSON *node;
-    cJSON_ArrayForEach(node, nodes) {
+/// A block and those behind it.
+static void put_rest(hn_strbuf *b, const cJSON *node, int indent, int width) {
+    for (; node; node = node->next) {
         put_block(b, node, indent, width);
         hn_strbuf_add(b, node->next ? "\n" : "");
     }
+}
+
+static void put_blocks(hn_strbuf *b, const cJSON *nodes, int indent, int width) {
+    put_rest(b, nodes ? nodes->child : NULL, indent, width);
 }
 
 /// What was seen in each prediction, below the lesson.
@@ -410,6 +414,13 @@ static void put_answers(hn_strbuf *b, const cJSON *blocks, int width) {
             snprintf(head, sizeof head, "%d. (%c) ", ++n, 'a' + (int)right);
             const cJSON *after = cJSON_GetObjectItemCaseSensitive(node, "after");
             put_inline(b, children_of(after ? after->child : NULL), INDENT, width, head);
+
+            // an answer may go on below its first paragraph
+            if (after && after->child && after->child->next) {
+                hn_strbuf_add(b, "\n");
+                put_rest(b, after->child->next, INDENT, width);
+                hn_strbuf_add(b, "\n");
+            }
         }
     }
 }

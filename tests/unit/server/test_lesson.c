@@ -95,11 +95,11 @@ static void an_exhibit_says_its_command(void **state) {
 
 static void a_prediction_has_its_right_choice(void **state) {
     (void)state;
-    cJSON *blocks = parse("```predict\nHow far?\n- $1$ m\n+ two\n\nSeen.\n```\n");
+    cJSON *blocks = parse("```predict\nHow far?\n- $1$ m\n+ two\n\nSeen.\n\nAnd why.\n```\n");
     const cJSON *node = cJSON_GetArrayItem(blocks, 0);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(node, "choices")), 2);
     assert_near(cJSON_GetNumberValue(cJSON_GetObjectItem(node, "right")), 1, 0);
-    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(node, "after")), 1);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(node, "after")), 2);
 
     // the answer stands behind the lesson, not beside the question
     cJSON *lesson = cJSON_CreateObject();
@@ -109,7 +109,7 @@ static void a_prediction_has_its_right_choice(void **state) {
     hn_lesson_text(&b, lesson, 80);
     const char *question = strstr(hn_strbuf_text(&b), "(b) two");
     assert_non_null(question);
-    assert_non_null(strstr(question, "1. (b) Seen."));
+    assert_non_null(strstr(question, "1. (b) Seen.\n\n    And why.\n"));
     hn_strbuf_reset(&b);
     cJSON_Delete(lesson);
 }
