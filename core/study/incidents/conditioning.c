@@ -17,12 +17,18 @@ static void check_multipliers(hn_watch *w) {
         return;
     }
     const double size = w->accel_status == HN_OK ? hn_norm_max(w->run->info.nc, w->lambda) : 0;
+    const double kinetic = w->measure.kinetic;
     if (s->info.ratio > FAR || s->multiplier == 0) {
         s->multiplier = fmax(s->multiplier, size);
+        s->kinetic = fmax(s->kinetic, kinetic);
         hn_incident_over(&w->log, HN_INCIDENT_MULTIPLIERS);
         return;
     }
-    const double limit = HN_RUN_WARN_MULTIPLIERS * s->multiplier;
+
+    // loads of inertia grow as the kinetic energy: a run that blows up has large multipliers
+    // anywhere, and dependent rows are not their cause
+    const double faster = s->kinetic > 0 ? fmax(1, kinetic / s->kinetic) : 1;
+    const double limit = HN_RUN_WARN_MULTIPLIERS * s->multiplier * faster;
     if (size > limit) {
         hn_incident_report(
             w, &hn_incident_multipliers, "|lambda|", size, limit,

@@ -240,7 +240,7 @@ static void forget(hn_watch *w) {
 
     // how near the singularity was
     s->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
-    s->largest = s->multiplier = 0;
+    s->largest = s->multiplier = s->kinetic = 0;
     s->fallbacks = 0;
     s->passing = 0;
     s->announced = 0;

@@ -25,7 +25,8 @@
 #define HN_RUN_WARN_DRIFT 1e-2
 /// Condition number of the equilibrated K: half the digits of the multipliers are lost.
 #define HN_RUN_WARN_CONDITION 1e8
-/// Growth of the multipliers against the largest seen away from singular configurations.
+/// Growth of the multipliers against the largest seen away from singular configurations, beyond
+/// that of the kinetic energy.
 #define HN_RUN_WARN_MULTIPLIERS 1e3
 /// [rad] between the direction of motion and its smooth continuation.
 #define HN_RUN_WARN_TURN 0.5
@@ -83,6 +84,7 @@ typedef struct hn_singular_record {
     hn_singularity_info info; ///< at the last check
     double largest;           ///< sigma_min so far
     double multiplier;        ///< largest |lambda| away from singular configurations
+    double kinetic;           ///< largest kinetic energy there [J]
     long long fallbacks;      ///< of the method, as reported so far
     /// The latest prediction: 1 + number of its report, 0: none is open; the lowest sigma_min
     /// since.

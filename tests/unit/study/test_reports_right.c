@@ -221,12 +221,42 @@ static void rows_that_pull_on_rounding_contradict_nothing(void **state) {
     }
 }
 
+// A step above the stability limit: the velocities grow without bound, and the multipliers as their
+// squares. No rows of J are dependent there. Bars that all but line up are told all the same.
+static void multipliers_of_a_run_that_blows_up_are_no_singular_configuration(void **state) {
+    (void)state;
+    static const char *const cases[][3] = {
+        {"slider-crank", "r=0.6151 l=3.358 m3=902.1 T0=-33.46", "udwadia-kalaba@rk4:h=1e-3"},
+        {"quick-return", "r=0.3239 l=0.8798 mA=0.2691 mR=88.07 kd=540.5 th_0=1.663",
+         "penalty@rk4:h=1e-3"},
+        {"quick-return", "d=0.13 mR=0.0076 rho=0.01248 g=21.61 w_m=1.675 kd=973.3",
+         "udwadia-kalaba@rk4:h=1e-3"},
+    };
+    hn_model m;
+    for (int i = 0; i < 3; i++) {
+        hn_model_open_closed(&m, cases[i][0], cases[i][1]);
+        hn_run *run = hn_motion_start(&m, cases[i][2]);
+        assert_int_equal(hn_run_advance(run, 1), HN_ERR_DIVERGED);
+        assert_null(find(run, HN_INCIDENT_MULTIPLIERS));
+        hn_run_free(run);
+        hn_model_close(&m);
+    }
+
+    hn_model_open_closed(&m, "parallelogram", NULL);
+    hn_run *run = hn_motion_start(&m, "penalty@rk4:h=1e-3");
+    assert_int_equal(hn_run_advance(run, 0.5), HN_OK);
+    assert_non_null(find(run, HN_INCIDENT_MULTIPLIERS));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rounding_of_the_energy_is_no_drift),
         cmocka_unit_test(rows_that_pull_on_rounding_contradict_nothing),
         cmocka_unit_test(a_long_step_of_high_order_is_no_jump),
         cmocka_unit_test(a_pilot_run_follows_a_motion_that_becomes_faster),
+        cmocka_unit_test(multipliers_of_a_run_that_blows_up_are_no_singular_configuration),
         cmocka_unit_test(unlike_masses_are_no_singular_configuration),
         cmocka_unit_test(every_change_point_is_announced_whatever_the_steps_are),
         cmocka_unit_test(a_sharp_turn_is_no_other_branch),
