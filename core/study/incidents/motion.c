@@ -7,18 +7,38 @@
 
 #include <math.h>
 
+/// The motion between two states: its largest component, at least `*moved`, and the largest that
+/// the velocities do not explain.
+static void compare_motion(const hn_watch *w, const hn_state_at *from, const hn_state_at *to,
+                           double *moved, double *rest) {
+    const hn_stepping *s = w->run;
+    const bool plain = s->info.nq == s->info.nv; // no quaternions
+    const double half = 0.5 * (to->t - from->t), *step = w->scratch;
+    double most = *moved, more = 0;
+    if (!plain) {
+        hn_system_difference(s->sys, from->q, to->q, w->scratch);
+    }
+    for (int i = 0; i < s->info.nv; i++) {
+        const double x = plain ? to->q[i] - from->q[i] : step[i];
+        const double way = fabs(x), other = fabs(x - half * (to->v[i] + from->v[i]));
+        most = way > most ? way : most;
+        more = other > more ? other : more;
+    }
+    *moved = most;
+    *rest = more;
+}
+
 double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
                                      const hn_state_at *to, double least) {
-    const hn_stepping *s = w->run;
-    const double half = 0.5 * (to->t - from->t);
-    double moved = least, rest = 0, *step = w->scratch;
-    hn_system_difference(s->sys, from->q, to->q, step);
-    for (int i = 0; i < s->info.nv; i++) {
-        const double way = fabs(step[i]), other = fabs(step[i] - half * (to->v[i] + from->v[i]));
-        moved = way > moved ? way : moved;
-        rest = other > rest ? other : rest;
-    }
+    double moved = least, rest = 0;
+    compare_motion(w, from, to, &moved, &rest);
     return moved > 0 ? rest / moved : 0;
+}
+
+bool hn_motion_is_unexplained(const hn_watch *w, double share) {
+    double moved = 0, rest = 0;
+    compare_motion(w, &w->run->before, &w->run->now, &moved, &rest);
+    return rest > share * moved;
 }
 
 /// Steps of a pilot run: in one of the run, in half a turn of the fastest coordinate, in all.

@@ -11,6 +11,8 @@ double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
                                      const hn_state_at *to, double least);
 /// The same of the last step.
 double hn_motion_unexplained(const hn_watch *w, double least);
+/// Whether that is more than `share`, without a division: it is asked after every step.
+bool hn_motion_is_unexplained(const hn_watch *w, double share);
 /// How far the motion from `from` (nq) to now would have opened a loop with one of its coordinates
 /// alone, over the length: with J of the state measured last. `step` (nv) gets the motion.
 double hn_motion_way(const hn_watch *w, const double *from, double *step);

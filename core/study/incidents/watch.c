@@ -177,6 +177,20 @@ static bool is_calm(const hn_watch *w) {
            row * row * w->accel_info.pivot_ratio > PIVOT_MARGIN * HN_RUN_WARN_PIVOT;
 }
 
+/// Whether the run has gone further than STRIDE since the last full check. In motion without jumps
+/// a way grows with the square of time at most: it is not measured before it can be that long.
+static bool is_far(hn_watch *w) {
+    enum { MOST = 4 }; // a short way says little of one that is longer by more
+    const double t = w->run->now.t;
+    if (t < w->near_until) {
+        return false;
+    }
+    const double way = hn_motion_way(w, w->checked_q, w->scratch);
+    const double times = way * MOST > STRIDE ? STRIDE / way : MOST;
+    w->near_until = w->checked_t + sqrt(times) * (t - w->checked_t);
+    return way > STRIDE;
+}
+
 static bool is_full_check_due(hn_watch *w) {
     const hn_stepping *s = w->run;
     const unsigned waiting = is_prediction_due(w) ? 0 : 1u << HN_INCIDENT_RANK_AHEAD;
@@ -186,8 +200,7 @@ static bool is_full_check_due(hn_watch *w) {
         return true;
     }
     return hn_dot(s->info.nv, s->now.v, s->before.v) < 0 ||
-           hn_motion_way(w, w->checked_q, w->scratch) > STRIDE ||
-           hn_motion_unexplained(w, 0) > UNEXPLAINED;
+           hn_motion_is_unexplained(w, UNEXPLAINED) || is_far(w);
 }
 
 // ---- checking ----
@@ -217,6 +230,7 @@ static void check_present(hn_watch *w) {
         }
         measure_solution(w);
         memcpy(w->checked_q, s->now.q, (size_t)s->info.nq * sizeof *w->checked_q);
+        w->checked_t = w->near_until = s->now.t;
     }
     check_kinds(w, full);
     if (full) {

@@ -116,8 +116,10 @@ struct hn_watch {
     hn_measure measure;
 
     // of the state checked in full last
-    double *checked_q;                                    ///< nq
-    double shortest_row;                                  ///< hn_motion_shortest_row() there
+    double *checked_q;   ///< nq
+    double checked_t;    ///< its time [s]
+    double near_until;   ///< before this time the run is near it [s]
+    double shortest_row; ///< hn_motion_shortest_row() there
     const hn_incident_kind *each_step[HN_INCIDENT_COUNT]; ///< those checked after every step
     int n_each_step;
     unsigned own_pace; ///< incidents that end without a full check: bits of hn_incident_log.active

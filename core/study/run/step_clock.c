@@ -5,7 +5,9 @@
 
 #include <math.h>
 
-enum { BLOCK = 64 };
+enum { BLOCK = 64, SPARSE = 7 }; // intervals read in a block; a prime keeps no step with anything
+// Of a pair of readings: where intervals are shorter on average, the pairs would be 2 % of them.
+static const double SHORT = 50;
 // A longer time between two intervals is the caller's: it may have slept.
 static const double LONG_BREAK = 1e-4; // [s]
 
@@ -42,6 +44,11 @@ void hn_step_clock_clear(hn_step_clock *c) {
     *c = (hn_step_clock){.grain = c->grain, .pause = c->pause};
 }
 
+/// Ticks of all intervals of the present block, those that were not read included.
+static double own_ticks(const hn_step_clock *c) {
+    return c->n_read > 0 ? c->own * c->n / c->n_read : 0;
+}
+
 /// CPU time of the intervals of the present block. Undisturbed it is their wall time. A thread that
 /// had to wait for a processor has used less: then the steps get their share of the block.
 static double calc_block(const hn_step_clock *c) {
@@ -51,26 +58,45 @@ static double calc_block(const hn_step_clock *c) {
     }
     const double cpu = hn_clock_thread() - c->cpu_mark,
                  tick = (hn_clock_wall() - c->wall_mark) / passed;
-    return fmin(c->own * tick, cpu * c->own / all);
+    return fmin(own_ticks(c) * tick, cpu * c->own / all);
+}
+
+/// Opens a block. The last one says how long an interval is; before there is one all are read.
+static void open_block(hn_step_clock *c) {
+    const bool is_short = c->n_read == BLOCK && c->own < SHORT * c->grain * c->n_read;
+    c->every = is_short ? SPARSE : 1;
+    c->until = c->n_read = 0;
+    c->cpu_mark = hn_clock_thread();
+    c->wall_mark = hn_clock_wall();
+    c->own = c->between = 0;
+    c->mark = c->stopped = hn_clock_ticks();
 }
 
 void hn_step_clock_start(hn_step_clock *c) {
+    const bool read_last = c->n > 0 && c->reading;
     if (c->n == 0) {
-        c->cpu_mark = hn_clock_thread();
-        c->wall_mark = hn_clock_wall();
-        c->own = c->between = 0;
-        c->mark = c->started = hn_clock_ticks();
+        open_block(c);
+    }
+    c->reading = c->until == 0;
+    c->until = (c->reading ? c->every : c->until) - 1;
+    if (!c->reading && !read_last) {
         return;
     }
+
+    // the end of the time after an interval that was read, the beginning of one that is
     c->started = hn_clock_ticks();
     const double between = c->started - c->stopped;
-    c->between += between > 0 && between < c->pause ? between : 0;
+    c->between += read_last && between > 0 && between < c->pause ? between : 0;
 }
 
 void hn_step_clock_stop(hn_step_clock *c) {
+    c->n++;
+    if (!c->reading) {
+        return;
+    }
     c->stopped = hn_clock_ticks();
     c->own += fmax(0, c->stopped - c->started - c->grain);
-    if (++c->n == BLOCK) {
+    if (++c->n_read == BLOCK) {
         c->seconds += calc_block(c);
         c->n = 0;
     }
@@ -80,5 +106,6 @@ void hn_step_clock_stop(hn_step_clock *c) {
 // cent: two readings with no step between them are the same number.
 double hn_step_clock_read(const hn_step_clock *c) {
     const double tick = LONG_BREAK / c->pause;
-    return c->seconds + (c->n > 0 ? fmin(c->own * tick, hn_clock_thread() - c->cpu_mark) : 0);
+    const double own = own_ticks(c) * tick;
+    return c->seconds + (c->n > 0 ? fmin(own, hn_clock_thread() - c->cpu_mark) : 0);
 }

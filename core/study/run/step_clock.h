@@ -4,7 +4,10 @@
 // CPU time of the steps alone, of a run that also checks and samples between its steps. The CPU
 // clock of a thread is a call into the kernel and takes as long as a small mechanism's step, so it
 // is read once for a block of intervals. The processor's counter, which needs no such call, says
-// which share of the block the steps took.
+// which share of the block the steps took. Where intervals are so short that reading the counter
+// twice in each would show, it is read in one interval of SPARSE.
+
+#include <stdbool.h>
 
 typedef struct hn_step_clock {
     double seconds; ///< CPU time of the blocks that have ended [s]
@@ -14,8 +17,12 @@ typedef struct hn_step_clock {
     double cpu_mark;         ///< CPU clock at the beginning of the present block [s]
     double started, stopped; ///< counter at the ends of the last interval [ticks]
     double wall_mark, mark;  ///< wall clock [s] and counter then
-    double own, between;     ///< in the intervals of the block, and between them [ticks]
+    double own, between;     ///< in the block's intervals that are read, and after them [ticks]
     int n;                   ///< intervals of the block; 0: the next one opens a block
+    int n_read;              ///< of them, those in which the counter was read
+    int every;               ///< it is read in one interval of so many
+    int until;               ///< intervals until the next one in which it is read
+    bool reading;            ///< it is read in the present or last interval
 } hn_step_clock;
 
 /// Measures the grain, and starts from zero.

@@ -38,6 +38,37 @@ static void a_quarter_of_the_work_is_a_quarter_of_the_time(void **state) {
     assert_in_range((int)(1000 * share), 125, 500);
 }
 
+// intervals of a few readings of the counter: it is read in some of them, and all are counted
+static void short_intervals_are_counted_by_some_of_them(void **state) {
+    (void)state;
+    hn_step_clock c;
+    hn_step_clock_create(&c);
+    c.grain = 1000; // a reading that takes as long as some hundred roots: every machine is quick
+    const double begin = hn_clock_thread();
+    for (int i = 0; i < 20 * INTERVALS; i++) {
+        hn_step_clock_start(&c);
+        work(ROUNDS / 4);
+        hn_step_clock_stop(&c);
+        work(3 * ROUNDS / 4);
+    }
+    const double share = hn_step_clock_read(&c) / (hn_clock_thread() - begin);
+    assert_true(c.every > 1 && c.n_read < c.n);
+    assert_in_range((int)(1000 * share), 100, 500); // less than a quarter by the grain
+}
+
+static void long_intervals_are_all_read(void **state) {
+    (void)state;
+    hn_step_clock c;
+    hn_step_clock_create(&c);
+    c.grain = 0;
+    for (int i = 0; i < INTERVALS; i++) {
+        hn_step_clock_start(&c);
+        work(ROUNDS);
+        hn_step_clock_stop(&c);
+        assert_int_equal(c.every, 1);
+    }
+}
+
 static void time_asleep_is_nobodys(void **state) {
     (void)state;
     const struct timespec nap = {.tv_nsec = 2000000};
@@ -84,6 +115,8 @@ static void reading_changes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_quarter_of_the_work_is_a_quarter_of_the_time),
+        cmocka_unit_test(short_intervals_are_counted_by_some_of_them),
+        cmocka_unit_test(long_intervals_are_all_read),
         cmocka_unit_test(time_asleep_is_nobodys),
         cmocka_unit_test(clear_forgets),
         cmocka_unit_test(reading_changes_nothing),
