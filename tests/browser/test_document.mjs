@@ -111,7 +111,7 @@ test("the last session of this browser can be continued, and an untouched page l
     before.frame,
   );
   const again = await open(t, { ...context, keep: true });
-  await again.getByRole("button", { name: "continue it" }).click();
+  await again.getByRole("button", { name: "continue the last session" }).click();
   await until(again, `(data) => data.latest?.frame === ${before.frame} && data.offer === ""`);
   await soon(async () => assert.deepEqual(await read(again, state), before));
 });

@@ -265,3 +265,17 @@ test("the recording is saved as CSV and NDJSON with every digit, the drawing as 
   const png = (await fetchFile("PNG")).bytes;
   assert.equal(png.subarray(1, 4).toString(), "PNG");
 });
+
+test("incidents that a run counts and does not list are in the page's count", async (t) => {
+  const page = await open(t, { hash: "#scene=parallelogram&method=projection@rk4:h=1e-3" });
+  await playTo(page, 4.9); // flat twelve times in 5 s, five of them are listed
+  await soon(async () => {
+    const lines = await page.locator(".incidents summary").allTextContents();
+    const counted = lines.filter((line) => / and later, 1\d times/.test(line));
+    assert.ok(counted.length >= 2, lines.join("; "));
+    assert.ok(
+      lines.some((line) => /close to a singular configuration.* and later, 12 times/.test(line)),
+      lines.join("; "),
+    );
+  });
+});

@@ -151,3 +151,58 @@ test("where no dead point is listed the record says why", async (t) => {
     ),
   );
 });
+
+test("at 200 % the guide leaves the mechanism in sight, above the transport", async (t) => {
+  // 1366x768 and 1920x1080 at 200 %
+  for (const viewport of [
+    { width: 683, height: 384 },
+    { width: 960, height: 540 },
+  ]) {
+    const page = await open(t, { viewport });
+    await page.locator(".guide").waitFor();
+    await drawn(page);
+    await soon(async () => {
+      const guide = await boxOf(page, ".guide");
+      const picture = await boxOf(page, ".ghosts .ghost.selected");
+      const transport = await boxOf(page, ".transport");
+      const said = `${viewport.width}: ${JSON.stringify([guide, picture, transport])}`;
+      assert.ok(guide.bottom <= picture.top && picture.bottom <= transport.top, said);
+      assert.ok(picture.right - picture.left > 60, said); // [px] links can be told apart
+    });
+  }
+});
+
+test("the offer of the last session covers neither the lens nor the scale", async (t) => {
+  for (const viewport of [LAPTOP, TABLET, NARROW]) {
+    const page = await open(t, { viewport });
+    await page.getByRole("button", { name: "Close the guide" }).click();
+    await page.evaluate(() => (document.querySelector(".offer").hidden = false));
+    const offer = await boxOf(page, ".offer");
+    for (const part of [".tear-inset .glass", ".tear-inset figcaption", ".picture .scale"]) {
+      const box = await boxOf(page, part);
+      const apart =
+        offer.right <= box.left ||
+        box.right <= offer.left ||
+        offer.bottom <= box.top ||
+        box.bottom <= offer.top;
+      assert.ok(apart, `${viewport.width}, ${part}: ${JSON.stringify([offer, box])}`);
+    }
+  }
+});
+
+test("beside the editor the verdicts are there in full, and a lesson's letters lie beside its ring", async (t) => {
+  const page = await open(t, { viewport: LAPTOP });
+  await playTo(page, 0.5);
+  await page.getByRole("button", { name: "edit", exact: true }).click();
+  await page.locator("#editor-text").waitFor();
+  await soon(async () => {
+    const verdict = await boxOf(page, ".verdict-bar");
+    const editor = await boxOf(page, ".editor");
+    assert.ok(verdict.right <= editor.left, `${verdict.right} to ${editor.left}`);
+  });
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.locator(".lesson-text h2").first().waitFor();
+  const text = await boxOf(page, ".lesson-text");
+  const heading = await boxOf(page, ".lesson-text h2");
+  assert.ok(heading.left - text.left >= 4, "the ring is 2 px wide"); // and as much of paper
+});

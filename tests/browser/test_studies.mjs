@@ -2,6 +2,8 @@
 // Studies on the page: what accuracy costs, where steps are stable, where the error comes from.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { dotsOf, ruleOf } from "../../web/state/study-documents.js";
+import { cheapestFor } from "../../web/state/wanted.js";
 import { createBench, read, screenshot, soon, until } from "./support.mjs";
 
 const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
@@ -16,6 +18,20 @@ const hasEnded = (kind) =>
   `(data) => ["finished", "stopped"].includes(data.studies["${kind}"].state) && data.studies["${kind}"].document`;
 
 // ---- the page --------------------------------------------------------------------------------
+
+/** The page finds the method and the cost that the engine's own ranking names, at each accuracy. */
+function assertSameCheapest(study) {
+  const pareto = study.pareto.find((one) => one.error === "q" && one.cost === "operations");
+  assert.ok(pareto.bands.length >= 2, "accuracies that are ranked");
+  const { floor } = ruleOf(study, "q");
+  for (const { accuracy, best, next } of pareto.bands) {
+    const list = cheapestFor(dotsOf(study, "q", "operations"), accuracy, { margin: 1, floor });
+    [best, next].forEach((one, i) => {
+      assert.equal(list[i] && study.methods[list[i].m].method, one?.method, `for ${accuracy}`);
+      assert.ok(!one || Math.abs(list[i].cost / one.cost - 1) < 1e-9, `for ${accuracy}`); // roundings
+    });
+  }
+}
 
 test("W draws error against cost; a point's step is taken over by click and by keyboard", async (t) => {
   const page = await open(t, { hash: SHORT });
@@ -45,10 +61,9 @@ test("W draws error against cost; a point's step is taken over by click and by k
   await soon(async () =>
     assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes"),
   );
-  const wanted = await read(
-    page,
-    (data) => data.studies["work-precision"].document.methods[0].points[2].method,
-  );
+  const study = await read(page, (data) => data.studies["work-precision"].document);
+  assertSameCheapest(study);
+  const wanted = study.methods[0].points[2].method;
   await dialog.locator('.scatter [data-m="0"][data-spot="2"]').click({ force: true });
   await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(wanted)}`);
   await page.keyboard.press("ArrowRight");
@@ -93,6 +108,19 @@ test("a study that is stopped shows what was done, and says so", async (t) => {
     .getByText(/stopped on request/)
     .waitFor();
   await soon(async () => assert.ok((await page.locator(".scatter .spot").count()) > 0));
+});
+
+test("Escape stops a study that runs and keeps what it found; the next one closes", async (t) => {
+  const page = await open(t);
+  await page.keyboard.press("b");
+  await until(page, (data) => data.studies.stability.progress > 0.05, LONG);
+  await page.keyboard.press("Escape");
+  await until(page, (data) => data.studies.stability.state === "stopped", LONG);
+  const dialog = page.getByRole("dialog", { name: /Studies/ });
+  assert.ok(await dialog.isVisible(), "the part of the map that is there can be used");
+  await soon(async () => assert.ok((await dialog.locator("[data-spot]").count()) > 0));
+  await page.keyboard.press("Escape");
+  await until(page, (data) => data.view.study === "");
 });
 
 test("a stopped study goes on with what is left, and is not begun again", async (t) => {

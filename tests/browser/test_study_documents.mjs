@@ -52,6 +52,7 @@ const STUDY = {
     },
   ],
   pareto: [],
+  wanted: { margin: 0.5, above_reference: 10 },
 };
 
 test("a point that failed stands on the upper edge, at what it would have cost", () => {
@@ -85,22 +86,37 @@ test("an accuracy is read as a length, an angle, a share or the number of the ax
   assert.equal(value("much"), undefined);
 });
 
-test("the cheapest method for an accuracy lies between its measured points", () => {
-  const dot = (m, size, error, cost) => ({ m, k: 0, size, error, cost, sizeName: "h" });
+test("the cheapest method for an accuracy lies between its measured points, by the study's own rule", () => {
+  const dot = (m, size, error, cost, more = {}) => ({
+    ...{ m, k: 0, size, error, cost, sizeName: "h", spelling: "", state: "done" },
+    ...{ reason: "", bound: false, ...more },
+  });
+  const rule = { margin: 0.5, floor: 0 };
   const steep = [dot(0, 1, Infinity, 1), dot(0, 0.1, 1e-2, 10), dot(0, 0.01, 1e-6, 100)];
-  const lucky = [dot(1, 1, 1e-5, 2), dot(1, 0.1, 1e-1, 20), dot(1, 0.01, 1e-3, 200)];
-  const [first, ...others] = cheapestFor([steep, lucky], 2e-4);
-  assert.equal(first.m, 0);
-  assert.ok(
-    Math.abs(first.cost - Math.sqrt(1000)) < 1e-9,
-    "half-way in decades, for half the error",
-  );
-  assert.ok(Math.abs(first.size - Math.sqrt(1e-3)) < 1e-9);
-  assert.deepEqual(others, [], "one lucky run of a large step is no accuracy of the method");
-  const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2);
+  const near = (value, other) => assert.ok(Math.abs(value / other - 1) < 1e-9, `${value}`); // roundings
+  const [first] = cheapestFor([steep], 2e-4, rule);
+  near(first.cost, Math.sqrt(1000)); // half-way in decades, for half the error
+  near(first.size, Math.sqrt(1e-3));
+  near(cheapestFor([steep], 1e-4, { ...rule, margin: 1 })[0].cost, Math.sqrt(1000));
+  const dear = [dot(1, 0.1, 1e-2, 30), dot(1, 0.01, 1e-6, 300)];
+  const far = [dot(2, 0.1, 1e-9, 1, { away: true })];
+  const order = (list) => cheapestFor(list, 2e-4, rule).map(({ m }) => m);
+  assert.deepEqual(order([dear, steep, far]), [0, 1], "what converges elsewhere reaches nothing");
+  const [coarse] = cheapestFor([[dot(0, 1, 1e-5, 2), dot(0, 0.1, 1e-7, 20)]], 1e-2, rule);
   assert.deepEqual([coarse.cost, coarse.atMost], [2, true]);
-  const [measured] = cheapestFor([steep], 1.5e-6);
+  const [measured] = cheapestFor([steep], 1.5e-6, rule);
   assert.deepEqual([measured.size, measured.cost], [0.01, 100], "no finer than what is measured");
+  assert.deepEqual(
+    cheapestFor([steep], 1.5e-6, { margin: 0.5, floor: 1e-5 }),
+    [],
+    "an error below the resolution of the reference is claimed as that",
+  );
+});
+
+test("the step that is told has two digits and is never larger than what was found", () => {
+  const told = (size) => sizeToRun(/** @type {any} */ ({ size, measured: false }));
+  assert.deepEqual([0.01499, 0.0148, 0.0999, 1.24e-5].map(told), [0.014, 0.014, 0.099, 1.2e-5]);
+  assert.equal(sizeToRun(/** @type {any} */ ({ size: 0.01499, measured: true })), 0.01499);
 });
 
 test("times that cannot be told apart are not ranked, counts are", () => {

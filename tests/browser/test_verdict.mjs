@@ -13,7 +13,7 @@ import {
   noDeadPointWords,
   singularWords,
 } from "../../web/state/dead-point.js";
-import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
+import { cardOfMethod, groupIncidents, tryOfRemedy, whenWords } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
 import { passedAt, predictionAt, stopReason } from "../../web/state/words.js";
 
@@ -292,6 +292,14 @@ test("incidents of one cause are one line with a count", () => {
       [1, 1, 2, 2],
     ],
   );
+
+  // a run lists the first five of a code, and counts all
+  const counted = [1, 2, 3, 4, 5].map((t) => ({ ...one(0, "near-singular", t), times: 12 }));
+  const [group] = groupIncidents([...counted, { ...one(1, "gap-open", 6), times: 1 }]).slice(1);
+  assert.deepEqual([group.count, group.listed, group.last], [12, 5, 5]);
+  assert.equal(whenWords(group, 10), "1.00 s to 5.00 s and later, 12 times");
+  assert.equal(whenWords(groups[0], 10), "1.00 s to 4.00 s, 3 times");
+  assert.equal(whenWords(groups[1], 10), "2.00 s");
 });
 
 test("of a stopped run the card offers what the engine found, and nothing that has stopped as well", () => {

@@ -14,27 +14,48 @@ import { stopReason } from "./words.js";
 const FAMILY = { "energy-jump": "energy", "energy-drift": "energy" };
 
 /**
- * Incidents of one method and one cause: how many, when, and the newest of them.
+ * Incidents of one method and one cause: how many, when, and the newest of them. A run lists the
+ * first few of a code, and counts all.
  * @typedef {import("./store.js").Incident} Incident
- * @typedef {{key: string, count: number, first: number, last: number, newest: Incident}} Group
+ * @typedef {{key: string, count: number, listed: number, first: number, last: number,
+ *   newest: Incident}} Group
  * @param {Incident[]} incidents in the order of time
  * @returns {Group[]} the newest first
  */
 export function groupIncidents(incidents) {
-  /** @type {Map<string, Group>} */
-  const groups = new Map();
+  /** @type {Map<string, Incident[]>} */
+  const causes = new Map();
   for (const incident of incidents) {
     const key = `${incident.method} ${FAMILY[incident.code] ?? incident.code}`;
-    const old = groups.get(key);
-    groups.set(key, {
-      key,
-      count: (old?.count ?? 0) + 1,
-      first: old?.first ?? incident.t,
-      last: incident.t,
-      newest: incident,
-    });
+    causes.set(key, [...(causes.get(key) ?? []), incident]);
   }
-  return [...groups.values()].sort((a, b) => b.last - a.last);
+  const groups = [...causes].map(([key, list]) => {
+    const codes = new Set(list.map(({ code }) => code));
+    const counts = [...codes].map((code) => {
+      const same = list.filter((one) => one.code === code);
+      return Math.max(same.length, ...same.map(({ times }) => times ?? 0));
+    });
+    return {
+      key,
+      count: counts.reduce((sum, count) => sum + count, 0),
+      listed: list.length,
+      first: list[0].t,
+      last: list[list.length - 1].t,
+      newest: list[list.length - 1],
+    };
+  });
+  return groups.sort((a, b) => b.last - a.last);
+}
+
+/**
+ * "0.4 s", "0.4 s to 2 s, 3 times", "0.4 s to 2 s and later, 12 times"
+ * @param {{count: number, listed?: number, first: number, last: number}} group
+ * @param {number} duration [s] of the run
+ */
+export function whenWords({ count, listed: told = count, first, last }, duration) {
+  const at = seconds(first, duration);
+  const later = count > told ? " and later" : "";
+  return count > 1 ? `${at} to ${seconds(last, duration)}${later}, ${count} times` : at;
 }
 
 /**

@@ -73,8 +73,6 @@ export function byName(list, wanted) {
   return found;
 }
 
-/** Nothing below ten times what the reference itself may be off is more than a bound. */
-const ABOVE_REFERENCE = 10;
 const LEAST = 1e-17;
 /** States of points of which nothing is known. */
 export const NOT_RUN = ["pending", "skipped", "left out"];
@@ -82,7 +80,8 @@ export const NOT_RUN = ["pending", "skipped", "left out"];
 /**
  * @typedef {{m: number, k: number, spelling: string, size: number, sizeName: string, cost: number,
  *   error: number, state: string,
- *   reason: string, bound: boolean, range?: number[], halves?: number}} Dot
+ *   reason: string, bound: boolean, away?: boolean, range?: number[], halves?: number}} Dot
+ *   away: its method converges to another motion, and is accurate nowhere;
  *   range: least and largest measured time over the median; halves: how far apart the medians of
  *   the two halves of the samples are, as a ratio; both only where the cost is a time
  */
@@ -115,6 +114,7 @@ export function dotsOf(study, error, cost) {
         spelling: p.method,
         size: p.size,
         sizeName: method.size,
+        away: method.class?.kind === "elsewhere",
         state: p.state,
       };
       if (p.state === "done") {
@@ -204,8 +204,18 @@ export function missingIn(document, labelOf) {
   return parts.join(", ");
 }
 
-/** Below it an error is no more than a bound; 0: the quantity needs no reference. */
-export const floorOf = (study, error) => ABOVE_REFERENCE * (study.reference.error[error] ?? 0);
+/**
+ * Below it an error is no more than a bound, by what the reference itself may be off; 0: the
+ * quantity needs no reference.
+ */
+export const floorOf = (study, error) =>
+  study.wanted.above_reference * (study.reference.error[error] ?? 0);
+
+/** How the points of a study are read for a wanted accuracy. @returns {import("./wanted.js").Rule} */
+export const ruleOf = (study, error) => ({
+  margin: study.wanted.margin,
+  floor: floorOf(study, error),
+});
 
 const COUNTS = { k: "thousand ", M: "million ", G: "billion ", "": "" };
 

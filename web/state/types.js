@@ -88,8 +88,8 @@
  * @typedef {{id: string, title: string, scenes: string[], problems: string[]}} Lesson
  * @typedef {{
  *   method: number, code: string, t: number, quantity: string, value: number, limit: number,
- *   message: string, remedies: string[], tried?: string[],
- * }} Incident
+ *   message: string, remedies: string[], tried?: string[], times?: number,
+ * }} Incident times: how often its code has come so far, listed or not
  */
 
 export {};

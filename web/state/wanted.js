@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Which method reaches a wanted accuracy for the least: between the measured points of a study, by
-// straight lines in decades. Between two points an error does not follow such a line: it was up to
-// 1.6 times as large (the engine's session/precision/wanted.c does the same).
+// straight lines in decades, with the margin that the study names. The engine's
+// session/precision/wanted.c answers in the terminal by the same rule.
 import { parseQuantity, quantity, scientific } from "./format.js";
 
 const PLAIN = /^\s*[\d.,]+(e[-+]?\d+)?\s*$/i;
@@ -43,74 +43,95 @@ export function wantedError(text, error, length) {
 }
 
 /**
+ * What a study says of reading its points: `margin`: the size is read off for this share of the
+ * error that is wanted; `floor`: errors below it are no more than bounds, and count as it.
+ * @typedef {{margin: number, floor: number}} Rule
  * @typedef {import("./study-documents.js").Dot} Dot
  * @typedef {{
  *   m: number, cost: number, size: number, dot: Dot, atMost: boolean, measured: boolean,
  *   coarser?: Dot,
  * }} Reach
- *   atMost: the coarsest run is already accurate enough; measured: it is the size of a run
+ *   atMost: no coarser run was accurate enough or tried, so that a larger size may do as well;
+ *   measured: it is the size of a run
  */
-
-/** The step or tolerance is read off for this share of the error that is wanted. */
-const MARGIN = 0.5;
 
 /** @param {number} a @param {number} b @param {number} share */
 const between = (a, b, share) => (share > 0 ? a * (b / a) ** share : a);
 
 /**
- * The least that one method costs at an accuracy that all its finer runs have too.
- * @param {Dot[]} dots of one method
+ * Where one method reaches an accuracy at the least cost, as the engine finds it (hn_wp_reach).
+ * @param {Dot[]} dots of one method, the coarsest first
  * @param {number} wanted
- * @returns {Reach | null}
+ * @param {(dot: Dot) => number} claimed
  */
-function reachOf(dots, wanted) {
-  const known = dots.filter(({ error, cost }) => Number.isFinite(error) && cost > 0);
-  const fine = [...known].sort((a, b) => a.size - b.size);
-  const away = fine.findIndex(({ error }) => error > wanted);
-  const [first] = fine;
-  if (!first || away === 0) {
-    return null;
+function placeOf(dots, wanted, claimed) {
+  const known = dots.filter(({ error, cost, away }) => !away && Number.isFinite(error) && cost > 0);
+  /** @type {{dot: Dot, from: Dot | null, cost: number} | null} */
+  let best = null;
+  for (const [i, dot] of known.entries()) {
+    const error = claimed(dot);
+    if (error > wanted) {
+      continue;
+    }
+    const before = known[i - 1];
+    const reads = before && error < wanted && claimed(before) > wanted && before.cost < dot.cost;
+    const share = reads ? Math.log(wanted / error) / Math.log(claimed(before) / error) : 0;
+    const cost = reads ? between(dot.cost, before.cost, share) : dot.cost;
+    if (!best || cost < best.cost) {
+      best = { dot, from: reads ? before : null, cost };
+    }
   }
-  const last = fine[away < 0 ? fine.length - 1 : away - 1];
-  const reach = {
-    m: last.m,
-    cost: last.cost,
-    size: last.size,
-    dot: last,
-    atMost: away < 0,
-    measured: true,
-  };
-  if (away < 0) {
-    return reach;
+  return best;
+}
+
+/**
+ * The size with which one method is run for an accuracy, and what that costs.
+ * @param {Dot[]} dots of one method, the coarsest first
+ * @param {number} wanted
+ * @param {Rule} rule
+ * @returns {Reach[]} none, where it reaches the accuracy nowhere
+ */
+function reachOf(dots, wanted, { margin, floor }) {
+  const claimed = ({ error }) => Math.max(error, floor);
+  const place = placeOf(dots, wanted, claimed);
+  if (!place) {
+    return [];
   }
-  const coarse = fine[away];
-  const share = Math.max(
-    0,
-    Math.log((MARGIN * wanted) / last.error) / Math.log(coarse.error / last.error),
-  );
-  return {
-    ...reach,
-    measured: share === 0,
-    coarser: coarse,
-    cost: between(last.cost, coarse.cost, share),
-    size: between(last.size, coarse.size, share),
-  };
+  const { dot, from } = place;
+  const reach = { m: dot.m, cost: dot.cost, size: dot.size, dot, atMost: !from, measured: true };
+  if (!from) {
+    return [reach];
+  }
+  const least = claimed(dot);
+  const share = Math.max(0, Math.log((margin * wanted) / least) / Math.log(claimed(from) / least));
+  return [
+    {
+      ...reach,
+      measured: share === 0,
+      coarser: from,
+      cost: between(dot.cost, from.cost, share),
+      size: between(dot.size, from.size, share),
+    },
+  ];
 }
 
 /**
  * The step or tolerance that is told and run: of two digits, not larger than what was found.
  * @param {Reach} reach
  */
-export const sizeToRun = ({ size, measured }) =>
-  measured ? size : Number((size * 0.995).toPrecision(2));
+export function sizeToRun({ size, measured }) {
+  const digit = 10 ** (Math.floor(Math.log10(size)) - 1);
+  return measured ? size : Number((Math.floor(size / digit) * digit).toPrecision(2));
+}
 
 /**
  * Who reaches an accuracy, the cheapest first.
  * @param {Dot[][]} dots by method
  * @param {number} wanted
+ * @param {Rule} rule
  */
-export const cheapestFor = (dots, wanted) =>
-  dots.flatMap((list) => reachOf(list, wanted) ?? []).sort((a, b) => a.cost - b.cost);
+export const cheapestFor = (dots, wanted, rule) =>
+  dots.flatMap((list) => reachOf(list, wanted, rule)).sort((a, b) => a.cost - b.cost);
 
 /**
  * How steady the time of a point was measured, as the engine's own ranking reads it: quartiles and

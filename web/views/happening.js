@@ -3,7 +3,7 @@
 // The record of incidents, one line for each method and cause with a count, the dead points of the
 // methods that are right, and what to know about the scene.
 import { incidentOf } from "../state/catalogue.js";
-import { groupIncidents, triesOfIncident } from "../state/cards.js";
+import { groupIncidents, triesOfIncident, whenWords } from "../state/cards.js";
 import { deadPointLines, noDeadPointWords } from "../state/dead-point.js";
 import { seconds } from "../state/format.js";
 import { otherSteps } from "../state/own-step.js";
@@ -45,12 +45,6 @@ export function createHappening(el, store, actions) {
   /** @type {ReturnType<typeof deadPointLines>} */
   let dead = [];
 
-  /** When, and how often. @param {{count: number, first: number, last: number}} line */
-  function whenWords({ count, first, last }) {
-    const at = seconds(first, data.duration);
-    return count > 1 ? `${at} to ${seconds(last, data.duration)}, ${count} times` : at;
-  }
-
   /** @param {import("../state/cards.js").Group} group */
   function makeItem(group) {
     const { newest, count } = group;
@@ -67,7 +61,7 @@ export function createHappening(el, store, actions) {
           "summary",
           {},
           h("span", { class: "what" }, what),
-          h("span", { class: "number when" }, whenWords(group)),
+          h("span", { class: "number when" }, whenWords(group, data.duration)),
           h("span", { class: "why-word" }, "Why?"),
         ),
         h(
@@ -95,7 +89,7 @@ export function createHappening(el, store, actions) {
           "summary",
           {},
           h("span", { class: "what" }, `${line.of && `${line.of}: `}dead point of ${line.name}`),
-          h("span", { class: "number when" }, whenWords(line)),
+          h("span", { class: "number when" }, whenWords(line, data.duration)),
           h("span", { class: "why-word" }, "Why?"),
         ),
         h("p", { class: "message" }, ...explained(line.words)),

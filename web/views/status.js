@@ -44,8 +44,16 @@ export function createStatus(el, body, store, actions) {
   const offer = h(
     "div",
     { class: "note offer", hidden: true },
-    h("span", {}, "The last session in this browser was kept."),
-    h("button", { type: "button", class: "plain", onclick: actions.continueLast }, "continue it"),
+    h(
+      "button",
+      {
+        type: "button",
+        class: "plain",
+        title: "what this browser showed when the page was closed",
+        onclick: actions.continueLast,
+      },
+      "continue the last session",
+    ),
     h(
       "button",
       { type: "button", class: "tool small", "aria-label": "Dismiss", onclick: actions.endOffer },

@@ -108,7 +108,12 @@ export function createStudies(el, store, actions) {
   const note = h("p", { class: "study-note", role: "alert" });
   const stop = h(
     "button",
-    { type: "button", class: "plain", onclick: () => studies.stop(data.view.study) },
+    {
+      type: "button",
+      class: "plain",
+      title: "what was found stays (key Escape)",
+      onclick: () => studies.stop(data.view.study),
+    },
     "Stop",
   );
   const goOn = h(
@@ -160,6 +165,7 @@ export function createStudies(el, store, actions) {
       class: "dialog study",
       "aria-labelledby": "studies-title",
       onclose: () => actions.setView({ study: "" }),
+      oncancel: onCancel,
     },
     h("div", { class: "study-head" }, title, link, close),
     h(
@@ -191,6 +197,19 @@ export function createStudies(el, store, actions) {
       const next = (KINDS.findIndex((kind) => kind === data.view.study) + by + n) % n;
       actions.setView({ study: KINDS[next] });
       tabs[next].focus();
+    }
+  }
+
+  /**
+   * Escape stops a study that runs, and what it has found stays; then it closes.
+   * @param {Event} event
+   */
+  function onCancel(event) {
+    const kind = data.view.study;
+    if (event.target === dialog && data.studies[kind]?.state === "running") {
+      event.preventDefault();
+      studies.stop(kind);
+      say(note, "Stopped; what was found stays. Escape closes the studies.");
     }
   }
 

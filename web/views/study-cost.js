@@ -13,6 +13,7 @@ import {
   leftOutOf,
   lengthsOf,
   meaningOf,
+  ruleOf,
   sentencesOf,
 } from "../state/study-documents.js";
 import { isRanked } from "../state/wanted.js";
@@ -371,9 +372,10 @@ export function createStudyCost(store, onPick) {
     });
     draw();
     fillTable();
-    wanted.show(dots, view.error, isRanked(study(), view.error, view.cost));
-    const lines = sentencesOf(study(), view.error, view.cost);
-    say(meaning, meaningOf(view.error, data.scene.length));
+    const { error, cost } = view;
+    wanted.show(dots, error, isRanked(study(), error, cost), ruleOf(study(), error));
+    const lines = sentencesOf(study(), error, cost);
+    say(meaning, meaningOf(error, data.scene.length));
     say(leftOut, leftOutOf(study(), labelOf));
     sentences.replaceChildren(
       ...(lines.length

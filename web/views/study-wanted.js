@@ -44,8 +44,13 @@ export function createWanted(data, { labelOf, costText, onPick }) {
     said,
     run,
   );
-  /** @type {{dots: import("../state/wanted.js").Dot[][], error: string, ranked: boolean}} */
-  let now = { dots: [], error: "q", ranked: true };
+  /**
+   * @type {{
+   *   dots: import("../state/wanted.js").Dot[][], error: string, ranked: boolean,
+   *   rule: import("../state/wanted.js").Rule,
+   * }}
+   */
+  let now = { dots: [], error: "q", ranked: true, rule: { margin: 1, floor: 0 } };
   /** @type {import("../state/wanted.js").Reach | null} */
   let best = null;
 
@@ -87,7 +92,7 @@ export function createWanted(data, { labelOf, costText, onPick }) {
 
   function answer() {
     const wanted = wantedError(field.value, now.error, data.scene.length);
-    const list = wanted ? cheapestFor(now.dots, wanted.value) : [];
+    const list = wanted ? cheapestFor(now.dots, wanted.value, now.rule) : [];
     best = list[0] ?? null;
     run.hidden = best === null;
     field.toggleAttribute("aria-invalid", !wanted);
@@ -104,9 +109,10 @@ export function createWanted(data, { labelOf, costText, onPick }) {
     /**
      * @param {import("../state/wanted.js").Dot[][]} dots @param {string} error its name
      * @param {boolean} ranked false: the study ranks none of its times
+     * @param {import("../state/wanted.js").Rule} rule by which the study's points are read
      */
-    show(dots, error, ranked) {
-      now = { dots, error, ranked };
+    show(dots, error, ranked, rule) {
+      now = { dots, error, ranked, rule };
       answer();
     },
   };

@@ -76,10 +76,6 @@ export function createWhyCard(el, store, actions) {
 
   function makeCard(m) {
     const card = cardOfMethod(data, m, shownIndex(data));
-    const drift =
-      card.drift && !card.rule.includes(card.drift)
-        ? ` ${sentenceCase(`drift: ${card.drift}`)}`
-        : "";
     const closeButton = h(
       "button",
       { type: "button", class: "tool small", "aria-label": "Close", onclick: close },
@@ -98,7 +94,7 @@ export function createWhyCard(el, store, actions) {
       h("p", { class: "happened" }, ...explained(card.happened)),
       card.singular ? h("p", {}, ...explained(card.singular)) : "",
       ...incidentLines(card.groups),
-      h("p", { class: "rule" }, ...explained(`${card.rule}${drift}`)),
+      h("p", { class: "rule" }, ...explained(card.rule)),
       tryButtons(tries, attempt),
       card.deadPoint
         ? fold(`${card.deadPoint.title}: what happens?`, card.deadPoint.words, {
@@ -106,6 +102,7 @@ export function createWhyCard(el, store, actions) {
             more: tryButtons(card.deadPoint.tries, attempt),
           })
         : "",
+      card.drift ? fold("How gap and energy drift", sentenceCase(card.drift)) : "",
       card.figures ? fold("Cost of a step, and the error as estimated", card.figures) : "",
     );
   }

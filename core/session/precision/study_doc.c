@@ -5,6 +5,7 @@
 #include "session/store/csv.h"
 #include "session/store/ending_json.h"
 #include "session/precision/study_internal.h"
+#include "session/precision/wanted.h"
 
 #include "base/hash.h"
 #include "render/look.h"
@@ -250,6 +251,15 @@ static void put_race(hn_strbuf *b, const hn_study *s) {
     hn_json_end_object(b);
 }
 
+/// Writes how points are read for a wanted accuracy (hn_wanted_text()), for who asks later.
+static void put_rule(hn_strbuf *b) {
+    hn_json_key(b, "wanted");
+    hn_json_object(b);
+    hn_json_put_number(b, "margin", HN_WANTED_MARGIN);
+    hn_json_put_number(b, "above_reference", HN_WP_ABOVE_REFERENCE);
+    hn_json_end_object(b);
+}
+
 void hn_study_json(hn_strbuf *b, const hn_study *s) {
     const hn_scene *scene = hn_model_scene(s->model);
     char hex[17];
@@ -275,6 +285,7 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     put_methods(b, s);
     put_paretos(b, s);
     put_race(b, s);
+    put_rule(b);
     hn_json_end_object(b);
 }
 

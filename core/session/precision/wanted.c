@@ -64,11 +64,6 @@ bool hn_wanted_read(const char *text, double length, hn_wanted *out) {
 
 // ---- the answer ----
 
-// A size between two points is read off a straight line in the logarithms for this share of the
-// error that is wanted: between two points it was up to 1.6 times that of the line. The finer point
-// itself is measured, so no smaller size is ever needed.
-static const double MARGIN = 0.5;
-
 /// A size of a method to run with, and what a run with that size costs.
 typedef struct choice {
     int method; ///< -1: none
@@ -77,7 +72,8 @@ typedef struct choice {
     bool coarsest; ///< no coarser one was accurate enough or tried: a larger size may do as well
 } choice;
 
-/// The size at a place, between its point and the coarser one.
+/// The size at a place, between its point and the coarser one. The point itself is measured, so no
+/// smaller size is ever needed.
 static choice choose(const hn_wp *wp, const hn_place *place, hn_error_kind error, double wanted) {
     const hn_wp_point *points = wp->methods[place->method].point;
     const hn_wp_point *fine = &points[place->level];
@@ -86,8 +82,8 @@ static choice choose(const hn_wp *wp, const hn_place *place, hn_error_kind error
     }
     const hn_wp_point *coarse = &points[place->from];
     const double least = hn_wp_claimed(wp, fine, error);
-    const double share =
-        fmax(0, log(MARGIN * wanted / least) / log(hn_wp_claimed(wp, coarse, error) / least));
+    const double share = fmax(0, log(HN_WANTED_MARGIN * wanted / least) /
+                                     log(hn_wp_claimed(wp, coarse, error) / least));
     if (share == 0) {
         return (choice){place->method, fine->size, fine->cost.ops, true, false};
     }

@@ -6,6 +6,10 @@
 
 #include "session/precision/study.h"
 
+/// The size between two points is read off for this share of the error that is wanted: between two
+/// points it was up to 1.6 times that of the line.
+#define HN_WANTED_MARGIN 0.5
+
 /// An accuracy as people type it.
 typedef struct hn_wanted {
     double error;    ///< relative, as the study ranks it (study/truth/errors.h)

@@ -30,8 +30,17 @@ bool hn_incident_begins(hn_incident_log *log, hn_incident_code code) {
     }
     log->active |= 1u << code;
     log->times[code]++;
+    hn_incident *last = NULL;
     for (int i = 0; i < log->n; i++) {
-        log->list[i].times = log->list[i].code == code ? log->times[code] : log->list[i].times;
+        if (log->list[i].code == code) {
+            last = &log->list[i];
+            last->times = log->times[code];
+        }
+    }
+
+    // one that is not listed is reported by the count of the last one that is
+    if (last && !has_room(log, code)) {
+        last->revision = ++log->revision;
     }
     return has_room(log, code);
 }
