@@ -302,19 +302,21 @@ static bool reserve(hn_comparisons *all, hn_request *r, double wait) {
 }
 
 /// Fills the reserved place, or gives it back when `session` is NULL. A server that stops in
-/// between keeps nothing.
-static void settle(hn_comparisons *all, hn_client client, hn_session *session) {
+/// between keeps nothing, nor is anything kept for a client that has gone.
+static void settle(hn_comparisons *all, hn_request *r, hn_session *session) {
+    const bool is_left = hn_request_has_been_left(r);
     pthread_mutex_lock(&all->lock);
+    const bool is_kept = session && !all->stopping && !is_left;
     all->n_reserved--;
-    if (session && !all->stopping) {
+    if (is_kept) {
         all->sessions[all->n++] = hn_session_retain(session);
     } else {
-        hn_shares_give(all->places, client);
+        hn_shares_give(all->places, r->client);
     }
     if (!session) {
         all->n_threads--;
         pthread_cond_broadcast(&all->changed);
-    } else if (all->stopping) {
+    } else if (!is_kept) {
         hn_session_end(session, 0);
     }
     pthread_mutex_unlock(&all->lock);
@@ -349,8 +351,7 @@ static int read_methods(const cJSON *body, const char **methods) {
     return n;
 }
 
-static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **session,
-                        hn_diags *diags) {
+static hn_status create(hn_comparisons *all, hn_request *r, hn_session **session, hn_diags *diags) {
     const cJSON *body = r->json;
     const char *methods[HN_COMPARISON_MAX_METHODS];
     hn_scene_request scene = {0};
@@ -362,7 +363,7 @@ static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **s
         .duration = hn_fields_number(body, "duration", 0),
         .speed = hn_fields_number(body, "speed", 1),
         .client = r->client,
-        .turn = r->turn,
+        .maker = r,
         .stopping = &r->context->stopping,
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };
@@ -395,7 +396,7 @@ void hn_handle_comparisons_create(hn_request *r) {
 
     // made in its place
     hn_status status = create(all, r, &session, &diags);
-    settle(all, r->client, session);
+    settle(all, r, session);
     if (status == HN_OK) {
         hn_strbuf b;
         hn_strbuf_init(&b);

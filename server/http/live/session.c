@@ -167,7 +167,7 @@ static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
     session->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
     session->client = order->client;
     session->stopping = order->stopping;
-    session->turn = order->turn;
+    session->maker = order->maker;
     session->touched = hn_clock_wall();
     session->patches_end = &session->patches;
     return session;
@@ -216,7 +216,7 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
         hn_session_publish_pulls(session);
         hn_session_publish_frame(session);
         hn_session_limit_equations(session, false);
-        session->turn = NULL;
+        session->maker = NULL;
         status = start_thread(session);
     }
     if (status != HN_OK) {

@@ -35,14 +35,14 @@ typedef struct hn_session_request {
     double frame_dt, duration; ///< 0: chosen, the scene's
     double speed;
     int running;
-    hn_client client;           ///< who asks
-    hn_job_turn *turn;          ///< of the thread that makes it
+    hn_client client;
+    struct hn_request *maker;   ///< who asks, until it is made
     const atomic_int *stopping; ///< the server ends
 } hn_session_request;
 
 /// Loads, compiles (and makes way for others meanwhile) and starts the thread. `gone(user)` is
 /// called when the thread ends. Returns one reference. HN_ERR_STOPPED where equations took longer
-/// than run_cpu_s, or the server ends.
+/// than run_cpu_s, the server ends, or the client of `maker` has gone.
 HN_MUST_CHECK hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
                                           const hn_session_request *order, void (*gone)(void *user),
                                           void *user, hn_session **out, hn_diags *diags);

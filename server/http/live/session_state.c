@@ -40,8 +40,8 @@ void hn_session_limit_equations(hn_session *session, bool limited) {
 /// Whether equations are no longer wanted, or take too long.
 static bool must_end(void *user) {
     hn_session *session = user;
-    hn_job_make_way(session->turn);
-    session->interrupted |= atomic_load(&session->interrupt) == HN_INTERRUPT_END ||
+    session->interrupted |= (session->maker && hn_request_is_unwanted(session->maker)) ||
+                            atomic_load(&session->interrupt) == HN_INTERRUPT_END ||
                             atomic_load(session->stopping) || hn_clock_thread() > session->load_end;
     return session->interrupted;
 }

@@ -47,7 +47,7 @@ struct hn_session {
     double undisturbed;         ///< until then no request interrupts [s, wall clock]
     double load_end;            ///< until then equations must be there [s, thread's own clock]
     bool interrupted;           ///< they were given up
-    hn_job_turn *turn;          ///< of the thread that makes the session; NULL on its own thread
+    hn_request *maker;          ///< the request that makes the session; NULL on its own thread
     const atomic_int *stopping; ///< the server ends
 
     // published: written by the thread under the lock, read by all under the lock

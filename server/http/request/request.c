@@ -14,8 +14,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 
 enum { MAX_JSON_DEPTH = 64 };
+/// Work looks so often whether its client is still there [s].
+static const double LOOK_EVERY = 0.25;
+/// A system that is asked whether a connection is still open answers within this time.
+enum { PROBE_MS = 50 };
 
 const char *hn_request_query(const hn_request *r, const char *name) {
     return MHD_lookup_connection_value(r->connection, MHD_GET_ARGUMENT_KIND, name);
@@ -44,9 +49,30 @@ bool hn_request_query_number(hn_request *r, const char *name, double low, double
     return true;
 }
 
-bool hn_request_is_left(const hn_request *r) {
+bool hn_request_is_left(hn_request *r) {
+    static const char interim[] = "HTTP/1.1 100 Continue\r\n\r\n";
     struct pollfd look = {.fd = hn_request_socket(r), .events = POLLRDHUP};
-    return look.fd >= 0 && poll(&look, 1, 0) > 0 && look.revents;
+    if (look.fd < 0 || poll(&look, 1, 0) <= 0) {
+        return false;
+    }
+    if ((look.revents & ~POLLRDHUP) || !r->takes_interim) {
+        return true;
+    }
+
+    // it sends no more; whether it still reads, the answer of its system tells
+    if (!r->was_probed) {
+        r->was_probed = true;
+        return send(look.fd, interim, sizeof interim - 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0;
+    }
+    return false;
+}
+
+bool hn_request_has_been_left(hn_request *r) {
+    if (!hn_request_is_left(r) && r->was_probed) {
+        struct pollfd answer = {.fd = hn_request_socket(r)};
+        poll(&answer, 1, PROBE_MS);
+    }
+    return hn_request_is_left(r);
 }
 
 int hn_request_socket(const hn_request *r) {
@@ -97,6 +123,8 @@ void hn_reply_header_add(hn_request *r, const char *name, const char *format, ..
 static void reply_interrupted(hn_request *r) {
     if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
+    } else if (r->is_left) {
+        hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the client has closed its connection");
     } else {
         hn_reply_problem(r, HN_PROBLEM_INPUT, "take fewer bodies, or shorter chains",
                          "the equations of this scene take more than %g s of computing",
@@ -202,17 +230,21 @@ void hn_request_add_time(hn_request *r) {
     r->cpu_end = fmax(r->cpu_end, hn_clock_thread()) + r->context->opts.max_run_cpu;
 }
 
-static bool must_end(void *user) {
-    hn_request *r = user;
+int hn_request_is_unwanted(void *request) {
+    hn_request *r = request;
     hn_job_make_way(r->turn);
-    r->interrupted |= atomic_load(&r->context->stopping) || hn_clock_thread() > r->cpu_end;
-    return r->interrupted;
+    const double now = hn_clock_wall();
+    if (!r->is_left && now >= r->next_look) {
+        r->next_look = now + LOOK_EVERY;
+        r->is_left = hn_request_is_left(r);
+    }
+    return r->is_left || atomic_load(&r->context->stopping);
 }
 
-int hn_request_is_stopping(void *request) {
-    const hn_request *r = request;
-    hn_job_make_way(r->turn);
-    return atomic_load(&r->context->stopping);
+static bool must_end(void *user) {
+    hn_request *r = user;
+    r->interrupted |= hn_request_is_unwanted(r) || hn_clock_thread() > r->cpu_end;
+    return r->interrupted;
 }
 
 hn_interrupt hn_request_interrupt(hn_request *r) {

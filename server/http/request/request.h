@@ -63,6 +63,10 @@ typedef struct hn_request {
     double cpu_end;          ///< of the thread that works on it [s]
     hn_job_turn *turn;       ///< of that thread; NULL where it is no pool's
     bool interrupted;        ///< the work was ended early
+    bool takes_interim;      ///< HTTP/1.1: an answer 100 may come before the answer
+    bool was_probed;         ///< it was sent one, to see whether its client is still there
+    bool is_left;            ///< its client has gone; of the thread that works on it
+    double next_look;        ///< that thread looks for the client then [s, wall clock]
     bool has_place;          ///< it has waited for a place, and has it
 
     // the reply
@@ -91,8 +95,13 @@ HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *n
                                               void *user);
 
 /// Returns whether the client of a suspended request has closed its connection. The HTTP library
-/// does not check the connection of a suspended request.
-bool hn_request_is_left(const hn_request *r);
+/// does not check the connection of a suspended request. A client that has closed its own side only
+/// still waits: it is sent a "100 Continue", which a connection that is closed refuses, so that the
+/// next look tells them apart. One that speaks HTTP/1.0 counts as gone at once.
+bool hn_request_is_left(hn_request *r);
+/// The same, and waits for the answer of a client's system where that is needed: 50 ms at most. Not
+/// for a thread that serves others, nor under a lock.
+bool hn_request_has_been_left(hn_request *r);
 
 /// Adds a header to the reply; the value is printed as by printf().
 void hn_reply_header_add(hn_request *r, const char *name, const char *format, ...) HN_PRINTF(3, 4);
@@ -113,12 +122,13 @@ void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 
 /// Extends the computing time of the thread that works on the request by `run_cpu_s`.
 void hn_request_add_time(hn_request *r);
-/// The question of the work on this request: whether the computing time is used up, or the server
-/// ends. The reply to what was ended early is then a problem that says which.
+/// The question of the work on this request: whether the computing time is used up, the server
+/// ends, or the client has gone. The reply to what was ended early is then a problem that says
+/// which.
 hn_interrupt hn_request_interrupt(hn_request *r);
-/// The question of work that has a time of its own: whether the server ends. `request` is a
-/// hn_request. It makes way for others too, as the question above does.
-int hn_request_is_stopping(void *request);
+/// The question of work that has a time of its own: whether the server ends, or the client has
+/// gone. `request` is a hn_request. It makes way for others too, as the question above does.
+int hn_request_is_unwanted(void *request);
 
 /// Parses the body and checks it against the fields of the route. Returns 0 with a problem as
 /// reply. Cost: the length of the body; not for the connection's thread. A body that was read is

@@ -229,7 +229,7 @@ typedef struct reference_order {
 
 static hn_status read_reference_order(hn_request *r, reference_order *o, hn_diags *diags) {
     const char *compute = hn_request_query(r, "compute");
-    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu / MEANS, hn_request_is_stopping, r};
+    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu / MEANS, hn_request_is_unwanted, r};
     o->request = hn_ref_request_default();
     o->request.opts.limits = o->limits;
     o->request.only_stored = !compute || strcmp(compute, "true") != 0;

@@ -406,6 +406,7 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
     }
     if (!r->has_begun) {
         r->has_zero = r->has_zero || is_cut(r->address_end, version);
+        r->takes_interim = strcmp(version, MHD_HTTP_VERSION_1_1) == 0;
         return begin_request(cls, r, url, method) ? MHD_YES : MHD_NO;
     }
 

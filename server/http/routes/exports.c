@@ -89,7 +89,7 @@ static hn_status write_program(hn_request *r, const hn_model *model, const wante
         .solver = w->solver,
         .blanks = w->blanks,
         .skeleton = w->style && strcmp(w->style, "skeleton") == 0,
-        .limits = {r->context->opts.max_run_cpu, hn_request_is_stopping, r}};
+        .limits = {r->context->opts.max_run_cpu, hn_request_is_unwanted, r}};
     HN_TRY(hn_model_export(b, model, r->context->lib, &request, diags));
     *suffix = request.suffix;
 

@@ -220,7 +220,7 @@ void hn_handle_snapshot(hn_request *r) {
                                                                                : HN_THEME_LIGHT,
                                   .view = hn_fields_text(r->json, "view"),
                                   .cpu_limit = r->context->opts.max_run_cpu,
-                                  .stop = hn_request_is_stopping,
+                                  .stop = hn_request_is_unwanted,
                                   .user = r};
 
     // drawn, or refused with the reason

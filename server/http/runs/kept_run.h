@@ -24,10 +24,11 @@ typedef enum hn_run_phase {
 /// REFUSED, and never changes afterwards.
 typedef struct hn_kept_run {
     char id[HN_RUN_ID];
-    int refs; ///< under the lock of the store, as are the next three
+    int refs; ///< under the lock of the store, as are the next four
     hn_run_phase phase;
     double touched;             ///< [s, wall clock]
     struct hn_request *waiting; ///< requests that wait for the end
+    bool is_known;              ///< somebody was told its id, or asked by it: it goes on unwatched
     _Atomic double share;       ///< done of the whole
     atomic_int stop;
     hn_client client;

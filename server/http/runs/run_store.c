@@ -42,13 +42,6 @@ static hn_kept_run *drop(hn_kept_run *run) {
     return --run->refs == 0 ? run : NULL;
 }
 
-void hn_runs_release(hn_runs *all, hn_kept_run *run) {
-    pthread_mutex_lock(&all->lock);
-    hn_kept_run *dead = drop(run);
-    pthread_mutex_unlock(&all->lock);
-    hn_kept_run_free(dead);
-}
-
 // ---- the table, with the lock held ----
 
 static hn_kept_run **find_place(hn_runs *all, const char *id) {
@@ -65,6 +58,30 @@ static hn_kept_run *take_out(hn_runs *all, hn_kept_run **place) {
     all->n--;
     all->bytes -= run->phase == HN_RUN_DONE ? run->bytes : 0;
     return run;
+}
+
+/// Ends a run that only the table and its thread hold, where nobody waits for it or knows its id.
+static void end_unwanted(hn_runs *all, hn_kept_run *run) {
+    enum { OF_TABLE_AND_THREAD = 2 };
+    if (run->refs != OF_TABLE_AND_THREAD || run->phase >= HN_RUN_DONE || run->is_known ||
+        run->waiting) {
+        return;
+    }
+    hn_kept_run **place = find_place(all, run->id);
+    if (*place == run) { // it was not deleted
+        atomic_store(&run->stop, 1);
+        drop(take_out(all, place));
+    }
+}
+
+void hn_runs_release(hn_runs *all, hn_kept_run *run) {
+    pthread_mutex_lock(&all->lock);
+    hn_kept_run *dead = drop(run);
+    if (!dead) {
+        end_unwanted(all, run);
+    }
+    pthread_mutex_unlock(&all->lock);
+    hn_kept_run_free(dead);
 }
 
 /// Lets go of the finished run that was longest untouched; 0 when there is none.
@@ -92,12 +109,15 @@ static void put_in(hn_runs *all, hn_kept_run *run) {
 
 // ---- those who wait ----
 
-/// Takes the requests that wait for a run and are due. With the lock held.
+/// Takes the requests that wait for a run and are due, or whose clients have gone. With the lock
+/// held.
 static hn_request *take_waiting(hn_runs *all, hn_kept_run *run, double now, int every_one) {
     hn_request *due = NULL, **place = &run->waiting;
     while (*place) {
         hn_request *r = *place;
-        if (every_one || now >= r->wait_until) {
+        const bool is_due = every_one || now >= r->wait_until;
+        if (is_due || hn_request_is_left(r)) {
+            run->is_known |= is_due; // it is told the id
             *place = r->next;
             r->next = due;
             due = r;
@@ -125,6 +145,7 @@ static void answer_all(hn_runs *all, hn_kept_run *run, hn_request *due) {
 void hn_runs_await(hn_runs *all, hn_kept_run *run, hn_request *r, double seconds) {
     pthread_mutex_lock(&all->lock);
     const int waits = run->phase < HN_RUN_DONE && seconds > 0 && !all->stop;
+    run->is_known |= !waits;
     if (waits) {
         r->wait_until = hn_clock_wall() + seconds;
         r->next = run->waiting;
@@ -404,7 +425,8 @@ static hn_kept_run *find_here(hn_runs *all, const char *id) {
     return run;
 }
 
-hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
+/// In memory or in the folder. Returns a reference.
+static hn_kept_run *find(hn_runs *all, const char *id) {
     pthread_mutex_lock(&all->lock);
     hn_kept_run *run = find_here(all, id);
     pthread_mutex_unlock(&all->lock);
@@ -423,6 +445,16 @@ hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
     }
     pthread_mutex_unlock(&all->lock);
     hn_kept_run_free(read);
+    return run;
+}
+
+hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
+    hn_kept_run *run = find(all, id);
+    if (run) {
+        pthread_mutex_lock(&all->lock);
+        run->is_known = true;
+        pthread_mutex_unlock(&all->lock);
+    }
     return run;
 }
 
@@ -458,7 +490,7 @@ static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client cl
 hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client client,
                         hn_kept_run **out, int *begun) {
     *begun = 0;
-    *out = hn_runs_find(all, question->id);
+    *out = find(all, question->id);
     if (*out && hn_runs_phase(all, *out) == HN_RUN_DONE && (*out)->is_cut) {
         hn_runs_release(all, *out);
         hn_runs_delete(all, question->id);

@@ -33,19 +33,21 @@ void hn_runs_tell_end(hn_runs *all);
 void hn_runs_stop(hn_runs *all);
 void hn_runs_free(hn_runs *all);
 
-/// Finds a run by its id, in memory or in the folder. Returns a reference, or NULL.
+/// Finds a run by its id, in memory or in the folder. Returns a reference, or NULL. From here on
+/// its id is known: it is computed to its end.
 hn_kept_run *hn_runs_find(hn_runs *all, const char *id);
 /// Finds the run of a question or begins it; takes what the question holds. Returns a reference in
 /// *out; `begun` says whether it is new. Fails: HN_ERR_LIMIT (the queue is full), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client client,
                                       hn_kept_run **out, int *begun);
+/// Gives up a reference. A run whose askers have all gone before one was told its id ends.
 void hn_runs_release(hn_runs *all, hn_kept_run *run);
 /// Stops it if it computes, and forgets it, in the folder too. An id that no run has is legal.
 void hn_runs_delete(hn_runs *all, const char *id);
 /// Returns the phase.
 hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run);
-/// Answers a suspended request when the run has ended or `seconds` are over, at once if it has
-/// ended.
+/// Answers a suspended request when the run has ended, `seconds` are over, or its client has gone;
+/// at once if the run has ended.
 void hn_runs_await(hn_runs *all, hn_kept_run *run, struct hn_request *r, double seconds);
 /// The store wakes a reader that it lists when its run ends, when it is due, and when the server
 /// ends.

@@ -388,7 +388,12 @@ void hn_handle_studies_create(hn_request *r) {
         s->work.lib = all->lib;
         s->work.stopping = &r->context->stopping;
         name_study(s);
+        s->work.asker = r;
         status = hn_study_work_read(&s->work, r->json, all->opts, &diags);
+        s->work.asker = NULL;
+    }
+    if (status == HN_OK && hn_request_has_been_left(r)) {
+        status = HN_ERR_STOPPED; // nobody would know of it
     }
     HN_THEN(status, start(all, s));
 

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/units.h"
+#include "http/request/request.h"
 #include "http/studies/study_folder.h"
 
 #include <math.h>
@@ -23,8 +24,8 @@ static int must_stop(void *user) {
 static bool must_end(void *user) {
     hn_study_work *w = user;
     w->out_of_time |= w->computes && hn_clock_wall() > w->wall_end;
-    return atomic_load(w->stopping) || hn_clock_thread() > w->load_end ||
-           (w->computes && (must_stop(w) || w->out_of_time));
+    return (w->asker && hn_request_is_unwanted(w->asker)) || atomic_load(w->stopping) ||
+           hn_clock_thread() > w->load_end || (w->computes && (must_stop(w) || w->out_of_time));
 }
 
 static hn_interrupt interrupt_of(hn_study_work *w) {

@@ -29,6 +29,7 @@ typedef struct hn_study_work {
     hn_job *job;                ///< NULL before hn_study_work_run(), for kinds that open slowly
     double cpu_end;             ///< [s] of the thread's own clock
     const atomic_int *stopping; ///< the server ends
+    struct hn_request *asker;   ///< while its body is read; NULL afterwards
     double load_end;  ///< until then the scene must have its equations [s, thread's own clock]
     bool computes;    ///< between the begin and the end of hn_study_work_run()
     double wall_end;  ///< of the computing, by the study's own time limit [s, wall clock]
@@ -48,7 +49,7 @@ typedef struct hn_study_result {
 } hn_study_result;
 
 /// Reads and checks a body and loads its scene; start from a zeroed work with `lib` and
-/// `stopping` set. Fails:
+/// `stopping` set; HN_ERR_STOPPED where the client of `asker` has gone. Fails:
 /// HN_ERR_INPUT, HN_ERR_LIMIT and what the kind refuses before its computation; reported in diags
 /// with pointers into the body. hn_study_work_reset() afterwards in any case.
 HN_MUST_CHECK hn_status hn_study_work_read(hn_study_work *w, const cJSON *body,
