@@ -199,9 +199,20 @@ class Tolerances(unittest.TestCase):
             document = run("bennett", method + ":rtol=1e-6", "--time", "1", "--at", "1")
             self.assertEqual(document["status"], "ok", document.get("reason"))
             self.assertLess(max(document["samples"]["gap"]), 2e-4, method)
-        # positions alone cannot be closed by a new choice; what does it is told
-        document = run("bennett", "index3@ida:rtol=1e-6", "--time", "1")
+        # velocities in the error test at index 3: their errors are divided by h; the reason names what solves it
+        document = run("bennett", "index3@ida:rtol=1e-3,suppress=multipliers,safety=1", "--time", "1")
         self.assertRegex(document["reason"], "3 of 5 constraint equations depend on the others; use ggl@ida or projection")
+
+    def test_index_3_by_ida_reaches_the_end_with_the_tolerance_on_positions(self):
+        # redundant constraints, a platform, and tolerances whose first step would be lost in rounding
+        for scene, rtol, bound in (("bennett", 1e-6, 1e-3), ("cardan-shaft", 1e-6, 5e-3), ("planetary-gear", 1e-6, 1e-5),
+                                   ("3-rrr", 1e-6, 1e-5), ("n-four-bar", 1e-8, 1e-5), ("rolling-wheel", 1e-8, 1e-5)):
+            end = ["--time", "0.5", "--at", "0.5"]
+            exact = run(scene, "projection@dop853:rtol=1e-10", *end)["q"][-1]
+            document = run(scene, f"index3@ida:rtol={rtol}", *end)
+            self.assertEqual(document["status"], "ok", (scene, document.get("reason")))
+            error = max(abs(a - b) for a, b in zip(document["q"][-1], exact))
+            self.assertLess(error, bound, scene)
 
     def test_cards_have_the_figures_of_the_table(self):
         rows = {}
@@ -242,7 +253,7 @@ class CollapsingSteps(unittest.TestCase):
         self.assertIn("needs 1e+09 steps to reach t = 10 s", document["reason"])
 
     def test_steps_that_collapse_end_within_a_second_with_the_cause(self):
-        for scene, method in (("fb0", "index3@ida:rtol=1e-8,h0=-1,safety=1"), ("four-bar", "index3@ida:rtol=1e-8,loosen=1,safety=1")):
+        for scene, method in (("fb0", "index3@ida:suppress=multipliers,rtol=1e-8,h0=-1,safety=1"), ("four-bar", "index3@ida:suppress=multipliers,rtol=1e-8,loosen=1,safety=1")):
             document = run(scene, method, "--time", "1", "--at", "1")
             self.assertEqual(document["status"], "step-underflow", method)
             self.assertIn("step-underflow", [i["code"] for i in document["incidents"]], method)

@@ -24,7 +24,8 @@
 // Newton iteration ask more of the multipliers than they can give, because their errors are divided
 // by h. What works then (measured, see the tests):
 //
-//     suppress=multipliers   the error test looks at q and v alone
+//     suppress=multipliers   the error test looks at q and v alone, and at index 3 (speeds) at q:
+//                            errors of v are divided by h there, those of lambda by h^2
 //     loosen=1e6             the Newton test has a 1e6 times larger absolute tolerance of lambda
 //
 // a first step that is not as small as rtol, which is what the library would choose (h0=-1), and a
@@ -52,7 +53,7 @@ enum {
     N_OPTIONS
 };
 enum { JACOBIAN_EXACT, JACOBIAN_DIFFERENCES };
-enum { SUPPRESS_NONE, SUPPRESS_MULTIPLIERS, SUPPRESS_SPEEDS };
+enum { SUPPRESS_AUTO, SUPPRESS_NONE, SUPPRESS_MULTIPLIERS, SUPPRESS_SPEEDS };
 #define LOOSEN_HIGH_INDEX 1e6
 #define H0_OF_LIBRARY -1
 #define NEWTON_OF_LIBRARY 0.33 // of the tolerance: its default, IDASetNonlinConvCoef()
@@ -188,6 +189,9 @@ static void take_options(ida_stepper *s, hn_dae_form form, const double *options
     s->h0 = options[OPT_H0];
     s->hmax = options[OPT_HMAX];
     s->suppress = (int)options[OPT_SUPPRESS];
+    if (s->suppress == SUPPRESS_AUTO) {
+        s->suppress = form == HN_FORM_INDEX3 ? SUPPRESS_SPEEDS : SUPPRESS_MULTIPLIERS;
+    }
     s->loosen = options[OPT_LOOSEN];
     if (!(s->loosen > 0)) {
         s->loosen = form == HN_FORM_INDEX1 || form == HN_FORM_STABILISED ? 1 : LOOSEN_HIGH_INDEX;
@@ -264,10 +268,13 @@ static void fill_weights(ida_stepper *s) {
         force = fmax(force, fabs(s->start_y[i]));
     }
     for (int i = 0; i < s->n; i++) {
-        const int tested = s->suppress == SUPPRESS_SPEEDS ? i < speeds : i < multipliers;
+        const bool tested = s->suppress == SUPPRESS_SPEEDS ? i < speeds : i < multipliers;
         data_of(s->id)[i] = tested ? 1 : 0;
-        data_of(s->tolerance)[i] =
-            s->atol * (i < multipliers ? s->unit[i] : s->loosen * force / LARGE_FORCE);
+
+        // rounding is divided by h once more in the multipliers than in speeds that are not tested
+        const double loosened = i < multipliers ? s->unit[i] * (tested ? 1 : sqrt(s->loosen))
+                                                : s->loosen * force / LARGE_FORCE;
+        data_of(s->tolerance)[i] = s->atol * loosened;
     }
 }
 
@@ -422,17 +429,6 @@ static hn_status choose_rows_anew(ida_stepper *s, double t, const double *y) {
     return status;
 }
 
-/// Which formulation is solved where the equations left out do not let the corrector converge.
-static void add_remedy(ida_stepper *s, hn_status status) {
-    const int n = s->problem.nc - s->problem.n_kept;
-    const size_t used = strlen(s->why);
-    if (status == HN_ERR_NO_CONVERGENCE && n > 0 && s->problem.form != HN_FORM_GGL) {
-        snprintf(s->why + used, sizeof s->why - used,
-                 ": %d of %d constraint equations depend on the others; use ggl@ida or projection",
-                 n, s->problem.nc);
-    }
-}
-
 static hn_status advance(void *self, double t, double t_stop, const double *y, double *t_new,
                          double *y_new) {
     ida_stepper *s = self;
@@ -459,7 +455,7 @@ static hn_status advance(void *self, double t, double t_stop, const double *y, d
     }
     const hn_status status = hn_ida_status(flag, t, s->why, sizeof s->why);
     if (status != HN_OK) {
-        add_remedy(s, status);
+        hn_ida_add_remedy(&s->problem, status, s->why, sizeof s->why);
         return status;
     }
     memcpy(y_new, data_of(s->y), (size_t)(s->problem.nq + s->problem.nv) * sizeof *y_new);
@@ -516,15 +512,17 @@ static const hn_dae_stepper dae = {
 };
 
 static const char *const jacobians[] = {"exact", "differences"};
-static const char *const suppressions[] = {"none", "multipliers", "speeds"};
+static const char *const suppressions[] = {"auto", "none", "multipliers", "speeds"};
 
 const hn_stepper hn_stepper_ida = {
     .name = "ida",
     .title = "SUNDIALS IDA",
     .about = "SUNDIALS' solver for differential-algebraic systems: BDF of order 1 to 5, which "
              "chooses order and step itself. It is made for index 1. index2 and ggl work because "
-             "their multipliers are left out of the error test; index3 is offered to show how it "
-             "fails. The library is given a thirtieth of rtol, because its local errors add up "
+             "their multipliers are left out of the error test. index3 leaves out the velocities "
+             "too, so that rtol limits the errors of positions alone; with "
+             "suppress=multipliers its steps collapse. The library is given a thirtieth of rtol, "
+             "because its local errors add up "
              "(option safety). rtol limits the error of one step, not that of the motion: after 5 "
              "s the motion of a pole on a cart is off by about 30 times rtol; over the shipped "
              "scenes at "
@@ -551,12 +549,11 @@ const hn_stepper hn_stepper_ida = {
             [OPT_HMAX] = HN_OPTION_LARGEST_STEP,
             [OPT_SUPPRESS] =
                 {.key = "suppress",
-                 .initial = SUPPRESS_MULTIPLIERS,
-                 .max = 2,
+                 .max = 3,
                  .about = "variables left out of the error test: none, the multipliers, or the "
-                          "velocities too",
+                          "velocities too (speeds); auto: speeds for index3, else multipliers",
                  .choices = suppressions,
-                 .n_choices = 3},
+                 .n_choices = 4},
             [OPT_LOOSEN] =
                 {.key = "loosen",
                  .max = 1e12,

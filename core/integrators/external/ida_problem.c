@@ -195,13 +195,16 @@ static hn_status slope(void *self, double t, const double *y, double *ydot) {
 static double least_first_step(const hn_ida_problem *p, const double *state, double rtol,
                                double atol, const double *unit) {
     static const double ROUNDING = 4 * DBL_EPSILON; // of two positions and of what is solved for
+    // at index 3 velocities are differences of positions, and the corrector has to find them to a
+    // share of the tolerance
+    const double exact = p->form == HN_FORM_INDEX3 ? 30 : 1;
     const double *v = state + p->nq;
     double least = 0;
     for (int i = 0; i < p->nv; i++) {
         const int at = hn_system_position_of(p->sys, i);
         if (at >= 0) {
             const double tolerance = atol * unit[p->nq + i] + rtol * fabs(v[i]);
-            least = fmax(least, ROUNDING * fabs(state[at]) / tolerance);
+            least = fmax(least, exact * ROUNDING * fabs(state[at]) / tolerance);
         }
     }
     return least;

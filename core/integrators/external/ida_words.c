@@ -3,6 +3,7 @@
 
 #include <ida/ida.h>
 #include <stdio.h>
+#include <string.h>
 
 static const struct {
     int flag;
@@ -42,4 +43,21 @@ hn_status hn_ida_status(int flag, double t, char *why, size_t size) {
     }
     snprintf(why, size, "IDA: %s at t = %.6g s (flag %d)", words, t, flag);
     return status;
+}
+
+void hn_ida_add_remedy(const hn_ida_problem *p, hn_status status, char *why, size_t size) {
+    const int n = p->nc - p->n_kept;
+    const size_t used = strlen(why);
+    const bool stuck = status == HN_ERR_NO_CONVERGENCE || status == HN_ERR_STEP_UNDERFLOW;
+    if (!stuck || p->form == HN_FORM_GGL) {
+        return;
+    }
+    if (n > 0) {
+        snprintf(why + used, size - used,
+                 ": %d of %d constraint equations depend on the others; use ggl@ida or projection",
+                 n, p->nc);
+    } else if (p->form == HN_FORM_INDEX3) {
+        snprintf(why + used, size - used,
+                 ": at index 3 rounding errors of the multipliers grow as 1/h^2; use index2@ida");
+    }
 }
