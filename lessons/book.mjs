@@ -16,7 +16,7 @@ const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replac
 const faults = [];
 const embedded = (path, type) => `data:${type};base64,${readFileSync(path).toString("base64")}`;
 let lesson, figures, answers;
-/** More pictures than this stand in three columns. */
+/** More pictures than this stand in three columns; fewer one below the other. */
 const GALLERY = 4;
 /** Of all lessons, for the end of the book. */
 const seen = [];
@@ -110,7 +110,7 @@ function all(nodes = []) {
   return nodes.map((n) => (inline[n.kind] ?? block[n.kind])(n)).join("");
 }
 
-/** The blocks of a lesson; pictures that follow each other, in a paragraph or not, stand side by side. */
+/** The blocks of a lesson; pictures that follow each other, in a paragraph or not, stand together. */
 function page(nodes) {
   const runs = [];
   const picturesOf = (n) => (n.kind === "paragraph" ? n.children.filter((c) => c.kind === "figure") : []);
@@ -155,15 +155,16 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .box { border: 1px solid #9aa5b1; border-radius: 3px; padding: .5em .8em; margin: 1em 0; break-inside: avoid; }
 .slip { border-left: 3px solid #b5472f; padding: .1em .8em; margin: 1em 0; break-inside: avoid; }
 .box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
-.exercise { break-inside: auto; } .exercise > p { display: block; } .exercise > p:first-child { break-after: avoid; } .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
+.exercise { break-inside: auto; box-decoration-break: clone; } .exercise > p { display: block; break-inside: avoid; break-after: avoid; } .exercise > pre:last-child { break-before: avoid; }
+ .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
 .form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
 .exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
-.exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; }
-.pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1em; } .pictures figure img { max-width: 100%; }
-.gallery { grid-template-columns: 1fr 1fr 1fr; } .gallery figure { margin: .5em 0; }
+.exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; } .answers p + p { display: block; margin: .4em 0; }
+p:has(+ .pictures), p:has(+ p > .katex-display) { break-after: avoid; } h3 + ul { break-inside: avoid; }
+.gallery { display: grid; grid-template-columns: 1fr 1fr 1fr; gap: 0 1em; } .gallery figure img { max-width: 100%; } .gallery figure { margin: .5em 0; }
 .contents > li { margin: .45em 0; } .contents div { font-size: 9pt; color: #444; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
-figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; max-height: 100mm; }
+figure { margin: 1em 0; text-align: center; break-inside: avoid; } figure img { max-width: 80%; max-height: 88mm; }
 figcaption { font-size: 9pt; color: #444; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 9.5pt; break-inside: avoid; }
 th, td { border-bottom: 1px solid #ccc; padding: .25em .7em; } th { border-bottom: 1px solid #333; }
