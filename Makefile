@@ -84,9 +84,10 @@ LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
 LDLIBS   := -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lbtf -lpng -lz -lmd4c -lncursesw -ldl -lm
 # The program takes these from their archives where Debian has them: each shared library that a start need not find and
 # bind saves it some 60 microseconds.
-ARCHIVED := gsl gslcblas sundials_ida sundials_sunlinsolklu sundials_sunmatrixsparse klu btf amd colamd suitesparseconfig png
+ARCHIVED := gsl gslcblas sundials_ida sundials_sunlinsolklu sundials_sunmatrixsparse klu btf amd colamd suitesparseconfig png \
+            z ncursesw tinfo
 PROGRAM_LDLIBS := -lcjson $(foreach l,$(ARCHIVED),$(if $(wildcard /usr/lib/lib$(l).a /usr/lib/*/lib$(l).a),-l:lib$(l).a,-l$(l))) \
-                  -lz -lmd4c -lncursesw -ldl -lm
+                  -lmd4c -ldl -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)

@@ -3,7 +3,18 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+hn_status hn_incident_log_create(hn_incident_log *log) {
+    *log = (hn_incident_log){.list = malloc(HN_RUN_MAX_INCIDENTS * sizeof *log->list)};
+    return log->list ? HN_OK : HN_ERR_MEMORY;
+}
+
+void hn_incident_log_free(hn_incident_log *log) {
+    free(log->list);
+    log->list = NULL;
+}
 
 void hn_incident_log_clear(hn_incident_log *log) {
     log->n = 0;

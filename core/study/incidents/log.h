@@ -11,7 +11,8 @@
 enum { HN_INCIDENT_MOST_OF_ONE_KIND = 5 };
 
 typedef struct hn_incident_log {
-    hn_incident list[HN_RUN_MAX_INCIDENTS];
+    /// owned; room for HN_RUN_MAX_INCIDENTS, of which pages that no report reaches are not touched
+    hn_incident *list;
     int n;
     int reported[HN_INCIDENT_COUNT]; ///< in the list, by kind
     int times[HN_INCIDENT_COUNT];    ///< how often each condition has begun, listed or not
@@ -19,6 +20,9 @@ typedef struct hn_incident_log {
     unsigned revision;               ///< of the report written or completed last; never set back
 } hn_incident_log;
 
+/// Makes room for the reports of a run. Fails: HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_incident_log_create(hn_incident_log *log);
+void hn_incident_log_free(hn_incident_log *log);
 /// Forgets all reports; revisions go on.
 void hn_incident_log_clear(hn_incident_log *log);
 /// Says whether the condition has been reported and still holds.

@@ -65,12 +65,14 @@ hn_status hn_watch_create(const hn_stepping *run, const hn_cost *cost, double wa
     *w = (hn_watch){.run = run, .cost = cost, .warn_gap = warn_gap, .every = 1};
     w->length = hn_system_length(run->sys);
     w->energy.conservative = hn_energy_is_conservative(run->sys);
+    HN_TRY(hn_incident_log_create(&w->log));
     HN_TRY(create_memory(w));
     HN_TRY(create_evaluators(w));
     return hn_work_create(run, !w->energy.conservative, &w->work);
 }
 
 void hn_watch_free(hn_watch *w) {
+    hn_incident_log_free(&w->log);
     hn_eval_free(w->eval);
     hn_mode_watch_free(w->mode);
     hn_limits_free(w->limits);
