@@ -12,7 +12,8 @@ static const hn_command COMMANDS[] = {
     {"serve", "",
      "serve the workbench as a page and as an API; only this machine can connect unless --host is "
      "given",
-     "--host --port --programs --answer-time --allow-host --open --history --max-comparisons "
+     "--host --port --programs --answer-time --allow-host --proxy --open --history "
+     "--max-comparisons "
      "--max-streams "
      "--max-connections --runs --token --guests --run-cpu "
      "--idle-pause "

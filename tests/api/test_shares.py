@@ -4,6 +4,7 @@
 import http.client
 import json
 import socket
+import subprocess
 import threading
 import time
 
@@ -295,17 +296,58 @@ class FairShares(Timed):
         self.assertEqual([ask("10.0.0.1") for _ in range(3)], [201, 201, 429])
         self.assertEqual([ask("10.0.0.1, 10.0.0.2") for _ in range(3)], [201, 201, 429])  # the last is the proxy's own word
         self.assertEqual(server.stop(), 0)
-        # who is not on this machine names nobody
+        # who is not on this machine names nobody, be it nonsense
         server = driver.Server("--max-comparisons", "4")
-        other = From(server, "127.0.0.2")
-        statuses = []
-        for name in ("10.0.0.1", "10.0.0.2", "10.0.0.3"):
-            c = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30 * driver.SLOW, source_address=(other.address, 0))
-            c.request("POST", self.AT_ONCE[1], json.dumps(self.MAKE[2]), {"Content-Type": "application/json", "X-Forwarded-For": name})
-            statuses.append(driver.Answer(c.getresponse()).status)
-            c.close()
-        self.assertEqual(statuses, [201, 201, 429])
+        self.assertEqual([self.forward(server, "127.0.0.2", name) for name in ("10.0.0.1", "10.0.0.2", "nobody")], [201, 201, 429])
         self.assertEqual(server.stop(), 0)
+
+    def forward(self, server, address, *names):
+        """The status of a comparison that is asked for from an address, which passes it on for the names: a header for each."""
+        c = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30 * driver.SLOW, source_address=(address, 0))
+        body = json.dumps(self.MAKE[2])
+        c.putrequest("POST", self.AT_ONCE[1])
+        for name, value in [("Content-Type", "application/json"), ("Content-Length", str(len(body))), *(("X-Forwarded-For", n) for n in names)]:
+            c.putheader(name, value)
+        c.endheaders(body.encode())
+        status = driver.Answer(c.getresponse()).status
+        c.close()
+        return status
+
+    def test_a_proxy_elsewhere_names_its_clients_where_the_server_knows_it(self):
+        server = driver.Server("--max-comparisons", "4", "--proxy", "127.0.0.2", "--proxy", "127.1.0.0/16", "--proxy", "fd00::/8")
+
+        def ask(address, *names):
+            return self.forward(server, address, *names)
+
+        def room():
+            for c in server.ask("GET", "/api/v1/comparisons").json()["comparisons"]:
+                server.ask("DELETE", "/api/v1/comparisons/" + c)
+
+        # the same client by whatever proxy, spelling and port; another client has its own share
+        self.assertEqual([ask("127.0.0.2", "10.0.0.1"), ask("127.1.7.7", "10.0.0.1:4711"), ask("127.0.0.1", "::ffff:10.0.0.1"), ask("127.0.0.2", "10.0.0.2")],
+                         [201, 201, 429, 201])
+        room()
+        # of IPv6 a network of 64 bits is one client
+        self.assertEqual([ask("127.0.0.2", n) for n in ("2001:db8::1", "[2001:db8::2]:80", "2001:db8::3", "2001:db8:0:1::1")], [201, 201, 429, 201])
+        room()
+        # through two proxies; what a client writes itself, in the same header or one before, counts for nothing
+        self.assertEqual([ask("127.0.0.2", n) for n in ("1.1.1.1, 10.0.0.1, 127.1.0.9", "2.2.2.2, 10.0.0.1,fd00::7", "10.0.0.9, 10.0.0.1")], [201, 201, 429])
+        self.assertEqual([ask("127.0.0.2", "10.0.0.9", "10.0.0.1"), ask("127.0.0.2", "nonsense", "10.0.0.1"), ask("127.0.0.2", "10.0.0.3")], [429, 429, 201])
+        room()
+        # an address that is no proxy's is the client, whatever it says
+        self.assertEqual([ask("127.2.0.1", f"10.0.0.{k}") for k in range(3)], [201, 201, 429])
+        room()
+        # nonsense of a proxy is told
+        for name in ("nobody", "10.0.0.256", "10.0.0.1:", "10.0.0.1:123456", "[10.0.0.1", "[::1", "1.2.3.4, ", ",", "unknown", "x" * 3000):
+            self.assertEqual(ask("127.0.0.2", name), 400, name)
+        self.assertEqual(ask("127.0.0.2", ""), 201)  # says nothing
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_proxy_that_is_no_address_is_refused_at_the_start(self):
+        for word in ("proxy.example", "10.0.0.0/33", "10.0.0.0/", "10.0.0.0/-1", "fd00::/129", "[fd00::1", "[fd00::1]", ""):
+            done = subprocess.run([driver.PROGRAM, "serve", "--port", "0", "--proxy", word], capture_output=True, text=True, timeout=60 * driver.SLOW)
+            self.assertEqual(done.returncode, 2, word)
+            self.assertIn("--proxy", done.stderr)
 
     def test_what_costs_nothing_has_a_queue_of_its_own(self):
         server = driver.Server("--run-cpu", "3")

@@ -2,6 +2,7 @@
 """A server for other machines: a token in its link, then in a cookie, or in a header; guests read."""
 
 import unittest
+import urllib.request
 
 import driver
 
@@ -94,6 +95,25 @@ class Token(unittest.TestCase):
         alone = driver.Server()
         self.addCleanup(alone.stop)
         self.assertNotIn("token", alone.started)
+        self.assertEqual(alone.started["addresses"], [f"http://127.0.0.1:{alone.port}"])
+
+    def test_a_server_for_others_names_addresses_that_others_can_open(self):
+        """The link of 0.0.0.0 named 0.0.0.0, which opens on this machine alone."""
+        for host in ("0.0.0.0", "::"):
+            try:
+                server = driver.Server("--host", host)
+            except RuntimeError as why:  # a machine without IPv6
+                self.assertEqual(host, "::", why)
+                continue
+            self.addCleanup(server.stop)
+            named = server.started["addresses"]
+            self.assertEqual(named[0], server.started["address"])
+            bearer = {"Authorization": "Bearer " + server.started["token"]}
+            for address in named:
+                self.assertNotIn("//0.0.0.0:", address)
+                self.assertNotIn("//[::]:", address)
+                with urllib.request.urlopen(urllib.request.Request(address + "/api/v1/", headers=bearer), timeout=60 * driver.SLOW) as answer:
+                    self.assertEqual(answer.status, 200)
 
 
 if __name__ == "__main__":

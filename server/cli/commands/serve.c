@@ -44,6 +44,23 @@ static hn_status choose(const bounded *o, hn_diag *diag) {
     return HN_OK;
 }
 
+/// The proxies that are believed.
+static hn_status read_proxies(const hn_words *words, hn_proxies *out, hn_diag *diag) {
+    if (words->n > HN_MAX_PROXIES) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "one network may stand for many addresses",
+                           "--proxy is given %d times; at most %d are allowed", words->n,
+                           HN_MAX_PROXIES);
+    }
+    for (int i = 0; i < words->n; i++) {
+        if (!hn_network_read(words->word[i], &out->network[out->n++])) {
+            return hn_diag_set(diag, HN_ERR_INPUT, NULL, "10.0.0.5, 10.0.0.0/8 or fd00::/8",
+                               "--proxy takes an address or a network, and '%.60s' is neither",
+                               words->word[i]);
+        }
+    }
+    return HN_OK;
+}
+
 static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *diag) {
     *opts = hn_http_opts_default();
     if (args->host) {
@@ -57,6 +74,8 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
                            "--allow-host is given %d times; at most %d are allowed",
                            opts->n_allow_hosts, HN_MAX_HOSTS);
     }
+
+    HN_TRY(read_proxies(&args->proxies, &opts->proxies, diag));
 
     // numbers within their bounds
     const bounded numbers[] = {
@@ -134,7 +153,13 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
         hn_strbuf b;
         hn_strbuf_init(&b);
         hn_json_object(&b);
-        hn_json_put_string(&b, "address", hn_server_address(server));
+        hn_json_put_string(&b, "address", hn_server_address(server, 0));
+        hn_json_key(&b, "addresses");
+        hn_json_array(&b);
+        for (int i = 0; hn_server_address(server, i); i++) {
+            hn_json_string(&b, hn_server_address(server, i));
+        }
+        hn_json_end_array(&b);
         hn_json_put_int(&b, "port", port);
         hn_json_put_int(&b, "process", getpid());
         if (opts->token) {
@@ -144,8 +169,11 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
         hn_cli_print(&b);
         return;
     }
-    printf("holonom is at %s/%s%s\n", hn_server_address(server), opts->token ? "?token=" : "",
-           opts->token ? opts->token : "");
+    for (int i = 0; hn_server_address(server, i); i++) {
+        printf("%s %s/%s%s\n", i == 0 ? "holonom is at" : "           or",
+               hn_server_address(server, i), opts->token ? "?token=" : "",
+               opts->token ? opts->token : "");
+    }
     printf(
         "Space play and pause   arrows step   - = speed   Backspace reset   Ctrl+C here ends it\n");
     if (args->programs) {
@@ -249,7 +277,7 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     announce(server, args, &opts);
     if (args->open) {
         char link[512];
-        snprintf(link, sizeof link, "%s/%s%s", hn_server_address(server),
+        snprintf(link, sizeof link, "%s/%s%s", hn_server_address(server, 0),
                  opts.token ? "?token=" : "", opts.token ? opts.token : "");
         open_browser(link);
     }

@@ -147,6 +147,10 @@ static const option OPTIONS[] = {
     {"--port", "N", OPTION_COUNT, AT(port), "8080 when left out; 0: any free port"},
     {"--allow-host", "NAME", OPTION_WORD, AT(allow_hosts),
      "another host name that the server accepts; may be repeated"},
+    {"--proxy", "ADDRESS", OPTION_WORD, AT(proxies),
+     "address of a proxy that names its clients in X-Forwarded-For, or a network such as "
+     "10.0.0.0/8; "
+     "one on this machine is believed without it; may be repeated"},
     {"--open", NULL, OPTION_FLAG, AT(open), "open the page in a browser"},
     {"--history", "N", OPTION_COUNT, AT(history),
      "number of events that are kept for each comparison"},

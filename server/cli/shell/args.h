@@ -31,7 +31,7 @@ typedef struct hn_args {
     hn_words given;            ///< names of the options that were typed, without the hyphens
     hn_words set;              ///< each parameter once
     hn_words set_over_set;     ///< by the program itself: stronger than `set`
-    hn_words methods, traces, state_q, state_v, allow_hosts;
+    hn_words methods, traces, state_q, state_v, allow_hosts, proxies;
     hn_numbers at;
     const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
         *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric, *shard, *style,

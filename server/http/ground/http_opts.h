@@ -4,11 +4,12 @@
 // Options and limits of the HTTP server. The index of the API lists the limits.
 //
 // Places (connections, streams, comparisons, long requests) are limited in all, and for each client
-// to its share of them. A client is an address, or the one that a proxy on this machine names
+// to its share of them. A client is an address, or the one that a proxy names
 // (http/request/client.h says who asks). For this machine itself only the limits in all hold; its
 // programs share the queues out among them.
 
 #include "http/ground/jobs.h"
+#include "http/ground/proxies.h"
 
 #include <stdbool.h>
 
@@ -20,6 +21,7 @@ typedef struct hn_http_opts {
     int next_ports;   ///< how many following ports are tried when the port is taken
     const char *const *allow_hosts;
     int n_allow_hosts;
+    hn_proxies proxies; ///< whose X-Forwarded-For counts, besides those of this machine
 
     const char *token;       ///< that every client must show; NULL: none
     bool guests;             ///< who has no token may read

@@ -2,9 +2,10 @@
 #include "http/request/client.h"
 
 #include "base/hash.h"
+#include "http/request/context.h"
 
-#include <arpa/inet.h>
 #include <string.h>
+#include <strings.h>
 
 enum { NETWORK_BYTES = 8 }; ///< of an IPv6 address: RFC 4291, section 2.5.4
 
@@ -12,54 +13,82 @@ static hn_client make_client(const void *bytes, size_t n) {
     return hn_hash_mix(hn_hash_bytes(HN_HASH_START, bytes, n)) | 1; // 0 is this machine
 }
 
-static hn_client client_of_ip4(struct in_addr a) {
-    return ntohl(a.s_addr) == INADDR_LOOPBACK ? 0 : make_client(&a, sizeof a);
+/// A household has 2^64 IPv6 addresses, which are one client.
+static hn_client client_of(const hn_address *address) {
+    return hn_address_is_loopback(address)
+               ? 0
+               : make_client(address->byte,
+                             hn_address_is_ip4(address) ? sizeof address->byte : NETWORK_BYTES);
 }
 
-/// A socket for both families shows IPv4 addresses as ::ffff:a.b.c.d. A household has 2^64 IPv6
-/// addresses, which are one client.
-static hn_client client_of_ip6(const struct in6_addr *a) {
-    if (IN6_IS_ADDR_V4MAPPED(a)) {
-        struct in_addr inner;
-        memcpy(&inner, a->s6_addr + NETWORK_BYTES + 4, sizeof inner);
-        return client_of_ip4(inner);
-    }
-    return IN6_IS_ADDR_LOOPBACK(a) ? 0 : make_client(a, NETWORK_BYTES);
-}
-
-hn_client hn_client_of_address(const struct sockaddr *address) {
+hn_client hn_client_of_connection(const hn_proxies *proxies, const struct sockaddr *address) {
     if (!address) {
         return 0;
     }
-    if (address->sa_family == AF_INET6) {
-        return client_of_ip6(&((const struct sockaddr_in6 *)address)->sin6_addr);
-    }
-    return client_of_ip4(((const struct sockaddr_in *)address)->sin_addr);
+    const hn_address from = hn_address_of(address);
+    return hn_proxies_have(proxies, &from) ? 0 : client_of(&from);
 }
 
-/// The client that a proxy names: the last entry of a list, which the proxy itself has written.
-static hn_client find_forwarded(const hn_request *r) {
-    const char *list = hn_request_header(r, "X-Forwarded-For");
-    const char *comma = list ? strrchr(list, ',') : NULL;
-    const char *last = comma ? comma + 1 : list;
-    if (!last) {
-        return 0;
+/// The last header of the name: a proxy may add one behind that of its client.
+static enum MHD_Result keep_last(void *cls, enum MHD_ValueKind kind, const char *key,
+                                 const char *value) {
+    (void)kind;
+    if (strcasecmp(key, "X-Forwarded-For") == 0) {
+        *(const char **)cls = value;
     }
-    last += strspn(last, " \t");
-    const size_t n = strcspn(last, " \t");
-    return n > 0 ? make_client(last, n) : 0;
+    return MHD_YES;
 }
 
-void hn_request_identify(hn_request *r) {
+/// Takes the last entry off a list of n bytes, without the blanks around it.
+static const char *take_last(const char *list, size_t *n, size_t *n_entry) {
+    size_t at = *n;
+    while (at > 0 && list[at - 1] != ',') {
+        at--;
+    }
+    const char *entry = list + at, *end = list + *n;
+    while (entry < end && (*entry == ' ' || *entry == '\t')) {
+        entry++;
+    }
+    while (end > entry && (end[-1] == ' ' || end[-1] == '\t')) {
+        end--;
+    }
+    *n = at > 0 ? at - 1 : 0;
+    *n_entry = (size_t)(end - entry);
+    return entry;
+}
+
+/// Follows the proxies from `from` to the address that the last of them speaks for.
+static bool follow(hn_request *r, hn_address *from) {
+    const char *list = NULL;
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, keep_last, &list);
+    size_t n = list ? strlen(list) : 0;
+    while (n > 0 && hn_proxies_have(&r->context->opts.proxies, from)) {
+        size_t n_entry;
+        const char *entry = take_last(list, &n, &n_entry);
+        if (!hn_address_read(entry, n_entry, from)) {
+            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST,
+                             "a proxy writes the address of its client there",
+                             "X-Forwarded-For holds '%.*s', which is not an address",
+                             n_entry < 60 ? (int)n_entry : 60, entry);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool hn_request_identify(hn_request *r) {
     const union MHD_ConnectionInfo *info =
         MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-    r->client = hn_client_of_address(info ? info->client_addr : NULL);
-    if (r->client == 0) {
-        r->client = find_forwarded(r);
+    bool is_known = true;
+    if (info && info->client_addr) {
+        hn_address from = hn_address_of(info->client_addr);
+        is_known = follow(r, &from);
+        r->client = client_of(&from);
     }
     r->queues_as = r->client;
     if (r->queues_as == 0) {
         const char *agent = hn_request_header(r, "User-Agent");
         r->queues_as = make_client(agent ? agent : "", agent ? strlen(agent) : 0);
     }
+    return is_known;
 }

@@ -376,10 +376,10 @@ static bool begin_request(hn_dispatch *d, hn_request *r, const char *url, const 
     }
     r->has_begun = true;
     r->head = method;
-    hn_request_identify(r);
+    const bool is_known = hn_request_identify(r);
     r->is_head = strcmp(method, "HEAD") == 0;
     hn_connection_reads_body(d->connections, r->watch);
-    if (hn_guard_headers(r) && take_path(r, url)) {
+    if (is_known && hn_guard_headers(r) && take_path(r, url)) {
         check_head(r, method);
     }
     if (r->stage != HN_STAGE_ANSWERED) {
@@ -455,8 +455,8 @@ void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **
 enum MHD_Result hn_dispatch_accept(void *cls, const struct sockaddr *address, socklen_t length) {
     hn_dispatch *d = cls;
     (void)length;
-    return hn_connections_make_room(d->connections, hn_client_of_address(address)) ? MHD_YES
-                                                                                   : MHD_NO;
+    const hn_client client = hn_client_of_connection(&d->context->opts.proxies, address);
+    return hn_connections_make_room(d->connections, client) ? MHD_YES : MHD_NO;
 }
 
 void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,
@@ -467,7 +467,8 @@ void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void *
                                            connection, MHD_CONNECTION_INFO_CONNECTION_FD),
                                        *from = MHD_get_connection_info(
                                            connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-        const hn_client client = hn_client_of_address(from ? from->client_addr : NULL);
+        const hn_client client =
+            hn_client_of_connection(&d->context->opts.proxies, from ? from->client_addr : NULL);
         *socket_context =
             info ? hn_connections_add(d->connections, info->connect_fd, client) : NULL;
     } else {

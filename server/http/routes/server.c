@@ -2,6 +2,7 @@
 #include "http/routes/server.h"
 
 #include "http/ground/listen.h"
+#include "http/ground/own_addresses.h"
 #include "http/ground/shares.h"
 #include "http/live/comparisons.h"
 #include "http/routes/dispatch.h"
@@ -12,6 +13,7 @@
 #include "http/runs/runs.h"
 #include "http/studies/studies.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +32,8 @@ struct hn_server {
     const char *host_names[HN_MAX_HOSTS + 1];
     struct MHD_Daemon *daemon;
     int port;
-    char address[300];
+    char addresses[HN_OWN_ADDRESSES][300];
+    int n_addresses;
 };
 
 static void set_hosts(hn_server *s) {
@@ -112,6 +115,20 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     return HN_OK;
 }
 
+/// How links name the server: by the address that it listens on, or by those of the machine where
+/// that is every one; a machine without a network has its loopback.
+static void write_addresses(hn_server *s, const char *host) {
+    char own[HN_OWN_ADDRESSES][HN_ADDRESS_TEXT];
+    const bool is_six = host[0] == '[';
+    const int n = s->context.hosts.any_address ? hn_own_addresses(is_six, own) : 0;
+    const char *only = !s->context.hosts.any_address ? host : is_six ? "[::1]" : "127.0.0.1";
+    s->n_addresses = n > 0 ? n : 1;
+    for (int i = 0; i < s->n_addresses; i++) {
+        const char *name = n > 0 ? own[i] : only;
+        snprintf(s->addresses[i], sizeof s->addresses[i], "http://%.255s:%d", name, s->port);
+    }
+}
+
 static hn_status start(hn_server *s, hn_diag *diag) {
     const hn_http_opts *o = &s->context.opts;
     int fd = -1;
@@ -119,7 +136,7 @@ static hn_status start(hn_server *s, hn_diag *diag) {
     HN_TRY(hn_microhttpd_load(diag));
     HN_TRY(create_parts(s, diag));
     HN_TRY(hn_listen(o->host, o->port, o->next_ports, &fd, &s->port, host, diag));
-    snprintf(s->address, sizeof s->address, "http://%s:%d", host, s->port);
+    write_addresses(s, host);
     return start_daemon(s, fd, diag);
 }
 
@@ -145,8 +162,8 @@ hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts, hn_se
     return HN_OK;
 }
 
-const char *hn_server_address(const hn_server *server) {
-    return server->address;
+const char *hn_server_address(const hn_server *server, int i) {
+    return i < server->n_addresses ? server->addresses[i] : NULL;
 }
 
 int hn_server_port(const hn_server *server) {

@@ -16,8 +16,9 @@ HN_MUST_CHECK hn_status hn_server_start(const hn_library *lib, const hn_http_opt
                                         hn_server **out, hn_diag *diag);
 /// Returns how many descriptors a server with these options may need.
 int hn_server_descriptors(const hn_http_opts *opts);
-/// "http://127.0.0.1:8080"
-const char *hn_server_address(const hn_server *server);
+/// Returns where the server is, "http://127.0.0.1:8080"; of one that listens on every address of
+/// this machine the i-th address by which other machines get here. NULL beyond the last.
+const char *hn_server_address(const hn_server *server, int i);
 int hn_server_port(const hn_server *server);
 /// Ends streams, comparisons and pool, then the listening; frees everything.
 void hn_server_stop(hn_server *server);
