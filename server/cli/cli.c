@@ -19,7 +19,9 @@
 #include "formulations/list/formulation_list.h"
 #include "integrators/list/stepper_list.h"
 #include "program/program_method.h"
+#include "terminal/cells.h"
 #include "terminal/width.h"
+#include "terminal/keys.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -66,6 +68,18 @@ static void describe_all(hn_strbuf *b) {
     }
 }
 
+/// The keys of the workbench, in the order of its menu.
+static void describe_keys(hn_strbuf *b) {
+    enum { KEY_COLUMNS = 11 };
+    const hn_tui_key *keys;
+    const int n = hn_tui_keys(&keys);
+    hn_strbuf_add(b, "\nkeys\n");
+    for (int i = 0; i < n; i++) {
+        const int blanks = KEY_COLUMNS - hn_text_columns(keys[i].shown);
+        hn_strbuf_printf(b, "  %s%*s%s\n", keys[i].shown, blanks, "", keys[i].means);
+    }
+}
+
 static void describe_one(hn_strbuf *b, const hn_command *command) {
     const char *const *examples = hn_examples_of(command->name);
     hn_strbuf_printf(b, "holonom %s %s\n%*s", command->name, command->words, 2, "");
@@ -75,6 +89,9 @@ static void describe_one(hn_strbuf *b, const hn_command *command) {
     hn_strbuf_add(b, examples ? "\nexamples\n" : "");
     for (int i = 0; examples && i < HN_CLI_EXAMPLES; i++) {
         hn_strbuf_printf(b, "  holonom %s\n", examples[i]);
+    }
+    if (strcmp(command->name, "tui") == 0) {
+        describe_keys(b);
     }
 }
 
@@ -97,17 +114,32 @@ static bool describe_words(hn_strbuf *b, const char *word) {
     return !word[0] || best > HN_TERM_OTHER;
 }
 
-/// What `holonom` alone says: the first three things to do.
-static const char FIRST_STEPS[] =
-    "holonom simulates mechanisms with closed loops by several methods at once.\n\n"
-    "Start with one of these:\n"
-    "  holonom serve                  the workbench as a page in a browser\n"
-    "  holonom tui four-bar           the same workbench in this terminal\n"
-    "  holonom compare four-bar       several methods: which are right\n"
-    "  holonom run four-bar --plot    one method, drawn over time\n"
-    "  holonom list scenes            all shipped mechanisms\n\n"
-    "'holonom help' lists all commands, 'holonom help COMMAND' explains one,\n"
-    "'holonom help words' the terms of messages and tables.\n";
+/// What `holonom` alone says: the first things to do, each beginning with `program`, the name by
+/// which it was called.
+static void add_first_steps(hn_strbuf *b, const char *program) {
+    static const char *const steps[][2] = {{"serve", "the workbench as a page in a browser"},
+                                           {"tui four-bar", "the same workbench in this terminal"},
+                                           {"compare four-bar", "several methods: which are right"},
+                                           {"run four-bar --plot", "one method, drawn over time"},
+                                           {"list scenes", "all shipped mechanisms"}};
+    enum { N_STEPS = sizeof steps / sizeof *steps, MOST_PROGRAM = 20, STEP_COLUMNS = 23 };
+    const bool installed = !strchr(program, '/');
+    const char *name = strlen(program) <= MOST_PROGRAM ? program : "./holonom";
+    hn_strbuf_add(b, "holonom simulates mechanisms with closed loops by several methods at "
+                     "once.\n\nStart with one of these:\n");
+    for (int i = 0; i < N_STEPS; i++) {
+        hn_strbuf_printf(b, "  %s %-*s%s\n", name, STEP_COLUMNS, steps[i][0], steps[i][1]);
+    }
+    hn_strbuf_printf(b, "\n'%s help' lists all commands,\n'%s help COMMAND' explains one,\n", name,
+                     name);
+    hn_strbuf_printf(b, "'%s help words' the terms of messages and tables.\n", name);
+    if (!installed) {
+        hn_strbuf_printf(b,
+                         "\nHelp and examples say holonom: 'make install' puts it on the path;\n"
+                         "until then write %s.\n",
+                         program);
+    }
+}
 
 static hn_diag unknown_command(const char *name) {
     enum { MOST = 64 };
@@ -316,10 +348,13 @@ int hn_cli_main(int argc, char **argv) {
     hn_args args = {0};
     hn_diag diag = {0};
     if (argc < 2) {
-        hn_strbuf steps;
+        hn_strbuf steps, folded;
         hn_strbuf_init(&steps);
-        hn_fold_prose(&steps, FIRST_STEPS, hn_terminal_error_limit());
-        fputs(hn_strbuf_text(&steps), stderr);
+        hn_strbuf_init(&folded);
+        add_first_steps(&steps, argc > 0 ? argv[0] : "holonom");
+        hn_fold_prose(&folded, hn_strbuf_text(&steps), hn_terminal_error_limit());
+        fputs(hn_strbuf_text(&folded), stderr);
+        hn_strbuf_reset(&folded);
         hn_strbuf_reset(&steps);
         return HN_EXIT_INPUT;
     }

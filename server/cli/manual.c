@@ -6,6 +6,9 @@
 #include "cli/examples.h"
 #include "cli/shell/option_help.h"
 #include "cli/shell/print.h"
+#include "terminal/keys.h"
+
+#include <string.h>
 
 /// Text of a table in roff: backslashes, hyphens and a leading dot or quote are no commands.
 static void put_text(hn_strbuf *b, const char *text) {
@@ -20,6 +23,41 @@ static void put_text(hn_strbuf *b, const char *text) {
         } else {
             hn_strbuf_add_n(b, text, 1);
         }
+    }
+}
+
+/// The name of a key; arrows in words, because ASCII has no signs for all of them.
+static void put_key(hn_strbuf *b, const char *key) {
+    static const char *const arrows[][2] = {
+        {"←", "Left"}, {"→", "Right"}, {"↑", "Up"}, {"↓", "Down"}};
+    for (; *key; key++) {
+        bool found = false;
+        for (size_t i = 0; i < sizeof arrows / sizeof *arrows && !found; i++) {
+            const size_t n = strlen(arrows[i][0]);
+            found = strncmp(key, arrows[i][0], n) == 0;
+            if (found) {
+                hn_strbuf_add(b, arrows[i][1]);
+                key += n - 1;
+            }
+        }
+        if (!found) {
+            put_text(b, (char[]){*key, '\0'});
+        }
+    }
+}
+
+static void put_keys(hn_strbuf *b) {
+    const hn_tui_key *keys;
+    const int n = hn_tui_keys(&keys);
+    hn_strbuf_add(b, ".SH KEYS OF THE WORKBENCH\nThe keys of holonom tui; the page has the same "
+                     "ones where it has the same actions. 1 to 8 select a method, and the mouse "
+                     "drags a joint, selects a time or a method.\n");
+    for (int i = 0; i < n; i++) {
+        hn_strbuf_add(b, ".TP\n.B ");
+        put_key(b, keys[i].shown);
+        hn_strbuf_add(b, "\n");
+        put_text(b, keys[i].means);
+        hn_strbuf_add(b, "\n");
     }
 }
 
@@ -101,6 +139,7 @@ hn_exit hn_command_manual(const hn_library *lib, const hn_args *args) {
     for (int i = 0; i < hn_command_count(); i++) {
         put_command(&b, hn_command_at(i));
     }
+    put_keys(&b);
     put_sections(&b);
     return hn_cli_print(&b);
 }

@@ -178,6 +178,39 @@ int hn_text_rows(const char *text, int columns) {
     return rows;
 }
 
+void hn_cells_put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int style,
+                         const char *text) {
+    static const char ellipsis[] = " …";
+    const int room = area.columns - x;
+    if (room <= 0 || hn_text_columns(text) <= room) {
+        hn_cells_put(c, area, x, y, colour, style, text);
+        return;
+    }
+
+    // whole words, while they leave no more than half of the room empty
+    char line[LINE];
+    const size_t n = fitting(text, room > 2 ? room - 2 : 1);
+    snprintf(line, sizeof line, "%.*s%s", (int)n, text, ellipsis);
+    if (text[n] == ' ' && 2 * hn_text_columns(line) > room) {
+        hn_cells_put(c, area, x, y, colour, style, line);
+    } else {
+        hn_cells_put(c, area, x, y, colour, style, text);
+        hn_cells_put(c, area, area.columns - 1, y, colour, style, "…");
+    }
+}
+
+void hn_cells_fold_fitted(hn_cells *c, hn_area area, int colour, const char *text) {
+    hn_cells_fold(c, area, 0, colour, text);
+    if (hn_text_rows(text, area.columns) > area.rows) {
+        int x = area.columns - 1;
+        const hn_cell *row = &c->at[(area.y + area.rows - 1) * c->columns + area.x];
+        while (x > 0 && (row[x - 1].glyph[0] == '\0' || row[x - 1].glyph[0] == ' ')) {
+            x--;
+        }
+        hn_cells_put(c, area, x, area.rows - 1, colour, 0, "…");
+    }
+}
+
 void hn_cells_mark(hn_cells *c, hn_area area) {
     for (int y = 0; y < area.rows; y++) {
         for (int x = 0; x < area.columns; x++) {

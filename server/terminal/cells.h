@@ -45,6 +45,12 @@ int hn_cells_printf(hn_cells *c, hn_area area, int x, int y, int colour, int sty
 /// Writes text in lines no longer than the area, broken at blanks, from row y on; returns the row
 /// after the last one.
 int hn_cells_fold(hn_cells *c, hn_area area, int y, int colour, const char *text);
+/// Puts text that ends in an ellipsis where it does not fit, cut at a blank where there is one in
+/// its second half.
+void hn_cells_put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int style,
+                         const char *text);
+/// Folds text into an area; where it does not fit, its last line ends in an ellipsis.
+void hn_cells_fold_fitted(hn_cells *c, hn_area area, int colour, const char *text);
 /// Writes what stands in an area in reverse.
 void hn_cells_mark(hn_cells *c, hn_area area);
 /// The rows that hn_cells_fold() needs for the text in lines of at most `columns` (at least 1).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/controls.h"
 
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/link.h"
 #include "tui/panels.h"
 #include "tui/prompt.h"

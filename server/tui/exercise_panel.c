@@ -2,7 +2,7 @@
 #include "tui/exercise_panel.h"
 
 #include "tui/best_scores.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/text_panel.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/list.h"
 
-#include "tui/keys.h"
+#include "terminal/keys.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -9,6 +9,8 @@
 #include <stdio.h>
 
 enum { ACROSS = HN_DOTS_ACROSS, DOWN = HN_DOTS_DOWN };
+enum { MOST_NAME = 8 }; // columns of a joint's name; a longer one is left out
+enum { MARGIN = 4 };    // dots beside the motion: half of a joint, and an empty column
 
 static const double ARROW_SHARE = 0.3;    // of the smaller side, for the longest arrow
 static const double SHORTEST_ARROW = 2.5; // [dots]
@@ -29,7 +31,8 @@ static hn_placing fit(const hn_envelope *envelope, hn_area area) {
     const double *box = envelope->box;
     const double wide = fmax(box[2] - box[0], 1e-12), tall = fmax(box[3] - box[1], 1e-12);
     const double columns = area.columns * ACROSS, rows = (area.rows - 1) * DOWN;
-    const double scale = fmin((columns - 4) / wide, (rows - 4) / tall);
+    // a cell on each side stays empty: what touches the frame looks cut
+    const double scale = fmin((columns - 2 * MARGIN) / wide, (rows - 4) / tall);
     return (hn_placing){.across = scale,
                         .down = scale,
                         .x = columns / 2 - scale * (box[0] + box[2]) / 2,
@@ -234,6 +237,33 @@ static void name_forces(hn_cells *c, hn_area area, const placing *p,
     }
 }
 
+/// The names of the joints of the pose that was drawn last, each beside its joint where nothing
+/// else stands: texts about joints use them.
+static void name_joints(hn_cells *c, hn_area area, const placing *p) {
+    static const signed char sides[][2] = {{1, -1}, {-1, -1}, {1, 1}, {-1, 1}, {1, 0}, {-1, 0}};
+    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
+    for (int i = 0; i < drawing.n_points && p->points; i++) {
+        const char *name = drawing.labels[i];
+        const int wide = name ? hn_text_columns(name) : 0;
+        if (wide == 0 || wide > MOST_NAME || isnan(p->points[3 * i])) {
+            continue;
+        }
+
+        // the first side that is free
+        double at[2];
+        dot_of(p, i, at);
+        const int x = (int)floor(at[0] / ACROSS), y = (int)floor(at[1] / DOWN);
+        for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
+            const int gap = sides[k][1] == 0 ? 2 : 1; // beside the knob, or above and below it
+            const int left = sides[k][0] > 0 ? x + gap : x - gap - wide + 1;
+            if (is_free(c, area, left, y + sides[k][1], wide)) {
+                hn_cells_put(c, area, left, y + sides[k][1], HN_CELL_INK, 0, name);
+                break;
+            }
+        }
+    }
+}
+
 /// The methods as they are now, or the mechanism that is dragged.
 static void draw_present(placing *p, const hn_workbench *w) {
     const int frame = hn_workbench_frame(w);
@@ -269,6 +299,10 @@ void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
     draw_forces(area, &p, &arrows);
     hn_dots_show(c, area, &dots, w->form);
     name_forces(c, area, &p, &arrows);
+    // names would jump about a mechanism that moves
+    if (!w->playing || w->why || w->reactions) {
+        name_joints(c, area, &p);
+    }
     hn_dots_free(&dots);
 }
 

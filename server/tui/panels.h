@@ -3,7 +3,7 @@
 #define HN_TUI_PANELS_H
 // The panels over the main view: lists to choose from and texts to read.
 
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/workbench.h"
 
 /// Opens the panel or prompt of an action; actions without one do nothing.

@@ -4,7 +4,7 @@
 #include "base/shortest.h"
 #include "session/precision/wanted.h"
 #include "tui/exercise_panel.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/methods.h"
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"

@@ -2,7 +2,7 @@
 #include "tui/scene_list.h"
 
 #include "session/model/model_json.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/list.h"
 
 #include <cjson/cJSON.h>
@@ -62,8 +62,8 @@ static void list_scene(hn_workbench *w, const cJSON *scene) {
     hn_item *item = hn_list_add(w, text_of(scene, "id"), text_of(scene, "title"));
     if (item) {
         static const char ellipsis[] = "…";
-        const int n = snprintf(item->more, sizeof item->more, "%s. %s", text_of(scene, "caption"),
-                               text_of(scene, "about"));
+        const int n = snprintf(item->more, sizeof item->more, "%s. %s. %s", text_of(scene, "title"),
+                               text_of(scene, "caption"), text_of(scene, "about"));
         // cut at a blank, so that no character is cut
         if (n >= (int)sizeof item->more) {
             item->more[sizeof item->more - sizeof ellipsis] = '\0';

@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "cli/shell/plain.h"
 #include "render/look.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 
 #include <math.h>
 #include <ncurses.h>

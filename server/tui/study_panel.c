@@ -4,7 +4,7 @@
 #include "base/shortest.h"
 #include "render/look.h"
 #include "terminal/short_spelling.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/methods.h"
 #include "tui/seconds.h"
 

@@ -4,6 +4,7 @@
 #include "base/shortest.h"
 #include "terminal/cells.h"
 #include "tui/list.h"
+#include "tui/text_view.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -22,7 +23,8 @@ void hn_text_panel_open(hn_workbench *w, const char *title) {
 static int rows_of(const hn_workbench *w, const char *line, size_t n) {
     char row[HN_TUI_PARAGRAPH];
     snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), line);
-    const int rows = hn_text_rows(row, w->columns - 4);
+    const int indent = hn_text_view_indent(row, w->columns - 4);
+    const int rows = hn_text_rows(row + indent, w->columns - 4 - indent);
     return rows > 0 ? rows : 1;
 }
 

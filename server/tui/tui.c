@@ -6,7 +6,7 @@
 #include "tui/controls.h"
 #include "tui/drag.h"
 #include "terminal/kitty_image.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/mechanism_picture.h"
 #include "tui/screen.h"
 #include "tui/views.h"

@@ -5,11 +5,12 @@
 #include "render/look.h"
 #include "terminal/plot.h"
 #include "tui/key_line.h"
+#include "tui/list_view.h"
 #include "tui/mechanism_view.h"
 #include "tui/methods.h"
 #include "tui/reactions_view.h"
 #include "tui/study_panel.h"
-#include "tui/text_panel.h"
+#include "tui/text_view.h"
 #include "tui/why_view.h"
 
 #include <math.h>
@@ -17,13 +18,12 @@
 #include <string.h>
 
 enum { NUMBER_DIGITS = 2 }; // significant, as in the page
-enum { LEAST_NAME = 7, MOST_NAME = 16, ROW_NAME = 64, VERDICT_COLUMNS = 51, MOST_INCIDENTS = 512 };
-enum { MESSAGE_LINES = 6, INCIDENT_LINES = 5 }; // at most
+enum { LEAST_NAME = 7, MOST_NAME = 22, ROW_NAME = 64, VERDICT_COLUMNS = 51, MOST_INCIDENTS = 512 };
+enum { MESSAGE_LINES = 6, INCIDENT_LINES = 7 }; // at most; the longest incident has 7
 enum { NOTICE_ROWS = 2 };                       // kept free below the views, at least
 enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
 enum { LEAST_VIEW_COLUMNS = 32 }; // from which on the plot has room for its labels
 enum { LEAST_VIEW_ROWS = 6 };     // of mechanism and plot, with their frame: fewer would be empty
-enum { PREVIEW_COLUMNS = 60 };    // of the list of scenes, from which on it has a picture
 
 /// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
 static const double SMALLEST_PREFIXED = 1e-9;
@@ -72,14 +72,9 @@ static hn_area panel_area(int columns, int rows) {
 
 bool hn_views_mechanism(int columns, int rows, const hn_workbench *w, hn_area *out) {
     const hn_places places = hn_views_places(columns, rows, w);
-    const hn_area list = inside_of(panel_area(columns, rows));
-    const int items = list.columns * 11 / 20;
-    const bool scenes = w->panel == HN_PANEL_LIST && w->list == HN_LIST_SCENES;
     if (w->panel == HN_PANEL_MAIN) {
         *out = inside_of((hn_area){0, 1, places.plot.x, places.plot.rows});
-    } else if (scenes && list.columns >= PREVIEW_COLUMNS) {
-        *out = (hn_area){list.x + items + 1, list.y, list.columns - items - 2, list.rows};
-    } else {
+    } else if (!hn_list_view_picture(inside_of(panel_area(columns, rows)), w, out)) {
         return false;
     }
     return out->columns >= 4 && out->rows >= 3;
@@ -141,28 +136,6 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
     }
 }
 
-/// Text that is cut with an ellipsis where it does not fit.
-static void put_fitted(hn_cells *c, hn_area area, int x, int y, int colour, int style,
-                       const char *text) {
-    hn_cells_put(c, area, x, y, colour, style, text);
-    if (x + hn_text_columns(text) > area.columns && x < area.columns) {
-        hn_cells_put(c, area, area.columns - 1, y, colour, style, "…");
-    }
-}
-
-/// Folds text into an area; where it does not fit, its last line ends in an ellipsis.
-static void fold_fitted(hn_cells *c, hn_area area, int colour, const char *text) {
-    hn_cells_fold(c, area, 0, colour, text);
-    if (hn_text_rows(text, area.columns) > area.rows) {
-        int x = area.columns - 1;
-        const hn_cell *row = &c->at[(area.y + area.rows - 1) * c->columns + area.x];
-        while (x > 0 && (row[x - 1].glyph[0] == '\0' || row[x - 1].glyph[0] == ' ')) {
-            x--;
-        }
-        hn_cells_put(c, area, x, area.rows - 1, colour, 0, "…");
-    }
-}
-
 /// Text that ends in row `last`, in as many lines as it needs, `most` of them; what they cover is
 /// wiped.
 static void draw_lines(hn_cells *c, hn_area area, int last, int most, int colour,
@@ -174,7 +147,7 @@ static void draw_lines(hn_cells *c, hn_area area, int last, int most, int colour
         hn_cells_printf(c, (hn_area){0, y, c->columns, 1}, 0, 0, HN_CELL_INK, 0, "%*s", c->columns,
                         "");
     }
-    fold_fitted(c, lines, colour, text);
+    hn_cells_fold_fitted(c, lines, colour, text);
 }
 
 /// Whether an incident is worth the line: it has just happened, or its method is the selected one,
@@ -202,11 +175,23 @@ void hn_views_update(hn_workbench *w) {
         }
     }
     w->notice[0] = '\0';
+    w->notice_of = last >= 0 ? whose[last] : 0;
     if (last >= 0 && w->panel == HN_PANEL_MAIN) {
         snprintf(w->notice, sizeof w->notice, "! %s at %.4g s: %s",
                  hn_recording_track(w->recording, whose[last])->name, list[last].t,
                  list[last].message);
     }
+}
+
+/// Says at the end of a notice that is cut which keys show all of it.
+static void say_the_rest(hn_cells *c, hn_area line, const hn_workbench *w) {
+    char words[64];
+    if (w->notice_of == w->selected) {
+        snprintf(words, sizeof words, " … i: the rest");
+    } else {
+        snprintf(words, sizeof words, " … %d, then i: the rest", w->notice_of + 1);
+    }
+    hn_cells_put(c, line, line.columns - hn_text_columns(words), 0, HN_CELL_ALARM, 0, words);
 }
 
 /// What was said; else the incident that is news.
@@ -216,7 +201,11 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
         // a long one takes the place of the keys, and of rows above
         draw_lines(c, area, area.y + needs_two_lines(c, w), MESSAGE_LINES, HN_CELL_INK, w->message);
     } else if (w->notice[0]) {
-        draw_lines(c, area, area.y, notice_rows(c->columns, c->rows, w), HN_CELL_ALARM, w->notice);
+        const int rows = notice_rows(c->columns, c->rows, w);
+        draw_lines(c, area, area.y, rows, HN_CELL_ALARM, w->notice);
+        if (hn_text_rows(w->notice, area.columns) > rows) {
+            say_the_rest(c, area, w);
+        }
     }
 }
 
@@ -261,21 +250,71 @@ static double step_of(const hn_track *t) {
     return fixed ? hn_method_option(&spec, "h", (double)NAN) : (double)NAN;
 }
 
-/// The name of method m, with its step where another one has the same name and another step.
+static bool differs(const hn_method_spec *spec, const hn_method_spec *than, int option) {
+    const double value = spec->formulation_set[option];
+    return value != spec->formulation->options[option].initial ||
+           (than && value != than->formulation_set[option]);
+}
+
+/// Adds the options of the formulation that differ from their defaults, or from those of another
+/// method (NULL: none): " 20/20" of Baumgarte, " unit-length". Of two numbers both are said, of
+/// more those that differ, with their keys.
+static void add_options(const hn_method_spec *spec, const hn_method_spec *than, char *out,
+                        size_t size) {
+    const hn_formulation *f = spec->formulation;
+    int numbers = 0, other = 0;
+    for (int i = 0; i < f->n_options; i++) {
+        const bool number = !f->options[i].choices;
+        numbers += number;
+        other += number && differs(spec, than, i);
+    }
+    const char *joint = " ";
+    for (int i = 0; i < f->n_options; i++) {
+        const hn_option *o = &f->options[i];
+        const double value = spec->formulation_set[i];
+        const bool own = differs(spec, than, i);
+        const size_t n = strlen(out);
+        if (o->choices && own) {
+            snprintf(out + n, size - n, " %s", o->choices[(int)value]);
+        } else if (!o->choices && numbers <= 2 && other > 0) {
+            snprintf(out + n, size - n, "%s%.4g", joint, value);
+            joint = "/";
+        } else if (!o->choices && own) {
+            snprintf(out + n, size - n, " %s=%.4g", o->key, value);
+        }
+    }
+}
+
+/// The name of method m with its own options, and with its step where another one has the same name
+/// and another step. Where that is too long the name is cut, as its letters tell least.
 static void name_row(const hn_workbench *w, int m, char out[ROW_NAME]) {
     const hn_track *own = hn_recording_track(w->recording, m);
-    bool shared = false;
-    snprintf(out, ROW_NAME, "%.*s", MOST_NAME, own->name);
+    hn_method_spec spec, like;
+    hn_diag diag = {0};
+    char ending[ROW_NAME] = "";
+    bool shared = false, compared = false;
+    const bool read = hn_method_parse(own->spelling, &spec, &diag) == HN_OK && spec.formulation;
     for (int i = 0; i < w->n_methods; i++) {
         const hn_track *other = hn_recording_track(w->recording, i);
         const bool named = i != m && strcmp(other->name, own->name) == 0;
         shared |= named && step_of(own) != step_of(other) && isfinite(step_of(own));
+        if (read && named && !compared && hn_method_parse(other->spelling, &like, &diag) == HN_OK) {
+            compared = like.formulation == spec.formulation &&
+                       memcmp(like.formulation_set, spec.formulation_set,
+                              sizeof like.formulation_set) != 0;
+        }
+    }
+    if (read) {
+        add_options(&spec, compared ? &like : NULL, ending, sizeof ending);
     }
     if (shared) {
         char step[HN_SI_TEXT];
+        const size_t n = strlen(ending);
         hn_si_format(step_of(own), "s", 2, step);
-        snprintf(out, ROW_NAME, "%.*s %s", MOST_NAME - 1 - hn_text_columns(step), own->name, step);
+        snprintf(ending + n, sizeof ending - n, " %s", step);
     }
+    const int room = MOST_NAME - hn_text_columns(ending);
+    snprintf(out, ROW_NAME, "%.*s%s", room > LEAST_NAME ? room : LEAST_NAME, own->name, ending);
 }
 
 /// Gap and error are shown even where the verdict is cut; the others while it has room.
@@ -334,8 +373,8 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     char line[HN_MOTION_VERDICT_TEXT + 32];
     snprintf(line, sizeof line, "%s %s%s%s", v.arrow, w->hidden[m] ? "(hidden) " : "",
              track->model_error ? "model error: " : "", v.text);
-    put_fitted(c, area, at.verdict, m, calm ? HN_CELL_INK : HN_CELL_ALARM,
-               calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);
+    hn_cells_put_fitted(c, area, at.verdict, m, calm ? HN_CELL_INK : HN_CELL_ALARM,
+                        calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);
 }
 
 /// The heads stand in the upper edge: numbers are those of the present frame, the verdict is about
@@ -413,70 +452,6 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_plot_draw(c, inside, &plot, w->form);
 }
 
-// ---- panels ----
-
-/// The column of names is as wide as the longest one, within bounds.
-static int name_width(const hn_workbench *w) {
-    enum { LEAST = 20, MOST = 28 };
-    int width = LEAST;
-    for (int i = 0; i < w->n_items; i++) {
-        const int n = hn_text_columns(w->items[i].name);
-        width = n > width && n <= MOST ? n : width;
-    }
-    return width;
-}
-
-/// The items; below them what the chosen one is about, and of scenes a picture to the right.
-static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
-    const hn_area frame = hn_cells_frame(c, area, w->title);
-    hn_area picture;
-    const bool pictured = hn_views_mechanism(c->columns, c->rows, w, &picture);
-    const hn_area in = {frame.x, frame.y, pictured ? picture.x - 1 - frame.x : frame.columns,
-                        frame.rows};
-    const int width = name_width(w);
-    // rows that the items leave go to the words below them
-    const int spare = in.rows - w->n_items;
-    const int below = pictured ? 3 + in.rows / 6 : spare > 8 ? 8 : spare > 3 ? spare : 3;
-    const int rows = in.rows - below;
-    const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
-    for (int i = first; i < w->n_items && i - first < rows; i++) {
-        const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;
-        const int used = hn_text_columns(w->items[i].name);
-        const int x = used > width ? used : width;
-        hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%s%*s", w->items[i].name,
-                        x - used, "");
-        put_fitted(c, in, x + 3, i - first, HN_CELL_MUTED, 0, w->items[i].about);
-    }
-    if (w->n_items > 0) {
-        const hn_area foot = {in.x + 1, in.y + in.rows - below + 1, in.columns - 2, below - 1};
-        const hn_item *item = &w->items[w->cursor];
-        fold_fitted(c, foot, HN_CELL_INK, item->more[0] ? item->more : item->about);
-    }
-    if (pictured) {
-        hn_mechanism_preview(c, picture, w);
-    }
-}
-
-static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
-    const hn_area in = hn_cells_frame(c, area, w->title);
-    const char *text = hn_strbuf_text(&w->text);
-    int line = 0, y = 0;
-    for (const char *at = text; *at && y < in.rows; line++) {
-        const size_t n = strcspn(at, "\n");
-        char row[HN_TUI_PARAGRAPH];
-        snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), at);
-        if (line >= w->scroll) {
-            const hn_area rest = {in.x + 1, in.y + y, in.columns - 2, in.rows - y};
-            const int used = hn_cells_fold(c, rest, 0, HN_CELL_INK, row);
-            if (line == w->marked) {
-                hn_cells_mark(c, (hn_area){rest.x, rest.y, rest.columns, used});
-            }
-            y += used > 0 ? used : 1;
-        }
-        at += n + (at[n] == '\n');
-    }
-}
-
 /// The least size of a screen for what is shown: with less the views would be empty, or lie over
 /// each other.
 static void find_least_size(const hn_workbench *w, int *columns, int *rows) {
@@ -508,9 +483,9 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
 
     const hn_area whole = panel_area(c->columns, c->rows);
     if (w->panel == HN_PANEL_LIST) {
-        draw_list(c, whole, w);
+        hn_list_view_draw(c, whole, w);
     } else if (w->panel == HN_PANEL_TEXT || w->panel == HN_PANEL_EXERCISE) {
-        draw_text(c, whole, w);
+        hn_text_view_draw(c, whole, w);
     } else if (w->panel == HN_PANEL_STUDY) {
         hn_study_panel_draw(c, whole, w);
     } else {

@@ -49,13 +49,6 @@ static bool is_again(const hn_incident *list, const int *whose, int i) {
     return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
 }
 
-/// Says how many of the incidents listed are not shown.
-static void draw_same(hn_cells *c, hn_area in, int y, int same) {
-    char line[96];
-    snprintf(line, sizeof line, "and %d more of the same causes", same);
-    hn_cells_fold(c, in, y, HN_CELL_MUTED, line);
-}
-
 /// What an incident is to its method, in the order of the card.
 typedef enum standing { ENDING, ERROR, WARNING, STANDINGS } standing;
 
@@ -86,11 +79,26 @@ static int first_shown(const hn_workbench *w) {
     return w->why_of == w->selected ? w->why_first : 0;
 }
 
-/// Whether remedy k of an entry stands below one of the entries from `first` on, and gave the same
-/// there.
-static bool is_said(const hn_incident *list, const int *entry, int first, int e, int k) {
+/// The card while it is written, line by line; its last row is kept for what follows below.
+typedef struct page {
+    hn_cells *c; ///< NULL: lines are counted alone
+    hn_area in;
+    int first; ///< line in the uppermost row
+    int line;  ///< written so far
+} page;
+
+static void put(page *p, int indent, int colour, const char *text) {
+    const hn_area in = {p->in.x + indent, p->in.y, p->in.columns - indent, p->in.rows - 1};
+    if (p->c) {
+        hn_cells_fold(p->c, in, p->line - p->first, colour, text);
+    }
+    p->line += hn_text_rows(text, in.columns);
+}
+
+/// Whether remedy k of an entry stands below an entry before, and gave the same there.
+static bool is_said(const hn_incident *list, const int *entry, int e, int k) {
     const hn_incident *own = &list[entry[e]];
-    for (int j = first; j < e; j++) {
+    for (int j = 0; j < e; j++) {
         const hn_incident *other = &list[entry[j]];
         for (int l = 0; l < HN_REMEDIES && other->remedy[l][0]; l++) {
             if (strcmp(other->remedy[l], own->remedy[k]) == 0 &&
@@ -111,115 +119,100 @@ static bool tells_count(const hn_incident *list, const int *entry, int e) {
     return is_first && list[entry[e]].times > HN_INCIDENT_MOST_OF_ONE_KIND;
 }
 
-/// Entry e with what to try that is not said from `first` on; returns the row below.
-static int draw_entry(hn_cells *c, hn_area in, int y, const hn_workbench *w,
-                      const hn_incident *list, const int *entry, int first, int e) {
+/// Entry e with what to try that is not said above.
+static void put_entry(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
+                      int e) {
     const hn_incident *incident = &list[entry[e]];
-    char line[512], words[HN_WHY_WORDS];
+    char line[640], words[HN_WHY_WORDS];
     const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, incident->message);
     if (tells_count(list, entry, e) && n < (int)sizeof line) {
         snprintf(line + n, sizeof line - (size_t)n, "; one of %d, the first %d are listed",
                  incident->times, HN_INCIDENT_MOST_OF_ONE_KIND);
     }
-    y = hn_cells_fold(c, in, y, HN_CELL_ALARM, line);
+    put(p, 0, HN_CELL_ALARM, line);
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
-        const hn_area inset = {in.x + 2, in.y, in.columns - 2, in.rows};
-        if (!is_said(list, entry, first, e, k)) {
+        if (!is_said(list, entry, e, k)) {
             put_remedy(w, incident, k, words);
-            y = hn_cells_fold(c, inset, y, HN_CELL_INK, words);
+            put(p, 2, HN_CELL_INK, words);
         }
     }
-    return y;
 }
 
 /// The rule of the method, then why it ended where no entry says so (`ending`: the first one does),
-/// or what became of it; returns the row below.
-static int draw_head(hn_cells *c, hn_area in, const hn_workbench *w, bool ending) {
+/// or what became of it.
+static void put_head(page *p, const hn_workbench *w, bool ending) {
     const hn_track *track = hn_recording_track(w->recording, w->selected);
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     const hn_motion_verdict v =
         hn_recording_verdict(w->recording, w->selected, hn_workbench_frame(w));
-    const int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
     char line[HN_MOTION_VERDICT_TEXT + 32];
-    if (end.failed) {
-        return ending ? y : hn_cells_fold(c, in, y, HN_CELL_ALARM, end.reason);
+    put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
+    if (end.failed && !ending) {
+        put(p, 0, HN_CELL_ALARM, end.reason);
+    } else if (!end.failed && v.tone != HN_TONE_CALM) {
+        snprintf(line, sizeof line, "worst so far: %s", v.text);
+        put(p, 0, HN_CELL_ALARM, line);
     }
-    if (v.tone == HN_TONE_CALM) {
-        return y;
-    }
-    snprintf(line, sizeof line, "worst so far: %s", v.text);
-    return hn_cells_fold(c, in, y, HN_CELL_ALARM, line);
 }
 
-/// Draws the card from entry `first` on; returns how many entries are left below it.
-static int draw_card(hn_cells *c, hn_area area, const hn_workbench *w, int first) {
+/// Writes the card; p->line is then the number of its lines.
+static void put_card(page *p, const hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS], entry[MOST_INCIDENTS];
-    char title[96];
     const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
     const int entries = list_entries(w, list, whose, n, entry);
+    put_head(p, w, entries > 0 && standing_of(w, &list[entry[0]]) == ENDING);
+    for (int e = 0; e < entries; e++) {
+        p->line++;
+        put_entry(p, w, list, entry, e);
+    }
+
+    // those of one cause after the first
+    int same = 0;
+    for (int i = 0; i < n; i++) {
+        same += whose[i] == w->selected && is_again(list, whose, i);
+    }
+    if (same > 0) {
+        char line[96];
+        snprintf(line, sizeof line, "and %d more of the same causes", same);
+        p->line++;
+        put(p, 0, HN_CELL_MUTED, line);
+    }
+}
+
+/// The uppermost line of the last page, in a frame of this area.
+static int last_page(hn_area area, const hn_workbench *w) {
+    const hn_area in = {area.x + 1, area.y + 1, area.columns - 2, area.rows - 2};
+    page p = {.in = in};
+    put_card(&p, w);
+    return p.line > in.rows - 1 ? p.line - (in.rows - 1) : 0;
+}
+
+bool hn_why_has_more(hn_area area, const hn_workbench *w) {
+    return last_page(area, w) > 0;
+}
+
+void hn_why_scroll(hn_workbench *w, hn_area area, int by) {
+    enum { KEPT = 4 }; // rows of the frame, of what follows, and one line of the page before
+    const int step = area.rows > KEPT ? area.rows - KEPT : 1, last = last_page(area, w);
+    const int line = first_shown(w) + (by > 0 ? step : -step);
+    w->why_first = line < 0 ? 0 : line > last ? last : line;
+    w->why_of = w->selected;
+}
+
+void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
+    char title[96];
     snprintf(title, sizeof title, "why: %s (%si closes)",
              hn_recording_track(w->recording, w->selected)->name,
              hn_why_has_remedy(w) ? "Enter tries, " : "");
     const hn_area in = hn_cells_frame(c, area, title);
-    const bool ending = entries > 0 && standing_of(w, &list[entry[0]]) == ENDING;
-    int y = draw_head(c, in, w, ending && first == 0), same = 0, e = first;
-    for (int i = 0; i < n; i++) {
-        same += whose[i] == w->selected && is_again(list, whose, i);
+    page p = {.c = c, .in = in, .first = first_shown(w)};
+    put_card(&p, w);
+    const int below = p.line - p.first - (in.rows - 1);
+    if (below > 0) {
+        hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more line%s", below,
+                        below == 1 ? "" : "s");
+    } else if (p.first > 0) {
+        hn_cells_put(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageUp: back");
     }
-
-    // the last row is kept for those that follow
-    const hn_area above = {in.x, in.y, in.columns, in.rows - 1};
-    for (; e < entries && y + 1 < above.rows; e++) {
-        y = draw_entry(c, above, y + 1, w, list, entry, first, e);
-    }
-    if (e < entries) {
-        hn_cells_printf(c, in, 0, in.rows - 1, HN_CELL_MUTED, 0, "PageDown: %d more", entries - e);
-    } else if (same > 0 && y + 1 < in.rows) {
-        draw_same(c, in, y + 1, same);
-    }
-    return entries - e;
-}
-
-/// The entry after those that the card shows from `first` on; `first` itself where it shows the
-/// last.
-static int next_page(hn_cells *scratch, hn_area area, const hn_workbench *w, int first) {
-    static hn_incident list[MOST_INCIDENTS];
-    static int whose[MOST_INCIDENTS], entry[MOST_INCIDENTS];
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
-    const int entries = list_entries(w, list, whose, n, entry);
-    const int left = draw_card(scratch, area, w, first), next = entries - left;
-    return left == 0 ? first : next > first ? next : first + 1;
-}
-
-bool hn_why_has_more(hn_area area, const hn_workbench *w) {
-    hn_cells scratch = {0};
-    bool more = false;
-    if (hn_cells_resize(&scratch, w->columns, w->rows)) {
-        more = next_page(&scratch, area, w, first_shown(w)) != first_shown(w);
-    }
-    hn_cells_free(&scratch);
-    return more || first_shown(w) > 0;
-}
-
-void hn_why_scroll(hn_workbench *w, hn_area area, int by) {
-    const int now = first_shown(w);
-    hn_cells scratch = {0};
-    if (!hn_cells_resize(&scratch, w->columns, w->rows)) {
-        return;
-    }
-
-    // pages begin where the one before ends, so going back counts them from the first on
-    int page = by > 0 ? next_page(&scratch, area, w, now) : 0;
-    while (by < 0 && next_page(&scratch, area, w, page) < now &&
-           next_page(&scratch, area, w, page) > page) {
-        page = next_page(&scratch, area, w, page);
-    }
-    w->why_first = page;
-    w->why_of = w->selected;
-    hn_cells_free(&scratch);
-}
-
-void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
-    draw_card(c, area, w, first_shown(w));
 }

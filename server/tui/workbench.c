@@ -5,6 +5,7 @@
 #include "render/look.h"
 #include "tui/preview.h"
 #include "tui/versions.h"
+#include "tui/view_box.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -68,6 +69,7 @@ hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags) {
     }
     hn_recording_free(w->recording);
     w->recording = fresh;
+    hn_view_box_begin(w);
     w->clock = fmin(w->clock, hn_recording_last(fresh));
     w->selected = w->selected < w->n_methods ? w->selected : 0;
     hn_recording_want(fresh, (int)w->clock + AHEAD);
@@ -121,6 +123,7 @@ void hn_workbench_close(hn_workbench *w) {
     hn_child_stop(&w->child);
     hn_tui_study_free(w->study);
     hn_recording_free(w->recording);
+    hn_view_box_free(w);
     hn_model_free(w->model);
     hn_model_free(w->preview.model);
     hn_versions_free(w->versions);
@@ -288,6 +291,7 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
     // the card of the reasons has remedies tried, which is done at the end of the motion
     hn_recording_want(w->recording, w->why ? last : (int)w->clock + AHEAD);
     hn_recording_update(w->recording);
+    hn_view_box_update(w);
     if (strcmp(w->message, COMPUTING) == 0 && !hn_recording_is_asking(w->recording)) {
         w->message[0] = '\0';
     }

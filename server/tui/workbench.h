@@ -50,7 +50,7 @@ enum { HN_TUI_LINE = 256, HN_TUI_ITEMS = 400, HN_TUI_MESSAGE = 800, HN_TUI_SETTI
 
 typedef struct hn_item {
     char name[HN_TUI_LINE], about[HN_TUI_LINE];
-    char more[2 * HN_TUI_LINE]; ///< below the list in place of `about`; "": about itself
+    char more[4 * HN_TUI_LINE]; ///< below the list in place of `about`; "": about itself
     double value, low, high;    ///< of a parameter
     bool is_exercise;           ///< in the list of lessons
 } hn_item;
@@ -80,6 +80,13 @@ typedef struct hn_placing {
     double x, y;         ///< dot of the view's origin
 } hn_placing;
 
+/// What the view has been fitted to (view_box.h).
+typedef struct hn_view_box {
+    double envelope[4]; ///< of the motion: minimum right and up, maximum right and up [m]
+    int frames;         ///< of the recording that the view holds
+    char *is_drawn;     ///< n_points, owned; NULL before the first recording
+} hn_view_box;
+
 typedef struct hn_versions hn_versions;
 
 typedef struct hn_workbench {
@@ -91,8 +98,9 @@ typedef struct hn_workbench {
     hn_versions *versions; ///< owned: what can be undone (versions.h)
     hn_model *model;
     hn_recording *recording;
-    bool computes; ///< a reference is computed where none is stored
-    hn_envelope envelope;
+    bool computes;        ///< a reference is computed where none is stored
+    hn_envelope envelope; ///< its box widens with the recording
+    hn_view_box view_box;
     char methods[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     int n_methods;
 
@@ -104,7 +112,7 @@ typedef struct hn_workbench {
     int selected;
     bool hidden[HN_COMPARISON_MAX_METHODS];
     bool why, reactions;     ///< in place of the plot, one of them at most
-    int why_first, why_of;   ///< of `why`: the first incident shown, while this method is selected
+    int why_first, why_of;   ///< of `why`: its uppermost line, while this method is selected
     hn_joint_forces *forces; ///< of `reactions`; owned, NULL while not needed
     hn_tui_plot plot;
     hn_dot_form form;
@@ -112,6 +120,7 @@ typedef struct hn_workbench {
     hn_placing place;     ///< of the mechanism in the picture; across 0: no picture yet
     char message[HN_TUI_MESSAGE];
     char notice[HN_TUI_MESSAGE]; ///< the incident that is news; "": none
+    int notice_of;               ///< method whose it is
     hn_strbuf link;              ///< for the clipboard
     bool copy;                   ///< the screen takes the link and puts this back
     int columns, rows;           ///< of the screen

@@ -296,7 +296,7 @@ class Merge(unittest.TestCase):
         poor, rich = self.path("poor.json"), self.parts(2)
         done = self.call([*COUNTED, "--time-limit", "1e-4", "--shard", "1/2", "--out", poor])
         self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertIn(b"the time limit left points out", done.stderr)
+        self.assertIn(b"the time limit of 0.0001 s left points out", done.stderr)
         study = json.loads(self.merged([poor, rich[1]]))
         skipped = [p for m in study["methods"] for p in m["points"] if p["state"] == "skipped"]
         self.assertTrue(skipped)

@@ -164,6 +164,17 @@ class Help(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         for command in ("holonom serve", "holonom tui", "holonom compare", "holonom help"):
             self.assertIn(command, done.stderr)
+        # each command begins with the name that was typed, and works before make install
+        typed = os.path.relpath(PROGRAM)
+        done = subprocess.run([typed], capture_output=True, text=True, env={**os.environ, "COLUMNS": "80"})
+        self.assertIn(f"  {typed} serve ", done.stderr)
+        self.assertIn("'make install' puts it on the path", done.stderr)
+        self.assertLessEqual(max(map(len, done.stderr.splitlines())), 80)
+        with tempfile.TemporaryDirectory() as folder:
+            os.symlink(os.path.abspath(PROGRAM), os.path.join(folder, "holonom"))
+            done = subprocess.run(["holonom"], capture_output=True, text=True, env={**os.environ, "PATH": folder})
+        self.assertIn("\n  holonom serve ", done.stderr)
+        self.assertNotIn("make install", done.stderr)
 
     def test_every_command_has_three_examples_and_they_run(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -352,6 +363,9 @@ class Plots(unittest.TestCase):
     def test_a_work_precision_study_draws_a_glyph_for_every_point(self):
         drawn = self.draw("study", "pendulum", "work-precision", "--time", "0.5", "--levels", "3", "--samples", "0",
                           "--methods", "index1@rk4", "projection@dop853")
+        # first the answer in words
+        self.assertRegex(drawn, r"^Cheapest by operations, for errors up to t = 0\.5 s\n")
+        drawn = drawn[drawn.index("error of the coordinates over") :]
         plot, legend = drawn.split("  ● index1@rk4\n")
         # three steps of the first method, and what is not hidden of the second
         self.assertEqual(plot.count("●"), 3)
@@ -410,6 +424,13 @@ class Manual(unittest.TestCase):
             self.assertIn(f'.SS "holonom {command}', text)
             for option in re.findall(r"^  (--?[\w-]+)", call("help", command).stdout, re.M):
                 self.assertIn(f".B {option}", text)
+
+    def test_it_has_the_keys_of_the_workbench_as_help_has_them(self):
+        keys = re.search(r"\nkeys\n((?:  .*\n)+)", call("help", "tui").stdout).group(1)
+        self.assertGreater(len(keys.splitlines()), 25)
+        text = call("manual").stdout.split(".SH KEYS OF THE WORKBENCH")[1].replace("\\-", "-")
+        for means in re.findall(r"(?m)^  \S+(?: \S)? +(.*)$", keys):
+            self.assertIn(f"\n{means}\n", text)
 
     def test_groff_sets_it_without_a_warning(self):
         done = subprocess.run(["groff", "-ww", "-man", "-Tascii", "-P-cbou", "-rLL=80n"], input=call("manual").stdout, capture_output=True, text=True, timeout=600)

@@ -24,6 +24,17 @@ class Frame(unittest.TestCase):
         self.assertRegex(out, r"index-1 +3\.4 mm .*open by 3\.4 mm and \d+ mm from the true motion")
         self.assertRegex(out, r"projection .*right to 2 digits")
 
+    def test_what_moves_is_inside_the_view_and_joints_have_their_names(self):
+        # methods that leave their branch reach beyond the motion that the view is fitted to first
+        for words in (["parallelogram", "--t", "5"], ["four-bar", "--t", "10", "--methods", "index1@euler:h=0.01"]):
+            _, out, _ = once(*words, "--once")
+            view = [line[1:35] for line in out.split("\n")[2:14]]
+            self.assertTrue(any("⣀" <= c <= "⣿" for line in view for c in line))
+            self.assertEqual({line[0] + line[-1] for line in view}, {"  "}, words)
+        _, out, _ = once("four-bar", "--once", "--t", "1")
+        view = "\n".join(line[1:35] for line in out.split("\n")[2:12])
+        self.assertEqual(re.findall(r"\b(O1|A|B|O3)\b", view), ["B", "O1", "A"])
+
     def test_the_same_frame_has_the_same_bytes(self):
         words = ("slider-crank", "--once", "--t", "1")
         self.assertEqual(once(*words), once(*words))

@@ -51,6 +51,16 @@ class Table(unittest.TestCase):
         self.assertRegex(out, r"index-1 20 ms +[^\n]*\n[^\n]*index-1 10 ms ")
         self.assertRegex(out, r"projection  +\S")
 
+    def test_own_options_of_a_method_stand_in_its_row(self):
+        def names(*methods):
+            out = once("four-bar", "--once", "--t", "0.1", "--methods", *methods)[1]
+            return re.findall(r"(?m)^│\d\S +(\S.*?) +[\d.e-]+ [µnm]?m ", out)
+        self.assertEqual(names("baumgarte:alpha=20,beta=20@rk4", "projection@rk4"), ["Baumgarte 20/20", "projection"])
+        self.assertEqual(names("baumgarte@rk4", "index1@rk4"), ["Baumgarte", "index-1"])
+        # beside another of the same name the default is said too
+        self.assertEqual(names("baumgarte@rk4", "baumgarte:alpha=20,beta=20@rk4"), ["Baumgarte 5/5", "Baumgarte 20/20"])
+        self.assertEqual(names("nullspace-as-printed:basis=unit-length@rk4"), ["as printed unit-length"])
+
     def test_the_mechanism_lies_above_its_scale_bar(self):
         # at the end the crank of the unstabilised run hangs lowest
         for size in ("80x24", "120x40"):
@@ -119,7 +129,27 @@ class Messages(unittest.TestCase):
         rows = [line for line in out.split("\n") if re.match(r"│ (four-bar|four-angles-as-printed|pendulum)  ", line)]
         self.assertEqual(len(rows), 3)
         self.assertEqual({re.match(r"│ \S+ +", row).end() for row in rows}, {len("│ four-angles-as-printed  ")})
-        self.assertRegex(out, r"swings to and fro[\s\S]*…[^│]*│\n")
+        self.assertRegex(out, r"Bennett's linkage: a spatial loop …")
+
+    def test_titles_of_scenes_end_at_a_word_and_the_rest_is_counted(self):
+        whole = {scene["title"] for scene in json.loads(subprocess.run([PROGRAM, "list", "scenes", "--json"], capture_output=True).stdout)["scenes"]}
+        for columns in (80, 100, 120, 160):
+            _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", f"{columns}x24", "--keys", "s<Home>")
+            titles = [re.split("[⠀-⣿├]|│$", line)[0][26:].strip() for line in out.split("\n")[2:10]]
+            for title in filter(None, titles):
+                self.assertTrue(title in whole or any(name.startswith(title.removesuffix("…")) for name in whole) and title.endswith(" …"), (columns, title))
+            self.assertRegex(out, r"│ ↓ \d+ more ", columns)
+        # the longest description has room, and the last scene nothing below it
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "s")
+        self.assertIn("energy of 14.05 J must stay what it is.", out)
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", "s<End>")
+        self.assertRegex(out, r"│ ↑ \d+ more +│")
+
+    def test_the_menu_and_a_text_say_that_there_is_more(self):
+        self.assertRegex(once("four-bar", "--once", "--t", "0.1", "--keys", "?")[1], r"│ ↓ \d+ more ")
+        text = [once("four-bar", "--once", "--t", "0.1", "--keys", "t<Enter>" + keys)[1] for keys in ("", "<PageDown>", "<End>")]
+        for out, wanted in zip(text, (" ↓ more ─┘", " ↑↓ more ─┘", " ↑ more ─┘")):
+            self.assertIn(wanted, out)
 
     def test_a_new_step_says_whose_it_is(self):
         def after(*methods):
@@ -175,6 +205,26 @@ class Messages(unittest.TestCase):
         _, out, _ = once("parallelogram", "--once", "--t", "1", "--size", "80x24")
         self.assertIn("largest 1.3\n", out)
         self.assertRegex(out, r"(?m)^└─+┘\n !")
+
+    def test_the_card_shows_every_line_of_a_long_incident(self):
+        lines = []
+        for pages in range(12):
+            _, out, _ = once("parallelogram", "--once", "--t", "5", "--size", "80x24", "--keys", "1i" + pages * "<PageDown>")
+            card = [line[37:79] for line in out.split("\n")[2:15]]
+            self.assertIn("why: index-1", out)
+            lines += [row.rstrip(" │") for row in card if row not in lines]
+            if not any("PageDown: " in row for row in card):
+                break
+        text = " ".join(" ".join(lines).split())
+        # sentences that a page of 12 lines used to cut, to their last words
+        self.assertIn("the multipliers grew to", text)
+        self.assertIn("more of the same causes", text)
+        self.assertIn("PageUp: back", text)
+
+    def test_a_notice_without_room_says_which_key_shows_the_rest(self):
+        methods = ["index1@rk4", "baumgarte@rk4", "projection@rk4", "reduced@rk4", "nullspace@rk4", "ggl@radau5", "index3@rattle"]
+        _, out, _ = once("parallelogram", "--once", "--t", "1", "--size", "60x20", "--methods", *methods)
+        self.assertRegex(out, r" … i: the rest\n")
 
     def test_a_method_that_went_wrong_is_not_said_to_be_well(self):
         for keys in ("d5<Enter>2i", "d5<Enter>2i<PageDown>"):
@@ -406,6 +456,16 @@ class Scores(unittest.TestCase):
             if row and after and row[0] != " " and after[0] != " " and not after.startswith(">"):
                 self.assertGreater(len(row) + 1 + len(after.split()[0]), 76, (row, after))
         self.assertIn("    phi_1 = l1 cos th1 + l2 cos th2 - l3 cos th3 - l4 cos th4 = 0,", rows)
+
+    def test_feedback_keeps_its_indent_where_it_is_folded(self):
+        keys = self.keys_to("p3") + "<Enter><Enter>2.5<Enter>c"
+        _, out, _ = once("pendulum", "--once", "--t", "0.1", "--size", "60x40", "--keys", keys, XDG_STATE_HOME=self.state)
+        rows = [line[2:].rstrip("│ ") for line in out.split("\n")[2:-4]]
+        told = next(i for i, row in enumerate(rows) if "off by more than" in " ".join(rows[i : i + 2]))
+        indent = len(rows[told]) - len(rows[told].lstrip())
+        self.assertGreater(indent, 1)
+        after = rows[told + 1]
+        self.assertEqual(len(after) - len(after.lstrip()), indent, rows[told : told + 2])
 
     def test_a_wrong_number_is_not_said_to_equal_itself(self):
         out = self.frame(self.keys_to("p3") + "<Enter><Enter>2.5<Enter>c")

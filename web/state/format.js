@@ -25,8 +25,8 @@ const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
  */
 export const ROUNDING = 1e-13;
 
-/** The smallest prefix is pico; below it one would pretend to a size that can be pictured. */
-const SMALLEST_PREFIXED = 1e-12;
+/** The smallest prefix is nano; below it one would pretend to a size that can be pictured. */
+const SMALLEST_PREFIXED = 1e-9;
 
 /** 10 to the n, in words of one line: 10⁻⁴. @param {number} n */
 export function powerOfTen(n) {
@@ -88,7 +88,7 @@ function bare(value, rounded, digits) {
 }
 
 /**
- * With an SI prefix so that one to three digits stand before the point: 4.2 mm. Below 1e-12 as a
+ * With an SI prefix so that one to three digits stand before the point: 4.2 mm. Below 1e-9 as a
  * power of ten. A number without a unit has no prefix: 0.80, 1200, 3.0×10⁶.
  * @param {number | null | undefined} value
  * @param {string} unit

@@ -25,13 +25,13 @@ const hn_formulation hn_formulation_nullspace_as_printed = {
     .name = "nullspace-as-printed",
     .title = "null-space, with the printed lesson's mistake",
     .short_name = "as printed",
-    .rule = "Section 3 of the source lesson omits the rate of the basis. The loop stays "
-            "closed to rounding while the energy is wrong; halving the step does not help.",
+    .rule = "The printed lesson, which lesson 3 corrects, omits the rate of the basis. The loop "
+            "stays closed to rounding while the energy is wrong; halving the step does not help.",
     .drift = "none in the gap; the energy is wrong at any step size, by an amount that "
              "depends on the basis",
     .when = "to compare a model error with a discretisation error",
     .when_not = "any result that matters",
-    .source = "the source lesson, section 3, as printed",
+    .source = "the printed lesson that lesson 1 introduces, section 3",
     .needs = "M f phi J",
     .model_error = true,
     .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |

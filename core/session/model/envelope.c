@@ -31,6 +31,13 @@ static char is_direction_only(const hn_drawing *d, int point) {
     return directs && !d->labels[point];
 }
 
+void hn_model_drawn_points(const hn_model *model, char *is_drawn) {
+    const hn_drawing drawing = hn_system_drawing(hn_model_system(model));
+    for (int i = 0; i < hn_system_get_info(hn_model_system(model)).n_points; i++) {
+        is_drawn[i] = !is_direction_only(&drawing, i);
+    }
+}
+
 enum { FRONT, SPACE, FRONT_Z_UP, SPACE_Z_UP, VIEWS };
 
 /// The extents that the drawn points have reached: in the world, and in the front and the oblique

@@ -16,6 +16,10 @@ HN_MUST_CHECK hn_status hn_model_points(const hn_model *model, const double *q, 
 /// on time, else 0.
 HN_MUST_CHECK hn_status hn_model_ground_points(const hn_model *model, char *is_ground);
 
+/// Sets is_drawn[i] = 1 for each world point (n_points) that a picture shows, 0 for one that only
+/// gives the direction of a slider or a guide.
+void hn_model_drawn_points(const hn_model *model, char *is_drawn);
+
 enum { HN_ENVELOPE_EXTREMES = 64 };
 
 typedef struct hn_envelope {

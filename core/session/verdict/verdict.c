@@ -22,8 +22,8 @@ static const double WRONG = 1e-2;     // of the scene's length or energy: one di
 static const double CLOSED = 1e-12;   // of the scene's length: rounding
 static const double ROUNDING = 1e-13; // [m] some hundred roundings of coordinates of a metre or so
 static const double MOST_DIGITS = 15;
-/// Below a pico of a unit a prefix pictures nothing.
-static const double SMALLEST_PREFIXED = 1e-12;
+/// Below a nano of a unit a prefix pictures nothing.
+static const double SMALLEST_PREFIXED = 1e-9;
 
 // ---- sizes ----
 

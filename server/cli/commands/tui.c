@@ -10,7 +10,7 @@
 #include "cli/shell/scene_word.h"
 #include "render/look.h"
 #include "tui/foreground.h"
-#include "tui/keys.h"
+#include "terminal/keys.h"
 #include "tui/link.h"
 #include "tui/views.h"
 

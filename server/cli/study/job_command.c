@@ -210,7 +210,12 @@ static void report_end(const command *c, const hn_job_end *end) {
     if (end->stopped) {
         hn_cli_note("holonom: stopped on request%s\n", kept);
     } else if (end->out_of_time) {
-        hn_cli_note("holonom: the time limit left %s out%s\n", c->kind->pieces, kept);
+        const double limit = c->request.limits.time_limit;
+        char which[64] = " (--time-limit)";
+        if (isfinite(limit)) {
+            snprintf(which, sizeof which, " of %.4g s", limit);
+        }
+        hn_cli_note("holonom: the time limit%s left %s out%s\n", which, c->kind->pieces, kept);
     }
 }
 

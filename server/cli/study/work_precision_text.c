@@ -120,17 +120,25 @@ static void put_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
     }
 }
 
+/// The cheapest methods by one kind of cost.
+static void put_front_of(hn_strbuf *b, const hn_study *study, hn_cost_kind cost) {
+    const hn_wp *wp = hn_study_wp(study);
+    const hn_error_kind error = hn_wp_ranked_error(wp);
+    hn_pareto p;
+    hn_wp_pareto(wp, hn_study_classes(study), error, cost, &p);
+    hn_strbuf_printf(b, "Cheapest by %s, for %s up to t = %.4g s\n", hn_cost_name(cost),
+                     error == HN_ERROR_Q ? "errors" : "the error of the energy", wp->ref->T);
+    put_sentences(b, wp, &p);
+}
+
 static void put_front(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
-    hn_pareto p;
     const hn_error_kind error = hn_wp_ranked_error(wp);
-    for (int cost = hn_cost_plot_has_times(wp) ? HN_COST_TIME : HN_COST_OPS; cost <= HN_COST_OPS;
-         cost++) {
-        hn_wp_pareto(wp, hn_study_classes(study), error, (hn_cost_kind)cost, &p);
-        hn_strbuf_printf(b, "\nCheapest by %s, for %s up to t = %.4g s\n",
-                         hn_cost_name((hn_cost_kind)cost),
-                         error == HN_ERROR_Q ? "errors" : "the error of the energy", wp->ref->T);
-        put_sentences(b, wp, &p);
+    hn_pareto p;
+    const int first = hn_cost_plot_has_times(wp) ? HN_COST_TIME : HN_COST_OPS;
+    for (int cost = first; cost <= HN_COST_OPS; cost++) {
+        hn_strbuf_add(b, cost > first ? "\n" : "");
+        put_front_of(b, study, (hn_cost_kind)cost);
     }
     if (error != HN_ERROR_Q) {
         hn_wp_pareto(wp, hn_study_classes(study), HN_ERROR_Q, HN_COST_OPS, &p);
@@ -278,11 +286,14 @@ void hn_study_text(hn_strbuf *b, const hn_study *study) {
     put_verdicts(b, study);
     hn_strbuf_add(b, "\n");
     put_plot(b, wp, false);
+    hn_strbuf_add(b, "\n");
     put_front(b, study);
     put_race(b, study);
     put_failures(b, wp);
 }
 
 void hn_study_plot_text(hn_strbuf *b, const hn_study *study) {
+    put_front(b, study);
+    hn_strbuf_add(b, "\n");
     put_plot(b, hn_study_wp(study), true);
 }

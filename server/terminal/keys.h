@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_TUI_KEYS_H
-#define HN_TUI_KEYS_H
+#ifndef HN_TERMINAL_KEYS_H
+#define HN_TERMINAL_KEYS_H
 // The keys of the workbench as one table: the loop obeys it, the menu shows it. A key that the page
 // has too does the same there (web/state/keys.js); a test compares the two tables.
 
