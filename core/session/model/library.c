@@ -6,6 +6,7 @@
 #include "base/folder.h"
 #include "session/model/installed.h"
 
+#include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,17 +15,29 @@
 
 enum { MAX_PATH_CHARS = 4096, MAX_ENTRIES = 512 };
 
-/// Files of one kind (scenes, problems), sorted by id.
+enum { SCENES, PROBLEMS, N_SHELVES };
+static const char *const folder_of[N_SHELVES] = {"scenes", "problems"};
+
+/// Files of one kind, sorted by id.
 typedef struct shelf {
+    bool read; ///< its folders have been read
     int n;
     const char *ids[MAX_ENTRIES];
     const char *paths[MAX_ENTRIES];
 } shelf;
 
+/// What is read when it is first asked for, by whichever thread: few commands need both shelves.
+typedef struct late {
+    pthread_mutex_t lock;
+    hn_arena *arena;
+    shelf *shelves[N_SHELVES];
+} late;
+
 struct hn_library {
     hn_arena *arena;
     const char *web, *lessons;
-    shelf scenes, problems;
+    hn_folder folders; ///< in the folder of the lessons
+    late *late;
 };
 
 /// Joins two parts; 0 if the result would not fit.
@@ -107,7 +120,7 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
 
 /// Puts one file on the shelf at its place in the order of ids; a second file of the same id is
 /// left out.
-static void shelve(hn_library *lib, shelf *s, const char *folder, const char *file) {
+static void shelve(hn_arena *arena, shelf *s, const char *folder, const char *file) {
     size_t n = strlen(file);
     char path[MAX_PATH_CHARS];
     if (n < 6 || strcmp(file + n - 5, ".json") != 0 || s->n == MAX_ENTRIES ||
@@ -126,44 +139,58 @@ static void shelve(hn_library *lib, shelf *s, const char *folder, const char *fi
         return;
     }
 
-    // make room and insert
+    // make room and insert; without memory the file is left out
+    const char *name = hn_arena_strdup(arena, id), *place = hn_arena_strdup(arena, path);
+    if (!name || !place) {
+        return;
+    }
     memmove(s->ids + at + 1, s->ids + at, (size_t)(s->n - at) * sizeof *s->ids);
     memmove(s->paths + at + 1, s->paths + at, (size_t)(s->n - at) * sizeof *s->paths);
-    s->ids[at] = hn_arena_strdup(lib->arena, id);
-    s->paths[at] = hn_arena_strdup(lib->arena, path);
+    s->ids[at] = name;
+    s->paths[at] = place;
     s->n++;
 }
 
-static void read_shelf(hn_library *lib, shelf *s, const char *lesson, const char *kind) {
-    char folder[MAX_PATH_CHARS];
-    if (!join_path(folder, lesson, kind)) {
-        return;
-    }
+static void read_folder(hn_arena *arena, shelf *s, const char *folder) {
     hn_folder files;
     if (hn_folder_read(folder, &files) != HN_OK) {
         return;
     }
     for (int i = 0; i < files.n; i++) {
-        shelve(lib, s, folder, files.names[i]);
+        shelve(arena, s, folder, files.names[i]);
     }
     hn_folder_reset(&files);
 }
 
-static hn_status read_lessons(hn_library *lib, hn_diag *diag) {
-    hn_folder lessons;
-    if (hn_folder_read(lib->lessons, &lessons) != HN_OK) {
-        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the folder %s cannot be read",
-                           lib->lessons);
-    }
-    for (int i = 0; i < lessons.n; i++) {
-        char lesson[MAX_PATH_CHARS];
-        if (join_path(lesson, lib->lessons, lessons.names[i])) {
-            read_shelf(lib, &lib->scenes, lesson, "scenes");
-            read_shelf(lib, &lib->problems, lesson, "problems");
+/// The shelf of scenes or of problems, of every lesson; read by the first who asks.
+static const shelf *get_shelf(const hn_library *lib, int kind) {
+    late *at = lib->late;
+    shelf *s = at->shelves[kind];
+    pthread_mutex_lock(&at->lock);
+    for (int i = 0; !s->read && i < lib->folders.n; i++) {
+        char lesson[MAX_PATH_CHARS], folder[MAX_PATH_CHARS];
+        if (join_path(lesson, lib->lessons, lib->folders.names[i]) &&
+            join_path(folder, lesson, folder_of[kind])) {
+            read_folder(at->arena, s, folder);
         }
     }
-    hn_folder_reset(&lessons);
-    return HN_OK;
+    s->read = true;
+    pthread_mutex_unlock(&at->lock);
+    return s;
+}
+
+/// Room for the shelves. Fails: HN_ERR_MEMORY.
+static hn_status create_late(hn_library *lib) {
+    late *at = hn_arena_get(lib->arena, sizeof *at);
+    for (int i = 0; at && i < N_SHELVES; i++) {
+        at->shelves[i] = hn_arena_get(lib->arena, sizeof *at->shelves[i]);
+    }
+    if (hn_arena_failed(lib->arena)) {
+        return HN_ERR_MEMORY;
+    }
+    at->arena = lib->arena;
+    lib->late = at;
+    return pthread_mutex_init(&at->lock, NULL) == 0 ? HN_OK : HN_ERR_MEMORY;
 }
 
 hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
@@ -175,7 +202,7 @@ hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
     }
 
     // the library owns its strings
-    hn_arena *arena = hn_arena_create(1 << 14);
+    hn_arena *arena = hn_arena_create(1 << 15);
     hn_library *lib = arena ? hn_arena_get(arena, sizeof *lib) : NULL;
     if (!lib) {
         hn_arena_free(arena);
@@ -189,12 +216,15 @@ hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
         lib->lessons = hn_arena_strdup(arena, path);
     }
 
-    // scenes and problems of every lesson
-    hn_status status = lib->web && lib->lessons ? read_lessons(lib, diag) : HN_ERR_IO;
-    if (status == HN_OK && hn_arena_failed(arena)) {
-        status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    // its scenes and problems later
+    if (hn_arena_failed(arena) || create_late(lib) != HN_OK) {
+        hn_arena_free(arena);
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
-    if (status != HN_OK) {
+    if (!lib->web || !lib->lessons || hn_folder_read(lib->lessons, &lib->folders) != HN_OK) {
+        const char *lessons = lib->lessons ? lib->lessons : folder;
+        const hn_status status =
+            hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the folder %s cannot be read", lessons);
         hn_arena_free(arena);
         return status;
     }
@@ -204,6 +234,8 @@ hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
 
 void hn_library_free(hn_library *lib) {
     if (lib) {
+        hn_folder_reset(&lib->folders);
+        pthread_mutex_destroy(&lib->late->lock);
         hn_arena_free(lib->arena);
     }
 }
@@ -226,29 +258,29 @@ static const char *find_path(const shelf *s, const char *id) {
 }
 
 int hn_library_n_scenes(const hn_library *lib) {
-    return lib->scenes.n;
+    return get_shelf(lib, SCENES)->n;
 }
 
 const char *hn_library_scene_id(const hn_library *lib, int i) {
-    return lib->scenes.ids[i];
+    return get_shelf(lib, SCENES)->ids[i];
 }
 
 const char *hn_library_scene_path(const hn_library *lib, const char *id) {
-    return find_path(&lib->scenes, id);
+    return find_path(get_shelf(lib, SCENES), id);
 }
 
 const char *const *hn_library_scene_ids(const hn_library *lib) {
-    return lib->scenes.ids;
+    return get_shelf(lib, SCENES)->ids;
 }
 
 const char *hn_library_problem_path(const hn_library *lib, const char *id) {
-    return find_path(&lib->problems, id);
+    return find_path(get_shelf(lib, PROBLEMS), id);
 }
 
 int hn_library_n_problems(const hn_library *lib) {
-    return lib->problems.n;
+    return get_shelf(lib, PROBLEMS)->n;
 }
 
 const char *hn_library_problem_id(const hn_library *lib, int i) {
-    return lib->problems.ids[i];
+    return get_shelf(lib, PROBLEMS)->ids[i];
 }
