@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { coincide } from "../../web/state/between.js";
 import { createHistory } from "../../web/state/history.js";
 import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
-import { createNamePlaces } from "../../web/widgets/name-places.js";
+import { createNamePlaces, spread } from "../../web/widgets/name-places.js";
 import { moveToFreeRows } from "../../web/widgets/plot-labels.js";
 import { createPen, piecesOf } from "../../web/widgets/pieces.js";
 import { bar, circle, disc } from "../../web/widgets/shapes.js";
@@ -194,4 +194,16 @@ test("names on a plot move to the nearest rows without a curve or a name, and st
   const full = [{ y: 50 }];
   moveToFreeRows(full, band(0, 200), room);
   assert.deepEqual(full, [{ y: 50 }]);
+});
+
+test("numbers of arrows at one joint do not lie over each other", () => {
+  const at = (x, y, text = "860 mN") => ({ x, y, text });
+  const far = [at(0, 0), at(100, 0), at(0, 40)];
+  assert.deepEqual(spread(far), far, "what is apart stays");
+  const ys = spread([at(0, 0), at(3, 4), at(-3, -2), at(2, 1)]).map(({ y }) => y);
+  ys.sort((a, b) => a - b);
+  assert.ok(
+    ys.slice(1).every((y, i) => y - ys[i] >= 14 - 1e-9), // [px] a line
+    ys.join(" "),
+  );
 });

@@ -7,7 +7,7 @@ import { incidentOf } from "./catalogue.js";
 import { ROUNDING, quantity, seconds } from "./format.js";
 import { errorsOf } from "./errors.js";
 
-/** A gap whose worst of the second half of the motion is so many times that of the first half grows. */
+/** A gap grows whose worst of the second half of the motion is so many times that of the first. */
 const GROWTH = 1.5;
 /** One that has fallen below this share of the largest so far does not grow any more. */
 const FALLEN = 0.9;
@@ -21,7 +21,7 @@ const CLOSED = 1e-12; // of the scene's length: rounding
 const MOST_DIGITS = 15;
 
 /**
- * Whether the gap is large by one rise at the end of the motion: stabilised methods fall from there.
+ * Whether the gap is large by one rise at the end of the motion: stabilised methods fall from it.
  * A gap that grows exponentially rises by the same factor in each quarter.
  * @param {import("./history.js").History} history
  * @param {number} m

@@ -26,6 +26,31 @@ function roomTo(x, y, [ax, ay, bx, by, r]) {
   return Math.hypot(x - ax - along * dx, y - ay - along * dy) - r;
 }
 
+const LINE = 14; // [px] from one number to the next
+const SPACE = 4; // [px] between two numbers in a line
+
+/**
+ * Numbers at the tips of arrows, moved up or down where two would overlap; the first stays.
+ * @template {{x: number, y: number, text: string}} Label
+ * @param {Label[]} labels with the middle of their lines [px]
+ * @returns {Label[]}
+ */
+export function spread(labels) {
+  /** @type {Label[]} */
+  const placed = [];
+  const width = ({ text }) => LETTER * text.length + SPACE;
+  for (const label of labels) {
+    const near = placed.filter(
+      (other) => 2 * Math.abs(other.x - label.x) < width(other) + width(label),
+    );
+    const isFree = (y) => near.every((other) => Math.abs(other.y - y) >= LINE - 1e-9);
+    const places = near.flatMap((other) => [other.y - LINE, other.y + LINE]).filter(isFree);
+    const nearest = places.sort((a, b) => Math.abs(a - label.y) - Math.abs(b - label.y))[0];
+    placed.push(isFree(label.y) ? label : { ...label, y: nearest });
+  }
+  return placed;
+}
+
 /** @param {{width: number, height: number}} size [px] */
 export function createNamePlaces(size) {
   /** @type {Map<number, number>} place of each point's name in the frame before */

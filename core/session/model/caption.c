@@ -116,12 +116,12 @@ void hn_model_caption(const hn_model *model, char *out, size_t size) {
         four_bar_lengths(hn_model_scene(model), lengths) ? four_bar_kind(lengths) : NULL;
     int n = snprintf(out, size, "%s%s%d degree%s of freedom", kind ? kind : "", kind ? ", " : "",
                      a->freedoms, a->freedoms == 1 ? "" : "s");
-    if (info.nc > 0 && n > 0 && (size_t)n < size) {
-        n += snprintf(out + n, size - (size_t)n, " (%d \xe2\x88\x92 %d independent constraint%s)",
-                      info.nv, a->rank, a->rank == 1 ? "" : "s");
+    char redundant[32] = "";
+    if (a->redundant > 0) {
+        snprintf(redundant, sizeof redundant, ", %d redundant", a->redundant);
     }
-    if (a->redundant > 0 && n > 0 && (size_t)n < size) {
-        snprintf(out + n, size - (size_t)n, ", %d redundant constraint%s", a->redundant,
-                 a->redundant == 1 ? "" : "s");
+    if (info.nc > 0 && n > 0 && (size_t)n < size) {
+        snprintf(out + n, size - (size_t)n, " (%d \xe2\x88\x92 %d independent constraint%s%s)",
+                 info.nv, a->rank, a->rank == 1 ? "" : "s", redundant);
     }
 }

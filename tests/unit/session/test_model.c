@@ -37,21 +37,27 @@ static void assert_caption(const char *scene, const hn_setting *settings, int n,
 
 static void captions_follow_grashof_and_count_freedoms(void **state) {
     (void)state;
-    assert_caption("four-bar", NULL, 0, "crank-rocker, 1 degree of freedom (3 \xe2\x88\x92 2)");
+    assert_caption("four-bar", NULL, 0,
+                   "crank-rocker, 1 degree of freedom (3 \xe2\x88\x92 2 independent constraints)");
     assert_caption("double-pendulum", NULL, 0, "2 degrees of freedom");
-    assert_caption("four-angles-as-printed", NULL, 0, "2 degrees of freedom (4 \xe2\x88\x92 2)");
-    assert_caption("five-bar", NULL, 0, "2 degrees of freedom (4 \xe2\x88\x92 2)");
-    assert_caption("slider-crank", NULL, 0, "1 degree of freedom (3 \xe2\x88\x92 2)");
-    assert_caption("n-four-bar", NULL, 0, "1 degree of freedom (5 \xe2\x88\x92 4)");
+    assert_caption("four-angles-as-printed", NULL, 0,
+                   "2 degrees of freedom (4 \xe2\x88\x92 2 independent constraints)");
+    assert_caption("five-bar", NULL, 0,
+                   "2 degrees of freedom (4 \xe2\x88\x92 2 independent constraints)");
+    assert_caption("slider-crank", NULL, 0,
+                   "1 degree of freedom (3 \xe2\x88\x92 2 independent constraints)");
+    assert_caption("n-four-bar", NULL, 0,
+                   "1 degree of freedom (5 \xe2\x88\x92 4 independent constraints)");
     assert_caption("double-rocker", NULL, 0,
-                   "double-rocker, 1 degree of freedom (3 \xe2\x88\x92 2)");
+                   "double-rocker, 1 degree of freedom (3 \xe2\x88\x92 2 independent constraints)");
     assert_caption("triple-rocker", NULL, 0,
-                   "triple-rocker, 1 degree of freedom (3 \xe2\x88\x92 2)");
+                   "triple-rocker, 1 degree of freedom (3 \xe2\x88\x92 2 independent constraints)");
     assert_caption("parallelogram", NULL, 0,
-                   "change-point parallelogram, 1 degree of freedom (3 \xe2\x88\x92 2)");
+                   "change-point parallelogram, 1 degree of freedom (3 \xe2\x88\x92 2 independent "
+                   "constraints)");
     // four hinges in space, opposite links equal: no plane parallelogram
     assert_caption("bennett", NULL, 0,
-                   "1 degree of freedom (3 \xe2\x88\x92 2), 3 redundant constraints");
+                   "1 degree of freedom (3 \xe2\x88\x92 2 independent constraints, 3 redundant)");
 }
 
 static void an_unknown_scene_gets_the_nearest_name(void **state) {
@@ -282,7 +288,8 @@ static void a_parameter_changes_the_mechanism(void **state) {
     assert_int_equal(hn_model_load(hn_test_library, &source, &model, &diags), HN_OK);
     char caption[160];
     hn_model_caption(model, caption, sizeof caption);
-    assert_string_equal(caption, "triple-rocker, 1 degree of freedom (3 \xe2\x88\x92 2)");
+    assert_string_equal(
+        caption, "triple-rocker, 1 degree of freedom (3 \xe2\x88\x92 2 independent constraints)");
     hn_model_free(model);
 
     // 5 > 0.8 + 1.2 + 1.0: no loop

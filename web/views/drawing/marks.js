@@ -4,6 +4,7 @@
 import { quantity } from "../../state/format.js";
 import { arrowScale, sizeOf, zeroOf } from "../../state/reactions.js";
 import { s, say, set } from "../../widgets/dom.js";
+import { spread } from "../../widgets/name-places.js";
 import { isCrowded } from "../../widgets/pieces.js";
 import * as shapes from "../../widgets/shapes.js";
 
@@ -80,7 +81,9 @@ export function createMarks(layers, data, stage) {
    * answer of the server.
    * @param {import("../../state/reactions.js").Reaction & {point: number}} reaction
    * @param {ArrayLike<number>} points
-   * @returns {{nodes: SVGElement[], line: number[]} | null} null: too short to be seen
+   * @returns {{
+   *   path: SVGElement, number: {x: number, y: number, text: string}, line: number[],
+   * } | null} null: too short to be seen
    */
   function makeArrow({ force, place, point }, points) {
     const { camera } = stage;
@@ -93,12 +96,9 @@ export function createMarks(layers, data, stage) {
     }
     const away = 1 + 16 / length;
     const tip = [from[0] + away * dx, from[1] + away * dy];
-    const at = { x: tip[0].toFixed(1), y: (tip[1] + 4).toFixed(1), "text-anchor": "middle" };
     return {
-      nodes: [
-        s("path", { d: shapes.arrow(from, [from[0] + dx, from[1] + dy]) }),
-        s("text", at, quantity(sizeOf(force), "N", 2)),
-      ],
+      path: s("path", { d: shapes.arrow(from, [from[0] + dx, from[1] + dy]) }),
+      number: { x: tip[0], y: tip[1] + 4, text: quantity(sizeOf(force), "N", 2) },
       line: [...from, ...tip, ROOM],
     };
   }
@@ -114,7 +114,10 @@ export function createMarks(layers, data, stage) {
     const loaded = reactions.list.filter(({ force }) => sizeOf(force) > zero);
     newton = arrowScale(Math.max(0, ...loaded.map(({ force }) => sizeOf(force))), newton);
     const arrows = loaded.flatMap((reaction) => makeArrow(reaction, points) ?? []);
-    layers.arrows.replaceChildren(...arrows.flatMap(({ nodes }) => nodes));
+    const numbers = spread(arrows.map(({ number }) => number)).map(({ x, y, text }) =>
+      s("text", { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": "middle" }, text),
+    );
+    layers.arrows.replaceChildren(...arrows.map(({ path }) => path), ...numbers);
     return arrows.map(({ line }) => line);
   }
 
