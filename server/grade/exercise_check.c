@@ -29,13 +29,14 @@ static void complain(trial *t, const char *part, const char *format, ...) HN_PRI
 static void complain(trial *t, const char *part, const char *format, ...) {
     t->good = 0;
     if (!t->first[0]) {
-        const int n = snprintf(t->first, sizeof t->first,
-                               "seed %llu%s%s: ", (unsigned long long)t->variant.seed,
-                               part[0] ? ", part " : "", part);
+        char text[HN_GRADE_TEXT];
         va_list list;
         va_start(list, format);
-        vsnprintf(t->first + n, sizeof t->first - (size_t)n, format, list);
+        vsnprintf(text, sizeof text, format, list);
         va_end(list);
+        snprintf(t->first, sizeof t->first, "seed %llu%s%s: %s",
+                 (unsigned long long)t->variant.seed, part[0] ? ", part " : "", part,
+                 hn_part_without_name(part, text));
     }
 }
 

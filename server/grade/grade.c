@@ -363,7 +363,7 @@ static hn_status prove_parts(const hn_variant *x, hn_diag *diag) {
         if (status != HN_OK) {
             return hn_diag_set(diag, status, "/parts", "problem --check tries every variant",
                                "the exercise is wrong in its part %.20s: %.200s", p->id,
-                               why.message);
+                               hn_part_without_name(p->id, why.message));
         }
     }
     return HN_OK;

@@ -309,6 +309,10 @@ def proofs(folder):
     far = dict(exercise, parts=[bad], draw={"l": {"range": [2, 9], "digits": 2}})
     done = run("problem", write(folder, "far.json", far), "--seeds", "1..2", "--check")
     expect("so is a listed mistake without a finite value", done.returncode == 3 and "the mistake 'beyond' (null) is named unreadable" in done.stdout, done.stdout + done.stderr)
+    bad.update(answer="sqrt(3-l)", second="sqrt(3-l)", faults=[])
+    done = run("problem", write(folder, "far.json", far), "--seeds", "1..9", "--check")
+    expect("a reference without a value is told with the seed that was asked for", ", part a: the reference is not finite with the numbers" in done.stdout
+           and "part a: part a" not in done.stdout and done.returncode == 3, done.stdout)  # fmt: skip
     part["faults"] = [{"id": "singular", "answer": {"M": ALIKE}}]
     done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..2", "--check")
     expect("with the mistake the exercise is sound", done.returncode == 0, done.stdout)

@@ -126,3 +126,9 @@ cJSON *hn_part_fault_answer(const hn_part *p, int i, const char **id, hn_diag *d
     *id = hn_part_text(node, "id");
     return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
 }
+
+const char *hn_part_without_name(const char *id, const char *message) {
+    char head[48];
+    const int n = snprintf(head, sizeof head, "part %.40s: ", id);
+    return strncmp(message, head, (size_t)n) == 0 ? message + n : message;
+}

@@ -102,4 +102,6 @@ void hn_part_keep_given(hn_part_result *r, const cJSON *given);
 cJSON *hn_part_right_answer(const hn_part *p, hn_diag *diag);
 /// `fault` of a kind whose faults have such an "answer" too.
 cJSON *hn_part_fault_answer(const hn_part *p, int i, const char **id, hn_diag *diag);
+/// The message without "part ID: " at its head, for lines that name the part themselves.
+const char *hn_part_without_name(const char *id, const char *message);
 #endif

@@ -97,8 +97,9 @@ static hn_status set_tolerance(hn_value_sheet *s) {
         for (int i = 0; i < s->draw->n_states; i++) {
             if (!isfinite(s->reference.x[k][i])) {
                 return hn_diag_set(s->diag, HN_ERR_INPUT, "/parts/answer", NULL,
-                                   "part %s: the reference is not finite for seed %llu", s->p->id,
-                                   (unsigned long long)s->p->seed);
+                                   "part %s: the reference is not finite with the numbers of this "
+                                   "variant",
+                                   s->p->id);
             }
             size = fmax(size, fabs(s->reference.x[k][i]));
         }
