@@ -127,17 +127,90 @@ bool hn_methods_set_step(hn_workbench *w, const char *text) {
     return taken;
 }
 
+// ---- numbers before and after a change ----
+
+static void find_worst(const hn_workbench *w, int m, int frame, double *gap, double *energy) {
+    const hn_track *t = hn_recording_track(w->recording, m);
+    *gap = *energy = 0;
+    for (int k = 0; k <= frame; k++) {
+        *gap = fmax(*gap, fabs(t->gap[k]));
+        *energy = fmax(*energy, fabs(t->energy[k]));
+    }
+}
+
+static void begin_change(const hn_workbench *w, int m, hn_tui_change *out) {
+    const int frame = hn_workbench_frame(w);
+    *out = (hn_tui_change){.open = true, .method = m, .t = hn_recording_time(w->recording, frame)};
+    find_worst(w, m, frame, &out->gap, &out->energy);
+}
+
+/// Says what was changed and the numbers before; those after it follow (hn_methods_update).
+static void say_change(hn_workbench *w, const hn_tui_change *change) {
+    char gap[HN_SI_TEXT], energy[HN_SI_TEXT];
+    w->change = *change;
+    if (!change->open) {
+        hn_workbench_say(w, "%s", change->what);
+        return;
+    }
+    hn_si_format(change->gap, "m", 2, gap);
+    hn_si_format(change->energy, "J", 2, energy);
+    hn_workbench_say(w, "%s; before, until %.2f s: worst gap %s, energy change %s", change->what,
+                     change->t, gap, energy);
+    snprintf(w->change.said, sizeof w->change.said, "%s", w->message);
+}
+
+void hn_methods_update(hn_workbench *w) {
+    hn_tui_change *change = &w->change;
+    const int frame = (int)round(change->t / hn_recording_frame_dt(w->recording));
+    const int last = hn_recording_last(w->recording);
+    const int until = frame < last ? frame : last; // the last one may begin before the end
+    if (!change->open || hn_recording_frames(w->recording) <= until) {
+        return;
+    }
+    change->open = false;
+    if (strcmp(w->message, change->said) != 0 || change->method >= w->n_methods) {
+        return; // something else was said since
+    }
+    char gap[2][HN_SI_TEXT], energy[2][HN_SI_TEXT];
+    double now[2];
+    find_worst(w, change->method, until, &now[0], &now[1]);
+    hn_si_format(change->gap, "m", 2, gap[0]);
+    hn_si_format(now[0], "m", 2, gap[1]);
+    hn_si_format(change->energy, "J", 2, energy[0]);
+    hn_si_format(now[1], "J", 2, energy[1]);
+    hn_workbench_say(w, "%s; until %.2f s: worst gap %s, before %s; energy change %s, before %s",
+                     change->what, change->t, gap[1], gap[0], energy[1], energy[0]);
+}
+
+/// "method 2: baumgarte@rk4:h=0.02", and the warning of a value that is allowed all the same.
+static void name_change(int at, const char *spelling, char *out, size_t size) {
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    const bool warned = hn_method_parse(spelling, &spec, &diag) == HN_OK && diag.message[0];
+    snprintf(out, size, "method %d: %.80s%s%.140s", at + 1, spelling, warned ? "; " : "",
+             warned ? diag.message : "");
+}
+
 bool hn_methods_put(hn_workbench *w, int at, const char *spelling) {
     kept before;
+    hn_tui_change change = {0};
     keep(&before, w);
     if (at >= HN_COMPARISON_MAX_METHODS) {
         hn_workbench_say(w, "%d methods are compared at most; remove one first (m, then x)",
                          HN_COMPARISON_MAX_METHODS);
         return false;
     }
+    if (at < w->n_methods) {
+        begin_change(w, at, &change);
+    }
     snprintf(w->methods[at], HN_SPEC_MAX, "%.250s", spelling);
     w->n_methods = at == w->n_methods ? at + 1 : w->n_methods;
-    return record_again(w, &before);
+    const bool taken = record_again(w, &before);
+    if (taken) {
+        name_change(at, spelling, change.what, sizeof change.what);
+        say_change(w, &change);
+    }
+    return taken;
 }
 
 /// The one way to spell a method; false: it is no spelling of any.
@@ -189,37 +262,23 @@ void hn_methods_remove(hn_workbench *w, int at) {
     record_again(w, &before);
 }
 
-/// "worst gap until now 2.4 mm, energy change 0.71 J"
-static void worst_so_far(const hn_workbench *w, int m, char *out, size_t size) {
-    const hn_track *t = hn_recording_track(w->recording, m);
-    char gap[HN_SI_TEXT], energy[HN_SI_TEXT];
-    double most[2] = {0, 0};
-    for (int k = 0; k <= hn_workbench_frame(w); k++) {
-        most[0] = fmax(most[0], fabs(t->gap[k]));
-        most[1] = fmax(most[1], fabs(t->energy[k]));
-    }
-    hn_si_format(most[0], "m", 2, gap);
-    hn_si_format(most[1], "J", 2, energy);
-    snprintf(out, size, "; before, until %.2f s: worst gap %s, energy change %s",
-             hn_recording_time(w->recording, hn_workbench_frame(w)), gap, energy);
-}
-
 void hn_methods_set_one(hn_workbench *w, const char *key, double value) {
     kept before;
-    char said[160];
+    hn_tui_change change;
     keep(&before, w);
-    worst_so_far(w, w->selected, said, sizeof said);
+    begin_change(w, w->selected, &change);
     if (!set_option(w->methods[w->selected], key, value)) {
         hn_workbench_say(w, "%s has no option %s",
                          hn_recording_track(w->recording, w->selected)->name, key);
     } else if (record_again(w, &before)) {
-        hn_workbench_say(w, "%s = %.4g%s", key, value, said);
+        snprintf(change.what, sizeof change.what, "%s = %.4g", key, value);
+        say_change(w, &change);
     }
 }
 
 void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alpha, double beta) {
     kept before;
-    char said[160] = "";
+    hn_tui_change change = {0};
     int at = 0;
     keep(&before, w);
     while (at < w->n_methods && strcmp(w->methods[at], spelling) != 0) {
@@ -232,7 +291,7 @@ void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alph
 
     // what it was before, so that the change can be seen
     if (at < w->n_methods) {
-        worst_so_far(w, at, said, sizeof said);
+        begin_change(w, at, &change);
     } else {
         snprintf(w->methods[w->n_methods++], HN_SPEC_MAX, "%.250s", spelling);
     }
@@ -240,6 +299,7 @@ void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alph
     set_option(w->methods[at], "beta", beta);
     if (record_again(w, &before)) {
         w->selected = at;
-        hn_workbench_say(w, "alpha = %.4g, beta = %.4g%s", alpha, beta, said);
+        snprintf(change.what, sizeof change.what, "alpha = %.4g, beta = %.4g", alpha, beta);
+        say_change(w, &change);
     }
 }

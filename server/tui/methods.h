@@ -22,6 +22,8 @@ void hn_methods_add(hn_workbench *w, const char *spelling);
 void hn_methods_set_one(hn_workbench *w, const char *key, double value);
 /// The last one stays.
 void hn_methods_remove(hn_workbench *w, int at);
+/// Adds the numbers after a change to those before it, once they are recorded.
+void hn_methods_update(hn_workbench *w);
 /// Alpha and beta of the method with this spelling; it is added where it is not compared yet. Says
 /// what the worst gap and energy change were before.
 void hn_methods_set_baumgarte(hn_workbench *w, const char *spelling, double alpha, double beta);

@@ -162,6 +162,8 @@ void hn_views_update(hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS];
 
+    hn_methods_update(w);
+
     // the last one so far, of the selected method if it has any
     const int frame = hn_workbench_frame(w);
     const bool ill = hn_recording_verdict(w->recording, w->selected, frame).tone != HN_TONE_CALM;

@@ -87,6 +87,16 @@ typedef struct hn_view_box {
     char *is_drawn;     ///< n_points, owned; NULL before the first recording
 } hn_view_box;
 
+/// A changed method, whose numbers before the change are said beside those after it.
+typedef struct hn_tui_change {
+    bool open; ///< the new numbers are not recorded yet
+    int method;
+    double t;                  ///< until when [s]
+    double gap, energy;        ///< worst before [m], [J]
+    char what[HN_TUI_LINE];    ///< "alpha = 20, beta = 20"
+    char said[HN_TUI_MESSAGE]; ///< until the new numbers are there
+} hn_tui_change;
+
 typedef struct hn_versions hn_versions;
 
 typedef struct hn_workbench {
@@ -124,6 +134,7 @@ typedef struct hn_workbench {
     hn_strbuf link;              ///< for the clipboard
     bool copy;                   ///< the screen takes the link and puts this back
     int columns, rows;           ///< of the screen
+    hn_tui_change change;
     hn_tui_drag drag;
 
     // the panel over it

@@ -267,7 +267,7 @@ class Keys(unittest.TestCase):
         with tempfile.TemporaryDirectory() as cache:
             status, out, err = once("four-bar", "--once", "--t", "3.5", "--keys", "b<Right><Right><Right><Up><Enter>", *METHODS, HOLONOM_CACHE=cache)
         self.assertEqual((status, err), (0, ""))
-        self.assertRegex(out, r"alpha = [\d.]+, beta = [\d.]+; before, until 3\.50 s: worst gap [\d.]+ mm, energy\s+change \d+ mJ")
+        self.assertRegex(out, r"alpha = [\d.]+, beta = [\d.]+; until 3\.50 s: worst gap [\d.]+ [µm]m, before\s+[\d.]+ mm;\s+energy\s+change\s+[\d.]+ m?J,\s+before\s+\d+ mJ")
 
     def exercise(self, name, keys, size="100x60"):
         """The frame after these keys in an exercise, its answers, and what is said of the whole."""
@@ -374,7 +374,7 @@ class Keys(unittest.TestCase):
         added = after("<Enter><Esc>")
         self.assertRegex(added, r"2. projection .*closed")
         smaller = after("<Down><Enter>")
-        self.assertRegex(smaller, r"h = 0\.01; before, until 4\.00 s: worst gap [\d.]+ mm")
+        self.assertRegex(smaller, r"h = 0\.01; until 4\.00 s: worst gap [\d.]+ mm, before [\d.]+ mm")
         # a remedy that is there already is selected, not added twice
         twice = after("<Enter><Up>i<Esc>1i<Enter><Enter>")
         self.assertEqual(len(re.findall(r"(?m)^│\d\S +projection", twice)), 1)

@@ -61,6 +61,15 @@ class Table(unittest.TestCase):
         self.assertEqual(names("baumgarte@rk4", "baumgarte:alpha=20,beta=20@rk4"), ["Baumgarte 5/5", "Baumgarte 20/20"])
         self.assertEqual(names("nullspace-as-printed:basis=unit-length@rk4"), ["as printed unit-length"])
 
+    def test_a_changed_method_says_its_numbers_before_and_after_and_its_warning(self):
+        def said(alpha):
+            keys = f"m<Down><Enter><CtrlU>baumgarte:alpha={alpha},beta=20@rk4:h=0.02<Enter>"
+            out = once("four-bar", "--once", "--t", "10", "--keys", keys, "--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02")[1]
+            return " ".join(out.split("└")[-1].split())
+        # the table of the lesson: the gap falls, the energy is hardly better
+        self.assertRegex(said(20), r"method 2: baumgarte:alpha=20,beta=20@rk4:h=0\.02; until 10\.00 s: worst gap 6\d\d µm, before [23]\.\d mm; energy change [67]\d\d mJ, before [78]\d\d mJ")
+        self.assertIn("alpha = -5 1/s is negative: it drives the loop open; until 10.00 s: ", said(-5))
+
     def test_the_mechanism_lies_above_its_scale_bar(self):
         # at the end the crank of the unstabilised run hangs lowest
         for size in ("80x24", "120x40"):
