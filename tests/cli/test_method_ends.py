@@ -192,15 +192,13 @@ class Tolerances(unittest.TestCase):
 
     def test_rows_that_become_dependent_are_chosen_anew(self):
         # the loop of bennett has two rows too many; those that ida began with become dependent at 1.88 s
-        document = run("bennett", "ggl@ida:rtol=1e-8", "--time", "5", "--at", "5")
-        self.assertEqual(document["status"], "ok", document.get("reason"))
-        # kept until the corrector fails, such rows let the loop open by 0.5 m from 0.56 s on; what drifts is 4e-5 m
-        for method in ("index1@ida", "baumgarte@ida", "index2@ida"):
-            document = run("bennett", method + ":rtol=1e-6", "--time", "1", "--at", "1")
-            self.assertEqual(document["status"], "ok", document.get("reason"))
-            self.assertLess(max(document["samples"]["gap"]), 2e-4, method)
+        # kept until the corrector fails, or until they are a tenth as independent as the best ones, they let the loop open by 0.5 m
+        for method, gap in (("ggl", 1e-6), ("index1", 3e-4), ("baumgarte", 1e-5), ("index2", 3e-5), ("index3", 1e-6)):
+            document = run("bennett", method + "@ida:rtol=1e-6", "--time", "5", "--at", "5")
+            self.assertEqual(document["status"], "ok", (method, document.get("reason")))
+            self.assertLess(max(document["samples"]["gap"]), gap, method)
         # velocities in the error test at index 3: their errors are divided by h; the reason names what solves it
-        document = run("bennett", "index3@ida:rtol=1e-3,suppress=multipliers,safety=1", "--time", "1")
+        document = run("bennett", "index3@ida:rtol=1e-10,suppress=multipliers,safety=1", "--time", "1")
         self.assertRegex(document["reason"], "3 of 5 constraint equations depend on the others; use ggl@ida or projection")
 
     def test_index_3_by_ida_reaches_the_end_with_the_tolerance_on_positions(self):
