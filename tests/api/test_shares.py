@@ -164,27 +164,63 @@ class FairShares(Timed):
     STUDY = {"scene": "four-bar", "kind": "work-precision", "methods": [RK4, "projection@rk4:h=1e-3"], "samples": 10, "time": 60, "levels": 7}
     SHORT_STUDY = {**STUDY, "scene": "pendulum", "samples": 0, "time": 0.1, "levels": 2}
     STUDIES = "/api/v1/studies"
+    NO_WAIT = STUDIES + "?wait=0"
 
     def test_one_client_does_not_hold_every_place_for_studies(self):
         server = driver.Server()
         greedy, modest, third = (From(server, f"127.0.0.{k}") for k in (2, 3, 4))
-        first = greedy.ask("POST", self.STUDIES, self.STUDY)
+        first = greedy.ask("POST", self.NO_WAIT, self.STUDY)
         self.assertEqual(first.status, 202)
-        refused = greedy.ask("POST", self.STUDIES, self.STUDY)
+        refused = greedy.ask("POST", self.NO_WAIT, self.STUDY)
         self.assertEqual(refused.status, 503)
         self.assertIn("1 of 2 studies, which is its share", refused.json()["detail"])
         # until its own study ends: by its limit of time at the latest
         self.assertTrue(1 <= int(refused.headers["retry-after"]) <= 1 + first.json()["time_limit_s"], refused.headers)
-        self.assertEqual(modest.ask("POST", self.STUDIES, self.STUDY).status, 202)
-        refused = third.ask("POST", self.STUDIES, self.STUDY)
+        self.assertEqual(modest.ask("POST", self.NO_WAIT, self.STUDY).status, 202)
+        refused = third.ask("POST", self.NO_WAIT, self.STUDY)
         self.assertEqual(refused.status, 503)
         self.assertIn("all places for studies are taken", refused.json()["detail"])
         # nor does it by letting a study go on
         stopped = f"{self.STUDIES}/{first.json()['id']}"
         greedy.ask("PATCH", stopped, {"state": "stopped"})
-        self.assertTrue(driver.until(lambda: third.ask("POST", self.STUDIES, self.STUDY).status == 202))
+        self.assertTrue(driver.until(lambda: third.ask("POST", self.NO_WAIT, self.STUDY).status == 202))
         self.assertEqual(modest.ask("PATCH", stopped, {"state": "running"}).status, 503)
         self.assertEqual(server.stop(), 0)
+
+    def test_a_study_waits_for_a_place(self):
+        """It was refused at once, without a word on who waits before it."""
+        server = driver.Server()
+        clients = [From(server, f"127.0.0.{k}") for k in range(2, 7)]
+        first = clients[0].ask("POST", self.STUDIES, self.STUDY).json()
+        self.assertEqual(clients[1].ask("POST", self.STUDIES, self.STUDY).status, 202)
+        answers = {}
+
+        def ask(name, client, wait):
+            answers[name] = client.ask("POST", f"{self.STUDIES}?wait={wait}", self.STUDY)
+
+        threads = []
+        for name, client, wait in (("patient", clients[2], 25), ("hasty", clients[3], 1)):
+            threads.append(threading.Thread(target=ask, args=(name, client, wait)))
+            threads[-1].start()
+            time.sleep(0.3)
+        refused = clients[4].ask("POST", self.NO_WAIT, self.STUDY)
+        self.assertEqual(refused.status, 503)
+        self.assertRegex(refused.json()["detail"], r"; [12] requests wait before this one$")
+        self.assertGreater(int(refused.headers["retry-after"]), 1)
+        threads[1].join()
+        self.assertEqual(answers["hasty"].status, 503)
+        self.assertIn("; 1 requests wait before this one", answers["hasty"].json()["detail"])
+        # a place that is given up goes to who waits
+        server.ask("DELETE", f"{self.STUDIES}/{first['id']}")
+        threads[0].join()
+        self.assertEqual(answers["patient"].status, 202)
+        # who has its share waits for an end of its own, and is told when the server ends
+        threads = [threading.Thread(target=ask, args=("own", clients[2], 25))]
+        threads[0].start()
+        time.sleep(0.5)
+        self.assertEqual(server.stop(), 0)
+        threads[0].join()
+        self.assertEqual((answers["own"].status, answers["own"].json()["type"]), (503, "/api/v1/errors/stopping"))
 
     def test_studies_of_one_client_make_no_room_by_those_of_another(self):
         server = driver.Server()

@@ -281,7 +281,7 @@ class Studies(driver.ServerCase):
 
     def test_no_more_than_two_run_at_once_and_the_next_is_told_when_to_ask_again(self):
         running = [start(self.server, LONG) for _ in range(2)]
-        answer = self.server.ask("POST", AT, LONG)
+        answer = self.server.ask("POST", AT + "?wait=0", LONG)
         self.assert_problem(answer, 503, "studies-busy")
         self.assertGreater(int(answer.headers["retry-after"]), 0)
         listed = self.server.ask("GET", AT).json()["studies"]
@@ -290,7 +290,7 @@ class Studies(driver.ServerCase):
             self.assertEqual(self.server.ask("DELETE", study["links"]["self"]).status, 204)
             self.assert_problem(self.server.ask("GET", study["links"]["self"]), 404, "not-found")
         end = time.monotonic() + 20 * driver.SLOW
-        while (answer := self.server.ask("POST", AT, QUICK)).status == 503:
+        while (answer := self.server.ask("POST", AT + "?wait=0", QUICK)).status == 503:
             self.assertLess(time.monotonic(), end, "the places of deleted studies are not given back")
             time.sleep(0.1)
         self.assertEqual(wait(self.server, answer.json())["state"], "finished")
@@ -434,7 +434,7 @@ class GoingOn(driver.ServerCase):
         self.assertEqual([s["id"] for s in self.server.ask("GET", AT).json()["studies"]], [s["id"] for s in before])
         # the other place is free: had it been started twice there would be none
         other = start(self.server, LONG)
-        self.assert_problem(self.server.ask("POST", AT, LONG), 503, "studies-busy")
+        self.assert_problem(self.server.ask("POST", AT + "?wait=0", LONG), 503, "studies-busy")
         # stopping frees the place, and going on needs one
         self.assertEqual(self.server.ask("PATCH", study["links"]["self"], {"state": "stopped"}).status, 200)
         stopped = wait(self.server, study, again=True)

@@ -9,6 +9,7 @@
 #include "http/live/stream.h"
 #include "http/request/context.h"
 #include "http/request/gzip.h"
+#include "http/request/place_queue.h"
 #include "http/request/request.h"
 
 #include <stdbool.h>
@@ -18,8 +19,6 @@
 #include <time.h>
 
 enum { MAX_LINGERING = 8, MOST_ZIPPED = 8 << 20 };
-/// A request waits so long for a place unless it says otherwise, and at most [s].
-static const double PLACE_WAIT = 25, MAX_WAIT = 60;
 /// A comparison that nobody has read or asked for so long makes room for another [s].
 static const double FORSAKEN = 5;
 
@@ -32,8 +31,7 @@ struct hn_comparisons {
     int n, n_reserved;     ///< there, and being made
     int n_threads, stopping;
     int n_threads_before; ///< at the keeper's last look
-    hn_request *waiting;  ///< requests that wait for a place, oldest first
-    int n_waiting;
+    hn_place_queue queue; ///< requests that wait for a place
     hn_shares *places;
     pthread_t keeper;
     int has_keeper;
@@ -96,7 +94,8 @@ static bool take_place(hn_comparisons *all, hn_client client) {
 
 // ---- those who wait for a place ----
 
-static void refuse(hn_comparisons *all, hn_request *r, int n_before) {
+static void refuse(void *user, hn_request *r, int n_before) {
+    hn_comparisons *all = user;
     if (all->stopping) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
         return;
@@ -109,52 +108,34 @@ static void refuse(hn_comparisons *all, hn_request *r, int n_before) {
     hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
 }
 
-/// Gives places to those who wait, the oldest first, and refuses those who have waited long enough.
-/// With the lock held.
-static void serve_waiting(hn_comparisons *all) {
-    const double now = hn_clock_wall();
-    int n_before = 0;
-    for (hn_request **at = &all->waiting; *at;) {
-        hn_request *r = *at;
-        const bool ends = all->stopping || now >= r->wait_until || hn_request_is_left(r);
-        r->has_place = !ends && take_place(all, r->client);
-        if (!ends && !r->has_place) {
-            n_before++;
-            at = &r->next;
-            continue;
-        }
+static bool take_for(void *user, hn_client client) {
+    return take_place(user, client);
+}
 
-        // from here on the request is another thread's
-        *at = r->next;
-        all->n_waiting--;
-        if (ends) {
-            refuse(all, r, n_before);
-            hn_request_finish(r);
-        } else if (!hn_jobs_push(r->context->quick, r, r->queues_as)) {
-            hn_shares_give(all->places, r->client);
-            refuse(all, r, n_before);
-            hn_request_finish(r);
-        }
+static void give_back(void *user, hn_client client) {
+    hn_shares_give(((hn_comparisons *)user)->places, client);
+}
+
+/// Gives places to those who wait. With the lock held.
+static void serve_waiting(hn_comparisons *all) {
+    if (all->queue.first) {
+        const hn_place_rules rules = {.take = take_for,
+                                      .give = give_back,
+                                      .refuse = refuse,
+                                      .user = all,
+                                      .jobs = all->queue.first->context->quick};
+        hn_place_queue_serve(&all->queue, &rules, all->stopping);
     }
 }
 
 /// Lets a request wait for a place. With the lock held. Returns false when too many wait already.
 static bool wait_for_place(hn_comparisons *all, hn_request *r, double seconds) {
-    hn_request **end = &all->waiting;
-    int n_of_client = 0;
-    for (; *end; end = &(*end)->next) {
-        n_of_client += (*end)->client == r->client;
+    const bool waits =
+        !all->stopping && hn_place_queue_add(&all->queue, r, seconds, all->opts->quick_queue);
+    if (waits) {
+        pthread_cond_broadcast(&all->changed);
     }
-    if (all->stopping || seconds <= 0 || all->n_waiting >= all->opts->quick_queue ||
-        (r->client && n_of_client >= hn_http_opts_share(all->opts, all->opts->quick_queue))) {
-        return false;
-    }
-    r->wait_until = hn_clock_wall() + seconds;
-    r->next = NULL;
-    *end = r;
-    all->n_waiting++;
-    pthread_cond_broadcast(&all->changed);
-    return true;
+    return waits;
 }
 
 /// Gives the memory of comparisons that have ended back to the system. Their threads have heaps of
@@ -177,7 +158,7 @@ static void *keep(void *arg) {
     const bool tight = all->opts->keep_alive < 2 || all->opts->expiry < 2;
     pthread_mutex_lock(&all->lock);
     while (!all->stopping) {
-        const double every = tight || all->n_waiting > 0 ? 0.1 : 1;
+        const double every = tight || all->queue.n > 0 ? 0.1 : 1;
         struct timespec ts;
         clock_gettime(CLOCK_MONOTONIC, &ts);
         long ns = ts.tv_nsec + (long)(every * 1e9);
@@ -286,13 +267,13 @@ static hn_session *find_session(hn_request *r) {
 /// A place for one more. Returns false where the request waits for one, or is refused.
 static bool reserve(hn_comparisons *all, hn_request *r, double wait) {
     pthread_mutex_lock(&all->lock);
-    const bool placed = r->has_place || (all->n_waiting == 0 && take_place(all, r->client));
+    const bool placed = r->has_place || (all->queue.n == 0 && take_place(all, r->client));
     const bool waits = !placed && wait_for_place(all, r, wait);
     if (placed) {
         all->n_reserved++;
         all->n_threads++; // the thread it will have
     } else if (!waits) {
-        refuse(all, r, all->n_waiting);
+        refuse(all, r, all->queue.n);
     }
     pthread_mutex_unlock(&all->lock);
     if (!placed && !waits) {
@@ -385,8 +366,8 @@ void hn_handle_comparisons_create(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
     hn_session *session = NULL;
     hn_diags diags = {0};
-    double wait = PLACE_WAIT;
-    if (!hn_request_query_number(r, "wait", 0, MAX_WAIT, false, &wait)) {
+    double wait = HN_PLACE_WAIT;
+    if (!hn_request_query_number(r, "wait", 0, HN_PLACE_MAX_WAIT, false, &wait)) {
         hn_request_finish(r);
         return;
     }

@@ -31,6 +31,7 @@ typedef struct hn_context {
     hn_kept_text openapi;      ///< the description of the API
     struct hn_shares *streams; ///< places of open streams
     struct hn_jobs *quick;     ///< threads of requests that take no time
+    struct hn_jobs *heavy;     ///< threads of long requests
     atomic_int open_requests;  ///< begun and not completed
     _Atomic long long unread;  ///< bytes of answers that wait for their readers
     atomic_int stopping;       ///< 1: the server ends; nothing new is started

@@ -14,8 +14,9 @@ typedef enum hn_work {
     HN_WORK_LIGHT,
     HN_WORK_QUICK, ///< done by the quick pool: reads a shipped scene, opens a comparison
     HN_WORK_HEAVY, ///< done by the pool, for as long as run_cpu_s; a full pool: 429
-    /// the same, asynchronous: the handler finishes the request, or has it finished
+    /// the same two, asynchronous: the handler finishes the request, or has it finished
     HN_WORK_QUICK_OWN,
+    HN_WORK_HEAVY_OWN,
     HN_WORK_OWN ///< asynchronous: the handler replies now or arranges a later reply
 } hn_work;
 

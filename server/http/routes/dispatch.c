@@ -187,7 +187,7 @@ void hn_dispatch_job(void *job, hn_job_turn *turn) {
     if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
     } else if (hn_request_read_body(r)) {
-        const int own = r->route->work == HN_WORK_QUICK_OWN;
+        const bool own = r->route->work == HN_WORK_QUICK_OWN || r->route->work == HN_WORK_HEAVY_OWN;
         r->route->handle(r);
         if (own) {
             return; // the handler has it finished
@@ -249,6 +249,7 @@ static bool start_work(hn_dispatch *d, hn_request *r) {
     case HN_WORK_QUICK:
     case HN_WORK_QUICK_OWN:
     case HN_WORK_HEAVY:
+    case HN_WORK_HEAVY_OWN:
         push(d, r, is_quick(r) ? d->quick : d->heavy);
         return false;
     }

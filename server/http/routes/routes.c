@@ -345,7 +345,7 @@ static const hn_route_query RUN_EXPORT_QUERY[] = {
     {"language", "string", "python when left out; see /languages"},
     {"method", "integer", "index of the method that the last line names; 0 when left out"},
     {NULL, NULL, NULL}};
-static const hn_route_query COMPARISON_QUERY[] = {
+static const hn_route_query PLACE_QUERY[] = {
     {"wait", "number", "seconds to wait while all places are taken, at most 60; 25 when left out"},
     {NULL, NULL, NULL}};
 static const hn_route_query SAMPLES_QUERY[] = {
@@ -470,7 +470,7 @@ static const hn_route ROUTES[] = {
     {"GET", "/api/v1/comparisons", HN_WORK_LIGHT, hn_handle_comparisons_list, NULL, JSON, "200",
      "ComparisonList", "Ids of all comparisons", NULL, NULL},
     {"POST", "/api/v1/comparisons", HN_WORK_QUICK_OWN, hn_handle_comparisons_create, COMPARISON,
-     JSON, "201", "Comparison", "Makes a comparison", COMPARISON_QUERY,
+     JSON, "201", "Comparison", "Makes a comparison", PLACE_QUERY,
      "{\"scene\":\"four-bar\",\"methods\":[\"index1@rk4:h=1e-2\",\"projection@rk4:h=1e-2\"]}"},
     {"GET", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_get, NULL, JSON, "200",
      "Comparison", "A comparison and its latest frame", NULL, NULL},
@@ -488,11 +488,11 @@ static const hn_route ROUTES[] = {
      EVENTS_QUERY, NULL},
     {"GET", "/api/v1/studies", HN_WORK_LIGHT, hn_handle_studies_list, NULL, JSON, "200",
      "StudyList", "All studies", NULL, NULL},
-    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, hn_study_fields, JSON,
+    {"POST", "/api/v1/studies", HN_WORK_HEAVY_OWN, hn_handle_studies_create, hn_study_fields, JSON,
      "202", "Study",
      "Starts a study; the address in its Location header gives the progress, and in the end the "
      "document",
-     NULL,
+     PLACE_QUERY,
      "{\"scene\":\"four-bar\",\"kind\":\"work-precision\",\"methods\":[\"projection@rk4\",\"index1@"
      "rk4\"],\"time\":1,\"levels\":3,\"samples\":0}"},
     {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",

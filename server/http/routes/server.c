@@ -102,6 +102,7 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     s->dispatch.heavy = hn_jobs_create(&heavy, hn_dispatch_job);
     s->dispatch.quick = hn_jobs_create(&quick, hn_dispatch_job);
     c->quick = s->dispatch.quick;
+    c->heavy = s->dispatch.heavy;
     s->dispatch.connections = hn_connections_create(o);
     c->streams = hn_shares_create(o->max_streams, hn_http_opts_share(o, o->max_streams));
     c->comparisons = hn_comparisons_create(o, c->lib);

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "http/request/context.h"
+#include "http/request/gzip.h"
 #include "http/request/request.h"
 #include "http/studies/study_fields.h"
 #include "http/studies/study_places.h"
@@ -16,6 +17,7 @@
 
 /// Less computing time than this is none: a study does not go on for it [s].
 static const double LEAST_LEFT = 0.05;
+enum { MOST_ZIPPED = 8 << 20 };
 
 // ---- one study ----
 
@@ -145,7 +147,7 @@ hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib) {
         all->places =
             hn_shares_create(opts->max_studies, hn_http_opts_share(opts, opts->max_studies));
     }
-    if (all && !all->places) {
+    if (all && (!all->places || !hn_study_places_start(all))) {
         hn_studies_free(all);
         return NULL;
     }
@@ -233,6 +235,8 @@ void hn_studies_stop(hn_studies *all) {
     int n_dead = 0;
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
+    hn_study_refuse_waiting(all);
+    pthread_cond_broadcast(&all->changed);
     while (all->n > 0) {
         drop(take_out(all, all->n - 1), dead, &n_dead);
     }
@@ -241,6 +245,10 @@ void hn_studies_stop(hn_studies *all) {
     }
     pthread_mutex_unlock(&all->lock);
     free_all(dead, n_dead);
+    if (all->has_keeper) {
+        pthread_join(all->keeper, NULL);
+        all->has_keeper = false;
+    }
 }
 
 void hn_studies_free(hn_studies *all) {
@@ -259,17 +267,6 @@ static void name_study(hn_study *s) {
         name = (uint64_t)(hn_clock_wall() * 1e9);
     }
     snprintf(s->id, sizeof s->id, "%016llx", (unsigned long long)name);
-}
-
-/// Takes a thread's place. Returns false with a problem as reply.
-static bool reserve(hn_studies *all, hn_request *r) {
-    pthread_mutex_lock(&all->lock);
-    const hn_study_place p = hn_study_take_place(all, r->client);
-    pthread_mutex_unlock(&all->lock);
-    if (p != HN_STUDY_PLACE_TAKEN) {
-        hn_study_reply_no_place(r, p);
-    }
-    return p == HN_STUDY_PLACE_TAKEN;
 }
 
 /// Starts a thread that works on the study, with a reference of its own. With the lock held.
@@ -375,7 +372,12 @@ void hn_handle_studies_list(hn_request *r) {
 void hn_handle_studies_create(hn_request *r) {
     hn_studies *all = r->context->studies;
     hn_diags diags = {0};
-    if (!reserve(all, r)) {
+    double wait = HN_PLACE_WAIT;
+    if (!hn_request_query_number(r, "wait", 0, HN_PLACE_MAX_WAIT, false, &wait)) {
+        hn_request_finish(r);
+        return;
+    }
+    if (!hn_study_find_place(all, r, wait)) {
         return;
     }
 
@@ -404,11 +406,13 @@ void hn_handle_studies_create(hn_request *r) {
         hn_study_give_back(all, r->client);
         pthread_mutex_unlock(&all->lock);
         hn_reply_diags(r, status, &diags);
-        return;
+    } else {
+        reply_study(r, MHD_HTTP_ACCEPTED, s);
+        hn_reply_header_add(r, "Location", "/api/v1/studies/%s", s->id);
+        release(s);
     }
-    reply_study(r, MHD_HTTP_ACCEPTED, s);
-    hn_reply_header_add(r, "Location", "/api/v1/studies/%s", s->id);
-    release(s);
+    hn_reply_compress(r, MOST_ZIPPED);
+    hn_request_finish(r);
 }
 
 void hn_handle_study_get(hn_request *r) {
@@ -501,12 +505,15 @@ static void resume(hn_request *r, hn_study *s) {
             hn_study_give_back(all, r->client);
         }
     }
+    if (p != HN_STUDY_PLACE_TAKEN) {
+        hn_study_reply_no_place(all, r, all->queue.n);
+    }
     pthread_mutex_unlock(&all->lock);
 
     if (why) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the study cannot go on: %s", why);
     } else if (p != HN_STUDY_PLACE_TAKEN) {
-        hn_study_reply_no_place(r, p);
+        return; // refused
     } else if (status != HN_OK) {
         hn_reply_diags(r, status, &(hn_diags){0});
     } else {

@@ -6,8 +6,9 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <time.h>
 
-enum { LONGEST_RETRY = 60 }; // [s]
+enum { LONGEST_RETRY = 60, LOOK_MS = 100 }; // [s], [ms]
 /// Below this share the time left is not estimated: too little is known.
 static const double TELLING = 0.03;
 
@@ -53,20 +54,100 @@ static double time_to_place(const hn_studies *all, hn_client client) {
     return listed > 0 ? shortest : 1;
 }
 
-void hn_study_reply_no_place(hn_request *r, hn_study_place p) {
-    hn_studies *all = r->context->studies;
-    if (p == HN_STUDY_PLACES_CLOSED) {
+/// The place of each of those that wait before is free again after a study of full length.
+static double time_to_turn(const hn_studies *all, hn_client client, int n_before) {
+    const double each = all->opts->max_run_cpu / all->opts->max_studies;
+    return fmin(LONGEST_RETRY, time_to_place(all, client) + n_before * each);
+}
+
+void hn_study_reply_no_place(hn_studies *all, hn_request *r, int n_before) {
+    if (all->stopping) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
         return;
     }
     const int share = hn_http_opts_share(all->opts, all->opts->max_studies);
-    pthread_mutex_lock(&all->lock);
-    const double seconds = time_to_place(all, r->client);
-    const bool is_own = hn_shares_has_share(all->places, r->client);
-    pthread_mutex_unlock(&all->lock);
-    hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
-                     is_own ? "your client runs %d of %d studies, which is its share"
-                            : "all places for studies are taken; one client may have %d of %d",
-                     share, all->opts->max_studies);
+    const double seconds = time_to_turn(all, r->client, n_before);
+    hn_reply_problem(
+        r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
+        hn_shares_has_share(all->places, r->client)
+            ? "your client runs %d of %d studies, which is its share; %d requests wait "
+              "before this one"
+            : "all places for studies are taken; one client may have %d of %d; %d "
+              "requests wait before this one",
+        share, all->opts->max_studies, n_before);
     hn_reply_header_add(r, "Retry-After", "%d", (int)fmin(LONGEST_RETRY, 1 + floor(seconds)));
+}
+
+// ---- those who wait ----
+
+static bool take(void *user, hn_client client) {
+    hn_studies *all = user;
+    return !all->stopping && hn_shares_take(all->places, client);
+}
+
+static void give(void *user, hn_client client) {
+    hn_studies *all = user;
+    hn_shares_give(all->places, client);
+}
+
+static void refuse(void *user, hn_request *r, int n_before) {
+    hn_study_reply_no_place(user, r, n_before);
+}
+
+/// With the lock held.
+static void serve_waiting(hn_studies *all) {
+    if (all->queue.first) {
+        const hn_place_rules rules = {.take = take,
+                                      .give = give,
+                                      .refuse = refuse,
+                                      .user = all,
+                                      .jobs = all->queue.first->context->heavy};
+        hn_place_queue_serve(&all->queue, &rules, all->stopping);
+    }
+}
+
+void hn_study_refuse_waiting(hn_studies *all) {
+    serve_waiting(all);
+}
+
+static void *keep(void *arg) {
+    hn_studies *all = arg;
+    pthread_mutex_lock(&all->lock);
+    while (!all->stopping) {
+        if (all->queue.n == 0) {
+            pthread_cond_wait(&all->changed, &all->lock);
+        } else {
+            pthread_mutex_unlock(&all->lock);
+            nanosleep(&(struct timespec){.tv_nsec = LOOK_MS * 1000000L}, NULL);
+            pthread_mutex_lock(&all->lock);
+        }
+        serve_waiting(all);
+    }
+    pthread_mutex_unlock(&all->lock);
+    return NULL;
+}
+
+bool hn_study_places_start(hn_studies *all) {
+    all->has_keeper = pthread_create(&all->keeper, NULL, keep, all) == 0;
+    return all->has_keeper;
+}
+
+bool hn_study_find_place(hn_studies *all, hn_request *r, double wait) {
+    pthread_mutex_lock(&all->lock);
+    const bool placed =
+        !all->stopping && (r->has_place || (all->queue.n == 0 && take(all, r->client)));
+    const bool waits =
+        !placed && !all->stopping && hn_place_queue_add(&all->queue, r, wait, all->opts->queue);
+    if (placed) {
+        all->n_threads++;
+    } else if (waits) {
+        pthread_cond_broadcast(&all->changed);
+    } else {
+        hn_study_reply_no_place(all, r, all->queue.n);
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (!placed && !waits) {
+        hn_request_finish(r);
+    }
+    return placed;
 }

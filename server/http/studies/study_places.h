@@ -5,7 +5,7 @@
 // client.
 
 #include "http/ground/shares.h"
-#include "http/request/request.h"
+#include "http/request/place_queue.h"
 #include "http/studies/studies.h"
 #include "http/studies/study_work.h"
 
@@ -31,8 +31,11 @@ struct hn_studies {
     const hn_library *lib;
     hn_study *list[HN_STUDIES_KEPT];
     int n, stopping;
-    hn_shares *places; ///< of studies that are being read or computed
-    int n_threads;     ///< that are at work, or on their way out
+    hn_shares *places;    ///< of studies that are being read or computed
+    hn_place_queue queue; ///< requests that wait for a place
+    pthread_t keeper;     ///< looks after them
+    bool has_keeper;
+    int n_threads; ///< that are at work, or on their way out
 };
 
 /// What became of the request for a place.
@@ -48,9 +51,16 @@ double hn_study_time_left(const hn_study *s, double share, double elapsed);
 /// Takes a place for one more thread, with the lock held. A study that was deleted holds its place
 /// until its thread has ended.
 hn_study_place hn_study_take_place(hn_studies *all, hn_client client);
+/// Gives a request its place for one more thread; lets it wait for one where there is none, at most
+/// so many seconds, or refuses it. Returns false where it has none. Takes the lock.
+bool hn_study_find_place(hn_studies *all, hn_request *r, double wait);
+/// Starts the thread that looks after those who wait. Returns false when threads are out.
+bool hn_study_places_start(hn_studies *all);
+/// Refuses those who wait; with the lock held, and `stopping` set.
+void hn_study_refuse_waiting(hn_studies *all);
 /// Gives back a place whose thread was never started, with the lock held.
 void hn_study_give_back(hn_studies *all, hn_client client);
-/// Makes the reply to a request that found no place: a problem, with the seconds until one of the
-/// running studies ends.
-void hn_study_reply_no_place(hn_request *r, hn_study_place place);
+/// Makes the reply to a request that found no place: a problem, with the number of requests that
+/// wait before it, and the seconds until it will probably find one. With the lock held.
+void hn_study_reply_no_place(hn_studies *all, hn_request *r, int n_before);
 #endif
