@@ -4,7 +4,8 @@
 
 usage: reports.py PROGRAM [N]    N random mechanisms (200); prints the table that tests/tables/reports.txt keeps
 
-Each mechanism runs by projection@rk4 with its own step and by projection@dopri5. Its reports are judged by other runs:
+Each mechanism runs by projection, index1, nullspace, penalty and udwadia-kalaba with its own step of rk4, and by
+projection@dopri5. Its reports are judged by other runs:
 
   rank-ahead   a prediction: came true when the run reports a configuration that is singular or nearly so (near-singular,
                rank-loss), or ends, at the time that was predicted, within 0.05 s or a quarter of the lead. Predictions for
@@ -16,6 +17,8 @@ Each mechanism runs by projection@rk4 with its own step and by projection@dopri5
                partitioning and projection end there too
   energy       energy-drift and energy-jump, also of a run by index1@rk4: right when the state of the run is more than SLIGHT off
                the same motion computed at rtol 1e-10, at the report or at the end; of a run the first report is judged
+  multipliers  multipliers-grow, by penalty and udwadia-kalaba: right when the run meets a configuration that is singular or
+               nearly so within 0.05 s of it
 
 An event that no report announced is a singular configuration, or one nearly so, later than 0.3 s after the start without a
 prediction. A prediction is early when it comes 0.2 s before the event, or a quarter of the time 2 pi / |fastest rate|.
@@ -33,7 +36,7 @@ from bounded import run_bounded
 
 EVENTS = ("near-singular", "rank-loss")
 FAR, SLIGHT = 0.05, 0.01  # of the size of a state
-KINDS = ("rank-ahead", "branch-flip", "stiff", "chart-lost", "energy")
+KINDS = ("rank-ahead", "branch-flip", "stiff", "chart-lost", "energy", "multipliers")
 ENERGY = ("energy-drift", "energy-jump")
 FAMILIES = ("four-bar", "five-bar", "slider-crank", "watt-six-bar", "stephenson-six-bar", "quick-return", "double-rocker",
             "rssr", "spatial-slider-crank", "oblique-four-bar")
@@ -166,6 +169,17 @@ def judge_energy(table, program, name, scene, document, sets):
         table.notes.append(f"energy, {name}: {document['method']} {told[0]['t']:.4g} s: {told[0]['message']}")
 
 
+def judge_multipliers(table, name, document):
+    events = [i["t"] for i in document["incidents"] if i["code"] in EVENTS and i["t"] > 0]
+    for i in document["incidents"]:
+        if i["code"] != "multipliers-grow":
+            continue
+        right = any(abs(e - i["t"]) < 0.05 for e in events)
+        (table.right if right else table.wrong)["multipliers"] += 1
+        if not right:
+            table.notes.append(f"multipliers, {name}: {document['method']} {i['t']:.4g} s: {i['message']}")
+
+
 def judge(program, name, scene, step, time, sets=()):
     table = Table()
     fixed = run(program, scene, f"projection@rk4:h={step:g}", time, sets)
@@ -179,6 +193,13 @@ def judge(program, name, scene, step, time, sets=()):
     if open_loops:
         table.runs += 1
         judge_energy(table, program, name, scene, open_loops, sets)
+    for loads in ("penalty", "udwadia-kalaba"):
+        document = run(program, scene, f"{loads}@rk4:h={step:g}", time, sets)
+        if document:
+            table.runs += 1
+            judge_branch(table, program, name, scene, document, sets)
+            judge_energy(table, program, name, scene, document, sets)
+            judge_multipliers(table, name, document)
     for other in ("projection@dopri5:rtol=1e-6", f"nullspace@rk4:h={step:g}"):
         document = run(program, scene, other, time, sets)
         if document:
@@ -238,7 +259,7 @@ def main():
     print(total.row("all"))
 
     right, wrong = sum(total.right.values()), sum(total.wrong.values())
-    print(f"\n{right} of {right + wrong} reports were right; {total.early} of {total.right['rank-ahead']} predictions that came true were early")
+    print(f"\n{right} of {right + wrong} reports were right ({100 * right / max(1, right + wrong):.1f} %); {total.early} of {total.right['rank-ahead']} predictions that came true were early")
     print("\n".join(["", "reports that were not right, and events that none announced", *(f"  {note}" for note in total.notes)]))
 
 
