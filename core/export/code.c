@@ -11,6 +11,7 @@
 
 enum { MAX_BYTES = 4 << 20, LONGEST = 160 }; // of all code; of a piece inside a line
 enum { SHORT = 24, REPEATED = 120 };         // letters seen: of a piece, of its copies in a formula
+enum { MOST_NAMED = 4 };                     // coordinates and velocities beside a piece
 
 /// How tightly a piece binds; a weaker piece inside a stronger one gets parentheses.
 typedef enum level { LEVEL_SUM, LEVEL_PRODUCT, LEVEL_ATOM } level;
@@ -21,9 +22,11 @@ typedef struct writer {
     const hn_language *language;
     int indent;
     int n_nodes, n_shared;
-    int *uses;          ///< of each node, by nodes and entries
-    int *variable;      ///< number of a shared node's variable, 0: none yet
-    const char *prefix; ///< of variables, that no symbol of the scene begins with
+    int *uses;     ///< of each node, by nodes and entries
+    int *variable; ///< of each shared node (formula.h), 0: none yet
+    int *kind;     ///< of each node (hn_piece_kind); NULL: they are not told apart
+    const hn_code_symbols *symbols;
+    const char *prefix[HN_PIECE_KINDS]; ///< of variables, that no symbol of the scene begins with
 } writer;
 
 // ---- which nodes get a variable ----
@@ -52,9 +55,21 @@ static bool is_leaf(const writer *w, int32_t node) {
     return op == HN_OP_ONE || op == HN_OP_SYMBOL;
 }
 
+static bool has_symbol(const int *list, int n, int symbol) {
+    for (int i = 0; i < n; i++) {
+        if (list[i] == symbol) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// A prefix such that no symbol is prefix and digits: "k", "kk", ...
-static const char *choose_prefix(const hn_graph *g) {
-    static const char *const candidates[] = {"k", "kk", "shared", "holonom_shared"};
+static const char *choose_prefix(const hn_graph *g, hn_piece_kind kind) {
+    static const char *const all[HN_PIECE_KINDS][4] = {{"c", "cc", "constant", "holonom_constant"},
+                                                       {"k", "kk", "shared", "holonom_shared"},
+                                                       {"u", "uu", "moving", "holonom_moving"}};
+    const char *const *const candidates = all[kind];
     for (int c = 0; c < 3; c++) {
         const size_t n = strlen(candidates[c]);
         bool free = true;
@@ -78,9 +93,9 @@ static const char *times(const writer *w) {
 }
 
 /// The name of a shared piece's variable.
-static void put_variable(hn_strbuf *b, const writer *w, int number) {
+static void put_variable(hn_strbuf *b, const writer *w, int variable) {
     char name[32];
-    snprintf(name, sizeof name, "%s%d", w->prefix, number);
+    hn_formula_variable_name(w->prefix, variable, name);
     hn_code_name(b, w->language, name);
 }
 
@@ -200,27 +215,90 @@ static bool is_written_out(const writer *w, int uses, const hn_strbuf *text) {
     return length <= SHORT || (length <= LONGEST && length * (uses - 1) <= REPEATED);
 }
 
+/// Names the coordinates and velocities that a piece depends on, where they are few.
+static void put_dependence(writer *w, int32_t node) {
+    const hn_code_symbols *s = w->symbols;
+    hn_strbuf names;
+    int n = 0;
+    hn_strbuf_init(&names);
+    for (int i = 0; i < s->nq + s->nv && n <= MOST_NAMED; i++) {
+        const int symbol = i < s->nq ? s->q[i] : s->v[i - s->nq];
+        if (hn_depends_on(w->g, (hn_ex){1, node}, symbol)) {
+            hn_strbuf_add(&names, n++ ? ",\\, " : "");
+            hn_code_name(&names, w->language, hn_graph_symbol_name(w->g, symbol));
+        }
+    }
+    if (n > 0 && n <= MOST_NAMED) {
+        hn_code_fill(w->b, w->language->depends, (const char *[]){hn_strbuf_text(&names)});
+    }
+    w->b->failed |= names.failed;
+    hn_strbuf_reset(&names);
+}
+
+/// Gives a node a variable, and writes its line.
+static void write_piece(writer *w, int32_t node, const char *text) {
+    hn_strbuf name;
+    hn_strbuf_init(&name);
+    const hn_piece_kind kind = w->kind ? (hn_piece_kind)w->kind[node] : HN_PIECE_POSITION;
+    const int variable = hn_formula_variable(++w->n_shared, kind);
+    put_variable(&name, w, variable);
+    begin_line(w);
+    hn_code_fill(w->b, w->language->constant, (const char *[]){hn_strbuf_text(&name), text});
+    if (w->kind) {
+        put_dependence(w, node);
+    }
+    hn_strbuf_add(w->b, "\n");
+    w->b->failed |= name.failed;
+    hn_strbuf_reset(&name);
+    w->variable[node] = variable;
+}
+
 /// Gives a variable to each node that is shared, or whose text is long. Arguments have smaller
 /// numbers than the nodes that use them, so the order of numbers is an order to compute in.
-static void write_shared(writer *w, hn_strbuf *text) {
+static void write_shared(writer *w, hn_piece_kind kind, hn_strbuf *text) {
+    w->n_shared = w->kind ? 0 : w->n_shared; // kinds are counted by themselves
     for (int32_t node = 0; node < w->n_nodes && w->b->n < MAX_BYTES; node++) {
-        if (w->uses[node] == 0 || is_leaf(w, node) || w->variable[node] > 0) {
+        if (w->uses[node] == 0 || is_leaf(w, node) || w->variable[node] > 0 ||
+            (w->kind && w->kind[node] != (int)kind)) {
             continue;
         }
         text_of(w, (hn_ex){1, node}, text);
         if (is_written_out(w, w->uses[node], text)) {
             continue;
         }
-        hn_strbuf name;
-        hn_strbuf_init(&name);
-        put_variable(&name, w, ++w->n_shared);
-        begin_line(w);
-        hn_code_fill(w->b, w->language->constant,
-                     (const char *[]){hn_strbuf_text(&name), hn_strbuf_text(text)});
-        hn_strbuf_add(w->b, "\n");
-        w->b->failed |= name.failed;
-        hn_strbuf_reset(&name);
-        w->variable[node] = w->n_shared;
+        if (w->kind && w->n_shared == 0) {
+            begin_line(w);
+            hn_strbuf_printf(w->b, "%s\n", w->language->pieces[kind]);
+        }
+        write_piece(w, node, hn_strbuf_text(text));
+    }
+}
+
+/// Pieces of one kind after another: what depends on less stands first. Without kinds all at once.
+static void write_all_shared(writer *w, hn_strbuf *text) {
+    if (!w->kind) {
+        write_shared(w, HN_PIECE_POSITION, text);
+        return;
+    }
+    const int nq = w->symbols->nq, nv = w->symbols->nv;
+    for (int32_t node = 0; node < w->n_nodes; node++) {
+        const hn_node_view view = hn_graph_node(w->g, node);
+        int kind = HN_PIECE_CONSTANT;
+        for (int i = 0; i < view.n_args; i++) {
+            const int of_arg = w->kind[view.args[i].n];
+            kind = of_arg > kind ? of_arg : kind;
+        }
+        if (view.op == HN_OP_SYMBOL) {
+            const bool is_v = has_symbol(w->symbols->v, nv, view.symbol);
+            const bool is_q = has_symbol(w->symbols->q, nq, view.symbol);
+            kind = is_v                                   ? HN_PIECE_VELOCITY
+                   : is_q || view.symbol == w->symbols->t ? HN_PIECE_POSITION
+                                                          : HN_PIECE_CONSTANT;
+        }
+        w->kind[node] = kind;
+    }
+    for (int kind = 0; kind < HN_PIECE_KINDS; kind++) {
+        write_shared(w, (hn_piece_kind)kind, text);
     }
 }
 
@@ -252,9 +330,10 @@ static void write_entry(writer *w, const hn_code_entry *e, hn_strbuf *text) {
 }
 
 hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,
-                        const hn_code_entry *entries, int n, int indent) {
+                        const hn_code_symbols *symbols, const hn_code_entry *entries, int n,
+                        int indent) {
     const int n_nodes = hn_graph_size(g);
-    int *scratch = calloc(3 * (size_t)n_nodes + 1, sizeof *scratch);
+    int *scratch = calloc(4 * (size_t)n_nodes + 1, sizeof *scratch);
     if (!scratch) {
         return HN_ERR_MEMORY;
     }
@@ -265,7 +344,11 @@ hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *lang
                 .n_nodes = n_nodes,
                 .uses = scratch,
                 .variable = scratch + n_nodes,
-                .prefix = choose_prefix(g)};
+                .kind = symbols && language->pieces[0] ? scratch + 3 * n_nodes : NULL,
+                .symbols = symbols};
+    for (int kind = 0; kind < HN_PIECE_KINDS; kind++) {
+        w.prefix[kind] = choose_prefix(g, (hn_piece_kind)kind);
+    }
     hn_strbuf text;
     hn_strbuf_init(&text);
 
@@ -273,7 +356,7 @@ hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *lang
     for (int i = 0; i < n; i++) {
         count_uses(&w, entries[i].value.n, scratch + 2 * n_nodes);
     }
-    write_shared(&w, &text);
+    write_all_shared(&w, &text);
     for (int i = 0; i < n && b->n < MAX_BYTES; i++) {
         write_entry(&w, &entries[i], &text);
     }

@@ -16,9 +16,18 @@ typedef struct hn_code_entry {
     hn_ex value;
 } hn_code_entry;
 
+/// Which symbols are coordinates, velocities, and time.
+typedef struct hn_code_symbols {
+    const int *q, *v; ///< symbol numbers, nq and nv of them
+    int nq, nv, t;
+} hn_code_symbols;
+
 /// Writes the entries in their order, each behind the shared pieces that it needs first. Every line
-/// is indented by `indent` spaces. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 4 MiB of text).
+/// is indented by `indent` spaces. In a language of formulas to read, `symbols` groups the pieces by
+/// what they depend on; NULL: nobody says what symbols are.
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 4 MiB of text).
 HN_MUST_CHECK hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,
-                                      const hn_code_entry *entries, int n, int indent);
+                                      const hn_code_symbols *symbols, const hn_code_entry *entries,
+                                      int n, int indent);
 
 #endif

@@ -19,6 +19,16 @@ typedef struct product {
 
 static void put_sum(const hn_formula *f, hn_ex e, bool *is_first);
 
+// ---- variables ----
+
+int hn_formula_variable(int number, hn_piece_kind kind) {
+    return HN_PIECE_KINDS * number + (int)kind;
+}
+
+void hn_formula_variable_name(const char *const *prefix, int variable, char out[32]) {
+    snprintf(out, 32, "%s%d", prefix[variable % HN_PIECE_KINDS], variable / HN_PIECE_KINDS);
+}
+
 // ---- products ----
 
 static bool is_open(const hn_formula *f, int32_t node, hn_op op) {
@@ -110,8 +120,10 @@ static void put_call(const hn_formula *f, const hn_node_view *view, int power) {
 static void put_factor(const hn_formula *f, int32_t node, int power, bool is_alone) {
     const hn_node_view view = hn_graph_node(f->g, node);
     if (f->variable[node] > 0 || view.op == HN_OP_SYMBOL) {
-        char name[32];
-        snprintf(name, sizeof name, "%s%d", f->prefix, f->variable[node]);
+        char name[32] = "";
+        if (f->variable[node] > 0) {
+            hn_formula_variable_name(f->prefix, f->variable[node], name);
+        }
         hn_code_name(f->b, f->language,
                      f->variable[node] > 0 ? name : hn_graph_symbol_name(f->g, view.symbol));
     } else if (view.op == HN_OP_SIN || view.op == HN_OP_COS || view.op == HN_OP_TAN) {

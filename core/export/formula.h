@@ -8,13 +8,26 @@
 #include "export/language.h"
 #include "expr/graph.h"
 
+/// What a piece depends on: by that its name begins, and formulas to read are grouped.
+typedef enum hn_piece_kind {
+    HN_PIECE_CONSTANT, ///< parameters alone
+    HN_PIECE_POSITION, ///< coordinates or time; also where nobody says what symbols are
+    HN_PIECE_VELOCITY, ///< velocities
+    HN_PIECE_KINDS
+} hn_piece_kind;
+
 typedef struct hn_formula {
     hn_strbuf *b;
     const hn_graph *g;
     const hn_language *language;
-    const int *variable; ///< of each node: the number of its variable; 0: it is written out
-    const char *prefix;  ///< of variables
+    const int *variable;       ///< of each node: its variable; 0: it is written out
+    const char *const *prefix; ///< of the variables of each kind
 } hn_formula;
+
+/// A variable: its number among all, from 1 on, and its kind.
+int hn_formula_variable(int number, hn_piece_kind kind);
+/// Its name: the prefix of its kind and its number.
+void hn_formula_variable_name(const char *const *prefix, int variable, char out[32]);
 
 /// Writes e. The buffer is marked failed when a product has more than 192 different factors.
 void hn_formula_write(const hn_formula *f, hn_ex e);

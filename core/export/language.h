@@ -33,8 +33,11 @@ typedef struct hn_language {
     const char *fraction;    ///< #1 over #2, for numbers to read; NULL: decimals
     /// a power, #1 the exponent, in a language of formulas to read (export/formula.h); else NULL
     const char *raised;
-    const char *given;    ///< a given number of 6 digits, #1; NULL: with all its digits
-    const char *named;    ///< says what an entry is: #1 as `entry`, #2 the name; NULL: a comment
+    const char *given; ///< a given number of 6 digits, #1; NULL: with all its digits
+    const char *named; ///< says what an entry is: #1 as `entry`, #2 the name; NULL: a comment
+    /// in a language of formulas to read: what stands before the pieces of each kind
+    /// (export/formula.h), and behind one the names it depends on, #1; else NULL
+    const char *pieces[3], *depends;
     const char *power;    ///< a number with a power of ten: #1 times 10^#2; NULL: as 1e-7
     const char *reserved; ///< words that no symbol may have, separated by spaces
     /// writes a name of the scene, the name of an array, words in a comment; NULL: as they are

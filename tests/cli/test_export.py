@@ -332,6 +332,54 @@ def hostile_words(folder):
     return faults + [f"{name}: {fault}" for name in RESPELLED for fault in equations_faults(mine, name)]
 
 
+def helpers(folder):
+    """A program defines and imports what its scene calls, and nothing else; with sign and step in a load it still agrees."""
+    faults, known = [], languages()
+    path = os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "scenes", "pendulum.json")
+    with open(path, encoding="utf-8") as f:
+        scene = json.load(f)
+    # they do not change before the self-check ends: the numbers it compares are of a smooth motion
+    scene["loads"] = [{"torque": {"joint": "O", "value": "0.3*step(t+1)*exp(-t) - 0.1*sign(th+4)"}}]
+    mine = os.path.join(folder, "calls.json")
+    with open(mine, "w", encoding="utf-8") as f:
+        json.dump(scene, f)
+    for name in known:
+        if " " not in name:
+            faults += [f"{name}: {fault}" for fault in faults_of(folder, mine, name, known[name], "calls")]
+    of = lambda *words: call([PROGRAM, "export", *words]).stdout
+    for name, defined in (("python", ("def sign", "def step")), ("c", ("double sign(", "double step(")), ("cpp", ("double sign(", "double step("))):
+        texts = [of(at, "--language", name) for at in (mine, "four-bar")]
+        faults += [f"{name}: {word}: {[word in t for t in texts]}" for word in defined if [word in t for t in texts] != [True, False]]
+    for at, line in ((mine, "from math import cos, exp, sin"), ("four-bar", "from math import cos, sin")):
+        faults += [] if f"\n{line}\n" in of(at, "--language", "python") else [f"{at}: not '{line}'"]
+    # only a scene with an orientation has a quaternion whose sign may differ
+    for name in (*known, *RESPELLED):
+        if " " in name or name == "latex":
+            continue
+        texts = [of(at, "--language", name) for at in ("heavy-top", "four-bar")]
+        said = [[word in t for t in texts] for word in ("quaternion", "orientation")]
+        faults += [] if said == [[True, False]] * 2 else [f"{name}: {said}"]
+    return faults
+
+
+def joined():
+    """The sheet has differences of angles, and says of which coordinates its pieces are; each is defined before it is used."""
+    text = call([PROGRAM, "export", "four-bar", "--language", "latex"]).stdout
+    wanted = (r"\eq{\term{mass}_{1,2}}{\tfrac{1}{2}\, m_{2}\, l_{1}\, l_{2}\, \cos(\theta_{1} - \theta_{\mathrm{coupler}})}",)
+    faults = [f"not in the sheet: {line}" for line in wanted if line not in text]
+    faults += ["products of sines are left"] if re.search(r"\\sin\([^()]*\)\\, \\(sin|cos)\(", text) else []
+    seen, sheet = set(), call([PROGRAM, "export", "stewart-6-6", "--language", "latex"]).stdout
+    for line in (line for line in sheet.splitlines() if line.startswith(r"\eq{")):
+        end = closing(line, 3)
+        left, right = line[4:end], line[end + 2:closing(line, end + 1)]
+        used = set(re.findall(r"(?<![A-Za-z])([cku]_\{\d+\})", right))
+        faults += [f"{left} uses {sorted(used - seen)[0]} before it is defined"] if used - seen else []
+        faults += [f"{left} is of velocities: {right[:80]}"] if left[0] == "k" and re.search(r"\\dot|\\omega|dL|u_\{", right) else []
+        seen |= {left} if re.fullmatch(r"[cku]_\{\d+\}", left) else set()
+    faults += [] if any(k[0] == "k" for k in seen) and any(k[0] == "u" for k in seen) else [f"pieces: {sorted(seen)[:5]}"]
+    return faults + ([] if r"\remark{of $\theta_{\mathrm{lower1}}$}" in sheet else ["no piece says that it is of one coordinate"])
+
+
 def limits():
     """The limit counts computing alone: a program that waits is not stopped, whatever else the machine does."""
     waits = call([sys.executable, "-c", "import time; time.sleep(3)"], cpu=2)
@@ -534,6 +582,8 @@ def main():
         results.append(("a skeleton is the program without its self-check", skeleton()))
         results.append(("a program without its libraries says so in its first line", without_numpy()))
         results.append(("a skeleton in a compiled language prints the motion", tables(folder)))
+        results.append(("a program has the helpers that its scene calls, and no others", helpers(folder)))
+        results.append(("the sheet joins angles, and names its pieces by what they depend on", joined()))
         results.append(("words of a scene stay words in every language", hostile_words(folder)))
     results += refusals()
     for n, (name, faults) in enumerate(results, 1):

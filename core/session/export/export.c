@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
+#include "session/export/calls.h"
 #include "session/export/places.h"
 #include "session/export/states.h"
 
@@ -117,6 +118,7 @@ static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_dia
 
 static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib, hn_diags *diags) {
     HN_TRY(hn_export_states_find(e, diags));
+    e->calls = hn_export_calls(e);
 
     hn_strbuf text;
     hn_strbuf_init(&text);

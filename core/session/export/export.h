@@ -18,11 +18,15 @@
 //   @START_Q@ @START_V@      the assembled start, numbers separated by commas
 //   @START_A@ @ENERGY@       accelerations and energy there
 //   @ALPHA@ @BETA@           of Baumgarte's stabilisation [1/s]
+//   @FUNCTIONS@              the functions of mathematics that the terms call: cos, sin
 //   @T1@ @Q1@ @V1@ @A1@      a later state of the motion, and its accelerations
 //
 //   @IF BLANKS@ @IF SKELETON@ @IF EIGEN@ @ELSE@ @END@ in lines of their own: lines for programs
 //                            with blanks, for skeletons, for the solver of that name (language.h),
 //                            or for the others; one may stand in another
+//   @IF ORIENTATION@ @IF LOOPS@ @IF SIGN@ @IF STEP@ @IF FUNCTIONS@
+//                            likewise, for scenes with a unit quaternion, with constraints, and
+//                            for terms that call sign, step, or any function of @FUNCTIONS@
 //
 // A place alone in its line is filled with lines of the same indentation.
 

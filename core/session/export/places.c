@@ -3,7 +3,9 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "export/code.h"
+#include "expr/angles.h"
 #include "expr/construct.h"
+#include "session/export/calls.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -182,6 +184,22 @@ static void put_blanks(hn_strbuf *b, const hn_exporter *e, int indent) {
     }
 }
 
+/// Formulas to read have sums and differences of angles.
+static hn_status join_angles(const hn_exporter *e, hn_code_entry *list, int n) {
+    hn_ex *value = hn_arena_get(e->arena, (size_t)(n + 1) * sizeof *value);
+    if (!value) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < n; i++) {
+        value[i] = list[i].value;
+    }
+    HN_TRY(hn_angles_join(hn_system_graph(e->sys), value, n));
+    for (int i = 0; i < n; i++) {
+        list[i].value = value[i];
+    }
+    return HN_OK;
+}
+
 static hn_status put_terms(hn_strbuf *b, const hn_exporter *e, int indent) {
     const int nv = e->info.nv, nc = e->info.nc;
     const size_t most = (size_t)nv * (size_t)nv + (size_t)nv + (size_t)nc * ((size_t)nv + 3) + 1;
@@ -206,7 +224,11 @@ static hn_status put_terms(hn_strbuf *b, const hn_exporter *e, int indent) {
     n = add_entries(list, n, "closure", e->x.phi, nc, 0);
     n = add_entries(list, n, "closure_rate", e->x.phi_t, nc, 0);
     n = add_entries(list, n, "energy", &energy, 1, 0);
-    return hn_code_write(b, g, e->language, list, n, indent);
+    if (e->language->raised) {
+        HN_TRY(join_angles(e, list, n));
+    }
+    const hn_code_symbols symbols = {e->x.q_symbols, e->x.v_symbols, e->info.nq, nv, e->x.t_symbol};
+    return hn_code_write(b, g, e->language, &symbols, list, n, indent);
 }
 
 /// The time derivative of a unit quaternion e whose angular velocity w is given in the body's axes:
@@ -362,6 +384,10 @@ static void fill_place(hn_strbuf *b, const hn_exporter *e, const char *place) {
             return;
         }
     }
+    if (strcmp(place, "FUNCTIONS") == 0) {
+        hn_export_put_functions(b, e->calls);
+        return;
+    }
     const bool is_scene = strcmp(place, "SCENE") == 0;
     HN_ASSERT(is_scene || strcmp(place, "TITLE") == 0);
     const char *words = is_scene ? scene->id : scene->title;
@@ -412,6 +438,18 @@ static bool holds(const hn_exporter *e, const char *condition) {
     }
     if (strcmp(condition, "SKELETON") == 0) {
         return e->skeleton;
+    }
+    if (strcmp(condition, "ORIENTATION") == 0) {
+        return e->info.nq != e->info.nv;
+    }
+    if (strcmp(condition, "SIGN") == 0 || strcmp(condition, "STEP") == 0) {
+        return e->calls & 1u << (condition[1] == 'I' ? HN_OP_SIGN : HN_OP_STEP);
+    }
+    if (strcmp(condition, "LOOPS") == 0) {
+        return e->info.nc > 0;
+    }
+    if (strcmp(condition, "FUNCTIONS") == 0) {
+        return hn_export_has_functions(e->calls);
     }
     return e->solver && strcasecmp(condition, e->solver->name) == 0;
 }

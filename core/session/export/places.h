@@ -29,6 +29,7 @@ typedef struct hn_exporter {
     double alpha, beta;               ///< Baumgarte's [1/s]
     bool blanks;                      ///< the student's parts are left out
     bool skeleton;                    ///< without what checks the program and shows the motion
+    unsigned calls;                   ///< operators of the terms, bit hn_op each (calls.h)
     hn_walk_limits limits;
     double started; ///< hn_clock_thread()
     hn_export_state start, later;

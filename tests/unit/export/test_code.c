@@ -33,7 +33,8 @@ static void end(fixture *f) {
 static const char *code_of(fixture *f, const char *language, hn_ex e) {
     const hn_code_entry entry = {.array = "m", .row = 0, .column = -1, .value = e};
     hn_strbuf_clear(&f->b);
-    assert_int_equal(hn_code_write(&f->b, f->g, hn_language_find(language), &entry, 1, 0), HN_OK);
+    assert_int_equal(hn_code_write(&f->b, f->g, hn_language_find(language), NULL, &entry, 1, 0),
+                     HN_OK);
     return hn_strbuf_text(&f->b);
 }
 
@@ -43,7 +44,8 @@ static void what_two_entries_share_is_computed_once(void **state) {
     begin(&f);
     const hn_ex s = hn_sin(f.g, hn_add(f.g, f.x, f.y));
     const hn_code_entry entries[] = {{"m", 0, 1, s}, {"m", 1, 0, hn_add(f.g, s, hn_num(2))}};
-    assert_int_equal(hn_code_write(&f.b, f.g, hn_language_find("python"), entries, 2, 4), HN_OK);
+    assert_int_equal(hn_code_write(&f.b, f.g, hn_language_find("python"), NULL, entries, 2, 4),
+                     HN_OK);
     assert_string_equal(hn_strbuf_text(&f.b),
                         "    k1 = sin(x + y)\n    m[0, 1] = k1\n    m[1, 0] = k1 + 2\n");
     end(&f);
@@ -142,7 +144,7 @@ static void a_formula_to_read_has_powers_fractions_and_no_short_pieces(void **st
     // a shared piece that is short stands where it is used, a number goes into the sum
     const hn_ex sum = hn_add(g, ml2, hn_scale(3, hn_mul(g, f.x, hn_mul(g, l, l))));
     const hn_code_entry entries[] = {{"m", 0, -1, hn_scale(1.0 / 3, sum)}, {"m", 1, -1, sum}};
-    assert_int_equal(hn_code_write(&f.b, g, hn_language_find("latex"), entries, 2, 0), HN_OK);
+    assert_int_equal(hn_code_write(&f.b, g, hn_language_find("latex"), NULL, entries, 2, 0), HN_OK);
     assert_string_equal(
         hn_strbuf_text(&f.b),
         "\\eq{\\term{m}_{1}}{\\tfrac{1}{3}\\, m_{1}\\, l_{1}^{2} + x\\, l_{1}^{2}}\n"
