@@ -23,7 +23,7 @@ typedef struct hn_code_symbols {
 } hn_code_symbols;
 
 /// Writes the entries in their order, each behind the shared pieces that it needs first. Every line
-/// is indented by `indent` spaces. In a language of formulas to read, `symbols` groups the pieces by
+/// is indented by `indent` spaces. In a language of formulas to read, `symbols` groups pieces by
 /// what they depend on; NULL: nobody says what symbols are.
 /// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 4 MiB of text).
 HN_MUST_CHECK hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,
