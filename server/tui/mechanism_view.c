@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { ACROSS = HN_DOTS_ACROSS, DOWN = HN_DOTS_DOWN };
 enum { MOST_NAME = 8 }; // columns of a joint's name; a longer one is left out
@@ -14,6 +15,9 @@ enum { MARGIN = 4 };    // dots beside the motion: half of a joint, and an empty
 
 static const double ARROW_SHARE = 0.3;    // of the smaller side, for the longest arrow
 static const double SHORTEST_ARROW = 2.5; // [dots]
+static const double TEAR = 10;            // [dots] of an enlarged one
+static const double SEEN_TEAR = 5;        // [dots] from which on it is drawn as it is
+static const double MOST_ENLARGED = 1000; // a smaller gap is for the plot alone
 static const double HEAD = 3;             // [dots] of its strokes, along the arrow
 static const double HEAD_WIDTH = 0.6;     // of that, across the arrow
 
@@ -264,6 +268,50 @@ static void name_joints(hn_cells *c, hn_area area, const placing *p) {
     }
 }
 
+/// The widest open loop of the pose that was drawn last: where it is too short to be seen it is
+/// drawn enlarged by 2, 5, 10, ...; *x, *y: dot of its end. Returns the enlargement; 1: none.
+static double draw_tear(const placing *p, double *x, double *y) {
+    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
+    double from[2] = {0}, way[2] = {0}, length = 0;
+    for (int i = 0; i < drawing.n_tears && p->points && !isnan(p->points[0]); i++) {
+        double a[2], b[2];
+        dot_of(p, drawing.tears[i][0], a);
+        dot_of(p, drawing.tears[i][1], b);
+        if (hypot(b[0] - a[0], b[1] - a[1]) > length) {
+            length = hypot(b[0] - a[0], b[1] - a[1]);
+            memcpy(from, a, sizeof from);
+            way[0] = b[0] - a[0];
+            way[1] = b[1] - a[1];
+        }
+    }
+    if (!(length > 0) || length >= SEEN_TEAR || TEAR / length > MOST_ENLARGED) {
+        return 1;
+    }
+    const double power = hn_round_125(TEAR / length);
+    *x = from[0] + power * way[0];
+    *y = from[1] + power * way[1];
+    hn_dots_line(p->dots, from[0], from[1], *x, *y, HN_CELL_ALARM, 1, 0);
+    return power;
+}
+
+/// "gap ×20" beside the end of an enlarged tear.
+static void name_tear(hn_cells *c, hn_area area, double x, double y, double power) {
+    char text[32];
+    snprintf(text, sizeof text, "gap ×%g", power);
+    const int wide = hn_text_columns(text);
+    const int column = (int)floor(x / ACROSS), row = (int)floor(y / DOWN);
+    static const signed char rows[] = {0, -1, 1, -2, 2, -3, 3};
+    for (size_t k = 0; k < sizeof rows; k++) {
+        for (int side = 0; side < 2; side++) {
+            const int left = side == 0 ? column + 3 : column - 2 - wide;
+            if (is_free(c, area, left, row + rows[k], wide)) {
+                hn_cells_put(c, area, left, row + rows[k], HN_CELL_ALARM, 0, text);
+                return;
+            }
+        }
+    }
+}
+
 /// The methods as they are now, or the mechanism that is dragged.
 static void draw_present(placing *p, const hn_workbench *w) {
     const int frame = hn_workbench_frame(w);
@@ -295,10 +343,16 @@ void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_force_arrows arrows;
     hn_force_arrows_take(w, &arrows);
     draw_present(&p, w);
+    double tear[2] = {0};
+    const bool own = !w->hidden[w->selected] && !w->drag.on; // the selected method's pose is last
+    const double enlarged = own ? draw_tear(&p, &tear[0], &tear[1]) : 1;
     scale_bar(c, area, &p);
     draw_forces(area, &p, &arrows);
     hn_dots_show(c, area, &dots, w->form);
     name_forces(c, area, &p, &arrows);
+    if (enlarged > 1) {
+        name_tear(c, area, tear[0], tear[1], enlarged);
+    }
     // names would jump about a mechanism that moves
     if (!w->playing || w->why || w->reactions) {
         name_joints(c, area, &p);

@@ -35,6 +35,16 @@ class Frame(unittest.TestCase):
         view = "\n".join(line[1:35] for line in out.split("\n")[2:12])
         self.assertEqual(re.findall(r"\b(O1|A|B|O3)\b", view), ["B", "O1", "A"])
 
+    def test_an_open_loop_that_is_too_small_to_be_seen_is_drawn_enlarged(self):
+        def enlarged(t, step, keys=""):
+            out = once("four-bar", "--once", "--t", t, "--methods", f"index1@rk4:h={step}", "projection@rk4:h=0.01", "--keys", keys)[1]
+            return re.findall(r"gap ×(\d+)", out)
+        # 4 mm at 3.5 s: some tenths of a dot; 10 cm need no enlargement, nor has a closed loop any
+        self.assertEqual(len(enlarged("3.5", "0.01")), 1)
+        self.assertGreater(int(enlarged("2", "0.01")[0]), int(enlarged("3.5", "0.01")[0]))
+        self.assertEqual(enlarged("10", "0.02"), [])
+        self.assertEqual(enlarged("3.5", "0.01", "2"), [])
+
     def test_the_same_frame_has_the_same_bytes(self):
         words = ("slider-crank", "--once", "--t", "1")
         self.assertEqual(once(*words), once(*words))
