@@ -45,6 +45,12 @@ class Frame(unittest.TestCase):
         self.assertEqual(enlarged("10", "0.02"), [])
         self.assertEqual(enlarged("3.5", "0.01", "2"), [])
 
+    def test_the_equations_name_the_term_that_the_printed_ones_lack(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.1", "--methods", "nullspace-as-printed@rk4", "nullspace@rk4", "--keys", "f")
+        self.assertRegex(out, r"it solves +N' M N du/dt = N' f")
+        self.assertRegex(out, r"MISSING, left +\+ N' M \(dN/dt\) u")
+        self.assertNotIn("MISSING", once("four-bar", "--once", "--t", "0.1", "--methods", "penalty@rk4:h=1e-3", "--keys", "f")[1])
+
     def test_the_same_frame_has_the_same_bytes(self):
         words = ("slider-crank", "--once", "--t", "1")
         self.assertEqual(once(*words), once(*words))
