@@ -147,7 +147,7 @@ test("where no dead point is listed the record says why", async (t) => {
   await soon(async () =>
     assert.match(
       await page.textContent(".no-dead-point"),
-      /^Dead points are not listed: until 9\.9\d s every method has left the true motion/,
+      /^At a dead point .* None is listed: until 9\.9\d s every method has left the true motion/,
     ),
   );
 });

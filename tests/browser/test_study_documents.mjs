@@ -28,6 +28,7 @@ import {
 } from "../../web/state/heat.js";
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
 import { cheapestFor, rankingOf, sizeToRun, wantedError } from "../../web/state/wanted.js";
+import { costText } from "../../web/state/cost-words.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 import { CATALOGUE } from "./catalogue.mjs";
 
@@ -442,4 +443,15 @@ test("what a study chooses itself makes no other study of it", () => {
   assert.ok(same("stability", low, high, "baumgarte"));
   assert.ok(!same("stability", low, high, "limits"));
   assert.ok(!same("stability", low, low.replace("1e-3", "1e-2"), "baumgarte"));
+});
+
+test("operations are counted in words, with two digits", () => {
+  const said = [817, 5.47e5, 2.2431e6, 9.99e5, 3.1e9].map((n) => costText("operations", n));
+  assert.deepEqual(said, [
+    "820 operations",
+    "550 thousand operations",
+    "2.2 million operations",
+    "1 million operations",
+    "3.1 billion operations",
+  ]);
 });

@@ -480,7 +480,10 @@ test("a dead point is a coordinate that turns back while another one moves on", 
   // where none is listed the record says why
   const why = (change) => noDeadPointWords({ ...data, ...change }, 15);
   assert.match(why({}), /^No dead point until 0\.25 s: no coordinate turned back/);
-  assert.match(why({ history: swing }), /^Dead points are not listed: until 0\.25 s every method /);
+  assert.match(
+    why({ history: swing }),
+    /^At a dead point a coordinate turns back .* None is listed: until 0\.25 s every method /,
+  );
   assert.match(why({ scene: { dof: 2, m: 2, coordinates } }), /; this one has 2\.$/);
   assert.equal(why({ scene: { dof: 1, m: 0, coordinates } }), "", "no loop, no dead point");
 });

@@ -150,9 +150,10 @@ export function noDeadPointWords(data, shown) {
     return `Dead points are listed for mechanisms with one degree of freedom; this one has ${scene.dof}.`;
   }
   const until = seconds(history.t[shown], duration);
+  const what = "At a dead point a coordinate turns back while the mechanism moves on";
   return soundMethods(data, shown).length > 0
     ? `No dead point until ${until}: no coordinate turned back while the mechanism moved on.`
-    : `Dead points are not listed: until ${until} every method has left the true motion, and a wrong motion turns back at other places. A smaller step lists them.`;
+    : `${what}: a force along that coordinate moves nothing then. None is listed: until ${until} every method has left the true motion, and a wrong motion turns back at other places. A smaller step lists them.`;
 }
 
 /** How a method fares at a dead point of a coordinate. */

@@ -2,6 +2,7 @@
 // @ts-check
 // What accuracy costs: error against cost, both by decades; a point can be pointed at, and clicked
 // to give its method this step.
+import { costText } from "../state/cost-words.js";
 import { plain, powerOfTen, quantity, scientific } from "../state/format.js";
 import {
   COSTS,
@@ -27,19 +28,6 @@ const ROOM = { left: 54, top: 44, bottom: 44 };
 const LABEL = 15; // [px] between two names
 const HEIGHT = 380;
 const NARROW = 560; // [px] below which there is less room for names
-
-/** "8.2 Mop", "1.2 ms", "32 k" @param {string} kind @param {number} value */
-export function costText(kind, value) {
-  const { unit } = byName(COSTS, kind);
-  return kind === "operations"
-    ? `${quantity(value, "", 2)} operations`
-        .replace(/ k operations/, " thousand operations")
-        .replace(/ M operations/, " million operations")
-        .replace(/ G operations/, " billion operations")
-    : kind === "evaluations"
-      ? `${Math.round(value)} evaluations`
-      : quantity(value, unit);
-}
 
 /** @param {import("../state/study-documents.js").Dot} dot */
 const sizeText = (dot) =>
