@@ -452,6 +452,12 @@ void hn_native_count(const hn_tape *tape, hn_native_state *s) {
     }
 }
 
+void hn_native_stay_off(const char *why) {
+    pthread_mutex_lock(&service.lock);
+    snprintf(service.reason, sizeof service.reason, "%s", why);
+    pthread_mutex_unlock(&service.lock);
+}
+
 void hn_native_stop(void) {
     if (!service.started) {
         return;

@@ -37,6 +37,8 @@ hn_native_opts hn_native_opts_default(const char *folder);
 /// and start its thread. Where one of these is missing, the interpreter goes on, and
 /// hn_native_reason() says why.
 void hn_native_start(const hn_native_opts *opts);
+/// In place of the start, where the service is wanted and cannot work: why.
+void hn_native_stay_off(const char *why);
 /// Stops the thread and a compilation under way. Tapes keep the code they have.
 void hn_native_stop(void);
 /// Keep the tapes that this thread compiles between the two calls with the interpreter, for work

@@ -268,11 +268,16 @@ static behind function_of(const hn_command *command) {
 static void start_native(const hn_args *args) {
     const char *wanted = getenv("HOLONOM_NATIVE");
     char cache[400], folder[HN_NATIVE_PATH];
-    if (!args->no_native && !(wanted && strcmp(wanted, "0") == 0) && hn_cache_folder_find(cache)) {
-        snprintf(folder, sizeof folder, "%s/native", cache);
-        const hn_native_opts opts = hn_native_opts_default(folder);
-        hn_native_start(&opts);
+    if (args->no_native || (wanted && strcmp(wanted, "0") == 0)) {
+        return;
     }
+    if (!hn_cache_folder_find(cache)) {
+        hn_native_stay_off("there is no folder for machine code; HOLONOM_CACHE can name one");
+        return;
+    }
+    snprintf(folder, sizeof folder, "%s/native", cache);
+    const hn_native_opts opts = hn_native_opts_default(folder);
+    hn_native_start(&opts);
 }
 
 /// Students' programs, where the command line says so: a scene or a link cannot.

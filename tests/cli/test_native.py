@@ -55,6 +55,11 @@ class Native(unittest.TestCase):
     def test_no_compiler_in_the_path_is_reported(self):
         self.assertIn("there is no C compiler", self.native(PATH=self.cache)["status"])
 
+    def test_a_cache_that_cannot_be_made_is_told(self):
+        for folder in "/proc/no-folder", os.path.join(self.cache, "no", "folder"):
+            status = self.native(HOLONOM_CACHE=folder)["status"]
+            self.assertEqual(status, "there is no folder for machine code; HOLONOM_CACHE can name one")
+
     def test_samples_are_the_same_to_the_last_bit(self):
         # long enough that the tape is compiled while it runs: 2,400,000 evaluations
         words = ("run", "fb0-lagrangian", "--method", "projection@rk4:h=1e-5", "--time", "6", "--every", "0.5", "--json")
