@@ -206,10 +206,10 @@ def slips_by_name(folder):
 def one_slip(folder):
     """A slip at one place of the reference is named, of a formula and, where few are possible, of a number."""
     for exercise, part, answer, mistake in (
-            ("closure", "a", "-l1*cos(th1)*u1-l2*sin(th2)*u2", "sine"), ("loops", "e", "-l1*cos(th1)*w1^2-l2*cos(th2)*w2+l3*cos(th3)*w3^2", "missing-name"),
+            ("closure", "a", "-l1*cos(th1)*u1-l2*sin(th2)*u2", "sine"), ("loops", "e", "-l1*cos(th1)*w1^2-l2*cos(th2)*w2+l3*cos(th3)*w3^2", "not-squared"),
             ("code", "c", "9.81*(m1*l1/2*sin(th1)+m2*(l1*sin(th1)+l2*sin(th2))+m3*l3/2*sin(th3))", "double-term"),
             ("code", "d", "m2/2*(l1^2*w1^2-l2^2*w2^2/3+l1*l2*cos(th1-th2)*w1*w2)", "sign-term"),
-            ("fourbar", "c", "-m2*l1*l2*sin(th1-th2)*u1/2+g*m2*l2*cos(th2)/2", "missing-name"),
+            ("fourbar", "c", "-m2*l1*l2*sin(th1-th2)*u1/2+g*m2*l2*cos(th2)/2", "not-squared"),
             ("drift", "e", "-gamma", "no-feedback"), ("drift", "e", "-gamma-alpha*J*v-beta*phi", "both-factors"), ("drift", "e", "gamma", "gamma-alone"),
             ("drift", "f", "-inv(M)*J'*J*v", "no-multipliers"), ("loops", "b", 5, "tree"), ("code", "f", 0.4, "one-more")):  # fmt: skip
         found = told(folder, exercise, part, answer, "--seed", "1")
@@ -227,7 +227,7 @@ def one_slip(folder):
             ("energy", "c", crank + coupler, "no-rocker"), ("energy", "c", coupler, "coupler-alone"), ("energy", "c", high, "no-half"),
             ("energy", "c", crank + coupler - rocker, "sign-term"), ("energy", "a", coupler - 9.81 * x["m2"] * x["l2"] * math.sin(x["t2"]), "sign-term"),
             ("slider", "a", y["r"] * math.cos(y["th"]) + y["l"], "horizontal"), ("slider", "b", rod, "degrees"), ("slider", "b", -rod, "degrees"),
-            ("trammel", "b", z["m"] * z["L"] ** 2 / 3, "uniform")):  # fmt: skip
+            ("energy", "b", x["m1"] * x["l1"] * x["w1"] ** 2 / 6, "not-squared"), ("trammel", "b", z["m"] * z["L"] ** 2 / 3, "uniform")):  # fmt: skip
         found = entry(folder, exercise, part, f"{answer:.5g}", "--seed", "3")
         expect(f"{exercise} {part} names {mistake}", found["mistake"] == mistake, str(found))
         if mistake == "degrees":

@@ -13,11 +13,20 @@ enum {
     MAX_DEPTH = 40,
     /// Candidates for a number. Each agrees by chance with one number of a thousand near it (a
     /// tenth of 0.5 % on both sides); of 1,565 random numbers within a factor of 3 two were named.
-    FEW = 24
+    FEW = 36
 };
 
 /// What may happen at one place. Marked `numbers`: looked for in numbers too.
-typedef enum kind { TERM_MISSING, TERM_SIGN, TERM_TWICE, TERM_HALF, SINE, ROOT, FACTOR } kind;
+typedef enum kind {
+    TERM_MISSING,
+    TERM_SIGN,
+    TERM_TWICE,
+    TERM_HALF,
+    SINE,
+    ROOT,
+    SQUARE,
+    FACTOR
+} kind;
 static const struct slip_row {
     const char *id, *says;
     double share;
@@ -31,7 +40,8 @@ static const struct slip_row {
                    true},
     [SINE] = {"sine", "sine and cosine are exchanged at one place", 0.25, true},
     [ROOT] = {"no-root", "a square root is missing", 0.25, true},
-    [FACTOR] = {"missing-name", "a factor is missing at one place, or a square", 0.25, false},
+    [SQUARE] = {"not-squared", "a square is missing", 0.25, true},
+    [FACTOR] = {"missing-name", "a factor is missing at one place", 0.25, false},
 };
 enum { N_KINDS = sizeof ROWS / sizeof *ROWS };
 
@@ -66,6 +76,22 @@ static void collect(const hn_graph *g, int32_t node, int depth, node_list *list)
     }
 }
 
+/// Whether a product has the factor already: all products have two, of which the first may be
+/// another product.
+static bool has_factor(const hn_graph *g, int32_t product, int32_t factor) {
+    for (int depth = 0; depth < MAX_DEPTH; depth++) {
+        const hn_node_view view = hn_graph_node(g, product);
+        if (product == factor || view.op != HN_OP_MUL) {
+            return product == factor;
+        }
+        if (view.args[1].n == factor) {
+            return true;
+        }
+        product = view.args[0].n;
+    }
+    return false;
+}
+
 /// Whether the slip can happen there.
 static bool can_happen(const hn_graph *g, const slip *s) {
     const hn_node_view view = hn_graph_node(g, s->node);
@@ -79,8 +105,10 @@ static bool can_happen(const hn_graph *g, const slip *s) {
         return s->arg == 0 && (view.op == HN_OP_SIN || view.op == HN_OP_COS);
     case ROOT:
         return s->arg == 0 && view.op == HN_OP_SQRT;
+    case SQUARE:
     case FACTOR:
-        return view.op == HN_OP_MUL && hn_graph_node(g, view.args[s->arg].n).op == HN_OP_SYMBOL;
+        return view.op == HN_OP_MUL && hn_graph_node(g, view.args[s->arg].n).op == HN_OP_SYMBOL &&
+               has_factor(g, view.args[1 - s->arg].n, view.args[s->arg].n) == (s->kind == SQUARE);
     }
     return false;
 }
@@ -104,6 +132,7 @@ static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, const slip *s) {
         return op == HN_OP_SIN ? hn_cos(g, a[0]) : hn_sin(g, a[0]);
     case ROOT:
         return a[0];
+    case SQUARE:
     case FACTOR:
         return a[1 - s->arg];
     }
