@@ -169,8 +169,8 @@ hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state,
     memcpy(y, state, (size_t)(p->nq + p->nv) * sizeof *y);
     hn_eval_run(p->eval, t, q, v);
     keep_independent_rows(p, hn_eval_get(p->eval, HN_TERM_J));
-    const bool is_free = p->form == HN_FORM_INDEX1 || p->form == HN_FORM_INDEX2;
-    if (p->most_kept > 0 && is_free) {
+    const bool has_free_positions = p->form != HN_FORM_GGL && p->form != HN_FORM_INDEX3;
+    if (p->most_kept > 0 && has_free_positions) {
         close_velocity(p, y + p->nq);
         hn_eval_run(p->eval, t, q, v);
     }
