@@ -140,13 +140,14 @@ static void put_zero(const grading *g, hn_strbuf *b, const char *reason) {
 }
 
 /// What a submission says, and its shape, by which copies are found.
-static void put_likeness(const grading *g, hn_strbuf *b, const char *text) {
+static void put_likeness(const grading *g, hn_strbuf *b, const char *text, const char *file) {
     const bool is_program = g->opts->programs != NULL;
     cJSON *submission = is_program ? NULL : cJSON_Parse(text);
     char texts[17], shape[17];
     hn_hash_hex(is_program ? hn_likeness_program_texts(text) : hn_likeness_texts(submission),
                 texts);
-    hn_hash_hex(is_program ? hn_likeness_program_shape(text) : hn_likeness_shape(submission),
+    hn_hash_hex(is_program ? hn_likeness_program_shape(text, hn_filled_program_has_lines(file))
+                           : hn_likeness_shape(submission),
                 shape);
     cJSON_Delete(submission);
     hn_json_put_string(b, "texts", texts);
@@ -169,11 +170,12 @@ static void put_alike(hn_strbuf *b, const hn_verdict *v) {
     hn_json_end_array(b);
 }
 
-static void put_graded(const grading *g, hn_strbuf *b, const hn_verdict *v, const char *text) {
+static void put_graded(const grading *g, hn_strbuf *b, const hn_verdict *v, const char *text,
+                       const char *file) {
     hn_json_put_number(b, "score", v->score);
     hn_json_put_number(b, "max_score", v->max_score);
     hn_json_put_string(b, "summary", v->summary);
-    put_likeness(g, b, text);
+    put_likeness(g, b, text, file);
     put_alike(b, v);
     hn_class_line_put_mistakes(b, v);
 }
@@ -207,7 +209,7 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
     begin_line(g, i, b, failed ? "failed" : graded ? "graded" : "ungradable");
     hn_json_put_string(b, "file", v ? file : "");
     if (graded) {
-        put_graded(g, b, v, hn_strbuf_text(&text));
+        put_graded(g, b, v, hn_strbuf_text(&text), file);
     } else {
         char why[2 * HN_GRADE_TEXT + 2] = "";
         if (!failed && there) { // the hint of a submission says what to do, or why

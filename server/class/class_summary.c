@@ -155,13 +155,16 @@ static void put_names(hn_strbuf *b, counts *c) {
 }
 
 /// Groups that differ in their names alone.
-static void put_like(hn_strbuf *b, counts *c) {
+static void put_like(hn_strbuf *b, counts *c, bool programs) {
     int shown = 0;
     sort(c);
     for (int k = 0; k < c->n; k++) {
         if (c->item[k].differs) {
             hn_strbuf_printf(b, "%s  %s\n",
-                             shown++ ? "" : "near-copies: the same but for the names\n",
+                             shown++    ? ""
+                             : programs ? "near-copies: the same but for names, comments and the "
+                                          "order of statements\n"
+                                        : "near-copies: the same but for the names\n",
                              hn_strbuf_text(&c->item[k].who));
         }
     }
@@ -224,7 +227,7 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
                                     : "equal wrong answers, blanks and capitals aside\n",
                          hn_strbuf_text(&t.equal.item[k].who));
     }
-    put_like(b, &t.like);
+    put_like(b, &t.like, programs);
     put_alike(b, &t.alike);
     put_names(b, &t.names);
     free_counts(&t.names);

@@ -6,7 +6,8 @@
 #include "class/class_grading.h"
 
 /// Adds the scores as a histogram, the commonest mistakes, who handed in equal wrong answers,
-/// near-copies that differ in their names alone, and names with more than one submission.
+/// near-copies that differ in their names alone (programs also in comments and the order of
+/// statements), and names with more than one submission.
 /// `programs`: they handed in programs.
 void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs);
 

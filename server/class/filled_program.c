@@ -78,6 +78,11 @@ bool hn_filled_program_is(const char *path) {
     return language_of(path) != NULL;
 }
 
+bool hn_filled_program_has_lines(const char *path) {
+    const hn_language *language = language_of(path);
+    return language && !strchr(language->constant, ';');
+}
+
 // ---- asking ----
 
 /// What a program has answered: for each state all parts behind each other.

@@ -134,9 +134,95 @@ uint64_t hn_likeness_program_texts(const char *text) {
     return hn_hash_mix(r.hash);
 }
 
-uint64_t hn_likeness_program_shape(const char *text) {
-    names list = {0};
-    reader r = {.hash = HN_HASH_START, .names = &list, .is_program = true};
-    read_text(&r, text);
-    return hn_hash_mix(r.hash);
+// ---- the shape of a program ----
+
+/// A reading of a program, statement by statement.
+typedef struct statements {
+    uint64_t all, one; ///< hash of the statements in any order; of the one that is read
+    names names;       ///< of the one that is read
+    int depth;         ///< of brackets that are open
+    bool by_lines;     ///< the end of a line ends a statement
+} statements;
+
+/// Functions that nobody renames.
+static bool is_function(const char *at, size_t n) {
+    static const char *const known[] = {"sin",  "cos",  "tan", "asin", "acos", "atan", "atan2",
+                                        "sqrt", "pow",  "exp", "log",  "abs",  "fabs", "sinh",
+                                        "cosh", "tanh", "dot", "min",  "max"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (strlen(known[i]) == n && strncmp(at, known[i], n) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// A statement counts by its hash, in which names are numbers in the order of their appearance in
+/// it: a name that the program has elsewhere for something else makes no difference.
+static void end_statement(statements *s) {
+    if (s->one != HN_HASH_START) {
+        s->all += hn_hash_mix(s->one);
+    }
+    s->one = HN_HASH_START;
+    s->names.n = 0;
+}
+
+static const char *read_statement_name(statements *s, const char *at) {
+    size_t n = 0;
+    while (continues_name(at[n])) {
+        n++;
+    }
+    const uint64_t name = hn_hash_bytes(HN_HASH_START, at, n);
+    const uint64_t kept = is_function(at, n) ? name : number_of(&s->names, name);
+    s->one = hn_hash_bytes(s->one, &kept, sizeof kept);
+    return at + n;
+}
+
+/// Where a text in quotes ends, NULL: none begins here. A single quote behind a name or a bracket
+/// transposes in Octave.
+static const char *skip_text(const char *begin, const char *at) {
+    const char before = at > begin ? at[-1] : ' ';
+    if (strncmp(at, "\"\"\"", 3) == 0 || strncmp(at, "'''", 3) == 0) {
+        const char mark[4] = {*at, *at, *at, 0};
+        const char *end = strstr(at + 3, mark);
+        return end ? end + 3 : at + strlen(at);
+    }
+    if (*at != '"' && (*at != '\'' || continues_name(before) || strchr(")]}'.", before))) {
+        return NULL;
+    }
+    const char *end = at + 1;
+    while (*end && *end != *at && *end != '\n') {
+        end += end[0] == '\\' && end[1] ? 2 : 1;
+    }
+    return *end == *at ? end + 1 : end;
+}
+
+static void read_sign(statements *s, char c) {
+    s->depth += c == '(' || c == '[' ? 1 : c == ')' || c == ']' ? -1 : 0;
+    const bool ends = c == ';' || c == '{' || c == '}' || (c == '\n' && s->by_lines);
+    if (ends && (s->depth <= 0 || c != '\n')) {
+        s->depth = s->depth < 0 ? 0 : s->depth;
+        end_statement(s);
+    } else if (!isspace((unsigned char)c) && c != '\\') {
+        s->one = hn_hash_bytes(s->one, &c, 1);
+    }
+}
+
+uint64_t hn_likeness_program_shape(const char *text, bool by_lines) {
+    statements s = {.all = HN_HASH_START, .one = HN_HASH_START, .by_lines = by_lines};
+    for (const char *at = text; *at;) {
+        const char *end = skip_comment(at);
+        const char *behind = end ? end : skip_text(text, at);
+        if (behind) {
+            at = behind;
+        } else if (begins_name(*at)) {
+            at = read_statement_name(&s, at);
+        } else if (*at == '\\' && at[1] == '\n') {
+            at += 2; // the statement goes on
+        } else {
+            read_sign(&s, *at++);
+        }
+    }
+    end_statement(&s);
+    return hn_hash_mix(s.all);
 }

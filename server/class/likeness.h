@@ -4,6 +4,7 @@
 // Hashes by which two submissions are told to be one, or one a copy of the other under new names.
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /// Hashes the answers of a submission: their texts without blanks and capitals, and their numbers.
@@ -11,8 +12,12 @@ uint64_t hn_likeness_texts(const cJSON *submission);
 /// Hashes the same with every name replaced by its number in order of appearance; the names of
 /// functions stay. Two submissions that differ in their names alone are equal.
 uint64_t hn_likeness_shape(const cJSON *submission);
-/// The same two for the text of a program: blanks and comments (of all its languages) are left out.
+/// Hashes the text of a program without blanks, capitals and comments (of all its languages).
 uint64_t hn_likeness_program_texts(const char *text);
-uint64_t hn_likeness_program_shape(const char *text);
+/// Hashes the statements of a program in any order, without comments and texts in quotes; names are
+/// numbers in order of their appearance in a statement. Programs that differ in their names, their
+/// comments and the order of their statements are equal. by_lines: the end of a line ends a
+/// statement, else a semicolon alone does.
+uint64_t hn_likeness_program_shape(const char *text, bool by_lines);
 
 #endif

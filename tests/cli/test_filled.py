@@ -2,6 +2,7 @@
 """Programs with blanks: filled in rightly they get all points in every language, mistakes are named, and a class of them is graded."""
 
 import concurrent.futures
+import csv
 import json
 import os
 import re
@@ -219,7 +220,10 @@ class Filled(unittest.TestCase):
             self.put(f"class/student{k}.c", filled.replace("    energy[0] =", f"    double own{k} = {k}.0{'+ 1.0' * k}; (void)own{k};\n    energy[0] =", 1))
         copy = filled.replace("    energy[0] =", "    double mine = 3.0 - 4.0; (void)mine;\n    energy[0] =", 1)
         self.put("class/ann_4711_assignsubmission_file_/work.c", copy)
-        self.put("class/bob_4712_assignsubmission_file_/work.c", copy.replace("k1", "first").replace("mine", "other") + "// my own work\n")
+        # other names, one of which the program has elsewhere already, other comments, two statements in another order
+        self.put("class/bob_4712_assignsubmission_file_/work.c", copy.replace("k1", "first").replace("mine", "i").replace("/// ", "/// My words: ") + "// my own work\n")
+        swapped = re.search(r"\n( *mass\[0\]\[0\] = .*)\n( *mass\[.*)\n", copy)
+        self.put("class/cid.c", copy.replace(swapped[0], f"\n{swapped[2]}\n{swapped[1]}\n").replace("k2", "second"))
         self.put("class/wrong.c", filled.replace("m1*l1*l1", "m1*l1*l4"))
         self.put("class/floods.py", "import os\nwhile True: os.write(1, b'x' * 65536)\n")
         self.put("class/dies.py", "import os\nos.kill(os.getpid(), 9)\n")
@@ -232,14 +236,22 @@ class Filled(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(out, encoding="utf-8") as f:
             lines = {line["student"]: line for line in map(json.loads, f)}
-        self.assertEqual(len(lines), 15)
+        self.assertEqual(len(lines), 16)
         self.assertEqual({name: line["score"] for name, line in lines.items() if name.startswith("student")}, {f"student{k}": POINTS for k in range(9)})
         self.assertEqual((lines["wrong"]["score"] < POINTS, lines["floods"]["status"], lines["dies"]["status"], lines["text"]["status"]), (True, *["ungradable"] * 3))
         self.assertIn("without an end of line", lines["floods"]["reason"])
-        self.assertRegex(done.stdout, r"near-copies: the same but for the names\n +ann, bob\n")
+        self.assertRegex(done.stdout, r"near-copies: the same but for names, comments and the order of statements\n +ann, bob, cid\n")
         self.assertNotIn("student1, student2", done.stdout)
         with open(out, "rb") as f:
             calm = f.read()
+
+        # a table names them beside each
+        table = os.path.join(self.temporary.name, "scores.csv")
+        self.assertEqual(call("grade", "four-bar", folder, "--out", table).returncode, 0)
+        with open(table, encoding="utf-8") as f:
+            remarks = {row["student"]: row["remark"] for row in csv.DictReader(f)}
+        self.assertEqual((remarks["ann"], remarks["cid"]), ("the same but for the names as bob, cid", "the same but for the names as ann, bob"))
+        self.assertEqual({remarks[f"student{k}"] for k in range(9)}, {""})
 
         # three parts on three machines, put together
         parts = [os.path.join(self.temporary.name, f"part{i}.ndjson") for i in (1, 2, 3)]
@@ -252,7 +264,7 @@ class Filled(unittest.TestCase):
             self.assertEqual(f.read(), calm)
         done = call("grade", "four-bar", "--merge", *parts[:2], "--out", merged)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("5 of 15 submissions are in none of these parts", done.stderr)
+        self.assertIn("5 of 16 submissions are in none of these parts", done.stderr)
         done = call("grade", "four-bar", folder, "--shard", "4/3")
         self.assertEqual((done.returncode, "is no part of a class" in done.stderr), (2, True))
 

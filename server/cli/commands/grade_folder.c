@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/visible.h"
+#include "class/class_copies.h"
 #include "class/class_grading.h"
 #include "class/class_summary.h"
 #include "cli/shell/diagnostics.h"
@@ -72,6 +73,17 @@ static void put_field(hn_strbuf *b, const char *text) {
     hn_strbuf_add(b, "\"");
 }
 
+/// What a line remarks, and who handed in the same.
+static void put_remark(hn_strbuf *b, const char *remark, const hn_class_copies *copies, int i) {
+    hn_strbuf all;
+    hn_strbuf_init(&all);
+    hn_strbuf_add(&all, remark);
+    hn_class_copies_put(&all, copies, i);
+    put_field(b, hn_strbuf_text(&all));
+    b->failed |= all.failed;
+    hn_strbuf_reset(&all);
+}
+
 /// "sign in a; degrees in b.2": one field.
 static void put_mistakes(hn_strbuf *b, const cJSON *line) {
     const cJSON *m;
@@ -85,7 +97,9 @@ static void put_mistakes(hn_strbuf *b, const cJSON *line) {
     hn_strbuf_reset(&all);
 }
 
-static void put_csv(hn_strbuf *b, const hn_class_result *r) {
+static void put_csv(hn_strbuf *b, const hn_class_result *r, bool programs) {
+    hn_class_copies copies;
+    hn_class_copies_find(&copies, r, programs);
     hn_strbuf_add(b, "student,status,score,max_score,says,mistakes,file,remark\n");
     for (int i = 0; i < r->n; i++) {
         cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
@@ -101,18 +115,19 @@ static void put_csv(hn_strbuf *b, const hn_class_result *r) {
         hn_strbuf_add(b, ",");
         put_field(b, hn_document_text(o, "file"));
         hn_strbuf_add(b, ",");
-        put_field(b, hn_document_text(o, "remark"));
+        put_remark(b, hn_document_text(o, "remark"), &copies, i);
         hn_strbuf_add(b, "\n");
         cJSON_Delete(o);
     }
+    hn_class_copies_reset(&copies);
 }
 
 /// The whole result into --out: CSV by its ending, else one JSON object a line.
-static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
+static hn_exit write_result(const hn_args *args, const hn_class_result *r, bool programs) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     if (hn_path_ends_in(args->out, ".csv")) {
-        put_csv(&b, r);
+        put_csv(&b, r, programs);
     } else {
         for (int i = 0; i < r->n; i++) {
             hn_strbuf_add(&b, r->line[i] ? r->line[i] : "");
@@ -124,7 +139,7 @@ static hn_exit write_result(const hn_args *args, const hn_class_result *r) {
 
 /// The result into --out, and its summary to the terminal.
 static hn_exit finish(const hn_args *args, const hn_class_result *result, bool programs) {
-    hn_exit exit = args->out ? write_result(args, result) : HN_EXIT_DONE;
+    hn_exit exit = args->out ? write_result(args, result, programs) : HN_EXIT_DONE;
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_class_summary(&b, result, programs);

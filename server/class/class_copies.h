@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLASS_CLASS_COPIES_H
+#define HN_CLASS_CLASS_COPIES_H
+// Who of a class handed in the same as whom: the words of the summary, beside each submission.
+
+#include "class/class_grading.h"
+
+/// What a graded submission is compared by.
+typedef struct hn_class_copy {
+    char student[128], texts[20], shape[20]; ///< texts "": it is compared with none
+} hn_class_copy;
+
+typedef struct hn_class_copies {
+    int n;
+    hn_class_copy *item; ///< n, in the order of the class; owned, NULL: memory is out
+} hn_class_copies;
+
+/// Reads the lines of a class. Right answers are alike by nature and are not compared; right
+/// programs are. hn_class_copies_reset() in any case.
+void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool programs);
+void hn_class_copies_reset(hn_class_copies *c);
+/// Adds "the same as Ann, Bob" and "the same but for the names as Eve" for submission i, after "; "
+/// where the buffer is not empty; nothing where it is like no other.
+void hn_class_copies_put(hn_strbuf *b, const hn_class_copies *c, int i);
+
+#endif
