@@ -89,6 +89,7 @@ const TRIES_OTHERWISE = [
   { say: "reduced coordinates, for comparison", method: "reduced@{integrator}" },
 ];
 
+const MOST_TRIES = 3;
 const STRONGEST = 20; // [1/s]
 const LARGEST_H_BETA = 0.4; // step times constant: from about 2 on Runge-Kutta 4 becomes unstable
 
@@ -234,7 +235,8 @@ export function cardOfMethod(data, m, shown) {
     .slice(-1)
     .flatMap(triesOfIncident)
     .filter(({ label }, i, all) => all.findIndex((other) => other.label === label) === i)
-    .filter((item) => !hasFailed(data, item));
+    .filter((item) => !hasFailed(data, item))
+    .slice(0, MOST_TRIES);
   const stopped = data.history.ended[m] <= data.history.t[shown];
   return {
     title: method.title,
@@ -255,6 +257,8 @@ export function cardOfMethod(data, m, shown) {
     tries:
       stopped && (remedies.length > 0 || isProgram(method.formulation))
         ? []
-        : triesOf(data, m).filter((item) => !remedies.some((other) => sameTry(item, other))),
+        : triesOf(data, m)
+            .filter((item) => !remedies.some((other) => sameTry(item, other)))
+            .slice(0, MOST_TRIES - remedies.length),
   };
 }
