@@ -66,6 +66,18 @@ class Study(unittest.TestCase):
         self.assertLess(printed["worst"]["gap"], 1e-12)
         self.assertGreater(printed["worst"]["q"], 1e-3)
 
+    def test_a_reference_whose_halves_share_no_digit_is_called_none(self):
+        # the ring is chaotic: its two references part after 2.4 s
+        words = ["study", "ring", "work-precision", "--methods", "projection@rk4", "--time", "8", "--levels", "2", "--samples", "0"]
+        text = call([*words, "--out", self.path("r.html")], self.folder)
+        self.assertEqual(text.returncode, DONE, text.stderr)
+        said = text.stdout.decode()
+        self.assertRegex(said, r"Reference: none of the coordinates: .* share no digit at t = 8 s\. They agree up to about t = 2\.\d s: try --time 2\.\d\.")
+        with open(self.path("r.html"), encoding="utf-8") as f:
+            page = f.read()
+        self.assertIn("shares no digit of the coordinates with it at the end", page)
+        self.assertNotRegex(said + page, r"agrees? to -\d")
+
     def test_csv_and_json_hold_the_same_numbers(self):
         done = call([*SMALL, "--csv", "--out", self.path("s.json")], self.folder)
         self.assertEqual(done.returncode, DONE, done.stderr)

@@ -449,13 +449,20 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
 
 void hn_study_put_measures(hn_strbuf *b, const hn_study *s, int level) {
     const hn_ref *ref = hn_study_wp(s)->ref;
+    const double digits = hn_ref_digits(ref);
+    char agree[120] = "shares no digit of the coordinates with it at the end";
+    if (digits >= 1) {
+        snprintf(agree, sizeof agree,
+                 "agrees to %.1f digits of the coordinates and to %.1e of the "
+                 "reactions",
+                 digits, ref->error[HN_ERROR_REACTION]);
+    }
     put_head(b, level, "How it was measured");
     hn_strbuf_printf(b,
                      "<p>The reference solution is %s; %s, which has only the scene's equations in "
-                     "common with it, agrees to %.1f digits of the coordinates and to %.1e of the "
-                     "reactions. Errors below ten times their difference are given as bounds.</p>",
-                     ref->means[0], ref->means[1], hn_ref_digits(ref),
-                     ref->error[HN_ERROR_REACTION]);
+                     "common with it, %s. Errors below ten times their difference are given as "
+                     "bounds.</p>",
+                     ref->means[0], ref->means[1], agree);
     hn_strbuf_add(b, "<p>In this study ");
     hn_study_put_times(b, s);
     hn_strbuf_printf(

@@ -266,14 +266,30 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
     }
 }
 
+/// How well the two reference solutions agree, and what cannot be measured for it.
+static void put_reference(hn_strbuf *b, const hn_wp *wp) {
+    const hn_ref *ref = wp->ref;
+    const double digits = hn_ref_digits(ref);
+    if (digits >= 1) {
+        hn_strbuf_printf(
+            b, "Reference: %s and %s agree to %.1f digits; errors below %.0e cannot be measured.\n",
+            ref->means[0], ref->means[1], digits, HN_WP_ABOVE_REFERENCE * ref->error[HN_ERROR_Q]);
+        return;
+    }
+    hn_strbuf_printf(b, "Reference: none of the coordinates: %s and %s share no digit at t = %g s.",
+                     ref->means[0], ref->means[1], ref->T);
+    if (hn_wp_is_beyond_horizon(wp)) {
+        hn_strbuf_printf(b, " They agree up to about t = %.2g s: try --time %.2g.", wp->horizon,
+                         wp->horizon);
+    }
+    hn_strbuf_add(b, "\n");
+}
+
 static void put_head(hn_strbuf *b, const hn_study *study) {
     const hn_scene *scene = hn_model_scene(hn_study_model(study));
-    const hn_ref *ref = hn_study_wp(study)->ref;
-    hn_strbuf_printf(b, "%s, to t = %g s\n", scene->title ? scene->title : scene->id, ref->T);
-    hn_strbuf_printf(
-        b, "Reference: %s and %s agree to %.1f digits; errors below %.0e cannot be measured.\n",
-        ref->means[0], ref->means[1], hn_ref_digits(ref),
-        HN_WP_ABOVE_REFERENCE * ref->error[HN_ERROR_Q]);
+    const hn_wp *wp = hn_study_wp(study);
+    hn_strbuf_printf(b, "%s, to t = %g s\n", scene->title ? scene->title : scene->id, wp->ref->T);
+    put_reference(b, wp);
     hn_strbuf_add(b, "Times: ");
     hn_study_put_times(b, study);
     hn_strbuf_printf(b, ".\nChaos: %s.\n\n", hn_study_chaos(study)->why);
