@@ -33,7 +33,7 @@ METHODS = ("--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02", "projection
 
 def keys_of_the_terminal():
     """[(action, key, what it means)] from the one table."""
-    with open(os.path.join(ROOT, "server", "tui", "keys.h"), encoding="utf-8") as file:
+    with open(os.path.join(ROOT, "server", "terminal", "keys.h"), encoding="utf-8") as file:
         rows = re.findall(r'X\((\w+), (\'.\'|\w+), "[^"]*", "([^"]*)"\)', file.read())
     return [(action, KEY_NAMES.get(key, key.strip("'")), means) for action, key, means in rows]
 
@@ -511,7 +511,7 @@ class Keys(unittest.TestCase):
         self.assertRegex(found("cardan<Esc>"), r"scenes: type to search")
         self.assertIn("loop gap", found("cardan<Esc><Esc>"))
         self.assertRegex(found("cardan<Enter>"), r"holonom  cardan-shaft")
-        self.assertRegex(found("cardan", "80x24"), r"1 degree of freedom \(4 −\s*│\s*│\s*3\)")
+        self.assertIn("1 degree of freedom (4 − 3", " ".join(found("cardan", "80x24").replace("│", " ").split()))
         # a hit in the name comes before one in the text
         self.assertRegex(found("triple<Enter>"), r"holonom  triple-rocker")
 
