@@ -4,13 +4,14 @@
 # usage: test_mechanisms.py [NAME...]; with --table it prints the largest deviation beside each tolerance.
 import sys
 
+from edges import EDGES
 from linkages import LINKAGES
 from machines import MACHINES
 from seldom import SELDOM
 from space import SPACE
 from workshop import METHODS, run
 
-ALL = LINKAGES + MACHINES + SPACE + SELDOM
+ALL = LINKAGES + MACHINES + SPACE + SELDOM + EDGES
 
 
 def check(mechanism, method):
