@@ -11,7 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double STRIDE = 0.1; // of the length: sigma_min is probed as often along the way
+static const double BLOWN_UP = 100; // of the largest kinetic energy in regular configurations
+static const double STRIDE = 0.1;   // of the length: sigma_min is probed as often along the way
 // sigma_min changes by no more than this much of its largest on a way of one length: lever arms
 // turn by an angle that large
 static const double STEEP = 3;
@@ -99,6 +100,11 @@ void hn_crossing_check(hn_watch *w) {
     }
     const double way = hn_motion_way(w, s->before.q, w->singular.whole);
     if (!(r->info.sigma_min < STEEP * way * r->largest)) {
+        return;
+    }
+
+    // the step of a run that blows up has no way along which the motion went
+    if (r->kinetic > 0 && w->measure.kinetic > BLOWN_UP * r->kinetic) {
         return;
     }
 

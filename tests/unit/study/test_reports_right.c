@@ -231,13 +231,15 @@ static void multipliers_of_a_run_that_blows_up_are_no_singular_configuration(voi
          "penalty@rk4:h=1e-3"},
         {"quick-return", "d=0.13 mR=0.0076 rho=0.01248 g=21.61 w_m=1.675 kd=973.3",
          "udwadia-kalaba@rk4:h=1e-3"},
+        {"quick-return", "kd=783.7", "projection@rk4:h=1e-3"},
     };
     hn_model m;
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         hn_model_open_closed(&m, cases[i][0], cases[i][1]);
         hn_run *run = hn_motion_start(&m, cases[i][2]);
         assert_int_equal(hn_run_advance(run, 1), HN_ERR_DIVERGED);
         assert_null(find(run, HN_INCIDENT_MULTIPLIERS));
+        assert_true(i < 3 || !find(run, HN_INCIDENT_NEAR_SINGULAR));
         hn_run_free(run);
         hn_model_close(&m);
     }
