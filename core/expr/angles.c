@@ -159,13 +159,18 @@ static void join_pairs(hn_graph *g, products *all) {
     }
 }
 
+static hn_ex build_term(hn_graph *g, const product *p) {
+    hn_ex term = hn_num(p->c);
+    for (int k = 0; k < p->n; k++) {
+        term = hn_mul(g, term, (hn_ex){1, p->node[k]});
+    }
+    return term;
+}
+
 static hn_ex build(hn_graph *g, const products *all) {
     hn_ex term[MOST_TERMS];
     for (int i = 0; i < all->n; i++) {
-        term[i] = hn_num(all->item[i].c);
-        for (int k = 0; k < all->item[i].n; k++) {
-            term[i] = hn_mul(g, term[i], (hn_ex){1, all->item[i].node[k]});
-        }
+        term[i] = build_term(g, &all->item[i]);
     }
     return hn_sum(g, term, all->n);
 }
@@ -261,4 +266,22 @@ hn_status hn_angles_join(hn_graph *g, hn_ex *e, int n) {
     free(w.room);
     free(used);
     return ready && !hn_graph_failed(g) ? HN_OK : HN_ERR_MEMORY;
+}
+
+int hn_angles_terms(hn_graph *g, hn_ex e, hn_ex *out, int most) {
+    products *room = calloc(1, sizeof *room);
+    int n = 0;
+    if (room && length_of(g, e) <= LONGEST) {
+        const product whole = {.c = e.c};
+        expand(g, &whole, &e.n, 1, room);
+        if (!room->failed) {
+            join_pairs(g, room);
+            n = room->n <= most ? room->n : 0;
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        out[i] = build_term(g, &room->item[i]);
+    }
+    free(room);
+    return n;
 }

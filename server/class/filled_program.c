@@ -284,22 +284,26 @@ static void name_mistake(const part_view *p, hn_entry_verdict *e) {
     }
 }
 
+/// "force[0]" as the student's language counts.
+static void name_entry(const part_view *p, const hn_language *language, int entry, char out[64]) {
+    const int columns = p->exam->columns[p->part], first = language->first;
+    const char *name = hn_export_part_name((hn_export_part)p->part);
+    if (columns) {
+        snprintf(out, 64, "%s[%d, %d]", name, entry / columns + first, entry % columns + first);
+    } else {
+        snprintf(out, 64, "%s[%d]", name, entry + first);
+    }
+}
+
 /// The entry with the largest difference, as the student's language counts.
 static void show_entry(const part_view *p, const hn_language *language, int state, int entry,
                        hn_entry_verdict *e) {
-    const int columns = p->exam->columns[p->part], first = language->first;
-    const char *name = hn_export_part_name((hn_export_part)p->part);
     e->state = state;
     e->given_value = given_at(p, state, entry);
     e->expected_value = expected_at(p, state, entry);
     e->allowed = ALLOWED * size_of(p);
     char place[64];
-    if (columns) {
-        snprintf(place, sizeof place, "%s[%d, %d]", name, entry / columns + first,
-                 entry % columns + first);
-    } else {
-        snprintf(place, sizeof place, "%s[%d]", name, entry + first);
-    }
+    name_entry(p, language, entry, place);
     snprintf(e->given, sizeof e->given, "%s", place);
     snprintf(e->expected, sizeof e->expected, "%s", place);
     if (!isfinite(e->given_value)) {
@@ -315,6 +319,98 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     }
 }
 
+/// What the wrong entry i may be: a multiple of the right one, or one of its terms is at fault.
+static const struct entry_fault {
+    const char *id, *says; ///< %d: the terms of the entry
+    bool of_term;
+    double factor, share;
+} ENTRY_FAULTS[] = {{"sign", "its sign is wrong", false, -1, 0.5},
+                    {"factor", "a factor 2 is missing", false, 0.5, 0.25},
+                    {"factor", "a factor 1/2 is missing", false, 2, 0.25},
+                    {"sign-term", "one of its %d terms has the wrong sign", true, -1, 0.5},
+                    {"missing-term", "one of its %d terms is missing", true, 0, 0.25},
+                    {"factor-term", "one of its %d terms lacks a factor 2", true, 0.5, 0.25},
+                    {"factor-term", "one of its %d terms lacks a factor 1/2", true, 2, 0.25}};
+
+/// Whether entry i is the right one with `factor` at its term m, or at all of it (m = -1).
+static bool is_changed(const part_view *p, int i, int m, double factor) {
+    const hn_export_sum *sum = &p->exam->sum[p->part][i];
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        const double right = expected_at(p, k, i);
+        const double wrong = m < 0 ? factor * right : right + (factor - 1) * sum->t[m][k];
+        if (!(fabs(given_at(p, k, i) - wrong) <= ALLOWED * size_of(p))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static const struct entry_fault *find_entry_fault(const part_view *p, int i) {
+    const int terms = p->exam->sum[p->part][i].n;
+    for (size_t f = 0; f < sizeof ENTRY_FAULTS / sizeof *ENTRY_FAULTS; f++) {
+        const bool of_term = ENTRY_FAULTS[f].of_term;
+        for (int m = of_term ? 0 : -1; m < (of_term && terms > 1 ? terms : 0); m++) {
+            if (is_changed(p, i, m, ENTRY_FAULTS[f].factor)) {
+                return &ENTRY_FAULTS[f];
+            }
+        }
+    }
+    return NULL;
+}
+
+/// What the entries of a part are worth together.
+typedef struct part_credit {
+    int asked, right;                ///< entries that are not 0 everywhere; those that are right
+    double share;                    ///< of the points
+    const struct entry_fault *fault; ///< of the first wrong entry that has a known one; NULL: none
+    int entry;                       ///< with that fault
+} part_credit;
+
+static bool is_zero_entry(const part_view *p, int i) {
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        if (expected_at(p, k, i) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Entries count alike; one that is 0 everywhere gives nothing, but takes as much if it is wrong.
+static part_credit credit_part(const part_view *p) {
+    part_credit c = {0};
+    double sum = 0;
+    for (int i = 0; i < p->exam->size[p->part]; i++) {
+        const bool is_zero = is_zero_entry(p, i), right = is_changed(p, i, -1, 1);
+        c.asked += !is_zero;
+        c.right += !is_zero && right;
+        if (right || is_zero) {
+            sum += is_zero ? -(double)!right : 1;
+            continue;
+        }
+        const struct entry_fault *fault = find_entry_fault(p, i);
+        sum += fault ? fault->share : 0;
+        if (fault && !c.fault) {
+            c.fault = fault;
+            c.entry = i;
+        }
+    }
+    c.share = c.asked > 0 && sum > 0 ? sum / c.asked : 0;
+    return c;
+}
+
+/// The fault of one entry, where no mistake of the whole part is known.
+static void name_entry_fault(const part_view *p, const hn_language *language, const part_credit *c,
+                             hn_entry_verdict *e) {
+    char place[64], says[80];
+    if (!c->fault || e->mistake[0]) {
+        return;
+    }
+    name_entry(p, language, c->entry, place);
+    snprintf(says, sizeof says, c->fault->says, p->exam->sum[p->part][c->entry].n);
+    e->mistake = c->fault->id;
+    snprintf(e->explanation, sizeof e->explanation, "%s: %s", place, says);
+}
+
 static void compare_part(const part_view *p, const hn_language *language, hn_entry_verdict *e) {
     int state = 0, entry = 0;
     snprintf(e->name, sizeof e->name, "%s", hn_export_part_name((hn_export_part)p->part));
@@ -323,10 +419,17 @@ static void compare_part(const part_view *p, const hn_language *language, hn_ent
     e->mistake = "";
     e->state = -1;
     e->right = is_like(p, expected_at, &state, &entry);
-    e->points = e->right ? POINTS : 0;
+    e->points = POINTS;
     if (!e->right) {
+        // hundredths of a point: a share is no more exact than the rubric
+        const part_credit credit = credit_part(p);
+        e->points = round(100 * POINTS * credit.share) / 100;
         name_mistake(p, e);
+        name_entry_fault(p, language, &credit, e);
         show_entry(p, language, state, entry, e);
+        const size_t n = strlen(e->explanation);
+        snprintf(e->explanation + n, sizeof e->explanation - n, "; %d of %d entries are right",
+                 credit.right, credit.asked);
     }
 }
 

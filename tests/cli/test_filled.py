@@ -110,13 +110,21 @@ class Filled(unittest.TestCase):
                  "velocity": ("force", "{ double still[NV] = {-0.5*g*l1*(m1 + 2*m2)*cos(th1), -0.5*g*l2*m2*cos(theta_coupler), -0.5*g*l3*m3*cos(th3)}; "
                                        "memcpy(force, still, sizeof still); }"),
                  "number": ("force", "force[0] = sqrt(-1.0);"),
-                 "other": ("force", "force[2] += 0.001;")}  # fmt: skip
+                 "other": ("force", "force[2] += 0.001;"),
+                 "sign-term": ("force", "force[0] += m2*l1*l2*omega_coupler*omega_coupler*sin(th1 - theta_coupler);"),
+                 "missing-term": ("force", "force[1] += 0.5*g*l2*m2*cos(theta_coupler);"),
+                 "factor-term": ("force", "force[1] -= 0.5*g*l2*m2*cos(theta_coupler);")}  # fmt: skip
+        # what is left of the two points of the part: each of its entries counts alike (mass 5, force 3, jacobian 6, bias 2); a wrong sign
+        # leaves a half of an entry, a missing term or factor a quarter
+        left = {"sign": 1, "factor": 0.5, "symmetry": 1.6, "empty": 0, "velocity": 1, "number": 1.33, "other": 1.33, "sign-term": 1.67, "missing-term": 1.5, "factor-term": 1.5}
         jobs = [("four-bar", self.put(f"{mistake}.c", filled[:last] + "    " + statement + "\n" + filled[last:]))
                 for mistake, (_, statement) in cases.items()]  # fmt: skip
         for (mistake, (part, _)), (_, (status, verdict)) in zip(cases.items(), self.two_at_a_time(self.grade, jobs)):
             entries = {e["name"]: e for e in verdict["entries"]}
-            self.assertEqual((status, verdict["score"], entries[part]["mistake"]), (0, POINTS - 2, mistake), verdict)
-            self.assertTrue(entries[part]["explanation"])
+            self.assertEqual((status, entries[part]["mistake"]), (0, mistake), verdict)
+            if mistake in left:
+                self.assertAlmostEqual(verdict["score"], POINTS - 2 + left[mistake], 9, (mistake, verdict))
+            self.assertRegex(entries[part]["explanation"], r"; \d of \d entries are right$")
             self.assertEqual("no known mistake; force[2] differs most" in entries[part]["explanation"], mistake == "other")
             self.assertNotIn("expected_value", entries[part])
 
@@ -150,17 +158,17 @@ class Filled(unittest.TestCase):
         path = self.put("folder/spoilt.c", spoilt)
         done = call("grade", "four-bar", path, "--set", "l1=0.45", "--student", "Ann", "--json")
         verdict = json.loads(done.stdout)
-        self.assertEqual((verdict["score"], verdict["submission"], verdict["submission_file"], verdict["set"]), (POINTS - 2, spoilt, "spoilt.c", ["l1=0.45"]))
+        self.assertEqual((verdict["score"], verdict["submission"], verdict["submission_file"], verdict["set"]), (7.33, spoilt, "spoilt.c", ["l1=0.45"]))
         kept = self.put("verdict.json", done.stdout)
         os.remove(path)
         again = json.loads(call("regrade", kept, "--json").stdout)
-        self.assertEqual((again["same"], again["score"]), (True, POINTS - 2))
-        self.assertIn("the same score: 6 of 8 before, 6 of 8 now", call("regrade", kept).stdout)
+        self.assertEqual((again["same"], again["score"]), (True, 7.33))
+        self.assertIn("the same score: 7.33 of 8 before, 7.33 of 8 now", call("regrade", kept).stdout)
 
         # another program in its place
         right = self.put("right.c", filled.replace("l1 = 0.5", "l1 = 0.45"))
         done = call("regrade", kept, right)
-        self.assertIn("ANOTHER SCORE: 6 of 8 before, 8 of 8 now", done.stdout)
+        self.assertIn("ANOTHER SCORE: 7.33 of 8 before, 8 of 8 now", done.stdout)
         self.assertIn("the submission is another one than was graded", done.stdout)
 
     def test_the_page_of_a_verdict_says_what_was_given_and_expected(self):

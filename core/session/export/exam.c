@@ -4,6 +4,8 @@
 #include "base/clock.h"
 #include "dynamics/compile/compile.h"
 #include "dynamics/evaluate/eval.h"
+#include "expr/angles.h"
+#include "expr/diff.h"
 #include "session/export/states.h"
 
 #include <string.h>
@@ -41,6 +43,52 @@ static void ask(hn_export_exam *exam, hn_eval *eval, const hn_export_state *at,
     out->still = copy(exam->arena, hn_eval_get(eval, HN_TERM_F), exam->nv);
 }
 
+/// The values of all symbols at a state: parameters, coordinates, velocities, time.
+static void put_symbols(const hn_exporter *e, const hn_export_question *at, double *x) {
+    const hn_scene *scene = hn_model_scene(e->model);
+    for (int i = 0; i < scene->n_params; i++) {
+        const int symbol = hn_graph_find_symbol(hn_system_graph(e->sys), scene->params[i].name);
+        if (symbol >= 0) {
+            x[symbol] = scene->params[i].value;
+        }
+    }
+    for (int i = 0; i < e->info.nq; i++) {
+        x[e->x.q_symbols[i]] = at->q[i];
+    }
+    for (int i = 0; i < e->info.nv; i++) {
+        x[e->x.v_symbols[i]] = at->v[i];
+    }
+    if (e->x.t_symbol >= 0) {
+        x[e->x.t_symbol] = at->t;
+    }
+}
+
+/// Splits each entry of the parts into its terms, and evaluates them at every state.
+static hn_status split_entries(hn_export_exam *exam, const hn_exporter *e) {
+    hn_graph *g = hn_system_graph(e->sys);
+    const hn_ex *const parts[HN_EXPORT_PARTS] = {e->M, e->x.f, e->J, e->x.gamma};
+    double *x = hn_arena_doubles(exam->arena, (size_t)hn_graph_n_symbols(g) + 1);
+    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
+        const size_t bytes = ((size_t)exam->size[part] + 1) * sizeof(hn_export_sum);
+        exam->sum[part] = hn_arena_get(exam->arena, bytes);
+        if (!x || !exam->sum[part]) {
+            return HN_ERR_MEMORY;
+        }
+        for (int i = 0; i < exam->size[part]; i++) {
+            hn_export_sum *sum = &exam->sum[part][i];
+            hn_ex term[HN_EXPORT_EXAM_TERMS];
+            sum->n = hn_angles_terms(g, parts[part][i], term, HN_EXPORT_EXAM_TERMS);
+            for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+                put_symbols(e, &exam->question[k], x);
+                for (int m = 0; m < sum->n; m++) {
+                    sum->t[m][k] = hn_graph_eval(g, term[m], x);
+                }
+            }
+        }
+    }
+    return hn_graph_failed(g) ? HN_ERR_MEMORY : HN_OK;
+}
+
 static hn_status ask_all(hn_export_exam *exam, hn_exporter *e, hn_diags *diags) {
     hn_eval *eval = NULL;
     const int nv = e->info.nv, nc = e->info.nc;
@@ -67,6 +115,7 @@ static hn_status ask_all(hn_export_exam *exam, hn_exporter *e, hn_diags *diags) 
         }
     }
     hn_eval_free(eval);
+    HN_THEN(status, split_entries(exam, e));
     return status == HN_OK && hn_arena_failed(exam->arena) ? HN_ERR_MEMORY : status;
 }
 

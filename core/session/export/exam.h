@@ -8,7 +8,7 @@
 #include "session/model/model.h"
 #include "study/run/walk.h"
 
-enum { HN_EXPORT_EXAM_STATES = 5 };
+enum { HN_EXPORT_EXAM_STATES = 5, HN_EXPORT_EXAM_TERMS = 12 };
 
 /// The parts that --blanks leaves out, in the order in which a program answers them.
 typedef enum hn_export_part {
@@ -29,11 +29,18 @@ typedef struct hn_export_question {
     const double *still; ///< the force at rest there: v = 0
 } hn_export_question;
 
+/// The terms whose sum an entry is: t[i][k] is the value of term i at state k. n = 0: not known.
+typedef struct hn_export_sum {
+    int n;
+    double t[HN_EXPORT_EXAM_TERMS][HN_EXPORT_EXAM_STATES];
+} hn_export_sum;
+
 typedef struct hn_export_exam {
     hn_arena *arena; ///< owned
     int nq, nv, nc;
     int size[HN_EXPORT_PARTS], columns[HN_EXPORT_PARTS]; ///< of a part; columns 0: a vector
     hn_export_question question[HN_EXPORT_EXAM_STATES];
+    hn_export_sum *sum[HN_EXPORT_PARTS]; ///< size of each part
 } hn_export_exam;
 
 /// Works out the exam of a model. hn_export_exam_reset() in any case.

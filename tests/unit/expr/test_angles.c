@@ -120,12 +120,28 @@ static void long_sums_are_left(void **state) {
     hn_graph_free(f.g);
 }
 
+static void a_product_of_sums_has_terms(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    hn_graph *g = f.g;
+    hn_ex term[4];
+    const hn_ex pair = hn_add(g, product(&f, f.ca, f.cb), product(&f, f.sa, f.sb));
+    const hn_ex e = hn_mul(g, f.m, hn_sub(g, pair, f.c));
+    assert_int_equal(hn_angles_terms(g, e, term, 4), 2);
+    assert_int_equal(hn_angles_terms(g, e, term, 1), 0);
+    assert_int_equal(hn_angles_terms(g, e, term, 4), 2);
+    const double x[] = {0.7, -1.9, 2.3, 1.7};
+    const double sum = hn_graph_eval(g, term[0], x) + hn_graph_eval(g, term[1], x);
+    assert_true(fabs(sum - hn_graph_eval(g, e, x)) < 1e-14);
+    hn_graph_free(g);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_four_theorems),
-        cmocka_unit_test(factors_and_nested_sums),
-        cmocka_unit_test(what_is_no_pair_stays),
-        cmocka_unit_test(long_sums_are_left),
+        cmocka_unit_test(the_four_theorems),           cmocka_unit_test(factors_and_nested_sums),
+        cmocka_unit_test(what_is_no_pair_stays),       cmocka_unit_test(long_sums_are_left),
+        cmocka_unit_test(a_product_of_sums_has_terms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
