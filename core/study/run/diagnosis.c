@@ -354,7 +354,11 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
     hn_sample last;
     const double last_gap = hn_run_sample(pilot, sum.t, &last) == HN_OK ? last.gap : sum.worst_gap;
     const bool past = sum.t > event + LEAST_PAST * (event - from->t);
-    const bool right = past && is_right(pilot, status == HN_ERR_STOPPED ? HN_OK : status);
+    double limit;
+    char cause[sizeof(hn_remedy)];
+    const bool right = past && is_right(pilot, status == HN_ERR_STOPPED ? HN_OK : status) &&
+                       !explain_instability(hn_run_watching(pilot)->run, &limit, cause,
+                                            sizeof cause); // an error that grows, slowly as yet
     hn_run_free(pilot);
 
     if (status == HN_ERR_STOPPED && sum.steps == 0) {

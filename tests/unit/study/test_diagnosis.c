@@ -288,9 +288,28 @@ static void a_tolerance_near_rounding_is_answered_by_a_coarser_one(void **state)
     hn_model_close(&m);
 }
 
+// A quarter of the step is above the limit of 2.2e-4 s too: its short trial is not far off yet, and
+// the motion is wrong by 245 rad/s after 2 s.
+static void a_step_above_the_limit_is_no_remedy(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "quick-return", "kd=783.7");
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+    assert_true(hn_run_advance(run, 2) != HN_OK);
+    hn_run_diagnose(run);
+    const hn_incident *end = last_of(run);
+    for (int i = 0; i < HN_REMEDIES; i++) {
+        assert_string_not_equal(end->remedy[i], "h=0.00025");
+    }
+    assert_non_null(strstr(end->remedy[0], "ggl@radau5"));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_above_the_stability_limit_is_named_as_the_cause),
+        cmocka_unit_test(a_step_above_the_limit_is_no_remedy),
         cmocka_unit_test(the_load_that_limits_the_step_is_named),
         cmocka_unit_test(the_reports_of_a_run_agree_on_what_helps),
         cmocka_unit_test(the_outcome_of_a_remedy_is_what_running_it_shows),
