@@ -112,7 +112,7 @@ class Server:
                     reply += piece
             except OSError:
                 pass
-            return reply
+            return reply.removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")  # who has closed one side may be asked whether it is still there
 
     def timed(self, method, path, body=None, headers=None):
         """One request; its answer and how long it took [s]."""

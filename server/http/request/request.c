@@ -235,8 +235,8 @@ int hn_request_is_unwanted(void *request) {
     hn_job_make_way(r->turn);
     const double now = hn_clock_wall();
     if (!r->is_left && now >= r->next_look) {
+        r->is_left = r->next_look > 0 && hn_request_is_left(r); // not before it has worked for long
         r->next_look = now + LOOK_EVERY;
-        r->is_left = hn_request_is_left(r);
     }
     return r->is_left || atomic_load(&r->context->stopping);
 }
