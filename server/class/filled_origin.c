@@ -40,9 +40,11 @@ static bool read_definition(const char *line, const char *name, double *value) {
     return end != line + 1 && (strchr(";#%\n", *rest) || strncmp(rest, "//", 2) == 0);
 }
 
-/// The first definition of a parameter in the text.
+/// The first definition of a parameter before the parts to fill in: functions behind them have
+/// variables of their own.
 static bool find_definition(const char *text, const char *name, double *value) {
-    for (const char *line = text; line; line = strchr(line, '\n')) {
+    const char *end = strstr(text, "YOUR PART");
+    for (const char *line = text; line && (!end || line < end); line = strchr(line, '\n')) {
         line += *line == '\n';
         if (read_definition(line, name, value)) {
             return true;

@@ -27,12 +27,12 @@ static const double ALLOWED = 1e-9;
 static bool is_asked(const hn_export_exam *exam, int part) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         for (int i = 0; i < exam->size[part]; i++) {
-            if (exam->question[k].answer[part][i] != 0) {
+            if (fabs(exam->question[k].answer[part][i]) > ALLOWED) {
                 return true;
             }
         }
     }
-    return false; // all zero: nothing is to be filled in
+    return false; // all zero, rounding aside: nothing is to be filled in
 }
 
 hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model, hn_diags *diags) {
@@ -366,9 +366,10 @@ typedef struct part_credit {
     int entry;                       ///< with that fault
 } part_credit;
 
-static bool is_zero_entry(const part_view *p, int i) {
+/// Whether `value` is 0 in entry i at every state, rounding aside.
+static bool is_zero_entry(const part_view *p, int i, double (*value)(const part_view *, int, int)) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        if (expected_at(p, k, i) != 0) {
+        if (!(fabs(value(p, k, i)) <= ALLOWED * size_of(p))) {
             return false;
         }
     }
@@ -380,14 +381,15 @@ static part_credit credit_part(const part_view *p) {
     part_credit c = {0};
     double sum = 0;
     for (int i = 0; i < p->exam->size[p->part]; i++) {
-        const bool is_zero = is_zero_entry(p, i), right = is_changed(p, i, -1, 1);
+        const bool is_zero = is_zero_entry(p, i, expected_at), right = is_changed(p, i, -1, 1);
         c.asked += !is_zero;
         c.right += !is_zero && right;
         if (right || is_zero) {
             sum += is_zero ? -(double)!right : 1;
             continue;
         }
-        const struct entry_fault *fault = find_entry_fault(p, i);
+        const bool is_empty = is_zero_entry(p, i, given_at); // no fault of what was written
+        const struct entry_fault *fault = is_empty ? NULL : find_entry_fault(p, i);
         sum += fault ? fault->share : 0;
         if (fault && !c.fault) {
             c.fault = fault;

@@ -188,6 +188,14 @@ class Filled(unittest.TestCase):
             self.assertAlmostEqual(float(re.search(r"expected +force\[0\] = ([-\d.]+)", asked)[1]), expected, 5)
             self.assertNotIn("expected", call("grade", "four-bar", path, "--format", form).stdout)
 
+    def test_a_program_that_was_not_filled_in_has_no_points_in_any_scene(self):
+        # bennett has entries that are 0 but for rounding, parallelogram a whole part, oblique-four-bar a parameter d
+        # that no part needs, and a variable of that name elsewhere
+        for scene in ("four-bar", "bennett", "parallelogram", "oblique-four-bar", "heavy-top"):
+            path = self.put(f"{scene}.c", call("export", scene, "--language", "c", "--blanks").stdout)
+            status, verdict = self.grade(scene, path)
+            self.assertEqual((status, verdict["score"], {e["mistake"] for e in verdict["entries"]}), (0, 0, {"empty"}), scene)
+
     def test_the_points_of_the_parts_stand_in_one_column(self):
         path = self.put("empty.c", call("export", "four-bar", "--language", "c", "--blanks").stdout)
         lines = re.findall(r"^  (?:mass|force|jacobian|bias) +\S+ / 2", call("grade", "four-bar", path).stdout, re.M)
