@@ -7,6 +7,7 @@
 #include "terminal/cells.h"
 #include "tui/workbench.h"
 
+/// Draws the list that is open into `area`, as far as its rows fit.
 void hn_list_view_draw(hn_cells *c, hn_area area, const hn_workbench *w);
 /// The place of the picture inside the panel `in`; false: this list has none, or no room for it.
 bool hn_list_view_picture(hn_area in, const hn_workbench *w, hn_area *out);
