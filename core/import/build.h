@@ -6,10 +6,10 @@
 // configuration.
 
 #include "base/arena.h"
-#include "import/libxml.h"
 #include "base/strbuf.h"
 #include "import/frame.h"
 #include "import/import.h"
+#include "import/libxml.h"
 #include "scene/scene.h"
 
 #include <stdbool.h>

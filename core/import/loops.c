@@ -7,8 +7,8 @@
 // joints of the model, each with a number, or a list for a joint of several coordinates.
 #include "import/loops.h"
 
-#include "base/suggest.h"
 #include "base/json_text.h"
+#include "base/suggest.h"
 
 #include <cjson/cJSON.h>
 #include <string.h>

@@ -3,9 +3,9 @@
 
 #include "render/canvas_record.h"
 
-#include <stdbool.h>
 #include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { FIRST_CAP = 256 };

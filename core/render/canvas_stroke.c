@@ -5,8 +5,8 @@
 #include "render/canvas_record.h"
 #include "render/font.h"
 
-#include <stdbool.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { RING_POINTS = 96 };

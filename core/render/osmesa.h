@@ -6,8 +6,8 @@
 
 #include "base/diag.h"
 
-#include <stdbool.h>
 #include <GL/osmesa.h>
+#include <stdbool.h>
 
 /// The functions that painting needs; the names are theirs.
 #define HN_OSMESA_LIST(X)     \

@@ -20,8 +20,8 @@
 #include "integrators/list/stepper_list.h"
 #include "program/program_method.h"
 #include "terminal/cells.h"
-#include "terminal/width.h"
 #include "terminal/keys.h"
+#include "terminal/width.h"
 
 #include <stdbool.h>
 #include <stdio.h>

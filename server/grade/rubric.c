@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/rubric.h"
 
-#include "base/suggest.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
+#include "base/suggest.h"
 #include "grade/parts/part.h"
 #include "grade/repeated_member.h"
 #include "grade/toml_text.h"

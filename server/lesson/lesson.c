@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lesson/lesson.h"
 
-#include "base/suggest.h"
 #include "base/file.h"
+#include "base/suggest.h"
 #include "lesson/markdown.h"
 #include "session/model/lists.h"
 

@@ -6,11 +6,11 @@
 #include "tui/panels.h"
 #include "tui/prompt.h"
 #include "tui/reactions_view.h"
-#include "tui/views.h"
-#include "tui/why_view.h"
 #include "tui/remedies.h"
 #include "tui/text_panel.h"
 #include "tui/undo.h"
+#include "tui/views.h"
+#include "tui/why_view.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/exercise_panel.h"
 
-#include "tui/best_scores.h"
 #include "terminal/keys.h"
+#include "tui/best_scores.h"
 #include "tui/text_panel.h"
 
 #include <stdio.h>

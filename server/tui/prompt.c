@@ -3,8 +3,8 @@
 
 #include "base/shortest.h"
 #include "session/precision/wanted.h"
-#include "tui/exercise_panel.h"
 #include "terminal/keys.h"
+#include "tui/exercise_panel.h"
 #include "tui/methods.h"
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"

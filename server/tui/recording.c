@@ -2,8 +2,8 @@
 #include "tui/recording.h"
 
 #include "base/clock.h"
-#include "study/run/ending.h"
 #include "study/incidents/kinds.h"
+#include "study/run/ending.h"
 #include "tui/true_motion.h"
 
 #include <math.h>

@@ -3,8 +3,8 @@
 
 #include "base/shortest.h"
 #include "render/look.h"
-#include "terminal/short_spelling.h"
 #include "terminal/keys.h"
+#include "terminal/short_spelling.h"
 #include "tui/methods.h"
 #include "tui/seconds.h"
 

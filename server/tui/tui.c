@@ -3,10 +3,10 @@
 
 #include "base/clock.h"
 #include "render/look.h"
+#include "terminal/keys.h"
+#include "terminal/kitty_image.h"
 #include "tui/controls.h"
 #include "tui/drag.h"
-#include "terminal/kitty_image.h"
-#include "terminal/keys.h"
 #include "tui/mechanism_picture.h"
 #include "tui/screen.h"
 #include "tui/views.h"

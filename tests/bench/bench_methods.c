@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One step of the classical Runge-Kutta method under each formulation on the ladder of N four-bars:
 // operations and time for each loop, which should not depend on N. Prints CSV.
-#include "dynamics/compile/compile.h"
 #include "dynamics/assembly/assemble.h"
+#include "dynamics/compile/compile.h"
 #include "study/run/run.h"
 
 #include <stdio.h>

@@ -5,9 +5,9 @@
 #include "support/odes.h"
 
 #include "dynamics/evaluate/accel.h"
-#include "integrators/method/method_spec.h"
-#include "integrators/list/stepper_list.h"
 #include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
+#include "integrators/method/method_spec.h"
 #include "linalg/dense.h"
 
 #include <math.h>

@@ -5,9 +5,9 @@
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
-#include "linalg/dense.h"
-#include "integrators/list/stepper_list.h"
 #include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
+#include "linalg/dense.h"
 #include "linalg/saddle.h"
 
 #include <math.h>

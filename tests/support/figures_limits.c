@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/figures_sets.h"
 #include "integrators/list/stepper_list.h"
+#include "support/figures_sets.h"
 
 #include "support/near.h"
 #include "support/odes.h"

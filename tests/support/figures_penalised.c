@@ -6,8 +6,8 @@
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
-#include "linalg/dense.h"
 #include "integrators/list/stepper_list.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/model.h"
 
-#include "support/near.h"
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
+#include "support/near.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 #include "support/shipped.h"
 
 #include "base/arena.h"
+#include "dynamics/assembly/project.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
-#include "dynamics/assembly/project.h"
 #include "dynamics/reactions/reactions.h"
 #include "linalg/saddle.h"
 #include "study/run/run.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/trial.h"
 
-#include "support/near.h"
 #include "dynamics/compile/compile.h"
+#include "support/near.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -2,9 +2,9 @@
 // How honest the accuracy watch is: its estimate against the error, by the reference solution, of
 // every scene of the library by the methods that it suggests and some coarser ones.
 
+#include "study/truth/accuracy.h"
 #include "session/model/model.h"
 #include "session/references/reference_store.h"
-#include "study/truth/accuracy.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/inspect.h"
 
+#include "dynamics/compile/system_impl.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
-#include "dynamics/compile/system_impl.h"
 #include "expr/print.h"
 #include "linalg/newton_matrix.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/redundancy.h"
 
-#include "dynamics/evaluate/eval.h"
 #include "dynamics/compile/system_impl.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "linalg/row_check.h"
 

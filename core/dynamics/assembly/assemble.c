@@ -12,8 +12,8 @@
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "linalg/dense.h"
-#include "linalg/qr.h"
 #include "linalg/gram.h"
+#include "linalg/qr.h"
 #include "linalg/row_check.h"
 
 #include <float.h>

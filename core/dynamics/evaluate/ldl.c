@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/evaluate/ldl.h"
 
+#include "dynamics/compile/symmat.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
-#include "dynamics/compile/symmat.h"
 #include "expr/construct.h"
 #include "linalg/least_heap.h"
 

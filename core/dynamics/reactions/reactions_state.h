@@ -10,8 +10,8 @@
 // it; loads and the rows' wrenches are taken off, and from the leaves to the root what is left is
 // the wrench of its tree joint, which the joint hands on to the body below.
 
-#include "dynamics/evaluate/inputs.h"
 #include "dynamics/compile/mech.h"
+#include "dynamics/evaluate/inputs.h"
 #include "dynamics/reactions/reactions.h"
 #include "linalg/qr.h"
 

@@ -2,9 +2,9 @@
 #include "formulations/chart/chart.h"
 
 #include "dynamics/compile/coordinates.h"
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/reduced_mass.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -3,9 +3,9 @@
 
 #include "formulations/chart/chart_dependent.h"
 
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/unit_scales.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdbool.h>

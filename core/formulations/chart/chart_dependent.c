@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/chart/chart_dependent.h"
 
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdbool.h>

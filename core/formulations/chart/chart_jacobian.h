@@ -10,8 +10,8 @@
 // closed. Two solves of the saddle system for each freedom, against as many evaluations by
 // differences.
 
-#include "formulations/ground/accel_jacobian.h"
 #include "formulations/chart/chart.h"
+#include "formulations/ground/accel_jacobian.h"
 
 typedef struct hn_chart_jacobian {
     hn_accel_jacobian *slopes; ///< NULL until an implicit integrator asks

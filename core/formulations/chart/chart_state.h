@@ -5,11 +5,11 @@
 
 #include "dynamics/analyse/dyads.h"
 #include "dynamics/evaluate/eval.h"
+#include "formulations/ground/formulation.h"
 #include "linalg/column_choice.h"
 #include "linalg/qr.h"
 #include "linalg/row_check.h"
 #include "linalg/sparse_lu.h"
-#include "formulations/ground/formulation.h"
 
 #include <stdbool.h>
 

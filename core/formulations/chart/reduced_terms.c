@@ -2,9 +2,9 @@
 #include "formulations/chart/reduced_terms.h"
 
 #include "dynamics/compile/coordinates.h"
+#include "formulations/ground/reduced_mass.h"
 #include "linalg/dense.h"
 #include "linalg/lu.h"
-#include "formulations/ground/reduced_mass.h"
 
 #include <float.h>
 #include <math.h>

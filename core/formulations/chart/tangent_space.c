@@ -2,9 +2,9 @@
 #include "formulations/chart/tangent_space.h"
 
 #include "dynamics/compile/coordinates.h"
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/unit_scales.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -23,9 +23,9 @@
 // 1991; polar factors in Golub & Van Loan 2013, 6.4.
 
 #include "dynamics/evaluate/eval.h"
-#include "linalg/qr.h"
 #include "formulations/ground/formulation.h"
 #include "formulations/ground/reduced_mass.h"
+#include "linalg/qr.h"
 
 #include <stdbool.h>
 

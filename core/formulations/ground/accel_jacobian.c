@@ -5,8 +5,8 @@
 #include "formulations/ground/slopes.h"
 
 #include "dynamics/compile/quaternion.h"
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/accel_newton.h"
 
-#include "formulations/ground/slopes.h"
 #include "dynamics/compile/quaternion.h"
+#include "formulations/ground/slopes.h"
 #include "linalg/dense.h"
 
 #include <math.h>

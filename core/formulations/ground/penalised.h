@@ -6,8 +6,8 @@
 // free. It is factored sparse: two coordinates meet in it where a body or a closure row touches
 // both.
 
-#include "linalg/sparse_spd.h"
 #include "formulations/ground/dense_ode.h"
+#include "linalg/sparse_spd.h"
 
 /// Options of both formulations, the first in their tables; they can be changed while running.
 enum { HN_PENALISED_A, HN_PENALISED_OMEGA, HN_PENALISED_XI, HN_PENALISED_OPTIONS };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/reduced_mass.h"
 
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "linalg/dense.h"
 
 #include <string.h>
 

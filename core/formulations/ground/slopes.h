@@ -7,9 +7,9 @@
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/linearise.h"
+#include "formulations/ground/accel_jacobian.h"
 #include "linalg/newton_matrix.h"
 #include "linalg/qr.h"
-#include "formulations/ground/accel_jacobian.h"
 
 #include <stdbool.h>
 

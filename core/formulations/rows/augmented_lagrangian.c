@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "linalg/dense.h"
-#include "formulations/ground/penalised.h"
 #include "formulations/ground/formulation.h"
+#include "formulations/ground/penalised.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>

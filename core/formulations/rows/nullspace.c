@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/chart/orthonormal_state.h"
-#include "formulations/ground/formulation.h"
 #include "formulations/chart/tangent_state.h"
+#include "formulations/ground/formulation.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formulations/ground/formulation.h"
 #include "formulations/chart/tangent_state.h"
+#include "formulations/ground/formulation.h"
 
 // The lesson's section 3 prints N' M N u' + N' (C v + g) = N' S' tau: the term N' M (dN/dt) u is
 // missing, although its Problem 2 introduces the rate of N. What is left converges, to the wrong

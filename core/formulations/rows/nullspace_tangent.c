@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/coordinates.h"
-#include "formulations/ground/formulation.h"
 #include "formulations/chart/tangent_space.h"
+#include "formulations/ground/formulation.h"
 
 #include <math.h>
 #include <stdbool.h>

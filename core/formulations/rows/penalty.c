@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formulations/ground/penalised.h"
 #include "formulations/ground/formulation.h"
+#include "formulations/ground/penalised.h"
 
 #include <string.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
-#include "linalg/dense.h"
-#include "linalg/saddle.h"
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/formulation.h"
 #include "formulations/ground/unit_scales.h"
+#include "linalg/dense.h"
+#include "linalg/saddle.h"
 
 #include <float.h>
 #include <math.h>

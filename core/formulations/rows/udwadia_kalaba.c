@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/evaluate/pivot_noise.h"
-#include "linalg/dense.h"
-#include "linalg/qr.h"
 #include "formulations/ground/dense_ode.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/formulation.h"
+#include "linalg/dense.h"
+#include "linalg/qr.h"
 
 #include <math.h>
 #include <stdbool.h>

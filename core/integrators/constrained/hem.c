@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "integrators/step/dae_base.h"
 #include "integrators/constrained/half_explicit.h"
+#include "integrators/step/dae_base.h"
 #include "integrators/step/options.h"
 
 #define HALF_EXPLICIT(name, scheme, doubled)                                                      \

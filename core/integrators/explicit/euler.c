@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "integrators/step/compensated.h"
 #include "integrators/explicit/explicit_rk.h"
+#include "integrators/step/compensated.h"
 #include "integrators/step/options.h"
 
 static void *create(int n_pos, int n_vel, hn_arena *arena) {

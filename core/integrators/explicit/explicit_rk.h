@@ -11,8 +11,8 @@
 
 #include "base/arena.h"
 #include "base/status.h"
-#include "integrators/explicit/tableau.h"
 #include "formulations/ground/formulation.h"
+#include "integrators/explicit/tableau.h"
 
 /// Memory for steps of n = n_pos + n_vel entries; NULL when the arena has run out.
 void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena);

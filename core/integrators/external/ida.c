@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "integrators/step/dae_base.h"
 #include "integrators/external/ida_jacobian.h"
 #include "integrators/external/ida_words.h"
 #include "integrators/step/control.h"
+#include "integrators/step/dae_base.h"
 #include "integrators/step/options.h"
 
 #include "formulations/ground/flops.h"

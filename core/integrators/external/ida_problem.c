@@ -3,9 +3,9 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
+#include "formulations/ground/flops.h"
 #include "integrators/step/control.h"
 #include "linalg/dense.h"
-#include "formulations/ground/flops.h"
 
 #include <float.h>
 #include <math.h>

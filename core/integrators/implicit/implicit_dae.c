@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/implicit/implicit_dae.h"
 
+#include "dynamics/assembly/project.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
-#include "dynamics/assembly/project.h"
-#include "integrators/step/control.h"
-#include "integrators/step/dae_base.h"
 #include "integrators/implicit/implicit_linear.h"
 #include "integrators/implicit/implicit_linear_solve.h"
 #include "integrators/implicit/stages.h"
 #include "integrators/implicit/turn.h"
+#include "integrators/step/control.h"
+#include "integrators/step/dae_base.h"
 #include "linalg/dense.h"
 
 #include <float.h>

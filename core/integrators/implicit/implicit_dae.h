@@ -12,8 +12,8 @@
 // has mu = 0 whatever Y is. For orders see METHOD cards; Sources: Hairer, Lubich & Roche 1989;
 // Gear, Leimkuhler & Gupta 1985; Hairer, Lubich & Wanner 2006, IV.7 (turns).
 
-#include "integrators/step/dae.h"
 #include "integrators/implicit/implicit_tableau.h"
+#include "integrators/step/dae.h"
 
 typedef struct hn_implicit_dae_opts {
     /// 1: the constraint is asked for at the end of the step instead of at the stages (one stage

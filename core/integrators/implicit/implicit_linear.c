@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/implicit/implicit_linear.h"
 
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/unit_scales.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -28,12 +28,12 @@
 
 #include "base/arena.h"
 #include "dynamics/evaluate/linearise.h"
+#include "formulations/ground/formulation.h"
 #include "integrators/implicit/stages.h"
 #include "linalg/newton_matrix.h"
 #include "linalg/qr.h"
 #include "linalg/row_check.h"
 #include "linalg/sparse_spd.h"
-#include "formulations/ground/formulation.h"
 
 #include <stdbool.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/implicit/implicit_ode.h"
 
-#include "integrators/step/control.h"
 #include "integrators/implicit/stages.h"
+#include "integrators/step/control.h"
 #include "linalg/dense.h"
 #include "linalg/lu.h"
 

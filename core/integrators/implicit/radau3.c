@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "integrators/step/dae_base.h"
 #include "integrators/implicit/implicit_steppers.h"
+#include "integrators/step/dae_base.h"
 
 #include <math.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/method/catalogue.h"
 
+#include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
 #include "integrators/method/guest.h"
 #include "integrators/method/method_spec.h"
-#include "integrators/list/stepper_list.h"
-#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 

@@ -8,8 +8,8 @@
 
 #include "base/diag.h"
 #include "base/strbuf.h"
-#include "integrators/step/stepper.h"
 #include "formulations/ground/formulation.h"
+#include "integrators/step/stepper.h"
 
 #define HN_GUEST_PREFIX "program:"
 #define HN_GUEST_STEPPER "own"

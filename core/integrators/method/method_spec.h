@@ -5,8 +5,8 @@
 
 #include "base/diag.h"
 #include "base/strbuf.h"
-#include "integrators/step/stepper.h"
 #include "formulations/ground/formulation.h"
+#include "integrators/step/stepper.h"
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
 #include "integrators/step/dae_base.h"
 
 #include "dynamics/evaluate/accel.h"
-#include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <stdbool.h>

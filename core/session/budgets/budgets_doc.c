@@ -2,8 +2,8 @@
 #include "session/budgets/budgets_doc.h"
 
 #include "session/budgets/budgets_internal.h"
-#include "session/store/ending_json.h"
 #include "session/store/csv.h"
+#include "session/store/ending_json.h"
 
 #include <math.h>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
+
 #include "base/units.h"
-#include "study/run/diagnosis.h"
 #include "formulations/list/formulation_list.h"
+#include "study/run/diagnosis.h"
 
 #include "render/look.h"
 #include "study/run/pace.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison_doc.h"
+
 #include "session/compare/estimate.h"
 #include "session/compare/failure.h"
 #include "session/compare/incident_json.h"

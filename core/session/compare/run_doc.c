@@ -2,13 +2,13 @@
 #include "session/compare/run_doc.h"
 
 #include "base/units.h"
-#include "session/store/cost_json.h"
 #include "session/compare/estimate.h"
 #include "session/compare/failure.h"
 #include "session/compare/incident_json.h"
 #include "session/compare/sample_table.h"
-#include "study/run/pace.h"
+#include "session/store/cost_json.h"
 #include "study/run/diagnosis.h"
+#include "study/run/pace.h"
 #include "study/truth/accuracy.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/export.h"
 
-#include "base/suggest.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/suggest.h"
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
 #include "session/export/calls.h"

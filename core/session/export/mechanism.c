@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/mechanism.h"
+
 #include "session/export/xml_attribute.h"
 
 #include "linalg/small3.h"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_doc.h"
+
 #include "session/extreme/extreme_verdict.h"
 
-#include "session/store/csv.h"
 #include "session/extreme/extreme_internal.h"
+#include "session/store/csv.h"
 
 #include <math.h>
 #include <stdio.h>

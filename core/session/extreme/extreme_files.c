@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_files.h"
 
-#include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_read.h"
+#include "session/extreme/extreme_reader.h"
 
 #include "base/file.h"
 #include "base/folder.h"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/style/style.h"
 #include "session/extreme/extreme_html.h"
+
 #include "session/extreme/extreme_verdict.h"
+#include "session/style/style.h"
 
 #include "session/extreme/extreme_internal.h"
 
-#include "session/precision/study_page.h"
 #include "session/precision/study_html.h"
+#include "session/precision/study_page.h"
 
 #include <stdio.h>
 

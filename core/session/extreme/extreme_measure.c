@@ -5,8 +5,8 @@
 #include "session/extreme/extreme_quantity.h"
 #include "session/extreme/extreme_solve.h"
 #include "session/extreme/extreme_stable.h"
-#include "session/extreme/extreme_walk.h"
 #include "session/extreme/extreme_verdict.h"
+#include "session/extreme/extreme_walk.h"
 
 #include "study/cost/convergence.h"
 

@@ -5,8 +5,8 @@
 #include "session/extreme/extreme_measure.h"
 #include "session/extreme/extreme_model.h"
 #include "session/extreme/extreme_solve.h"
-#include "session/extreme/extreme_walk.h"
 #include "session/extreme/extreme_verdict.h"
+#include "session/extreme/extreme_walk.h"
 
 #include "linalg/dense.h"
 

@@ -2,10 +2,10 @@
 #include "session/extreme/extreme_read.h"
 
 #include "base/suggest.h"
-#include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_measure.h"
 #include "session/extreme/extreme_quantity.h"
 #include "session/extreme/extreme_read_expect.h"
+#include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_solve.h"
 
 #include <stdio.h>

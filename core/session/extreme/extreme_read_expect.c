@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_read_expect.h"
 
-#include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_measure.h"
+#include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_stable.h"
 #include "session/extreme/extreme_verdict.h"
 

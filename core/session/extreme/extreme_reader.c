@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_reader.h"
+
 #include "base/suggest.h"
 #include "session/extreme/extreme_model.h"
 

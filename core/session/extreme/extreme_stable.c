@@ -3,13 +3,13 @@
 
 #include "session/extreme/extreme_internal.h"
 #include "session/extreme/extreme_measure.h"
-#include "session/extreme/extreme_walk.h"
 #include "session/extreme/extreme_verdict.h"
+#include "session/extreme/extreme_walk.h"
 
 #include "linalg/dense.h"
-#include "study/truth/chaos.h"
 #include "study/spectrum/region.h"
 #include "study/spectrum/spectrum.h"
+#include "study/truth/chaos.h"
 
 #include <math.h>
 #include <stdbool.h>

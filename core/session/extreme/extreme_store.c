@@ -2,8 +2,8 @@
 #include "session/extreme/extreme_store.h"
 
 #include "session/extreme/extreme_internal.h"
-#include "session/store/stored_json.h"
 #include "session/extreme/extreme_verdict.h"
+#include "session/store/stored_json.h"
 
 #include "base/file.h"
 #include "base/hash.h"

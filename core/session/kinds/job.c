@@ -3,8 +3,8 @@
 
 #include "base/word_list.h"
 
-#include <stdlib.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // ---- the registry ----

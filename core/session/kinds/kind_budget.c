@@ -2,9 +2,9 @@
 // Error budget: where the error at the end of a run comes from, and where its energy goes.
 #include "base/json_text.h"
 #include "session/budgets/budgets.h"
-#include "session/kinds/job.h"
 #include "session/budgets/budgets_doc.h"
 #include "session/budgets/budgets_html.h"
+#include "session/kinds/job.h"
 
 static const hn_field FIELDS[] = {
     HN_JOB_METHODS_FIELD(HN_BUDGETS_METHODS, 12),

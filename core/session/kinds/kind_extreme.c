@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The extreme matrix: cases in which methods break, predicted and observed.
 #include "session/extreme/extreme.h"
-#include "session/kinds/job.h"
 #include "session/extreme/extreme_doc.h"
 #include "session/extreme/extreme_files.h"
 #include "session/extreme/extreme_html.h"
 #include "session/extreme/extreme_store.h"
+#include "session/kinds/job.h"
 
 static const hn_field FIELDS[] = {
     HN_JOB_TIME_LIMIT_FIELD("none when left out"),

@@ -5,8 +5,8 @@
 #include "dynamics/analyse/redundancy.h"
 #include "session/model/caption.h"
 #include "session/model/model.h"
-#include "session/model/position_json.h"
 #include "session/model/model_json.h"
+#include "session/model/position_json.h"
 
 static void put_start(hn_strbuf *b, const hn_model *model) {
     const hn_assembly *a = hn_model_assembly(model);

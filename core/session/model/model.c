@@ -101,8 +101,8 @@ static void put_changes(const hn_scene *scene, hn_diag *why) {
                  changes[0] ? ", " : "with ", p->name, digits, p->value, space, p->unit, digits,
                  p->initial);
         left_out += left_out > 0 || !add_part(changes, sizeof changes, part);
-        snprintf(part, sizeof part, "%s%.40s = %.*g", back[0] ? ", " : "go back towards ",
-                 p->name, digits, p->initial);
+        snprintf(part, sizeof part, "%s%.40s = %.*g", back[0] ? ", " : "go back towards ", p->name,
+                 digits, p->initial);
         add_part(back, sizeof back, part);
     }
     if (changes[0]) {

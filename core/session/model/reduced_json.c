@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/reduced_json.h"
 
-#include "linalg/dense.h"
 #include "formulations/chart/reduced_terms.h"
+#include "linalg/dense.h"
 #include "session/store/columns_json.h"
 
 #define SPEED_TOL 1e-9 // of the largest velocity: violations below this are rounding

@@ -5,11 +5,11 @@
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
-#include "session/store/columns_json.h"
 #include "session/model/model.h"
 #include "session/model/reactions_json.h"
 #include "session/model/reduced_json.h"
 #include "session/model/state.h"
+#include "session/store/columns_json.h"
 #include "study/incidents/watch.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/references/references.h"
 #include "session/precision/study_internal.h"
 #include "session/precision/study_store.h"
 #include "session/references/reference_store.h"
+#include "session/references/references.h"
 #include "study/cost/measure.h"
 
 #include <math.h>

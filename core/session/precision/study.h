@@ -6,8 +6,8 @@
 // studies, line by line, so that the same request continues where it was interrupted.
 
 #include "session/job/job_request.h"
-#include "study/truth/chaos.h"
 #include "study/cost/pareto.h"
+#include "study/truth/chaos.h"
 
 #include <stdbool.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/precision/study_doc.h"
 
+#include "session/precision/study_internal.h"
+#include "session/precision/wanted.h"
 #include "session/store/cost_json.h"
 #include "session/store/csv.h"
 #include "session/store/ending_json.h"
-#include "session/precision/study_internal.h"
-#include "session/precision/wanted.h"
 
 #include "base/hash.h"
 #include "render/look.h"

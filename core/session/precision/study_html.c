@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/style/style.h"
 #include "session/precision/study_html.h"
+
+#include "session/style/style.h"
 
 #include "session/precision/study_page.h"
 

@@ -4,8 +4,8 @@
 // The internal structure of a study, for study.c (life cycle), study_store.c (files), study_part.c
 // and study_merge.c (parts), study_doc.c and study_html.c (documents).
 
-#include "session/store/journal.h"
 #include "session/precision/study.h"
+#include "session/store/journal.h"
 
 #define HN_PART_STUDY "part of work-precision" ///< member "study" of a part
 enum { HN_PART_FORMAT = 3 }; // counts up when the meaning of a part's fields changes

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/precision/study_merge.h"
 
-#include "session/references/references.h"
-#include "session/store/stored_json.h"
 #include "session/precision/study_internal.h"
 #include "session/precision/study_store.h"
 #include "session/references/reference_store.h"
+#include "session/references/references.h"
+#include "session/store/stored_json.h"
 
 #include "base/hash.h"
 #include "study/cost/shards.h"

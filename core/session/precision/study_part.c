@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/precision/study_part.h"
 
-#include "session/references/references.h"
 #include "session/precision/study_internal.h"
 #include "session/precision/study_store.h"
 #include "session/references/reference_store.h"
+#include "session/references/references.h"
 
 #include "base/hash.h"
 

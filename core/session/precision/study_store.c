@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/store/ending_json.h"
 #include "session/precision/study_store.h"
 
-#include "session/store/stored_json.h"
+#include "session/store/ending_json.h"
+
 #include "session/precision/study_internal.h"
+#include "session/store/stored_json.h"
 
 #include "base/hash.h"
 

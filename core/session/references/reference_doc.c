@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/references/reference_doc.h"
 
-#include "session/store/columns_json.h"
-#include "session/references/references.h"
 #include "session/references/reference_store.h"
+#include "session/references/references.h"
+#include "session/store/columns_json.h"
 
 #include "base/hash.h"
 #include "study/run/pace.h"

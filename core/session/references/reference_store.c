@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/references/reference_store.h"
 
-#include "session/references/references.h"
 #include "base/file.h"
+#include "session/references/references.h"
 #include "session/store/stored_json.h"
 
 #include "base/hash.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/report/report_doc.h"
 
-#include "session/report/report_internal.h"
 #include "session/budgets/budgets_doc.h"
 #include "session/precision/study_doc.h"
+#include "session/report/report_internal.h"
 #include "session/report/report_words.h"
 
 #include <math.h>

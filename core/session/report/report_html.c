@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/style/style.h"
 #include "session/report/report_html.h"
+
+#include "session/style/style.h"
 
 #include "session/report/report_internal.h"
 
 #include "base/units.h"
-#include "session/precision/study_page.h"
 #include "session/budgets/budgets_plot.h"
 #include "session/precision/study_html.h"
+#include "session/precision/study_page.h"
 #include "session/report/report_plot.h"
 #include "session/report/report_words.h"
 

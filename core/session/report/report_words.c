@@ -3,8 +3,8 @@
 
 #include "session/report/report_internal.h"
 
-#include "session/precision/study_page.h"
 #include "session/precision/study_html.h"
+#include "session/precision/study_page.h"
 
 #include <math.h>
 #include <stdbool.h>

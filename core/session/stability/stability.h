@@ -10,8 +10,8 @@
 // interrupted.
 
 #include "session/job/job_request.h"
-#include "study/stability/stability.h"
 #include "study/cost/workprecision.h"
+#include "study/stability/stability.h"
 
 #include <stdbool.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_column.h"
 
+#include "session/stability/map_grid.h"
 #include "session/stability/stability_internal.h"
 #include "session/stability/stability_store.h"
-#include "session/stability/map_grid.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_doc.h"
 
-#include "session/store/ending_json.h"
-#include "study/incidents/watch.h"
-#include "session/store/csv.h"
 #include "session/stability/stability.h"
 #include "session/stability/stability_column.h"
+#include "session/store/csv.h"
+#include "session/store/ending_json.h"
+#include "study/incidents/watch.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_frame.h"
+
 #include "session/stability/stability_column.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_html.h"
 
-#include "session/stability/stability_frame.h"
-#include "session/precision/study_page.h"
 #include "session/precision/study_html.h"
+#include "session/precision/study_page.h"
 #include "session/stability/stability_column.h"
+#include "session/stability/stability_frame.h"
 
 #include <math.h>
 #include <stdbool.h>

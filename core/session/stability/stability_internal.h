@@ -4,8 +4,8 @@
 // The state of a map, shared by stability.c (opening and running), stability_axes.c (request),
 // stability_column.c (boundaries), stability_store.c (journal) and the writers of documents.
 
-#include "session/store/journal.h"
 #include "session/stability/stability.h"
+#include "session/store/journal.h"
 
 #include <stdbool.h>
 

@@ -7,8 +7,8 @@
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/linearise.h"
-#include "linalg/saddle.h"
 #include "formulations/ground/accel_jacobian.h"
+#include "linalg/saddle.h"
 #include "study/budget/budget.h"
 #include "study/budget/flow.h"
 #include "study/run/run.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/budget/flow.h"
 
-#include "integrators/step/control.h"
-#include "integrators/list/stepper_list.h"
 #include "integrators/explicit/tableau.h"
+#include "integrators/list/stepper_list.h"
+#include "integrators/step/control.h"
 #include "linalg/dense.h"
 
 #include <math.h>

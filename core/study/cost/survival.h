@@ -5,9 +5,9 @@
 // assembly mode. A run stays with the exact motion, ends early, or leaves the motion with or
 // without an incident that says so. Counted over many step sizes this gives "survived n of m".
 
+#include "study/run/walk.h"
 #include "study/truth/errors.h"
 #include "study/truth/reference.h"
-#include "study/run/walk.h"
 
 #include <stdbool.h>
 

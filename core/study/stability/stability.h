@@ -9,8 +9,8 @@
 // prediction is the smallest of the step limits along the path.
 
 #include "integrators/method/method_spec.h"
-#include "study/spectrum/spectrum.h"
 #include "study/run/walk.h"
+#include "study/spectrum/spectrum.h"
 
 #include <stdbool.h>
 

@@ -13,8 +13,8 @@
 // Numbers are stored as doubles, so the error of a coordinate is never called less than half a unit
 // of its last place.
 
-#include "study/truth/errors.h"
 #include "study/run/walk.h"
+#include "study/truth/errors.h"
 
 #include <stdbool.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom compare: several methods at the same times, and a table of which are right.
 #include "base/units.h"
-#include "cli/shell/commands.h"
 #include "cli/commands/error_advice.h"
 #include "cli/commands/incident_list.h"
+#include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/notes.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom export: a mechanism as a program of its own, or as a model of another program.
+#include "session/export/export.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/scene_word.h"
-#include "session/export/export.h"
 #include "session/export/mechanism.h"
 
 #include <string.h>

@@ -2,11 +2,12 @@
 // holonom problem and holonom grade. Exit statuses: 0 graded, however low; 2 a submission that
 // cannot be read, or a word that is wrong; 3 an exercise that does not load, an output that cannot
 // be written.
+#include "grade/grade.h"
 #include "base/clock.h"
 #include "base/visible.h"
-#include "cli/commands/rubric_file.h"
 #include "cli/commands/exercise_word.h"
 #include "cli/commands/grade_folder.h"
+#include "cli/commands/rubric_file.h"
 #include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -14,7 +15,6 @@
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
 #include "grade/exercise_shelf.h"
-#include "grade/grade.h"
 #include "grade/submission.h"
 #include "grade/variant.h"
 #include "grade/verdict_forms.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom import: a mechanism written for another program, as a scene; what of it is not in the
 // scene is told.
+#include "import/import.h"
 #include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
-#include "import/import.h"
 #include "session/model/model.h"
 #include "session/model/model_json.h"
 

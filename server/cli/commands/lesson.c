@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom lesson
+#include "lesson/lesson.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/plain.h"
 #include "cli/shell/print.h"
-#include "lesson/lesson.h"
 #include "lesson/lesson_text.h"
 #include "terminal/width.h"
 

@@ -2,11 +2,11 @@
 // holonom list scenes|methods [NAME]|lessons|problems
 #include "base/suggest.h"
 #include "cli/shell/commands.h"
-#include "integrators/method/catalogue.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/print.h"
 #include "grade/exercise_shelf.h"
+#include "integrators/method/catalogue.h"
 #include "integrators/method/method_spec.h"
 #include "session/model/lists.h"
 #include "session/model/model.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom run: one method, its samples as CSV, NDJSON or JSON.
-#include "cli/shell/commands.h"
 #include "cli/commands/error_advice.h"
 #include "cli/commands/incident_list.h"
 #include "cli/commands/run_rows.h"
+#include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/notes.h"

@@ -9,8 +9,8 @@
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
 #include "render/look.h"
-#include "tui/foreground.h"
 #include "terminal/keys.h"
+#include "tui/foreground.h"
 #include "tui/link.h"
 #include "tui/views.h"
 

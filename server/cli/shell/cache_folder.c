@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/cache_folder.h"
+
 #include "cli/shell/notes.h"
 
 #include <errno.h>

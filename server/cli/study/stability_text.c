@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/shell/table.h"
 #include "cli/study/stability_text.h"
+
+#include "cli/shell/table.h"
 #include "session/stability/stability_column.h"
 #include "terminal/map_plot.h"
 #include "terminal/width.h"

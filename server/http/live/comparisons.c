@@ -3,7 +3,6 @@
 
 #include "base/clock.h"
 #include "http/ground/jobs.h"
-#include "session/job/field.h"
 #include "http/live/pulls.h"
 #include "http/live/session.h"
 #include "http/live/stream.h"
@@ -11,9 +10,10 @@
 #include "http/request/gzip.h"
 #include "http/request/place_queue.h"
 #include "http/request/request.h"
+#include "session/job/field.h"
 
-#include <stdbool.h>
 #include <malloc.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>

@@ -2,8 +2,8 @@
 #define HN_MICROHTTPD_OWN_NAMES // the exported function bears the library's name
 #include "http/request/library_answer.h"
 
-#include "build.h"
 #include "base/strbuf.h"
+#include "build.h"
 #include "http/ground/closing_head.h"
 #include "http/ground/problem_document.h"
 #include "http/request/early_answer.h"

@@ -5,11 +5,11 @@
 // function of the table of routes) fills in the reply, and the callback that libmicrohttpd makes at
 // the end frees it; nothing else may. A handler reads and writes this struct only.
 
-#include "http/ground/microhttpd.h"
 #include "base/diag.h"
 #include "base/interrupt.h"
 #include "base/strbuf.h"
 #include "http/ground/jobs.h"
+#include "http/ground/microhttpd.h"
 #include "http/ground/problem_document.h"
 #include "http/ground/shares.h"
 #include "http/request/route.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/routes/catalogue.h"
+
 #include "base/suggest.h"
 #include "integrators/method/catalogue.h"
-#include "http/routes/catalogue.h"
 
 #include "build.h"
 #include "grade/exercise_shelf.h"
@@ -18,10 +19,10 @@
 #include "session/kinds/job.h"
 #include "session/model/lists.h"
 #include "session/model/model.h"
-#include "session/references/references.h"
 #include "session/model/model_json.h"
 #include "session/references/reference_doc.h"
 #include "session/references/reference_store.h"
+#include "session/references/references.h"
 #include "study/incidents/kinds.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/dispatch.h"
 
-#include "build.h"
 #include "base/clock.h"
+#include "build.h"
 #include "http/request/client.h"
 #include "http/request/early_answer.h"
 #include "http/request/guard.h"

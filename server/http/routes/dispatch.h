@@ -4,9 +4,9 @@
 // The life of a request: head, body, work, reply. The callbacks of the HTTP library; `cls` is the
 // hn_dispatch of the server.
 
-#include "http/ground/microhttpd.h"
 #include "http/ground/connections.h"
 #include "http/ground/jobs.h"
+#include "http/ground/microhttpd.h"
 #include "http/request/context.h"
 
 /// Borrowed from the server.

@@ -3,8 +3,8 @@
 
 #include "build.h"
 #include "http/request/context.h"
-#include "http/routes/field_schema.h"
 #include "http/request/request.h"
+#include "http/routes/field_schema.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "build.h"
-#include "session/job/field.h"
 #include "http/ground/sha256.h"
+#include "session/job/field.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -117,8 +117,8 @@ static double hand_rk4(double h, double *angle) {
 
 static double gsl_rk8pd(double tolerance, double *angle) {
     gsl_odeiv2_system system = {rhs, NULL, 6, NULL};
-    gsl_odeiv2_driver *d = gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 1e-3,
-                                                         tolerance, tolerance);
+    gsl_odeiv2_driver *d =
+        gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 1e-3, tolerance, tolerance);
     double y[6], t = 0;
     memcpy(y, start, sizeof y);
     *angle = gsl_odeiv2_driver_apply(d, &t, END, y) == GSL_SUCCESS ? y[0] : HUGE_VAL;
@@ -163,8 +163,8 @@ static double ida(double tolerance, double *angle) {
     return 0;
 }
 
-static void time_library(const char *program, const char *method,
-                         double (*solve)(double, double *), const double *settings, int n) {
+static void time_library(const char *program, const char *method, double (*solve)(double, double *),
+                         const double *settings, int n) {
     for (int k = 0; k < n; k++) {
         double angle = 0, least = HUGE_VAL;
         for (int i = 0; i < repeats; i++) {
@@ -176,7 +176,8 @@ static void time_library(const char *program, const char *method,
     }
 }
 
-#define LADDER(...) (const double[]){__VA_ARGS__}, (int)(sizeof((double[]){__VA_ARGS__}) / sizeof(double))
+#define LADDER(...) \
+    (const double[]){__VA_ARGS__}, (int)(sizeof((double[]){__VA_ARGS__}) / sizeof(double))
 
 int main(int argc, char **argv) {
     char folder[] = "/tmp/holonom-peers-XXXXXX";

@@ -3,8 +3,8 @@
 #include "support/near.h"
 
 #include "dynamics/analyse/inspect.h"
-#include "support/model.h"
 #include "dynamics/compile/compile.h"
+#include "support/model.h"
 
 #include <string.h>
 

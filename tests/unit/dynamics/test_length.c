@@ -2,9 +2,9 @@
 // The characteristic length, by which gaps are judged, is the mechanism's own, however the scene
 // was written.
 
+#include "dynamics/compile/compile.h"
 #include "support/model.h"
 #include "support/near.h"
-#include "dynamics/compile/compile.h"
 
 #include <math.h>
 #include <stdio.h>

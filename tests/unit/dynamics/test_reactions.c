@@ -3,11 +3,11 @@
 // independence of the cut.
 #include "support/near.h"
 
+#include "dynamics/assembly/project.h"
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
-#include "dynamics/assembly/project.h"
 #include "dynamics/reactions/reactions.h"
 #include "support/balance.h"
 #include "support/mechanism.h"

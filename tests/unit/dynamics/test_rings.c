@@ -3,10 +3,10 @@
 // mechanism is the same.
 #include "support/near.h"
 
-#include "support/model.h"
-#include "support/ring.h"
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
+#include "support/model.h"
+#include "support/ring.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,12 +2,12 @@
 // Whole scenes, compiled: what is refused and why, loads against their power, formulas, telling.
 #include "support/near.h"
 
+#include "dynamics/analyse/inspect.h"
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/drawing.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
-#include "dynamics/analyse/inspect.h"
 #include "support/mechanism.h"
 
 #include <cjson/cJSON.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/near.h"
 #include "integrators/list/stepper_list.h"
+#include "support/near.h"
 #include "support/odes.h"
 
 #include <math.h>

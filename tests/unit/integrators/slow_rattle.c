@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/dae.h"
 #include "integrators/list/stepper_list.h"
+#include "support/dae.h"
 #include "support/near.h"
 
 #include <math.h>

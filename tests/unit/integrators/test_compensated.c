@@ -2,8 +2,8 @@
 #include "support/near.h"
 #include "support/odes.h"
 
-#include "integrators/step/compensated.h"
 #include "integrators/list/stepper_list.h"
+#include "integrators/step/compensated.h"
 
 #include <math.h>
 #include <string.h>

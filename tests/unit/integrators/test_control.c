@@ -4,8 +4,8 @@
 #include "support/near.h"
 #include "support/odes.h"
 
-#include "integrators/step/control.h"
 #include "integrators/list/stepper_list.h"
+#include "integrators/step/control.h"
 
 #include <math.h>
 #include <string.h>

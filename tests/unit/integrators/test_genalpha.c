@@ -4,8 +4,8 @@
 #include "support/near.h"
 
 #include "dynamics/compile/coordinates.h"
-#include "linalg/dense.h"
 #include "integrators/list/stepper_list.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>

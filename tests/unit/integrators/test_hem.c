@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/dae.h"
+#include "dynamics/compile/coordinates.h"
 #include "formulations/list/formulation_list.h"
 #include "integrators/list/stepper_list.h"
+#include "support/dae.h"
 #include "support/near.h"
 #include "support/odes.h"
-#include "dynamics/compile/coordinates.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Index 3 with speeds projected at the end of each step: what collocation loses of them comes back.
-#include "integrators/method/method_spec.h"
-#include "integrators/list/stepper_list.h"
 #include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
+#include "integrators/method/method_spec.h"
 #include "support/dae.h"
 #include "support/near.h"
 #include "support/odes.h"

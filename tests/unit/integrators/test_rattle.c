@@ -5,8 +5,8 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/quaternion.h"
-#include "linalg/dense.h"
 #include "integrators/list/stepper_list.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/alloc.h"
 #include "integrators/list/stepper_list.h"
+#include "support/alloc.h"
 #include "support/near.h"
 #include "support/odes.h"
 #include "support/test_arena.h"

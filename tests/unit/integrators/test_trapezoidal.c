@@ -4,9 +4,9 @@
 #include "support/odes.h"
 
 #include "dynamics/compile/coordinates.h"
-#include "linalg/dense.h"
-#include "integrators/list/stepper_list.h"
 #include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/command_table.h"
 
-#include "support/near.h"
 #include "cli/shell/args.h"
 #include "cli/shell/option_help.h"
+#include "support/near.h"
 
 #include <math.h>
 #include <stdio.h>

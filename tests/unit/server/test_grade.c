@@ -4,9 +4,9 @@
 #include "grade/exercise_text.h"
 #include "grade/grade.h"
 
+#include "p3.h"
 #include "support/alloc.h"
 #include "support/near.h"
-#include "p3.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -327,7 +327,7 @@ static void files_that_cannot_be_graded_say_why(void **state) {
         {"\n# Heading\n", "is not JSON: it begins with '#'"},
         {"l1 = 3", "it begins with 'l'"},
         {"\xE2\x80\x93", "hand in a JSON file, which begins with '{'; "
-         "'holonom problem p3' shows the form"},
+                         "'holonom problem p3' shows the form"},
         {"{}", "'J' is missing: the object is empty"},
         {"{\"j\": []}", "'J' is missing"},
         {"[]", "is a list, expected an object"},

@@ -2,8 +2,8 @@
 #include "support/near.h"
 
 #include "cli/shell/plain.h"
-#include "terminal/dots.h"
 #include "render/look.h"
+#include "terminal/dots.h"
 
 #include <string.h>
 

@@ -2,8 +2,8 @@
 // A verdict on Problem 3 in each form: the same score, and the fields that a platform knows.
 #include "grade/grade.h"
 
-#include "support/near.h"
 #include "p3.h"
+#include "support/near.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -5,8 +5,8 @@
 #include "session/model/model.h"
 #include "study/run/run.h"
 #include "support/near.h"
-#include "support/shipped_library.h"
 #include "support/shipped.h"
+#include "support/shipped_library.h"
 
 #include <math.h>
 #include <stdio.h>

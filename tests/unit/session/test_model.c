@@ -3,11 +3,11 @@
 #include "support/shipped_library.h"
 
 #include "dynamics/compile/drawing.h"
+#include "session/compare/picture.h"
 #include "session/model/caption.h"
 #include "session/model/envelope.h"
-#include "session/model/model.h"
-#include "session/compare/picture.h"
 #include "session/model/equations.h"
+#include "session/model/model.h"
 #include "session/model/model_json.h"
 #include "session/model/terms_json.h"
 

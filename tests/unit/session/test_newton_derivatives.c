@@ -3,15 +3,15 @@
 // against differences of their own right-hand sides, and the systems solved by structure against
 // the full matrix.
 
+#include "dynamics/assembly/project.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
-#include "dynamics/assembly/project.h"
-#include "integrators/step/stepper.h"
-#include "integrators/list/stepper_list.h"
-#include "formulations/list/formulation_list.h"
-#include "linalg/dense.h"
 #include "formulations/ground/formulation.h"
+#include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
+#include "integrators/step/stepper.h"
+#include "linalg/dense.h"
 #include "session/model/model.h"
 #include "support/near.h"
 #include "support/shipped_library.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder of N four-bars: what a step costs as N grows, and who comes through its flat poses.
 
-#include "support/ladder.h"
 #include "formulations/list/formulation_list.h"
+#include "support/ladder.h"
 #include "support/motion.h"
 #include "support/near.h"
 

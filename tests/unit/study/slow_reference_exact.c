@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Benchmark problems whose motion is known in closed form, run by methods of different families.
 
-#include "support/reference.h"
 #include "support/near.h"
+#include "support/reference.h"
 
 static void the_simple_pendulum_follows_the_elliptic_functions(void **state) {
     (void)state;

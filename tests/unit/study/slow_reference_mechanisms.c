@@ -3,8 +3,8 @@
 // found by two independent
 // computations: Drake, the Modelica Standard Library, Exudyn.
 
-#include "support/reference.h"
 #include "support/near.h"
+#include "support/reference.h"
 
 static void the_four_bar_of_drake_swings_like_its_reference(void **state) {
     (void)state;

@@ -3,8 +3,8 @@
 // and joints and as a Lagrangian, and the car axis, whose road moves. Hairer & Wanner 1996, VII.7;
 // Mazzia & Magherini 2008.
 
-#include "support/reference.h"
 #include "support/near.h"
+#include "support/reference.h"
 
 #include <math.h>
 

@@ -3,8 +3,8 @@
 #include "support/order_runs.h"
 #include "support/trial.h"
 
-#include "study/cost/convergence.h"
 #include "formulations/list/formulation_list.h"
+#include "study/cost/convergence.h"
 
 #include <math.h>
 #include <stdio.h>

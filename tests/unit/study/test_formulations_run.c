@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/near.h"
 #include "formulations/list/formulation_list.h"
+#include "support/near.h"
 #include "support/trial.h"
 
 #include "dynamics/evaluate/eval.h"

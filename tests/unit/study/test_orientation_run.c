@@ -3,8 +3,8 @@
 // them.
 #include "support/near.h"
 
-#include "support/motion.h"
 #include "dynamics/compile/coordinates.h"
+#include "support/motion.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
 // When loops of steps look at their limits: after each slow step, seldom between quick ones, and
 // whatever the output asked for.
 
-#include "study/run/pace.h"
 #include "base/clock.h"
+#include "study/run/pace.h"
 #include "study/run/walk.h"
 #include "support/near.h"
 #include "support/trial.h"

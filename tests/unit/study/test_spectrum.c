@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The spectrum of the motion on the loops, and what integrators make of its eigenvalues.
+#include "integrators/list/stepper_list.h"
 #include "study/spectrum/region.h"
 #include "study/spectrum/spectrum.h"
-#include "integrators/list/stepper_list.h"
 
 #include "support/model.h"
 #include "support/near.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/compile/coordinates.h"
 #include "support/motion.h"
 #include "support/near.h"
 #include "support/odes.h"
-#include "dynamics/compile/coordinates.h"
 
 #include <math.h>
 #include <stdio.h>
