@@ -124,7 +124,7 @@ static void add_first_steps(hn_strbuf *b, const char *program) {
                                            {"list scenes", "all shipped mechanisms"}};
     enum { N_STEPS = sizeof steps / sizeof *steps, MOST_PROGRAM = 20, STEP_COLUMNS = 23 };
     const bool installed = !strchr(program, '/');
-    const char *name = strlen(program) <= MOST_PROGRAM ? program : "./holonom";
+    const char *name = strlen(program) <= MOST_PROGRAM ? program : "holonom";
     hn_strbuf_add(b, "holonom simulates mechanisms with closed loops by several methods at "
                      "once.\n\nStart with one of these:\n");
     for (int i = 0; i < N_STEPS; i++) {

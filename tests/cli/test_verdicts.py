@@ -85,7 +85,9 @@ def changed_since(folder):
     write(folder, "mine.json", mine)
     text, told = again(then)
     expect("what of the exercise has changed", told["changes"][0] == "the exercise has changed since the verdict: its statement, part b, part d (new), part c (gone)", text)
-    expect("and what that means for the parts", told["changes"][1:] == ["b: 0 of 1 (other) before, 1 of 1 (right) now", "d was not in the verdict"] and not told["same"], text)
+    expect("and what that means for the parts", told["changes"][1:] == ["b: 0 of 1 (other) before, 1 of 1 (right) now", "d was not in the verdict", "c is not judged now"] and not told["same"], text)
+    bare = dict(then, entries=[{key: value for key, value in e.items() if key != "max_points"} for e in then["entries"]])
+    expect("points that a verdict does not hold are left out", "b: 0 (other) before, 1 of 1 (right) now" in again(bare)[1]["changes"], told)
     mine["parts"] = mine["parts"][:1]
     mine["statement"], mine["draw"]["x"]["range"] = ["s"], [1, 8]
     write(folder, "mine.json", mine)

@@ -15,6 +15,7 @@
 #include "grade/rubric.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,6 +72,32 @@ static const cJSON *find_entry(const cJSON *old, const char *name) {
     return NULL;
 }
 
+/// "b: 1 of 2 (sign)"; points that a verdict does not hold are left out.
+static void add_judgement(hn_strbuf *b, double points, double most, const char *mistake) {
+    if (isfinite(points)) {
+        hn_strbuf_printf(b, "%g ", points);
+    }
+    if (isfinite(points) && isfinite(most)) {
+        hn_strbuf_printf(b, "of %g ", most);
+    }
+    hn_strbuf_printf(b, "(%s)", mistake[0] ? mistake : "right");
+}
+
+/// Entries of the verdict that this program does not judge, a line each.
+static void add_entries_gone(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
+    const cJSON *e;
+    cJSON_ArrayForEach(e, cJSON_GetObjectItemCaseSensitive(old, "entries")) {
+        const char *name = text_of(e, "name");
+        bool judged = false;
+        for (int k = 0; k < v->n_entries && !judged; k++) {
+            judged = strcmp(v->entry[k].name, name) == 0;
+        }
+        if (!judged) {
+            hn_strbuf_printf(b, "%.60s is not judged now\n", name);
+        }
+    }
+}
+
 /// Entries that are judged in another way than before, a line each.
 static void add_entry_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     for (int k = 0; k < v->n_entries; k++) {
@@ -83,10 +110,15 @@ static void add_entry_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *
             hn_strbuf_printf(b, "%s was not in the verdict\n", now->name);
         } else if (!(fabs(points - now->points) <= 1e-9) ||
                    !(fabs(most - now->max_points) <= 1e-9) || strcmp(mistake, now->mistake) != 0) {
-            hn_strbuf_printf(b, "%s: %g of %g (%s) before, %g of %g (%s) now\n", now->name, points,
-                             most, mistake[0] ? mistake : "right", now->points, now->max_points,
-                             now->mistake[0] ? now->mistake : "right");
+            hn_strbuf_printf(b, "%s: ", now->name);
+            add_judgement(b, points, most, mistake);
+            hn_strbuf_add(b, " before, ");
+            add_judgement(b, now->points, now->max_points, now->mistake);
+            hn_strbuf_add(b, " now\n");
         }
+    }
+    if (v->n_entries > 0) {
+        add_entries_gone(b, old, v);
     }
 }
 
