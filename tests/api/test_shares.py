@@ -222,6 +222,42 @@ class FairShares(Timed):
         threads[0].join()
         self.assertEqual((answers["own"].status, answers["own"].json()["type"]), (503, "/api/v1/errors/stopping"))
 
+    def test_a_place_that_nobody_who_waits_may_have_is_given_at_once(self):
+        """While a client with its share waited for a place, others were refused although one was free."""
+        server = driver.Server("--max-comparisons", "2")
+        greedy, others = From(server, "127.0.0.2"), [From(server, f"127.0.0.{k}") for k in (3, 4)]
+        for path, body, made, busy in ((self.STUDIES, self.STUDY, 202, 503), (self.AT_ONCE[1].split("?")[0], self.MAKE[2], 201, 429)):
+            first = greedy.ask("POST", path, body)
+            self.assertEqual(first.status, made)
+            waiting = threading.Thread(target=greedy.ask, args=("POST", path + "?wait=50", body))
+            waiting.start()
+            self.assertTrue(driver.until(lambda: "1 requests wait" in greedy.ask("POST", path + "?wait=0", body).json()["detail"]))
+            self.assertEqual([o.ask("POST", path + "?wait=0", body).status for o in others], [made, busy])
+            self.assertEqual(greedy.ask("DELETE", f"{path}/{first.json()['id']}").status, 204)
+            waiting.join()
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_study_goes_on_after_those_who_wait(self):
+        """Its place was free for 0.1 s before who waited was given it: going on took it first."""
+        server = driver.Server()
+        first, second, waiting = (From(server, f"127.0.0.{k}") for k in (2, 3, 4))
+        study = f"{self.STUDIES}/{first.ask('POST', self.STUDIES, self.STUDY).json()['id']}"
+        self.assertEqual(second.ask("POST", self.STUDIES, self.STUDY).status, 202)
+        answers = []
+        thread = threading.Thread(target=lambda: answers.append(waiting.ask("POST", f"{self.STUDIES}?wait=50", self.STUDY)))
+        thread.start()
+        self.assertTrue(driver.until(lambda: "1 requests wait" in first.ask("POST", self.NO_WAIT, self.STUDY).json()["detail"]))
+        first.ask("PATCH", study, {"state": "stopped"})
+        # 409 as long as it is still ending; the first other answer comes at once after its end
+        while (on := first.ask("PATCH", study, {"state": "running"})).status == 409:
+            pass
+        self.assertEqual(on.status, 503, on.json())
+        # it stands in no queue
+        self.assertRegex(on.json()["detail"], "^all places for studies are taken; one client may have 1 of 2$")
+        thread.join()
+        self.assertEqual(answers[0].status, 202)
+        self.assertEqual(server.stop(), 0)
+
     def test_studies_of_one_client_make_no_room_by_those_of_another(self):
         server = driver.Server()
         greedy, modest = From(server, "127.0.0.2"), From(server, "127.0.0.3")

@@ -267,7 +267,10 @@ static hn_session *find_session(hn_request *r) {
 /// A place for one more. Returns false where the request waits for one, or is refused.
 static bool reserve(hn_comparisons *all, hn_request *r, double wait) {
     pthread_mutex_lock(&all->lock);
-    const bool placed = r->has_place || (all->queue.n == 0 && take_place(all, r->client));
+    if (!r->has_place) {
+        serve_waiting(all); // then no waiting request could have what is left
+    }
+    const bool placed = r->has_place || take_place(all, r->client);
     const bool waits = !placed && wait_for_place(all, r, wait);
     if (placed) {
         all->n_reserved++;

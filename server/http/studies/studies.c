@@ -492,27 +492,23 @@ static hn_status go_on(hn_study *s, const cJSON *body) {
 static void resume(hn_request *r, hn_study *s) {
     hn_studies *all = s->all;
     const char *why = NULL;
-    hn_study_place p = HN_STUDY_PLACE_TAKEN;
+    bool placed = true;
     hn_status status = HN_OK;
 
     // one look, so that of two such requests one starts it
     pthread_mutex_lock(&all->lock);
-    if (!has_no_need(s) && (why = hindrance(s)) == NULL &&
-        (p = hn_study_take_place(all, r->client)) == HN_STUDY_PLACE_TAKEN) {
+    if (!has_no_need(s) && (why = hindrance(s)) == NULL && (placed = hn_study_take_place(all, r))) {
         s->client = r->client;
         status = go_on(s, r->json);
         if (status != HN_OK) {
             hn_study_give_back(all, r->client);
         }
     }
-    if (p != HN_STUDY_PLACE_TAKEN) {
-        hn_study_reply_no_place(all, r, all->queue.n);
-    }
     pthread_mutex_unlock(&all->lock);
 
     if (why) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the study cannot go on: %s", why);
-    } else if (p != HN_STUDY_PLACE_TAKEN) {
+    } else if (!placed) {
         return; // refused
     } else if (status != HN_OK) {
         hn_reply_diags(r, status, &(hn_diags){0});

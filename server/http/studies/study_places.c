@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <time.h>
 
 enum { LONGEST_RETRY = 60, LOOK_MS = 100 }; // [s], [ms]
@@ -19,14 +20,6 @@ double hn_study_time_left(const hn_study *s, double share, double elapsed) {
     const double by_share =
         share > TELLING ? (s->before + elapsed) * (1 - share) / share : HUGE_VAL;
     return fmin(by_share, fmax(0, s->work.request.limits.time_limit - elapsed));
-}
-
-hn_study_place hn_study_take_place(hn_studies *all, hn_client client) {
-    const hn_study_place p = all->stopping                         ? HN_STUDY_PLACES_CLOSED
-                             : hn_shares_take(all->places, client) ? HN_STUDY_PLACE_TAKEN
-                                                                   : HN_STUDY_PLACES_FULL;
-    all->n_threads += p == HN_STUDY_PLACE_TAKEN;
-    return p;
 }
 
 void hn_study_give_back(hn_studies *all, hn_client client) {
@@ -60,21 +53,19 @@ static double time_to_turn(const hn_studies *all, hn_client client, int n_before
     return fmin(LONGEST_RETRY, time_to_place(all, client) + n_before * each);
 }
 
-void hn_study_reply_no_place(hn_studies *all, hn_request *r, int n_before) {
+/// Makes the reply to a request that found no place. With the lock held.
+static void refuse_place(hn_studies *all, hn_request *r, int n_before, const char *tail) {
     if (all->stopping) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
         return;
     }
     const int share = hn_http_opts_share(all->opts, all->opts->max_studies);
     const double seconds = time_to_turn(all, r->client, n_before);
-    hn_reply_problem(
-        r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
-        hn_shares_has_share(all->places, r->client)
-            ? "your client runs %d of %d studies, which is its share; %d requests wait "
-              "before this one"
-            : "all places for studies are taken; one client may have %d of %d; %d "
-              "requests wait before this one",
-        share, all->opts->max_studies, n_before);
+    hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
+                     hn_shares_has_share(all->places, r->client)
+                         ? "your client runs %d of %d studies, which is its share%s"
+                         : "all places for studies are taken; one client may have %d of %d%s",
+                     share, all->opts->max_studies, tail);
     hn_reply_header_add(r, "Retry-After", "%d", (int)fmin(LONGEST_RETRY, 1 + floor(seconds)));
 }
 
@@ -91,7 +82,9 @@ static void give(void *user, hn_client client) {
 }
 
 static void refuse(void *user, hn_request *r, int n_before) {
-    hn_study_reply_no_place(user, r, n_before);
+    char tail[64];
+    snprintf(tail, sizeof tail, "; %d requests wait before this one", n_before);
+    refuse_place(user, r, n_before, tail);
 }
 
 /// With the lock held.
@@ -104,6 +97,22 @@ static void serve_waiting(hn_studies *all) {
                                       .jobs = all->queue.first->context->heavy};
         hn_place_queue_serve(&all->queue, &rules, all->stopping);
     }
+}
+
+/// Takes a place that no waiting request could have. With the lock held.
+static bool take_after_waiting(hn_studies *all, hn_client client) {
+    serve_waiting(all);
+    return take(all, client);
+}
+
+bool hn_study_take_place(hn_studies *all, hn_request *r) {
+    const bool taken = take_after_waiting(all, r->client);
+    if (taken) {
+        all->n_threads++;
+    } else {
+        refuse_place(all, r, all->queue.n, "");
+    }
+    return taken;
 }
 
 void hn_study_refuse_waiting(hn_studies *all) {
@@ -134,8 +143,7 @@ bool hn_study_places_start(hn_studies *all) {
 
 bool hn_study_find_place(hn_studies *all, hn_request *r, double wait) {
     pthread_mutex_lock(&all->lock);
-    const bool placed =
-        !all->stopping && (r->has_place || (all->queue.n == 0 && take(all, r->client)));
+    const bool placed = !all->stopping && (r->has_place || take_after_waiting(all, r->client));
     const bool waits =
         !placed && !all->stopping && hn_place_queue_add(&all->queue, r, wait, all->opts->queue);
     if (placed) {
@@ -143,7 +151,7 @@ bool hn_study_find_place(hn_studies *all, hn_request *r, double wait) {
     } else if (waits) {
         pthread_cond_broadcast(&all->changed);
     } else {
-        hn_study_reply_no_place(all, r, all->queue.n);
+        refuse(all, r, all->queue.n);
     }
     pthread_mutex_unlock(&all->lock);
     if (!placed && !waits) {

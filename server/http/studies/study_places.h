@@ -38,21 +38,16 @@ struct hn_studies {
     int n_threads; ///< that are at work, or on their way out
 };
 
-/// What became of the request for a place.
-typedef enum hn_study_place {
-    HN_STUDY_PLACE_TAKEN,
-    HN_STUDY_PLACES_FULL, ///< in all, or for this client
-    HN_STUDY_PLACES_CLOSED
-} hn_study_place;
-
 /// Returns the seconds to go, by what was done in `elapsed` seconds and never beyond the time
 /// limit; all that the limit leaves when too little is known.
 double hn_study_time_left(const hn_study *s, double share, double elapsed);
-/// Takes a place for one more thread, with the lock held. A study that was deleted holds its place
-/// until its thread has ended.
-hn_study_place hn_study_take_place(hn_studies *all, hn_client client);
-/// Gives a request its place for one more thread; lets it wait for one where there is none, at most
-/// so many seconds, or refuses it. Returns false where it has none. Takes the lock.
+/// Takes a place for one more thread, after those who wait have theirs. Returns false with a
+/// problem as reply, which has the seconds until there will probably be one. With the lock held. A
+/// study that was deleted holds its place until its thread has ended.
+bool hn_study_take_place(hn_studies *all, hn_request *r);
+/// Gives a request its place for one more thread, after those who wait have theirs; lets it wait
+/// for one where there is none, at most so many seconds, or refuses it with the number of requests
+/// that wait before it. Returns false where it has none. Takes the lock.
 bool hn_study_find_place(hn_studies *all, hn_request *r, double wait);
 /// Starts the thread that looks after those who wait. Returns false when threads are out.
 bool hn_study_places_start(hn_studies *all);
@@ -60,7 +55,4 @@ bool hn_study_places_start(hn_studies *all);
 void hn_study_refuse_waiting(hn_studies *all);
 /// Gives back a place whose thread was never started, with the lock held.
 void hn_study_give_back(hn_studies *all, hn_client client);
-/// Makes the reply to a request that found no place: a problem, with the number of requests that
-/// wait before it, and the seconds until it will probably find one. With the lock held.
-void hn_study_reply_no_place(hn_studies *all, hn_request *r, int n_before);
 #endif
