@@ -14,7 +14,8 @@ static void keep(char *out, size_t size, const cJSON *o, const char *key) {
 }
 
 void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool programs) {
-    *c = (hn_class_copies){.n = r->n, .item = calloc((size_t)r->n + 1, sizeof *c->item)};
+    *c = (hn_class_copies){
+        .n = r->n, .programs = programs, .item = calloc((size_t)r->n + 1, sizeof *c->item)};
     for (int i = 0; c->item && i < r->n; i++) {
         cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
         const double score = cJSON_GetNumberValue(cJSON_GetObjectItem(o, "score"));
@@ -33,6 +34,11 @@ void hn_class_copies_reset(hn_class_copies *c) {
     *c = (hn_class_copies){0};
 }
 
+const char *hn_class_copies_near(bool programs) {
+    return programs ? "the same but for names, comments and the order of statements"
+                    : "the same but for the names";
+}
+
 /// Adds those that are like submission i: in their texts, or in their shape alone.
 static void put_group(hn_strbuf *b, const hn_class_copies *c, int i, bool by_texts) {
     const hn_class_copy *own = &c->item[i];
@@ -45,9 +51,11 @@ static void put_group(hn_strbuf *b, const hn_class_copies *c, int i, bool by_tex
             continue;
         }
         if (n++ < MOST_NAMED) {
-            const char *says = by_texts ? "the same as " : "the same but for the names as ";
-            hn_strbuf_printf(b, "%s%s%s", n > 1 || b->n == 0 ? "" : "; ", n > 1 ? ", " : says,
-                             other->student);
+            if (n == 1) {
+                hn_strbuf_printf(b, "%s%s as ", b->n == 0 ? "" : "; ",
+                                 by_texts ? "the same" : hn_class_copies_near(c->programs));
+            }
+            hn_strbuf_printf(b, "%s%s", n > 1 ? ", " : "", other->student);
         }
     }
     if (n > MOST_NAMED) {

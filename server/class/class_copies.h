@@ -12,6 +12,7 @@ typedef struct hn_class_copy {
 
 typedef struct hn_class_copies {
     int n;
+    bool programs;
     hn_class_copy *item; ///< n, in the order of the class; owned, NULL: memory is out
 } hn_class_copies;
 
@@ -19,8 +20,10 @@ typedef struct hn_class_copies {
 /// programs are. hn_class_copies_reset() in any case.
 void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool programs);
 void hn_class_copies_reset(hn_class_copies *c);
-/// Adds "the same as Ann, Bob" and "the same but for the names as Eve" for submission i, after "; "
-/// where the buffer is not empty; nothing where it is like no other.
+/// What near-copies share: "the same but for the names", of programs also comments and order.
+const char *hn_class_copies_near(bool programs);
+/// Adds "the same as Ann, Bob" and hn_class_copies_near() with " as Eve" for submission i, after
+/// "; " where the buffer is not empty; nothing where it is like no other.
 void hn_class_copies_put(hn_strbuf *b, const hn_class_copies *c, int i);
 
 #endif

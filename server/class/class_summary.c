@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "class/class_summary.h"
 
+#include "class/class_copies.h"
+
 #include <cjson/cJSON.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -160,12 +162,10 @@ static void put_like(hn_strbuf *b, counts *c, bool programs) {
     sort(c);
     for (int k = 0; k < c->n; k++) {
         if (c->item[k].differs) {
-            hn_strbuf_printf(b, "%s  %s\n",
-                             shown++    ? ""
-                             : programs ? "near-copies: the same but for names, comments and the "
-                                          "order of statements\n"
-                                        : "near-copies: the same but for the names\n",
-                             hn_strbuf_text(&c->item[k].who));
+            if (shown++ == 0) {
+                hn_strbuf_printf(b, "near-copies: %s\n", hn_class_copies_near(programs));
+            }
+            hn_strbuf_printf(b, "  %s\n", hn_strbuf_text(&c->item[k].who));
         }
     }
 }

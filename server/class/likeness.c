@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { MOST_NAMES = 512 };
+enum { MOST_NAMES = 512, MOST_GIVEN = 2048 };
 
 /// Names in the order in which they appeared, as hashes.
 typedef struct names {
@@ -136,12 +136,23 @@ uint64_t hn_likeness_program_texts(const char *text) {
 
 // ---- the shape of a program ----
 
+/// What a name was given: `right` is what stood behind its '='.
+typedef struct definition {
+    uint64_t name, right, value;
+    int level; ///< of the block, outside of which it means nothing
+} definition;
+
 /// A reading of a program, statement by statement.
 typedef struct statements {
     uint64_t all, one; ///< hash of the statements in any order; of the one that is read
-    names names;       ///< of the one that is read
-    int depth;         ///< of brackets that are open
-    bool by_lines;     ///< the end of a line ends a statement
+    names unset;       ///< names that no statement has given a value, in order of first use
+    int n;
+    definition given[MOST_GIVEN]; ///< the last one of a name is what it stands for
+    uint64_t name, right;         ///< the definition that is read, where `gives`
+    bool gives, in_brackets;      ///< in_brackets: it opens a loop
+    int loops;                    ///< definitions in brackets since the last closing brace
+    int depth, level;             ///< of brackets that are open; of blocks, by_lines: 1 if indented
+    bool by_lines;                ///< the end of a line ends a statement
 } statements;
 
 /// Functions that nobody renames.
@@ -157,14 +168,71 @@ static bool is_function(const char *at, size_t n) {
     return false;
 }
 
-/// A statement counts by its hash, in which names are numbers in the order of their appearance in
-/// it: a name that the program has elsewhere for something else makes no difference.
+/// Adds to the statement, and to the value that it gives.
+static void put(statements *s, const void *bytes, size_t n) {
+    s->one = hn_hash_bytes(s->one, bytes, n);
+    s->right = hn_hash_bytes(s->right, bytes, n);
+}
+
+/// What a name stands for: the value it was given last, else its number among those without one.
+static uint64_t value_of(statements *s, uint64_t name) {
+    for (int i = s->n - 1; i >= 0; i--) {
+        if (s->given[i].name == name) {
+            return s->given[i].value;
+        }
+    }
+    return number_of(&s->unset, name);
+}
+
+/// The value that is given is what stands behind the '=', and for which of the names that got just
+/// that: two parameters of one number are two. The variable of a loop counts by its nesting.
+static void end_definition(statements *s) {
+    int at = 0;
+    uint64_t index = 0;
+    if (!s->gives) {
+        return;
+    }
+    s->gives = false;
+    if (s->in_brackets) {
+        index = (uint64_t)++s->loops << 32;
+    }
+    for (; at < s->n && !(s->given[at].right == s->right && s->given[at].name == s->name); at++) {
+        index += !s->in_brackets && s->given[at].right == s->right;
+    }
+    if (at == MOST_GIVEN) {
+        return; // the name stays what it was
+    }
+    const uint64_t value = hn_hash_bytes(s->right, &index, sizeof index);
+    definition d = {s->name, s->right, value, s->level};
+    if (at < s->n) {
+        d.value = s->in_brackets ? value : s->given[at].value;
+        d.level = s->given[at].level < s->level ? s->given[at].level : s->level;
+        memmove(s->given + at, s->given + at + 1, (size_t)(s->n - at - 1) * sizeof d);
+        s->n--;
+    }
+    s->given[s->n++] = d;
+}
+
+/// Forgets what was given in blocks that have ended.
+static void end_blocks(statements *s, int level) {
+    int n = 0;
+    for (int i = 0; i < s->n; i++) {
+        if (s->given[i].level <= level) {
+            s->given[n++] = s->given[i];
+        }
+    }
+    s->n = n;
+    s->level = level;
+}
+
+/// A statement counts by its hash, in which names are what they stand for: which of them it uses
+/// counts, what they are called does not.
 static void end_statement(statements *s) {
+    end_definition(s);
     if (s->one != HN_HASH_START) {
         s->all += hn_hash_mix(s->one);
     }
     s->one = HN_HASH_START;
-    s->names.n = 0;
 }
 
 static const char *read_statement_name(statements *s, const char *at) {
@@ -173,9 +241,33 @@ static const char *read_statement_name(statements *s, const char *at) {
         n++;
     }
     const uint64_t name = hn_hash_bytes(HN_HASH_START, at, n);
-    const uint64_t kept = is_function(at, n) ? name : number_of(&s->names, name);
-    s->one = hn_hash_bytes(s->one, &kept, sizeof kept);
+    const char *behind = at + n + strspn(at + n, " \t");
+    const bool adds = *behind && strchr("+-*/", *behind) && behind[1] == '=';
+    if (adds || (behind[0] == '=' && behind[1] != '=')) {
+        end_definition(s);
+        s->right = HN_HASH_START;
+    }
+    if (adds || behind[0] != '=' || behind[1] == '=') {
+        const uint64_t kept = is_function(at, n) ? name : value_of(s, name);
+        put(s, &kept, sizeof kept);
+    }
+    if (adds || (behind[0] == '=' && behind[1] != '=')) {
+        s->gives = true;
+        s->in_brackets = s->depth > 0;
+        s->name = name;
+    }
     return at + n;
+}
+
+/// A number with its exponent, whose letter is no name.
+static const char *read_number(statements *s, const char *at) {
+    const char *begin = at;
+    while (isalnum((unsigned char)*at) || *at == '.' ||
+           (strchr("+-", *at) && *at && strchr("eE", at[-1]))) {
+        at++;
+    }
+    put(s, begin, (size_t)(at - begin));
+    return at;
 }
 
 /// Where a text in quotes ends, NULL: none begins here. A single quote behind a name or a bracket
@@ -203,8 +295,14 @@ static void read_sign(statements *s, char c) {
     if (ends && (s->depth <= 0 || c != '\n')) {
         s->depth = s->depth < 0 ? 0 : s->depth;
         end_statement(s);
+        s->loops = c == '}' ? 0 : s->loops;
+        if (!s->by_lines && c == '{') {
+            s->level++;
+        } else if (!s->by_lines && c == '}') {
+            end_blocks(s, s->level - 1);
+        }
     } else if (!isspace((unsigned char)c) && c != '\\') {
-        s->one = hn_hash_bytes(s->one, &c, 1);
+        put(s, &c, 1);
     }
 }
 
@@ -213,10 +311,15 @@ uint64_t hn_likeness_program_shape(const char *text, bool by_lines) {
     for (const char *at = text; *at;) {
         const char *end = skip_comment(at);
         const char *behind = end ? end : skip_text(text, at);
+        if (by_lines && s.depth <= 0 && at > text && at[-1] == '\n' && *at != '\n' && !end) {
+            end_blocks(&s, isspace((unsigned char)*at) ? s.level | 1 : 0);
+        }
         if (behind) {
             at = behind;
         } else if (begins_name(*at)) {
             at = read_statement_name(&s, at);
+        } else if (isdigit((unsigned char)*at)) {
+            at = read_number(&s, at);
         } else if (*at == '\\' && at[1] == '\n') {
             at += 2; // the statement goes on
         } else {

@@ -14,10 +14,11 @@ uint64_t hn_likeness_texts(const cJSON *submission);
 uint64_t hn_likeness_shape(const cJSON *submission);
 /// Hashes the text of a program without blanks, capitals and comments (of all its languages).
 uint64_t hn_likeness_program_texts(const char *text);
-/// Hashes the statements of a program in any order, without comments and texts in quotes; names are
-/// numbers in order of their appearance in a statement. Programs that differ in their names, their
-/// comments and the order of their statements are equal. by_lines: the end of a line ends a
-/// statement, else a semicolon alone does.
+/// Hashes the statements of a program in any order, without comments and texts in quotes; a name
+/// counts by what the program last gave it, and one that was given nothing by its number in order
+/// of first use. Programs that differ in their names, their comments and the order of their
+/// statements are equal; programs that use another variable at one place are not. by_lines: the end
+/// of a line ends a statement, else a semicolon alone does.
 uint64_t hn_likeness_program_shape(const char *text, bool by_lines);
 
 #endif

@@ -20,6 +20,7 @@ from test_programs import NEEDS, TROUBLE, has_numpy  # noqa: E402
 
 PROGRAM = os.path.abspath(driver.PROGRAM)
 ENDINGS = {"python": ("py", "    return mass"), "c": ("c", "}"), "cpp": ("cpp", "}"), "java": ("java", "        }"), "octave": ("m", "end")}
+NEAR = "the same but for names, comments and the order of statements"
 POINTS = 8  # of a scene with constraints: four parts
 
 
@@ -246,6 +247,29 @@ class Filled(unittest.TestCase):
         self.put("class/text.txt", "later")
         return os.path.join(self.temporary.name, "class")
 
+    def test_programs_that_use_another_variable_at_one_place_are_no_copies(self):
+        for language in ("c", "python"):
+            ending = ENDINGS[language][0]
+            _, filled = blank_and_filled("double-pendulum", language)
+            end = filled.index("    energy[0] =")
+            own = "    const double a = 2.0, c = 4.0;\n    const double b = 2.0;\n    mass[0][0] *= a*b/c;\n"
+            loop = "    for (int i = 0; i < NV; i++) for (int j = 0; j < NV; j++) mass[i][j] *= 1.0;\n"
+            if language == "python":
+                own = "    a = 2.0; c = 4.0\n    b = 2.0\n    mass[0, 0] *= a*b/c\n"
+                loop = "    for i in range(NV):\n        for j in range(NV): mass[i, j] *= 1.0\n"
+            added = {"own": own, "own-twice": own.replace("a*b", "a*a"), "own-renamed": re.sub(r"\bb\b", "k30", re.sub(r"\ba\b", "zz", own)),
+                     "loop": loop, "loop-across": loop.replace("[i][j]", "[j][i]").replace("[i, j]", "[j, i]")}  # fmt: skip
+            programs = {"ann": filled, "factor": re.sub(r"(k\d+ = )l1\*m2", r"\1l2*m1", filled), "force": filled.replace("(k3 + 2", "(k7 + 2"),
+                        "mass": re.sub(r"(mass\[1(?:\]\[|, )1\] = 0.3333333333333333\*)k6", r"\1k9", filled)}  # fmt: skip
+            programs |= {name: filled[:end] + text + filled[end:] for name, text in added.items()}
+            self.assertEqual(len(set(programs.values())), len(programs))
+            for name, text in programs.items():
+                self.put(f"{language}/{name}.{ending}", text)
+            out = os.path.join(self.temporary.name, f"{language}.ndjson")
+            done = call("grade", "double-pendulum", os.path.join(self.temporary.name, language), "--out", out)
+            groups = re.findall(rf"(?s)near-copies: {NEAR}\n(.*?)\n\S", done.stdout + "\nend")
+            self.assertEqual([line.strip() for line in "".join(groups).splitlines()], ["own, own-renamed"], (language, done.stdout))
+
     def test_a_class_of_programs_is_graded_in_parts_through_kills_with_the_same_bytes(self):
         folder, out = self.make_class(), os.path.join(self.temporary.name, "scores.ndjson")
         done = call("grade", "four-bar", folder, "--out", out)
@@ -256,7 +280,7 @@ class Filled(unittest.TestCase):
         self.assertEqual({name: line["score"] for name, line in lines.items() if name.startswith("student")}, {f"student{k}": POINTS for k in range(9)})
         self.assertEqual((lines["wrong"]["score"] < POINTS, lines["floods"]["status"], lines["dies"]["status"], lines["text"]["status"]), (True, *["ungradable"] * 3))
         self.assertIn("without an end of line", lines["floods"]["reason"])
-        self.assertRegex(done.stdout, r"near-copies: the same but for names, comments and the order of statements\n +ann, bob, cid\n")
+        self.assertRegex(done.stdout, rf"near-copies: {NEAR}\n +ann, bob, cid\n")
         self.assertNotIn("student1, student2", done.stdout)
         with open(out, "rb") as f:
             calm = f.read()
@@ -266,7 +290,7 @@ class Filled(unittest.TestCase):
         self.assertEqual(call("grade", "four-bar", folder, "--out", table).returncode, 0)
         with open(table, encoding="utf-8") as f:
             remarks = {row["student"]: row["remark"] for row in csv.DictReader(f)}
-        self.assertEqual((remarks["ann"], remarks["cid"]), ("the same but for the names as bob, cid", "the same but for the names as ann, bob"))
+        self.assertEqual((remarks["ann"], remarks["cid"]), (f"{NEAR} as bob, cid", f"{NEAR} as ann, bob"))
         self.assertEqual({remarks[f"student{k}"] for k in range(9)}, {""})
 
         # three parts on three machines, put together
