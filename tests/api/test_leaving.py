@@ -103,21 +103,26 @@ class Leaving(driver.ServerCase):
         self.assertEqual(self.server.ask("GET", "/api/v1/runs/" + run).json()["state"], "running")
         self.server.ask("DELETE", "/api/v1/runs/" + run)
 
+    def ask_and_close_own_side(self, *what):
+        """The answer to a client that sends no more and reads on, as `nc -N` does. It may get a "100 Continue" first."""
+        s = self.send(*what)
+        s.shutdown(socket.SHUT_WR)
+        reply = b""
+        while piece := s.recv(65536):
+            reply += piece
+        s.close()
+        return reply.replace(b"HTTP/1.1 100 Continue\r\n\r\n", b"", 1)
+
+    PICTURE = {**RING, "methods": ["projection@rk4:h=1e-3"], "time": 3}
+
     def test_a_client_that_closes_its_own_side_only_has_its_answer(self):
-        """As `nc -N` does. It may get a "100 Continue" first."""
         answers = {}
 
         def ask(name, *what):
-            s = self.send(*what)
-            s.shutdown(socket.SHUT_WR)
-            reply = b""
-            while piece := s.recv(65536):
-                reply += piece
-            answers[name] = reply.replace(b"HTTP/1.1 100 Continue\r\n\r\n", b"", 1)
-            s.close()
+            answers[name] = self.ask_and_close_own_side(*what)
 
         threads = [threading.Thread(target=ask, args=("run", "/api/v1/runs?wait=2", {**LONG, "time": 1003})),
-                   threading.Thread(target=ask, args=("picture", "/api/v1/snapshots", {**RING, "methods": ["projection@rk4:h=1e-3"], "time": 3}))]
+                   threading.Thread(target=ask, args=("picture", "/api/v1/snapshots", self.PICTURE))]
         for t in threads:
             t.start()
         for t in threads:
@@ -126,6 +131,23 @@ class Leaving(driver.ServerCase):
         self.assertTrue(answers["picture"].startswith(b"HTTP/1.1 200 "), answers["picture"][:200])
         run = json.loads(answers["run"].split(b"\r\n\r\n", 1)[1])["id"]
         self.assertEqual(self.server.ask("DELETE", "/api/v1/runs/" + run).status, 204)
+
+    def test_a_client_of_http_1_0_that_closes_its_own_side_has_its_answer(self):
+        """It takes no "100 Continue": it was held to have gone."""
+        for path, body in (("/api/v1/snapshots", self.PICTURE), ("/api/v1/runs?wait=50", self.PICTURE)):
+            answer = self.ask_and_close_own_side(path, body, "1.0")
+            self.assertRegex(answer, rb"^HTTP/1\.[01] 20[01] ")
+
+    def test_connections_that_are_idle_take_no_answer_from_who_has_closed_its_own_side(self):
+        """Beside an older connection in the same event loop, a connection was read before its answer was sent, and closed."""
+        idle = [self.send("/healthz") for _ in range(8)]  # in every loop
+        for s in idle:
+            self.assertTrue(s.recv(65536).startswith(b"HTTP/1.1 200 "))
+        for i in range(12):
+            answer = self.ask_and_close_own_side("/api/v1/snapshots", {"scene": "four-bar", "methods": ["projection@rk4:h=1e-3"], "time": 0.1 * i})
+            self.assertTrue(answer.startswith(b"HTTP/1.1 200 "), (i, answer[:200]))
+        for s in idle:
+            s.close()
 
 
 if __name__ == "__main__":

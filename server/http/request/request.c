@@ -55,12 +55,12 @@ bool hn_request_is_left(hn_request *r) {
     if (look.fd < 0 || poll(&look, 1, 0) <= 0) {
         return false;
     }
-    if ((look.revents & ~POLLRDHUP) || !r->takes_interim) {
+    if (look.revents & ~POLLRDHUP) {
         return true;
     }
 
     // it sends no more; whether it still reads, the answer of its system tells
-    if (!r->was_probed) {
+    if (r->takes_interim && !r->was_probed) {
         r->was_probed = true;
         return send(look.fd, interim, sizeof interim - 1, MSG_DONTWAIT | MSG_NOSIGNAL) < 0;
     }

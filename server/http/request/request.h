@@ -62,12 +62,16 @@ typedef struct hn_request {
     int is_new;              ///< it has begun what it asks for
     double cpu_end;          ///< of the thread that works on it [s]
     hn_job_turn *turn;       ///< of that thread; NULL where it is no pool's
-    bool interrupted;        ///< the work was ended early
-    bool takes_interim;      ///< HTTP/1.1: an answer 100 may come before the answer
-    bool was_probed;         ///< it was sent one, to see whether its client is still there
-    bool is_left;            ///< its client has gone; of the thread that works on it
-    double next_look;        ///< that thread looks for the client then [s, wall clock]
-    bool has_place;          ///< it has waited for a place, and has it
+    /// The library was asked to come again at the end of the request. A connection that is
+    /// suspended at the first call is read when it is resumed, before its answer is sent: one whose
+    /// client has closed its own side would be closed then, without its answer.
+    bool is_whole;
+    bool interrupted;   ///< the work was ended early
+    bool takes_interim; ///< HTTP/1.1: an answer 100 may come before the answer
+    bool was_probed;    ///< it was sent one, to see whether its client is still there
+    bool is_left;       ///< its client has gone; of the thread that works on it
+    double next_look;   ///< that thread looks for the client then [s, wall clock]
+    bool has_place;     ///< it has waited for a place, and has it
 
     // the reply
     long long n_unread; ///< bytes handed to the HTTP library, until the request is completed
@@ -97,7 +101,8 @@ HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *n
 /// Returns whether the client of a suspended request has closed its connection. The HTTP library
 /// does not check the connection of a suspended request. A client that has closed its own side only
 /// still waits: it is sent a "100 Continue", which a connection that is closed refuses, so that the
-/// next look tells them apart. One that speaks HTTP/1.0 counts as gone at once.
+/// next look tells them apart. One that speaks HTTP/1.0 cannot be asked: it counts as there, unless
+/// its system has refused something.
 bool hn_request_is_left(hn_request *r);
 /// The same, and waits for the answer of a client's system where that is needed: 50 ms at most. Not
 /// for a thread that serves others, nor under a lock.

@@ -425,7 +425,13 @@ enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection
         return MHD_NO; // answered already: the connection closes
     }
 
-    // its end; a request that was told that it is late is not carried out
+    // its end: the library comes again at once
+    if (r->stage == HN_STAGE_BODY && !r->is_whole) {
+        r->is_whole = true;
+        return MHD_YES;
+    }
+
+    // a request that was told that it is late is not carried out
     if (r->stage == HN_STAGE_BODY &&
         !hn_connection_is_served(((hn_dispatch *)cls)->connections, r->watch)) {
         return MHD_NO;
