@@ -142,8 +142,8 @@ static bool join_pair(hn_graph *g, product *p, const product *q) {
     if (joined.n != HN_NODE_ONE) {
         multiply(&common, joined.n);
     }
-    *p = common;
-    return !hn_is_zero(joined);
+    *p = common; // 0 where they cancel
+    return true;
 }
 
 /// Joins pairs until there are none.
@@ -157,6 +157,31 @@ static void join_pairs(hn_graph *g, products *all) {
             }
         }
     }
+}
+
+/// Adds up products of the same nodes, and leaves out those that cancel. Whether there were any.
+static bool merge_like(products *all) {
+    const int before = all->n;
+    for (int i = 0; i < all->n; i++) {
+        product *p = &all->item[i];
+        for (int k = all->n - 1; k > i; k--) {
+            const product *q = &all->item[k];
+            if (p->n == q->n && memcmp(p->node, q->node, (size_t)p->n * sizeof *p->node) == 0) {
+                const double sum = p->c + q->c;
+                const double largest = fmax(fabs(p->c), fabs(q->c));
+                p->c = fabs(sum) <= HN_CANCEL_TOL * largest ? 0 : sum;
+                all->item[k] = all->item[--all->n];
+            }
+        }
+    }
+    int n = 0;
+    for (int i = 0; i < all->n; i++) {
+        if (all->item[i].c != 0) {
+            all->item[n++] = all->item[i];
+        }
+    }
+    all->n = n;
+    return n < before;
 }
 
 static hn_ex build_term(hn_graph *g, const product *p) {
@@ -275,7 +300,9 @@ int hn_angles_terms(hn_graph *g, hn_ex e, hn_ex *out, int most) {
         const product whole = {.c = e.c};
         expand(g, &whole, &e.n, 1, room);
         if (!room->failed) {
-            join_pairs(g, room);
+            do {
+                join_pairs(g, room);
+            } while (merge_like(room)); // what was added up may have a partner now
             n = room->n <= most ? room->n : 0;
         }
     }

@@ -137,11 +137,35 @@ static void a_product_of_sums_has_terms(void **state) {
     hn_graph_free(g);
 }
 
+/// The square of the distance of two arms has three terms: the mixed one comes up twice.
+static void like_terms_are_one(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    hn_graph *g = f.g;
+    hn_ex term[8];
+    const hn_ex x = hn_add(g, product(&f, f.m, f.ca), product(&f, f.c, f.cb));
+    const hn_ex y = hn_add(g, product(&f, f.m, f.sa), product(&f, f.c, f.sb));
+    const hn_ex square = hn_add(g, product(&f, x, x), product(&f, y, y));
+    assert_int_equal(hn_angles_terms(g, square, term, 8), 3);
+    const double at[] = {0.7, -1.9, 2.3, 1.7};
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        sum += hn_graph_eval(g, term[i], at);
+    }
+    assert_true(fabs(sum - hn_graph_eval(g, square, at)) < 1e-14 * 16); // of numbers around 16
+
+    // what cancels when it is multiplied out is no term
+    const hn_ex apart = hn_sub(g, product(&f, hn_add(g, f.m, f.ca), hn_sub(g, f.m, f.ca)), f.c);
+    assert_int_equal(hn_angles_terms(g, apart, term, 8), 3);
+    hn_graph_free(g);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_four_theorems),           cmocka_unit_test(factors_and_nested_sums),
         cmocka_unit_test(what_is_no_pair_stays),       cmocka_unit_test(long_sums_are_left),
-        cmocka_unit_test(a_product_of_sums_has_terms),
+        cmocka_unit_test(a_product_of_sums_has_terms), cmocka_unit_test(like_terms_are_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
