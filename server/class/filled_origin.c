@@ -53,13 +53,22 @@ static bool find_definition(const char *text, const char *name, double *value) {
     return false;
 }
 
-hn_status hn_filled_origin_check(const hn_scene *scene, const char *text, hn_diag *diag) {
-    // the scene that the first lines name
+/// Where the first lines name the scene, behind the command that wrote the program; NULL: nowhere.
+static const char *find_scene_name(const char *text) {
     static const char command[] = "holonom export ";
     const char *at = strstr(text, command);
+    return at ? at + strlen(command) : NULL;
+}
+
+bool hn_filled_origin_is_known(const char *text) {
+    return find_scene_name(text) != NULL;
+}
+
+hn_status hn_filled_origin_check(const hn_scene *scene, const char *text, hn_diag *diag) {
+    // the scene that the first lines name
+    const char *at = find_scene_name(text);
     if (at) {
         char id[128];
-        at += strlen(command);
         snprintf(id, sizeof id, "%.*s", (int)strcspn(at, " `\n"), at);
         if (strcmp(id, scene->id) != 0) {
             return hn_diag_set(diag, HN_ERR_INPUT, NULL,

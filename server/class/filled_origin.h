@@ -6,6 +6,11 @@
 #include "base/diag.h"
 #include "scene/scene.h"
 
+#include <stdbool.h>
+
+/// Whether the text is a program that `holonom export` wrote for a scene, of any name: its first
+/// lines say so.
+bool hn_filled_origin_is_known(const char *text);
 /// Compares what the text says with the scene that it is graded against. A parameter that the text
 /// does not define by a plain number is not compared. Fails: HN_ERR_INPUT where they differ, with
 /// the difference and what to try in diag.

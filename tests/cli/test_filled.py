@@ -152,6 +152,32 @@ class Filled(unittest.TestCase):
             status, verdict = self.grade("slider-crank", path)
             self.assertEqual((status, verdict["reason"]), (2, "this is the program of the scene 'four-bar'; it is graded as one of 'slider-crank'"), verdict)
 
+    def test_a_program_goes_to_the_scene_and_an_answer_to_the_exercise_of_the_same_name(self):
+        blank, filled = blank_and_filled("ring", "c")
+        right, empty = self.put("right.c", filled), self.put("blank.c", blank)
+        done = call("grade", "ring", right, "--json")
+        verdict = json.loads(done.stdout)
+        self.assertEqual((done.returncode, verdict["score"], verdict["max_score"]), (0, POINTS, POINTS), verdict)
+        kept = self.put("verdict.json", done.stdout)
+        self.assertTrue(json.loads(call("regrade", kept, "--json").stdout)["same"])
+        _, verdict = self.grade("ring", empty)
+        self.assertEqual((verdict["status"], verdict["score"]), ("graded", 0))
+
+        # the exercise `ring` has 4 points
+        answer = self.put("answer.json", json.dumps({"problem": "ring", "a": 7}))
+        status, verdict = self.grade("ring", answer)
+        self.assertEqual((status, verdict["status"], verdict["max_score"], verdict["problem"]), (0, "graded", 4, "ring"), verdict)
+
+        # a program of another scene is one; a file that no export wrote is none; both kinds at once are refused
+        _, other = blank_and_filled("slider-crank", "c")
+        status, verdict = self.grade("ring", self.put("other.c", other))
+        self.assertEqual((status, verdict["reason"]), (2, "this is the program of the scene 'slider-crank'; it is graded as one of 'ring'"))
+        status, verdict = self.grade("ring", self.put("nothing.c", "x"))
+        self.assertEqual((status, verdict["reason"]), (2, "the submission is not JSON: it begins with 'x'"))
+        done = call("grade", "ring", answer, right)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("'ring' is an exercise and a scene", done.stderr)
+
     def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
         _, filled = blank_and_filled("four-bar", "c")
         last = filled.rindex("    energy[0] =")

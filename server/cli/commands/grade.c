@@ -4,7 +4,9 @@
 // be written.
 #include "grade/grade.h"
 #include "base/clock.h"
+#include "base/file.h"
 #include "base/visible.h"
+#include "class/filled_origin.h"
 #include "cli/commands/exercise_word.h"
 #include "cli/commands/grade_folder.h"
 #include "cli/commands/rubric_file.h"
@@ -187,18 +189,60 @@ static hn_exit grade_all(task t, const hn_verdict_names *names) {
 
 /// What ID names, owned.
 typedef struct owned_subject {
+    bool is_scene; ///< ID is a scene, not an exercise
     hn_exercise *exercise;
     hn_variant_owner student; ///< of --student, whom the exercise points to
     hn_model *model;          ///< of a scene whose program is graded
     hn_filled_exam exam;
 } owned_subject;
 
-/// Finds an exercise, or where there is none of this name the scene whose program was filled in.
+/// Whether a submission is the program of a scene, by its ending and its first lines.
+static bool is_program_of_a_scene(const char *path) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    const bool found = hn_filled_program_is(path) &&
+                       hn_file_read(path, HN_GRADE_MAX_BYTES, &text, NULL) == HN_OK &&
+                       hn_filled_origin_is_known(hn_strbuf_text(&text));
+    hn_strbuf_reset(&text);
+    return found;
+}
+
+/// Whether ID is a scene: there is no exercise of this name, or there is one too and the
+/// submissions are programs. Fails: HN_ERR_INPUT, some are and some are not.
+static hn_status choose_scene(const hn_library *lib, const hn_args *args, bool *is_scene,
+                              hn_diags *diags) {
+    const char *id = args->words.word[0];
+    *is_scene = false;
+    if (!hn_library_scene_path(lib, id)) {
+        return HN_OK;
+    }
+    if (!hn_library_problem_path(lib, id)) {
+        *is_scene = true;
+        return HN_OK;
+    }
+
+    // an exercise and a scene have this name
+    const char *program = NULL, *other = NULL;
+    for (int i = 1; i < args->words.n; i++) {
+        const char **one = is_program_of_a_scene(args->words.word[i]) ? &program : &other;
+        *one = args->words.word[i];
+    }
+    if (program && other) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "grade answers and programs apart",
+                            "'%.40s' is an exercise and a scene; '%.200s' is the program of a "
+                            "scene and '%.200s' is not",
+                            id, program, other);
+    }
+    *is_scene = program != NULL;
+    return HN_OK;
+}
+
+/// Finds an exercise, or the scene whose program was filled in.
 static hn_status find_subject(const hn_library *lib, const hn_args *args, owned_subject *own,
                               hn_grade_subject *out, hn_diags *diags) {
     const char *id = args->words.word[0];
     hn_status status;
-    if (hn_library_problem_path(lib, id) || !hn_library_scene_path(lib, id)) {
+    if (!own->is_scene) {
         status = hn_cli_load_exercise(lib, id, &own->exercise, diags);
         if (status == HN_OK && args->student) {
             own->student = (hn_variant_owner){
@@ -324,13 +368,15 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     hn_exit result;
     const bool folder = stat(args->words.word[1], &info) == 0 && S_ISDIR(info.st_mode);
     const bool class = folder || args->shard || args->merge;
-    hn_status status = find_subject(lib, args, &own, &t.subject, &diags);
-    const bool found = status == HN_OK;
+    hn_status status = choose_scene(lib, args, &own.is_scene, &diags);
+    const bool chosen = status == HN_OK;
+    HN_THEN(status, find_subject(lib, args, &own, &t.subject, &diags));
+    const bool lost = chosen && status != HN_OK;
     HN_THEN(status, check_options(args, class, t.subject.programs, &diags));
     HN_THEN(status, apply_rubric(args, &own, &diags));
     if (status != HN_OK) {
-        result = found ? hn_report_diags(args, status, &diags)
-                       : report_exercise(lib, args, status, &diags);
+        result = lost ? report_exercise(lib, args, status, &diags)
+                      : hn_report_diags(args, status, &diags);
     } else if (args->merge) {
         result = hn_grade_merge(args, &t.subject);
     } else if (folder || args->shard) {
