@@ -121,6 +121,7 @@ static void act(hn_workbench *w, hn_tui_action action) {
         break;
     case HN_TUI_WHY:
         w->why = !w->why;
+        w->why_first = 0;
         w->reactions = false;
         break;
     case HN_TUI_REACTIONS:
@@ -146,6 +147,11 @@ static void act(hn_workbench *w, hn_tui_action action) {
 }
 
 void hn_controls_key(hn_workbench *w, int key) {
+    // nothing changes that cannot be seen
+    if (hn_views_too_small(w, w->columns, w->rows)) {
+        w->quit = w->quit || key == 'q';
+        return;
+    }
     w->message[0] = '\0';
     if (w->prompt != HN_PROMPT_NONE) {
         hn_prompt_key(w, key);
@@ -168,4 +174,5 @@ void hn_controls_key(hn_workbench *w, int key) {
     } else {
         act(w, hn_tui_action_of(key));
     }
+    hn_why_follow(w);
 }

@@ -23,9 +23,9 @@ static const char *whole_line(const hn_workbench *w, bool more, int columns) {
     static const char *const lists[] = {
         [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
         [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
-        [HN_LIST_FORMULATIONS] = "↑↓ choose  Enter types the rest  a letter finds  Esc back",
-        [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  a letter finds  Esc back",
-        [HN_LIST_LESSONS] = "↑↓ choose  Enter open  a letter finds  Esc back",
+        [HN_LIST_FORMULATIONS] = "↑↓ choose  Enter types the rest  letters find  Esc back",
+        [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  letters find  Esc back",
+        [HN_LIST_LESSONS] = "↑↓ choose  Enter open  letters find  Esc back",
         [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
         [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back",
         [HN_LIST_REMEDIES] = "↑↓ choose  Enter try it  Esc back"};

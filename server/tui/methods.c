@@ -30,6 +30,11 @@ static hn_status check_steps(const hn_workbench *w, int m, hn_diags *diags) {
         return HN_OK;
     }
     const double h = hn_method_option(&spec, "h", 0);
+    if (h > end) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
+                            "dt = %.3g s is longer than the motion of %.4g s; try 0.01 or 20 ms", h,
+                            end);
+    }
     if (!(h > 0) || end / h <= allowed) {
         return HN_OK;
     }
@@ -101,11 +106,13 @@ bool hn_methods_set_step(hn_workbench *w, const char *text) {
     kept before;
     double h;
     if (!hn_seconds_read(text, &h)) {
-        const bool large = isinf(h) && h > 0;
         hn_workbench_say(w,
-                         large ? "dt must be a finite time; '%.40s' is beyond the largest number. "
-                                 "Try 0.01 or 20 ms"
-                               : "dt must be above 0 s; '%.40s' is not. Try 0.01 or 20 ms",
+                         isnan(h)            ? "dt: '%.40s' is not a number of seconds. "
+                                               "Try 0.01 or 20 ms"
+                         : isinf(h) && h > 0 ? "dt must be a finite time; '%.40s' is beyond the "
+                                               "largest number. Try 0.01 or 20 ms"
+                                             : "dt must be above 0 s; '%.40s' is not. "
+                                               "Try 0.01 or 20 ms",
                          text);
         return false;
     }
@@ -129,34 +136,71 @@ bool hn_methods_set_step(hn_workbench *w, const char *text) {
 
 // ---- numbers before and after a change ----
 
-static void find_worst(const hn_workbench *w, int m, int frame, double *gap, double *energy) {
+enum { UNTIL_TEXT = 48 };
+
+/// A method that ended early has no frames from then on, and its steps say how bad it was.
+static hn_tui_worst find_worst(const hn_workbench *w, int m, int frame) {
     const hn_track *t = hn_recording_track(w->recording, m);
-    *gap = *energy = 0;
+    const hn_track_end end = hn_recording_end(w->recording, m);
+    hn_tui_worst worst = {.stopped = (double)NAN};
     for (int k = 0; k <= frame; k++) {
-        *gap = fmax(*gap, fabs(t->gap[k]));
-        *energy = fmax(*energy, fabs(t->energy[k]));
+        worst.gap = fmax(worst.gap, fabs(t->gap[k]));
+        worst.energy = fmax(worst.energy, fabs(t->energy[k]));
     }
+    if (end.failed && end.t <= hn_recording_time(w->recording, frame)) {
+        worst.stopped = end.t;
+        worst.gap = fmax(worst.gap, end.worst_gap);
+        worst.energy = fmax(worst.energy, end.worst_energy);
+    }
+    return worst;
+}
+
+/// "until 10.00 s", "until it stopped at 2.26 s".
+static void name_until(const hn_tui_worst *worst, double t, char *out, size_t size) {
+    const bool stopped = isfinite(worst->stopped);
+    snprintf(out, size, "until %s%.2f s", stopped ? "it stopped at " : "",
+             stopped ? worst->stopped : t);
 }
 
 static void begin_change(const hn_workbench *w, int m, hn_tui_change *out) {
     const int frame = hn_workbench_frame(w);
     *out = (hn_tui_change){.open = true, .method = m, .t = hn_recording_time(w->recording, frame)};
-    find_worst(w, m, frame, &out->gap, &out->energy);
+    out->before = find_worst(w, m, frame);
 }
 
 /// Says what was changed and the numbers before; those after it follow (hn_methods_update).
 static void say_change(hn_workbench *w, const hn_tui_change *change) {
-    char gap[HN_SI_TEXT], energy[HN_SI_TEXT];
+    char gap[HN_SI_TEXT], energy[HN_SI_TEXT], until[UNTIL_TEXT];
     w->change = *change;
     if (!change->open) {
         hn_workbench_say(w, "%s", change->what);
         return;
     }
-    hn_si_format(change->gap, "m", 2, gap);
-    hn_si_format(change->energy, "J", 2, energy);
-    hn_workbench_say(w, "%s; before, until %.2f s: worst gap %s, energy change %s", change->what,
-                     change->t, gap, energy);
+    hn_si_format(change->before.gap, "m", 2, gap);
+    hn_si_format(change->before.energy, "J", 2, energy);
+    name_until(&change->before, change->t, until, sizeof until);
+    hn_workbench_say(w, "%s; before, %s: worst gap %s, energy change %s", change->what, until, gap,
+                     energy);
     snprintf(w->change.said, sizeof w->change.said, "%s", w->message);
+}
+
+/// Says the numbers after a change, and those before it.
+static void say_both(hn_workbench *w, const hn_tui_change *change, const hn_tui_worst *now) {
+    char gap[2][HN_SI_TEXT], energy[2][HN_SI_TEXT], until[2][UNTIL_TEXT];
+    const hn_tui_worst *const both[] = {&change->before, now};
+    for (int i = 0; i < 2; i++) {
+        hn_si_format(both[i]->gap, "m", 2, gap[i]);
+        hn_si_format(both[i]->energy, "J", 2, energy[i]);
+        name_until(both[i], change->t, until[i], sizeof until[i]);
+    }
+    if (strcmp(until[0], until[1]) == 0) {
+        hn_workbench_say(w, "%s; %s: worst gap %s, before %s; energy change %s, before %s",
+                         change->what, until[1], gap[1], gap[0], energy[1], energy[0]);
+    } else {
+        hn_workbench_say(
+            w, "%s; %s: worst gap %s, energy change %s; before, %s: worst gap %s, energy change %s",
+            change->what, until[1], gap[1], energy[1], until[0], gap[0], energy[0]);
+    }
 }
 
 void hn_methods_update(hn_workbench *w) {
@@ -171,15 +215,8 @@ void hn_methods_update(hn_workbench *w) {
     if (strcmp(w->message, change->said) != 0 || change->method >= w->n_methods) {
         return; // something else was said since
     }
-    char gap[2][HN_SI_TEXT], energy[2][HN_SI_TEXT];
-    double now[2];
-    find_worst(w, change->method, until, &now[0], &now[1]);
-    hn_si_format(change->gap, "m", 2, gap[0]);
-    hn_si_format(now[0], "m", 2, gap[1]);
-    hn_si_format(change->energy, "J", 2, energy[0]);
-    hn_si_format(now[1], "J", 2, energy[1]);
-    hn_workbench_say(w, "%s; until %.2f s: worst gap %s, before %s; energy change %s, before %s",
-                     change->what, change->t, gap[1], gap[0], energy[1], energy[0]);
+    const hn_tui_worst now = find_worst(w, change->method, until);
+    say_both(w, change, &now);
 }
 
 /// "method 2: baumgarte@rk4:h=0.02", and the warning of a value that is allowed all the same.

@@ -29,6 +29,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { MOST_TEXT = 100 }; // [columns] a line is easily read
 
@@ -41,6 +42,7 @@ static const char *text_of(const cJSON *object, const char *name) {
 
 static void list_methods(hn_workbench *w) {
     hn_list_begin(w, HN_LIST_METHODS, "methods: Enter changes, x removes, Esc goes back");
+    w->cursor = w->selected;
     for (int i = 0; i < w->n_methods; i++) {
         char shown[HN_SPEC_MAX];
         hn_short_spelling(w->methods[i], shown, sizeof shown);
@@ -100,6 +102,7 @@ static void add_value(hn_workbench *w, const char *name, double value, const cha
         item->value = value;
         item->low = low;
         item->high = high;
+        snprintf(item->unit, sizeof item->unit, "%s", unit);
     }
 }
 
@@ -255,7 +258,30 @@ static void show_budget(hn_workbench *w) {
     hn_text_panel_run(w, title, words, n);
 }
 
+/// A lesson or an exercise, from which Escape goes back to the list.
+static void open_lesson(hn_workbench *w, const hn_item *item) {
+    const int cursor = w->cursor;
+    (item->is_exercise ? hn_exercise_panel_open : show_lesson)(w, item->name);
+    w->lesson = cursor;
+}
+
 // ---- keys of panels ----
+
+/// To the list that a panel was opened from; to the workbench where there is none.
+static void go_back(hn_workbench *w) {
+    const bool reads = w->panel == HN_PANEL_TEXT || w->panel == HN_PANEL_EXERCISE;
+    const int lesson = w->lesson;
+    hn_child_stop(&w->child);
+    if (reads && lesson >= 0) {
+        list_lessons(w);
+        w->cursor = lesson < w->n_items ? lesson : 0;
+    } else if (w->panel == HN_PANEL_LIST && w->list == HN_LIST_FORMULATIONS) {
+        list_methods(w);
+        w->cursor = w->n_items - 1;
+    } else {
+        w->panel = HN_PANEL_MAIN;
+    }
+}
 
 static void choose(hn_workbench *w) {
     const hn_item *item = &w->items[w->cursor];
@@ -289,7 +315,7 @@ static void choose(hn_workbench *w) {
 
     // a text to be read
     case HN_LIST_LESSONS:
-        (item->is_exercise ? hn_exercise_panel_open : show_lesson)(w, item->name);
+        open_lesson(w, item);
         break;
     case HN_LIST_REMEDIES:
         hn_remedies_take(w);
@@ -319,15 +345,58 @@ static void nudge(hn_workbench *w, int by) {
     w->cursor = cursor < w->n_items ? cursor : 0;
 }
 
-/// A letter goes to the next item that begins with it.
-static void find_letter(hn_workbench *w, int key) {
-    for (int i = 1; i <= w->n_items; i++) {
-        const int k = (w->cursor + i) % w->n_items;
-        if (tolower((unsigned char)w->items[k].name[0]) == tolower(key)) {
-            w->cursor = k;
-            return;
+/// Whether the typed letters stand at the start of the text, or anywhere in it (`inside`).
+static bool has_letters(const char *text, const char *letters, bool inside) {
+    const size_t n = strlen(letters);
+    for (bool more = true; more && *text; text++) {
+        if (strncasecmp(text, letters, n) == 0) {
+            return true;
+        }
+        more = inside;
+    }
+    return false;
+}
+
+/// The first item for the letters typed so far, from `from` on: its name begins with them, else has
+/// them, else its description has them. -1: none.
+static int find_item(const hn_workbench *w, int from) {
+    enum { BEGINS, IN_NAME, IN_ABOUT, RANKS };
+    for (int rank = BEGINS; rank < RANKS; rank++) {
+        for (int i = 0; i < w->n_items; i++) {
+            const int k = (from + i) % w->n_items;
+            const hn_item *item = &w->items[k];
+            const char *text = rank == IN_ABOUT ? item->about : item->name;
+            if (has_letters(text, w->search, rank != BEGINS)) {
+                return k;
+            }
         }
     }
+    return -1;
+}
+
+/// The first n letters of the search stay; the cursor goes to the item that they find.
+static void find_letters(hn_workbench *w, int n) {
+    w->n_search = n;
+    w->search[n] = '\0';
+    const int k = n > 0 ? find_item(w, w->cursor) : -1;
+    if (k >= 0) {
+        w->cursor = k;
+        hn_workbench_say(w, "search: %s", w->search);
+    } else if (n > 0) {
+        hn_workbench_say(w, "no item has '%s'; Backspace takes a letter back", w->search);
+    }
+}
+
+/// Takes a letter of a search, or Backspace in one. Returns whether the key is one of them.
+static bool search_key(hn_workbench *w, int key) {
+    const bool letter = key < 128 && (isalnum(key) || (w->n_search > 0 && isprint(key)));
+    if (letter && w->n_search + 1 < (int)sizeof w->search) {
+        w->search[w->n_search] = (char)key;
+        find_letters(w, w->n_search + 1);
+    } else if (key == HN_KEY_BACKSPACE && w->n_search > 0) {
+        find_letters(w, w->n_search - 1);
+    }
+    return letter || key == HN_KEY_BACKSPACE;
 }
 
 /// The list stays open, so that a second x does not ask for something else.
@@ -342,16 +411,19 @@ static void remove_method(hn_workbench *w) {
 
 static void list_key(hn_workbench *w, int key) {
     const int to = w->cursor + hn_list_step(key);
+    const bool removes = key == 'x' && w->list == HN_LIST_METHODS;
+    if (w->list != HN_LIST_SCENES && !removes && search_key(w, key)) {
+        return;
+    }
+    w->n_search = 0; // another key ends the search
     if (key == HN_KEY_ENTER && w->n_items > 0) {
         choose(w);
-    } else if (key == 'x' && w->list == HN_LIST_METHODS) {
+    } else if (removes) {
         remove_method(w);
     } else if (key == HN_KEY_LEFT || key == HN_KEY_RIGHT) {
         nudge(w, key == HN_KEY_RIGHT ? 1 : -1);
     } else if (hn_list_step(key) != 0) {
         w->cursor = to < 0 ? 0 : to >= w->n_items ? w->n_items - 1 : to;
-    } else if (key < 128 && isalnum(key)) {
-        find_letter(w, key);
     }
 }
 
@@ -361,8 +433,7 @@ void hn_panel_key(hn_workbench *w, int key) {
     } else if (w->panel == HN_PANEL_LIST && hn_scene_list_key(w, key)) {
         // the search has taken it
     } else if (key == HN_KEY_ESCAPE || (key == 'q' && w->panel != HN_PANEL_LIST)) {
-        hn_child_stop(&w->child);
-        w->panel = HN_PANEL_MAIN;
+        go_back(w);
     } else if (w->panel == HN_PANEL_LIST) {
         list_key(w, key);
     } else if (w->panel == HN_PANEL_EXERCISE) {

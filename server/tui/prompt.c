@@ -2,6 +2,7 @@
 #include "tui/prompt.h"
 
 #include "base/shortest.h"
+#include "grade/parts/unit_text.h"
 #include "session/precision/wanted.h"
 #include "terminal/keys.h"
 #include "tui/exercise_panel.h"
@@ -64,15 +65,35 @@ bool hn_prompt_set_parameter(hn_workbench *w, const char *name, double value) {
     return hn_workbench_set(w, settings, n);
 }
 
+/// Reads "0.45", "45 cm" or "30deg" in the unit of the parameter.
+static bool read_value(const char *text, const char *unit, double *out) {
+    hn_unit typed, own;
+    char *end;
+    const double value = strtod(text, &end);
+    const bool number = end != text && isfinite(value);
+    end += strspn(end, " ");
+    *out = value;
+    if (!number || *end == '\0') {
+        return number;
+    }
+    if (!hn_unit_parse(end, &typed) || !hn_unit_parse(unit, &own) || !hn_unit_fits(&typed, &own)) {
+        return false;
+    }
+    *out = value * hn_unit_ratio(&typed, &own);
+    return isfinite(*out);
+}
+
 static bool accept_parameter(hn_workbench *w) {
-    char *end, name[HN_TUI_LINE];
+    const hn_item *item = &w->items[w->cursor];
+    char name[HN_TUI_LINE];
+    double value;
     for (char *c = w->input; *c; c++) {
         *c = *c == ',' ? '.' : *c;
     }
-    const double value = strtod(w->input, &end);
-    snprintf(name, sizeof name, "%s", w->items[w->cursor].name);
-    if (end == w->input || end[strspn(end, " ")] || !isfinite(value)) {
-        hn_workbench_say(w, "%s: '%.40s' is not a number", name, w->input);
+    snprintf(name, sizeof name, "%s", item->name);
+    if (!read_value(w->input, item->unit, &value)) {
+        hn_workbench_say(w, "%s: '%.40s' is not a number%s%s", name, w->input,
+                         item->unit[0] ? " in a unit that fits " : "", item->unit);
         return false;
     }
     return hn_prompt_set_parameter(w, name, value);

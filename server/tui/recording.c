@@ -163,6 +163,8 @@ static void keep_words(hn_recording *r) {
         const int n = hn_run_incidents(run, &list);
         r->ends[m].failed = summary.state == HN_RUN_FAILED;
         r->ends[m].t = summary.t;
+        r->ends[m].worst_gap = summary.worst_gap;
+        r->ends[m].worst_energy = summary.worst_energy_change;
         const hn_incident *cause = hn_ending_cause(run, summary.status, summary.reason, summary.t);
         r->ends[m].cause = cause ? hn_incident_kinds()[cause->code]->name : NULL;
         memcpy(r->ends[m].reason, summary.reason, sizeof r->ends[m].reason);

@@ -34,8 +34,9 @@ typedef struct hn_track {
 /// How a method ended, as far as it is known now.
 typedef struct hn_track_end {
     bool failed;
-    double t;          ///< [s] reached
-    const char *cause; ///< what ended it, in a few words; static; NULL: not known
+    double t;                       ///< [s] reached
+    double worst_gap, worst_energy; ///< of its steps, those between frames too [m], [J]
+    const char *cause;              ///< what ended it, in a few words; static; NULL: not known
     char reason[480];
 } hn_track_end;
 

@@ -8,6 +8,7 @@
 
 bool hn_seconds_read(const char *text, double *out) {
     char typed[64], *end;
+    *out = (double)NAN;
     if (snprintf(typed, sizeof typed, "%s", text) >= (int)sizeof typed) {
         return false;
     }
@@ -22,6 +23,9 @@ bool hn_seconds_read(const char *text, double *out) {
     const bool milli = strncmp(end, "ms", 2) == 0;
     end += milli ? 2 : *end == 's';
     end += strspn(end, " ");
+    if (!number || *end != '\0') {
+        return false;
+    }
     *out = milli ? 1e-3 * value : value;
-    return number && *end == '\0' && value > 0 && isfinite(value);
+    return value > 0 && isfinite(value);
 }

@@ -127,6 +127,7 @@ static void take_cell(hn_workbench *w) {
 /// Enter on a work-precision study: the cheapest method for the wanted error joins the methods.
 static void take_cheapest(hn_workbench *w) {
     char spelling[HN_SPEC_MAX], shown[HN_SPEC_MAX];
+    const double time = hn_tui_study_time(w->study);
     hn_strbuf b;
     hn_strbuf_init(&b);
     const bool known = hn_tui_study_wanted(w->study, w->wanted, &b, spelling);
@@ -135,7 +136,7 @@ static void take_cheapest(hn_workbench *w) {
         hn_short_spelling(spelling, shown, sizeof shown);
         w->panel = HN_PANEL_MAIN;
         hn_methods_add(w, spelling);
-        hn_workbench_say(w, "%s runs beside the others", shown);
+        hn_workbench_say(w, "%s, the cheapest up to t = %g s, runs beside the others", shown, time);
     } else {
         hn_workbench_say(w, known ? "no run of this study is accurate enough"
                                   : "the cheapest method is known when the study is done");

@@ -14,6 +14,7 @@ void hn_text_panel_open(hn_workbench *w, const char *title) {
     w->panel = HN_PANEL_TEXT;
     w->scroll = 0;
     w->marked = -1;
+    w->lesson = -1;
     w->writes[0] = '\0';
     hn_strbuf_clear(&w->text);
     snprintf(w->title, sizeof w->title, "%s", title);

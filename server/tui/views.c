@@ -163,6 +163,7 @@ void hn_views_update(hn_workbench *w) {
     static int whose[MOST_INCIDENTS];
 
     hn_methods_update(w);
+    hn_why_follow(w);
 
     // the last one so far, of the selected method if it has any
     const int frame = hn_workbench_frame(w);
@@ -464,15 +465,23 @@ static void find_least_size(const hn_workbench *w, int *columns, int *rows) {
     *rows = views ? needed : HN_TUI_LEAST_ROWS;
 }
 
+bool hn_views_too_small(const hn_workbench *w, int columns, int rows) {
+    int least_columns, least_rows;
+    find_least_size(w, &least_columns, &least_rows);
+    return columns < least_columns || rows < least_rows;
+}
+
 /// Says the least size where the screen is smaller.
 static bool draw_too_small(hn_cells *c, const hn_workbench *w) {
     int columns, rows;
-    find_least_size(w, &columns, &rows);
-    if (c->columns >= columns && c->rows >= rows) {
+    char words[96];
+    if (!hn_views_too_small(w, c->columns, c->rows)) {
         return false;
     }
-    hn_cells_printf(c, (hn_area){0, 0, c->columns, 1}, 0, 0, HN_CELL_ALARM, 0, "%s%dx%d is needed",
-                    c->columns < 27 ? "" : "too small: ", columns, rows);
+    find_least_size(w, &columns, &rows);
+    snprintf(words, sizeof words, "%dx%d is too small: %dx%d is needed; q quits", c->columns,
+             c->rows, columns, rows);
+    hn_cells_fold(c, (hn_area){0, 0, c->columns, c->rows}, 0, HN_CELL_ALARM, words);
     return true;
 }
 

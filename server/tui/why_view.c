@@ -200,6 +200,11 @@ void hn_why_scroll(hn_workbench *w, hn_area area, int by) {
     w->why_of = w->selected;
 }
 
+void hn_why_follow(hn_workbench *w) {
+    w->why_first = first_shown(w);
+    w->why_of = w->selected;
+}
+
 void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     char title[96];
     snprintf(title, sizeof title, "why: %s (%si closes)",

@@ -14,5 +14,7 @@ bool hn_why_has_remedy(const hn_workbench *w);
 bool hn_why_has_more(hn_area area, const hn_workbench *w);
 /// Goes to the next page of the card in this area (by > 0), or to the one before.
 void hn_why_scroll(hn_workbench *w, hn_area area, int by);
+/// Starts the card at its top where another method is selected than before.
+void hn_why_follow(hn_workbench *w);
 void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w);
 #endif

@@ -52,6 +52,7 @@ typedef struct hn_item {
     char name[HN_TUI_LINE], about[HN_TUI_LINE];
     char more[4 * HN_TUI_LINE]; ///< below the list in place of `about`; "": about itself
     double value, low, high;    ///< of a parameter
+    char unit[32];              ///< of `value`; "": a pure number
     bool is_exercise;           ///< in the list of lessons
 } hn_item;
 
@@ -87,12 +88,18 @@ typedef struct hn_view_box {
     char *is_drawn;     ///< n_points, owned; NULL before the first recording
 } hn_view_box;
 
+/// The worst numbers of a method up to a moment.
+typedef struct hn_tui_worst {
+    double gap, energy; ///< [m], [J]
+    double stopped;     ///< when it ended before that moment [s]; NaN: it did not
+} hn_tui_worst;
+
 /// A changed method, whose numbers before the change are said beside those after it.
 typedef struct hn_tui_change {
     bool open; ///< the new numbers are not recorded yet
     int method;
-    double t;                  ///< until when [s]
-    double gap, energy;        ///< worst before [m], [J]
+    double t; ///< until when [s]
+    hn_tui_worst before;
     char what[HN_TUI_LINE];    ///< "alpha = 20, beta = 20"
     char said[HN_TUI_MESSAGE]; ///< until the new numbers are there
 } hn_tui_change;
@@ -140,6 +147,7 @@ typedef struct hn_workbench {
     // the panel over it
     hn_panel panel;
     hn_list_kind list;
+    int lesson;     ///< item of the list of lessons whose text this is; -1: none
     hn_item *items; ///< HN_TUI_ITEMS, owned
     int n_items, cursor, scroll;
     char title[HN_TUI_LINE];

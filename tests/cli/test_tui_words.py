@@ -68,7 +68,9 @@ class Table(unittest.TestCase):
             return " ".join(out.split("└")[-1].split())
         # the table of the lesson: the gap falls, the energy is hardly better
         self.assertRegex(said(20), r"method 2: baumgarte:alpha=20,beta=20@rk4:h=0\.02; until 10\.00 s: worst gap 6\d\d µm, before [23]\.\d mm; energy change [67]\d\d mJ, before [78]\d\d mJ")
-        self.assertIn("alpha = -5 1/s is negative: it drives the loop open; until 10.00 s: ", said(-5))
+        self.assertIn("alpha = -5 1/s is negative: it drives the loop open; until it stopped at 2.26 s: ", said(-5))
+        # its gap is that of the incident that ended it, not that of the last frame before
+        self.assertRegex(said(-5), r"worst gap 67\d mm, energy change \S+ J; before, until 10\.00 s: worst gap [23]\.\d mm")
 
     def test_the_mechanism_lies_above_its_scale_bar(self):
         # at the end the crank of the unstabilised run hangs lowest
@@ -86,8 +88,15 @@ class Table(unittest.TestCase):
         # one row or column less than the size that is named is too small, and that size is not
         for size, small in (("40x12", True), ("32x16", True), ("31x17", True), ("32x17", False), ("80x24", False)):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", size)
-            self.assertEqual("too small: 32x17 is needed" in out, small, size)
+            self.assertEqual(f"{size} is too small: 32x17 is needed; q quits" in " ".join(out.split()), small, size)
             self.assertEqual("e-17┤" in out, not small, size)
+
+    def test_keys_do_nothing_while_the_window_is_too_small(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "r.csv")
+            for size, written in (("40x12", False), ("80x24", True)):
+                once("pendulum", "--once", "--t", "0.1", "--size", size, "--keys", f"x<Enter><CtrlU>{path}<Enter>")
+                self.assertEqual(os.path.exists(path), written, size)
 
     def test_a_narrow_line_of_keys_keeps_its_end(self):
         for columns, keys, wanted in ((60, "", "Space run  ←→ step  1-8 method  d dt  g plot  ? menu  q"), (40, "", "Space run  ←→ step  ? menu  q"),
@@ -102,6 +111,62 @@ class Table(unittest.TestCase):
             self.assertEqual((status, out), (2, ""), t)
             self.assertIn(f"--t is {t} s; the motion of four-bar allows 0 to 10 s", err)
         self.assertEqual([once("four-bar", "--once", "--t", t)[0] for t in ("0", "10")], [0, 0])
+
+
+class Lists(unittest.TestCase):
+    def frame(self, keys, *words):
+        status, out, err = once(*(words or ("four-bar",)), "--once", "--t", "0.1", "--size", "120x40", "--keys", keys)
+        self.assertEqual((status, err), (0, ""))
+        return out
+
+    def foot(self, keys):
+        """The words below a list: those of the item under the cursor."""
+        return next(row for row in reversed(self.frame(keys).split("\n")[:-5]) if row.strip("│ "))
+
+    def test_escape_in_a_lesson_goes_back_to_the_list_and_its_item(self):
+        for keys in ("t<Down>", "t<Down><Down>"):  # a lesson's exercises, each in its own panel
+            before = self.frame(keys).split("\n")[:-2]
+            self.assertEqual(self.frame(keys + "<Enter><Esc>").split("\n")[:-2], before, keys)
+            self.assertIn("loop gap", self.frame(keys + "<Enter><Esc><Esc>"))
+        self.assertIn("lessons and exercises", self.frame("t<Enter><Esc>"))
+        # "add a method" came from the list of methods
+        self.assertIn("methods: Enter changes", self.frame("m<End><Enter><Esc>"))
+        self.assertIn("loop gap", self.frame("m<End><Enter><Esc><Esc>"))
+
+    def test_a_word_finds_the_item_that_begins_with_it_or_has_it(self):
+        def opened(keys):
+            return self.frame(keys).rstrip().split("\n")[-1].strip()
+        add = "m<End><Enter>"
+        self.assertTrue(opened(add + "nullspace<Enter>").startswith("method: nullspace"))
+        self.assertTrue(opened(add + "null<Enter>").startswith("method: nullspace"))
+        # another key begins a new word
+        self.assertTrue(opened(add + "null<Home>index1<Enter>").startswith("method: index1"))
+        self.assertTrue(opened(add + "nullz<Backspace><Enter>").startswith("method: nullspace"))
+        self.assertIn("no item has 'nullz'; Backspace takes a letter back", self.frame(add + "nullz"))
+        self.assertIn("search: drift", self.frame("tdrift"))
+        self.assertIn("drift", self.foot("tdrift").lower())
+
+    def test_the_list_of_methods_begins_at_the_selected_one(self):
+        line = self.frame("3m<Enter>", "four-bar", "--methods", "index1@rk4", "projection@rk4", "reduced@rk4").rstrip().split("\n")[-1]
+        self.assertIn("method: reduced@rk4", line)
+
+    def test_why_starts_at_its_top_each_time(self):
+        def card(keys):
+            out = once("parallelogram", "--once", "--t", "5", "--size", "80x24", "--keys", keys)[1]
+            return [line[37:79] for line in out.split("\n")[2:15]]
+        top = card("1i")
+        self.assertNotEqual(card("1i<PageDown>"), top)
+        self.assertEqual(card("1i<PageDown>ii"), top)
+        self.assertEqual(card("1i<PageDown>21"), top)
+
+    def test_a_parameter_is_typed_in_any_unit_that_fits(self):
+        def said(typed):
+            return " ".join(self.frame(f"p<Enter>{typed}<Enter>").split())
+        plain = self.frame("p<Enter>0.45<Enter>p")
+        for typed in ("45 cm", "450mm", "0,45 m"):
+            self.assertEqual(self.frame(f"p<Enter>{typed}<Enter>p"), plain, typed)
+        self.assertIn("'45 kg' is not a number in a unit that fits m", said("45 kg"))
+        self.assertIn("'45 x' is not a number in a unit that fits m", said("45 x"))
 
 
 class Messages(unittest.TestCase):
@@ -168,10 +233,12 @@ class Messages(unittest.TestCase):
         self.assertEqual(after("reduced@dopri5"), "no method here has a fixed step: all choose it by a tolerance (m)")
 
     def test_times_are_read_as_people_type_them(self):
-        for typed, said in (("20 ms", "dt = 0.02 s"), ("0,02", "dt = 0.02 s"), ("0.02 s", "dt = 0.02 s"), ("2e-2s", "dt = 0.02 s"), ("5 m", "dt must be above 0"),
-                            ("-1", "dt must be above 0"), ("", "dt = 0.001 s"), ("0.02 seconds", "dt must be above 0"), ("nan", "dt must be above 0")):
+        for typed, said in (("20 ms", "dt = 0.02 s"), ("0,02", "dt = 0.02 s"), ("0.02 s", "dt = 0.02 s"), ("2e-2s", "dt = 0.02 s"), ("5 m", "dt: '5 m' is not a number of seconds"), ("0.02x", "dt: '0.02x' is not a number of seconds"),
+                            ("-1", "dt must be above 0"), ("", "dt = 0.001 s"), ("0.02 seconds", "dt: '0.02 seconds' is not a number"), ("nan", "dt: 'nan' is not a number")):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--keys", f"d{typed}<Enter>", "--methods", "index1@rk4")
             self.assertTrue(message(out).startswith(said), (typed, message(out)))
+        # a line that is longer than any number
+        self.assertIn("dt: '" + "9" * 40 + "' is not a number", " ".join(once("four-bar", "--once", "--t", "0.1", "--keys", f"d{'9' * 70}<Enter>")[1].split()))
 
     def test_a_step_without_end_or_too_short_is_refused_and_the_methods_stay(self):
         def after(step):
@@ -184,11 +251,12 @@ class Messages(unittest.TestCase):
             return " ".join(frames[0].split())
         self.assertIn("'1e999' is beyond the largest number", after("1e999"))
         self.assertIn("dt must be above 0 s; '-1' is not", after("-1"))
+        self.assertIn("dt = 100 s is longer than the motion of 10 s", after("100"))
         # 10 s of motion in 50 million steps at most
         self.assertRegex(after("1e-12"), r"dt = 1e-12 s needs 1e\+13 steps to t = 10 s, and 5e\+07 are allowed; the shortest dt here is 2e-07 s")
 
     def test_a_refused_line_stays_open_as_it_was_typed(self):
-        for keys, line, said in (("d-1<Enter>", "20 ms: -1", "dt must be above 0"), ("dabc<Enter>", "20 ms: abc", "dt must be above 0"),
+        for keys, line, said in (("d-1<Enter>", "20 ms: -1", "dt must be above 0"), ("dabc<Enter>", "20 ms: abc", "dt: 'abc' is not a number"),
                                  ("m<Enter>nonsense@rk4<Enter>", "method: nonsense@rk4", "nonsense"), ("p<Enter>long<Enter>", "value: long", "is not a number"),
                                  ("p<Enter>-3<Enter>", "value: -3", ""), ("x<Enter>/no/such/folder.csv<Enter>", "write to: /no/such/folder.csv", "No such file"),
                                  ("bt99<Enter>", "to study [s]: 99", "no time of motion above 0")):
@@ -266,7 +334,7 @@ class Messages(unittest.TestCase):
             return once("four-bar", "--once", "--t", "0.1", "--size", "120x40", "--keys", keys, "--methods", "index1@rk4:h=0.02")[1]
         self.assertRegex(after("m<End><Enter>"), r"(?m)^│ nullspace-as-printed +\S")
         self.assertIn("method: ggl@radau5", after("m<End><Enter>g<Enter>"))
-        added = after("m<End><Enter>pp<Enter><Enter>m")
+        added = after("m<End><Enter>proj<Enter><Enter>m")
         self.assertRegex(added, r"(?m)^│ p\S+@rk4:h=0\.02 ")
         self.assertRegex(added, r"(?m)^│ index1@rk4:h=0\.02 ")
 
