@@ -18,21 +18,52 @@
 #include <unistd.h>
 
 static const double POINTS = 2; // of a part
-/// Difference that is allowed, relative to the largest entry of the part or 1: the two programs
-/// round in another order, and a student may divide where we multiply.
+/// Difference that is allowed, relative to the largest entry of the part: the two programs round in
+/// another order, and a student may divide where we multiply.
 static const double ALLOWED = 1e-9;
+/// An entry this small beside its terms has lost four digits; a difference of 1e-13 of the terms,
+/// some hundred roundings, is allowed there.
+static const double CANCELS = 1e-4;
 
 // ---- what is expected ----
+
+/// The largest number that rounds on the way to entry i: of its terms, 1 where they are not known.
+static double terms_size(const hn_export_exam *exam, int part, int i) {
+    const hn_export_sum *sum = &exam->sum[part][i];
+    double size = 0;
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        for (int m = 0; m < sum->n; m++) {
+            size = fmax(size, fabs(sum->t[m][k]));
+        }
+        if (sum->n == 0 && exam->question[k].answer[part][i] != 0) {
+            size = 1;
+        }
+    }
+    return size;
+}
 
 static bool is_asked(const hn_export_exam *exam, int part) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         for (int i = 0; i < exam->size[part]; i++) {
-            if (fabs(exam->question[k].answer[part][i]) > ALLOWED) {
+            if (fabs(exam->question[k].answer[part][i]) > ALLOWED * terms_size(exam, part, i)) {
                 return true;
             }
         }
     }
     return false; // all zero, rounding aside: nothing is to be filled in
+}
+
+/// What a difference in a part is measured by: its largest entry, whatever its unit; where its
+/// terms cancel, what they round to.
+static double size_of(const hn_export_exam *exam, int part) {
+    double size = 0;
+    for (int i = 0; i < exam->size[part]; i++) {
+        size = fmax(size, CANCELS * terms_size(exam, part, i));
+        for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+            size = fmax(size, fabs(exam->question[k].answer[part][i]));
+        }
+    }
+    return size;
 }
 
 hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model, hn_diags *diags) {
@@ -153,6 +184,7 @@ typedef struct part_view {
     const hn_export_exam *exam;
     const answers *given;
     int part, offset;
+    double size; ///< what differences are measured by
 } part_view;
 
 static double expected_at(const part_view *p, int k, int i) {
@@ -193,16 +225,6 @@ static double transposed_at(const part_view *p, int k, int i) {
     return expected_at(p, k, i % rows * columns + i / rows);
 }
 
-static double size_of(const part_view *p) {
-    double size = 1;
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        for (int i = 0; i < p->exam->size[p->part]; i++) {
-            size = fmax(size, fabs(expected_at(p, k, i)));
-        }
-    }
-    return size;
-}
-
 /// Whether every given entry is what `like` says; the largest difference is at *state, *entry.
 static bool is_like(const part_view *p, double (*like)(const part_view *, int, int), int *state,
                     int *entry) {
@@ -217,7 +239,7 @@ static bool is_like(const part_view *p, double (*like)(const part_view *, int, i
             }
         }
     }
-    return worst <= ALLOWED * size_of(p);
+    return worst <= ALLOWED * p->size;
 }
 
 /// The factor by which every entry is off, 0: there is none.
@@ -235,7 +257,7 @@ static double factor_of(const part_view *p) {
             worst = fmax(worst, fabs(given_at(p, k, i) - factor * expected_at(p, k, i)));
         }
     }
-    return worst <= ALLOWED * size_of(p) ? factor : 0;
+    return worst <= ALLOWED * p->size ? factor : 0;
 }
 
 static const struct {
@@ -301,7 +323,7 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     e->state = state;
     e->given_value = given_at(p, state, entry);
     e->expected_value = expected_at(p, state, entry);
-    e->allowed = ALLOWED * size_of(p);
+    e->allowed = ALLOWED * p->size;
     char place[64];
     name_entry(p, language, entry, place);
     snprintf(e->given, sizeof e->given, "%s", place);
@@ -332,44 +354,57 @@ static const struct entry_fault {
                     {"factor-term", "one of its %d terms lacks a factor 2", true, 0.5, 0.25},
                     {"factor-term", "one of its %d terms lacks a factor 1/2", true, 2, 0.25}};
 
+enum { N_ENTRY_FAULTS = sizeof ENTRY_FAULTS / sizeof *ENTRY_FAULTS };
+
 /// Whether entry i is the right one with `factor` at its term m, or at all of it (m = -1).
 static bool is_changed(const part_view *p, int i, int m, double factor) {
     const hn_export_sum *sum = &p->exam->sum[p->part][i];
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         const double right = expected_at(p, k, i);
         const double wrong = m < 0 ? factor * right : right + (factor - 1) * sum->t[m][k];
-        if (!(fabs(given_at(p, k, i) - wrong) <= ALLOWED * size_of(p))) {
+        if (!(fabs(given_at(p, k, i) - wrong) <= ALLOWED * p->size)) {
             return false;
         }
     }
     return true;
 }
 
-static const struct entry_fault *find_entry_fault(const part_view *p, int i) {
+/// All faults that wrong entry i may have, a bit each: where terms are alike several explain it.
+static unsigned find_entry_faults(const part_view *p, int i) {
     const int terms = p->exam->sum[p->part][i].n;
-    for (size_t f = 0; f < sizeof ENTRY_FAULTS / sizeof *ENTRY_FAULTS; f++) {
+    unsigned found = 0;
+    for (unsigned f = 0; f < N_ENTRY_FAULTS; f++) {
         const bool of_term = ENTRY_FAULTS[f].of_term;
         for (int m = of_term ? 0 : -1; m < (of_term && terms > 1 ? terms : 0); m++) {
             if (is_changed(p, i, m, ENTRY_FAULTS[f].factor)) {
-                return &ENTRY_FAULTS[f];
+                found |= 1U << f;
             }
         }
     }
-    return NULL;
+    return found;
+}
+
+/// The least that one of the faults leaves, 0: there is none.
+static double share_of(unsigned faults) {
+    double share = faults ? 1 : 0;
+    for (unsigned f = 0; f < N_ENTRY_FAULTS; f++) {
+        share = faults & 1U << f ? fmin(share, ENTRY_FAULTS[f].share) : share;
+    }
+    return share;
 }
 
 /// What the entries of a part are worth together.
 typedef struct part_credit {
-    int asked, right;                ///< entries that are not 0 everywhere; those that are right
-    double share;                    ///< of the points
-    const struct entry_fault *fault; ///< of the first wrong entry that has a known one; NULL: none
-    int entry;                       ///< with that fault
+    int asked, right; ///< entries that are not 0 everywhere; those that are right
+    double share;     ///< of the points
+    unsigned faults;  ///< of the first wrong entry that has a known one, 0: none
+    int entry;        ///< with these faults
 } part_credit;
 
 /// Whether `value` is 0 in entry i at every state, rounding aside.
 static bool is_zero_entry(const part_view *p, int i, double (*value)(const part_view *, int, int)) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        if (!(fabs(value(p, k, i)) <= ALLOWED * size_of(p))) {
+        if (!(fabs(value(p, k, i)) <= ALLOWED * p->size)) {
             return false;
         }
     }
@@ -389,10 +424,10 @@ static part_credit credit_part(const part_view *p) {
             continue;
         }
         const bool is_empty = is_zero_entry(p, i, given_at); // no fault of what was written
-        const struct entry_fault *fault = is_empty ? NULL : find_entry_fault(p, i);
-        sum += fault ? fault->share : 0;
-        if (fault && !c.fault) {
-            c.fault = fault;
+        const unsigned faults = is_empty ? 0 : find_entry_faults(p, i);
+        sum += share_of(faults);
+        if (faults && !c.faults) {
+            c.faults = faults;
             c.entry = i;
         }
     }
@@ -400,17 +435,29 @@ static part_credit credit_part(const part_view *p) {
     return c;
 }
 
-/// The fault of one entry, where no mistake of the whole part is known.
+/// The fault of one entry, or those that it may be, where no mistake of the whole part is known.
 static void name_entry_fault(const part_view *p, const hn_language *language, const part_credit *c,
                              hn_entry_verdict *e) {
     char place[64], says[80];
-    if (!c->fault || e->mistake[0]) {
+    if (!c->faults || e->mistake[0]) {
         return;
     }
     name_entry(p, language, c->entry, place);
-    snprintf(says, sizeof says, c->fault->says, p->exam->sum[p->part][c->entry].n);
-    e->mistake = c->fault->id;
-    snprintf(e->explanation, sizeof e->explanation, "%s: %s", place, says);
+    size_t n = (size_t)snprintf(e->explanation, sizeof e->explanation, "%s: ", place);
+    const char *between = "";
+    for (unsigned f = 0; f < N_ENTRY_FAULTS; f++) {
+        const struct entry_fault *fault = &ENTRY_FAULTS[f];
+        if (!(c->faults & 1U << f)) {
+            continue;
+        }
+        if (!e->mistake[0] && fault->share == share_of(c->faults)) {
+            e->mistake = fault->id; // the one that it is marked as
+        }
+        snprintf(says, sizeof says, fault->says, p->exam->sum[p->part][c->entry].n);
+        snprintf(e->explanation + n, sizeof e->explanation - n, "%s%s", between, says);
+        n = strlen(e->explanation);
+        between = ", or ";
+    }
 }
 
 static void compare_part(const part_view *p, const hn_language *language, hn_entry_verdict *e) {
@@ -440,6 +487,7 @@ static void compare_all(const hn_filled_exam *f, const hn_language *language, co
     part_view p = {.exam = &f->exam, .given = given};
     for (; p.part < HN_EXPORT_PARTS; p.offset += f->exam.size[p.part++]) {
         if (is_asked(&f->exam, p.part)) {
+            p.size = size_of(&f->exam, p.part);
             hn_entry_verdict *e = &v->entry[v->n_entries];
             e->row = v->n_entries++;
             compare_part(&p, language, e);

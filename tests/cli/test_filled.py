@@ -28,9 +28,9 @@ def call(*words):
     return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300 * driver.SLOW)
 
 
-def blank_and_filled(scene, language):
+def blank_and_filled(scene, language, *settings):
     """The program with blanks, and the same with the statements of the whole program in their place."""
-    blank, whole = (call("export", scene, "--language", language, *more).stdout.splitlines() for more in (["--blanks"], []))
+    blank, whole = (call("export", scene, "--language", language, *settings, *more).stdout.splitlines() for more in (["--blanks"], []))
     end = ENDINGS[language][1]
     begins = next(i for i, line in enumerate(blank) if "YOUR PART 1" in line)
     after = next(i for i in range(begins, len(blank)) if blank[i].startswith(end))
@@ -128,6 +128,27 @@ class Filled(unittest.TestCase):
             self.assertRegex(entries[part]["explanation"], r"; \d of \d entries are right$")
             self.assertEqual("no known mistake; force[2] differs most" in entries[part]["explanation"], mistake == "other")
             self.assertNotIn("expected_value", entries[part])
+
+    def test_where_several_faults_explain_an_entry_all_are_named_and_the_least_is_given(self):
+        # with m1 = m2 the terms of gravity in force[0] are one to two
+        _, filled = blank_and_filled("double-pendulum", "c")
+        sums = {"k3 + k8": "one of its 3 terms is missing, or one of its 3 terms lacks a factor 2",
+                "k3": "one of its 3 terms has the wrong sign, or one of its 3 terms is missing"}  # fmt: skip
+        self.assertEqual(filled.count("k3 + 2.0*k8"), 1)
+        for wrong, says in sums.items():
+            _, verdict = self.grade("double-pendulum", self.put("wrong.c", filled.replace("k3 + 2.0*k8", wrong)))
+            entry = {e["name"]: e for e in verdict["entries"]}["force"]
+            self.assertEqual((entry["mistake"], entry["explanation"], entry["points"]), ("missing-term", f"force[0]: {says}; 1 of 2 entries are right", 1.25))
+
+    def test_a_small_mechanism_is_marked_as_a_large_one(self):
+        for size, mass in ((0.01, 0.001), (1e-4, 1e-9), (1e3, 1e6)):
+            settings = [word for name, value in (("l1", size), ("l2", size), ("m1", mass), ("m2", mass)) for word in ("--set", f"{name}={value}")]
+            _, filled = blank_and_filled("double-pendulum", "c", *settings)
+            for factor, right in (("1.0", 2), ("1.009", 1), ("1.00000001", 1)):
+                last = filled.rindex("    energy[0] =")
+                path = self.put("one.c", f"{filled[:last]}    mass[0][0] *= {factor};\n{filled[last:]}")
+                verdict = json.loads(call("grade", "double-pendulum", path, *settings, "--json").stdout)
+                self.assertEqual(verdict["summary"], f"{right} of 2 parts are right", (size, factor))
 
     def test_a_program_that_does_not_compile_is_told_the_line_with_the_error(self):
         path = self.put("syntax.c", "int main(void) {\n    return ((0);\n}\n")
@@ -277,7 +298,7 @@ class Filled(unittest.TestCase):
         for language in ("c", "python"):
             ending = ENDINGS[language][0]
             _, filled = blank_and_filled("double-pendulum", language)
-            end = filled.index("    energy[0] =")
+            end = filled.rindex("    energy[0] =")
             own = "    const double a = 2.0, c = 4.0;\n    const double b = 2.0;\n    mass[0][0] *= a*b/c;\n"
             loop = "    for (int i = 0; i < NV; i++) for (int j = 0; j < NV; j++) mass[i][j] *= 1.0;\n"
             if language == "python":
