@@ -42,7 +42,7 @@ void hn_place_queue_serve(hn_place_queue *queue, const hn_place_rules *rules, bo
             hn_request_finish(r);
         } else if (!hn_jobs_push(rules->jobs, r, r->queues_as)) {
             rules->give(rules->user, r->client);
-            rules->refuse(rules->user, r, n_before);
+            hn_reply_queue_full(r, rules->jobs);
             hn_request_finish(r);
         }
     }

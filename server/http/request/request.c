@@ -72,7 +72,8 @@ bool hn_request_has_been_left(hn_request *r) {
         struct pollfd answer = {.fd = hn_request_socket(r)};
         poll(&answer, 1, PROBE_MS);
     }
-    return hn_request_is_left(r);
+    r->is_left = hn_request_is_left(r);
+    return r->is_left;
 }
 
 int hn_request_socket(const hn_request *r) {
@@ -209,6 +210,15 @@ void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, con
     vsnprintf(detail, sizeof detail, format, args);
     va_end(args);
     reply_document(r, kind, detail, hint, -1, NULL);
+}
+
+void hn_reply_queue_full(hn_request *r, hn_jobs *jobs) {
+    const hn_http_opts *opts = &r->context->opts;
+    hn_reply_problem(
+        r, HN_PROBLEM_BUSY, NULL,
+        "%d requests of this kind are waiting already, or your client has its share of them",
+        jobs == r->context->quick ? opts->quick_queue : opts->queue);
+    hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
 }
 
 static void reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint) {

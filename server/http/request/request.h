@@ -105,7 +105,8 @@ HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *n
 /// its system has refused something.
 bool hn_request_is_left(hn_request *r);
 /// The same, and waits for the answer of a client's system where that is needed: 50 ms at most. Not
-/// for a thread that serves others, nor under a lock.
+/// for a thread that serves others, nor under a lock. A reply to ended work then says that the
+/// client has gone.
 bool hn_request_has_been_left(hn_request *r);
 
 /// Adds a header to the reply; the value is printed as by printf().
@@ -122,6 +123,8 @@ void hn_reply_empty(hn_request *r, unsigned status);
 void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response);
 void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
                       ...) HN_PRINTF(4, 5);
+/// A pool has not taken the request: its queue is full, in all or for this client.
+void hn_reply_queue_full(hn_request *r, hn_jobs *jobs);
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 

@@ -210,12 +210,7 @@ static void push(hn_dispatch *d, hn_request *r, hn_jobs *jobs) {
         hn_reply_header_add(r, "Retry-After", "5");
         hn_request_finish(r);
     } else if (!hn_jobs_push(jobs, r, r->queues_as)) {
-        const hn_http_opts *opts = &r->context->opts;
-        hn_reply_problem(
-            r, HN_PROBLEM_BUSY, NULL,
-            "%d requests of this kind are waiting already, or your client has its share of them",
-            jobs == d->quick ? opts->quick_queue : opts->queue);
-        hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
+        hn_reply_queue_full(r, jobs);
         hn_request_finish(r);
     }
 }
