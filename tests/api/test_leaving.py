@@ -103,6 +103,16 @@ class Leaving(driver.ServerCase):
         self.assertEqual(self.server.ask("GET", "/api/v1/runs/" + run).json()["state"], "running")
         self.server.ask("DELETE", "/api/v1/runs/" + run)
 
+    def test_a_run_whose_id_was_listed_goes_on(self):
+        s = self.send("/api/v1/runs?wait=50", {**LONG, "time": 1004})
+        self.assertTrue(driver.until(self.works))
+        listed = self.server.ask("GET", "/api/v1/runs").json()["runs"]
+        s.close()
+        time.sleep(2)
+        self.assertIn("running", [self.server.ask("GET", f"/api/v1/runs/{run}").json().get("state") for run in listed])
+        for run in listed:
+            self.server.ask("DELETE", "/api/v1/runs/" + run)
+
     def ask_and_close_own_side(self, *what):
         """The answer to a client that sends no more and reads on, as `nc -N` does. It may get a "100 Continue" first."""
         s = self.send(*what)

@@ -410,9 +410,10 @@ class FairShares(Timed):
         self.assertEqual([ask("127.2.0.1", f"10.0.0.{k}") for k in range(3)], [201, 201, 429])
         room()
         # nonsense of a proxy is told
-        for name in ("nobody", "10.0.0.256", "10.0.0.1:", "10.0.0.1:123456", "[10.0.0.1", "[::1", "1.2.3.4, ", ",", "unknown", "x" * 3000):
+        for name in ("nobody", "10.0.0.256", "10.0.0.1:", "10.0.0.1:123456", "[10.0.0.1", "[::1", "1.2.3.4, ", ",", "unknowns", "unix", "x" * 3000):
             self.assertEqual(ask("127.0.0.2", name), 400, name)
-        self.assertEqual(ask("127.0.0.2", ""), 201)  # says nothing
+        # a proxy that says nothing, or that it knows no address, asks for itself
+        self.assertEqual([ask("127.0.0.2", n) for n in ("", "unknown", "10.0.0.1, unix:")], [201, 201, 429])
         self.assertEqual(server.stop(), 0)
 
     def test_a_proxy_that_is_no_address_is_refused_at_the_start(self):

@@ -57,6 +57,18 @@ static const char *take_last(const char *list, size_t *n, size_t *n_entry) {
     return entry;
 }
 
+/// The words of a proxy that knows no address of its client: of Squid, and of nginx where the
+/// client comes by a socket of the system.
+static bool says_no_address(const char *entry, size_t n) {
+    static const char *const words[] = {"unknown", "unix:"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (n == strlen(words[i]) && strncasecmp(entry, words[i], n) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// Follows the proxies from `from` to the address that the last of them speaks for.
 static bool follow(hn_request *r, hn_address *from) {
     const char *list = NULL;
@@ -65,6 +77,9 @@ static bool follow(hn_request *r, hn_address *from) {
     while (n > 0 && hn_proxies_have(&r->context->opts.proxies, from)) {
         size_t n_entry;
         const char *entry = take_last(list, &n, &n_entry);
+        if (says_no_address(entry, n_entry)) {
+            return true; // it counts as the proxy's own
+        }
         if (!hn_address_read(entry, n_entry, from)) {
             hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST,
                              "a proxy writes the address of its client there",

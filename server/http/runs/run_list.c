@@ -83,7 +83,7 @@ static int compare_ids(const void *a, const void *b) {
 /// All runs, each once, by id.
 static entries collect(hn_runs *runs, const char *folder) {
     entries all = {0};
-    hn_runs_each(runs, add_kept, &all);
+    hn_runs_list(runs, add_kept, &all);
     hn_run_folder_each(folder, add_file, &all);
     if (all.n > 0) {
         qsort(all.item, all.n, sizeof *all.item, compare);

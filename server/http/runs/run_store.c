@@ -531,9 +531,10 @@ int hn_runs_wait(hn_runs *all) {
     return hn_jobs_wait(all->jobs);
 }
 
-void hn_runs_each(hn_runs *all, void (*see)(void *user, const char *id), void *user) {
+void hn_runs_list(hn_runs *all, void (*see)(void *user, const char *id), void *user) {
     pthread_mutex_lock(&all->lock);
-    for (const hn_kept_run *run = all->first; run; run = run->next) {
+    for (hn_kept_run *run = all->first; run; run = run->next) {
+        run->is_known = true;
         see(user, run->id);
     }
     pthread_mutex_unlock(&all->lock);

@@ -58,6 +58,7 @@ void hn_runs_remove_reader(hn_runs *all, hn_run_reader *reader);
 bool hn_runs_suspend_reader(hn_runs *all, hn_run_reader *reader, double seconds);
 /// Seconds after which a refused question may be asked again.
 int hn_runs_wait(hn_runs *all);
-/// Calls `see` with the id of each run in memory, with the lock of the store held.
-void hn_runs_each(hn_runs *all, void (*see)(void *user, const char *id), void *user);
+/// Calls `see` with the id of each run in memory, which somebody then knows: it goes on unwatched.
+/// With the lock of the store held.
+void hn_runs_list(hn_runs *all, void (*see)(void *user, const char *id), void *user);
 #endif
