@@ -287,6 +287,67 @@ test("models of other programs are dropped on the page", async (t) => {
   await soon(async () => assert.equal(await read(page, (data) => data.scene.id), "own"));
 });
 
+test("a URDF is opened with its loop file, chosen or dropped", async (t) => {
+  const page = await open(t);
+  const file = (name) => ({
+    name,
+    mimeType: "text/plain",
+    buffer: readFileSync(join(ROOT, "tests/import", name)),
+  });
+  const rubbish = (text) => ({
+    name: "rubbish.json",
+    mimeType: "text/plain",
+    buffer: Buffer.from(text),
+  });
+  const choose = (...files) => page.setInputFiles(".editor input[type=file]", files);
+  const closing = () =>
+    page
+      .inputValue("#editor-text")
+      .then((text) => JSON.parse(text).joints.filter(({ cut }) => cut).length);
+  await edit(page);
+
+  // by itself it is a tree; with its loop file its loop is closed
+  await choose(file("four-bar.urdf"));
+  await until(page, (data) => data.scene.joints.length === 4);
+  await says(page, "URDF");
+  assert.equal(await closing(), 0);
+  await choose(file("four-bar.loops.json"), file("four-bar.urdf"));
+  await until(page, (data) => data.scene.joints.length === 5 && data.scene.loops === 1);
+  await says(page, "URDF");
+  assert.equal(await closing(), 1);
+
+  // what is no loop file is named, and the last good scene stays
+  for (const [text, reason] of [
+    ["rubbish", "expected a value"],
+    ["", "loop file"],
+    ['{"a": 1}', "unknown field"],
+  ]) {
+    await choose(file("four-bar.urdf"), rubbish(text));
+    await says(page, "the loop file 'rubbish.json' was not read");
+    await says(page, reason);
+  }
+  await choose(file("four-bar.urdf"), file("double-pendulum.urdf"));
+  await says(page, "'four-bar.urdf', 'double-pendulum.urdf': open one file");
+  assert.equal(await read(page, (data) => data.scene.joints.length), 5);
+
+  // dropped together
+  await choose(file("four-bar.urdf"));
+  await until(page, (data) => data.scene.joints.length === 4);
+  await page.evaluate(
+    (files) => {
+      const transfer = new DataTransfer();
+      files.forEach(([name, text]) => transfer.items.add(new File([text], name)));
+      const how = { dataTransfer: transfer, bubbles: true, cancelable: true };
+      document.body.dispatchEvent(new DragEvent("drop", how));
+    },
+    [file("four-bar.urdf"), file("four-bar.loops.json")].map((one) => [
+      one.name,
+      String(one.buffer),
+    ]),
+  );
+  await until(page, (data) => data.scene.joints.length === 5 && data.scene.loops === 1);
+});
+
 test("a model of another program can be pasted, and what it leaves out is counted", async (t) => {
   const page = await open(t);
   await edit(page);

@@ -28,10 +28,12 @@ export const documents = {
    * A model of another program as a scene.
    * @param {string} model XML
    * @param {string} name of the scene
+   * @param {string} [loops] the loop file of a model
    * @returns {Promise<{format: string, document: string, notes: {outcome: string, line: number,
    *   where: string, what: string}[]}>}
    */
-  importModel: (model, name) => request("POST", `${BASE}/import`, { text: model, name }),
+  importModel: (model, name, loops) =>
+    request("POST", `${BASE}/import`, { text: model, name, loops }),
   /**
    * @returns {Promise<{languages: {name: string, suffix: string, about: string,
    *   solvers: {name: string, about: string}[]}[]}>}

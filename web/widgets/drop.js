@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// A file that is dropped on the page.
+// Files that are dropped on the page.
 
-/** @param {HTMLElement} body @param {(file: File) => void} take */
+/** @param {HTMLElement} body @param {(files: File[]) => void} take */
 export function acceptFiles(body, take) {
   /** @param {DragEvent} event */
   const holds = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
@@ -12,10 +12,10 @@ export function acceptFiles(body, take) {
     }
   });
   body.addEventListener("drop", (event) => {
-    const file = event.dataTransfer?.files[0];
-    if (file) {
+    const files = [...(event.dataTransfer?.files ?? [])];
+    if (files.length) {
       event.preventDefault();
-      take(file);
+      take(files);
     }
   });
 }

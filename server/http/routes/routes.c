@@ -44,7 +44,7 @@ static const hn_field IMPORT[] = {
      .about = "name of the scene; the model's own when left out"},
     {.name = "loops",
      .type = HN_FIELD_TEXT,
-     .about = "URDF: the joints that close its loops, as JSON text"},
+     .about = "the loop file: the joints that close loops, as JSON text"},
     END_OF_FIELDS};
 
 static const hn_field SCENE_ONLY[] = {SCENE_FIELDS, END_OF_FIELDS};

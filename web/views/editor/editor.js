@@ -11,6 +11,7 @@ import { listen, madeOf } from "../../state/store.js";
 import { counted } from "../../state/format.js";
 import { h, say, set } from "../../widgets/dom.js";
 import { saveFile } from "../../widgets/save.js";
+import { createChooser, isModel, sortFiles } from "./files.js";
 import { createOffers } from "./offers.js";
 import { createEditorTools } from "./tools.js";
 
@@ -18,7 +19,6 @@ const PAUSE = 450; // [ms] after the last key before the server is asked
 const MOST_UNDONE = 100;
 const LINE = 20; // [px] the height of a line of the document
 const LINES_ABOVE = 5; // a line that is to be seen
-const MODELS = /\.(xml|urdf|mjcf)$/i;
 
 /**
  * @param {HTMLElement} el
@@ -59,14 +59,7 @@ export function createEditor(el, store, actions, drawing) {
     tell: (text) => say(state, text),
     begin: () => actions.reset(),
   });
-  const file = h("input", {
-    type: "file",
-    accept: ".json,.xml,.urdf,.mjcf",
-    class: "hidden",
-    tabindex: "-1",
-    "aria-label": "Scene, MJCF or URDF file",
-    onchange: () => file.files?.[0] && openFile(file.files[0]),
-  });
+  const file = createChooser((files) => openFiles(files));
   const button = (word, tip, onclick) =>
     h("button", { type: "button", class: "quiet", "data-tip": tip, onclick }, word);
   const panel = h(
@@ -82,7 +75,11 @@ export function createEditor(el, store, actions, drawing) {
         { class: "choices" },
         button("undo", "takes back what was added with the mouse", undo),
         button("new", "a document with one bar", () => put(NEW_SCENE)),
-        button("open", "a scene, MJCF or URDF file; or drop it on the page", () => file.click()),
+        button(
+          "open",
+          "a scene, MJCF or URDF file, or a model with its loop file; or drop them on the page",
+          () => file.click(),
+        ),
         button("save", "the document as a file", save),
         button("close", "the scene goes on running", close),
       ),
@@ -276,30 +273,35 @@ export function createEditor(el, store, actions, drawing) {
     saveFile(new Blob([field.value], { type: "application/json" }), `${name}.json`);
   }
 
-  /** A model of another program, as a file or pasted. @param {string} text */
-  const isModel = (text) => text.trimStart().startsWith("<");
-
-  /** @param {File} dropped a scene, or a model of another program */
-  async function openFile(dropped) {
+  /** A scene, a model of another program, or a model with its loop file. @param {File[]} files */
+  async function openFiles(files) {
     show();
-    const text = await dropped.text();
-    if (MODELS.test(dropped.name) || isModel(text)) {
-      await importText(text, dropped.name);
+    const { scene, model, loops, fault } = await sortFiles(files);
+    if (model) {
+      await importText(model.text, model.name, loops);
+    } else if (scene) {
+      await put(scene.text);
     } else {
-      await put(text);
+      showFaults([]);
+      say(state, String(fault));
     }
   }
 
   /**
    * Puts a model of another program there as a scene, with what was left out.
    * @param {string} text XML @param {string} source a file's name, or what it is called
+   * @param {{name: string, text: string}} [loops] the loop file of a model
    */
-  async function importText(text, source) {
+  async function importText(text, source, loops) {
     const number = ++asked;
     say(state, "asking the server for this model as a scene");
     try {
       const name = source.replace(/\.[^.]*$/, "").replace(/\W+/g, "-");
-      const { format, document: scene, notes } = await documents.importModel(text, name);
+      const {
+        format,
+        document: scene,
+        notes,
+      } = await documents.importModel(text, name, loops?.text);
       if (number !== asked) {
         return; // something else was typed meanwhile
       }
@@ -315,7 +317,8 @@ export function createEditor(el, store, actions, drawing) {
       );
     } catch (error) {
       const list = error instanceof Problem ? error.errors : [];
-      say(state, `the model '${source}' was not read: ${sentenceOf(error)}`);
+      const both = loops ? ` with the loop file '${loops.name}'` : "";
+      say(state, `the model '${source}'${both} was not read: ${sentenceOf(error)}`);
       faults.replaceChildren(
         ...list.slice(1).map(({ detail }) => h("li", {}, h("span", {}, detail))),
       );
@@ -379,11 +382,11 @@ export function createEditor(el, store, actions, drawing) {
   });
 
   return {
-    /** @param {File} [dropped] */
+    /** @param {File[]} [dropped] */
     async open(dropped) {
       schema ??= await documents.schema().catch(() => null);
       if (dropped) {
-        await openFile(dropped);
+        await openFiles(dropped);
         return;
       }
       show();
