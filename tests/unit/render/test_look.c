@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double LEAST_CONTRAST = 3, LEAST_TEXT_CONTRAST = 4.5, LEAST_DISTANCE = 10;
+static const double LEAST_CONTRAST = 3, LEAST_TEXT_CONTRAST = 4.5, LEAST_DISTANCE = 20;
 
 typedef struct triple {
     double x[3];
