@@ -66,7 +66,10 @@ static void point_at(hn_workbench *w, const hn_cells *c, hn_mouse mouse) {
         return;
     }
 
-    // a press
+    // a press on what is seen
+    if (hn_views_too_small(w, c->columns, c->rows)) {
+        return;
+    }
     if (mouse.what == HN_MOUSE_PRESS && inside(mechanism, mouse)) {
         hn_drag_begin(w, mechanism, mouse.x, mouse.y);
     } else if (inside(places.table, mouse) && row >= 0 && row < w->n_methods) {

@@ -546,6 +546,17 @@ class Keys(unittest.TestCase):
         terminal.type("\033[<0;80;10M\033[<0;80;10m")
         self.assertTrue(terminal.wait_for(rb"paused"))
 
+    def test_a_click_does_nothing_while_the_window_is_too_small(self):
+        terminal = Terminal("four-bar", columns=31, rows=24)
+        self.addCleanup(terminal.close)
+        self.assertTrue(terminal.wait_for(rb"too small"))
+        terminal.type("\033[<0;25;4M\033[<0;25;4m")  # where the plot would be
+        terminal.read(0.5)
+        terminal.clear()
+        terminal.resize(100, 30)
+        self.assertTrue(terminal.wait_for(rb"running|paused"))
+        self.assertNotIn(b"paused", terminal.seen)
+
 
 if __name__ == "__main__":
     driver.main()
