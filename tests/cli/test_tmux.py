@@ -65,7 +65,7 @@ class Terminal(Tmux):
         self.tmux("resize-window", "-x", "20", "-y", "5")
         time.sleep(0.5)
         self.wait_for("32x17 is needed")
-        self.assertEqual(self.screen().strip(), "32x17 is needed")
+        self.assertEqual(" ".join(self.screen().split()), "20x5 is too small: 32x17 is needed; q quits")
         self.tmux("resize-window", "-x", "100", "-y", "30")
         self.wait_for("Baumgarte|baumgarte")
         self.keys("q")
