@@ -33,7 +33,7 @@ const rowsOfPage = (page) =>
       .map((cells) => cells.map((cell) => cell.innerText)),
   );
 
-/** The same of the terminal's. */
+/** The same of the terminal's. It has no sliders: alpha and beta stand behind the name there. */
 function rowsOfTerminal(scene, t, methods) {
   const words = ["tui", scene, "--once", "--size", "200x40", "--t", String(t), "--methods"];
   const frame = execFileSync(PROGRAM, [...words, ...methods], {
@@ -47,7 +47,7 @@ function rowsOfTerminal(scene, t, methods) {
     "gmu",
   );
   return [...frame.matchAll(row)].map(([, name, gap, error, energy, cost, verdict]) => [
-    name,
+    name.replace(/ [\d.]+\/[\d.]+$/, ""),
     verdict,
     gap,
     error,

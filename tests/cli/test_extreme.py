@@ -121,7 +121,7 @@ class Extreme(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             poor = studies.call(["extreme", *SECONDS, "--json", "--time-limit", "0.2"], folder, text=True)
             self.assertTrue(json.loads(poor.stdout)["out_of_time"])
-            self.assertIn("the time limit left trials out; the same command continues from here", poor.stderr)
+            self.assertIn("the time limit of 0.2 s left trials out; the same command continues from here", poor.stderr)
             rich = studies.call(["extreme", *SECONDS, "--json"], folder, text=True)
         self.assertEqual(rich.stdout, call([*SECONDS, "--json"]).stdout)
 
