@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 enum { FORMAT = 2 }; // counts up when the meaning of a line changes
+static const double MOST_STEPS = 9e15; // whole numbers are exact up to here
 
 static uint64_t hash_axis(uint64_t hash, const hn_map_axis *a) {
     hash = hn_hash_text(hash, a->name);
@@ -41,6 +42,7 @@ static bool take_cell(hn_map *map, const cJSON *o, int m, int column, int row) {
     if (!hn_stored_int(o, "kind", HN_STABILITY_CLASS_COUNT, &kind) ||
         !hn_stored_int(o, "status", HN_STATUS_COUNT, &status) ||
         !hn_stored_numbers(o, "numbers", numbers, 5) ||
+        !(numbers[4] >= 0 && numbers[4] <= MOST_STEPS) ||
         !hn_stored_text(o, "reason", t.reason, sizeof t.reason)) {
         return false;
     }

@@ -56,7 +56,12 @@ static void keep_share(void *user, const char *part, double share) {
 /// The members of the body that are fields of the kind, checked and with the bounds of this server.
 static hn_status read_fields(hn_study_work *w, const cJSON *body, const hn_http_opts *opts,
                              hn_diags *diags) {
-    w->kind = hn_job_kind_find(hn_fields_text(body, "kind"));
+    const char *kind = hn_fields_text(body, "kind");
+    w->kind = kind ? hn_job_kind_find(kind) : NULL;
+    if (!w->kind) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/kind", "the index of the API lists the kinds",
+                            "'kind' is missing, or names no kind of study");
+    }
 
     // the body without what is read elsewhere
     w->body = cJSON_Duplicate(body, 1);
