@@ -4,6 +4,7 @@ written. A limit of the size of files stands for a full disk: both end a write i
 
 import json
 import os
+import re
 import resource
 import signal
 import stat
@@ -66,6 +67,22 @@ class Kept(unittest.TestCase):
         status, _, told = studies.interrupt(LONG, self.folder, "study-")
         self.assertEqual(status, studies.ENDED, told)
         return os.path.join(self.folder, studies.journals(self.folder, "study-")[0])
+
+    def test_a_line_of_a_kept_map_whose_steps_are_no_count_is_computed_again(self):
+        words = ["study", "four-bar", "stability", "--methods", "baumgarte@rk4", "--grid", "24x24", "--json"]
+        status, _, told = studies.interrupt(words, self.folder, "stability-")
+        self.assertEqual(status, studies.ENDED, told)
+        path = os.path.join(self.folder, studies.journals(self.folder, "stability-")[0])
+        with open(path, encoding="utf-8") as f:
+            lines = f.read()
+        damaged = re.sub(r'("numbers":\[[^]]*,)[\d.e+]+\]', lambda m: m[1] + "6.7e82]", lines, count=1)
+        self.assertNotEqual(lines, damaged)
+        with open(path, "w", encoding="utf-8") as f:
+            f.write(damaged)
+        done = call([*words, "--time-limit", "0.1"], self.folder)
+        self.assertEqual(done.returncode, studies.DONE, done.stderr)
+        for wrong in (b"e+82", b"e82", b"-9223372036854775808"):  # the last is what a cast makes of it
+            self.assertNotIn(wrong, done.stdout)
 
     def test_nothing_in_the_place_of_a_journal_is_followed_or_waited_for(self):
         path = self.journal()
