@@ -106,8 +106,8 @@ bool hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
         !hn_stored_numbers(o, "end", p->end, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "q", p->end_q, (size_t)s->ref->n_user) ||
         !hn_stored_numbers(o, "cost", counts, N_COUNTS) ||
-        !are_counts(numbers + 1, N_NUMBERS - 1) || !(fabs(numbers[3]) <= INT_MAX) || !are_counts(counts, ENERGY) ||
-        !are_counts(counts + ENERGY + 1, N_COUNTS - ENERGY - 1) ||
+        !are_counts(numbers + 1, N_NUMBERS - 1) || !(fabs(numbers[3]) <= INT_MAX) ||
+        !are_counts(counts, ENERGY) || !are_counts(counts + ENERGY + 1, N_COUNTS - ENERGY - 1) ||
         !(status >= 0 && status < HN_STATUS_COUNT) ||
         (state != HN_WP_DONE && state != HN_WP_FAILED && state != HN_WP_SKIPPED)) {
         return false;

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-enum { FORMAT = 2 }; // counts up when the meaning of a line changes
+enum { FORMAT = 2 };                   // counts up when the meaning of a line changes
 static const double MOST_STEPS = 9e15; // whole numbers are exact up to here
 
 static uint64_t hash_axis(uint64_t hash, const hn_map_axis *a) {
