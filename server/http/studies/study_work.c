@@ -185,7 +185,8 @@ static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_r
 static void report_failure(const hn_study_work *w, hn_status status, const hn_diags *diags,
                            hn_study_result *out) {
     const bool ended = w->out_of_time || w->cpu_used_up || atomic_load(&w->stop);
-    out->state = ended && status == HN_ERR_STOPPED ? HN_STUDY_STOPPED : HN_STUDY_FAILED;
+    const bool by_limits = status == HN_ERR_STOPPED || status == HN_ERR_LIMIT;
+    out->state = ended && by_limits ? HN_STUDY_STOPPED : HN_STUDY_FAILED;
     if (w->out_of_time && !w->cpu_used_up && !atomic_load(&w->stop)) {
         snprintf(out->reason, sizeof out->reason,
                  "the time limit of %.4g s ended before the first result",
