@@ -106,7 +106,7 @@ SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLES       := tests/library/example.c
 FUZZ_SOURCES   := $(sort $(wildcard tests/fuzz/fuzz_*.c))
-FUZZ_SUPPORT   := tests/fuzz/fuzz.c
+FUZZ_SUPPORT   := tests/fuzz/fuzz.c tests/fuzz/stand_in.c
 TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c tests/tables/accuracy.c tests/tables/tolerance.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
                   $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES) $(FUZZ_SOURCES) $(FUZZ_SUPPORT)

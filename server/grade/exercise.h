@@ -75,6 +75,7 @@ typedef struct hn_exercise {
     int n_owners;                   ///< of a class: whose numbers a wrong answer may be
     const hn_variant_owner *owners; ///< borrowed
     const hn_library *lib;          ///< scenes that parts run; NULL: none
+    hn_interrupt interrupt;         ///< ends a grading early: HN_ERR_STOPPED
     bool first_letters; ///< options in the order of letters 1, for verdicts that were made with it
     struct hn_rubric *rubric; ///< owned; NULL: the exercise's own points and shares
 } hn_exercise;

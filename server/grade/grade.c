@@ -332,6 +332,9 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
         int i = k / p->n_columns, j = k % p->n_columns;
         const cJSON *node =
             cJSON_GetArrayItem(cJSON_GetArrayItem(answer, transposed ? j : i), transposed ? i : j);
+        if (hn_interrupt_ask(&p->interrupt)) {
+            return HN_ERR_STOPPED;
+        }
         begin_entry(v, exam, k);
         HN_TRY(grade_entry(v, exam, node, &v->entry[k]));
         v->n_right += v->entry[k].right;
@@ -360,6 +363,9 @@ static hn_status prove_parts(const hn_variant *x, hn_diag *diag) {
         const hn_part *p = &x->part[i];
         hn_diag why = {0};
         const hn_status status = p->kind->prove ? p->kind->prove(p, &why) : HN_OK;
+        if (hn_interrupt_ask(&p->interrupt)) {
+            return HN_ERR_STOPPED;
+        }
         if (status != HN_OK) {
             return hn_diag_set(diag, status, "/parts", "problem --check tries every variant",
                                "the exercise is wrong in its part %.20s: %.200s", p->id,
@@ -382,12 +388,14 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
     }
     if (status == HN_OK && v->kind == HN_VERDICT_GRADED) {
         hn_other_variant_say(x, root, v);
+        status = hn_interrupt_ask(&v->problem->interrupt) ? HN_ERR_STOPPED : HN_OK;
     }
     if (x) {
         hn_variant_reset(x);
     }
     free(x);
-    if (status != HN_OK && status != HN_ERR_MEMORY) { // the exercise is at fault, not the student
+    if (status != HN_OK && status != HN_ERR_MEMORY &&
+        status != HN_ERR_STOPPED) { // the exercise is at fault, not the student
         snprintf(v->reason, sizeof v->reason, "%.390s", diag.message);
         status = HN_ERR_INTERNAL;
     }

@@ -14,7 +14,8 @@
 
 /// Grades n bytes of a submission. `seed` chooses the states or the variant (0: the variant that
 /// the submission says it answers, else the problem's own). HN_OK for graded and ungradable alike;
-/// otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time and memory are bounded.
+/// otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL), or the interrupt of the exercise
+/// ended it (HN_ERR_STOPPED). Time and memory are bounded.
 HN_MUST_CHECK hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n,
                                       uint64_t seed, hn_verdict *out);
 /// Grades a file, or standard input ("-", "/dev/stdin"). One that is missing, too large or no

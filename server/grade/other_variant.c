@@ -79,7 +79,7 @@ static double find_chance(const hn_exercise *exercise, const cJSON *submission,
                           const wrong_number *list, int n, const bool fits[MAX_WRONG]) {
     int hits[MAX_WRONG] = {0}, tried = 0;
     double chance = 1;
-    for (int k = 0; k < BYSTANDERS; k++) {
+    for (int k = 0; k < BYSTANDERS && !hn_interrupt_ask(&exercise->interrupt); k++) {
         bool right[MAX_WRONG];
         const uint64_t seed = hn_hash_bytes(HN_HASH_START, &k, sizeof k);
         if (try_variant(exercise, seed, submission, list, n, right)) {

@@ -39,6 +39,7 @@ hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t s
         x->part[i] = exercise->parts[i];
         x->part[i].draw = &x->draw;
         x->part[i].lib = exercise->lib;
+        x->part[i].interrupt = exercise->interrupt;
         x->part[i].seed = hn_hash_mix(x->seed + 7919 * (uint64_t)(i + 1));
         x->part[i].letters = seed_letters(x, &x->part[i]);
     }
@@ -554,7 +555,11 @@ hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v
     for (int i = 0; i < x->n_parts; i++) {
         hn_part_result results[HN_PART_RESULTS];
         int n = 0;
-        HN_TRY(grade_part(&x->part[i], submission, results, &n, diag));
+        const hn_status status = grade_part(&x->part[i], submission, results, &n, diag);
+        if (hn_interrupt_ask(&x->exercise->interrupt)) {
+            return HN_ERR_STOPPED;
+        }
+        HN_TRY(status);
         add_results(v, &x->part[i], results, n);
     }
     hn_submission_remark_read_as(v);

@@ -36,7 +36,7 @@ void hn_variant_notation(hn_strbuf *b, const hn_variant *x);
 void hn_variant_hint(hn_strbuf *b, hn_variant *x, int number);
 void hn_variant_json(hn_strbuf *b, hn_variant *x);
 /// Grades a submission, an object with a member for each part, into the verdict.
-/// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.
+/// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY, HN_ERR_STOPPED (its interrupt).
 HN_MUST_CHECK hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v,
                                          hn_diag *diag);
 #endif

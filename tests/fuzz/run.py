@@ -114,7 +114,32 @@ def seeds(name):
         column = {"m": 0, "column": 1, "between": [0.1, 0.2], "reason": "x"}
         return [bytes([k]) + b"".join(json.dumps(l).encode() + b"\n" for l in lines)
                 for k, lines in enumerate(([line, {"m": 0, "k": 0, "cpu": 1e-3, "busy": 0}], [cell, column], [line]))]
+    if name == "heads":
+        return list(heads())
     raise KeyError(name)
+
+
+# what clients and proxies write into heads, beside a Host
+FIELDS = ["X-Forwarded-For: 203.0.113.9", "X-Forwarded-For: 198.51.100.1:443, [2001:db8::7]:80 , 10.1.2.3", "X-Forwarded-For: unknown, unix:",
+          "X-Forwarded-For: ::ffff:192.0.2.1\r\nX-Forwarded-For: 2001:db8:8000::1", "Accept: text/csv;q=0.5, application/*;q=0, */*",
+          "Accept: application/x-ndjson", 'If-None-Match: W/"$R", "$R.0", *', "If-None-Match: *", "Last-Event-ID: 17", "Range: bytes=0-9",
+          "Origin: http://localhost:80", "Origin: https://mechanisms.example", "Sec-Fetch-Site: cross-site", "Sec-Fetch-Site: same-origin",
+          'Cookie: a=b; holonom_token="SECRET-TOKEN"', "Authorization: bearer  SECRET-TOKEN", "Accept-Encoding: br, gzip;q=0.5", "User-Agent: x",
+          "Content-Length: 9\r\nTransfer-Encoding: chunked", "Content-Type: application/json; charset=utf-8", "Expect: 100-continue", "Connection: close"]
+ADDRESSES = ["/", "/?token=SECRET-TOKEN", "/api", "/healthz", "/api/v1/", "/api/v1/openapi.json", "/api/v1/scenes", "/api/v1/scenes/four-baar", "/api/v1/runs",
+             "/api/v1/runs/$R?wait=1", "/api/v1/runs/$R/samples?fields=t,q,gap&stride=2&from=0.05&to=1e-1&cursor=3&limit=2&method=1",
+             "/api/v1/runs/$R/events?mode=live&fields=t&last_event_id=3", "/api/v1/comparisons/$C", "/api/v1/comparisons/$C/events?mode=complete&fields=lambda,sigma_min",
+             "/api/v1/problems/p3?hint=1", "/api/v1/lessons/1", "/api/v1/errors/input", "/api/v1/scenes/pendulum/export?language=c&set=l:0.6&set=m:1",
+             "http://localhost/api/v1/methods", "/%2e%2e/%00?a=%0d%0a&b+c=", "/page.js"]
+
+
+def heads():
+    """Every address, every field and every way of starting the server at least once, and networks of proxies."""
+    for k, (address, field) in enumerate([(a, FIELDS[k % len(FIELDS)]) for k, a in enumerate(ADDRESSES)] + [(ADDRESSES[k % len(ADDRESSES)], f) for k, f in enumerate(FIELDS)]):
+        verb, host = ("GET", "GET", "HEAD", "GET", "GET", "OPTIONS", "POST")[k % 7], ("localhost", "127.0.0.1:8080", "[::1]:80", "mechanisms.example")[k % 4]
+        yield bytes([k % 32]) + f"{verb} {address} HTTP/1.{int(k % 5 > 0)}\r\nHost: {host}\r\n{field}\r\n\r\n".encode()
+    for network in ("10.0.0.0/8", "192.0.2.1", "2001:db8::/33", "::ffff:10.0.0.1/24", "[::1]:80", "127.0.0.1:8080"):
+        yield b"\xff" + network.encode()
 
 
 # name: program, longest input, what the input is made of
@@ -129,6 +154,7 @@ HARNESSES = {
     "submission": ("fuzz_submission", 4096, "json"),
     "reference": ("fuzz_reference", 20000, "json"),
     "journal": ("fuzz_journal", 2048, "json"),
+    "heads": ("fuzz_heads", 2048, "head"),
 }
 
 
@@ -139,6 +165,8 @@ def words(kind):
         found = set(re.findall(r'"[A-Za-z_]{2,20}"', " ".join(texts))) | {'"scene"', '"methods"', '"four-bar"', "1e308", "-0", "5e-324", "null"}
     elif kind == "formula":
         found = {"sin(", "cos(", "sqrt(", "hypot(", "atan2(", "exp(", "log(", "abs(", "th1", "l1", "x", "y", "t", "pi", "1e-308", "1e308", "^-"}
+    elif kind == "head":
+        found = {w for text in FIELDS + ADDRESSES for w in re.findall(r"[A-Za-z0-9.:/*$_-]{2,}", text)} | {"%00", "%0d%0a", "q=0", "=", "&", "1e308", "-0", "nan", ", ", ";"}
     else:
         texts = [read(p).decode(errors="ignore") for p in glob.glob("tests/import/*.xml") + glob.glob("tests/import/*.urdf")]
         found = set(re.findall(r"</?[a-z_]{2,16}|[a-z_]{2,16}=", " ".join(texts)))

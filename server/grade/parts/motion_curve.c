@@ -64,7 +64,7 @@ static hn_status choose(const hn_part *p, const hn_model *model, chosen *out, co
                        "part %s: there is no curve '%.40s'", p->id, name);
 }
 
-static hn_status sample(hn_motion_curve *c, hn_run *run, const chosen *what) {
+static hn_status sample(hn_motion_curve *c, const hn_part *p, hn_run *run, const chosen *what) {
     hn_sample s;
     c->n = HN_CURVE_POINTS;
     c->dt = c->t_end / (HN_CURVE_POINTS - 1);
@@ -72,7 +72,7 @@ static hn_status sample(hn_motion_curve *c, hn_run *run, const chosen *what) {
     c->high = -HUGE_VAL;
     for (int k = 0; k < c->n; k++) {
         const double t = k + 1 < c->n ? k * c->dt : c->t_end;
-        HN_TRY(hn_run_advance(run, t));
+        HN_TRY(hn_part_advance(p, run, t));
         HN_TRY(hn_run_sample(run, t, &s));
         c->y[k] = what->row >= 0 ? CURVES[what->row].value(&s)
                                  : (what->rate ? s.v : s.q)[what->coordinate];
@@ -94,7 +94,7 @@ static hn_status run_curve(hn_motion_curve *c, const hn_part *p, const hn_model 
     HN_TRY(hn_method_parse(method, &spec, diag));
     hn_status status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model),
                                      hn_model_v(model), &opts, &run, diag);
-    HN_THEN(status, sample(c, run, &what));
+    HN_THEN(status, sample(c, p, run, &what));
 
     // a run that ends early leaves nothing to read
     if (status != HN_OK && status != HN_ERR_MEMORY && run) {

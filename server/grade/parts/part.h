@@ -6,6 +6,7 @@
 // (part_list.h). A part is read from its JSON node where it is used: the exercise
 // has been tried as a whole when it was loaded (exercise_check.h).
 
+#include "base/interrupt.h"
 #include "grade/parts/draw.h"
 #include "scene/scene.h"
 #include "session/model/library.h"
@@ -36,6 +37,8 @@ typedef struct hn_part {
     uint64_t letters;      ///< the seed of the order of options and of reasons
     hn_draw *draw;         ///< the numbers of the variant
     const hn_library *lib; ///< shipped scenes; NULL: kinds that run mechanisms cannot grade
+    /// What takes long asks it, and ends with any result: the caller asks again, and drops that.
+    hn_interrupt interrupt;
 } hn_part;
 
 /// A scene in the state that an answer describes, for a picture.

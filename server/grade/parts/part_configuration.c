@@ -128,7 +128,7 @@ static hn_status simulate(sheet *s, const char *method, hn_diag *diag) {
     HN_TRY(hn_method_parse(method, &spec, diag));
     hn_status status = hn_run_create(hn_model_system(s->model), &spec, hn_model_q(s->model),
                                      hn_model_v(s->model), &opts, &run, diag);
-    HN_THEN(status, hn_run_advance(run, time));
+    HN_THEN(status, hn_part_advance(s->p, run, time));
     HN_THEN(status, hn_run_sample(run, time, &sample));
     if (status == HN_OK) {
         hn_pose_solver_place(s->solver, sample.q);

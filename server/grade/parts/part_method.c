@@ -25,9 +25,9 @@ typedef struct outcome {
     double gap, energy_change, evaluations;
 } outcome;
 
-static void finish(hn_run *run, double time, outcome *out) {
+static void finish(const hn_part *p, hn_run *run, double time, outcome *out) {
     hn_sample sample;
-    out->status = hn_run_advance(run, time);
+    out->status = hn_part_advance(p, run, time);
     const hn_run_summary summary = hn_run_get_summary(run);
     out->t = summary.t;
     out->gap = summary.worst_gap;
@@ -60,7 +60,7 @@ static hn_status run_method(const hn_part *p, const hn_model *model, const char 
     hn_status status =
         hn_run_create(sys, &spec, hn_model_q(model), hn_model_v(model), &opts, &run, diag);
     if (status == HN_OK) {
-        finish(run, time, out);
+        finish(p, run, time, out);
     }
     hn_run_free(run);
     return status == HN_ERR_UNSUPPORTED ? HN_ERR_INPUT : status;

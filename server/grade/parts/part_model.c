@@ -6,7 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_COORDINATES = 256 };
+enum { MAX_COORDINATES = 256, STEPS_AT_ONCE = 16 };
+/// The last steps are those of hn_run_advance(), which knows where a run is to end.
+static const double NEARLY = 0.99;
 
 static const cJSON *set_of(const hn_part *p) {
     return cJSON_GetObjectItemCaseSensitive(p->node, "set");
@@ -40,12 +42,24 @@ hn_status hn_part_load_model(const hn_part *p, hn_model **model, hn_diag *diag) 
     }
 
     // the first message of the loader becomes that of the part
-    const hn_model_source source = {
-        .name = hn_part_text(p->node, "scene"), .settings = settings, .n_settings = n};
+    const hn_model_source source = {.name = hn_part_text(p->node, "scene"),
+                                    .settings = settings,
+                                    .n_settings = n,
+                                    .interrupt = p->interrupt};
     const hn_status status = hn_model_load(p->lib, &source, model, &diags);
     return status == HN_OK ? status
                            : hn_diag_set(diag, status == HN_ERR_MEMORY ? status : HN_ERR_INPUT,
                                          "/parts/scene", NULL, "%.300s", diags.item[0].message);
+}
+
+hn_status hn_part_advance(const hn_part *p, hn_run *run, double t) {
+    for (int i = 0; hn_run_time(run) < NEARLY * t; i++) {
+        if (i % STEPS_AT_ONCE == 0 && hn_interrupt_ask(&p->interrupt)) {
+            return HN_ERR_STOPPED;
+        }
+        HN_TRY(hn_run_step_towards(run, t));
+    }
+    return hn_run_advance(run, t);
 }
 
 void hn_part_put_settings(hn_strbuf *b, const hn_part *p) {

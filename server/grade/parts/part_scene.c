@@ -72,14 +72,25 @@ static bool read_parameter(const hn_part *p, const char *name, const cJSON *give
     return true;
 }
 
-static bool is_late(void *user) {
-    return hn_clock_thread() > *(const double *)user;
+/// How long an answer may compute.
+typedef struct time_limit {
+    double end; ///< [s] of the thread's computing
+    const hn_interrupt *interrupt;
+} time_limit;
+
+static time_limit begin_limit(const hn_part *p) {
+    return (time_limit){.end = hn_clock_thread() + SECONDS, .interrupt = &p->interrupt};
 }
 
-/// Makes the model of an answer, which asks for the time until it is freed: `end` [s] of computing.
+static bool is_over(void *user) {
+    const time_limit *l = user;
+    return hn_clock_thread() > l->end || hn_interrupt_ask(l->interrupt);
+}
+
+/// Makes the model of an answer, which asks for its limit until it is freed.
 /// HN_OK with NULL: the result says why there is none.
 static hn_status load(const hn_part *p, const hn_setting *settings, int n, const cJSON *given,
-                      double *end, hn_model **model, hn_part_result *r) {
+                      time_limit *limit, hn_model **model, hn_part_result *r) {
     hn_diags diags = {0};
     char *text = is_scene(given) ? cJSON_PrintUnformatted(given) : NULL;
     const hn_model_source source = {.name = text ? NULL : hn_part_text(p->node, "scene"),
@@ -88,7 +99,7 @@ static hn_status load(const hn_part *p, const hn_setting *settings, int n, const
                                     .settings = settings,
                                     .n_settings = text ? 0 : n,
                                     .hides_changes = true,
-                                    .interrupt = {.must_end = is_late, .user = end}};
+                                    .interrupt = {.must_end = is_over, .user = limit}};
     hn_status status =
         is_scene(given) && !text ? HN_ERR_MEMORY : hn_model_load(p->lib, &source, model, &diags);
     free(text);
@@ -171,8 +182,8 @@ static hn_status grade_object(const hn_part *p, const cJSON *given, hn_part_resu
     if (!is_scene(given)) {
         HN_TRY(read_answer(p, given, settings, &n, r, &good, diag));
     }
-    double end = hn_clock_thread() + SECONDS;
-    hn_status status = good ? load(p, settings, n, given, &end, &model, r) : HN_OK;
+    time_limit limit = begin_limit(p);
+    hn_status status = good ? load(p, settings, n, given, &limit, &model, r) : HN_OK;
     if (status == HN_OK && model) {
         n = is_scene(given) ? scene_parameters(model, settings) : n;
         hn_diag why = {0};
@@ -275,8 +286,8 @@ static void draw_curves(const hn_part *p, const hn_setting *settings, int n, con
                         hn_part_view *out) {
     hn_part_result r = {.mistake = ""};
     hn_model *model = NULL;
-    double end = hn_clock_thread() + SECONDS;
-    if (!p->lib || load(p, settings, n, given, &end, &model, &r) != HN_OK || !model) {
+    time_limit limit = begin_limit(p);
+    if (!p->lib || load(p, settings, n, given, &limit, &model, &r) != HN_OK || !model) {
         return;
     }
     hn_scene_check check = {.p = p, .model = model};

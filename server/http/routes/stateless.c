@@ -319,7 +319,10 @@ void hn_handle_grade(hn_request *r) {
                                                                 &problem, &diags)
                                        : HN_ERR_MEMORY;
 
-    // the verdict, or the exercise's fault
+    // the verdict, or the exercise's fault; for nobody, nothing
+    if (status == HN_OK) {
+        problem->interrupt = hn_request_interrupt(r);
+    }
     HN_THEN(status, hn_grade_json(problem, submission, strlen(submission),
                                   (uint64_t)hn_fields_number(r->json, "seed", 0), v));
     if (status == HN_OK) {

@@ -328,8 +328,65 @@ static void a_circuit_passes_dead_points_and_comes_back(void **state) {
     assert_false(flat.closed && abs(flat.turns[0]) == 1 && flat.turns[2] == 0);
 }
 
+// ---- ending early ----
+
+/// True from the n-th question on.
+typedef struct patience {
+    long asked, most;
+} patience;
+
+static bool is_used_up(void *user) {
+    patience *p = user;
+    return ++p->asked > p->most;
+}
+
+/// The questions that a grading with so much patience asks, and its status.
+static long grade_with(const char *text, const char *submission, long most, hn_status *status) {
+    static hn_verdict v;
+    patience p = {.most = most};
+    hn_exercise *e = load(text);
+    e->interrupt = (hn_interrupt){is_used_up, &p};
+    *status = hn_grade_json(e, submission, strlen(submission), 7, &v);
+    hn_exercise_free(e);
+    return p.asked;
+}
+
+/// A motion of 8,000 steps, one of 150, curves, and scenes: once the answer is yes, each ends
+/// within the few questions of the functions that it is in.
+static void an_interrupt_ends_a_grading(void **state) {
+    static const char STEPPED[] =
+        HEAD "{\"id\":\"a\",\"ask\":\"which?\",\"kind\":\"method\",\"points\":2,"
+             "\"scene\":\"four-bar\",\"set\":[\"l1\"],\"time\":2,\"error\":1e-6,"
+             "\"evaluations\":1e4,\"reference\":\"reduced@dop853:rtol=1e-10\","
+             "\"second\":\"projection@dop853:rtol=1e-10\","
+             "\"answer\":\"projection@rk4:h=0.001\"}]}";
+    static const struct {
+        const char *exercise, *submission;
+    } cases[] = {{STEPPED, "{\"a\": \"projection@rk4:h=0.00025\"}"},
+                 {PREDICTED, "{\"b\": {\"th1\": 1, \"th3\": 1}}"},
+                 {READ, "{\"a\": 1, \"b\": 2}"},
+                 {MADE, "{\"b\": {\"l1\": 0.45}}"}};
+    enum { FEW = 12 };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        hn_status status;
+        const long whole = grade_with(cases[i].exercise, cases[i].submission, 1000000000, &status);
+        assert_int_equal(status, HN_OK);
+        for (int part = 0; part < 8; part++) {
+            const long most = part * whole / 8;
+            const long asked = grade_with(cases[i].exercise, cases[i].submission, most, &status);
+            if (status != HN_ERR_STOPPED || asked > most + FEW) {
+                fail_msg("case %zu: %s after %ld of %ld questions, %ld were asked", i,
+                         hn_status_name(status), most, whole, asked);
+            }
+        }
+        assert_true(whole > (i == 0 ? 500 : FEW));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_interrupt_ends_a_grading),
         cmocka_unit_test(every_part_is_sound_over_seeds),
         cmocka_unit_test(a_predicted_configuration_is_compared_with_the_triangles),
         cmocka_unit_test(a_slip_is_certain_only_where_two_coordinates_show_it),
