@@ -4,10 +4,13 @@
 // Who of a class handed in the same as whom: the words of the summary, beside each submission.
 
 #include "class/class_grading.h"
+#include "class/fingerprint.h"
 
 /// What a graded submission is compared by.
 typedef struct hn_class_copy {
     char student[128], texts[20], shape[20]; ///< texts "": it is compared with none
+    hn_fingerprint own;                      ///< of a program
+    int group; ///< the first that it is linked to by programs alike in most statements
 } hn_class_copy;
 
 typedef struct hn_class_copies {
@@ -22,8 +25,12 @@ void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool pro
 void hn_class_copies_reset(hn_class_copies *c);
 /// What near-copies share: "the same but for the names", of programs also comments and order.
 const char *hn_class_copies_near(bool programs);
-/// Adds "the same as Ann, Bob" and hn_class_copies_near() with " as Eve" for submission i, after
-/// "; " where the buffer is not empty; nothing where it is like no other.
+/// Adds "the same as Ann, Bob", hn_class_copies_near() with " as Eve" and "shares 92 % of its
+/// statements with Ned" for submission i, after "; " where the buffer is not empty; nothing where
+/// it is like no other.
 void hn_class_copies_put(hn_strbuf *b, const hn_class_copies *c, int i);
+/// Adds the groups of programs that share most of their statements and are more than near-copies,
+/// under a heading; nothing where there is none.
+void hn_class_copies_put_alike(hn_strbuf *b, const hn_class_copies *c);
 
 #endif

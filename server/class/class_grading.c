@@ -152,6 +152,20 @@ static void put_likeness(const grading *g, hn_strbuf *b, const char *text, const
     cJSON_Delete(submission);
     hn_json_put_string(b, "texts", texts);
     hn_json_put_string(b, "shape", shape);
+
+    // the statements of its own, by which copies with an added one are found
+    const hn_given_source *given =
+        g->opts->blanks ? hn_blank_programs_of(g->opts->blanks, file) : NULL;
+    if (given) {
+        hn_fingerprint own;
+        hn_strbuf list;
+        hn_strbuf_init(&list);
+        hn_fingerprint_read(&own, text, given);
+        hn_fingerprint_put(&list, &own);
+        hn_json_put_string(b, "statements", hn_strbuf_text(&list));
+        b->failed |= list.failed;
+        hn_strbuf_reset(&list);
+    }
 }
 
 /// The wrong entries by which copies of a part are found: "b: other 0123456789abcdef".

@@ -5,6 +5,7 @@
 // worker, costs its own line and nobody else's. Every line is kept in a journal as it is finished,
 // so that a run that was killed goes on; the result does not depend on the order of finishing.
 
+#include "class/blank_programs.h"
 #include "class/filled_program.h"
 #include "class/roster.h"
 #include "grade/exercise.h"
@@ -18,7 +19,8 @@ typedef struct hn_class_shard {
 
 typedef struct hn_class_opts {
     int jobs;
-    const hn_filled_exam *programs; ///< submissions are programs; NULL: answers in JSON
+    const hn_filled_exam *programs;  ///< submissions are programs; NULL: answers in JSON
+    const hn_blank_programs *blanks; ///< what everyone was given; NULL: programs are not compared
     hn_class_shard shard;
     double time_limit;   ///< [s] for one submission
     uint64_t seed;       ///< of all; 0: each student's own for an exercise that draws numbers

@@ -170,6 +170,16 @@ static void put_like(hn_strbuf *b, counts *c, bool programs) {
     }
 }
 
+/// Groups of programs that share most of their statements.
+static void put_programs_alike(hn_strbuf *b, const hn_class_result *r, bool programs) {
+    if (programs) {
+        hn_class_copies copies;
+        hn_class_copies_find(&copies, r, true);
+        hn_class_copies_put_alike(b, &copies);
+        hn_class_copies_reset(&copies);
+    }
+}
+
 /// Whether equal wrong answers to a part are worth a look: a known mistake that many make is none.
 static bool is_alike(const count *c) {
     return c->n > 1 && (c->n <= MOST_ALIKE || strstr(c->word, ": other "));
@@ -228,6 +238,7 @@ void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs) {
                          hn_strbuf_text(&t.equal.item[k].who));
     }
     put_like(b, &t.like, programs);
+    put_programs_alike(b, r, programs);
     put_alike(b, &t.alike);
     put_names(b, &t.names);
     free_counts(&t.names);

@@ -7,7 +7,8 @@
 
 /// Adds the scores as a histogram, the commonest mistakes, who handed in equal wrong answers,
 /// near-copies that differ in their names alone (programs also in comments and the order of
-/// statements), and names with more than one submission.
+/// statements), programs that share most of their statements, and names with more than one
+/// submission.
 /// `programs`: they handed in programs.
 void hn_class_summary(hn_strbuf *b, const hn_class_result *r, bool programs);
 

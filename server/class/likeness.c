@@ -2,6 +2,7 @@
 #include "class/likeness.h"
 
 #include "base/hash.h"
+#include "class/source_text.h"
 
 #include <ctype.h>
 #include <stdbool.h>
@@ -35,18 +36,10 @@ static uint64_t number_of(names *list, uint64_t name) {
     return (uint64_t)list->n++;
 }
 
-static bool begins_name(char c) {
-    return isalpha((unsigned char)c) || c == '_';
-}
-
-static bool continues_name(char c) {
-    return isalnum((unsigned char)c) || c == '_';
-}
-
 /// Reads a name; the name of a function stands before a bracket and stays.
 static const char *read_name(reader *r, const char *at) {
     uint64_t name = HN_HASH_START;
-    for (; continues_name(*at); at++) {
+    for (; hn_source_continues_name(*at); at++) {
         const char c = (char)tolower((unsigned char)*at);
         name = hn_hash_bytes(name, &c, 1);
     }
@@ -56,25 +49,12 @@ static const char *read_name(reader *r, const char *at) {
     return at;
 }
 
-/// Where a comment that begins here ends; NULL: none begins here.
-static const char *skip_comment(const char *at) {
-    if (*at == '#' || *at == '%' || (at[0] == '/' && at[1] == '/')) {
-        // in C '%' is an operator and '#' a directive: what is behind them counts for nobody
-        return at + strcspn(at, "\n");
-    }
-    if (at[0] == '/' && at[1] == '*') {
-        const char *end = strstr(at + 2, "*/");
-        return end ? end + 2 : at + strlen(at);
-    }
-    return NULL;
-}
-
 static void read_text(reader *r, const char *at) {
     while (*at) {
-        const char *end = r->is_program ? skip_comment(at) : NULL;
+        const char *end = r->is_program ? hn_source_skip_comment(at) : NULL;
         if (end) {
             at = end;
-        } else if (begins_name(*at)) {
+        } else if (hn_source_begins_name(*at)) {
             at = read_name(r, at);
         } else {
             const char c = *at++;
@@ -155,19 +135,6 @@ typedef struct statements {
     bool by_lines;                ///< the end of a line ends a statement
 } statements;
 
-/// Functions that nobody renames.
-static bool is_function(const char *at, size_t n) {
-    static const char *const known[] = {"sin",  "cos",  "tan", "asin", "acos", "atan", "atan2",
-                                        "sqrt", "pow",  "exp", "log",  "abs",  "fabs", "sinh",
-                                        "cosh", "tanh", "dot", "min",  "max"};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        if (strlen(known[i]) == n && strncmp(at, known[i], n) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /// Adds to the statement, and to the value that it gives.
 static void put(statements *s, const void *bytes, size_t n) {
     s->one = hn_hash_bytes(s->one, bytes, n);
@@ -237,7 +204,7 @@ static void end_statement(statements *s) {
 
 static const char *read_statement_name(statements *s, const char *at) {
     size_t n = 0;
-    while (continues_name(at[n])) {
+    while (hn_source_continues_name(at[n])) {
         n++;
     }
     const uint64_t name = hn_hash_bytes(HN_HASH_START, at, n);
@@ -248,7 +215,7 @@ static const char *read_statement_name(statements *s, const char *at) {
         s->right = HN_HASH_START;
     }
     if (adds || behind[0] != '=' || behind[1] == '=') {
-        const uint64_t kept = is_function(at, n) ? name : value_of(s, name);
+        const uint64_t kept = hn_source_is_function(at, n) ? name : value_of(s, name);
         put(s, &kept, sizeof kept);
     }
     if (adds || (behind[0] == '=' && behind[1] != '=')) {
@@ -268,25 +235,6 @@ static const char *read_number(statements *s, const char *at) {
     }
     put(s, begin, (size_t)(at - begin));
     return at;
-}
-
-/// Where a text in quotes ends, NULL: none begins here. A single quote behind a name or a bracket
-/// transposes in Octave.
-static const char *skip_text(const char *begin, const char *at) {
-    const char before = at > begin ? at[-1] : ' ';
-    if (strncmp(at, "\"\"\"", 3) == 0 || strncmp(at, "'''", 3) == 0) {
-        const char mark[4] = {*at, *at, *at, 0};
-        const char *end = strstr(at + 3, mark);
-        return end ? end + 3 : at + strlen(at);
-    }
-    if (*at != '"' && (*at != '\'' || continues_name(before) || strchr(")]}'.", before))) {
-        return NULL;
-    }
-    const char *end = at + 1;
-    while (*end && *end != *at && *end != '\n') {
-        end += end[0] == '\\' && end[1] ? 2 : 1;
-    }
-    return *end == *at ? end + 1 : end;
 }
 
 static void read_sign(statements *s, char c) {
@@ -309,14 +257,14 @@ static void read_sign(statements *s, char c) {
 uint64_t hn_likeness_program_shape(const char *text, bool by_lines) {
     statements s = {.all = HN_HASH_START, .one = HN_HASH_START, .by_lines = by_lines};
     for (const char *at = text; *at;) {
-        const char *end = skip_comment(at);
-        const char *behind = end ? end : skip_text(text, at);
+        const char *end = hn_source_skip_comment(at);
+        const char *behind = end ? end : hn_source_skip_quotes(text, at);
         if (by_lines && s.depth <= 0 && at > text && at[-1] == '\n' && *at != '\n' && !end) {
             end_blocks(&s, isspace((unsigned char)*at) ? s.level | 1 : 0);
         }
         if (behind) {
             at = behind;
-        } else if (begins_name(*at)) {
+        } else if (hn_source_begins_name(*at)) {
             at = read_statement_name(&s, at);
         } else if (isdigit((unsigned char)*at)) {
             at = read_number(&s, at);

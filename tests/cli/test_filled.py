@@ -16,6 +16,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
+import honest_programs  # noqa: E402
 from test_programs import NEEDS, TROUBLE, has_numpy  # noqa: E402
 
 PROGRAM = os.path.abspath(driver.PROGRAM)
@@ -279,9 +280,9 @@ class Filled(unittest.TestCase):
     def make_class(self):
         """18 students: right ones, near-copies, wrong ones, hostile ones; the folder."""
         _, filled = blank_and_filled("four-bar", "c")
-        for k in range(9):
-            # their own numbers of pieces, so that they are no copies of each other
-            self.put(f"class/student{k}.c", filled.replace("    energy[0] =", f"    double own{k} = {k}.0{'+ 1.0' * k}; (void)own{k};\n    energy[0] =", 1))
+        blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
+        for k, statements in enumerate(list(honest_programs.FOUR_BAR.values())[:9]):
+            self.put(f"class/student{k}.c", honest_programs.fill(blank, statements))
         copy = filled.replace("    energy[0] =", "    double mine = 3.0 - 4.0; (void)mine;\n    energy[0] =", 1)
         self.put("class/ann_4711_assignsubmission_file_/work.c", copy)
         # other names, one of which the program has elsewhere already, other comments, two statements in another order
@@ -317,6 +318,48 @@ class Filled(unittest.TestCase):
             groups = re.findall(rf"(?s)near-copies: {NEAR}\n(.*?)\n\S", done.stdout + "\nend")
             self.assertEqual([line.strip() for line in "".join(groups).splitlines()], ["own, own-renamed"], (language, done.stdout))
 
+    def alike_groups(self, scene, programs):
+        """The groups of programs that the summary calls alike in most statements, as sets of names."""
+        folder = tempfile.mkdtemp(dir=self.temporary.name)
+        for name, text in programs.items():
+            self.put(os.path.join(folder, f"{name}.c"), text)
+        done = call("grade", scene, folder, "--jobs", "2", "--out", folder + ".csv")
+        self.assertIn(f"{len(programs)} graded, 0 not gradable", done.stdout)
+        with open(folder + ".csv", encoding="utf-8") as f:
+            remarks = {row["student"]: row["remark"] for row in csv.DictReader(f)}
+        found = re.search(r"(?s)programs that share 60 % or more .*? by chance\n((?:  .*\n)+)", done.stdout)
+        groups = [set(line.strip().split(": ")[0].split(", ")) for line in found[1].splitlines()] if found else []
+        return groups, remarks
+
+    def test_ten_honest_programs_are_not_called_alike(self):
+        for scene, statements in (("four-bar", honest_programs.FOUR_BAR), ("double-pendulum", honest_programs.DOUBLE_PENDULUM)):
+            blank = call("export", scene, "--language", "c", "--blanks").stdout
+            groups, remarks = self.alike_groups(scene, {name: honest_programs.fill(blank, text) for name, text in statements.items()})
+            self.assertEqual((groups, set(remarks.values())), ([], {""}), scene)
+
+    def test_a_copy_with_a_statement_added_taken_apart_or_turned_round_is_found(self):
+        def turned(text):
+            return re.sub(r"\b([a-z]\w*)\*([a-z]\w*)\b(?![(\[])", r"\2*\1", text)
+
+        def added(text, statement):
+            return text.replace(";\n", ";\n    " + statement + "\n", 1)
+
+        changes = {"print": lambda text: added(text, 'fprintf(stderr, "%g\\n", th1 + 2*w1);'),
+                   "unused": lambda text: added(added(text, "double unused = 3*l1; (void)unused;"), "double more = g + 2*l2; (void)more;"),
+                   "turned": turned,
+                   "helper": lambda text: "    const double help = l1*cos(th1);\n" + text.replace("l1*cos(th1)", "help", 2),
+                   "all": lambda text: "    // mine\n" + added(turned(re.sub(r"\b(h|d|c1|s1|T1|I1|X|ax)\b", r"my_\1", text)), "double own = 2*l1 + th1; (void)own;")}  # fmt: skip
+        blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
+        for student in ("direct", "shorter-names", "centres", "terse"):
+            own = honest_programs.FOUR_BAR[student]
+            programs = {student: own, **{name: change(own) for name, change in changes.items()}}
+            # an honest one stands beside them
+            programs["careful"] = honest_programs.FOUR_BAR["careful"]
+            groups, remarks = self.alike_groups("four-bar", {name: honest_programs.fill(blank, text) for name, text in programs.items()})
+            self.assertEqual([sorted(group) for group in groups], [sorted({student, *changes})], student)
+            self.assertRegex(remarks["print"], rf"^shares at least \d\d % of its statements with .*\b{student}\b")
+            self.assertEqual(remarks["careful"], "")
+
     def test_a_class_of_programs_is_graded_in_parts_through_kills_with_the_same_bytes(self):
         folder, out = self.make_class(), os.path.join(self.temporary.name, "scores.ndjson")
         done = call("grade", "four-bar", folder, "--out", out)
@@ -337,7 +380,9 @@ class Filled(unittest.TestCase):
         self.assertEqual(call("grade", "four-bar", folder, "--out", table).returncode, 0)
         with open(table, encoding="utf-8") as f:
             remarks = {row["student"]: row["remark"] for row in csv.DictReader(f)}
-        self.assertEqual((remarks["ann"], remarks["cid"]), (f"{NEAR} as bob, cid", f"{NEAR} as ann, bob"))
+        # the wrong one is theirs without their own statement, and with another length at one place
+        self.assertRegex(remarks["ann"], rf"^{NEAR} as bob, cid; shares 9\d % of its statements with wrong$")
+        self.assertRegex(remarks["cid"], rf"^{NEAR} as ann, bob; shares 9\d % of its statements with wrong$")
         self.assertEqual({remarks[f"student{k}"] for k in range(9)}, {""})
 
         # three parts on three machines, put together

@@ -194,6 +194,7 @@ typedef struct owned_subject {
     hn_variant_owner student; ///< of --student, whom the exercise points to
     hn_model *model;          ///< of a scene whose program is graded
     hn_filled_exam exam;
+    hn_blank_programs blanks; ///< of a class of programs
 } owned_subject;
 
 /// Whether a submission is the program of a scene, by its ending and its first lines.
@@ -272,6 +273,7 @@ static hn_status apply_rubric(const hn_args *args, owned_subject *own, hn_diags 
 static void free_subject(owned_subject *own) {
     hn_exercise_free(own->exercise);
     hn_filled_exam_reset(&own->exam);
+    hn_blank_programs_reset(&own->blanks);
     hn_model_free(own->model);
 }
 
@@ -374,6 +376,10 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     const bool lost = chosen && status != HN_OK;
     HN_THEN(status, check_options(args, class, t.subject.programs, &diags));
     HN_THEN(status, apply_rubric(args, &own, &diags));
+    if (status == HN_OK && folder && own.model) {
+        status = hn_blank_programs_init(&own.blanks, own.model, lib);
+        t.subject.blanks = &own.blanks;
+    }
     if (status != HN_OK) {
         result = lost ? report_exercise(lib, args, status, &diags)
                       : hn_report_diags(args, status, &diags);

@@ -176,6 +176,7 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
     hn_class_opts opts = {.jobs = isnan(args->jobs) ? (int)sysconf(_SC_NPROCESSORS_ONLN)
                                                     : (int)fmin(args->jobs, 1000),
                           .programs = subject->programs,
+                          .blanks = subject->blanks,
                           .time_limit = TIME_LIMIT,
                           .seed = isnan(args->seed) ? 0 : (uint64_t)args->seed,
                           .tell = tell,

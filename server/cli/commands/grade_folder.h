@@ -8,8 +8,9 @@
 
 /// The subject of a grading: an exercise of formulas, or the program of a scene.
 typedef struct hn_grade_subject {
-    const hn_exercise *exercise;    ///< for a program: that of `programs`
-    const hn_filled_exam *programs; ///< NULL: formulas
+    const hn_exercise *exercise;     ///< for a program: that of `programs`
+    const hn_filled_exam *programs;  ///< NULL: formulas
+    const hn_blank_programs *blanks; ///< of a class of programs, else NULL
 } hn_grade_subject;
 
 /// Grades every submission of the folder that is the second word.
