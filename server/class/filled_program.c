@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "class/entry_faults.h"
 #include "class/filled_origin.h"
 #include "export/language.h"
 #include "grade/submission.h"
@@ -18,6 +19,8 @@
 #include <unistd.h>
 
 static const double POINTS = 2; // of a part
+/// Wrong entries of a part whose faults are named; letters that these take at most.
+enum { MOST_NAMED = 3, LONGEST_FAULTS = 320 };
 /// Difference that is allowed, relative to the largest entry of the part: the two programs round in
 /// another order, and a student may divide where we multiply.
 static const double ALLOWED = 1e-9;
@@ -182,6 +185,7 @@ static hn_status ask_all(const hn_export_exam *exam, const char *path, answers *
 /// One part over all states: what is expected and what was given.
 typedef struct part_view {
     const hn_export_exam *exam;
+    const hn_scene *scene;
     const answers *given;
     int part, offset;
     double size; ///< what differences are measured by
@@ -341,64 +345,35 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     }
 }
 
-/// What the wrong entry i may be: a multiple of the right one, or one of its terms is at fault.
-static const struct entry_fault {
-    const char *id, *says; ///< %d: the terms of the entry
-    bool of_term;
-    double factor, share;
-} ENTRY_FAULTS[] = {{"sign", "its sign is wrong", false, -1, 0.5},
-                    {"factor", "a factor 2 is missing", false, 0.5, 0.25},
-                    {"factor", "a factor 1/2 is missing", false, 2, 0.25},
-                    {"sign-term", "one of its %d terms has the wrong sign", true, -1, 0.5},
-                    {"missing-term", "one of its %d terms is missing", true, 0, 0.25},
-                    {"factor-term", "one of its %d terms lacks a factor 2", true, 0.5, 0.25},
-                    {"factor-term", "one of its %d terms lacks a factor 1/2", true, 2, 0.25}};
-
-enum { N_ENTRY_FAULTS = sizeof ENTRY_FAULTS / sizeof *ENTRY_FAULTS };
-
-/// Whether entry i is the right one with `factor` at its term m, or at all of it (m = -1).
-static bool is_changed(const part_view *p, int i, int m, double factor) {
-    const hn_export_sum *sum = &p->exam->sum[p->part][i];
+/// Whether entry i is right at every state.
+static bool is_right(const part_view *p, int i) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        const double right = expected_at(p, k, i);
-        const double wrong = m < 0 ? factor * right : right + (factor - 1) * sum->t[m][k];
-        if (!(fabs(given_at(p, k, i) - wrong) <= ALLOWED * p->size)) {
+        if (!(fabs(given_at(p, k, i) - expected_at(p, k, i)) <= ALLOWED * p->size)) {
             return false;
         }
     }
     return true;
 }
 
-/// All faults that wrong entry i may have, a bit each: where terms are alike several explain it.
-static unsigned find_entry_faults(const part_view *p, int i) {
-    const int terms = p->exam->sum[p->part][i].n;
-    unsigned found = 0;
-    for (unsigned f = 0; f < N_ENTRY_FAULTS; f++) {
-        const bool of_term = ENTRY_FAULTS[f].of_term;
-        for (int m = of_term ? 0 : -1; m < (of_term && terms > 1 ? terms : 0); m++) {
-            if (is_changed(p, i, m, ENTRY_FAULTS[f].factor)) {
-                found |= 1U << f;
-            }
-        }
+static hn_entry_faults find_faults(const part_view *p, int i) {
+    hn_entry_values entry = {.sum = &p->exam->sum[p->part][i],
+                             .allowed = ALLOWED * p->size,
+                             .is_mass = p->part == HN_EXPORT_MASS,
+                             .scene = p->scene};
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        entry.right[k] = expected_at(p, k, i);
+        entry.given[k] = given_at(p, k, i);
     }
-    return found;
-}
-
-/// The least that one of the faults leaves, 0: there is none.
-static double share_of(unsigned faults) {
-    double share = faults ? 1 : 0;
-    for (unsigned f = 0; f < N_ENTRY_FAULTS; f++) {
-        share = faults & 1U << f ? fmin(share, ENTRY_FAULTS[f].share) : share;
-    }
-    return share;
+    return hn_entry_faults_find(&entry);
 }
 
 /// What the entries of a part are worth together.
 typedef struct part_credit {
     int asked, right; ///< entries that are not 0 everywhere; those that are right
     double share;     ///< of the points
-    unsigned faults;  ///< of the first wrong entry that has a known one, 0: none
-    int entry;        ///< with these faults
+    int named;        ///< wrong entries with a known fault, the first of which are kept
+    int entry[MOST_NAMED];
+    hn_entry_faults faults[MOST_NAMED];
 } part_credit;
 
 /// Whether `value` is 0 in entry i at every state, rounding aside.
@@ -416,48 +391,55 @@ static part_credit credit_part(const part_view *p) {
     part_credit c = {0};
     double sum = 0;
     for (int i = 0; i < p->exam->size[p->part]; i++) {
-        const bool is_zero = is_zero_entry(p, i, expected_at), right = is_changed(p, i, -1, 1);
+        const bool is_zero = is_zero_entry(p, i, expected_at), right = is_right(p, i);
         c.asked += !is_zero;
         c.right += !is_zero && right;
         if (right || is_zero) {
             sum += is_zero ? -(double)!right : 1;
             continue;
         }
-        const bool is_empty = is_zero_entry(p, i, given_at); // no fault of what was written
-        const unsigned faults = is_empty ? 0 : find_entry_faults(p, i);
-        sum += share_of(faults);
-        if (faults && !c.faults) {
-            c.faults = faults;
-            c.entry = i;
+        if (is_zero_entry(p, i, given_at)) {
+            continue; // nothing was written, which has no fault of its own
+        }
+        const hn_entry_faults faults = find_faults(p, i);
+        const double share = hn_entry_faults_share(&faults);
+        sum += share;
+        if (share > 0 && c.named < MOST_NAMED) {
+            c.entry[c.named] = i;
+            c.faults[c.named++] = faults;
         }
     }
     c.share = c.asked > 0 && sum > 0 ? sum / c.asked : 0;
     return c;
 }
 
-/// The fault of one entry, or those that it may be, where no mistake of the whole part is known.
-static void name_entry_fault(const part_view *p, const hn_language *language, const part_credit *c,
-                             hn_entry_verdict *e) {
-    char place[64], says[80];
-    if (!c->faults || e->mistake[0]) {
+/// The faults of the first wrong entries, where no mistake of the whole part is known.
+static void name_entry_faults(const part_view *p, const hn_language *language, const part_credit *c,
+                              hn_entry_verdict *e) {
+    if (e->mistake[0]) {
         return;
     }
-    name_entry(p, language, c->entry, place);
-    size_t n = (size_t)snprintf(e->explanation, sizeof e->explanation, "%s: ", place);
-    const char *between = "";
-    for (unsigned f = 0; f < N_ENTRY_FAULTS; f++) {
-        const struct entry_fault *fault = &ENTRY_FAULTS[f];
-        if (!(c->faults & 1U << f)) {
-            continue;
+    hn_strbuf all;
+    hn_strbuf_init(&all);
+    for (int i = 0; i < c->named; i++) {
+        char place[64];
+        hn_strbuf one;
+        hn_strbuf_init(&one);
+        name_entry(p, language, c->entry[i], place);
+        hn_strbuf_printf(&one, "%s%s: ", i > 0 ? "; " : "", place);
+        hn_entry_faults_put(&one, &c->faults[i]);
+        // what would be cut off is left out
+        if (i == 0 || all.n + one.n < LONGEST_FAULTS) {
+            hn_strbuf_add(&all, hn_strbuf_text(&one));
         }
-        if (!e->mistake[0] && fault->share == share_of(c->faults)) {
-            e->mistake = fault->id; // the one that it is marked as
-        }
-        snprintf(says, sizeof says, fault->says, p->exam->sum[p->part][c->entry].n);
-        snprintf(e->explanation + n, sizeof e->explanation - n, "%s%s", between, says);
-        n = strlen(e->explanation);
-        between = ", or ";
+        hn_strbuf_reset(&one);
     }
+    if (c->named > 0) {
+        e->mistake = hn_entry_faults_id(&c->faults[0]);
+        snprintf(e->explanation, sizeof e->explanation, "%.*s", LONGEST_FAULTS,
+                 hn_strbuf_text(&all));
+    }
+    hn_strbuf_reset(&all);
 }
 
 static void compare_part(const part_view *p, const hn_language *language, hn_entry_verdict *e) {
@@ -474,7 +456,7 @@ static void compare_part(const part_view *p, const hn_language *language, hn_ent
         const part_credit credit = credit_part(p);
         e->points = round(100 * POINTS * credit.share) / 100;
         name_mistake(p, e);
-        name_entry_fault(p, language, &credit, e);
+        name_entry_faults(p, language, &credit, e);
         show_entry(p, language, state, entry, e);
         const size_t n = strlen(e->explanation);
         snprintf(e->explanation + n, sizeof e->explanation - n, "; %d of %d entries are right",
@@ -484,7 +466,7 @@ static void compare_part(const part_view *p, const hn_language *language, hn_ent
 
 static void compare_all(const hn_filled_exam *f, const hn_language *language, const answers *given,
                         hn_verdict *v) {
-    part_view p = {.exam = &f->exam, .given = given};
+    part_view p = {.exam = &f->exam, .scene = f->scene, .given = given};
     for (; p.part < HN_EXPORT_PARTS; p.offset += f->exam.size[p.part++]) {
         if (is_asked(&f->exam, p.part)) {
             p.size = size_of(&f->exam, p.part);

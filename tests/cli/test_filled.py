@@ -141,6 +141,35 @@ class Filled(unittest.TestCase):
             entry = {e["name"]: e for e in verdict["entries"]}["force"]
             self.assertEqual((entry["mistake"], entry["explanation"], entry["points"]), ("missing-term", f"force[0]: {says}; 1 of 2 entries are right", 1.25))
 
+    def test_two_faults_of_an_entry_a_moment_about_the_other_point_and_another_name_are_named(self):
+        blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
+        right = honest_programs.FOUR_BAR["direct"]
+        about = "1/4 of the right one, as m l^2/12 (about the centre) in place of m l^2/3"
+        cases = {
+            # with m1 = m2 the terms of gravity are one to two: the lesser one's sign, or the other one is missing
+            "two": (("force[0] = -m2", "force[0] = m2"), ("(m1/2 + m2)", "(m1/2)"), "force", "two-terms",
+                    "force[0]: one of its 3 terms has the wrong sign and another one has the wrong sign, or one of its 3 terms has the wrong sign and another one is missing", 0.125 + 2),
+            "signs": ("- (m1/2 + m2)*g*l1", "+ (m1/2 + m2)*g*l1", "force", "two-terms", "force[0]: one of its 3 terms has the wrong sign and another one has the wrong sign", 0.25 + 2),
+            "entries": (("*w1*w1 - m2", "*w1*w1 + m2"), ("-m3*g*l3/2", "-m3*g*l3"), "force", "sign-term",
+                        "force[1]: one of its 2 terms has the wrong sign; force[2]: a factor 1/2 is missing", 0.5 + 0.25 + 1),
+            # of a rod about its centre
+            "whole": ("m2*l2*l2/3", "m2*l2*l2/12", "mass", "inertia", f"mass[1, 1]: it is {about}", 0.25 + 4),
+            "term": ("m1*l1*l1/3", "m1*l1*l1/12", "mass", "inertia-term", f"mass[0, 0]: one of its 2 terms is {about}, or ", 0.25 + 4),
+            "name": ("-m2*l1*l2/2*sin", "-m2*l1*l3/2*sin", "force", "other-name", "force[0]: one of its 3 terms is 0.6667 times the right one, as l3 in place of l2", 0.25 + 2)}  # fmt: skip
+        entries = {"mass": 5, "force": 3}
+        jobs = []
+        for name, (old, new, *_) in cases.items():
+            text = right
+            for a, b in [old, new] if isinstance(old, tuple) else [(old, new)]:
+                self.assertEqual(text.count(a), 1, (name, a))
+                text = text.replace(a, b)
+            jobs.append(("four-bar", self.put(f"{name}.c", honest_programs.fill(blank, text))))
+        for (name, (_, _, part, mistake, says, of_entries)), (_, (_, verdict)) in zip(cases.items(), self.two_at_a_time(self.grade, jobs)):
+            entry = {e["name"]: e for e in verdict["entries"]}[part]
+            self.assertEqual((entry["mistake"], entry["explanation"][: len(says)]), (mistake, says), name)
+            self.assertRegex(entry["explanation"], r"; \d of \d entries are right$")
+            self.assertAlmostEqual(entry["points"], round(2 * of_entries / entries[part], 2), 9, name)
+
     def test_a_small_mechanism_is_marked_as_a_large_one(self):
         for size, mass in ((0.01, 0.001), (1e-4, 1e-9), (1e3, 1e6)):
             settings = [word for name, value in (("l1", size), ("l2", size), ("m1", mass), ("m2", mass)) for word in ("--set", f"{name}={value}")]
