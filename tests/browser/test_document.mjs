@@ -49,6 +49,26 @@ test("a link opens the same comparison at the same frame with the same numbers",
   await until(other, (data) => /no scene is called 'four-baar'/.test(data.notice));
 });
 
+test("an open card speaks of the frame that is shown", async (t) => {
+  const page = await open(t, {
+    hash: "#scene=four-bar&method=index1@rk4:h=0.02&frame=60&why=0",
+  });
+  const saysAfter = (time) =>
+    soon(async () => {
+      const words = (await page.textContent(".why-card .card")) ?? "";
+      assert.match(words, new RegExp(`After ${time} s the loop gap is`));
+    });
+  await saysAfter("1.20");
+  await soon(async () => {
+    // once the reference solution has come
+    assert.match(await page.textContent(".why-card .verdict"), /from the true motion/);
+    assert.match(await page.textContent(".why-card .happened"), /from the reference solution/);
+  });
+  await page.evaluate(() => document.querySelector("#play").focus());
+  await page.keyboard.press("ArrowLeft");
+  await saysAfter("1.18");
+});
+
 test("one bad entry of a link is left out and named; the others stay", async (t) => {
   const page = await open(t, {
     hash: "#scene=four-bar&set.l2=1.3&set.l1=50&set.zz=1&set.start.th1=1.2&set.start.th8=1&method=projection@rk4:h=0.01&method=projektion@rk4&frame=3",

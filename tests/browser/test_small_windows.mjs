@@ -213,3 +213,39 @@ test("the letters of a lesson lie beside the ring of its focus", async (t) => {
   const heading = await boxOf(page, ".lesson-text h2");
   assert.ok(heading.left - text.left >= 4, "the ring is 2 px wide"); // and as much of paper
 });
+
+test("on a telephone the first verdict is in sight above the transport", async (t) => {
+  const page = await open(t, { viewport: NARROW });
+  await page.getByRole("button", { name: "Close the guide" }).click();
+  await playTo(page, 3);
+  await soon(async () => {
+    assert.match(await page.locator(".method-table tbody .words").first().innerText(), /^open by/);
+    const words = await boxOf(page, ".method-table tbody .words");
+    const transport = await boxOf(page, "#transport");
+    assert.ok(words.bottom <= transport.top, `${words.bottom} to ${transport.top}`);
+  });
+});
+
+test("the numbers of a method stand apart from each other", async (t) => {
+  for (const viewport of [LAPTOP, { width: 1024, height: 768 }, NARROW]) {
+    // where gap, error and energy are near rounding, and the longest
+    for (const hash of ["#bennett", "#n-four-bar", "#stewart-6-6"]) {
+      const page = await open(t, { viewport, hash });
+      await playTo(page, 0.6);
+      await soon(async () => {
+        const rooms = await page.evaluate(() => {
+          const names = [".gap", ".off", ".energy", ".cost"];
+          return [...document.querySelectorAll(".method-table tbody tr")].flatMap((row) => {
+            const boxes = names.map((name) => {
+              const range = document.createRange();
+              range.selectNodeContents(row.querySelector(`td${name}`));
+              return range.getBoundingClientRect();
+            });
+            return boxes.slice(1).map((box, i) => box.left - boxes[i].right);
+          });
+        });
+        assert.ok(Math.min(...rooms) >= 4, `${viewport.width} ${hash}: ${rooms}`); // [px] a space
+      });
+    }
+  }
+});

@@ -200,6 +200,34 @@ for (const [theme, width] of [
   });
 }
 
+test("what stands on the ground keeps clear of the words beside the lens", async (t) => {
+  for (const viewport of [
+    { width: 1366, height: 768 },
+    { width: 360, height: 740 },
+  ]) {
+    for (const hash of ["#bennett", "#stewart-6-6"]) {
+      const page = await open(t, { hash, viewport });
+      await until(page, (data) => data.reference?.state === "ready");
+      await page.locator(".stage.solid").waitFor();
+      await soon(async () => {
+        const { lowest, words } = await page.evaluate(async () => {
+          const { createRig } = await import("/views/space/rig.js");
+          const { feetOf } = await import("/views/space/box.js");
+          const { data } = globalThis.holonom;
+          const box = document.querySelector(".picture").getBoundingClientRect();
+          const words = document.querySelector(".tear-inset figcaption").getBoundingClientRect();
+          const rig = createRig(data, { width: box.width, height: box.height });
+          rig.fitOnce(104); // [px] as the drawing does for the lens
+          const { point } = rig.camera();
+          const heights = feetOf(data.scene).map((foot) => point(foot, 0)[1]);
+          return { lowest: Math.max(...heights), words: words.top - box.top };
+        });
+        assert.ok(lowest <= words + 4, `${viewport.width} ${hash}: ${lowest} over ${words}`); // [px] of leading
+      });
+    }
+  }
+});
+
 test("from space to the plane and back: each is drawn by its own means", async (t) => {
   const page = await open(t, { hash: "#rssr" });
   await isSolid(page);

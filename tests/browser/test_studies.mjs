@@ -241,6 +241,34 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   );
 });
 
+test("the powers of ten in a map of heat can be read in both themes", async (t) => {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await open(t, { hash: `${STABILISED}&study=stability`, colorScheme });
+    await until(page, hasEnded("stability"), LONG);
+    const worst = await page.evaluate(() => {
+      const pen = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+      /** Relative luminance, by the definition of contrast in the guidelines. */
+      const luminance = (colour) => {
+        pen.fillStyle = colour;
+        pen.fillRect(0, 0, 1, 1);
+        const [r, g, b] = [...pen.getImageData(0, 0, 1, 1).data].map((byte) => {
+          const x = byte / 255;
+          return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+        });
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+      };
+      const ratios = [...document.querySelectorAll(".letters .letter.heat")].map((letter) => {
+        const { fill, stroke } = getComputedStyle(letter); // the cell's colour lies round it
+        const [low, high] = [luminance(fill), luminance(stroke)].sort((a, b) => a - b);
+        return (high + 0.05) / (low + 0.05);
+      });
+      return { count: ratios.length, least: Math.min(...ratios) };
+    });
+    assert.ok(worst.count > 50, `${worst.count} cells`);
+    assert.ok(worst.least >= 4.5, `${colorScheme}: ${worst.least}`); // what text needs
+  }
+});
+
 test("a map of steps whose axis ends before the present step is made again with an axis that holds it", async (t) => {
   const page = await open(t, {
     hash: "#scene=four-bar&method=projection@rk4:h=1e-4&study=stability&map=limits",

@@ -17,7 +17,12 @@ const SIZES = [
   { key: "h", word: "dt", unit: " s" },
   { key: "rtol", word: "tolerance", unit: "" },
 ];
+const MANY = 9999.5; // operations that are counted in thousands
 const GREEK = { alpha: "α", beta: "β" };
+
+/** "496/step", "17.2k/step" @param {number} ops of one step */
+const perStep = (ops) =>
+  `${ops < MANY ? Math.round(ops) : `${Number((ops / 1000).toPrecision(3))}k`}/step`;
 
 /** Index of the last value that is a number, at `now` or before. @param {Float64Array} column */
 function lastKnown(column, now) {
@@ -307,7 +312,7 @@ export function createMethods(el, store, actions, openDialog) {
     say(parts.off, errorWords(m, last));
     say(parts.energy, gapWords(column.energy_change[last], "J"));
     const ops = column.ops[last]; // nobody counts those of a program
-    say(parts.cost, steps > 0 && ops > 0 ? `${Math.round(ops / steps)}/step` : "–");
+    say(parts.cost, steps > 0 && ops > 0 ? perStep(ops / steps) : "–");
     set(parts.off, { "data-tip": estimateWords(data, m) || null });
     set(parts.energy, { "data-tip": workWords(column.work[last]) });
     set(parts.cost, { "data-tip": costWords(data, m, last) || null });

@@ -16,7 +16,9 @@ import { h, s } from "../widgets/dom.js";
 
 const WHOLE = 34; // [px] of a cell that holds 10⁻³
 const EXPONENT = 22; // [px] of one that holds the exponent
-const DEEP = 56; // [%] of the colour: beyond it letters are in the colour of the paper
+/** [%] of the colour beyond which black letters, in the dark theme, or white ones, in the light
+ * theme, are the easier to read: either has at least 4.5 to 1 there. */
+const LETTERS = { dark: 61, light: 75 };
 
 /** What a map over Baumgarte's constants shows. */
 export const SWEET_SPOT =
@@ -59,7 +61,8 @@ export function shadeCells(picture, name, rows, length, columnOf) {
     cell.style.fill = `color-mix(in oklab, var(--heat) ${strength}%, var(--paper))`;
     letter.textContent = powerWords(Math.floor(Math.log10(value)), cell.width.baseVal.value);
     node.classList.add("heat");
-    node.classList.toggle("deep", strength > DEEP);
+    node.classList.toggle("mid", strength > LETTERS.dark && strength <= LETTERS.light);
+    node.classList.toggle("deep", strength > LETTERS.light);
     node.classList.toggle("best", best?.i === columnOf(i) && best?.j === j);
   }
 }

@@ -15,6 +15,9 @@ const EDGE = 8; // [px] between the card and the edges of what it lies in
 const LEAST = 200; // [px] of a card that is scrolled
 const MOST_GROUPS = 4;
 
+/** What a part that opens is called; times in it may have changed. @param {HTMLElement} fold */
+const titleOf = (fold) => fold.querySelector("summary")?.textContent?.replace(/ at .*/, "") ?? "";
+
 /**
  * @param {HTMLElement} el the column of the methods
  * @param {import("../state/store.js").Store} store
@@ -26,6 +29,7 @@ export function createWhyCard(el, store, actions) {
   el.append(holder);
   const { attempt } = actions;
   let cardOf = -1;
+  let madeFor = ""; // what the card speaks of
 
   /** @param {KeyboardEvent} event */
   function onKey(event) {
@@ -124,6 +128,35 @@ export function createWhyCard(el, store, actions) {
     holder.style.top = `${top - home.top}px`;
   }
 
+  const isMoving = () => data.state === "running" || data.view.replaying;
+  const shownNow = () => `${shownIndex(data)} ${data.reference?.state} ${data.incidents.length}`;
+
+  /** The card anew, with what was open and where it was scrolled to; the focus stays in it. */
+  function remake() {
+    const folds = () =>
+      /** @type {HTMLDetailsElement[]} */ ([...holder.querySelectorAll("details")]);
+    const open = new Set(folds().flatMap((fold) => (fold.open ? [titleOf(fold)] : [])));
+    const { scrollTop } = holder;
+    const wasFocused = holder.contains(document.activeElement);
+    madeFor = shownNow();
+    holder.replaceChildren(makeCard(cardOf));
+    folds().forEach((fold) => (fold.open ||= open.has(titleOf(fold))));
+    place(cardOf);
+    holder.scrollTop = scrollTop;
+    if (wasFocused) {
+      /** @type {HTMLElement} */ (holder.firstElementChild).focus({ preventScroll: true });
+    }
+  }
+
+  /** What stands speaks of the frame that is shown; while it moves, nobody could read along. */
+  function follow() {
+    const isOpen = cardOf >= 0 && data.methods[cardOf] && shownIndex(data) >= 0;
+    const isUsed = holder.querySelector("button:focus-visible, summary:focus-visible") !== null;
+    if (isOpen && !isMoving() && !isUsed && madeFor !== shownNow()) {
+      remake();
+    }
+  }
+
   function show() {
     const m = data.view.why;
     if (m < 0 || !data.methods[m] || shownIndex(data) < 0) {
@@ -134,6 +167,7 @@ export function createWhyCard(el, store, actions) {
     }
     if (cardOf !== m) {
       cardOf = m;
+      madeFor = shownNow();
       holder.replaceChildren(makeCard(m));
       holder.hidden = false;
       buttonOf(m)?.closest("tr")?.scrollIntoView({ block: "nearest" });
@@ -148,9 +182,11 @@ export function createWhyCard(el, store, actions) {
       show();
     },
     view: show,
+    state: follow,
+    reference: follow,
   });
   return {
-    update() {},
+    update: follow,
     dispose() {
       stop();
       holder.remove();

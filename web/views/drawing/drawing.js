@@ -66,7 +66,9 @@ export function createDrawing(el, store, actions) {
     { type: "button", class: "quiet", onclick: () => notices.describe(true) },
     "describe",
   );
-  const caption = h("p", { class: "caption" });
+  const kindOf = h("span");
+  const counts = h("span", { class: "counts" });
+  const caption = h("p", { class: "caption" }, kindOf, counts);
   const tools = h("div", { class: "undo-tools" }, ...lengths.tools, ...hand.tools);
   const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note, tools);
   const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
@@ -144,7 +146,9 @@ export function createDrawing(el, store, actions) {
   }
 
   function makeGhosts() {
-    say(caption, data.scene?.caption ?? "");
+    const [, kind, rest] = /^(.*?)( \(.*)?$/s.exec(data.scene?.caption ?? "") ?? [];
+    say(kindOf, kind ?? "");
+    say(counts, rest ?? "");
     demonstrations.hidden = !(data.scene?.m > 0);
     const nameless = data.scene && namedPoints(data.scene).length === 0;
     set(toggles.labels, {

@@ -19,14 +19,12 @@ function makeSheet(width, radius, dark) {
 }
 
 /**
- * @param {{low: number[], high: number[], radius: number, vertical: number}} box of the motion;
- *   vertical: index of the upward axis
+ * @param {ReturnType<typeof import("./box.js").boxOf>} box of the motion
  * @param {{line: string, dark: boolean, shadows: boolean}} look
  */
-export function makeFloor({ low, high, radius, vertical }, { line, dark, shadows }) {
+export function makeFloor({ low, high, radius, vertical, ground }, { line, dark, shadows }) {
   const group = new THREE.Group();
   const middle = low.map((x, k) => (x + high[k]) / 2);
-  const ground = low[vertical] - 0.12 * radius;
   const up = new THREE.Vector3().setComponent(vertical, 1);
 
   const cell = niceBelow(radius / 2.5);

@@ -5,6 +5,7 @@
 import { lookOf } from "../../state/look.js";
 import { scaleBarOf } from "../../widgets/camera.js";
 import { drawnPoints } from "../../widgets/pieces.js";
+import { feetOf } from "./box.js";
 
 const HALF_ANGLE = 0.3; // [rad] half the vertical angle of view
 const MARGIN = { side: 44, top: 36, bottom: 48 }; // [px]
@@ -54,6 +55,7 @@ export function createRig(data, size) {
     const poses = [scene.points, ...motionOf()];
     return [
       ...Array.from({ length: far.length / 3 }, (_, i) => place(far, i)),
+      ...feetOf(scene),
       ...poses.flatMap((points) => drawn.map((i) => place(points, i))),
     ].filter((p) => p.length === 3 && p.every(Number.isFinite));
   }

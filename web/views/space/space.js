@@ -7,6 +7,7 @@ import { coincide } from "../../state/between.js";
 import { referenceAt } from "../../state/reference.js";
 import { firstSpace } from "../../state/shown.js";
 import { h } from "../../widgets/dom.js";
+import { boxOf } from "./box.js";
 import { makeFloor } from "./floor.js";
 import { makeBase, makeModel, makeReference, release, widthOf } from "./models.js";
 import { createRig } from "./rig.js";
@@ -42,21 +43,6 @@ function makeRenderer(coarse) {
 
 /** @param {string} name of a custom property of the page */
 const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-/** The box of the motion. @param {import("../../state/types.js").Scene} scene */
-function boxOf(scene) {
-  const flat = [...(scene.extremes ?? []), ...scene.points];
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  flat.forEach((x, i) => {
-    if (Number.isFinite(x)) {
-      low[i % 3] = Math.min(low[i % 3], x);
-      high[i % 3] = Math.max(high[i % 3], x);
-    }
-  });
-  const radius = Math.max(1e-6, 0.5 * Math.hypot(...low.map((x, k) => high[k] - x)));
-  return { low, high, radius, vertical: scene.view.vertical === "z" ? 2 : 1 };
-}
 
 /**
  * @param {HTMLElement} frame the drawing's stage; its SVG lies on top
