@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SMALLEST = -4, LARGEST = 4, MAX_UNIT = 16 };
+enum { SMALLEST = -3, LARGEST = 4, MAX_UNIT = 16 };
 
-// p n µ m (none) k M G T
-static const char *const prefixes[] = {"p", "n", "\xc2\xb5", "m", "", "k", "M", "G", "T"};
+// n µ m (none) k M G T
+static const char *const prefixes[] = {"n", "\xc2\xb5", "m", "", "k", "M", "G", "T"};
 
 static bool takes_prefix(const char *unit) {
     static const char *const bare[] = {"", "kg", "deg", "\xc2\xb0", "%"};

@@ -7,9 +7,12 @@
 
 enum { HN_SI_TEXT = 48 };
 
+/// Smaller values get no prefix [m, s, J, ...]: nobody pictures a picometre.
+#define HN_SI_SMALLEST 1e-9
+
 /// "4.20 mm", "1.30 µs", "312 kg" (kg has its prefix already). `digits` significant
 /// digits (1..9). Zero is "0 m"; values that are not finite are "not finite"; beyond the prefixes
-/// p..T the number is written with a power of ten ("2.1e-17 m"). An empty unit, kg, deg, % or a
+/// n..T the number is written with a power of ten ("2.1e-17 m"). An empty unit, kg, deg, % or a
 /// power (m^2) takes no prefix. UTF-8, at most HN_SI_TEXT bytes with the zero; `unit` is cut if
 /// longer than 16 bytes.
 void hn_si_format(double value, const char *unit, int digits, char out[HN_SI_TEXT]);

@@ -52,7 +52,9 @@ static const hn_command COMMANDS[] = {
     {"terms", "SCENE", "print M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions --wide", 1, 1, hn_command_terms},
     {"run", "SCENE",
-     "run one method; writes samples as --format csv, ndjson or json, and a verdict",
+     "run one method; writes samples as --format csv, ndjson or json, and a verdict. A terminal "
+     "gets "
+     "a table that fits it unless a format is asked for",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
                    "--raw-lambda --reactions --format=csv|ndjson|json --plot",
      1, 1, hn_command_run},

@@ -49,7 +49,7 @@ void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time) {
     *p = (hn_cost_plot){.by_time = by_time, .levels = wp->n_levels};
     p->scatter.n = wp->n_methods;
     p->scatter.y_high = 1;
-    p->scatter.x_unit = p->by_time ? "s" : "op";
+    p->scatter.x_unit = p->by_time ? "s" : ""; // of operations the title speaks
     for (int m = 0; m < wp->n_methods; m++) {
         const int slot = hn_look_slot(m);
         p->scatter.series[m].colour = slot;

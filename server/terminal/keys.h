@@ -33,6 +33,8 @@ enum {
     X(NEXT_TEN, HN_KEY_SHIFT_RIGHT, "Shift →", "ten frames on")    \
     X(BACK_TEN, HN_KEY_SHIFT_LEFT, "Shift ←", "ten frames back")   \
     X(START, HN_KEY_BACKSPACE, "Backspace", "back to the start")   \
+    X(FIRST, HN_KEY_HOME, "Home", "to the first frame")            \
+    X(LAST, HN_KEY_END, "End", "to the end of the motion")         \
     X(SLOWER, '-', "-", "slower")                                  \
     X(FASTER, '=', "=", "faster")                                  \
     X(UP, HN_KEY_UP, "↑", "select the method above")               \

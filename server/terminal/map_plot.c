@@ -62,6 +62,9 @@ void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m) {
 
 static int nearest(const hn_map_axis *a, double value) {
     int best = 0;
+    if (a->is_log && !(value > 0)) {
+        return 0; // below all values of the axis
+    }
     for (int i = 1; i < a->n; i++) {
         const double d = a->is_log ? fabs(log(a->value[i] / value)) : fabs(a->value[i] - value);
         const double b =
@@ -73,9 +76,18 @@ static int nearest(const hn_map_axis *a, double value) {
 
 hn_map_place hn_map_plot_place(const hn_map_plot *p, double x, double y) {
     const hn_map_place none = {-1, -1};
-    const bool shown =
-        p->x.n > 0 && p->y.n > 0 && (x > 0 || !p->x.is_log) && (y > 0 || !p->y.is_log);
+    const bool shown = p->x.n > 0 && p->y.n > 0 && !isnan(x) && !isnan(y);
     return shown ? (hn_map_place){nearest(&p->x, x), nearest(&p->y, y)} : none;
+}
+
+/// Half a cell beyond the first or the last one counts as the axis.
+static bool is_beyond(const hn_map_axis *a, double value) {
+    const double at = a->is_log && !(value > 0) ? -HUGE_VAL : near_row(a, value);
+    return a->n > 1 && (at < -0.5 || at > a->n - 0.5);
+}
+
+bool hn_map_plot_is_beyond(const hn_map_plot *p, double x, double y) {
+    return is_beyond(&p->x, x) || is_beyond(&p->y, y);
 }
 
 // ---- shades ----
@@ -190,10 +202,19 @@ static void HN_PRINTF(2, 3) add_entry(legend *l, const char *format, ...) {
     va_end(list);
 }
 
+/// Outcomes that no cell has are left out.
 static void fill_legend(legend *l, const hn_map_plot *p, range r) {
     char low[HN_SI_TEXT], high[HN_SI_TEXT];
+    bool seen[HN_STABILITY_CLASS_COUNT] = {false}, limit = false;
+    for (int i = 0; i < p->x.n * p->y.n; i++) {
+        seen[p->cell[i].kind] = true;
+        limit |= p->cell[i].limit;
+    }
     for (int k = HN_STABILITY_FINE; k < HN_STABILITY_CLASS_COUNT; k++) {
         const hn_map_class_look *look = hn_map_class_look_get((hn_stability_class)k);
+        if (!seen[k]) {
+            continue;
+        }
         if (!p->heat || !hn_stability_is_stable((hn_stability_class)k)) {
             add_entry(l, "%s %s", look->glyph, look->words);
         }
@@ -203,7 +224,9 @@ static void fill_legend(legend *l, const hn_map_plot *p, range r) {
         hn_si_format(pow(10, r.high), "m", 2, high);
         add_entry(l, "%s to %s worst loop gap, %s to %s", SHADE[0], SHADE[SHADES - 1], low, high);
     }
-    add_entry(l, "%s predicted limit", PREDICTED);
+    if (limit) {
+        add_entry(l, "%s predicted limit", PREDICTED);
+    }
 }
 
 static bool is_wide(const hn_map_plot *p, int columns) {
@@ -264,7 +287,7 @@ void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_pl
     }
     draw_axes(c, area, p, wide ? 2 : 1);
     mark(c, area, p, present, wide, HN_CELL_BOLD, "★");
-    mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "◆");
+    mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "⊕");
 
     // the legend beside it where there is room
     const hn_area beside = beside_map(p, area);

@@ -45,7 +45,7 @@ static void draw(hn_cells *c, hn_area area, const hn_motion_plot *p, bool energy
                     .t_end = p->dt * (p->n > 1 ? p->n - 1 : 1),
                     .cursor = (double)NAN,
                     .logarithmic = true,
-                    .floor = 1e-17,
+                    .floor = 1e-16,
                     .unit = energy ? "J" : p->gap_unit,
                     .n = p->n_tracks};
     for (int i = 0; i < p->n_tracks; i++) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terminal/plot.h"
 
+#include "terminal/decades.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +11,7 @@ enum { LABEL_COLUMNS = 8, LEAST_COLUMNS = LABEL_COLUMNS + 8, LEAST_ROWS = 4, ACR
 
 typedef struct range {
     double low, high;
+    double step; ///< between two labels
 } range;
 
 /// The height of a value in the units of the axis: its logarithm, or itself; NaN where it cannot be
@@ -18,9 +21,9 @@ static double height_of(const hn_plot *plot, double y) {
 }
 
 static range find_range(const hn_plot *plot) {
-    range r = {(double)INFINITY, -(double)INFINITY};
+    range r = {(double)INFINITY, -(double)INFINITY, 0};
     if (plot->low < plot->high) {
-        return (range){height_of(plot, plot->low), height_of(plot, plot->high)};
+        return (range){height_of(plot, plot->low), height_of(plot, plot->high), 0};
     }
     for (int s = 0; s < plot->n; s++) {
         for (int k = 0; k < plot->series[s].n; k++) {
@@ -34,12 +37,11 @@ static range find_range(const hn_plot *plot) {
 
     // nothing to show yet: an axis all the same
     if (!(r.low <= r.high)) {
-        return plot->logarithmic ? (range){log10(plot->floor), 0} : (range){-1, 1};
+        return plot->logarithmic ? (range){log10(plot->floor), 0, 0} : (range){-1, 1, 0};
     }
     if (plot->logarithmic) {
-        // whole decades, at least two of them
-        r.low = floor(r.low);
-        r.high = fmax(ceil(r.high), r.low + 2);
+        // from a whole decade down, over two of them at least
+        r.high = fmax(ceil(r.high), floor(r.low) + 2);
     } else if (r.high - r.low < 1e-12 * (fabs(r.high) + fabs(r.low)) || r.high == r.low) {
         const double room = r.high == 0 ? 1 : fabs(r.high) * 0.1;
         r.low -= room;
@@ -75,12 +77,19 @@ static void draw_time(hn_cells *c, hn_area area, const hn_plot *plot) {
     hn_cells_put(c, area, area.columns - columns, area.rows - 1, HN_CELL_MUTED, 0, end);
 }
 
+/// Every decade has a label, or every second, third ... one; other axes have four or five.
+static void choose_labels(const hn_plot *plot, int rows, range *r) {
+    const int most = rows / 2 > 2 ? rows / 2 : 2;
+    if (plot->logarithmic) {
+        r->step = hn_decades_spread(r->high, &r->low, rows);
+    } else {
+        r->step = (r->high - r->low) / (most > 4 ? 4 : most);
+    }
+}
+
 static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_plot *plot, range r) {
-    // four or five labels: every decade, or every second, third ... one
-    const int most = inner.rows / 2 > 2 ? inner.rows / 2 : 2;
     const double span = r.high - r.low;
-    const double step = plot->logarithmic ? ceil(span / most) : span / (most > 4 ? 4 : most);
-    for (double h = r.high; h >= r.low - 1e-9 * span; h -= step) {
+    for (double h = r.high; h >= r.low - 1e-9 * span; h -= r.step) {
         char label[HN_PLOT_LABEL * 2];
         label_of(plot, fabs(h) < 1e-9 * span ? 0 : h, label, sizeof label);
         const int row = row_of(h, r, inner.rows);
@@ -135,8 +144,9 @@ void hn_plot_draw(hn_cells *c, hn_area area, const hn_plot *plot, hn_dot_form fo
     }
     const hn_area inner = {area.x + LABEL_COLUMNS, area.y, area.columns - LABEL_COLUMNS,
                            area.rows - 1};
-    const range r = find_range(plot);
+    range r = find_range(plot);
     hn_dots dots = {0};
+    choose_labels(plot, inner.rows, &r);
     draw_axes(c, area, inner, plot, r);
     if (!hn_dots_resize(&dots, inner.columns, inner.rows)) {
         return;

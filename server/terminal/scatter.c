@@ -2,6 +2,7 @@
 #include "terminal/scatter.h"
 
 #include "base/units.h"
+#include "terminal/decades.h"
 
 #include <math.h>
 #include <string.h>
@@ -49,9 +50,8 @@ static double down(const range *r, const hn_scatter_point *p) {
     return p->on_edge ? 0 : fmin(1, fmax(0, (r->high - log10(p->y)) / (r->high - r->low)));
 }
 
-static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_scatter *s, range r) {
-    // a label every decade, or every second, third ... one
-    const double step = ceil((r.high - r.low) / (inner.rows / 2));
+static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_scatter *s, range r,
+                      double step) {
     for (double h = r.high; h >= r.low - 1e-9; h -= step) {
         const int row = (int)lround((r.high - h) / (r.high - r.low) * (inner.rows - 1));
         hn_cells_printf(c, area, 0, row, HN_CELL_MUTED, 0, "  1e%+03ld┤", lround(h));
@@ -102,7 +102,8 @@ bool hn_scatter_draw(hn_cells *c, hn_area area, const hn_scatter *s, hn_dot_form
     }
 
     // glyphs first: dots leave them room
-    draw_axes(c, area, inner, s, r);
+    const double step = hn_decades_spread(r.high, &r.low, inner.rows);
+    draw_axes(c, area, inner, s, r, step);
     for (int i = 0; i < s->n; i++) {
         draw_series(c, inner, &dots, &s->series[i], &r);
     }

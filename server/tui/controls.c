@@ -87,7 +87,11 @@ static bool act_on_clock(hn_workbench *w, hn_tui_action action) {
         play(w);
         return true;
     case HN_TUI_START:
+    case HN_TUI_FIRST:
         go(w, 0);
+        return true;
+    case HN_TUI_LAST:
+        go(w, hn_recording_last(w->recording));
         return true;
     case HN_TUI_SLOWER:
     case HN_TUI_FASTER:

@@ -18,6 +18,7 @@ static const double SHORTEST_ARROW = 2.5; // [dots]
 static const double TEAR = 10;            // [dots] of an enlarged one
 static const double SEEN_TEAR = 5;        // [dots] from which on it is drawn as it is
 static const double MOST_ENLARGED = 1000; // a smaller gap is for the plot alone
+static const double APART = 2.5;          // [dots] from which on linkages are told apart by marks
 static const double HEAD = 3;             // [dots] of its strokes, along the arrow
 static const double HEAD_WIDTH = 0.6;     // of that, across the arrow
 
@@ -333,6 +334,53 @@ static void draw_present(placing *p, const hn_workbench *w) {
     }
 }
 
+/// Distance of a point of method m from the same point of every other method that is shown [dots];
+/// *at: its dot.
+static double distance_from_others(placing *p, const hn_workbench *w, int m, int point,
+                                   double at[2]) {
+    const size_t n = 3 * (size_t)hn_system_get_info(hn_model_system(w->model)).n_points;
+    const size_t first = (size_t)hn_workbench_frame(w) * n;
+    double least = HUGE_VAL;
+    p->points = hn_recording_track(w->recording, m)->points + first;
+    dot_of(p, point, at);
+    for (int o = 0; o < w->n_methods; o++) {
+        double other[2];
+        p->points = hn_recording_track(w->recording, o)->points + first;
+        dot_of(p, point, other);
+        if (o != m && !w->hidden[o] && isfinite(other[0])) {
+            least = fmin(least, hypot(other[0] - at[0], other[1] - at[1]));
+        }
+    }
+    return isfinite(at[0]) ? least : 0;
+}
+
+/// The mark of each method, as in the table, at the end of a bar where its linkage is apart from
+/// those of the others.
+static void mark_methods(hn_cells *c, hn_area area, placing *p, const hn_workbench *w) {
+    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
+    const double *const drawn_last = p->points;
+    for (int m = 0; m < w->n_methods && !w->drag.on; m++) {
+        double farthest = 0, place[2] = {0};
+        for (int i = 0; i < 2 * drawing.n_shapes && !w->hidden[m]; i++) {
+            const hn_shape *s = &drawing.shapes[i / 2];
+            double at[2];
+            const double apart = s->kind != HN_SHAPE_BAR
+                                     ? 0
+                                     : distance_from_others(p, w, m, i % 2 == 0 ? s->p : s->q, at);
+            if (isfinite(apart) && apart > farthest) {
+                farthest = apart;
+                memcpy(place, at, sizeof place);
+            }
+        }
+        if (farthest >= APART) {
+            const hn_look *look = hn_look_get(hn_recording_track(w->recording, m)->slot);
+            hn_cells_put(c, area, (int)floor(place[0] / ACROSS), (int)floor(place[1] / DOWN),
+                         hn_recording_track(w->recording, m)->slot, HN_CELL_BOLD, look->glyph);
+        }
+    }
+    p->points = drawn_last;
+}
+
 void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_dots dots = {0};
     if (hn_pictures_form(&w->pictures) != HN_PIXELS_OFF || area.columns < 4 || area.rows < 3 ||
@@ -349,6 +397,7 @@ void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
     scale_bar(c, area, &p);
     draw_forces(area, &p, &arrows);
     hn_dots_show(c, area, &dots, w->form);
+    mark_methods(c, area, &p, w);
     name_forces(c, area, &p, &arrows);
     if (enlarged > 1) {
         name_tear(c, area, tear[0], tear[1], enlarged);

@@ -52,6 +52,10 @@ void hn_remedies_open(hn_workbench *w) {
     char title[HN_TUI_LINE];
     snprintf(title, sizeof title, "what %.60s can try: Enter tries it, Esc goes back", name);
     hn_list_begin(w, HN_LIST_REMEDIES, title);
+    hn_step_report step;
+    if (hn_workbench_step_report(w, &step) && step.remedy[0]) {
+        hn_list_add(w, step.remedy, step.tried);
+    }
     for (int i = 0; i < n; i++) {
         if (whose[i] == w->selected) {
             list_remedies(w, &list[i]);

@@ -88,6 +88,26 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
     w->at = (hn_map_place){-1, -1};
 }
 
+/// The cheapest method of the study shown, without its step; false: there is none.
+static bool find_cheapest(const hn_workbench *w, hn_tui_cheapest *out) {
+    char spelling[HN_SPEC_MAX];
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    const bool known = hn_tui_study_get_kind(w->study) == HN_TUI_COST &&
+                       hn_tui_study_wanted(w->study, w->wanted, &b, spelling) && spelling[0] &&
+                       hn_method_parse(spelling, &spec, &diag) == HN_OK;
+    hn_strbuf_reset(&b);
+    if (known) {
+        *out = (hn_tui_cheapest){.time = hn_tui_study_time(w->study)};
+        snprintf(out->wanted, sizeof out->wanted, "%s", w->wanted);
+        snprintf(out->method, sizeof out->method, "%s@%s", spec.formulation->name,
+                 spec.stepper->name);
+    }
+    return known;
+}
+
 bool hn_study_panel_set_time(hn_workbench *w, const char *text) {
     const hn_tui_study_kind kind = hn_tui_study_get_kind(w->study);
     const double most = hn_model_scene(w->model)->duration;
@@ -98,6 +118,7 @@ bool hn_study_panel_set_time(hn_workbench *w, const char *text) {
         return false;
     }
     w->study_time[kind] = time;
+    find_cheapest(w, &w->cheapest);
     hn_study_panel_open(w, kind);
     return true;
 }
@@ -160,9 +181,34 @@ static void move_cursor(hn_workbench *w, int dx, int dy) {
     w->at.row = row < 0 ? 0 : row >= map.y.n ? map.y.n - 1 : row;
 }
 
+/// Whether the answer is the same for a study of another length that was made before; or that it
+/// may change, where none was.
+static void add_other_length(hn_strbuf *b, const hn_workbench *w) {
+    const hn_tui_cheapest *before = &w->cheapest;
+    const double whole = hn_model_scene(w->model)->duration;
+    hn_tui_cheapest now;
+    if (!find_cheapest(w, &now)) {
+        return;
+    }
+    const bool other =
+        before->time > 0 && before->time != now.time && strcmp(before->wanted, now.wanted) == 0;
+    if (other && strcmp(before->method, now.method) == 0) {
+        hn_strbuf_printf(b, "For %g s and for %g s of motion the cheapest is %s.\n", before->time,
+                         now.time, now.method);
+    } else if (other) {
+        hn_strbuf_printf(b, "For %g s of motion the cheapest is %s, for %g s it was %s.\n",
+                         now.time, now.method, before->time, before->method);
+    } else if (now.time < whole) {
+        hn_strbuf_printf(b,
+                         "For %g s of motion; for %g s another may be cheaper (t measures it).\n",
+                         now.time, whole);
+    }
+}
+
 /// All that there is to read: the answer about the wanted error, then the words of the study.
 static void add_words(hn_strbuf *b, const hn_workbench *w) {
     char spelling[HN_SPEC_MAX];
+    add_other_length(b, w);
     if (hn_tui_study_wanted(w->study, w->wanted, b, spelling)) {
         hn_strbuf_add(b, "\n\n");
     }
@@ -302,6 +348,11 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
         hn_strbuf_reset(&b);
     } else {
         draw_words(c, foot, w);
+    }
+    if (hn_map_plot_is_beyond(&map, w->present[0], w->present[1])) {
+        hn_cells_printf(c, foot, 0, foot.rows - 1, HN_CELL_INK, 0,
+                        "★ at the edge: now alpha = %.4g, beta = %.4g, beyond the map",
+                        w->present[0], w->present[1]);
     }
 }
 

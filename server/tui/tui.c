@@ -208,6 +208,14 @@ static void wait_for_frames(hn_workbench *w) {
     }
 }
 
+/// The card of the reasons is whole: shorter steps have been tried.
+static void wait_for_trial(hn_workbench *w) {
+    hn_step_report step;
+    while (hn_workbench_step_report(w, &step) && step.finding == HN_STEP_RUNNING) {
+        poll(NULL, 0, 5);
+    }
+}
+
 static void go_to(hn_workbench *w, double t) {
     const int last = hn_recording_last(w->recording);
     const double frame = round(t / hn_recording_frame_dt(w->recording));
@@ -227,6 +235,7 @@ static void type_keys(hn_workbench *w, const hn_tui_opts *opts) {
         }
         wait_for_frames(w);
         hn_workbench_tick(w, 0);
+        wait_for_trial(w);
     }
 }
 
@@ -238,6 +247,7 @@ void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts) {
     go_to(w, opts->t);
     type_keys(w, opts);
     hn_workbench_tick(w, 0);
+    wait_for_trial(w);
     if (hn_cells_resize(&cells, w->columns, w->rows)) {
         hn_views_update(w);
         hn_views_draw(&cells, w);

@@ -3,6 +3,7 @@
 
 #include "base/units.h"
 #include "render/look.h"
+#include "study/incidents/wording.h"
 #include "terminal/plot.h"
 #include "tui/key_line.h"
 #include "tui/list_view.h"
@@ -18,15 +19,25 @@
 #include <string.h>
 
 enum { NUMBER_DIGITS = 2 }; // significant, as in the page
-enum { LEAST_NAME = 7, MOST_NAME = 22, ROW_NAME = 64, VERDICT_COLUMNS = 51, MOST_INCIDENTS = 512 };
+enum {
+    LEAST_NAME = 7,
+    SHORT_NAME = 14,
+    LEAST_STEM = 4,
+    MOST_NAME = 22,
+    ROW_NAME = 64,
+    VERDICT_COLUMNS = 51,
+    MOST_INCIDENTS = 512
+};
 enum { MESSAGE_LINES = 6, INCIDENT_LINES = 7 }; // at most; the longest incident has 7
 enum { NOTICE_ROWS = 2 };                       // kept free below the views, at least
-enum { WIDE_NUMBER = 9, TIGHT_NUMBER = 8, LEAST_NUMBERS = 2 }; // columns of a number; gap and error
+enum {
+    WIDE_NUMBER = 9,
+    TIGHT_NUMBER = 8,
+    LEAST_NUMBERS = 2,
+    ENERGY_NUMBERS = 3
+};                                // columns of a number; gap and error, and energy
 enum { LEAST_VIEW_COLUMNS = 32 }; // from which on the plot has room for its labels
 enum { LEAST_VIEW_ROWS = 6 };     // of mechanism and plot, with their frame: fewer would be empty
-
-/// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
-static const double SMALLEST_PREFIXED = 1e-9;
 
 /// [s] for which the clock waits before it is said that the methods are slower: a single late frame
 /// is none.
@@ -93,7 +104,7 @@ static void draw_header(hn_cells *c, const hn_workbench *w) {
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "%.30s  ", scene->id);
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "t %.3f s of %.4g s  ×%g  %s  ", t,
                          hn_recording_duration(w->recording), w->speed,
-                         runs ? "▶ running" : "■ paused");
+                         runs ? "▶ running" : "‖ paused");
     if (isfinite(h)) {
         char step[HN_SI_TEXT];
         hn_si_format(h, "s", 3, step);
@@ -180,9 +191,10 @@ void hn_views_update(hn_workbench *w) {
     w->notice[0] = '\0';
     w->notice_of = last >= 0 ? whose[last] : 0;
     if (last >= 0 && w->panel == HN_PANEL_MAIN) {
+        char message[480];
+        hn_wording_behind_time(list[last].t, list[last].message, message, sizeof message);
         snprintf(w->notice, sizeof w->notice, "! %s at %.4g s: %s",
-                 hn_recording_track(w->recording, whose[last])->name, list[last].t,
-                 list[last].message);
+                 hn_recording_track(w->recording, whose[last])->name, list[last].t, message);
     }
 }
 
@@ -242,6 +254,7 @@ enum { N_NUMBERS = sizeof NUMBERS / sizeof *NUMBERS };
 /// Where the columns of the table are, in columns of its inside.
 typedef struct table_columns {
     int name, numbers, number, verdict; ///< number: width of one
+    int name_width;
 } table_columns;
 
 /// The fixed step of a method [s]; NaN: it has none.
@@ -288,9 +301,45 @@ static void add_options(const hn_method_spec *spec, const hn_method_spec *than, 
     }
 }
 
+/// Takes the last word of a text away; false: it is one word alone.
+static bool drop_word(char *text) {
+    char *last = strrchr(text, ' ');
+    if (last && last > text) {
+        *last = '\0';
+    }
+    return last && last > text;
+}
+
+/// "Baumgarte" and " 20/20 20 ms" in `most` columns: where both are too long the name loses words
+/// from its end, then is abbreviated, as its letters tell least; then the options lose words.
+static void fit_name(const char *whole, char ending[ROW_NAME], int most, char out[ROW_NAME]) {
+    char name[ROW_NAME];
+    snprintf(name, sizeof name, "%s", whole);
+    snprintf(out, ROW_NAME, "%.40s%.22s", name, ending);
+    if (hn_text_columns(out) <= most) {
+        return;
+    }
+    const int room = most - hn_text_columns(ending);
+    while (hn_text_columns(name) > room && strcspn(name, " ") >= LEAST_STEM && drop_word(name)) {}
+    const size_t letters = strlen(name);
+    const bool abbreviates = (int)letters > room && room >= LEAST_STEM && !strchr(name, ' ');
+    if (abbreviates) {
+        snprintf(name + room - 1, sizeof name - (size_t)room + 1, ".");
+    }
+
+    // options from the last on
+    bool cut = false;
+    while (hn_text_columns(name) + hn_text_columns(ending) + cut > most && drop_word(ending)) {
+        cut = true;
+    }
+    const int rest = most - hn_text_columns(name);
+    const bool fits = hn_text_columns(ending) + cut <= rest;
+    snprintf(out, ROW_NAME, "%.*s%.40s%s", most, name, fits ? ending : "", cut || !fits ? "…" : "");
+}
+
 /// The name of method m with its own options, and with its step where another one has the same name
-/// and another step. Where that is too long the name is cut, as its letters tell least.
-static void name_row(const hn_workbench *w, int m, char out[ROW_NAME]) {
+/// and another step, in `most` columns.
+static void name_row(const hn_workbench *w, int m, int most, char out[ROW_NAME]) {
     const hn_track *own = hn_recording_track(w->recording, m);
     hn_method_spec spec, like;
     hn_diag diag = {0};
@@ -316,25 +365,26 @@ static void name_row(const hn_workbench *w, int m, char out[ROW_NAME]) {
         hn_si_format(step_of(own), "s", 2, step);
         snprintf(ending + n, sizeof ending - n, " %s", step);
     }
-    const int room = MOST_NAME - hn_text_columns(ending);
-    snprintf(out, ROW_NAME, "%.*s%s", room > LEAST_NAME ? room : LEAST_NAME, own->name, ending);
+    fit_name(own->name, ending, most, out);
 }
 
-/// Gap and error are shown even where the verdict is cut; the others while it has room.
+/// Gap and error are shown even where the verdict is cut, the others while it has room; names are
+/// shortened before the energy goes.
 static table_columns lay_out(const hn_workbench *w, int width) {
     int longest = LEAST_NAME;
     for (int m = 0; m < w->n_methods; m++) {
         char name[ROW_NAME];
-        name_row(w, m, name);
+        name_row(w, m, MOST_NAME, name);
         const int n = hn_text_columns(name);
         longest = n > longest ? n : longest;
     }
-    longest = longest < MOST_NAME ? longest : MOST_NAME;
+    const int short_name = width - 3 - 1 - VERDICT_COLUMNS - ENERGY_NUMBERS * WIDE_NUMBER;
+    longest = short_name >= SHORT_NAME && short_name < longest ? short_name : longest;
     const int room = width - 3 - longest - 1 - VERDICT_COLUMNS;
     const int wide = room / WIDE_NUMBER;
     const int numbers = wide < LEAST_NUMBERS ? LEAST_NUMBERS : wide < N_NUMBERS ? wide : N_NUMBERS;
     const int number = wide < LEAST_NUMBERS ? TIGHT_NUMBER : WIDE_NUMBER;
-    return (table_columns){3, numbers, number, 3 + longest + numbers * number + 1};
+    return (table_columns){3, numbers, number, 3 + longest + numbers * number + 1, longest};
 }
 
 /// Where number i ends.
@@ -349,7 +399,7 @@ static void put_number(hn_cells *c, hn_area area, int right, int y, double value
         snprintf(text, sizeof text, "-");
     } else if (!unit[0]) {
         snprintf(text, sizeof text, "%.0f", value);
-    } else if (fabs(value) < SMALLEST_PREFIXED && value != 0) {
+    } else if (fabs(value) < HN_SI_SMALLEST && value != 0) {
         snprintf(text, sizeof text, "%.0e %s", value, unit);
     } else {
         hn_si_format(hn_round_digits(value, NUMBER_DIGITS), unit, NUMBER_DIGITS, text);
@@ -366,7 +416,7 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
                     hn_look_get(track->slot)->glyph);
     char name[ROW_NAME];
-    name_row(w, m, name);
+    name_row(w, m, at.name_width, name);
     hn_cells_put(c, area, at.name, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, name);
     for (int i = 0; i < at.numbers; i++) {
         put_number(c, area, number_end(at, i), m, NUMBERS[i].of(track)[frame], NUMBERS[i].unit);
@@ -435,7 +485,7 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
                     .t_end = hn_recording_duration(w->recording),
                     .cursor = hn_recording_time(w->recording, hn_workbench_frame(w)),
                     .logarithmic = true,
-                    .floor = 1e-17,
+                    .floor = 1e-16,
                     .unit = w->plot == HN_TUI_ENERGY ? "J" : "m"};
 
     // one line a method that is shown, up to the present frame

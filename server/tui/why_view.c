@@ -3,6 +3,7 @@
 
 #include "study/incidents/kinds.h"
 #include "study/incidents/log.h"
+#include "study/incidents/wording.h"
 #include "tui/methods.h"
 
 #include <stdio.h>
@@ -36,6 +37,10 @@ bool hn_why_has_remedy(const hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS];
     const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    hn_step_report step;
+    if (hn_workbench_step_report(w, &step) && step.remedy[0]) {
+        return true;
+    }
     for (int i = 0; i < n; i++) {
         if (whose[i] == w->selected && list[i].remedy[0][0]) {
             return true;
@@ -123,8 +128,9 @@ static bool tells_count(const hn_incident *list, const int *entry, int e) {
 static void put_entry(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
                       int e) {
     const hn_incident *incident = &list[entry[e]];
-    char line[640], words[HN_WHY_WORDS];
-    const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, incident->message);
+    char line[640], words[HN_WHY_WORDS], message[480];
+    hn_wording_behind_time(incident->t, incident->message, message, sizeof message);
+    const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, message);
     if (tells_count(list, entry, e) && n < (int)sizeof line) {
         snprintf(line + n, sizeof line - (size_t)n, "; one of %d, the first %d are listed",
                  incident->times, HN_INCIDENT_MOST_OF_ONE_KIND);
@@ -138,21 +144,38 @@ static void put_entry(page *p, const hn_workbench *w, const hn_incident *list, c
     }
 }
 
-/// The rule of the method, then why it ended where no entry says so (`ending`: the first one does),
-/// or what became of it.
+/// Whether the step is the cause, and the step that would do.
+static void put_step(page *p, const hn_workbench *w) {
+    hn_step_report step;
+    char words[HN_WHY_WORDS];
+    if (!hn_workbench_step_report(w, &step)) {
+        return;
+    }
+    put(p, 0, step.finding == HN_STEP_LONG ? HN_CELL_ALARM : HN_CELL_MUTED, step.cause);
+    if (step.remedy[0]) {
+        snprintf(words, sizeof words, "try %s (%s)", step.remedy, step.tried);
+        put(p, 2, HN_CELL_INK, words);
+    }
+}
+
+/// Why the method ended where no entry says so (`ending`: the first one does), or what became of it
+/// and whether its step is the cause; then the rule of the method.
 static void put_head(page *p, const hn_workbench *w, bool ending) {
     const hn_track *track = hn_recording_track(w->recording, w->selected);
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     const hn_motion_verdict v =
         hn_recording_verdict(w->recording, w->selected, hn_workbench_frame(w));
     char line[HN_MOTION_VERDICT_TEXT + 32];
-    put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
     if (end.failed && !ending) {
-        put(p, 0, HN_CELL_ALARM, end.reason);
+        char reason[sizeof end.reason + 48];
+        hn_wording_behind_time(end.t, end.reason, reason, sizeof reason);
+        put(p, 0, HN_CELL_ALARM, reason);
     } else if (!end.failed && v.tone != HN_TONE_CALM) {
         snprintf(line, sizeof line, "worst so far: %s", v.text);
         put(p, 0, HN_CELL_ALARM, line);
+        put_step(p, w);
     }
+    put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
 }
 
 /// Writes the card; p->line is then the number of its lines.

@@ -69,6 +69,10 @@ hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags) {
     }
     hn_recording_free(w->recording);
     w->recording = fresh;
+    hn_step_trial_free(w->step_trial);
+    w->step_trial = NULL;
+    w->untried[0] = '\0';
+    w->cheapest.time = 0;
     hn_view_box_begin(w);
     w->clock = fmin(w->clock, hn_recording_last(fresh));
     w->selected = w->selected < w->n_methods ? w->selected : 0;
@@ -122,6 +126,7 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
 void hn_workbench_close(hn_workbench *w) {
     hn_child_stop(&w->child);
     hn_tui_study_free(w->study);
+    hn_step_trial_free(w->step_trial);
     hn_recording_free(w->recording);
     hn_view_box_free(w);
     hn_model_free(w->model);
@@ -139,6 +144,7 @@ void hn_workbench_close(hn_workbench *w) {
     cJSON_Delete(w->scenes);
     w->scenes = NULL;
     w->study = NULL;
+    w->step_trial = NULL;
     w->versions = NULL;
     w->preview = (hn_preview){0};
     w->drag = (hn_tui_drag){0};
@@ -248,6 +254,54 @@ static void compute_reference(hn_workbench *w) {
     }
 }
 
+/// Whether the trial is that of the selected method.
+static bool is_tried(const hn_workbench *w) {
+    return w->step_trial &&
+           strcmp(hn_step_trial_spelling(w->step_trial), w->methods[w->selected]) == 0;
+}
+
+bool hn_workbench_step_report(const hn_workbench *w, hn_step_report *out) {
+    if (!is_tried(w)) {
+        return false;
+    }
+    hn_step_trial_judge(w->step_trial, out);
+    return out->finding != HN_STEP_UNKNOWN;
+}
+
+/// Whether nothing but the drift of an open loop explains the method's errors: the rule of the card
+/// says so, and incidents offer what closes the loop.
+static bool only_drifts(const hn_workbench *w, const char *spelling) {
+    static const unsigned cares =
+        HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_PULLS_GAP;
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    return hn_system_get_info(hn_model_system(w->model)).nc > 0 &&
+           hn_method_parse(spelling, &spec, &diag) == HN_OK && spec.formulation &&
+           !(spec.formulation->traits & cares);
+}
+
+/// While the card of a method is open that went on and is wrong: has shorter steps tried.
+static void try_steps(hn_workbench *w) {
+    const char *spelling = w->methods[w->selected];
+    const hn_track *track = hn_recording_track(w->recording, w->selected);
+    const int frame = hn_workbench_frame(w);
+    if (!w->why || track->model_error || is_tried(w) || strcmp(w->untried, spelling) == 0 ||
+        hn_recording_end(w->recording, w->selected).failed || !isfinite(track->error[frame]) ||
+        hn_recording_verdict(w->recording, w->selected, frame).tone != HN_TONE_BAD) {
+        return;
+    }
+    if (only_drifts(w, spelling)) {
+        return;
+    }
+    const hn_model_source source = hn_workbench_source(w);
+    hn_diags diags = {0};
+    hn_step_trial_free(w->step_trial);
+    w->step_trial = NULL;
+    if (hn_step_trial_start(w->library, &source, spelling, &w->step_trial, &diags) != HN_OK) {
+        memcpy(w->untried, spelling, sizeof w->untried);
+    }
+}
+
 /// Says how a command ended, and how large the file is that it was to write.
 static void end_command(hn_workbench *w) {
     struct stat file;
@@ -301,6 +355,7 @@ void hn_workbench_tick(hn_workbench *w, double seconds) {
     if (w->reactions && !w->forces) {
         open_forces(w);
     }
+    try_steps(w);
     if (w->child.pid != 0 && !hn_child_read(&w->child, &w->text)) {
         end_command(w);
     }

@@ -12,6 +12,7 @@
 #include "tui/joint_forces.h"
 #include "tui/pictures.h"
 #include "tui/recording.h"
+#include "tui/step_trial.h"
 #include "tui/study_job.h"
 
 #include <cjson/cJSON.h>
@@ -104,6 +105,13 @@ typedef struct hn_tui_change {
     char said[HN_TUI_MESSAGE]; ///< until the new numbers are there
 } hn_tui_change;
 
+/// The answer of a study of what accuracy costs.
+typedef struct hn_tui_cheapest {
+    double time;              ///< of motion [s]; 0: none
+    char wanted[32];          ///< the error, as it was typed
+    char method[HN_SPEC_MAX]; ///< "nullspace@rk4"
+} hn_tui_cheapest;
+
 typedef struct hn_versions hn_versions;
 
 typedef struct hn_workbench {
@@ -128,9 +136,11 @@ typedef struct hn_workbench {
     bool playing, quit;
     int selected;
     bool hidden[HN_COMPARISON_MAX_METHODS];
-    bool why, reactions;     ///< in place of the plot, one of them at most
-    int why_first, why_of;   ///< of `why`: its uppermost line, while this method is selected
-    hn_joint_forces *forces; ///< of `reactions`; owned, NULL while not needed
+    bool why, reactions;       ///< in place of the plot, one of them at most
+    int why_first, why_of;     ///< of `why`: its uppermost line, while this method is selected
+    hn_step_trial *step_trial; ///< of `why`; owned, NULL: none
+    char untried[HN_SPEC_MAX]; ///< the method whose trial could not start
+    hn_joint_forces *forces;   ///< of `reactions`; owned, NULL while not needed
     hn_tui_plot plot;
     hn_dot_form form;
     hn_pictures pictures; ///< in place of characters, for the mechanism
@@ -162,6 +172,7 @@ typedef struct hn_workbench {
     hn_preview preview;
     hn_tui_study *study;               ///< of its panel; owned, NULL otherwise
     double study_time[HN_TUI_STUDIES]; ///< [s] of motion that was typed for each kind; 0: none
+    hn_tui_cheapest cheapest;          ///< of the study of another length before this one
     char wanted[32];                   ///< error that is wanted of a method, as it was typed
     double present[2];                 ///< alpha and beta of the method that a map is about
     hn_map_place at;                   ///< cursor of a map
@@ -199,6 +210,8 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
                          int n_settings, const char *const *methods, int n_methods);
 /// The same scene with other settings and the same methods.
 bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings);
+/// What the trial of shorter steps says of the selected method; false: there is none.
+bool hn_workbench_step_report(const hn_workbench *w, hn_step_report *out);
 /// Returns the source of the present model; borrowed.
 hn_model_source hn_workbench_source(const hn_workbench *w);
 /// Begins a line to type, with `initial` in it (prompt.h).

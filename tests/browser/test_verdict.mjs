@@ -409,6 +409,15 @@ test("how the methods came through a singular configuration is said once for all
   data.incidents.push({ code: "rank-ahead", method: 0, t: 0.8, value: 0.2 });
   assert.equal(predictionAt(data, 54), "singular configuration in 0.10 s: J loses rank (raw)");
   assert.equal(passedAt(data, 54), `${passed} cross there; all methods stayed on the smooth path`);
+  // where branches cross the engine names a change point, and so does the page
+  const named = data.incidents.slice(0, 3).map((incident) => ({
+    ...incident,
+    message: incident.message.replace("two branches", "change point: two branches"),
+  }));
+  assert.equal(
+    passedAt({ ...data, incidents: named }, 54),
+    "the mechanism passed a change point at 0.76 s: two branches of motion cross there; all methods stayed on the smooth path",
+  );
   data.incidents[2] = at(1, 0.76, "left the smooth path there, by 0.4 rad");
   assert.equal(
     passedAt(data, 54),

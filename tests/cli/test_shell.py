@@ -303,6 +303,33 @@ class Width(unittest.TestCase):
 
 
 class NearMisses(unittest.TestCase):
+    def test_a_terminal_gets_a_table_of_a_run_that_fits_and_a_pipe_the_samples(self):
+        words = ("run", "four-bar", "--time", "0.1", "--every", "0.02", "--method", "index1@rk4:h=0.01")
+        for columns in (60, 80, 200):
+            master, slave = pty.openpty()
+            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+            done = subprocess.run([PROGRAM, *words], stdout=slave, stderr=subprocess.PIPE, timeout=600)
+            os.close(slave)
+            rows = os.read(master, 65536).decode().splitlines()
+            os.close(master)
+            self.assertEqual(len(rows), 7)
+            self.assertEqual(len({len(row) for row in rows}), 1, "aligned")
+            self.assertLessEqual(len(rows[0]), columns)
+            # the gap stays when there is little room, and what was left out is told
+            self.assertEqual(rows[0].split()[0], "t")
+            self.assertIn("gap", rows[0].split())
+            self.assertRegex(" ".join(done.stderr.decode().split()), r"\d+ of 27 columns have no room here; all of them, with all digits: holonom run four-bar --format csv > FILE")
+        self.assertTrue(call(*words).stdout.startswith("t,th1,a2,th3,"))
+
+    def test_one_method_and_several_are_typed_with_either_option(self):
+        one = ("--time", "0.1", "--every", "0.1")
+        self.assertEqual(call("run", "pendulum", "--methods", "index1@rk4", *one).stdout, call("run", "pendulum", "--method", "index1@rk4", *one).stdout)
+        self.assertIn("index1@rk4", call("compare", "pendulum", "--method", "index1@rk4", "--time", "0.1").stdout)
+        self.assertEqual(call("tui", "pendulum", "--method", "index1@rk4", "--once").returncode, 0)
+        refused = call("run", "pendulum", "--methods", "index1@rk4", "projection@rk4", *one)
+        self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+        self.assertEqual(" ".join(refused.stderr.split()), "holonom: 'run' takes one method, and 'projection@rk4' follows 'index1@rk4' 'holonom compare' takes several")
+
     def test_help_on_half_a_method_shows_its_card(self):
         for half in ("projection", "radau5"):
             card = call("help", half)
@@ -379,7 +406,7 @@ class Plots(unittest.TestCase):
         rows = re.findall(r"│(.+)$", drawn, re.M)
         self.assertEqual(len(rows), 4)
         # beyond h beta = 2.8 nothing is stable, far below everything is
-        self.assertEqual(rows[0][:12].split(), ["▲"] * 6)
+        self.assertEqual(rows[0][:12].split(), ["!"] * 6)
         self.assertRegex(rows[3], r"^[░▒▓█]{4}")
 
     def test_an_error_budget_draws_a_bar_for_every_cause(self):

@@ -47,7 +47,7 @@ function hasJumped(history, m, shown) {
 export function trendOf(history, m, shown) {
   const t = history.t[shown];
   if (history.ended[m] <= t) {
-    return { word: `stopped at ${seconds(history.ended[m])}`, arrow: "■", tone: "bad" };
+    return { word: `stopped at ${seconds(history.ended[m])}`, arrow: "⇥", tone: "bad" };
   }
   const half = history.indexAt(t / 2);
   const late = history.worst(m, "gap", half, shown);

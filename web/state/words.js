@@ -7,6 +7,7 @@ import { listed, verdictAt } from "./verdict.js";
 
 const SAID_AFTER = 0.5; // [s] that a passed configuration is still reported: some come quickly
 const PASSED = ["near-singular", "rank-loss"];
+const CHANGE_POINT = "change point: "; // so the engine names a place where two branches cross
 
 /**
  * Incidents of singular configurations that were passed a moment ago.
@@ -36,7 +37,8 @@ function passageWords(data, passed) {
   for (const [m, { message }] of newest) {
     for (const part of message.split("; ")) {
       const fate = /^the run (.+)/.exec(part)?.[1];
-      branches = /^(two branches|no motion)/.test(part) ? `${part} there` : branches;
+      const crossing = part.replace(CHANGE_POINT, "");
+      branches = /^(two branches|no motion)/.test(crossing) ? `${crossing} there` : branches;
       if (fate) {
         fates.set(fate, [...(fates.get(fate) ?? []), data.methods[m].label]);
       }
@@ -61,7 +63,9 @@ export function passedAt(data, shown) {
     return "";
   }
   const last = Math.max(...passed.map(({ t }) => t));
-  const where = `the mechanism passed a singular configuration at ${seconds(last, data.duration)}`;
+  const isChange = passed.some(({ message }) => message.includes(CHANGE_POINT));
+  const what = isChange ? "change point" : "singular configuration";
+  const where = `the mechanism passed a ${what} at ${seconds(last, data.duration)}`;
   return [where, passageWords(data, passed)].filter(Boolean).join(": ");
 }
 

@@ -241,7 +241,9 @@ static hn_status fail_torn(hn_chart *chart, double t, const double *q, int step)
     char name[HN_CHART_TEXT], text[HN_CHART_TEXT];
     name_dyad(chart, step, name);
     snprintf(text, sizeof text,
-             "%.120s cannot be closed with this value, which is beyond the end of its range", name);
+             "%.120s cannot be closed with this value, which is beyond the end of its range, past "
+             "a dead point",
+             name);
     return hn_chart_fail_end(chart, t, q, text);
 }
 
@@ -319,7 +321,8 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
     }
     return hn_chart_fail_end(
         chart, t, q,
-        "no configuration closes the loops with this value, which is beyond the end of its range");
+        "no configuration closes the loops with this value, which is beyond the end of "
+        "its range, past a dead point");
 }
 
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q) {

@@ -13,7 +13,7 @@
 
 #include <stdbool.h>
 
-enum { HN_CHART_TEXT = 240 };
+enum { HN_CHART_TEXT = 288 };
 /// From so many speeds on columns are chosen sparsely.
 enum { HN_CHART_LARGE = 100 };
 

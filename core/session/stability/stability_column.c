@@ -377,6 +377,20 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
 }
 
 // Writes how the first column ended that became unstable before the prediction.
+/// The first cell that ended though its margin is below the boundary.
+static void put_first_earlier_cell(hn_strbuf *b, const hn_map *map, int m) {
+    for (int j = 0; j < map->y.n; j++) {
+        for (int i = 0; i < map->x.n; i++) {
+            const hn_map_cell *cell = hn_map_cell_at(map, m, i, j);
+            if (is_over(cell->trial.kind) && cell->margin < WITHIN) {
+                hn_strbuf_printf(b, ", as at %s = %.4g, %s = %.4g", map->x.name, map->x.value[i],
+                                 map->y.name, map->y.value[j]);
+                return;
+            }
+        }
+    }
+}
+
 static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
     for (int i = 0; i < map->x.n; i++) {
         const hn_map_column *c = hn_map_column_at(map, m, i);
@@ -481,7 +495,7 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
     if (a.earlier) {
         hn_strbuf_printf(b, "; %d run%s ended earlier than predicted", a.earlier,
                          a.earlier == 1 ? "" : "s");
-        put_first_earlier(b, map, m);
+        (a.by_columns ? put_first_earlier : put_first_earlier_cell)(b, map, m);
     }
     if (a.later) {
         hn_strbuf_printf(b, "; %d run%s stable beyond the prediction", a.later,

@@ -11,7 +11,7 @@ static const hn_map_class_look LOOKS[HN_STABILITY_CLASS_COUNT] = {
     {HN_STABILITY_PENDING, "not tried", "", -3, 0},
     {HN_STABILITY_FINE, "stable, velocities right to 1 %", "\xc2\xb7", 0, 0.35},
     {HN_STABILITY_INACCURATE, "stable, velocities less accurate", "~", 2, 0.35},
-    {HN_STABILITY_GREW, "unstable: the error grew", "\xe2\x96\xb2", -1, 0.55},
+    {HN_STABILITY_GREW, "unstable: the error grew", "!", -1, 0.55},
     {HN_STABILITY_STOPPED, "stopped with a reason", "\xc3\x97", -2, 0.75},
     {HN_STABILITY_REFUSED, "refused", "-", -3, 1},
     {HN_STABILITY_SKIPPED, "out of time", "?", -3, 0.5},

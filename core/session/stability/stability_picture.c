@@ -27,12 +27,7 @@ static void draw_box(drawing *d, double x0, double y0, double x1, double y1,
 }
 
 static void draw_sign(drawing *d, double x, double y, hn_stability_class kind) {
-    if (kind == HN_STABILITY_GREW) { // not among the letters of the picture
-        hn_canvas_marker(d->c, HN_MARKER_TRIANGLE, x, y, 6, d->ink);
-    } else {
-        hn_canvas_text(d->c, x, y + 3, 9, HN_ALIGN_CENTRE, d->ink,
-                       hn_map_class_look_get(kind)->glyph);
-    }
+    hn_canvas_text(d->c, x, y + 3, 9, HN_ALIGN_CENTRE, d->ink, hn_map_class_look_get(kind)->glyph);
 }
 
 static void draw_cells(drawing *d, int m) {

@@ -22,8 +22,6 @@ static const double WRONG = 1e-2;     // of the scene's length or energy: one di
 static const double CLOSED = 1e-12;   // of the scene's length: rounding
 static const double ROUNDING = 1e-13; // [m] some hundred roundings of coordinates of a metre or so
 static const double MOST_DIGITS = 15;
-/// Below a nano of a unit a prefix pictures nothing.
-static const double SMALLEST_PREFIXED = 1e-9;
 
 // ---- sizes ----
 
@@ -98,7 +96,7 @@ static void power_of_ten(double value, int digits, char out[HN_SI_TEXT]) {
 }
 
 static void quantity(double value, const char *unit, int digits, char out[HN_SI_TEXT]) {
-    if (value != 0 && fabs(value) < SMALLEST_PREFIXED) {
+    if (value != 0 && fabs(value) < HN_SI_SMALLEST) {
         power_of_ten(value, digits, out);
         const size_t used = strlen(out);
         snprintf(out + used, HN_SI_TEXT - used, " %s", unit);
@@ -200,7 +198,7 @@ static void judge_sizes(hn_motion_verdict *v, const sizes *s) {
 
 hn_motion_verdict hn_motion_judge(const hn_motion_history *h) {
     static const char *const arrows[] = {"→", "→", "↗", "↘", "→"};
-    hn_motion_verdict v = {.tone = HN_TONE_CALM, .arrow = "■"};
+    hn_motion_verdict v = {.tone = HN_TONE_CALM, .arrow = "⇥"};
 
     // a method that had ended by now
     if (h->ended <= h->t) {

@@ -88,7 +88,7 @@ const hn_incident_kind hn_incident_rank_ahead = {
     .spelling = "rank-ahead",
     .name = "a singular configuration lies ahead",
     .rule = "The smallest singular value of J falls towards zero. Where it is zero, constraint "
-            "equations are dependent, and the motion may branch or lock.",
+            "equations are dependent, and the motion may branch (a change point) or lock.",
     .check = check,
     .remedies = {{hn_remedy_robust, 0}},
 };

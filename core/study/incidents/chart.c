@@ -17,6 +17,6 @@ const hn_incident_kind hn_incident_chart_change = {
     .code = HN_INCIDENT_CHART_CHANGE,
     .spelling = "chart-change",
     .name = "changed its independent coordinates",
-    .rule = "A set of independent coordinates is valid for a part of the motion. At a turning "
-            "point of one of them another coordinate must take its place.",
+    .rule = "A set of independent coordinates is valid for a part of the motion. At a dead "
+            "point of one of them, where it turns back, another coordinate must take its place.",
 };

@@ -70,8 +70,9 @@ const hn_incident_kind hn_incident_chart_lost = {
     .is_wrong = true,
     .spelling = "chart-lost",
     .name = "the independent coordinates no longer determine the configuration",
-    .rule = "A set of independent coordinates is valid for a part of the motion. At a turning "
-            "point of one of them the dependent coordinates cannot be solved for.",
+    .rule = "A set of independent coordinates is valid for a part of the motion. At a dead "
+            "point of one of them, where it turns back, the dependent coordinates cannot be solved "
+            "for.",
     .remedies = {{hn_remedy_robust_near, 0}, {hn_remedy_other_chart, 0}, {hn_remedy_finer, 0.25}},
 };
 

@@ -33,7 +33,7 @@ static void append_rows(hn_watch *w, hn_incident *i, const hn_singularity_pose *
 
 void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, double sigma_min) {
     static const char *const branches[] = {
-        [HN_BRANCHES_CROSS] = "; two branches of motion cross",
+        [HN_BRANCHES_CROSS] = "; change point: two branches of motion cross",
         [HN_BRANCHES_NONE] = "; no motion leads through it: the mechanism locks",
         [HN_BRANCHES_CUSP] = "; two branches touch",
         [HN_BRANCHES_UNKNOWN] = "",

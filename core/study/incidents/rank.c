@@ -101,8 +101,8 @@ const hn_incident_kind hn_incident_near_singular = {
     .code = HN_INCIDENT_NEAR_SINGULAR,
     .spelling = "near-singular",
     .name = "close to a singular configuration",
-    .rule = "Near a configuration where constraint equations become dependent the multipliers grow "
-            "without bound, and small errors grow with them.",
+    .rule = "Near a configuration where constraint equations become dependent (a change point of a "
+            "linkage) the multipliers grow without bound, and small errors grow with them.",
     .check = check_near,
     .remedies = {{hn_remedy_robust, 0}, {hn_remedy_finer, 0.25}},
 };

@@ -4,6 +4,7 @@
 #include "cli/shell/document.h"
 #include "study/incidents/kinds.h"
 #include "study/incidents/log.h"
+#include "study/incidents/wording.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -106,25 +107,12 @@ void hn_incident_line(const cJSON *incident, char *out, size_t size) {
     }
 }
 
-/// Writes "a2 = -1.4 at t = 6.55 s: no ..." with the later time first: " at t = 6.54 s, in the step
-/// to t = 6.55 s with a2 = -1.4: no ..."; false where the sentence does not begin so.
-static bool put_step(const char *said, double t, char *out, size_t size) {
-    char name[40], value[40];
-    double end;
-    int rest = 0;
-    const int n = sscanf(said, "%39s = %39s at t = %lf s: %n", name, value, &end, &rest);
-    if (n < 3 || rest == 0 || !(end > t)) {
-        return false;
-    }
-    snprintf(out, size, " at t = %.6g s, in the step to t = %.6g s with %s = %s: %s", t, end, name,
-             value, said + rest);
-    return true;
-}
-
 void hn_incident_ending(const hn_incident_list *list, double t, const char *reason, char *out,
                         size_t size) {
     const char *said = list->end ? hn_document_text(list->end, "message") : reason;
-    if (put_step(said, t, out, size)) {
+    char step[HN_INCIDENT_LINE];
+    if (hn_wording_of_step(t, said, step, sizeof step)) {
+        snprintf(out, size, " at t = %.6g s, %s", t, step);
         return;
     }
     if (begins_with_time(said) || says_time(said, t)) {

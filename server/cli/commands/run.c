@@ -250,10 +250,20 @@ static void tell_ending(const cJSON *run, const hn_incident_list *incidents) {
     tell_remedy(incidents->end);
 }
 
+/// Says that a table for people has not all columns, and how to get them.
+static void tell_left_out(const hn_args *args, const hn_run_rows *rows) {
+    if (rows->width > 0 && rows->n_shown < rows->n) {
+        hn_cli_note("holonom: %d of %d columns have no room here; all of them, with all digits: "
+                    "holonom run %s --format csv > FILE\n",
+                    rows->n - rows->n_shown, rows->n, args->words.word[0]);
+    }
+}
+
 /// Tells people what was noticed, and leaves in `b` what goes to standard output after the rows: a
 /// plot, or the end of NDJSON.
 static void tell_run(const hn_args *args, cJSON *run, const hn_incident_list *incidents,
                      const hn_run_rows *rows, const char *exhibit, hn_strbuf *b) {
+    tell_left_out(args, rows);
     tell_marks(run);
     tell_incidents(incidents);
     tell_verdict(run, exhibit);
@@ -276,11 +286,16 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&exhibit);
     const char *format = choose_format(args, &diags);
     hn_run_rows rows = {.ndjson = format && strcmp(format, "ndjson") == 0};
+    // a terminal gets a table that fits it, unless a format is asked for
+    if (!args->format && !args->json && isatty(STDOUT_FILENO)) {
+        rows.width = hn_terminal_limit();
+    }
     const bool streams = format && strcmp(format, "json") != 0 && !args->plot;
     hn_status status =
         format ? run_scene(lib, args, streams ? &rows : NULL, &b, &exhibit, &ended, &diags)
                : HN_ERR_INPUT;
     if (status != HN_OK) {
+        hn_run_rows_reset(&rows);
         hn_strbuf_reset(&b);
         hn_strbuf_reset(&exhibit);
         return hn_report_diags(args, status, &diags);
@@ -309,6 +324,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         tell_ending(run, &incidents);
     }
     cJSON_Delete(run);
+    hn_run_rows_reset(&rows);
     hn_strbuf_reset(&exhibit);
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }

@@ -4,6 +4,8 @@
 #include "base/clock.h"
 #include "base/shortest.h"
 #include "cli/shell/document.h"
+#include "terminal/cells.h"
+#include "terminal/width.h"
 
 #include <errno.h>
 #include <math.h>
@@ -130,6 +132,75 @@ static void put_head(hn_strbuf *b, column *columns, int n, bool ndjson, const cJ
     hn_strbuf_reset(&line);
 }
 
+// ---- a table for people ----
+
+enum { NUMBER_COLUMNS = 11, GAP_COLUMNS = 2 };
+
+/// Gives a column its width where there is room; *left: columns of the terminal that are free.
+static void give_room(hn_run_rows *rows, column *columns, int c, int *left) {
+    const int name = hn_text_columns(columns[c]);
+    const int wide = (name > NUMBER_COLUMNS ? name : NUMBER_COLUMNS) + GAP_COLUMNS;
+    if (rows->width_of[c] == 0 && *left > 0) {
+        rows->width_of[c] = wide <= *left ? wide : 0;
+        *left = wide <= *left ? *left - wide : 0; // the first without room ends the table
+    }
+}
+
+/// Chooses the columns that fit the width: the time, what is wrong, the motion, then the rest. They
+/// stay in their order.
+static void choose_columns(hn_run_rows *rows, column *columns) {
+    static const char *const first[] = {"t", "gap", "energy_change"};
+    rows->shown = calloc((size_t)rows->n + 1, sizeof *rows->shown);
+    rows->width_of = calloc((size_t)rows->n + 1, sizeof *rows->width_of);
+    if (!rows->shown || !rows->width_of) {
+        rows->failed = true;
+        return;
+    }
+    int left = rows->width;
+    for (size_t i = 0; i < sizeof first / sizeof *first; i++) {
+        for (int c = 0; c < rows->n; c++) {
+            if (strcmp(columns[c], first[i]) == 0) {
+                give_room(rows, columns, c, &left);
+            }
+        }
+    }
+    for (int c = 0; c < rows->n; c++) {
+        give_room(rows, columns, c, &left);
+        if (rows->width_of[c] > 0) {
+            rows->shown[rows->n_shown++] = c;
+        }
+    }
+}
+
+static void put_table_head(hn_strbuf *b, const hn_run_rows *rows, column *columns) {
+    for (int i = 0; i < rows->n_shown; i++) {
+        const int c = rows->shown[i];
+        hn_strbuf_printf(b, "%*s%s", rows->width_of[c] - hn_text_columns(columns[c]), "",
+                         columns[c]);
+    }
+    hn_strbuf_add(b, "\n");
+}
+
+/// Points stand below each other; the time, which rises evenly, needs no power of ten.
+static void put_table_row(hn_strbuf *b, const hn_run_rows *rows, const double *values) {
+    for (int i = 0; i < rows->n_shown; i++) {
+        const int c = rows->shown[i], wide = rows->width_of[c];
+        if (!isfinite(values[c])) {
+            hn_strbuf_printf(b, "%*s", wide, "-");
+        } else {
+            hn_strbuf_printf(b, c == 0 ? "%*.5f" : "%*.4e", wide, values[c]);
+        }
+    }
+    hn_strbuf_add(b, "\n");
+}
+
+void hn_run_rows_reset(hn_run_rows *rows) {
+    free(rows->shown);
+    free(rows->width_of);
+    rows->shown = rows->width_of = NULL;
+    rows->n_shown = 0;
+}
+
 // ---- printing ----
 
 static void print(hn_run_rows *rows, hn_strbuf *text) {
@@ -155,7 +226,12 @@ void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run) {
     rows->failed |= !columns;
     if (columns) {
         rows->n = find_columns(columns, run);
-        put_head(&text, columns, rows->n, rows->ndjson, run);
+        if (rows->width > 0) {
+            choose_columns(rows, columns);
+            put_table_head(&text, rows, columns);
+        } else {
+            put_head(&text, columns, rows->n, rows->ndjson, run);
+        }
     }
     print(rows, &text);
     free(columns);
@@ -165,6 +241,11 @@ void hn_run_rows_put(hn_run_rows *rows, const double *values, int n) {
     hn_strbuf text;
     char number[1 + HN_SHORTEST_TEXT] = ","; // with the comma before it
     hn_strbuf_init(&text);
+    if (rows->width > 0) {
+        put_table_row(&text, rows, values);
+        print(rows, &text);
+        return;
+    }
     hn_strbuf_add(&text, rows->ndjson ? "[" : "");
     for (int c = 0; c < n && c < rows->n; c++) {
         if (isfinite(values[c])) {

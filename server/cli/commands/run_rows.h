@@ -10,6 +10,10 @@
 
 typedef struct hn_run_rows {
     bool ndjson;
+    int width;     ///< [columns] 0: CSV or NDJSON; else a table for people that fits them
+    int *shown;    ///< of that table: its columns; owned
+    int *width_of; ///< and how wide each is; owned
+    int n_shown;
     bool begun;     ///< the head was printed
     bool failed;    ///< memory ran out
     int error;      ///< errno of the output; 0: it was written
@@ -19,6 +23,8 @@ typedef struct hn_run_rows {
 
 /// Prints the head: the names of the columns of a run document, which needs no samples.
 void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run);
+/// Frees what a table needs.
+void hn_run_rows_reset(hn_run_rows *rows);
 /// Prints one row of n numbers; what is not finite is left empty, null in NDJSON.
 void hn_run_rows_put(hn_run_rows *rows, const double *values, int n);
 

@@ -217,6 +217,20 @@ static const option *find_option(const hn_command *command, const char *name, si
     return NULL;
 }
 
+/// The options for one method and for several: each stands for the other where a command has one of
+/// them alone.
+static const char *const METHOD_OPTIONS[] = {"--method", "--methods"};
+
+static const option *find_twin(const hn_command *command, const char *name, size_t n) {
+    for (int i = 0; i < 2; i++) {
+        const char *other = METHOD_OPTIONS[1 - i];
+        if (strlen(METHOD_OPTIONS[i]) == n && memcmp(METHOD_OPTIONS[i], name, n) == 0) {
+            return find_option(command, other, strlen(other));
+        }
+    }
+    return NULL;
+}
+
 int hn_number_parse(const char *text, double *out) {
     char *end;
     double value = strtod(text, &end);
@@ -449,6 +463,8 @@ static hn_status take_option(hn_args *args, const hn_command *command, int argc,
 
     // an option of the table, or a field of the command's jobs
     const option *o = find_option(command, word, n);
+    const bool is_twin = !o && find_twin(command, word, n);
+    o = is_twin ? find_twin(command, word, n) : o;
     const hn_field *field = o ? NULL : find_field(command, word, n);
     if (field) {
         of_field = option_of(field, name);
@@ -470,8 +486,16 @@ static hn_status take_option(hn_args *args, const hn_command *command, int argc,
         return word[n] ? hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes no value", o->name)
                        : put_value(args, o, field, "", diag);
     }
-    return word[n] ? put_value(args, o, field, inline_value + 1, diag)
-                   : take_values(args, o, field, argc, argv, i, diag);
+    HN_TRY(word[n] ? put_value(args, o, field, inline_value + 1, diag)
+                   : take_values(args, o, field, argc, argv, i, diag));
+
+    // --methods of a command that takes one of them
+    if (is_twin && o->kind == OPTION_TEXT && *i + 1 < argc && !looks_like_option(argv[*i + 1])) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "'holonom compare' takes several",
+                           "'%s' takes one method, and '%.60s' follows '%.60s'", command->name,
+                           argv[*i + 1], argv[*i]);
+    }
+    return HN_OK;
 }
 
 static void set_defaults(hn_args *args) {

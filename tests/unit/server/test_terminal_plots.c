@@ -3,6 +3,7 @@
 #include "support/near.h"
 
 #include "terminal/bars.h"
+#include "terminal/decades.h"
 #include "terminal/line_break.h"
 #include "terminal/map_plot.h"
 #include "terminal/scatter.h"
@@ -75,7 +76,7 @@ static void a_map_shades_what_ran_by_its_gap_and_marks_what_grew(void **state) {
     hn_map_plot_draw(&c, (hn_area){0, 0, 60, 12}, &p, none, none);
     assert_string_equal(glyph(&c, 12, 1), "░"); // 1 um, the lowest row is at the bottom
     assert_string_equal(glyph(&c, 14, 1), "█"); // 1 mm
-    assert_string_equal(glyph(&c, 16, 0), "▲");
+    assert_string_equal(glyph(&c, 16, 0), "!");
     assert_string_equal(glyph(&c, 15, 0), "━"); // the predicted limit passes there
     hn_cells_free(&c);
 }
@@ -90,8 +91,8 @@ static void marks_of_a_map_leave_the_outcome_of_their_cell(void **state) {
     hn_map_plot_draw(&c, (hn_area){0, 0, 60, 12}, &p, present, cursor);
     assert_string_equal(glyph(&c, 14, 1), "█");
     assert_string_equal(glyph(&c, 15, 1), "★");
-    assert_string_equal(glyph(&c, 16, 0), "▲");
-    assert_string_equal(glyph(&c, 17, 0), "◆");
+    assert_string_equal(glyph(&c, 16, 0), "!");
+    assert_string_equal(glyph(&c, 17, 0), "⊕");
     hn_cells_free(&c);
 }
 
@@ -149,7 +150,12 @@ static void a_map_finds_the_nearest_cell_and_says_what_is_in_it(void **state) {
                         "alpha = 10 1/s, beta = 1 1/s: stable, velocities right to 1 %; "
                         "worst gap 1.0 mm; the step is 0.5 of the predicted limit");
     hn_strbuf_reset(&b);
-    assert_int_equal(hn_map_plot_place(&p, -1, 3).column, -1);
+    // beyond the map: at its edge
+    assert_int_equal(hn_map_plot_place(&p, -1, 3).column, 0);
+    assert_int_equal(hn_map_plot_place(&p, 1e9, 3).column, p.x.n - 1);
+    assert_true(hn_map_plot_is_beyond(&p, 8, 0) && hn_map_plot_is_beyond(&p, 1e9, 3));
+    assert_false(hn_map_plot_is_beyond(&p, 8, 3));
+    assert_int_equal(hn_map_plot_place(&p, (double)NAN, 3).column, -1);
 }
 
 static void bars_have_lengths_in_proportion_and_a_negative_one_is_lighter(void **state) {
@@ -168,6 +174,24 @@ static void bars_have_lengths_in_proportion_and_a_negative_one_is_lighter(void *
     hn_strbuf_reset(&b);
 }
 
+static void labels_of_decades_stand_evenly_apart_and_the_axis_holds_all(void **state) {
+    (void)state;
+    for (int rows = 3; rows <= 60; rows++) {
+        for (int span = 1; span <= 40; span++) {
+            const double high = 2;
+            double low = high - span;
+            const double step = hn_decades_spread(high, &low, rows);
+            const double apart = step / (high - low) * (rows - 1); // rows between two labels
+            assert_true(low <= high - span + 1e-9);
+            assert_true(fabs(apart - round(apart)) < 1e-9);
+            // three labels wherever there is room for them
+            assert_true(rows < 10 || high - 2 * step >= low - 1e-9);
+            const double lead = step / pow(10, floor(log10(step)));
+            assert_true(lead == 1 || lead == 2 || lead == 3 || lead == 5);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_stand_in_their_decades_and_failures_on_the_upper_edge),
@@ -177,6 +201,7 @@ int main(void) {
         cmocka_unit_test(a_map_names_columns_below_a_tick_at_their_edge),
         cmocka_unit_test(a_line_is_not_broken_beside_a_unit_or_an_equals_sign),
         cmocka_unit_test(a_map_finds_the_nearest_cell_and_says_what_is_in_it),
+        cmocka_unit_test(labels_of_decades_stand_evenly_apart_and_the_axis_holds_all),
         cmocka_unit_test(bars_have_lengths_in_proportion_and_a_negative_one_is_lighter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
