@@ -184,7 +184,7 @@ class FairShares(Timed):
         stopped = f"{self.STUDIES}/{first.json()['id']}"
         greedy.ask("PATCH", stopped, {"state": "stopped"})
         self.assertTrue(driver.until(lambda: third.ask("POST", self.NO_WAIT, self.STUDY).status == 202))
-        self.assertEqual(modest.ask("PATCH", stopped, {"state": "running"}).status, 503)
+        self.assertEqual(modest.ask("PATCH", stopped + "?wait=0", {"state": "running"}).status, 503)
         self.assertEqual(server.stop(), 0)
 
     def test_a_study_waits_for_a_place(self):
@@ -249,13 +249,46 @@ class FairShares(Timed):
         self.assertTrue(driver.until(lambda: "1 requests wait" in first.ask("POST", self.NO_WAIT, self.STUDY).json()["detail"]))
         first.ask("PATCH", study, {"state": "stopped"})
         # 409 as long as it is still ending; the first other answer comes at once after its end
-        while (on := first.ask("PATCH", study, {"state": "running"})).status == 409:
+        while (on := first.ask("PATCH", study + "?wait=0", {"state": "running"})).status == 409:
             pass
         self.assertEqual(on.status, 503, on.json())
-        # it stands in no queue
-        self.assertRegex(on.json()["detail"], "^all places for studies are taken; one client may have 1 of 2$")
+        self.assertRegex(on.json()["detail"], "^all places for studies are taken; one client may have 1 of 2; [01] requests wait before this one$")
         thread.join()
         self.assertEqual(answers[0].status, 202)
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_study_that_is_to_go_on_waits_for_a_place(self):
+        """It was refused at once, where a new study waits; a place that is of no use any more goes back."""
+        server = driver.Server()
+        first, second, third = (From(server, f"127.0.0.{k}") for k in (2, 3, 4))
+        studies = []
+        for client in (first, second):
+            study = client.ask("POST", self.STUDIES, self.STUDY).json()["links"]["self"]
+            client.ask("PATCH", study, {"state": "stopped"})
+            self.assertTrue(driver.until(lambda: client.ask("GET", study).json()["state"] == "stopped"))
+            studies.append(study)
+        running = [client.ask("POST", self.STUDIES, self.STUDY).json()["links"]["self"] for client in (third, server)]
+        answers = {}
+
+        def go_on(client, study):
+            answers[study] = client.ask("PATCH", study + "?wait=50", {"state": "running"})
+
+        threads = []
+        for client, study in zip((first, second), studies):
+            threads.append(threading.Thread(target=go_on, args=(client, study)))
+            threads[-1].start()
+            waiting = f"; {len(threads)} requests wait"
+            self.assertTrue(driver.until(lambda: waiting in server.ask("POST", self.NO_WAIT, self.STUDY).json()["detail"]))
+        # the oldest has the first place that is free; the other's study is deleted while it waits
+        server.ask("DELETE", studies[1])
+        server.ask("DELETE", running[0])
+        threads[0].join()
+        self.assertEqual((answers[studies[0]].status, answers[studies[0]].json()["state"]), (200, "running"))
+        server.ask("DELETE", running[1])
+        threads[1].join()
+        self.assertEqual(answers[studies[1]].status, 404)
+        self.assertEqual(third.ask("POST", self.STUDIES, self.SHORT_STUDY).status, 202)
+        self.assertEqual(server.ask("PATCH", studies[0] + "?wait=61", {"state": "running"}).status, 422)
         self.assertEqual(server.stop(), 0)
 
     def test_studies_of_one_client_make_no_room_by_those_of_another(self):

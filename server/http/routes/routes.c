@@ -499,9 +499,10 @@ static const hn_route ROUTES[] = {
      "State, progress, time left, and the document when it is done", NULL, NULL},
     {"GET", "/api/v1/studies/{id}/report", HN_WORK_LIGHT, hn_handle_study_report, NULL, "text/html",
      "200", "Report", "The study as one HTML file that needs no network", NULL, NULL},
-    {"PATCH", "/api/v1/studies/{id}", HN_WORK_QUICK, hn_handle_study_patch, hn_study_change, JSON,
-     "200", "Study", "Stops a study and keeps its results, or continues a stopped one", NULL,
-     "{\"state\":\"stopped\"}"},
+    {"PATCH", "/api/v1/studies/{id}", HN_WORK_QUICK_OWN, hn_handle_study_patch, hn_study_change,
+     JSON, "200", "Study",
+     "Stops a study and keeps its results, or continues a stopped one when there is a place for it",
+     PLACE_QUERY, "{\"state\":\"stopped\"}"},
     {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",
      NULL, "Stops a study and deletes it; one that is already gone is no error", NULL, NULL},
 };

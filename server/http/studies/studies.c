@@ -377,7 +377,13 @@ void hn_handle_studies_create(hn_request *r) {
         hn_request_finish(r);
         return;
     }
-    if (!hn_study_find_place(all, r, wait)) {
+    pthread_mutex_lock(&all->lock);
+    const hn_study_place place = hn_study_find_place(all, r, wait);
+    pthread_mutex_unlock(&all->lock);
+    if (place == HN_STUDY_REFUSED) {
+        hn_request_finish(r);
+    }
+    if (place != HN_STUDY_PLACED) {
         return;
     }
 
@@ -488,47 +494,82 @@ static hn_status go_on(hn_study *s, const cJSON *body) {
     return HN_OK;
 }
 
-/// Answers a request that a study go on.
-static void resume(hn_request *r, hn_study *s) {
-    hn_studies *all = s->all;
-    const char *why = NULL;
-    bool placed = true;
-    hn_status status = HN_OK;
+/// Starts a study that may go on, in the place that the request has or finds. A place that it has
+/// waited for, and that is of no use any more, goes back. With the lock held.
+static hn_status start_again(hn_request *r, hn_study *s, double wait, const char **why,
+                             hn_study_place *place) {
+    const bool is_needed = !has_no_need(s) && (*why = hindrance(s)) == NULL;
+    *place = HN_STUDY_PLACED;
+    if (is_needed || r->has_place) {
+        *place = hn_study_find_place(s->all, r, wait);
+    }
+    if (*place != HN_STUDY_PLACED || (!is_needed && !r->has_place)) {
+        return HN_OK;
+    }
 
-    // one look, so that of two such requests one starts it
-    pthread_mutex_lock(&all->lock);
-    if (!has_no_need(s) && (why = hindrance(s)) == NULL && (placed = hn_study_take_place(all, r))) {
+    hn_status status = HN_OK;
+    if (is_needed) {
         s->client = r->client;
         status = go_on(s, r->json);
-        if (status != HN_OK) {
-            hn_study_give_back(all, r->client);
-        }
     }
-    pthread_mutex_unlock(&all->lock);
+    if (!is_needed || status != HN_OK) {
+        hn_study_give_back(s->all, r->client);
+    }
+    return status;
+}
 
+/// Answers a request that a study go on. Returns false where the request waits for a place, and is
+/// another thread's.
+static bool resume(hn_request *r, hn_study *s) {
+    const char *why = NULL;
+    double wait = HN_PLACE_WAIT;
+    hn_study_place place;
+    if (!hn_request_query_number(r, "wait", 0, HN_PLACE_MAX_WAIT, false, &wait)) {
+        return true;
+    }
+
+    // one look, so that of two such requests one starts it
+    pthread_mutex_lock(&s->all->lock);
+    const hn_status status = start_again(r, s, wait, &why, &place);
+    pthread_mutex_unlock(&s->all->lock);
+
+    if (place != HN_STUDY_PLACED) {
+        return place == HN_STUDY_REFUSED;
+    }
     if (why) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the study cannot go on: %s", why);
-    } else if (!placed) {
-        return; // refused
     } else if (status != HN_OK) {
         hn_reply_diags(r, status, &(hn_diags){0});
     } else {
         reply_study(r, MHD_HTTP_OK, s);
     }
+    return true;
 }
 
-void hn_handle_study_patch(hn_request *r) {
+/// Makes the reply. Returns false where the request waits for a place.
+static bool change(hn_request *r) {
+    hn_studies *all = r->context->studies;
+    bool replied = true;
     hn_study *s = find_study(r);
-    if (!s) {
-        return;
-    }
-    if (strcmp(hn_fields_text(r->json, "state"), "running") == 0) {
-        resume(r, s);
-    } else {
+    if (!s && r->has_place) { // it was deleted meanwhile
+        hn_shares_give(all->places, r->client);
+    } else if (s && strcmp(hn_fields_text(r->json, "state"), "running") == 0) {
+        replied = resume(r, s);
+    } else if (s) {
         atomic_store(&s->work.stop, 1);
         reply_study(r, MHD_HTTP_OK, s);
     }
-    release(s);
+    if (s) {
+        release(s);
+    }
+    return replied;
+}
+
+void hn_handle_study_patch(hn_request *r) {
+    if (change(r)) {
+        hn_reply_compress(r, MOST_ZIPPED);
+        hn_request_finish(r);
+    }
 }
 
 void hn_handle_study_delete(hn_request *r) {

@@ -105,16 +105,6 @@ static bool take_after_waiting(hn_studies *all, hn_client client) {
     return take(all, client);
 }
 
-bool hn_study_take_place(hn_studies *all, hn_request *r) {
-    const bool taken = take_after_waiting(all, r->client);
-    if (taken) {
-        all->n_threads++;
-    } else {
-        refuse_place(all, r, all->queue.n, "");
-    }
-    return taken;
-}
-
 void hn_study_refuse_waiting(hn_studies *all) {
     serve_waiting(all);
 }
@@ -141,21 +131,15 @@ bool hn_study_places_start(hn_studies *all) {
     return all->has_keeper;
 }
 
-bool hn_study_find_place(hn_studies *all, hn_request *r, double wait) {
-    pthread_mutex_lock(&all->lock);
-    const bool placed = !all->stopping && (r->has_place || take_after_waiting(all, r->client));
-    const bool waits =
-        !placed && !all->stopping && hn_place_queue_add(&all->queue, r, wait, all->opts->queue);
-    if (placed) {
+hn_study_place hn_study_find_place(hn_studies *all, hn_request *r, double wait) {
+    if (!all->stopping && (r->has_place || take_after_waiting(all, r->client))) {
         all->n_threads++;
-    } else if (waits) {
+        return HN_STUDY_PLACED;
+    }
+    if (!all->stopping && hn_place_queue_add(&all->queue, r, wait, all->opts->queue)) {
         pthread_cond_broadcast(&all->changed);
-    } else {
-        refuse(all, r, all->queue.n);
+        return HN_STUDY_WAITS;
     }
-    pthread_mutex_unlock(&all->lock);
-    if (!placed && !waits) {
-        hn_request_finish(r);
-    }
-    return placed;
+    refuse(all, r, all->queue.n);
+    return HN_STUDY_REFUSED;
 }

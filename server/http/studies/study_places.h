@@ -41,14 +41,18 @@ struct hn_studies {
 /// Returns the seconds to go, by what was done in `elapsed` seconds and never beyond the time
 /// limit; all that the limit leaves when too little is known.
 double hn_study_time_left(const hn_study *s, double share, double elapsed);
-/// Takes a place for one more thread, after those who wait have theirs. Returns false with a
-/// problem as reply, which has the seconds until there will probably be one. With the lock held. A
-/// study that was deleted holds its place until its thread has ended.
-bool hn_study_take_place(hn_studies *all, hn_request *r);
+/// What became of a request for a place.
+typedef enum hn_study_place {
+    HN_STUDY_PLACED, ///< the place of one more thread is the request's
+    HN_STUDY_WAITS,  ///< it is another thread's now, and comes again with its place, or is refused
+    HN_STUDY_REFUSED ///< the reply is there, and has the seconds until there will be a place
+} hn_study_place;
+
 /// Gives a request its place for one more thread, after those who wait have theirs; lets it wait
 /// for one where there is none, at most so many seconds, or refuses it with the number of requests
-/// that wait before it. Returns false where it has none. Takes the lock.
-bool hn_study_find_place(hn_studies *all, hn_request *r, double wait);
+/// that wait before it. With the lock held. A study that was deleted holds its place until its
+/// thread has ended.
+hn_study_place hn_study_find_place(hn_studies *all, hn_request *r, double wait);
 /// Starts the thread that looks after those who wait. Returns false when threads are out.
 bool hn_study_places_start(hn_studies *all);
 /// Refuses those who wait; with the lock held, and `stopping` set.
