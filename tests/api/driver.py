@@ -15,6 +15,7 @@ import unittest
 
 PROGRAM = os.environ.get("HOLONOM", "build/holonom")
 SLOW = 5 if "san" in PROGRAM else 1  # sanitisers cost time, never correctness
+AT_WORK = 0.2  # a server that has computed so long is in the middle of what it was asked [s]
 TRIES = 3  # a time that is measured on a busy machine is the best of so many
 
 
@@ -129,6 +130,11 @@ class Server:
         with open(f"/proc/{self.process.pid}/stat") as f:
             fields = f.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def is_at_work(self, before, threads=()):
+        """Waits until it has computed for some time since `before`, what cpu() said, or until all threads that ask it have their answers."""
+        begun = until(lambda: self.cpu() - before > AT_WORK or (threads and not any(t.is_alive() for t in threads)), 60)
+        assert begun, "the server does not compute"
 
     def compare(self, **fields):
         """Makes a comparison; its description."""

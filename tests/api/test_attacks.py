@@ -47,11 +47,11 @@ class NobodyWaitsForAnother(Timed):
 
         def attempt():
             """What a shipped scene takes beside two large ones, and half of what they take."""
-            start = time.monotonic()
+            start, before = time.monotonic(), self.server.cpu()
             with concurrent.futures.ThreadPoolExecutor(2) as pool:
                 large = [pool.submit(self.post, "comparisons", {**ring, "methods": ["projection@rk4:h=1e-2"]}),
                          pool.submit(self.server.ask, "GET", "/api/v1/scenes/ring?set=n:100", timeout=120)]
-                time.sleep(0.3)
+                self.server.is_at_work(before)
                 answer, took = self.server.timed("GET", "/api/v1/scenes/four-bar", headers={"User-Agent": "another"})
                 self.assertEqual(answer.status, 200)
                 self.assertTrue({f.result().status for f in large} <= {200, 201, 422})
@@ -134,9 +134,10 @@ class NobodyWaitsForAnother(Timed):
 
         def attempt():
             # the same change of one that is at rest, then of one in the middle of a frame of 96 s
-            at_rest, busy = self.server.compare(methods=slow), self.server.compare(methods=slow, paused=False)
+            at_rest, before = self.server.compare(methods=slow), self.server.cpu()
+            busy = self.server.compare(methods=slow, paused=False)
             usual = min(self.server.timed("PATCH", "/api/v1/comparisons/" + at_rest["id"], fast, JSON)[1] for _ in range(3))
-            time.sleep(0.5)
+            self.server.is_at_work(before)
             answer, took = self.server.timed("PATCH", "/api/v1/comparisons/" + busy["id"], fast, JSON)
             self.assertEqual(answer.status, 200)
             self.assertTrue(driver.until(lambda: self.server.ask("GET", "/api/v1/comparisons/" + busy["id"]).json()["frame"] > 3))
@@ -158,8 +159,9 @@ class NobodyWaitsForAnother(Timed):
             address, replies = "/api/v1/comparisons/" + c["id"], []
             usual = min(self.server.timed("PATCH", address, '{"reset": true}', JSON)[1] for _ in range(3))
             steps = threading.Thread(target=lambda: replies.append(self.post("comparisons/" + c["id"], '{"step": 600}', "PATCH")))
+            before = self.server.cpu()
             steps.start()
-            time.sleep(0.3)
+            self.server.is_at_work(before)
             answer, took = self.server.timed("PATCH", address, '{"reset": true}', JSON)
             steps.join()
             self.assertEqual((answer.status, replies[0].status, answer.json()["frame"]), (200, 200, 0))
@@ -185,15 +187,16 @@ class GoingDown(Timed):
 
     def beginning(self, *requests):
         server = driver.Server()
-        ids = []
+        before, threads = server.cpu(), []
         for method, path, body in requests:
             def ask(method=method, path=path, body=body):
                 try:
                     server.ask(method, path, body)
                 except (OSError, http.client.HTTPException):
                     pass
-            threading.Thread(target=ask, daemon=True).start()
-        time.sleep(1)
+            threads.append(threading.Thread(target=ask, daemon=True))
+            threads[-1].start()
+        server.is_at_work(before, threads)
         return server
 
     def test_while_equations_are_formed(self):
@@ -214,8 +217,9 @@ class GoingDown(Timed):
         def begin():
             server = driver.Server()
             c = server.compare(**RING, methods=["projection@rk4:h=1e-4", "nullspace@rk4:h=1e-4", "index1@rk4:h=1e-4"])
+            before = server.cpu()
             threading.Thread(target=lambda: server.ask("PATCH", "/api/v1/comparisons/" + c["id"], {"step": 600}), daemon=True).start()
-            time.sleep(0.5)
+            server.is_at_work(before)
             self.assertEqual(server.ask("DELETE", "/api/v1/comparisons/" + c["id"]).status, 204)
             return server
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """As many sockets as a client likes, silent or half served: the others are answered meanwhile."""
 
+import http.client
+import json
 import resource
 import select
 import signal
@@ -50,6 +52,31 @@ class ManySockets(Timed):
         self.assertEqual(len(pending), 0)
         for c in clients:
             c.close()
+        self.assertEqual(server.stop(), 0)
+
+    def test_one_connection_serves_one_request_after_another(self):
+        """Quick and long ones, refused ones, streams that end, bodies that nobody wants: none costs the client its connection."""
+        server = driver.Server()
+        run = {"scene": "pendulum", "method": "index1@rk4:h=1e-2"}
+        connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=60 * driver.SLOW)
+        connection.connect()
+        first = connection.sock
+
+        def ask(verb, path, body=None):
+            connection.request(verb, path, json.dumps(body) if body is not None else None, {"Content-Type": "application/json"} if body is not None else {})
+            answer = driver.Answer(connection.getresponse())
+            self.assertNotIn("connection", answer.headers, (verb, path, answer.status))
+            self.assertIs(connection.sock, first, (verb, path, answer.status))
+            return answer
+
+        for i in range(100):
+            made = ask("POST", "/api/v1/runs", {**run, "time": 0.1 + 1e-6 * i})
+            self.assertEqual(made.status, 201)
+            at = made.json()["links"]["self"]
+            self.assertEqual([ask("GET", at + end).status for end in ("", "/samples?fields=t", "/events?mode=live")], [200, 200, 200])
+            self.assertEqual([ask("POST", path, {"scene": "pendulum"}).status for path in ("/api/v1/terms", "/api/v1/nothing", "/api/v1/runs?weit=1")], [200, 404, 400])
+        self.assertEqual(ask("DELETE", at).status, 204)
+        connection.close()
         self.assertEqual(server.stop(), 0)
 
     HOST = b"Host: 127.0.0.1\r\n"
