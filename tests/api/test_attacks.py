@@ -128,6 +128,15 @@ class NobodyWaitsForAnother(Timed):
         self.assertEqual(server.ask("PATCH", address, {"methods": ["index1@rk4:h=1e-2"], "step": 3}).json()["frame"], 3)
         self.assertEqual(server.stop(), 0)
 
+    def test_a_grading_counts_against_the_limit(self):
+        server = driver.Server("--run-cpu", "0.1")  # the steps of both parts take more than ten times that
+        method = "nullspace-tangent@radau5:h="
+        answer = server.ask("POST", "/api/v1/grade", {"problem": "method", "submission": {"a": method + "1.01e-5", "b": method + "2.51e-5"}})
+        self.assertEqual(answer.status, 422)
+        self.assertIn("take more than 0.1 s of computing", answer.json()["detail"])
+        self.assertLess(server.cpu(), 2 * driver.SLOW)
+        self.assertEqual(server.stop(), 0)
+
     def test_a_change_interrupts_a_frame(self):
         slow = ["index1@rk4:h=1e-9", "baumgarte@rk4:h=1e-9", "projection@rk4:h=1e-9"]
         fast = json.dumps({"methods": [m.replace("1e-9", "0.01") for m in slow]})

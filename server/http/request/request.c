@@ -127,8 +127,8 @@ static void reply_interrupted(hn_request *r) {
     } else if (r->is_left) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, NULL, "the client has closed its connection");
     } else {
-        hn_reply_problem(r, HN_PROBLEM_INPUT, "take fewer bodies, or shorter chains",
-                         "the equations of this scene take more than %g s of computing",
+        hn_reply_problem(r, HN_PROBLEM_INPUT, "take fewer bodies, shorter chains or longer steps",
+                         "the equations and runs of this request take more than %g s of computing",
                          r->context->opts.max_run_cpu);
     }
 }
