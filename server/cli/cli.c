@@ -36,7 +36,7 @@ static void add_folded(hn_strbuf *b, int indent, const char *words) {
         const size_t n = hn_fold_line(words, hn_help_width() - indent);
         hn_strbuf_printf(b, "%*s%.*s\n", first ? 0 : indent, "", (int)n, words);
         words += n;
-        words += strspn(words, " ");
+        words += strspn(words, " \n");
     }
 }
 

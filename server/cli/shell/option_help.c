@@ -33,7 +33,7 @@ static void put_about(hn_strbuf *b, const char *about) {
         const size_t n = hn_fold_line(rest, hn_help_width() - HELP_HEAD - 3);
         hn_strbuf_printf(b, "%*s%.*s\n", rest == about ? 0 : HELP_HEAD + 3, "", (int)n, rest);
         rest += n;
-        rest += strspn(rest, " ");
+        rest += strspn(rest, " \n");
     }
 }
 

@@ -261,7 +261,7 @@ static void write_row(hn_strbuf *b, const hn_table *t, const layout *l, const ch
             write_part(b, rest[c], n, indent_of(t, l, c, rest[c], head), l->width[c]);
             hn_strbuf_add(b, coloured ? "\033[0m" : "");
             rest[c] += n;
-            rest[c] += strspn(rest[c], " ");
+            rest[c] += strspn(rest[c], " \n");
             more |= rest[c][0] != '\0';
             first = false;
         }

@@ -110,6 +110,24 @@ static void colours_mark_the_head_and_bad_news_and_take_no_room(void **state) {
     hn_table_reset(&t);
 }
 
+static void a_cell_of_two_lines_takes_two_lines(void **state) {
+    hn_table t;
+    hn_strbuf b;
+    (void)state;
+    hn_table_init(&t);
+    hn_strbuf_init(&b);
+    t.width = 40;
+    hn_table_column(&t, "name", 0);
+    hn_table_column(&t, "end", 0);
+    hn_table_cell(&t, "two\nlines");
+    hn_table_cell(&t, "\nends");
+    hn_table_write(&b, &t);
+    assert_non_null(strstr(hn_strbuf_text(&b), "two"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "\nlines"));
+    hn_strbuf_reset(&b);
+    hn_table_reset(&t);
+}
+
 static void lines_are_folded_at_blanks_with_their_indent(void **state) {
     hn_strbuf b;
     (void)state;
@@ -125,6 +143,7 @@ int main(void) {
         cmocka_unit_test(a_column_has_one_unit_and_its_points_stand_below_each_other),
         cmocka_unit_test(a_narrow_terminal_folds_words_then_loses_columns_and_names_them),
         cmocka_unit_test(colours_mark_the_head_and_bad_news_and_take_no_room),
+        cmocka_unit_test(a_cell_of_two_lines_takes_two_lines),
         cmocka_unit_test(lines_are_folded_at_blanks_with_their_indent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
