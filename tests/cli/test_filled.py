@@ -228,6 +228,24 @@ class Filled(unittest.TestCase):
         done = call("grade", "ring", answer, right)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("'ring' is an exercise and a scene", done.stderr)
+        self.assertIn("grade answers (exercise:ring) and programs (scene:ring) apart", done.stderr)
+
+        # a class is of the exercise, and a note names both; a prefix says which
+        self.put("both/ann.c", filled)
+        self.put("both/bob.json", json.dumps({"problem": "ring", "a": 7}))
+        both = os.path.join(self.temporary.name, "both")
+        notes = {}
+        for name, graded in (("ring", "bob: 0 of 4"), ("exercise:ring", "bob: 0 of 4"), ("scene:ring", f"ann: {POINTS} of {POINTS}")):
+            done = call("grade", name, both)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, rf"(?m)^{graded}, ")
+            self.assertIn("2 submissions: 1 graded, 1 not gradable", done.stdout)
+            notes[name] = done.stderr
+        self.assertIn("'ring' is an exercise and a scene; graded as the exercise, with scene:ring as the program of the scene", notes["ring"])
+        self.assertEqual((notes["exercise:ring"], notes["scene:ring"]), ("", ""))
+        self.assertEqual(call("grade", "scene:four-bar", right).returncode, 2)
+        done = call("grade", "scene:p3", right)
+        self.assertEqual((done.returncode, "no shipped scene is called 'p3'" in done.stderr), (2, True), done.stderr)
 
     def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
         _, filled = blank_and_filled("four-bar", "c")

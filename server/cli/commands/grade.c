@@ -13,6 +13,7 @@
 #include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
@@ -208,17 +209,40 @@ static bool is_program_of_a_scene(const char *path) {
     return found;
 }
 
-/// Whether ID is a scene: there is no exercise of this name, or there is one too and the
-/// submissions are programs. Fails: HN_ERR_INPUT, some are and some are not.
-static hn_status choose_scene(const hn_library *lib, const hn_args *args, bool *is_scene,
-                              hn_diags *diags) {
+/// What ID says it names.
+typedef enum id_kind { ID_ALONE, ID_SCENE, ID_EXERCISE } id_kind;
+
+/// Takes "scene:" or "exercise:" off ID.
+static id_kind take_kind(hn_args *args) {
+    static const char *const prefixes[] = {[ID_SCENE] = "scene:", [ID_EXERCISE] = "exercise:"};
+    for (int kind = ID_SCENE; kind <= ID_EXERCISE; kind++) {
+        const size_t n = strlen(prefixes[kind]);
+        if (strncmp(args->words.word[0], prefixes[kind], n) == 0) {
+            args->words.word[0] += n;
+            return (id_kind)kind;
+        }
+    }
+    return ID_ALONE;
+}
+
+/// Whether ID is a scene: it says so, there is no exercise of this name, or there is one too and
+/// the submissions are files with programs; a class goes to the exercise, with a note. Fails:
+/// HN_ERR_INPUT, some files are programs and some are not.
+static hn_status choose_scene(const hn_library *lib, const hn_args *args, id_kind kind, bool class,
+                              bool *is_scene, hn_diags *diags) {
     const char *id = args->words.word[0];
-    *is_scene = false;
-    if (!hn_library_scene_path(lib, id)) {
+    *is_scene = kind == ID_SCENE;
+    if (kind != ID_ALONE || !hn_library_scene_path(lib, id)) {
         return HN_OK;
     }
     if (!hn_library_problem_path(lib, id)) {
         *is_scene = true;
+        return HN_OK;
+    }
+    if (class) {
+        hn_cli_note("holonom: '%.40s' is an exercise and a scene; graded as the exercise, with "
+                    "scene:%.40s as the program of the scene\n",
+                    id, id);
         return HN_OK;
     }
 
@@ -229,7 +253,10 @@ static hn_status choose_scene(const hn_library *lib, const hn_args *args, bool *
         *one = args->words.word[i];
     }
     if (program && other) {
-        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "grade answers and programs apart",
+        char hint[HN_DIAG_HINT];
+        snprintf(hint, sizeof hint,
+                 "grade answers (exercise:%.40s) and programs (scene:%.40s) apart", id, id);
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, hint,
                             "'%.40s' is an exercise and a scene; '%.200s' is the program of a "
                             "scene and '%.200s' is not",
                             id, program, other);
@@ -362,7 +389,10 @@ static hn_status check_options(const hn_args *args, bool class, bool programs, h
     return hn_cli_check_student(args, diags);
 }
 
-hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
+hn_exit hn_command_grade(const hn_library *lib, const hn_args *typed) {
+    hn_args without_kind = *typed;
+    const id_kind kind = take_kind(&without_kind);
+    const hn_args *args = &without_kind;
     task t = {.lib = lib, .args = args};
     owned_subject own = {0};
     hn_diags diags = {0};
@@ -370,10 +400,10 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
     hn_exit result;
     const bool folder = stat(args->words.word[1], &info) == 0 && S_ISDIR(info.st_mode);
     const bool class = folder || args->shard || args->merge;
-    hn_status status = choose_scene(lib, args, &own.is_scene, &diags);
+    hn_status status = choose_scene(lib, args, kind, class, &own.is_scene, &diags);
     const bool chosen = status == HN_OK;
     HN_THEN(status, find_subject(lib, args, &own, &t.subject, &diags));
-    const bool lost = chosen && status != HN_OK;
+    const bool lost = chosen && status != HN_OK && !own.is_scene;
     HN_THEN(status, check_options(args, class, t.subject.programs, &diags));
     HN_THEN(status, apply_rubric(args, &own, &diags));
     if (status == HN_OK && folder && own.model) {
