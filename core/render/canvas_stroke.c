@@ -226,6 +226,18 @@ static void polygon_marker(hn_canvas *c, const double *corners, int n, double x,
     hn_canvas_polygon(c, xy, n, paint);
 }
 
+/// The outline of a square.
+static void box_marker(hn_canvas *c, const double *corners, double x, double y, double r,
+                       hn_paint paint) {
+    hn_record_begin(c, paint);
+    for (int i = 0; i < 4; i++) {
+        const double *p = corners + 2 * i, *q = corners + 2 * ((i + 1) % 4);
+        const double xy[4] = {x + r * p[0], y + r * p[1], x + r * q[0], y + r * q[1]};
+        record_stroke(c, xy, 2, 0, 0.45 * r);
+    }
+    hn_record_end(c);
+}
+
 void hn_canvas_marker(hn_canvas *c, hn_marker marker, double x, double y, double size,
                       hn_paint paint) {
     static const double square[] = {-0.85, -0.85, 0.85, -0.85, 0.85, 0.85, -0.85, 0.85};
@@ -258,6 +270,9 @@ void hn_canvas_marker(hn_canvas *c, hn_marker marker, double x, double y, double
         break;
     case HN_MARKER_PLUS:
         lines_marker(c, upright, x, y, r, paint);
+        break;
+    case HN_MARKER_BOX:
+        box_marker(c, square, x, y, r, paint);
         break;
     case HN_MARKER_DOT:
         hn_canvas_disc(c, x, y, 0.45 * r, paint);

@@ -2,7 +2,7 @@
 #include "render/look.h"
 
 // Found by random search with the hue of each row held, for the largest smallest distance: at least
-// 24 apart (CIE76) in normal, protan and deutan sight, at least 3.1:1 against the paper.
+// 20 apart (CIE76) in normal, protan and deutan sight, at least 3.1:1 against the paper.
 // tests/unit/render/test_look.c computes both for every pair.
 static const hn_look looks[HN_LOOK_SLOTS] = {
     {"blue", {0x0A49D5, 0x6B99DB}, 0, {0}, HN_MARKER_DISC, "\xe2\x97\x8f"},
@@ -12,6 +12,7 @@ static const hn_look looks[HN_LOOK_SLOTS] = {
     {"red", {0x872138, 0xD4393F}, 2, {16, 4}, HN_MARKER_CROSS, "\xe2\x9c\x95"},
     {"cyan", {0x049BCD, 0x90E3F8}, 6, {8, 4, 2, 4, 2, 4}, HN_MARKER_RING, "\xe2\x97\x8b"},
     {"yellow", {0x615704, 0xFFE000}, 2, {5, 7}, HN_MARKER_PLUS, "+"},
+    {"lime", {0x1E2400, 0xD2F67E}, 4, {14, 3, 6, 3}, HN_MARKER_BOX, "\xe2\x96\xa1"},
     {"grey", {0x7C8087, 0x878D96}, 0, {0}, HN_MARKER_DOT, "\xc2\xb7"},
 };
 
@@ -46,7 +47,7 @@ int hn_look_slot(int i) {
 
 const char *hn_look_glyph(int i) {
     static const char *const others[HN_LOOK_GLYPHS - HN_LOOK_METHODS] = {
-        "\xe2\x96\xa1", "\xe2\x96\xb3", "\xe2\x97\x87", "\xe2\x96\xbd", "\xe2\x96\xbc", "$"};
+        "\xe2\x96\xb3", "\xe2\x97\x87", "\xe2\x96\xbd", "\xe2\x96\xbc", "$"};
     HN_ASSERT(i >= 0);
     i %= HN_LOOK_GLYPHS;
     return i < HN_LOOK_METHODS ? looks[i].glyph : others[i - HN_LOOK_METHODS];

@@ -9,8 +9,9 @@
 
 #include <stdint.h>
 
-/// Slots 0..6 are for methods; slot 7 is the grey of the reference solution.
-enum { HN_LOOK_METHODS = 7, HN_LOOK_REFERENCE = 7, HN_LOOK_SLOTS = 8, HN_LOOK_MAX_DASH = 6 };
+/// Slots 0..7 are for methods, as many as a comparison takes; slot 8 is the grey of the reference
+/// solution.
+enum { HN_LOOK_METHODS = 8, HN_LOOK_REFERENCE = 8, HN_LOOK_SLOTS = 9, HN_LOOK_MAX_DASH = 6 };
 
 typedef enum hn_theme { HN_THEME_LIGHT, HN_THEME_DARK, HN_THEME_COUNT } hn_theme;
 
@@ -22,6 +23,7 @@ typedef enum hn_theme { HN_THEME_LIGHT, HN_THEME_DARK, HN_THEME_COUNT } hn_theme
     X(HN_MARKER_CROSS, "cross")       \
     X(HN_MARKER_RING, "ring")         \
     X(HN_MARKER_PLUS, "plus")         \
+    X(HN_MARKER_BOX, "box")           \
     X(HN_MARKER_DOT, "dot")
 typedef enum hn_marker {
 #define HN_MARKER_ENUM(code, name) code,
@@ -39,12 +41,12 @@ typedef struct hn_look {
     const char *glyph; ///< for the terminal, UTF-8, one column wide
 } hn_look;
 
-/// The row of a slot 0..7.
+/// The row of a slot 0..8.
 const hn_look *hn_look_get(int slot);
-/// The slot of the i-th method of a list: 0..6, then from 0 again.
+/// The slot of the i-th method of a list: 0..7, then from 0 again.
 int hn_look_slot(int i);
 
-/// The glyph of the i-th method of a list: those of the slots, then HN_LOOK_GLYPHS - 7 others, and
+/// The glyph of the i-th method of a list: those of the slots, then HN_LOOK_GLYPHS - 8 others, and
 /// from the first again.
 enum { HN_LOOK_GLYPHS = 13 };
 const char *hn_look_glyph(int i);
@@ -61,7 +63,7 @@ typedef struct hn_surface {
 const hn_surface *hn_surface_get(hn_theme theme);
 
 /// Writes the table: {"surfaces":{"light":{"paper":"#FCFCFA",...},"dark":{...}},
-/// "slots":[{"slot":0,"name","light","dark","dash":[...],"marker","glyph"}, ... 7 methods],
+/// "slots":[{"slot":0,"name","light","dark","dash":[...],"marker","glyph"}, ... 8 methods],
 /// "reference":{the same}}
 void hn_look_json(hn_strbuf *b);
 

@@ -9,8 +9,8 @@
 
 #include <stdbool.h>
 
-/// Colours of a cell: 0 .. 7 are the slots of render/look.h (7: the reference solution).
-enum { HN_CELL_INK = 8, HN_CELL_MUTED, HN_CELL_ALARM, HN_CELL_COLOURS };
+/// Colours of a cell: 0 .. 8 are the slots of render/look.h (8: the reference solution).
+enum { HN_CELL_INK = 9, HN_CELL_MUTED, HN_CELL_ALARM, HN_CELL_COLOURS };
 enum { HN_CELL_PLAIN = 0, HN_CELL_BOLD = 1, HN_CELL_REVERSE = 2 };
 
 /// UTF-8 of one character, and of one that combines with it.

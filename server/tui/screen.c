@@ -300,7 +300,8 @@ void hn_screen_close(void) {
 /// which is seen on its background.
 static int of_few(int colour, int theme) {
     enum { BLACK, RED, GREEN, YELLOW, BLUE, MAGENTA, CYAN, BRIGHT = 8 };
-    static const signed char few[HN_LOOK_METHODS] = {BLUE, RED, GREEN, MAGENTA, RED, CYAN, YELLOW};
+    static const signed char few[HN_LOOK_METHODS] = {BLUE, RED,  GREEN,  MAGENTA,
+                                                     RED,  CYAN, YELLOW, GREEN};
     const bool dark = theme == HN_THEME_DARK;
     if (colour != HN_CELL_ALARM && colour >= HN_LOOK_METHODS) {
         return -1;

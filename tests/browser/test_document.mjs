@@ -135,3 +135,26 @@ test("the last session of this browser can be continued, and an untouched page l
   await until(again, `(data) => data.latest?.frame === ${before.frame} && data.offer === ""`);
   await soon(async () => assert.deepEqual(await read(again, state), before));
 });
+
+test("eight methods have eight colours, dashes and marks", async (t) => {
+  const methods = ["index1", "baumgarte", "projection", "reduced"].flatMap((name) =>
+    ["0.01", "0.02"].map((h) => `&method=${name}@rk4:h=${h}`),
+  );
+  const page = await open(t, { hash: `#scene=four-bar${methods.join("")}` });
+  await page.waitForFunction(() => globalThis.holonom?.data?.methods?.length === 8);
+  const looks = await page.evaluate(() => {
+    const { methods: all, look } = globalThis.holonom.data;
+    return [...document.querySelectorAll("svg.swatch")].map((swatch, m) => [
+      getComputedStyle(swatch).getPropertyValue("--colour"),
+      swatch.querySelector("path").getAttribute("stroke-dasharray"),
+      look.slots[all[m].slot].marker,
+    ]);
+  });
+  assert.equal(looks.length, 8);
+  for (const k of [0, 1, 2]) {
+    const seen = looks.map((look) => look[k]);
+    assert.equal(new Set(seen).size, 8, String(seen));
+    // a full line has no dash; every colour is one
+    assert.ok(k === 1 || seen.every((one) => one), String(seen));
+  }
+});

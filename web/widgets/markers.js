@@ -13,9 +13,10 @@ const MARKERS = {
   diamond: "M0-1.25L1.1 0L0 1.25L-1.1 0Z",
   cross: FAILED,
   ring: RING,
+  box: "M-.9-.9H.9V.9H-.9Z",
   plus: "M-1.1 0H1.1M0-1.1V1.1",
 };
-const OPEN = ["cross", "plus", "ring"];
+const OPEN = ["cross", "plus", "ring", "box"];
 
 /** @typedef {{error: number, state: string}} Point error: Infinity where there is none */
 

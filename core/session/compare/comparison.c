@@ -58,7 +58,9 @@ static int choose_slot(const hn_comparison *c, const hn_formulation *formulation
         wanted++;
     }
     for (int shift = 0; shift < HN_LOOK_METHODS; shift++) {
-        int slot = (wanted + shift) % HN_LOOK_METHODS, taken = 0;
+        // the last slot is for the one that finds all others taken
+        const int last = HN_LOOK_METHODS - 1;
+        int slot = shift < last ? (wanted + shift) % last : last, taken = 0;
         for (int i = 0; i < c->n; i++) {
             taken |= c->entries[i].slot == slot;
         }
@@ -66,7 +68,7 @@ static int choose_slot(const hn_comparison *c, const hn_formulation *formulation
             return slot;
         }
     }
-    return wanted % HN_LOOK_METHODS;
+    return wanted % HN_LOOK_METHODS; // more methods than a comparison takes
 }
 
 static hn_status add_method(hn_comparison *c, const char *text, const hn_comparison_opts *opts,

@@ -79,7 +79,7 @@ static bool find_frame(const hn_wp *wp, frame *f) {
     return f->x1 > f->x0 && f->y1 > f->y0;
 }
 
-/// Draws the marker of method m. From the eighth method on colours repeat, and a ring is added.
+/// Draws the marker of method m. From the ninth method on colours repeat, and a ring is added.
 static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
     static const char *const shapes[HN_MARKER_COUNT] = {
         [HN_MARKER_DISC] = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0Z",
@@ -89,14 +89,15 @@ static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
         [HN_MARKER_CROSS] = "M-1-1L1 1M1-1L-1 1",
         [HN_MARKER_RING] = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0Z",
         [HN_MARKER_PLUS] = "M-1.1 0H1.1M0-1.1V1.1",
+        [HN_MARKER_BOX] = "M-.9-.9H.9V.9H-.9Z",
         [HN_MARKER_DOT] = "M-.5 0a.5.5 0 1 0 1 0a.5.5 0 1 0 -1 0Z",
     };
 
     // strokes for open shapes, fill for solid ones
     const int slot = hn_look_slot(m);
     const hn_marker marker = hn_look_get(slot)->marker;
-    const int open =
-        marker == HN_MARKER_CROSS || marker == HN_MARKER_PLUS || marker == HN_MARKER_RING;
+    const int open = marker == HN_MARKER_CROSS || marker == HN_MARKER_PLUS ||
+                     marker == HN_MARKER_RING || marker == HN_MARKER_BOX;
     hn_strbuf_printf(b,
                      "<path transform=\"translate(%.1f %.1f) scale(%.2f)\" d=\"%s\" "
                      "style=\"%s:var(--slot-%d)\" class=\"%s\"/>",

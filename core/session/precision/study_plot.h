@@ -2,7 +2,7 @@
 #ifndef HN_SESSION_STUDY_PLOT_H
 #define HN_SESSION_STUDY_PLOT_H
 // Error against cost as an SVG picture, in the colours, dashes and markers of render/look.h.
-// Colours are variables of the page (--slot-0 to --slot-6, --ink, --muted, --hairline, --raised),
+// Colours are variables of the page (--slot-0 to --slot-7, --ink, --muted, --hairline, --raised),
 // so that one picture serves the light theme, the dark theme and paper.
 
 #include "base/markup.h"

@@ -269,6 +269,31 @@ static void two_methods_of_one_formulation_get_two_colours(void **state) {
     hn_model_free(model);
 }
 
+static void eight_methods_get_eight_looks(void **state) {
+    (void)state;
+    hn_model *model = load("four-bar");
+    const char *const methods[HN_COMPARISON_MAX_METHODS] = {
+        "index1@rk4:h=0.01",       "index1@rk4:h=0.02",     "baumgarte@rk4:h=0.01",
+        "projection@rk4:h=0.01",   "reduced@rk4:h=0.01",    "projection@rk4:h=0.02",
+        "baumgarte@dopri5:h=0.01", "projection@rk4:h=0.03",
+    };
+    hn_comparison *c = compare(model, methods, HN_COMPARISON_MAX_METHODS, NULL);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_comparison_json(&b, c);
+    cJSON *doc = cJSON_Parse(hn_strbuf_text(&b));
+    const cJSON *list = cJSON_GetObjectItem(doc, "methods");
+    unsigned seen = 0;
+    for (int i = 0; i < HN_COMPARISON_MAX_METHODS; i++) {
+        seen |= 1U << (int)number(cJSON_GetArrayItem(list, i), "slot");
+    }
+    assert_int_equal(seen, (1U << HN_COMPARISON_MAX_METHODS) - 1);
+    cJSON_Delete(doc);
+    hn_strbuf_reset(&b);
+    hn_comparison_free(c);
+    hn_model_free(model);
+}
+
 static cJSON *run_document(const hn_model *model, const hn_run_request *request, hn_status *ended) {
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -395,6 +420,7 @@ int main(void) {
         cmocka_unit_test(bad_methods_are_named_by_their_place),
         cmocka_unit_test(a_spelling_that_deserves_a_word_gets_one),
         cmocka_unit_test(two_methods_of_one_formulation_get_two_colours),
+        cmocka_unit_test(eight_methods_get_eight_looks),
         cmocka_unit_test(the_columns_of_a_run_have_one_length),
         cmocka_unit_test(looking_between_steps_does_not_change_a_run),
         cmocka_unit_test(a_run_stops_when_it_is_told_to),
