@@ -2,6 +2,7 @@
 #include "export/code.h"
 
 #include "export/formula.h"
+#include "export/numbers.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -66,9 +67,11 @@ static bool has_symbol(const int *list, int n, int symbol) {
 
 /// A prefix such that no symbol is prefix and digits: "k", "kk", ...
 static const char *choose_prefix(const hn_graph *g, hn_piece_kind kind) {
-    static const char *const all[HN_PIECE_KINDS][4] = {{"c", "cc", "constant", "holonom_constant"},
-                                                       {"k", "kk", "shared", "holonom_shared"},
-                                                       {"u", "uu", "moving", "holonom_moving"}};
+    static const char *const all[HN_PIECE_KINDS + 1][4] = {
+        {"c", "cc", "constant", "holonom_constant"},
+        {"k", "kk", "shared", "holonom_shared"},
+        {"u", "uu", "moving", "holonom_moving"},
+        {"n", "nn", "number", "holonom_number"}};
     const char *const *const candidates = all[kind];
     for (int c = 0; c < 3; c++) {
         const size_t n = strlen(candidates[c]);
@@ -333,6 +336,7 @@ hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *lang
                         const hn_code_symbols *symbols, const hn_code_entry *entries, int n,
                         int indent) {
     const int n_nodes = hn_graph_size(g);
+    const size_t from = b->n;
     int *scratch = calloc(4 * (size_t)n_nodes + 1, sizeof *scratch);
     if (!scratch) {
         return HN_ERR_MEMORY;
@@ -359,6 +363,10 @@ hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *lang
     write_all_shared(&w, &text);
     for (int i = 0; i < n && b->n < MAX_BYTES; i++) {
         write_entry(&w, &entries[i], &text);
+    }
+
+    if (language->numbers && b->n < MAX_BYTES) {
+        hn_code_name_numbers(b, from, language, choose_prefix(g, HN_PIECE_NUMBER));
     }
 
     const bool failed = b->failed || text.failed;

@@ -13,7 +13,8 @@ typedef enum hn_piece_kind {
     HN_PIECE_CONSTANT, ///< parameters alone
     HN_PIECE_POSITION, ///< coordinates or time; also where nobody says what symbols are
     HN_PIECE_VELOCITY, ///< velocities
-    HN_PIECE_KINDS
+    HN_PIECE_KINDS,
+    HN_PIECE_NUMBER = HN_PIECE_KINDS ///< a number of many digits (export/numbers.h)
 } hn_piece_kind;
 
 typedef struct hn_formula {

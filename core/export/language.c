@@ -271,6 +271,7 @@ static const hn_language LANGUAGES[] = {
      .pieces = {"\\pieces{Pieces of parameters alone}", "\\pieces{Pieces of coordinates}",
                 "\\pieces{Pieces of velocities}"},
      .depends = " \\remark{of $#1$}",
+     .numbers = "\\pieces{Numbers}",
      .reserved = "",
      .put_name = put_latex_name,
      .put_words = put_latex_words,

@@ -38,6 +38,7 @@ typedef struct hn_language {
     /// in a language of formulas to read: what stands before the pieces of each kind
     /// (export/formula.h), and behind one the names it depends on, #1; else NULL
     const char *pieces[3], *depends;
+    const char *numbers;  ///< what stands before the table of long numbers; NULL: there is none
     const char *power;    ///< a number with a power of ten: #1 times 10^#2; NULL: as 1e-7
     const char *reserved; ///< words that no symbol may have, separated by spaces
     /// writes a name of the scene, the name of an array, words in a comment; NULL: as they are

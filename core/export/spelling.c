@@ -2,13 +2,15 @@
 #include "export/spelling.h"
 
 #include <ctype.h>
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { LARGEST_DENOMINATOR = 24 }; // of the fractions that inertias of simple bodies bring
+/// Digits of a number in a formula to read. What follows is rounding of our own, by which numbers
+/// that are one differ; the sheets of all scenes still give their terms to 1e-11.
+enum { MOST_READ = 14 };
 
 /// Writes a number that is a fraction to the last bit, 1/3, as one; false where it is none.
 static bool put_fraction(hn_strbuf *b, const hn_language *language, double value) {
@@ -31,17 +33,14 @@ void hn_code_number(hn_strbuf *b, const hn_language *language, double value) {
     if (language->fraction && put_fraction(b, language, value)) {
         return;
     }
-    for (int digits = 1; digits <= 17; digits++) {
+    // the fewest digits that give the value again; in a formula to read no more than count, and no
+    // power of ten where a number of few digits needs none
+    const bool is_plain = language->fraction && fabs(value) >= 1e-3 && fabs(value) < 1e6;
+    const int most = language->fraction ? MOST_READ : 17;
+    for (int digits = 1; digits <= most; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value) {
+        if (strtod(text, NULL) == value && !(is_plain && strchr(text, 'e'))) {
             break;
-        }
-    }
-    // a number of few digits needs no power of ten to be read
-    if (language->fraction && fabs(value) >= 1e-3 && fabs(value) < 1e6) {
-        snprintf(text, sizeof text, "%.*g", (int)DBL_DIG, value);
-        if (strtod(text, NULL) != value) {
-            snprintf(text, sizeof text, "%.17g", value);
         }
     }
     char *const e = language->power ? strchr(text, 'e') : NULL;

@@ -322,6 +322,11 @@ def joined():
     faults = [f"not in the sheet: {line}" for line in wanted if line not in text]
     faults += ["products of sines are left"] if re.search(r"\\sin\([^()]*\)\\, \\(sin|cos)\(", text) else []
     seen, sheet = set(), call([PROGRAM, "export", "stewart-6-6", "--language", "latex"]).stdout
+    terms = sheet.partition("subsection*{Terms}")[2].partition("subsection*{Rates")[0]
+    long = re.findall(r"(?<![\w.])\d+\.\d{9,}", terms)
+    faults += [f"{len(long)} long numbers, {len(set(long))} different"] if len(long) > 2 * len(set(long)) or len(long) < 50 else []
+    faults += [f"{x} has more than 14 digits" for x in long if len(x.replace(".", "").lstrip("0")) > 14]
+    faults += [] if r"\eq{n_{1}}{" in terms and terms.index(r"\pieces{Numbers}") < terms.index("n_{1}") < terms.index("k_{1}") else ["no table of numbers before the pieces"]
     for line in (line for line in sheet.splitlines() if line.startswith(r"\eq{")):
         end = closing(line, 3)
         left, right = line[4:end], line[end + 2:closing(line, end + 1)]
@@ -330,7 +335,7 @@ def joined():
         faults += [f"{left} is of velocities: {right[:80]}"] if left[0] == "k" and re.search(r"\\dot|\\omega|dL|u_\{", right) else []
         seen |= {left} if re.fullmatch(r"[cku]_\{\d+\}", left) else set()
     faults += [] if any(k[0] == "k" for k in seen) and any(k[0] == "u" for k in seen) else [f"pieces: {sorted(seen)[:5]}"]
-    return faults + ([] if r"\remark{of $\theta_{\mathrm{lower1}}$}" in sheet else ["no piece says that it is of one coordinate"])
+    return faults + ([] if r"\remark{of $L_{1}$}" in sheet else ["no piece says that it is of one coordinate"])
 
 
 def limits():
