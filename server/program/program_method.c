@@ -39,18 +39,68 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // of the list below
 static program *programs[MOST_PROGRAMS];
 static int n_programs;
 
-/// An instance: one process.
+/// A process, and how many instances ask it.
+typedef struct shared_talk {
+    hn_conversation talk;
+    const hn_arena *run; ///< of the instances: they live in the memory of one run
+    const program *program;
+    int users;
+    struct shared_talk *next;
+} shared_talk;
+
+/// An instance. A run has two: one that steps, and one for samples between its steps.
 typedef struct guest {
     hn_state_ode base; // first
     program *program;
-    hn_conversation talk;
+    shared_talk *own;
+    hn_conversation *talk; ///< of `own`
 } guest;
 
+static shared_talk *talks; // under the lock
+
 static void keep_why(guest *g) {
-    snprintf(g->base.why, sizeof g->base.why, "%.230s", g->talk.why.message);
+    snprintf(g->base.why, sizeof g->base.why, "%.230s", g->talk->why.message);
 }
 
 // ---- the formulation ----
+
+/// The process of this run, for another instance: NULL where there is none yet, or where it makes
+/// steps of its own, which another one must not disturb.
+static shared_talk *find_talk(const program *p, const hn_arena *run) {
+    pthread_mutex_lock(&lock);
+    shared_talk *found = talks;
+    while (found && (found->run != run || found->program != p ||
+                     found->talk.service != HN_PROGRAM_ACCELERATIONS)) {
+        found = found->next;
+    }
+    if (found) {
+        found->users++;
+    }
+    pthread_mutex_unlock(&lock);
+    return found;
+}
+
+static void keep_talk(shared_talk *talk) {
+    pthread_mutex_lock(&lock);
+    talk->next = talks;
+    talks = talk;
+    pthread_mutex_unlock(&lock);
+}
+
+/// Whether the last instance has left; the process is then no longer found.
+static bool leave_talk(shared_talk *talk) {
+    pthread_mutex_lock(&lock);
+    const bool is_last = --talk->users == 0;
+    shared_talk **at = &talks;
+    while (is_last && *at && *at != talk) {
+        at = &(*at)->next;
+    }
+    if (is_last && *at) {
+        *at = talk->next;
+    }
+    pthread_mutex_unlock(&lock);
+    return is_last;
+}
 
 static hn_status create(const hn_system *sys, const double *set, hn_arena *arena, void **self,
                         hn_diag *diag) {
@@ -65,24 +115,40 @@ static hn_status create(const hn_system *sys, const double *set, hn_arena *arena
     HN_TRY(hn_state_ode_init(&g->base, sys, arena));
     HN_TRY(hn_sandbox_build(&command, g->program->file, NULL, options.trusted, &limits, diag));
 
-    return hn_conversation_begin(&g->talk, sys, command.argv, command.file[0] ? command.file : NULL,
-                                 &limits, arena);
+    // one process for both instances of a run: an interpreter takes its time to start
+    g->own = find_talk(g->program, arena);
+    if (!g->own) {
+        g->own = hn_arena_get(arena, sizeof *g->own);
+        if (!g->own) {
+            return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+        }
+        *g->own = (shared_talk){.run = arena, .program = g->program, .users = 1};
+        g->talk = &g->own->talk;
+        const hn_status status = hn_conversation_begin(
+            g->talk, sys, command.argv, command.file[0] ? command.file : NULL, &limits, arena);
+        keep_talk(g->own);
+        return status;
+    }
+    g->talk = &g->own->talk;
+    return HN_OK;
 }
 
 static hn_status check(const void *self, const char *integrator, hn_diag *diag) {
     const guest *g = self;
-    return hn_conversation_check(&g->talk, strcmp(integrator, HN_GUEST_STEPPER) == 0, diag);
+    return hn_conversation_check(g->talk, strcmp(integrator, HN_GUEST_STEPPER) == 0, diag);
 }
 
 static void destroy(void *self) {
     guest *g = self;
-    hn_conversation_end(&g->talk);
-    pthread_mutex_lock(&lock);
-    g->program->answers += g->talk.id;
-    g->program->cpu += g->talk.process.cpu;
-    g->program->peak =
-        g->talk.process.peak > g->program->peak ? g->talk.process.peak : g->program->peak;
-    pthread_mutex_unlock(&lock);
+    if (g->own && leave_talk(g->own)) {
+        hn_conversation_end(g->talk);
+        pthread_mutex_lock(&lock);
+        g->program->answers += g->talk->id;
+        g->program->cpu += g->talk->process.cpu;
+        g->program->peak =
+            g->talk->process.peak > g->program->peak ? g->talk->process.peak : g->program->peak;
+        pthread_mutex_unlock(&lock);
+    }
     hn_state_ode_destroy(&g->base);
 }
 
@@ -90,7 +156,7 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     guest *g = self;
     const double *q = hn_unit_positions(g->base.sys, y, g->base.unit), *v = y + g->base.nq;
     g->base.cost.evals++;
-    const hn_status status = hn_conversation_accelerations(&g->talk, t, q, v, ydot + g->base.nq);
+    const hn_status status = hn_conversation_accelerations(g->talk, t, q, v, ydot + g->base.nq);
     if (status != HN_OK) {
         keep_why(g);
         return status;
@@ -144,7 +210,7 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
     (void)err;
     g->base.cost.evals++;
     const hn_status status =
-        hn_conversation_step(&g->talk, t, h, y, y + g->base.nq, y_new, y_new + g->base.nq);
+        hn_conversation_step(g->talk, t, h, y, y + g->base.nq, y_new, y_new + g->base.nq);
     if (status != HN_OK) {
         keep_why(g);
     }

@@ -125,6 +125,28 @@ class StartingPoints(unittest.TestCase):
             self.assertEqual(done.returncode, 1)
             self.assertEqual(done.stderr.splitlines(), ["This program needs numpy (apt install python3-numpy): No module named 'no_such_module'"])
 
+    def test_a_run_starts_a_program_that_gives_accelerations_once(self):
+        counting = """
+import json, os, sys
+open(os.environ["STARTS"], "a").write("x")
+scene = json.loads(sys.stdin.readline())
+print(json.dumps({"holonom": 1, "provides": "accelerations", "wants": ["f"]}), flush=True)
+for line in sys.stdin:
+    ask = json.loads(line)
+    print(json.dumps({"id": ask["id"], "a": [x for x in ask["f"]], "lambda": []}), flush=True)
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "mine.py"), "w", encoding="utf-8") as f:
+                f.write(counting.replace('os.environ["STARTS"]', repr(os.path.join(folder, "starts"))))
+            for methods, starts in ((1, 1), (2, 2)):
+                names = [f"program:./mine.py@rk4:h={h}" for h in ("1e-2", "2e-2")[:methods]]
+                # samples between the steps need an instance of their own, but no process
+                done = call("compare", "pendulum", "--methods", *names, "--time", "0.1", "--json", "--trust-programs", cwd=folder)
+                self.assertEqual(done.returncode, DONE, done.stderr)
+                with open(os.path.join(folder, "starts"), encoding="utf-8") as f:
+                    self.assertEqual(len(f.read()), starts, methods)
+                os.remove(os.path.join(folder, "starts"))
+
     def test_a_language_that_is_not_there_is_answered_with_those_that_are(self):
         done = call("program", "pyton")
         self.assertEqual(done.returncode, INPUT)
