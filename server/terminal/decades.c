@@ -10,7 +10,7 @@ enum {
     LABELS = 3
 }; // rows from a label to the next; intervals, where there is room
 /// Few labels count as an axis that is longer by this share for each further choice of the step.
-static const double SPARSE = 0.05;
+static const double SPARSE = 0.1;
 
 double hn_decades_spread(double high, double *low, int rows) {
     static const double steps[] = {1, 2, 3, 5, 10, 20, 50, 100};

@@ -60,9 +60,9 @@ static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_scatter
     // what stands above, and the ends of the horizontal axis
     char text[HN_SI_TEXT];
     const int foot = area.rows - 1;
-    hn_si_format(pow(10, r.left), s->x_unit, 2, text);
+    hn_si_format(hn_round_digits(pow(10, r.left), 2), s->x_unit, 2, text);
     hn_cells_put(c, area, LABEL_COLUMNS, foot, HN_CELL_MUTED, 0, text);
-    hn_si_format(pow(10, r.right), s->x_unit, 2, text);
+    hn_si_format(hn_round_digits(pow(10, r.right), 2), s->x_unit, 2, text);
     hn_cells_put(c, area, area.columns - hn_text_columns(text), foot, HN_CELL_MUTED, 0, text);
 }
 

@@ -93,6 +93,23 @@ class Frame(unittest.TestCase):
         self.assertIn("slider-crank", out)
         self.assertEqual(len(re.findall(r"^│\d", out, re.M)), 1)
 
+    def test_a_link_with_faults_opens_with_the_rest_and_names_them(self):
+        def opened(link):
+            status, out, err = once(link, "--once", "--t", "0.5")
+            self.assertEqual((status, err), (0, ""), link)
+            return out, " ".join(out.split())
+        out, words = opened("#scene=four-bar&set.l11=0.6&method=index9@rk4&method=projection@rk4:h=0.02")
+        self.assertIn("the link: ", words)
+        self.assertIn("no parameter 'l11'; did you mean 'l1'?; all parameters have the scene's values", words)
+        self.assertIn("formulation 'index9' is not known", words)
+        self.assertIn("did you mean 'index1'?; this method is left out", words)
+        self.assertEqual(re.findall(r"(?m)^│\d\S (\S+)", out), ["projection"])
+        out, words = opened("#scene=four-bar&method=inde")
+        self.assertIn("the methods are those of the scene", words)
+        self.assertGreater(len(re.findall(r"(?m)^│\d\S (\S+)", out)), 2)
+        # without its scene there is nothing to open
+        self.assertEqual(once("#scene=four-baz&method=projection@rk4", "--once")[0], 2)
+
     def test_a_link_opens_paused_at_its_frame_with_its_method_selected(self):
         link = "#scene=four-bar&method=projection@rk4:h=0.02&method=index1@rk4:h=0.02&frame=150&selected=1"
         _, out, _ = once(link, "--once", "--keys", "i")

@@ -142,6 +142,50 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
     return hn_cli_print(&b);
 }
 
+/// Leaves out of a link what the first fault is about: one method, or all changed parameters.
+/// Returns false where nothing can be left out. said: what was found, and what is shown instead.
+static bool leave_out(hn_tui_link *o, const char **methods, const hn_diags *diags,
+                      char said[HN_TUI_MESSAGE]) {
+    const hn_diag *d = &diags->item[0];
+    const char *instead = NULL;
+    int at;
+    if (sscanf(d->pointer, "/methods/%d", &at) == 1 && at < o->n_methods) {
+        memmove(methods + at, methods + at + 1, (size_t)(o->n_methods - at - 1) * sizeof *methods);
+        o->n_methods--;
+        instead =
+            o->n_methods > 0 ? "this method is left out" : "the methods are those of the scene";
+    } else if (strncmp(d->pointer, "/parameters", 11) == 0 && o->n_settings > 0) {
+        o->n_settings = 0;
+        instead = "all parameters have the scene's values";
+    } else {
+        return false;
+    }
+    const size_t n = strlen(said);
+    snprintf(said + n, HN_TUI_MESSAGE - n, "%s%.*s%s%s; %s",
+             n > 0 ? "; " : "the link: ", (int)strcspn(d->message, ";"), d->message,
+             d->hint[0] ? "; " : "", d->hint, instead);
+    return true;
+}
+
+/// Opens the workbench; of a link, what can be opened, with the rest said.
+static hn_status open_workbench(hn_workbench *w, const hn_library *lib, const hn_args *args,
+                                hn_tui_link *o, const char **methods, hn_diags *diags) {
+    const bool is_link = args->methods.n == 0 && args->set.n == 0 && args->words.n > 0 &&
+                         strcmp(args->words.word[0], o->scene) != 0;
+    char said[HN_TUI_MESSAGE] = "";
+    for (;;) {
+        const hn_status status = hn_workbench_open(w, lib, o->scene, o->settings, o->n_settings,
+                                                   methods, o->n_methods, diags);
+        if (status == HN_OK && said[0]) {
+            hn_workbench_say(w, "%s", said);
+        }
+        if (status == HN_OK || !is_link || !leave_out(o, methods, diags, said)) {
+            return status;
+        }
+        *diags = (hn_diags){0};
+    }
+}
+
 hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     hn_tui_link o;
     const char *methods[HN_COMPARISON_MAX_METHODS];
@@ -168,8 +212,7 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     HN_THEN(status, read_pictures(args->pictures, &opts, &diags));
     HN_THEN(status, check_keys(args->keys, &diags));
     status = status == HN_OK ? read_opening(args, &o, methods, &diags) : status;
-    HN_THEN(status, hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, methods,
-                                      o.n_methods, &diags));
+    HN_THEN(status, open_workbench(&w, lib, args, &o, methods, &diags));
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
