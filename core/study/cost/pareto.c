@@ -318,8 +318,24 @@ static bool say_the_same(const hn_pareto *p, int i, int j) {
             winners(&p->counted[i]) == winners(&p->counted[j]));
 }
 
+/// "606 thousand operations", "1.1 million operations": a count has no prefix.
+static void put_operations(hn_strbuf *b, double count) {
+    static const char *const words[] = {"", " thousand", " million", " billion"};
+    int i = 0;
+    for (; count >= 999.5 && i < 3; i++) {
+        count /= 1000;
+    }
+    char text[HN_SI_TEXT];
+    hn_si_format(count, "", i > 0 ? 2 : 1, text);
+    hn_strbuf_printf(b, "%s%s operations", text, words[i]);
+}
+
 static void put_amount(hn_strbuf *b, double cost, hn_cost_kind kind) {
     char text[HN_SI_TEXT];
+    if (kind == HN_COST_OPS) {
+        put_operations(b, cost);
+        return;
+    }
     hn_si_format(cost, cost_units[kind], 2, text);
     hn_strbuf_printf(b, "%s%s", text, kind == HN_COST_EVALS ? " evaluations" : "");
 }

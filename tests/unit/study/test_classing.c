@@ -299,7 +299,7 @@ static void times_that_cannot_be_told_apart_are_not_ranked(void **state) {
     assert_sentences(&w, &p,
                      "Errors of 1e-01 to 1e-06: not ranked by time: index1@rk4 4.0 s and "
                      "projection@rk4 4.2 s are too close to rank; by operations: index1@rk4 and "
-                     "projection@rk4 alike, 1.0 kop to 4.0 kop.\n");
+                     "projection@rk4 alike, 1.0 thousand operations to 4.0 thousand operations.\n");
 }
 
 /// Ten samples of a clock that was disturbed: the first half of one value, the second of another.
@@ -345,7 +345,8 @@ static void a_clock_that_changed_its_pace_ranks_nothing_and_counts_do(void **sta
         &w, &p,
         "Errors of 1e-01 to 1e-06: not ranked by time: the two halves of the timing of "
         "projection@rk4 differ by 20 %, 12 s and 14 s; by operations: index1@rk4, "
-        "1.0 kop to 4.0 kop; next, for 1e-06, projection@rk4 at 1.5 times that.\n");
+        "1.0 thousand operations to 4.0 thousand operations; next, for 1e-06, projection@rk4 at "
+        "1.5 times that.\n");
     // within 10 % a second measurement says the same
     for (int k = 0; k < 3; k++) {
         disturb(&w.methods[1].point[k], 3.0 * (1 << k), 3.27 * (1 << k));
