@@ -19,6 +19,7 @@ struct hn_step_trial {
     char methods[TRIALS][HN_SPEC_MAX];
     hn_model *model;         ///< owned: the recording that is shown has its own
     hn_recording *recording; ///< owned
+    hn_step_report report;   ///< final where it is not HN_STEP_RUNNING, which is its first value
 };
 
 /// Writes the spellings that are tried; false: the method has no step and no tolerance.
@@ -104,7 +105,7 @@ static void report_long(const hn_step_trial *s, int i, const char *verdict, hn_s
              hn_recording_duration(s->recording), verdict);
 }
 
-void hn_step_trial_judge(hn_step_trial *s, hn_step_report *out) {
+static void judge(hn_step_trial *s, hn_step_report *out) {
     const int last = hn_recording_last(s->recording), frames = hn_recording_frames(s->recording);
     *out = (hn_step_report){.finding = HN_STEP_RUNNING};
     if (frames <= last || hn_recording_is_asking(s->recording)) {
@@ -132,4 +133,12 @@ void hn_step_trial_judge(hn_step_trial *s, hn_step_report *out) {
     snprintf(out->cause, sizeof out->cause,
              "%s alone is not the cause: %s = %g was tried until t = %.4g s, and is %s", s->key,
              s->key, s->value[TRIALS - 1], hn_recording_duration(s->recording), v.text);
+}
+
+// judged once: a card that is drawn asks many times
+void hn_step_trial_judge(hn_step_trial *s, hn_step_report *out) {
+    if (s->report.finding == HN_STEP_RUNNING) {
+        judge(s, &s->report);
+    }
+    *out = s->report;
 }
