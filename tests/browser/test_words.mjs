@@ -85,6 +85,7 @@ test("what a mark says of multipliers is a sentence; a sound one says nothing", 
 
 test("a dead point, a magnification and a multiplier have their sentence", () => {
   assert.deepEqual(keysIn("it stands at a dead point"), ["singular"]);
+  assert.deepEqual(keysIn("the mechanism passed a change point"), ["singular"]);
   assert.match(GLOSSARY.magnified.means, /×20/);
   assert.match(GLOSSARY.multipliers.means, /force/);
 });

@@ -70,7 +70,7 @@ export const GLOSSARY = {
   },
   singular: {
     word: "singular configuration",
-    match: /\bsingular (configurations?|pose)\b|\bdead points?\b/i,
+    match: /\bsingular (configurations?|pose)\b|\b(dead|change) points?\b/i,
     means:
       "Singular configuration (change point, flat linkage): links are collinear and J loses rank. Multipliers grow without bound there, and the motion may branch. At a dead point J keeps its rank; there only one coordinate no longer determines the others.",
   },
