@@ -245,6 +245,18 @@ class GoingDown(Timed):
         run = {**RING, "method": "projection@rk4:h=1e-3", "time": 1, "at": [0.5] * 20000}
         self.end(lambda: self.beginning(*[("POST", "/api/v1/runs", run)] * 3))
 
+    def test_who_waits_for_a_picture_is_told_that_the_server_ends(self):
+        """422, "stopped on request", was a fault of the request."""
+        server, answers = driver.Server(), []
+        picture = {**RING, "methods": ["projection@rk4:h=1e-5"], "time": 1000}
+        thread = threading.Thread(target=lambda: answers.append(server.ask("POST", "/api/v1/snapshots", picture)))
+        before = server.cpu()
+        thread.start()
+        server.is_at_work(before, [thread])
+        self.assertEqual(server.stop(), 0)
+        thread.join()
+        self.assertEqual((answers[0].status, answers[0].json()["type"]), (503, "/api/v1/errors/stopping"))
+
     def test_while_pictures_are_drawn_and_references_computed(self):
         picture = {**RING, "methods": ["projection@rk4:h=1e-5"], "time": 1000}
         self.end(lambda: self.beginning(("POST", "/api/v1/snapshots", picture),

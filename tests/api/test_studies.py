@@ -154,7 +154,7 @@ class Studies(driver.ServerCase):
         self.assertEqual((done["state"], done["reason"], done["progress"], done["time_left_s"]), ("finished", "", 1, 0))
         self.assertEqual((done["kind"], done["scene"], done["methods"]), ("work-precision", "pendulum", METHODS))
         same = command_line("pendulum", "work-precision", "--methods", *METHODS, "--time", "0.5", "--levels", "3",
-                            "--samples", "0", "--time-limit", "20")
+                            "--samples", "0", "--time-limit", str(COMPUTING))
         self.assertEqual(done["document"], same)
 
     def test_budget_is_the_document_of_the_command_line(self):
@@ -166,7 +166,7 @@ class Studies(driver.ServerCase):
         done = wait(self.server, start(self.server, MAP))
         self.assertEqual(done["state"], "finished", done["reason"])
         same = command_line("four-bar", "stability", "--methods", *MAP["methods"], "--time", "0.5", "--preset", "baumgarte",
-                            "--grid", "4x3", "--time-limit", "20")
+                            "--grid", "4x3", "--time-limit", str(COMPUTING))
         for document in (done["document"], same):
             self.assertGreater(document.pop("elapsed"), 0)
         self.assertEqual(done["document"], same)

@@ -248,7 +248,9 @@ int hn_request_is_unwanted(void *request) {
         r->is_left = r->next_look > 0 && hn_request_is_left(r); // not before it has worked for long
         r->next_look = now + LOOK_EVERY;
     }
-    return r->is_left || atomic_load(&r->context->stopping);
+    const bool is_unwanted = r->is_left || atomic_load(&r->context->stopping);
+    r->interrupted |= is_unwanted; // whatever its work then says, the request is not at fault
+    return is_unwanted;
 }
 
 static bool must_end(void *user) {
