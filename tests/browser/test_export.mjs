@@ -39,7 +39,8 @@ test("the recording becomes one file that plays without a server", async (t) => 
   assert.ok(pathToFileURL(path));
   const drawn = () => alone.locator("svg.drawing path").nth(1).getAttribute("d");
   const first = await drawn();
-  await alone.getByRole("button", { name: "Play" }).click();
+  await soon(() => alone.waitForSelector("button:focus", { timeout: 1000 }));
+  await alone.keyboard.press("Space");
   await alone.waitForFunction(() => Number(document.querySelector("input[type=range]").value) > 3);
   await soon(async () => assert.notEqual(await drawn(), first));
   assert.equal(await alone.locator("li").count(), 5);
@@ -76,6 +77,38 @@ test("the recording becomes one file that plays without a server", async (t) => 
   assert.deepEqual(faults, []);
 });
 
+/** How many pixels of the film's first and last pictures are not those of a picture. */
+const otherPixels = (page, film, picture) =>
+  page.evaluate(
+    async ([webm, png]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${png}`;
+      await image.decode();
+      const { width, height } = image;
+      const canvas = Object.assign(document.createElement("canvas"), { width, height });
+      const pen = canvas.getContext("2d", { willReadFrequently: true });
+      const pixelsOf = (source) => {
+        pen.clearRect(0, 0, width, height);
+        pen.drawImage(source, 0, 0, width, height);
+        return pen.getImageData(0, 0, width, height).data;
+      };
+      const wanted = pixelsOf(image);
+      const FAR = 90; // of 255: no loss of the film is as large
+      const count = (pixels) => pixels.filter((x, i) => Math.abs(x - wanted[i]) > FAR).length;
+      const video = Object.assign(document.createElement("video"), { muted: true });
+      const next = (name) => new Promise((resolve) => video.addEventListener(name, resolve));
+      const shown = new Promise((resolve) => video.requestVideoFrameCallback(resolve));
+      const ended = next("ended");
+      video.src = `data:video/webm;base64,${webm}`;
+      await video.play();
+      await shown;
+      const first = count(pixelsOf(video));
+      await ended;
+      return { first, last: count(pixelsOf(video)) };
+    },
+    [film, picture].map((bytes) => bytes.toString("base64")),
+  );
+
 test("a scene in space is saved with its solids, as a film, and as a program", async (t) => {
   const page = await open(t, { hash: "#rssr", bypassCSP: true });
   await page.waitForSelector(".stage.solid");
@@ -104,6 +137,8 @@ test("a scene in space is saved with its solids, as a film, and as a program", a
     return [video.videoHeight, document.querySelector(".picture").clientHeight];
   }, film.bytes.toString("base64"));
   assert.ok(filmed >= 2 * (drawn + 22 * 4), `${filmed} of ${drawn}: the caption is under it`);
+  const other = await otherPixels(page, film.bytes, (await fileOf(page, "PNG")).bytes);
+  assert.ok(other.last < other.first / 4, `the film goes to the end: ${JSON.stringify(other)}`);
   await page.waitForSelector("#export-language option", { state: "attached" });
   await page.selectOption("#export-language", "python");
   const code = await fileOf(page, "Program");

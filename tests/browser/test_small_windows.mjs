@@ -141,17 +141,6 @@ test("a panel over the lower half leaves the mechanism and the transport in sigh
   }
 });
 
-test("where no dead point is listed the record says why", async (t) => {
-  const page = await open(t);
-  await playTo(page, 9.9);
-  await soon(async () =>
-    assert.match(
-      await page.textContent(".no-dead-point"),
-      /^At a dead point .* None is listed: until 9\.9\d s every method has left the true motion/,
-    ),
-  );
-});
-
 test("at 200 % the guide leaves the mechanism in sight, above the transport", async (t) => {
   // 1366x768 and 1920x1080 at 200 %
   for (const viewport of [

@@ -122,6 +122,18 @@ test("S5 Why? has what happened, the rule and things to try", async (t) => {
   });
 });
 
+test("on the first page, where every method ends wrong, the record lists the dead points before", async (t) => {
+  const page = await open(t);
+  await playTo(page, 6);
+  const line = page.locator(".record .dead-point");
+  await soon(async () => assert.match(await line.first().innerText(), /dead point of th3/));
+  await line.first().locator("summary").click();
+  assert.match(
+    await line.first().locator(".message").innerText(),
+    /^th3 turns back there .* After 1\.\d\d s every method has left the true motion/,
+  );
+});
+
 test("the card says what happens at a dead point, and a method that stops there can be tried", async (t) => {
   const page = await open(t, { hash: "#slider-crank" });
   await playTo(page, 1);

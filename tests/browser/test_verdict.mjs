@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { seconds } from "../../web/state/format.js";
 import { createHistory, thin } from "../../web/state/history.js";
 import { findJump } from "../../web/state/jump.js";
 import { limits, readIndex } from "../../web/state/catalogue.js";
@@ -495,6 +496,33 @@ test("a dead point is a coordinate that turns back while another one moves on", 
   );
   assert.match(why({ scene: { dof: 2, m: 2, coordinates } }), /; this one has 2\.$/);
   assert.equal(why({ scene: { dof: 1, m: 0, coordinates } }), "", "no loop, no dead point");
+});
+
+test("where every method is wrong the dead points of the time before are listed", () => {
+  // zeros of cos at frames 15.7 and 47.1; the loop is open from frame 30 on
+  const history = createHistory(1, 1, 2);
+  for (let k = 0; k <= 60; k++) {
+    const gap = k < 30 ? 1e-9 : 0.5;
+    history.push(frame(k, gap, { q: [0, 0], v: [10, Math.cos(k / 10)] }));
+  }
+  const data = {
+    history,
+    duration: 10,
+    scene: {
+      dof: 1,
+      m: 2,
+      coordinates: [
+        { name: "th1", kind: "angle", actuated: true },
+        { name: "x", kind: "length", actuated: false },
+      ],
+    },
+    methods: [{ label: "index-1", spelling: "index1@rk4:h=0.01" }],
+    incidents: [],
+  };
+  const [line, ...more] = deadPointLines(data, 60);
+  assert.deepEqual([line.name, line.count, more.length], ["x", 1, 0]);
+  const end = seconds(history.t[29], 10);
+  assert.ok(line.words.includes(`After ${end} every method has left the true motion`), line.words);
 });
 
 test("dead points are those of the methods that are right, with their names where they differ", () => {

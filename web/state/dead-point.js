@@ -108,8 +108,26 @@ function soundMethods(data, shown) {
 }
 
 /**
+ * The method that stayed right the longest, and the last frame of that: where all have left the
+ * true motion, its dead points until then are the mechanism's own.
+ * @param {import("./store.js").Data} data @param {number} shown a frame where none is right
+ */
+function longestSound(data, shown) {
+  const lasts = data.methods.map((_, m) => {
+    let [good, bad] = [0, shown]; // what was once wrong stays so
+    while (bad - good > 1) {
+      const middle = (good + bad) >> 1;
+      [good, bad] = verdictAt(data, m, middle).tone === "bad" ? [good, middle] : [middle, bad];
+    }
+    return good;
+  });
+  const until = Math.max(...lasts);
+  return { list: [lasts.indexOf(until)], until };
+}
+
+/**
  * Dead points as lines of the record of incidents, by coordinate: those of the methods that are
- * right. Methods that find the same number share a line, with the times of the best of them; `of`
+ * right; where none is, those of the time when one still was. Methods that find the same number share a line, with the times of the best of them; `of`
  * names them where others find another number, and is "" where all agree.
  * @param {import("./store.js").Data} data @param {number} shown
  * @returns {{
@@ -117,13 +135,20 @@ function soundMethods(data, shown) {
  * }[]}
  */
 export function deadPointLines(data, shown) {
-  const found = soundMethods(data, shown).map((m) => ({ m, all: deadPointsOf(data, m, shown) }));
+  const sound = soundMethods(data, shown);
+  const { list, until } =
+    sound.length > 0 || shown < 1 ? { list: sound, until: shown } : longestSound(data, shown);
+  const found = list.map((m) => ({ m, all: deadPointsOf(data, m, until) }));
+  const end =
+    until < shown
+      ? ` After ${seconds(data.history.t[until], data.duration)} every method has left the true motion: no dead point is listed then.`
+      : "";
   return data.scene.coordinates.flatMap(({ name }, k) => {
     const own = found.map(({ m, all }) => ({
       label: data.methods[m].label,
       times: all.filter(({ coordinate }) => coordinate === k).map(({ t }) => t),
     }));
-    const words = `${name} turns back there while the mechanism moves on. ${atDeadPoint(name)}.`;
+    const words = `${name} turns back there while the mechanism moves on. ${atDeadPoint(name)}.${end}`;
     const counts = [...new Set(own.map(({ times }) => times.length))];
     return counts
       .filter((count) => count > 0)

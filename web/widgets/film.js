@@ -10,6 +10,7 @@ const SHORTEST = 1; // [s] of film: a shorter one is shown slower
 const LEAST_BYTES = 1000; // of a film with pictures: less is the head of the file
 const PATIENCE = 10; // [s] to wait for pictures of an encoder that is behind
 const PIECE = 250; // [ms] of film that the encoder hands over at once
+const LAST = 2; // pieces that must come after the last picture, so that the film ends with it
 
 export const canFilm = () =>
   typeof MediaRecorder !== "undefined" && KINDS.some((kind) => MediaRecorder.isTypeSupported(kind));
@@ -66,7 +67,11 @@ export async function makeFilm({ svg, solids, caption, duration, show, told, sto
   });
   /** @type {Blob[]} */
   const parts = [];
-  recorder.ondataavailable = ({ data }) => parts.push(data);
+  let last = 0; // pieces since the last picture
+  recorder.ondataavailable = ({ data }) => {
+    parts.push(data);
+    last += data.size > 0 ? 1 : 0;
+  };
   const ended = new Promise((resolve) => {
     recorder.onstop = () => resolve(null);
   });
@@ -76,12 +81,19 @@ export async function makeFilm({ svg, solids, caption, duration, show, told, sto
   const began = performance.now();
   const goesOn = (share, seconds) =>
     share < 1 || (bytes() < LEAST_BYTES && seconds < length + PATIENCE);
+  /** @param {number} until [ms] */
+  const isWaiting = (until) => last < LAST && performance.now() < until && !stopped();
   for (let share = 0, seconds = 0; goesOn(share, seconds) && !stopped(); ) {
     seconds = (performance.now() - began) / 1000;
     share = Math.min(1, seconds / length);
     show(share * duration);
     await paint(svg, solids(), context, caption());
     told(share);
+    await new Promise((resolve) => requestAnimationFrame(resolve));
+  }
+  last = 0;
+  for (const until = performance.now() + 1000 * PATIENCE; isWaiting(until); ) {
+    context.fillRect(0, 0, 1, 1); // a change, or the browser records no picture
     await new Promise((resolve) => requestAnimationFrame(resolve));
   }
   recorder.stop();
