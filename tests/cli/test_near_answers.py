@@ -233,6 +233,21 @@ def one_slip(folder):
         if mistake == "degrees":
             expect("degrees turned the wrong way are two mistakes", ("sign is wrong as well" in found["explanation"]) == (answer > 0), found["explanation"])
 
+    # divisors, exponents, single terms; many slips are possible in a long formula: it takes exact digits to tell them apart
+    a, b, c, d, e = (numbers(exercise) for exercise in ("atwood", "transmission", "gears", "closure", "loops"))
+    cosine = 2 * b["l1"] * b["d"] * math.cos(b["th"])
+    area = b["l2"] * b["l3"] * math.sqrt(1 - ((b["l2"] ** 2 - b["l1"] ** 2 - b["d"] ** 2 + cosine) / (2 * b["l2"] * b["l3"])) ** 2)
+    for exercise, part, answer, digits, mistake in (
+            ("atwood", "b", 2 * 9.81 * a["m1"] * a["m2"], 4, "no-divisor"),
+            ("transmission", "a", b["l2"] ** 2 + b["l3"] ** 2 - b["l1"] ** 2 - b["d"] ** 2 + cosine, 6, "no-divisor"),
+            ("transmission", "a", cosine / (2 * b["l2"] * b["l3"]), 6, "missing-term"),
+            ("transmission", "b", area, 6, "missing-term"), ("transmission", "b", area, 4, "other"),
+            ("gears", "b", c["I1"] + c["I2"] * (c["z1"] / c["z2"]) ** 2 + c["I3"] * c["z1"] / c["z3"], 4, "not-squared"),
+            ("closure", "c", d["l1"] * d["w1"] * math.cos(d["t2"] - d["t1"]) / (d["l3"] * math.sin(d["t2"] - d["t3"])), 5, "sine"),
+            ("loops", "a", 3 * e["b"] + 2 * e["j"], 3, "sign-term"), ("loops", "b", e["j"] + e["b"], 3, "other")):  # fmt: skip
+        found = entry(folder, exercise, part, f"{answer:.{digits}g}", "--seed", "3")
+        expect(f"{exercise} {part} to {digits} digits is {mistake}", found["mistake"] == mistake, str(found))
+
 
 def pasted(folder):
     """A matrix that was pasted as one text is read, with a remark."""

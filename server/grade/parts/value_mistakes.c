@@ -39,6 +39,9 @@ enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
 /// How well a formula with numbers of three digits agrees, relative to its size: what numbers
 /// themselves are allowed.
 static const double ROUNDED = 5e-3;
+/// From here on a count is rarely one slip's by chance: a slip or two of a formula give a number of
+/// this size, and a hundred numbers are as near.
+static const double LARGE_COUNT = 20;
 
 /// A mistake that the exercise lists: its values, and whether they are wrong for entry k.
 static hn_status read_fault(hn_value_sheet *s, int k, const cJSON *fault, hn_values *wrong,
@@ -97,7 +100,7 @@ static hn_status try_listed_pairs(hn_value_search *f) {
             return HN_OK;
         }
         f->alone = hn_part_number(fault, "share", 0);
-        f->closely = true;
+        f->closeness = 1;
         for (int m = 0; m < N_FACTORS; m++) {
             if (applies(f->sheet, m)) {
                 hn_value_search_try(f, wrong.e[f->entry], FACTORS[m].factor,
@@ -127,7 +130,7 @@ static hn_status try_two_listed(hn_value_search *f) {
             const double share =
                 hn_part_number(first, "share", 0) * hn_part_number(second, "share", 0);
             f->alone = hn_part_number(second, "share", 0);
-            f->closely = true;
+            f->closeness = 1;
             for (int m = 0; m < 2 && differs[0] && differs[1]; m++) {
                 hn_value_search_try(f, both[m], 1, hn_part_text(second, "id"), share,
                                     "two mistakes at once: %s; and %s",
@@ -151,7 +154,7 @@ static void try_factors(hn_value_search *f) {
 
 /// The wrong sign together with another factor, as of an angle in degrees turned the wrong way.
 static void try_signed_factors(hn_value_search *f) {
-    f->closely = true;
+    f->closeness = 1;
     for (int i = 1; i < N_FACTORS; i++) {
         f->alone = FACTORS[i].share;
         if (applies(f->sheet, i)) {
@@ -362,7 +365,7 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
     if (f.n_found == 0 && !count && find_rounded_number(s, k, given, r)) {
         return HN_OK;
     }
-    if (f.n_found == 0 && !count && !is_zero(s, k, given)) {
+    if (f.n_found == 0 && (!count || fabs(given[0]) >= LARGE_COUNT) && !is_zero(s, k, given)) {
         hn_value_slips_try(&f);
     }
     if (f.n_found == 0 && !count) {

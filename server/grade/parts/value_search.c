@@ -148,7 +148,7 @@ bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char 
     if (is_done(f) || !agrees(f, e, factor, &close) || is_reference(f, e, factor)) {
         return false;
     }
-    if (f->closely && close == 0 && !f->sheet->symbolic) {
+    if (close < f->closeness && !f->sheet->symbolic) {
         return false;
     }
     const evidence found = weigh(f, e, factor);

@@ -12,8 +12,9 @@ enum {
     MAX_ARGS = 24,  ///< terms of a sum
     MAX_DEPTH = 40,
     /// Candidates for a number. Each agrees by chance with one number of a thousand near it (a
-    /// tenth of 0.5 % on both sides); of 1,565 random numbers within a factor of 3 two were named.
-    FEW = 36
+    /// tenth of 0.5 % on both sides), or, where they are more, with one of a hundred thousand.
+    FEW = 36,
+    MANY = 400
 };
 
 /// What may happen at one place. Marked `numbers`: looked for in numbers too.
@@ -25,8 +26,15 @@ typedef enum kind {
     SINE,
     ROOT,
     SQUARE,
-    FACTOR
+    FACTOR,
+    // rarer ones
+    SINE_TURNED, ///< with the sign that the graph has drawn out of an odd function
+    POWER,
+    DIVISOR,
+    WHOLE_DIVISOR, ///< with its number, as of 2 a b
+    ONE_TERM
 } kind;
+enum { FIRST_RARE = SINE_TURNED };
 static const struct slip_row {
     const char *id, *says;
     double share;
@@ -42,6 +50,11 @@ static const struct slip_row {
     [ROOT] = {"no-root", "a square root is missing", 0.25, true},
     [SQUARE] = {"not-squared", "a square is missing", 0.25, true},
     [FACTOR] = {"missing-name", "a factor is missing at one place", 0.25, false},
+    [SINE_TURNED] = {"sine", "sine and cosine are exchanged at one place", 0.25, true},
+    [POWER] = {"no-power", "an exponent is missing", 0.25, true},
+    [DIVISOR] = {"no-divisor", "a divisor is missing", 0.25, true},
+    [WHOLE_DIVISOR] = {"no-divisor", "a divisor is missing", 0.25, true},
+    [ONE_TERM] = {"missing-term", "only one term of a sum is there", 0.1, true},
 };
 enum { N_KINDS = sizeof ROWS / sizeof *ROWS };
 
@@ -101,14 +114,24 @@ static bool can_happen(const hn_graph *g, const slip *s) {
     case TERM_TWICE:
     case TERM_HALF:
         return view.op == HN_OP_SUM;
+    case ONE_TERM:
+        return view.op == HN_OP_SUM && view.n_args > 2;
+    case POWER:
+        return s->arg == 0 && view.op == HN_OP_POW;
+    case DIVISOR:
+        return view.op == HN_OP_RECIP;
+    case WHOLE_DIVISOR:
+        return view.op == HN_OP_MUL && hn_graph_node(g, view.args[s->arg].n).op == HN_OP_RECIP;
     case SINE:
+    case SINE_TURNED:
         return s->arg == 0 && (view.op == HN_OP_SIN || view.op == HN_OP_COS);
     case ROOT:
         return s->arg == 0 && view.op == HN_OP_SQRT;
     case SQUARE:
+        return view.op == HN_OP_MUL && has_factor(g, view.args[1 - s->arg].n, view.args[s->arg].n);
     case FACTOR:
         return view.op == HN_OP_MUL && hn_graph_node(g, view.args[s->arg].n).op == HN_OP_SYMBOL &&
-               has_factor(g, view.args[1 - s->arg].n, view.args[s->arg].n) == (s->kind == SQUARE);
+               !has_factor(g, view.args[1 - s->arg].n, view.args[s->arg].n);
     }
     return false;
 }
@@ -130,11 +153,19 @@ static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, const slip *s) {
         return hn_sum(g, a, n);
     case SINE:
         return op == HN_OP_SIN ? hn_cos(g, a[0]) : hn_sin(g, a[0]);
+    case SINE_TURNED:
+        return hn_neg(op == HN_OP_SIN ? hn_cos(g, a[0]) : hn_sin(g, a[0]));
     case ROOT:
+    case POWER:
         return a[0];
+    case DIVISOR:
+        return hn_num(1);
     case SQUARE:
     case FACTOR:
+    case WHOLE_DIVISOR:
         return a[1 - s->arg];
+    case ONE_TERM:
+        return a[s->arg];
     }
     return hn_num(0);
 }
@@ -158,19 +189,21 @@ static hn_ex rewrite(hn_graph *g, hn_ex e, const slip *s) {
                         : op == HN_OP_SUM ? hn_sum(g, a, n)
                         : op == HN_OP_MUL ? hn_mul(g, a[0], a[1])
                                           : hn_apply(g, op, a);
-    return hn_scale(e.c, whole);
+    const bool without_number = e.n == s->node && s->kind == WHOLE_DIVISOR;
+    return hn_scale(without_number ? copysign(1, e.c) : e.c, whole);
 }
 
-/// Calls `visit` for each slip that can happen, and returns how many there are.
-static int visit_slips(hn_value_search *f, const node_list *list,
+/// Calls `visit` for each slip of the kinds before `end` that can happen, and returns how many there
+/// are.
+static int visit_slips(hn_value_search *f, const node_list *list, int end,
                        void (*visit)(hn_value_search *, const slip *)) {
     const bool symbolic = f->sheet->symbolic;
     const hn_graph *g = f->sheet->draw->graph;
     int n = 0;
     for (int i = 0; i < list->n; i++) {
         const int n_args = hn_graph_node(g, list->node[i]).n_args;
-        for (int k = 0; k < n_args * N_KINDS; k++) {
-            const slip s = {(kind)(k % N_KINDS), list->node[i], k / N_KINDS};
+        for (int k = 0; k < n_args * end; k++) {
+            const slip s = {(kind)(k % end), list->node[i], k / end};
             if ((symbolic || ROWS[s.kind].numbers) && can_happen(g, &s)) {
                 n++;
                 if (visit) {
@@ -190,11 +223,20 @@ static void try_slip(hn_value_search *f, const slip *s) {
 
 void hn_value_slips_try(hn_value_search *f) {
     node_list list = {.whole = true};
+    const bool symbolic = f->sheet->symbolic;
     collect(f->sheet->draw->graph, f->sheet->reference.e[f->entry].n, 0, &list);
-    if (!list.whole || (!f->sheet->symbolic && visit_slips(f, &list, NULL) > FEW)) {
+    if (!list.whole) {
         return;
     }
-    f->closely = true;
-    visit_slips(f, &list, try_slip);
-    f->closely = false;
+
+    // the usual slips first; the more there are, the closer one of them must be
+    const int ends[2] = {FIRST_RARE, N_KINDS};
+    for (int i = 0; i < 2 && f->n_found == 0; i++) {
+        const int n = visit_slips(f, &list, ends[i], NULL);
+        f->closeness = symbolic || n <= FEW ? 1 : 2;
+        if (symbolic || n <= MANY) {
+            visit_slips(f, &list, ends[i], try_slip);
+        }
+    }
+    f->closeness = 0;
 }
