@@ -58,6 +58,10 @@ void hn_canvas_segment(hn_canvas *c, double x0, double y0, double x1, double y1,
                        const hn_stroke *stroke);
 void hn_canvas_disc(hn_canvas *c, double x, double y, double radius, hn_paint paint);
 void hn_canvas_ring(hn_canvas *c, double x, double y, double radius, const hn_stroke *stroke);
+/// A part of a circle from one angle to another [rad], counted clockwise as seen from the x axis;
+/// `from` may be larger.
+void hn_canvas_arc(hn_canvas *c, double x, double y, double radius, double from, double to,
+                   const hn_stroke *stroke);
 /// A simple polygon, convex or not, either sense; n >= 3.
 void hn_canvas_polygon(hn_canvas *c, const double *xy, int n, hn_paint paint);
 /// The outline of a bar with round ends, `width` across, from one point to the other: writes at

@@ -168,6 +168,19 @@ void hn_canvas_ring(hn_canvas *c, double x, double y, double radius, const hn_st
     hn_canvas_line(c, xy, RING_POINTS, &closed);
 }
 
+void hn_canvas_arc(hn_canvas *c, double x, double y, double radius, double from, double to,
+                   const hn_stroke *stroke) {
+    double xy[2 * (RING_POINTS + 1)];
+    const double turn = fmin(2 * PI, fabs(to - from));
+    const int n = 2 + (int)((RING_POINTS - 1) * turn / (2 * PI));
+    for (int i = 0; i < n; i++) {
+        const double a = from + (to - from) * i / (n - 1);
+        xy[2 * i] = x + radius * cos(a);
+        xy[2 * i + 1] = y + radius * sin(a);
+    }
+    hn_canvas_line(c, xy, n, stroke);
+}
+
 void hn_canvas_arrow(hn_canvas *c, double x0, double y0, double x1, double y1, double head,
                      const hn_stroke *stroke) {
     const double length = hypot(x1 - x0, y1 - y0);

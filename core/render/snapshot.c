@@ -4,6 +4,7 @@
 #include "render/snapshot.h"
 
 #include "base/units.h"
+#include "render/snapshot_angles.h"
 #include "render/snapshot_labels.h"
 #include "render/snapshot_marks.h"
 #include "render/snapshot_shapes.h"
@@ -232,6 +233,7 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     if (opts->dimensions) {
         hn_snapshot_dimensions(c, &sheet, drawing, selected, &placed);
     }
+    hn_snapshot_angles(c, &sheet, drawing, selected, opts, &placed);
     hn_snapshot_labels(c, &sheet, drawing, selected, opts, &placed);
     hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
     draw_scale_bar(c, &sheet);

@@ -48,6 +48,14 @@ typedef struct hn_snapshot_load {
     const char *unit; ///< "N"
 } hn_snapshot_load;
 
+/// The angle of a coordinate, drawn at a pivot of the selected pose.
+typedef struct hn_snapshot_angle {
+    int pivot, end; ///< points of the drawing: the bar that the coordinate turns
+    /// [rad] by which the bar has turned, counter-clockwise in this view, from where it lies at 0
+    double value;
+    const char *name;
+} hn_snapshot_angle;
+
 typedef struct hn_snapshot_opts {
     const char *title, *caption; ///< may be NULL
     double time;                 ///< [s]; NaN: not shown
@@ -59,7 +67,9 @@ typedef struct hn_snapshot_opts {
     double longest_load; ///< [unit] what the longest arrow stands for; 0: the largest of `loads`
     bool labels;         ///< points with a name show it
     bool dimensions;     ///< bars of the selected pose show their lengths
-    bool bare;           ///< the drawing and its scale bar alone: no words, legend or inset
+    int n_angles;
+    const hn_snapshot_angle *angles;
+    bool bare; ///< the drawing and its scale bar alone: no words, legend or inset
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);

@@ -59,17 +59,6 @@ static void segment_of(const hn_sheet *s, const hn_shape *shape, const double *p
     }
 }
 
-/// Room around a place for a name: the distance to the nearest line of the mechanism [px].
-static double room_at(const hn_sheet *s, const hn_drawing *d, const double *points,
-                      const double xy[2]) {
-    double room = (double)INFINITY, a[2], b[2];
-    for (int i = 0; i < d->n_shapes; i++) {
-        segment_of(s, &d->shapes[i], points, a, b);
-        room = fmin(room, distance_to_segment(xy, a, b));
-    }
-    return room;
-}
-
 /// From a text of this half width around `xy` to the nearest of those placed before; none is in the
 /// way from a line's height on.
 static double room_beside(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
@@ -113,6 +102,28 @@ static double room_on_sheet(const hn_sheet *s, const double xy[2], double half) 
     const double tall = 0.6 * s->font;
     const double across = fmin(xy[0] - half - 2, box->x + box->width - xy[0] - half);
     return fmin(across, fmin(xy[1] - tall - box->y, s->height - 2 - xy[1] - tall));
+}
+
+/// Half of what a shape covers across its segment [px].
+static double half_width_of(const hn_sheet *s, const hn_shape *shape) {
+    const bool is_bar = shape->kind == HN_SHAPE_BAR && shape->width > 0;
+    return 0.5 * (is_bar ? fmax(4, s->scale * shape->width) : s->bar);
+}
+
+double hn_label_room_of_all(const hn_sheet *s, const hn_drawing *d, const double *points,
+                            const hn_label_places *placed, const double xy[2], double half) {
+    double room = hn_label_room(s, placed, xy, half), a[2], b[2];
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *shape = &d->shapes[i];
+        segment_of(s, shape, points, a, b);
+        room = fmin(room, room_of_text(xy, half, s->font, a, b) - half_width_of(s, shape));
+        for (int k = 0; k < shape->n && shape->kind == HN_SHAPE_POLYGON; k++) {
+            hn_sheet_pixel(s, points + 3 * (shape->p + k), a);
+            hn_sheet_pixel(s, points + 3 * (shape->p + (k + 1) % shape->n), b);
+            room = fmin(room, room_of_text(xy, half, s->font, a, b));
+        }
+    }
+    return fmin(room, room_on_sheet(s, xy, half));
 }
 
 // ---- arrows ----
@@ -343,22 +354,23 @@ static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 
 // ---- names ----
 
-/// Of sixteen places around a point, the one with the most room; a place on another label only
-/// where all are.
+/// Of sixteen places around a point, near it and farther away, the nearest with room enough; the
+/// one with the most room where none has.
 static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
                         const hn_label_places *placed, double half, double out[2]) {
-    enum { PLACES = 16 };
-    const double off = 0.75 * s->bar + 0.85 * s->font;
+    enum { PLACES = 16, RINGS = 4 };
     const double wider = fmax(0, half - 0.5 * s->font); // a long text begins where a short one does
+    const double enough = 0.45 * s->font, step = 0.45 * s->font;
     double xy[2], most = -HUGE_VAL;
     hn_sheet_pixel(s, points + 3 * point, xy);
-    for (int k = 0; k < PLACES; k++) {
-        const double angle = 2 * 3.14159265358979324 * k / PLACES;
+    for (int k = 0; k < PLACES * RINGS; k++) {
+        const double angle = 2 * 3.14159265358979324 * (k % PLACES) / PLACES;
+        const double off = 0.75 * s->bar + 0.85 * s->font + step * (k / PLACES);
         const double place[2] = {xy[0] + (off + wider) * cos(angle), xy[1] - off * sin(angle)};
-        const double room =
-            fmin(room_at(s, d, points, place), hn_label_room(s, placed, place, half));
-        if (room > most + 0.5) {
-            most = room;
+        const double room = hn_label_room_of_all(s, d, points, placed, place, half);
+        const double worth = fmin(room, enough) - 0.25 * step * (k / PLACES);
+        if (worth > most + 0.5) {
+            most = worth;
             memcpy(out, place, sizeof place);
         }
     }

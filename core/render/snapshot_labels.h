@@ -38,6 +38,10 @@ void hn_label_keep_off_loads(const hn_sheet *s, const hn_snapshot_pose *pose,
 /// The room between a line of text and the texts and lines so far [px]; below 0 it lies on one.
 double hn_label_room(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
                      double half);
+/// The same, and the room to the bars, springs and supports of the mechanism and to the edge of the
+/// drawing's part of the sheet.
+double hn_label_room_of_all(const hn_sheet *s, const hn_drawing *d, const double *points,
+                            const hn_label_places *placed, const double xy[2], double half);
 /// Lays the arrows of opts.loads that have a length in this view, at most HN_LABEL_ARROWS, and
 /// finds a place for the value of each; returns how many there are.
 int hn_load_marks_place(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,

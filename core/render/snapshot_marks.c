@@ -113,18 +113,66 @@ static void place_on_line(const hn_sheet *s, const hn_label_places *placed, cons
     }
 }
 
-static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], const double b[2],
-                           const double middle[2], const char *text, hn_label_places *placed) {
+/// A dimension line beside its bar [px].
+typedef struct dimension {
+    double side[2]; ///< unit vector from the bar to the line
+    double off;     ///< from the bar to the line
+    double line[2][2];
+} dimension;
+
+/// How much of a dimension line lies on texts and lines that were placed before, as a share.
+static double share_covered(const hn_sheet *s, double line[2][2], const hn_label_places *placed) {
+    enum { SAMPLES = 9 };
+    double covered = 0;
+    for (int k = 0; k < SAMPLES; k++) {
+        const double t = (k + 0.5) / SAMPLES;
+        const double xy[2] = {line[0][0] + t * (line[1][0] - line[0][0]),
+                              line[0][1] + t * (line[1][1] - line[0][1])};
+        covered += (hn_label_room(s, placed, xy, 0) < 0) / (double)SAMPLES;
+    }
+    return covered;
+}
+
+/// Lays the line on the outer side of the bar, or, where other lines or the mechanism lie there, on
+/// the inner one or farther away.
+static dimension lay_dimension(const hn_sheet *s, const hn_drawing *d, const double *points,
+                               const double a[2], const double b[2], const double middle[2],
+                               double half, const hn_label_places *placed) {
+    enum { TIERS = 4 };
     const double length = hypot(b[0] - a[0], b[1] - a[1]);
     const double u[2] = {(b[0] - a[0]) / length, (b[1] - a[1]) / length};
-    double side[2] = {-u[1], u[0]};
-    if (side[0] * (a[0] + b[0] - 2 * middle[0]) + side[1] * (a[1] + b[1] - 2 * middle[1]) < 0) {
-        side[0] = -side[0];
-        side[1] = -side[1];
+    double outer[2] = {-u[1], u[0]}, best = -HUGE_VAL;
+    if (outer[0] * (a[0] + b[0] - 2 * middle[0]) + outer[1] * (a[1] + b[1] - 2 * middle[1]) < 0) {
+        outer[0] = -outer[0];
+        outer[1] = -outer[1];
     }
+    dimension out = {.off = 0};
+    for (int k = 0; k < 2 * TIERS; k++) {
+        const double sign = k % 2 ? -1 : 1, off = 1.1 * s->bar + (1.1 + 1.3 * (k / 2)) * s->font;
+        dimension at = {.side = {sign * outer[0], sign * outer[1]}, .off = off};
+        for (int i = 0; i < 2; i++) {
+            at.line[0][i] = a[i] + off * at.side[i];
+            at.line[1][i] = b[i] + off * at.side[i];
+        }
+        const double text[2] = {(at.line[0][0] + at.line[1][0]) / 2,
+                                (at.line[0][1] + at.line[1][1]) / 2};
+        const double room = hn_label_room_of_all(s, d, points, placed, text, half);
+        const double worth =
+            fmin(room, 0.3 * s->font) -
+            s->font * (1.5 * share_covered(s, at.line, placed) + 0.3 * (k / 2) + 0.2 * (k % 2));
+        if (worth > best) {
+            best = worth;
+            out = at;
+        }
+    }
+    return out;
+}
 
+static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], const double b[2],
+                           const dimension *at, const char *text, hn_label_places *placed) {
     // extension lines from the bar to a little beyond the dimension line
-    const double off = 1.1 * s->bar + 1.1 * s->font, gap = 0.7 * s->bar, beyond = 0.35 * s->font;
+    const double off = at->off, gap = 0.7 * s->bar, beyond = 0.35 * s->font;
+    const double *side = at->side;
     const hn_stroke thin =
         hn_stroke_solid(hn_surface_get(hn_canvas_theme(c))->muted, 0.6 * s->line);
     const double *const ends[2] = {a, b};
@@ -135,20 +183,19 @@ static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], c
     }
 
     // arrows from the middle to both ends, and the value on them
-    const double x = (a[0] + b[0]) / 2 + off * side[0], y = (a[1] + b[1]) / 2 + off * side[1];
+    const double middle_at[2] = {(a[0] + b[0]) / 2 + off * side[0],
+                                 (a[1] + b[1]) / 2 + off * side[1]};
     for (int i = 0; i < 2; i++) {
-        hn_canvas_arrow(c, x, y, ends[i][0] + off * side[0], ends[i][1] + off * side[1],
+        hn_canvas_arrow(c, middle_at[0], middle_at[1], at->line[i][0], at->line[i][1],
                         0.6 * s->font, &thin);
     }
     const double half = 0.5 * hn_canvas_text_width(0.85 * s->font, text);
-    const double middle_at[2] = {x, y}, along[2] = {b[0] - a[0], b[1] - a[1]};
-    double at[2];
-    place_on_line(s, placed, middle_at, along, half, at);
-    draw_value(c, s, at[0], at[1], text);
-    hn_label_remember(placed, at, half);
-    const double line[2][2] = {{a[0] + off * side[0], a[1] + off * side[1]},
-                               {b[0] + off * side[0], b[1] + off * side[1]}};
-    hn_label_keep_off_line(placed, line);
+    const double along[2] = {b[0] - a[0], b[1] - a[1]};
+    double xy[2];
+    place_on_line(s, placed, middle_at, along, half, xy);
+    draw_value(c, s, xy[0], xy[1], text);
+    hn_label_remember(placed, xy, half);
+    hn_label_keep_off_line(placed, at->line);
 }
 
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
@@ -167,7 +214,9 @@ void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d
         hn_sheet_pixel(s, q, b);
         hn_si_format(hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]), "m", 3, text);
         if (hypot(b[0] - a[0], b[1] - a[1]) >= SHORTEST_DIMENSION * s->font) {
-            draw_dimension(c, s, a, b, middle, text, placed);
+            const double half = 0.5 * hn_canvas_text_width(0.85 * s->font, text);
+            const dimension at = lay_dimension(s, d, pose->points, a, b, middle, half, placed);
+            draw_dimension(c, s, a, b, &at, text, placed);
         }
     }
 }
@@ -215,6 +264,9 @@ static void put_shape(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d, cons
     hn_json_object(b);
     hn_json_put_string(b, "kind", hn_shape_kind_name(shape->kind));
     hn_json_put_int(b, "pose", pose);
+    if (shape->kind == HN_SHAPE_PIVOT || shape->kind == HN_SHAPE_GROUND) {
+        hn_json_put_string(b, "joint", hn_joint_type_name(shape->joint));
+    }
     hn_json_key(b, "points");
     hn_json_raw(b, hn_strbuf_text(&world));
     hn_json_key(b, "pixels");
@@ -264,4 +316,16 @@ void hn_snapshot_primitives(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d
     }
     hn_json_end_array(b);
     hn_json_put_number(b, "longest_load", hn_snapshot_longest_load(s, opts));
+    hn_json_key(b, "angles");
+    hn_json_array(b);
+    for (int i = 0; i < opts->n_angles; i++) {
+        const hn_snapshot_angle *angle = &opts->angles[i];
+        hn_json_object(b);
+        hn_json_put_string(b, "name", angle->name);
+        hn_json_put_number(b, "value", angle->value);
+        hn_json_put_numbers(b, "pivot", poses[s->selected].points + 3 * angle->pivot, 3);
+        hn_json_put_numbers(b, "end", poses[s->selected].points + 3 * angle->end, 3);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
 }

@@ -16,7 +16,8 @@ void hn_snapshot_markers(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                             const hn_snapshot_pose *pose, hn_label_places *placed);
 /// Writes "primitives": a list of {"kind","pose","points":[[x, y, z], ...],"pixels":[[x, y], ...],
-/// "labels"}, shape by shape of every pose that is drawn, [m] and [px]; "traces" and "loads".
+/// "labels"}, shape by shape of every pose that is drawn, [m] and [px], with "joint" where a symbol
+/// is drawn; "traces", "loads" and "angles".
 void hn_snapshot_primitives(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d,
                             const hn_snapshot_pose *poses, int n_poses,
                             const hn_snapshot_opts *opts);

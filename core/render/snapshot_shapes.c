@@ -20,6 +20,7 @@ enum { TRACE_PIECE = 256 };
 typedef struct pen {
     hn_canvas *c;
     const hn_sheet *s;
+    const hn_drawing *d;
     const double *points; ///< world
     hn_stroke outline;
     hn_paint fill;
@@ -64,11 +65,92 @@ static void draw_bar(const pen *p, const hn_shape *shape) {
     draw_outlined(p, xy, hn_canvas_capsule(a[0], a[1], b[0], b[1], bar_width(p, shape), xy));
 }
 
+// ---- symbols of joints, as ISO 3952 draws them ----
+
+static bool same_place(const pen *p, int a, int b) {
+    const double *x = p->points + 3 * a, *y = p->points + 3 * b;
+    return fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) < 1e-3 * p->s->scale_bar;
+}
+
+/// The angle [rad, clockwise from x] at which the bar of the body that holds the joint leaves it,
+/// or the other body's; a support is below. False: no such bar is there.
+static bool find_bar(const pen *p, const hn_shape *joint, bool of_holder, double *angle) {
+    const bool on_ground = joint->kind == HN_SHAPE_GROUND;
+    double longest = 0;
+    if (of_holder && on_ground) {
+        *angle = asin(1);
+        return true;
+    }
+    for (int i = 0; i < p->d->n_shapes; i++) {
+        const hn_shape *bar = &p->d->shapes[i];
+        if (bar->kind != HN_SHAPE_BAR || (bar->body == joint->body) != of_holder) {
+            continue;
+        }
+        for (int end = 0; end < 2; end++) {
+            double a[2], b[2], u[2];
+            at(p, end ? bar->q : bar->p, a);
+            at(p, end ? bar->p : bar->q, b);
+            const double length = direction(a, b, u);
+            if (same_place(p, end ? bar->q : bar->p, joint->p) && length > longest) {
+                longest = length;
+                *angle = atan2(u[1], u[0]);
+            }
+        }
+    }
+    return longest > 0;
+}
+
+/// A ball in the socket of the body that holds it.
+static void draw_ball(const pen *p, const double a[2], const hn_shape *shape) {
+    const double ball = fmax(3, 0.46 * p->s->bar), socket = ball + fmax(2.5, 2 * p->s->line);
+    const hn_stroke wire = {.paint = p->outline.paint, .width = p->outline.width};
+    const hn_stroke cup = {.paint = p->outline.paint, .width = 1.5 * p->outline.width};
+    const hn_paint paper = hn_paint_solid(hn_surface_get(hn_canvas_theme(p->c))->paper);
+    double holder = asin(1);
+    if (!find_bar(p, shape, true, &holder)) {
+        find_bar(p, shape, false, &holder);
+    }
+    if (p->has_fill) {
+        hn_canvas_disc(p->c, a[0], a[1], socket, paper);
+        hn_canvas_disc(p->c, a[0], a[1], ball, p->fill);
+    }
+    hn_canvas_ring(p->c, a[0], a[1], ball, &wire);
+    hn_canvas_arc(p->c, a[0], a[1], socket, holder - 1.9, holder + 1.9, &cup);
+}
+
+/// Two forks and the cross between them.
+static void draw_universal(const pen *p, const double a[2], const hn_shape *shape) {
+    const double fork = fmax(5, 0.85 * p->s->bar), pin = 0.8 * fork;
+    const hn_stroke wire = {.paint = p->outline.paint, .width = p->outline.width};
+    double angle[2] = {asin(1), -asin(1)};
+    const bool held = find_bar(p, shape, true, &angle[0]);
+    const bool holds = find_bar(p, shape, false, &angle[1]);
+    angle[0] = !held && holds ? angle[1] + acos(-1) : angle[0];
+    angle[1] = !holds ? angle[0] + acos(-1) : angle[1];
+    if (p->has_fill) {
+        hn_canvas_disc(p->c, a[0], a[1], fork,
+                       hn_paint_solid(hn_surface_get(hn_canvas_theme(p->c))->paper));
+    }
+
+    // the pin of the first fork lies across it, the other across that
+    for (int i = 0; i < 2; i++) {
+        const double across = angle[0] + (i ? 0 : asin(1));
+        hn_canvas_segment(p->c, a[0] - pin * cos(across), a[1] - pin * sin(across),
+                          a[0] + pin * cos(across), a[1] + pin * sin(across), &wire);
+        hn_canvas_arc(p->c, a[0], a[1], fork, angle[i] - 1.2, angle[i] + 1.2, &wire);
+    }
+}
+
 static void draw_pivot(const pen *p, const hn_shape *shape) {
     if (p->is_reference) {
         return;
     }
     double a[2];
+    if (shape->joint == HN_JOINT_SPHERICAL || shape->joint == HN_JOINT_UNIVERSAL) {
+        at(p, shape->p, a);
+        (shape->joint == HN_JOINT_SPHERICAL ? draw_ball : draw_universal)(p, a, shape);
+        return;
+    }
     at(p, shape->p, a);
     const hn_stroke ring = {.paint = p->outline.paint,
                             .width = p->has_fill ? p->s->line : 0.6 * p->s->line};
@@ -251,11 +333,6 @@ static double middle_depth(const pen *p, const hn_shape *shape) {
     return depth;
 }
 
-static bool same_place(const pen *p, int a, int b) {
-    const double *x = p->points + 3 * a, *y = p->points + 3 * b;
-    return fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) < 1e-3 * p->s->scale_bar;
-}
-
 /// A pin is seen before every bar that it holds.
 static double pin_depth(const pen *p, const hn_drawing *d, const hn_shape *pin) {
     double depth = middle_depth(p, pin);
@@ -340,6 +417,7 @@ void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
     const pen p = {.c = c,
                    .s = s,
+                   .d = d,
                    .points = pose->points,
                    .outline = hn_stroke_solid(surface->muted, 0.8 * s->line),
                    .fill = hn_paint_solid(surface->raised),
@@ -369,6 +447,7 @@ void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     const hn_theme theme = hn_canvas_theme(c);
     pen p = {.c = c,
              .s = s,
+             .d = d,
              .points = pose->points,
              .outline = hn_slot_stroke(theme, pose->slot, s->line)};
     p.is_reference = pose->slot == HN_LOOK_REFERENCE && !is_selected;

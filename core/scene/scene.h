@@ -211,6 +211,9 @@ typedef struct hn_shape {
     int p, q, n;  ///< point indices; polygon: points p .. p + n - 1
     double width; ///< [m], 0: let the drawer choose
     int body;     ///< body it belongs to (for colouring), HN_GROUND if none
+    /// of a pivot or a support: the joint there, whose symbol is drawn; a pin where it is neither
+    /// spherical nor universal
+    hn_joint_type joint;
 } hn_shape;
 
 typedef struct hn_scene {

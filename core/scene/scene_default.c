@@ -302,6 +302,31 @@ static void draw_load(hn_reader *r, const hn_load *load) {
     }
 }
 
+// ---- symbols ----
+
+static bool is_at(const hn_point *point, int body, const hn_quantity at[3]) {
+    return point->body == body && same_place(point->at, at);
+}
+
+/// Says of each pivot and support whether a ball joint or a universal joint is there, whoever drew
+/// it.
+static void name_symbols(const hn_reader *r) {
+    const hn_scene *s = r->scene;
+    for (int i = 0; i < s->n_shapes; i++) {
+        hn_shape *shape = &s->shapes[i];
+        const bool is_pin = shape->kind == HN_SHAPE_PIVOT || shape->kind == HN_SHAPE_GROUND;
+        for (int k = 0; k < s->n_joints && is_pin; k++) {
+            const hn_joint *j = &s->joints[k];
+            const hn_point *point = &s->points[shape->p];
+            const bool turns = j->type == HN_JOINT_SPHERICAL || j->type == HN_JOINT_UNIVERSAL;
+            if (turns && !j->is_formal &&
+                (is_at(point, j->parent, j->parent_at) || is_at(point, j->child, j->child_at))) {
+                shape->joint = j->type;
+            }
+        }
+    }
+}
+
 void hn_rd_draw_default(hn_reader *r, const cJSON *root) {
     static const char *const bars[] = {"bars", "polygons"},
                              *const symbols[] = {"pivots", "ground", "sliders", "guides"},
@@ -326,4 +351,5 @@ void hn_rd_draw_default(hn_reader *r, const cJSON *root) {
     for (int k = 0; k < s->n_loads && !hn_rd_stopped(r) && !draw_has(root, loads, 3); k++) {
         draw_load(r, &s->loads[k]);
     }
+    name_symbols(r);
 }

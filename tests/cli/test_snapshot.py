@@ -35,6 +35,27 @@ class Snapshot(Command):
         with open(path, "rb") as f:
             return f.read(), document, done.stderr
 
+    def test_dimensions_show_the_angles_of_joints(self):
+        with tempfile.TemporaryDirectory() as folder:
+            svg, document, _ = self.picture(folder, "a.svg", "--time", "0", "--dimensions")
+            plain, bare, _ = self.picture(folder, "b.svg", "--time", "0")
+        angles = {angle["name"]: angle for angle in document["picture"]["angles"]}
+        self.assertEqual(sorted(angles), ["a2", "th1", "th3"])  # b3 closes the loop: it is no coordinate
+        self.assertEqual(angles["th1"]["value"], 1)
+        for name in ("th1", "th3"):  # from the ground: the bar's own direction
+            (x, y, _), (p, q, _) = angles[name]["end"], angles[name]["pivot"]
+            self.assertAlmostEqual(math.atan2(y - q, x - p), angles[name]["value"], 12)
+        self.assertEqual(bare["picture"]["angles"], [])
+        self.assertGreater(svg.count(b"<path"), plain.count(b"<path"))
+
+    def test_ball_and_universal_joints_have_symbols_of_their_own(self):
+        expected = {"rssr": {"spherical", "revolute"}, "cardan-shaft": {"universal", "revolute"}, "stewart-6-6": {"spherical", "universal"}, "four-bar": {"revolute"}}
+        with tempfile.TemporaryDirectory() as folder:
+            for scene, joints in expected.items():
+                path = os.path.join(folder, scene + ".png")
+                document = strict(self.assert_exit(call("snapshot", scene, "--time", "0", "-o", path, "--describe"), DONE))
+                self.assertEqual({shape["joint"] for shape in document["picture"]["primitives"] if "joint" in shape}, joints, scene)
+
     def test_the_ending_of_a_snapshot_is_its_format_or_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             for name in ("x.pdf", "x", "x.jpg"):

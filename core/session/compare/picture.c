@@ -79,6 +79,8 @@ static int gather(sheet *p, int moment) {
     p->opts.time = m->time;
     p->opts.n_loads = m->n_loads;
     p->opts.loads = m->loads;
+    p->opts.n_angles = m->n_angles;
+    p->opts.angles = m->angles;
     return n + m->n_poses;
 }
 

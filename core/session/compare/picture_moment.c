@@ -3,6 +3,7 @@
 
 #include "base/units.h"
 #include "dynamics/compile/coordinates.h"
+#include "session/compare/picture_angles.h"
 #include "session/model/envelope.h"
 #include "session/model/reactions_json.h"
 #include "session/model/state.h"
@@ -257,6 +258,33 @@ static hn_status gather_given_pose(hn_picture_moment *p, hn_diags *diags) {
     return status;
 }
 
+// ---- angles ----
+
+/// The angles at the state that the first method has reached, or at the pose that was given.
+static hn_status gather_angles(hn_picture_moment *p, hn_diags *diags) {
+    const hn_system *sys = hn_model_system(p->model);
+    const hn_system_info info = hn_system_get_info(sys);
+    const size_t n = (size_t)hn_model_scene(p->model)->n_coordinates;
+    double *q = hn_arena_doubles(p->arena, (size_t)info.nq + 1);
+    double *v = hn_arena_doubles(p->arena, (size_t)info.nv + 1);
+    double *user = hn_arena_doubles(p->arena, n + 1);
+    hn_sample sample = {0};
+    p->angles = hn_arena_get(p->arena, (n + 1) * sizeof *p->angles);
+    if (!q || !v || !user || !p->angles) {
+        return HN_ERR_MEMORY;
+    }
+    if (p->comparison) {
+        hn_comparison_sample(p->comparison, 0, &sample);
+    } else {
+        const hn_picture_request *r = p->request;
+        HN_TRY(hn_model_state(p->model, r->entries, r->n_entries, q, v, diags));
+        hn_system_to_user(sys, q, user);
+        sample.q = user;
+    }
+    p->n_angles = sample.q ? hn_picture_angles(p->model, sample.q, p->angles) : 0;
+    return HN_OK;
+}
+
 // ---- forces ----
 
 /// Says in the legend at which joint each arrow acts, and on which body: "forces: A on coupler";
@@ -373,6 +401,7 @@ hn_status hn_picture_moment_make(hn_picture_moment *p, const hn_model *model,
     } else if (status == HN_OK) {
         status = gather_given_pose(p, diags);
     }
+    HN_THEN(status, request->dimensions ? gather_angles(p, diags) : HN_OK);
     HN_THEN(status, request->forces ? gather_forces(p, diags) : HN_OK);
     return status;
 }

@@ -25,6 +25,8 @@ typedef struct hn_picture_moment {
     int n_traces, trace_points[HN_PICTURE_TRACES];
     int n_loads;
     hn_snapshot_load *loads; ///< forces in the joints of the first method
+    int n_angles;
+    hn_snapshot_angle *angles; ///< of the first pose, where dimensions are asked for
 } hn_picture_moment;
 
 /// Runs the methods to `time`, or takes the pose that the request gives. *ended becomes the status

@@ -17,13 +17,13 @@ static const char *const labels[5] = {"O", "A", "B", "D", NULL};
 static const int tears[1][2] = {{2, 4}};
 static const char *const tear_names[1] = {"tear at B"};
 static const hn_shape shapes[] = {
-    {HN_SHAPE_GROUND, 0, 0, 0, 0, HN_GROUND},
-    {HN_SHAPE_GROUND, 3, 3, 0, 0, HN_GROUND},
-    {HN_SHAPE_BAR, 0, 1, 0, 0, 0},
-    {HN_SHAPE_BAR, 1, 2, 0, 0, 1},
-    {HN_SHAPE_BAR, 3, 4, 0, 0, 2},
-    {HN_SHAPE_PIVOT, 0, 0, 0, 0, 0},
-    {HN_SHAPE_PIVOT, 1, 1, 0, 0, 1},
+    {HN_SHAPE_GROUND, 0, 0, 0, 0, HN_GROUND, HN_JOINT_REVOLUTE},
+    {HN_SHAPE_GROUND, 3, 3, 0, 0, HN_GROUND, HN_JOINT_REVOLUTE},
+    {HN_SHAPE_BAR, 0, 1, 0, 0, 0, HN_JOINT_REVOLUTE},
+    {HN_SHAPE_BAR, 1, 2, 0, 0, 1, HN_JOINT_REVOLUTE},
+    {HN_SHAPE_BAR, 3, 4, 0, 0, 2, HN_JOINT_REVOLUTE},
+    {HN_SHAPE_PIVOT, 0, 0, 0, 0, 0, HN_JOINT_REVOLUTE},
+    {HN_SHAPE_PIVOT, 1, 1, 0, 0, 1, HN_JOINT_REVOLUTE},
 };
 static const hn_drawing four_bar = {5,     labels,    sizeof shapes / sizeof *shapes, shapes, 1,
                                     tears, tear_names};
@@ -152,8 +152,8 @@ static void with_a_fixed_view_the_scale_does_not_depend_on_the_pose(void **state
 static void in_space_what_is_nearer_covers_what_is_farther(void **state) {
     (void)state;
     static const char *const none[4] = {NULL, NULL, NULL, NULL};
-    static const hn_shape cross[] = {{HN_SHAPE_BAR, 0, 1, 0, 0.3, 0},
-                                     {HN_SHAPE_PIVOT, 2, 2, 0, 0.3, 1}};
+    static const hn_shape cross[] = {{HN_SHAPE_BAR, 0, 1, 0, 0.3, 0, HN_JOINT_REVOLUTE},
+                                     {HN_SHAPE_PIVOT, 2, 2, 0, 0.3, 1, HN_JOINT_REVOLUTE}};
     const hn_drawing both = {3, none, 2, cross, 0, NULL, NULL};
     const hn_drawing bar = {3, none, 1, cross, 0, NULL, NULL};
     int shown[2];
@@ -304,7 +304,7 @@ static void every_kind_of_shape_but_arrow_and_trace_leaves_ink(void **state) {
     const hn_drawing nothing = {4, no_labels, 0, NULL, 0, NULL, NULL};
     unsigned char *blank = draw(&nothing, &pose, 1, &opts);
     for (int kind = HN_SHAPE_BAR; kind <= HN_SHAPE_POLYGON; kind++) {
-        const hn_shape shape = {(hn_shape_kind)kind, 0, 1, 4, 0, 0};
+        const hn_shape shape = {(hn_shape_kind)kind, 0, 1, 4, 0, 0, HN_JOINT_REVOLUTE};
         const hn_drawing one = {4, no_labels, 1, &shape, 0, NULL, NULL};
         unsigned char *rgb = draw(&one, &pose, 1, &opts);
         assert_int_equal(differing_pixels(blank, rgb) > 50, kind != HN_SHAPE_ARROW);

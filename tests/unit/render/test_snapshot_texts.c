@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the texts of a sheet stand: lengths, angles and names keep off the mechanism and each
+// other.
+#include "support/near.h"
+
+#include "render/snapshot.h"
+#include "render/snapshot_angles.h"
+#include "render/snapshot_labels.h"
+#include "render/snapshot_marks.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { WIDTH = 1000, HEIGHT = 720, N_POINTS = 6 };
+
+// a pantograph: O B A on one line, A C P on another, and a parallelogram B A C D
+static const char *const labels[N_POINTS] = {"O", "B", "A", "C", "P", "D"};
+static const double points[3 * N_POINTS] = {0,   0,   0, 0.3, 0.4, 0, 0.6, 0.8, 0,
+                                            0.9, 0.4, 0, 1.2, 0,   0, 0.6, 0,   0};
+static const hn_shape shapes[] = {
+    {.kind = HN_SHAPE_GROUND, .p = 0, .q = 0, .body = HN_GROUND},
+    {.kind = HN_SHAPE_BAR, .p = 0, .q = 2, .body = 0},
+    {.kind = HN_SHAPE_BAR, .p = 2, .q = 4, .body = 1},
+    {.kind = HN_SHAPE_BAR, .p = 0, .q = 1, .body = 0},
+    {.kind = HN_SHAPE_BAR, .p = 1, .q = 2, .body = 0},
+    {.kind = HN_SHAPE_BAR, .p = 1, .q = 5, .body = 2},
+    {.kind = HN_SHAPE_BAR, .p = 3, .q = 5, .body = 3},
+    {.kind = HN_SHAPE_PIVOT, .p = 2, .q = 2, .body = 0},
+};
+static const hn_drawing pantograph = {
+    .n_points = N_POINTS,
+    .labels = labels,
+    .n_shapes = sizeof shapes / sizeof *shapes,
+    .shapes = shapes,
+};
+static const hn_snapshot_pose pose = {.points = points, .selected = 1};
+
+static hn_sheet make_sheet(const hn_snapshot_opts *opts) {
+    hn_sheet sheet;
+    assert_int_equal(hn_sheet_make(&sheet, WIDTH, HEIGHT, &pantograph, &pose, 1, opts, NULL),
+                     HN_OK);
+    return sheet;
+}
+
+static hn_canvas *create(void) {
+    hn_canvas *c = NULL;
+    assert_int_equal(hn_canvas_create(WIDTH, HEIGHT, HN_THEME_LIGHT, &c, NULL), HN_OK);
+    return c;
+}
+
+static void names_and_angles_stand_beside_the_bars(void **state) {
+    (void)state;
+    static const hn_snapshot_angle angles[] = {
+        {.pivot = 0, .end = 2, .value = 0.93, .name = "th1"},
+        {.pivot = 2, .end = 4, .value = -1.85, .name = "a"},
+    };
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    opts.dimensions = true;
+    opts.angles = angles;
+    opts.n_angles = 2;
+    const hn_sheet sheet = make_sheet(&opts);
+    hn_canvas *c = create();
+    hn_label_places placed = {0};
+    hn_snapshot_angles(c, &sheet, &pantograph, &pose, &opts, &placed);
+    assert_int_equal(placed.n, 2);
+    hn_snapshot_labels(c, &sheet, &pantograph, &pose, &opts, &placed);
+    hn_canvas_free(c);
+    assert_int_equal(placed.n, 2 + N_POINTS);
+    for (int i = 0; i < placed.n; i++) {
+        const hn_label_places nothing = {0};
+        assert_true(hn_label_room_of_all(&sheet, &pantograph, points, &nothing, placed.at[i],
+                                         placed.half[i]) >= 0);
+    }
+}
+
+// O B and B A lie on O A: three dimension lines that would be one
+static void dimension_lines_of_bars_on_one_line_lie_apart(void **state) {
+    (void)state;
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    const hn_sheet sheet = make_sheet(&opts);
+    hn_canvas *c = create();
+    hn_label_places placed = {0};
+    hn_snapshot_dimensions(c, &sheet, &pantograph, &pose, &placed);
+    hn_canvas_free(c);
+    assert_int_equal(placed.n, 6);
+    double away[3]; // of the lines of O A, O B and B A from that line
+    for (int i = 0; i < 3; i++) {
+        const double(*line)[2] = placed.line[i == 0 ? 0 : i + 1];
+        double o[2], a[2];
+        hn_sheet_pixel(&sheet, points, o);
+        hn_sheet_pixel(&sheet, points + 6, a);
+        const double length = hypot(a[0] - o[0], a[1] - o[1]);
+        away[i] =
+            ((a[0] - o[0]) * (line[0][1] - o[1]) - (a[1] - o[1]) * (line[0][0] - o[0])) / length;
+    }
+    for (int i = 1; i < 3; i++) {
+        assert_true(fabs(away[i] - away[0]) > sheet.font);
+    }
+}
+
+// a full turn is no arc, and neither is an angle that cannot be seen
+static void an_angle_without_an_arc_has_no_text(void **state) {
+    (void)state;
+    hn_snapshot_angle angle = {.pivot = 0, .end = 2, .name = "th1"};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    opts.angles = &angle;
+    opts.n_angles = 1;
+    const hn_sheet sheet = make_sheet(&opts);
+    hn_canvas *c = create();
+    static const double values[] = {0, 1e-3, 2 * M_PI, 1, -7};
+    static const int texts[] = {0, 0, 0, 1, 1};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        hn_label_places placed = {0};
+        angle.value = values[i];
+        hn_snapshot_angles(c, &sheet, &pantograph, &pose, &opts, &placed);
+        assert_int_equal(placed.n, texts[i]);
+    }
+    hn_canvas_free(c);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_and_angles_stand_beside_the_bars),
+        cmocka_unit_test(dimension_lines_of_bars_on_one_line_lie_apart),
+        cmocka_unit_test(an_angle_without_an_arc_has_no_text),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
