@@ -24,6 +24,12 @@ void hn_contents_read(hn_contents *c, const cJSON *root) {
     const cJSON *part;
     *c = (hn_contents){.statement = take_two(root, "title", "statement"),
                        .numbers = take_two(root, "draw", "conditions")};
+    if (!cJSON_GetObjectItemCaseSensitive(root, "parts")) {
+        const uint64_t from = take_two(root, "parameters", "coordinates");
+        c->numbers = hn_hash_mix(from ^ take_two(root, "states", "aliases"));
+        c->equations = take_two(root, "phi", "answer");
+        c->judging = take_two(root, "tolerance", "partial");
+    }
     cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(root, "parts")) {
         if (c->n_parts < HN_CONTENTS_PARTS) {
             c->part[c->n_parts++] = hn_hash_mix(take(HN_HASH_START, part));
@@ -38,13 +44,16 @@ static void put_hash(hn_strbuf *b, const char *name, uint64_t hash) {
 }
 
 void hn_contents_put(hn_strbuf *b, const hn_contents *c, const hn_part *parts) {
-    if (c->n_parts == 0) {
-        return;
-    }
     hn_json_key(b, "contents");
     hn_json_object(b);
     put_hash(b, "statement", c->statement);
     put_hash(b, "numbers", c->numbers);
+    if (c->n_parts == 0) {
+        put_hash(b, "equations", c->equations);
+        put_hash(b, "judging", c->judging);
+        hn_json_end_object(b);
+        return;
+    }
     hn_json_key(b, "parts");
     hn_json_object(b);
     for (int i = 0; i < c->n_parts; i++) {
@@ -70,14 +79,21 @@ void hn_contents_put_changes(hn_strbuf *b, const hn_contents *c, const hn_part *
                              const cJSON *old) {
     const cJSON *olds = cJSON_GetObjectItemCaseSensitive(old, "parts"), *one;
     const size_t start = b->n;
-    if (!cJSON_IsObject(olds)) {
-        return;
+    const bool is_matrix = c->n_parts == 0;
+    if (is_matrix ? !cJSON_GetObjectItemCaseSensitive(old, "equations") : !cJSON_IsObject(olds)) {
+        return; // an older verdict
     }
     if (!is_same(old, "statement", c->statement)) {
         add_change(b, start, "its statement", "", "");
     }
     if (!is_same(old, "numbers", c->numbers)) {
         add_change(b, start, "how its numbers are drawn", "", "");
+    }
+    if (is_matrix && !is_same(old, "equations", c->equations)) {
+        add_change(b, start, "its equations or what is asked", "", "");
+    }
+    if (is_matrix && !is_same(old, "judging", c->judging)) {
+        add_change(b, start, "its tolerance or the shares of mistakes", "", "");
     }
     for (int i = 0; i < c->n_parts; i++) {
         if (!cJSON_GetObjectItemCaseSensitive(olds, parts[i].id)) {

@@ -275,6 +275,7 @@ hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, h
                 read_parts(&r, root);
             } else {
                 read_problem(&r, root);
+                hn_contents_read(&p->contents, root);
             }
         }
         status = r.status != HN_OK ? r.status : p->n_parts ? HN_OK : check_problem(p, diags);

@@ -3,10 +3,12 @@
 
 #include "base/suggest.h"
 #include "grade/exam.h"
+#include "grade/parts/part_list.h"
 #include "grade/parts/part_model.h"
 #include "grade/variant.h"
 #include "session/compare/picture.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,6 +63,17 @@ static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
     hn_strbuf_reset(&names);
 }
 
+/// The estimate for all parts, or for the entries of a matrix, rounded up to five minutes.
+static int count_minutes(const hn_exercise *problem) {
+    const double an_entry = 1.5;
+    double minutes = problem->n_parts ? 0 : an_entry * problem->n_rows * problem->n_columns;
+    const cJSON *part;
+    cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(problem->root, "parts")) {
+        minutes += hn_part_minutes(hn_part_text(part, "kind"));
+    }
+    return 5 * (int)ceil(minutes / 5);
+}
+
 void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
     hn_json_object(b);
     hn_json_key(b, "problems");
@@ -82,6 +95,8 @@ void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
             put_varied(b, problem);
             hn_json_put_string(b, "scene", hn_exercise_scene(problem));
             hn_json_put_number(b, "points", hn_exercise_points(problem));
+            hn_json_put_int(b, "minutes", count_minutes(problem));
+            hn_json_put_int(b, "time_limit", HN_GRADE_TIME_LIMIT);
         } else {
             hn_json_key(b, "errors");
             hn_json_diags(b, &diags);

@@ -7,11 +7,14 @@
 #include "grade/verdict.h"
 #include "session/model/library.h"
 
+enum { HN_GRADE_TIME_LIMIT = 60 }; ///< [s] for grading one submission of a class
+
 /// Returns owned in *out. An unknown id: HN_ERR_INPUT with a near miss (pointer "/problem").
 HN_MUST_CHECK hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id,
                                                hn_exercise **out, hn_diags *diags);
-/// {"problems":[{"id","title","scene","points"}...]}; one that does not load stands there with its
-/// "errors".
+/// {"problems":[{"id","title","scene","points","minutes","time_limit"}...]}: minutes that a student
+/// takes, estimated, and seconds that grading may take. One that does not load stands there with
+/// its "errors".
 void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib);
 /// The scene of an exercise with the numbers of a variant (seed 0: the exercise's own): that of its
 /// matrix in the first state, or that of the first part with a scene. Names are borrowed from the

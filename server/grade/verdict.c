@@ -182,6 +182,8 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     hn_json_put_int(b, "states", v->n_states);
     if (v->problem->n_parts > 0) {
         hn_json_put_int(b, "letters", v->problem->first_letters ? 1 : HN_LETTERS);
+    }
+    if (!v->program) {
         hn_contents_put(b, &v->problem->contents, v->problem->parts);
     }
 

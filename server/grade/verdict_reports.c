@@ -2,6 +2,7 @@
 #include "grade/verdict_reports.h"
 
 #include "base/base64.h"
+#include "render/canvas.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -146,7 +147,9 @@ static void put_figure(hn_strbuf *b, const hn_verdict *v, const hn_strbuf *png) 
                                        : "The mechanism in a state that shows the mistake in";
     hn_strbuf_printf(b, "<figure><img alt=\"%s %s\" src=\"data:image/png;base64,", what, e->name);
     hn_base64(b, hn_strbuf_text(png), png->n);
-    hn_strbuf_printf(b, "\"><figcaption>%s %s.</figcaption></figure>\n", what, e->name);
+    hn_strbuf_printf(b, "\"><figcaption>%s %s; drawn by %s.</figcaption></figure>\n", what, e->name,
+                     strcmp(hn_canvas_renderer(), "OSMesa") == 0 ? "OSMesa"
+                                                                 : "the built-in renderer");
 }
 
 /// A sentence below the outcome; nothing for an empty one.

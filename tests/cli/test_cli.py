@@ -47,6 +47,9 @@ class CommandLine(Command):
                                  ("lessons", "lessons", "01-closed-loops"), ("problems", "problems", "p3")):
             self.assertIn(known, self.assert_exit(call("list", what), DONE))
             self.assertTrue(strict(self.assert_exit(call("list", what, "--json"), DONE))[key])
+        exercises = strict(self.assert_exit(call("list", "problems", "--json"), DONE))["problems"]
+        self.assertEqual({exercise["time_limit"] for exercise in exercises}, {60})
+        self.assertTrue(all(5 <= exercise["minutes"] <= 45 and exercise["minutes"] % 5 == 0 for exercise in exercises))
 
     def test_inspect_equations_and_terms_speak_of_the_scene(self):
         self.assertTrue(self.assert_exit(call("inspect", "four-bar"), DONE))

@@ -97,6 +97,24 @@ def changed_since(folder):
     text, told = again(older)
     expect("a verdict that does not say what it was made of", told["changes"][0] == "the exercise has changed since the verdict", text)
 
+    # a matrix of formulas has no parts
+    with open(os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "problems", "p3.json")) as of:
+        matrix = json.load(of)
+    path, answer = write(folder, "matrix.json", matrix), write(folder, "j.json", {"J": [["-l1*sin(th1)"] * 4] * 2})
+    then_p3 = json.loads(run("grade", path, answer, "--json", "--no-pictures").stdout)
+    for what, change in (("its statement", {"title": "t"}), ("how its numbers are drawn", {"states": dict(matrix["states"], closed=23)}),
+                         ("its equations or what is asked", {"answer": dict(matrix["answer"], points=2)}),
+                         ("its tolerance or the shares of mistakes", {"partial": dict(matrix["partial"], sign=0.25)})):  # fmt: skip
+        write(folder, "matrix.json", dict(matrix, **change))
+        text, told = again(then_p3)
+        expect(f"of a matrix of formulas: {what}", told["changes"][0] == "the exercise has changed since the verdict: " + what, text)
+    page = write(folder, "v.html", {})
+    for renderer, name in (("built-in", "the built-in renderer"), ("", "OSMesa")):
+        subprocess.run([PROGRAM, "grade", "p3", answer, "-o", page], env=dict(os.environ, HOLONOM_RENDERER=renderer), capture_output=True, check=True)
+        with open(page) as of:
+            words = of.read().partition("<figcaption>")[2]
+        expect(f"a picture says that it was drawn by {name}", f"; drawn by {name}." in words[:200], words[:300])
+
     # a rubric that gives another share
     write(folder, "a.json", {"seed": 1, "a": 1, "b": 20})
     for share in (0.5, 0.25):

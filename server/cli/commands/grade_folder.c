@@ -13,6 +13,7 @@
 #include "cli/shell/notes.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
+#include "grade/exercise_shelf.h"
 
 #include <cjson/cJSON.h>
 #include <limits.h>
@@ -24,7 +25,6 @@
 #include <unistd.h>
 
 enum { MOST_BYTES = 256 << 20 };
-static const double TIME_LIMIT = 60; // [s] for one submission
 
 static bool is_graded(const cJSON *o) {
     return strcmp(hn_document_text(o, "status"), "graded") == 0;
@@ -177,7 +177,7 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
                                                     : (int)fmin(args->jobs, 1000),
                           .programs = subject->programs,
                           .blanks = subject->blanks,
-                          .time_limit = TIME_LIMIT,
+                          .time_limit = HN_GRADE_TIME_LIMIT,
                           .seed = isnan(args->seed) ? 0 : (uint64_t)args->seed,
                           .tell = tell,
                           .user = (void *)args};

@@ -20,7 +20,7 @@ static void methods_json(hn_strbuf *b, const hn_library *lib) {
     hn_methods_json(b);
 }
 
-enum { MAX_TABLES = 2, MAX_COLUMNS = 5, MAX_NAMES = 96 };
+enum { MAX_TABLES = 2, MAX_COLUMNS = 7, MAX_NAMES = 96 };
 
 /// What a card says below its title: the word in front, and the member it is read from.
 static const struct {
@@ -80,14 +80,17 @@ static const struct {
      "'holonom problem ID' prints an exercise",
      hn_shelf_exercises_json,
      {{"problems",
-       5,
+       7,
        {{"problem", "id", NULL},
         {"title", "title", NULL},
         {"lesson", "place", NULL},
         {"points", "points", ""},
+        {"minutes", "minutes", ""},
+        {"limit [s]", "time_limit", ""},
         {"drawn from the seed", "varied", NULL}},
-       "Grading one submission of a class takes at most 60 s; a run that a part asks for ends "
-       "after 200,000 steps."}}},
+       "minutes: for a student who has read the lesson, estimated from the kinds of answers; "
+       "limit: for grading one submission of a class. A run that a part asks for ends after "
+       "200,000 steps."}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 

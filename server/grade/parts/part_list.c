@@ -7,22 +7,23 @@
 
 static const struct {
     const char *name;
+    double minutes; ///< that such a part takes a student who has read the lesson, estimated
     const hn_part_kind *kind;
 } KINDS[] = {
-    {"number", &hn_part_values},
-    {"vector", &hn_part_values},
-    {"formula", &hn_part_values},
-    {"formulas", &hn_part_values},
-    {"choice", &hn_part_choice},
-    {"matrix", &hn_part_matrix},
-    {"blocks", &hn_part_blocks},
-    {"basis", &hn_part_basis},
-    {"example", &hn_part_example},
-    {"order", &hn_part_order},
-    {"method", &hn_part_method},
-    {"reading", &hn_part_reading},
-    {"configuration", &hn_part_configuration},
-    {"scene", &hn_part_scene},
+    {"number", 2.5, &hn_part_values},
+    {"vector", 4, &hn_part_values},
+    {"formula", 4, &hn_part_values},
+    {"formulas", 6, &hn_part_values},
+    {"choice", 2, &hn_part_choice},
+    {"matrix", 8, &hn_part_matrix},
+    {"blocks", 12, &hn_part_blocks},
+    {"basis", 8, &hn_part_basis},
+    {"example", 8, &hn_part_example},
+    {"order", 12, &hn_part_order},
+    {"method", 12, &hn_part_method},
+    {"reading", 3, &hn_part_reading},
+    {"configuration", 5, &hn_part_configuration},
+    {"scene", 8, &hn_part_scene},
 };
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 
@@ -40,6 +41,15 @@ static const hn_part_kind *find_kind(const char *name, hn_diag *diag) {
     hn_diag_set(diag, HN_ERR_INPUT, "/parts/kind", hint, "there is no kind of answer '%.40s'",
                 name);
     return NULL;
+}
+
+double hn_part_minutes(const char *kind) {
+    for (int i = 0; i < N_KINDS; i++) {
+        if (strcmp(KINDS[i].name, kind) == 0) {
+            return KINDS[i].minutes;
+        }
+    }
+    return 0;
 }
 
 /// 1 when the word stands in a list separated by blanks.

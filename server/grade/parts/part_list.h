@@ -11,4 +11,6 @@ extern const hn_part_kind hn_part_values, hn_part_choice, hn_part_matrix, hn_par
 
 /// Checks id, kind, points and that every member is known. `node` is the JSON of the part.
 HN_MUST_CHECK hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag);
+/// Returns how long a part of this kind takes a student [min], estimated; 0 for an unknown kind.
+double hn_part_minutes(const char *kind);
 #endif

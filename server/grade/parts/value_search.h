@@ -20,10 +20,11 @@ typedef struct hn_value_search {
                  ///< 2 a thousand times better
     hn_ex first; ///< its formula, and the factor of it
     double first_factor;
-    double alone;  ///< of the candidates tried next: the share of the mistake that is named, where
-                   ///< a second one beside it lowers the share; 0: nothing lowers it
-    int closeness; ///< how closely, as `close` counts, a number must agree with the candidates tried
-                   ///< next: the more there are, the closer
+    double alone; ///< of the candidates tried next: the share of the mistake that is named, where
+                  ///< a second one beside it lowers the share; 0: nothing lowers it
+    /// how closely, as `close` counts, a number must agree with the candidates tried next: the more
+    /// there are, the closer
+    int closeness;
 } hn_value_search;
 
 /// Begins the search for the mistake in entry k, whose values `given` are wrong.

@@ -193,7 +193,7 @@ static hn_ex rewrite(hn_graph *g, hn_ex e, const slip *s) {
     return hn_scale(without_number ? copysign(1, e.c) : e.c, whole);
 }
 
-/// Calls `visit` for each slip of the kinds before `end` that can happen, and returns how many there
+/// Calls `visit` for each slip of the kinds before `end` that can happen. Returns how many there
 /// are.
 static int visit_slips(hn_value_search *f, const node_list *list, int end,
                        void (*visit)(hn_value_search *, const slip *)) {
