@@ -11,6 +11,7 @@ static const double SMALLEST = 0.05;    // [rad] a smaller angle has no arc
 static const double VALUE_SIZE = 0.85;  // letters, of the body text
 static const double FIRST_RADIUS = 2.4; // [letters]
 static const double SAME_PLACE = 2;     // [px]
+static const double BEYOND = 0.8;       // [letters] that the dashed line is longer than the radius
 
 /// An angle on the sheet [px, rad], counted clockwise as pixels are.
 typedef struct arc {
@@ -46,7 +47,7 @@ static bool lay_arc(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_sn
 static void draw_arc(hn_canvas *c, const hn_sheet *s, const arc *a) {
     const uint32_t ink = hn_surface_get(hn_canvas_theme(c))->muted;
     const double dash[2] = {0.4 * s->font, 0.3 * s->font}, head = 0.5 * s->font;
-    const double beyond = a->radius + 0.8 * s->font;
+    const double beyond = a->radius + BEYOND * s->font;
     const hn_stroke thin = hn_stroke_solid(ink, 0.7 * s->line);
     hn_stroke dashed = thin;
     dashed.dash = dash;
@@ -108,9 +109,14 @@ static void draw_text(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     hn_label_remember(placed, xy, half);
 }
 
-/// Keeps texts off the arc, in chords.
-static void keep_off(const arc *a, hn_label_places *placed) {
+/// Keeps texts off the arc, in chords, and off the dashed line before it.
+static void keep_off(const hn_sheet *s, const arc *a, hn_label_places *placed) {
     enum { CHORDS = 4 };
+    const double near = 0.5 * s->font, far = a->radius + BEYOND * s->font;
+    const double dashed[2][2] = {
+        {a->pivot[0] + near * cos(a->from), a->pivot[1] + near * sin(a->from)},
+        {a->pivot[0] + far * cos(a->from), a->pivot[1] + far * sin(a->from)}};
+    hn_label_keep_off_line(placed, dashed);
     const double step = (a->to - a->from) / CHORDS;
     for (int k = 0; k < CHORDS; k++) {
         const double from = a->from + step * k, to = from + step;
@@ -128,7 +134,7 @@ void hn_snapshot_angles(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     for (int i = 0; i < opts->n_angles; i++) {
         if (lay_arc(s, pose, opts, i, &a)) {
             draw_arc(c, s, &a);
-            keep_off(&a, placed);
+            keep_off(s, &a, placed);
         }
     }
     for (int i = 0; i < opts->n_angles; i++) {

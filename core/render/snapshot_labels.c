@@ -110,11 +110,36 @@ static double half_width_of(const hn_sheet *s, const hn_shape *shape) {
     return 0.5 * (is_bar ? fmax(4, s->scale * shape->width) : s->bar);
 }
 
+/// The room to both rails of a guide, which cross the whole drawing.
+static double room_beside_guide(const hn_sheet *s, const hn_shape *guide, const double *points,
+                                const double xy[2], double half) {
+    double a[2], b[2], room = HUGE_VAL;
+    hn_sheet_pixel(s, points + 3 * guide->p, a);
+    hn_sheet_pixel(s, points + 3 * guide->q, b);
+    const double length = hypot(b[0] - a[0], b[1] - a[1]), far = s->width + s->height;
+    if (!(length > 0)) {
+        return room;
+    }
+    const double u[2] = {(b[0] - a[0]) / length, (b[1] - a[1]) / length};
+    const double off = 2.04 * half_width_of(s, guide);
+    for (int side = -1; side <= 1; side += 2) {
+        const double x = a[0] - side * off * u[1], y = a[1] + side * off * u[0];
+        const double from[2] = {x - far * u[0], y - far * u[1]};
+        const double to[2] = {x + far * u[0], y + far * u[1]};
+        room = fmin(room, room_of_text(xy, half, s->font, from, to));
+    }
+    return room;
+}
+
 double hn_label_room_of_all(const hn_sheet *s, const hn_drawing *d, const double *points,
                             const hn_label_places *placed, const double xy[2], double half) {
     double room = hn_label_room(s, placed, xy, half), a[2], b[2];
     for (int i = 0; i < d->n_shapes; i++) {
         const hn_shape *shape = &d->shapes[i];
+        if (shape->kind == HN_SHAPE_GUIDE) {
+            room = fmin(room, room_beside_guide(s, shape, points, xy, half));
+            continue;
+        }
         segment_of(s, shape, points, a, b);
         room = fmin(room, room_of_text(xy, half, s->font, a, b) - half_width_of(s, shape));
         for (int k = 0; k < shape->n && shape->kind == HN_SHAPE_POLYGON; k++) {
