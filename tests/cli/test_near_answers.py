@@ -234,7 +234,7 @@ def one_slip(folder):
             expect("degrees turned the wrong way are two mistakes", ("sign is wrong as well" in found["explanation"]) == (answer > 0), found["explanation"])
 
     # divisors, exponents, single terms; many slips are possible in a long formula: it takes exact digits to tell them apart
-    a, b, c, d, e = (numbers(exercise) for exercise in ("atwood", "transmission", "gears", "closure", "loops"))
+    a, b, c, d, e, f, g = (numbers(exercise) for exercise in ("atwood", "transmission", "gears", "closure", "loops", "amplify", "checks"))
     cosine = 2 * b["l1"] * b["d"] * math.cos(b["th"])
     area = b["l2"] * b["l3"] * math.sqrt(1 - ((b["l2"] ** 2 - b["l1"] ** 2 - b["d"] ** 2 + cosine) / (2 * b["l2"] * b["l3"])) ** 2)
     for exercise, part, answer, digits, mistake in (
@@ -244,6 +244,8 @@ def one_slip(folder):
             ("transmission", "b", area, 6, "missing-term"), ("transmission", "b", area, 4, "other"),
             ("gears", "b", c["I1"] + c["I2"] * (c["z1"] / c["z2"]) ** 2 + c["I3"] * c["z1"] / c["z3"], 4, "not-squared"),
             ("closure", "c", d["l1"] * d["w1"] * math.cos(d["t2"] - d["t1"]) / (d["l3"] * math.sin(d["t2"] - d["t3"])), 5, "sine"),
+            ("energy", "c", crank / math.tan(x["t1"]) + coupler + rocker, 6, "sine"),  # at one of two places where sin(t1) stands
+            ("amplify", "a", 1 - f["k"] * f["h"], 5, "milliseconds"), ("checks", "a", math.log(g["e1"] / g["e2"]), 5, "natural"),
             ("loops", "a", 3 * e["b"] + 2 * e["j"], 3, "sign-term"), ("loops", "b", e["j"] + e["b"], 3, "other")):  # fmt: skip
         found = entry(folder, exercise, part, f"{answer:.{digits}g}", "--seed", "3")
         expect(f"{exercise} {part} to {digits} digits is {mistake}", found["mistake"] == mistake, str(found))

@@ -14,7 +14,8 @@ enum {
     /// Candidates for a number. Each agrees by chance with one number of a thousand near it (a
     /// tenth of 0.5 % on both sides), or, where they are more, with one of a hundred thousand.
     FEW = 36,
-    MANY = 400
+    MANY = 400,
+    MAX_PLACES = 8 ///< of one node in an expression
 };
 
 /// What may happen at one place. Marked `numbers`: looked for in numbers too.
@@ -63,6 +64,7 @@ typedef struct slip {
     kind kind;
     int32_t node;
     int arg;
+    int place; ///< of the places where the node stands, from 1; 0: at all of them
 } slip;
 
 /// The distinct nodes of an expression.
@@ -170,8 +172,8 @@ static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, const slip *s) {
     return hn_num(0);
 }
 
-/// The expression again, with the slip.
-static hn_ex rewrite(hn_graph *g, hn_ex e, const slip *s) {
+/// The expression again, with the slip. `seen` counts the places of the node so far.
+static hn_ex rewrite(hn_graph *g, hn_ex e, const slip *s, int *seen) {
     const hn_node_view view = hn_graph_node(g, e.n);
     const hn_op op = view.op;
     const int n = view.n_args;
@@ -182,29 +184,46 @@ static hn_ex rewrite(hn_graph *g, hn_ex e, const slip *s) {
 
     // the view's arguments may move when the graph grows
     memcpy(a, view.args, sizeof *a * (size_t)n);
+    const bool here = e.n == s->node && (++*seen == s->place || s->place == 0);
     for (int i = 0; i < n; i++) {
-        a[i] = rewrite(g, a[i], s);
+        a[i] = rewrite(g, a[i], s, seen);
     }
-    const hn_ex whole = e.n == s->node    ? write_slip(g, op, a, n, s)
+    const hn_ex whole = here              ? write_slip(g, op, a, n, s)
                         : op == HN_OP_SUM ? hn_sum(g, a, n)
                         : op == HN_OP_MUL ? hn_mul(g, a[0], a[1])
                                           : hn_apply(g, op, a);
-    const bool without_number = e.n == s->node && s->kind == WHOLE_DIVISOR;
+    const bool without_number = here && s->kind == WHOLE_DIVISOR;
     return hn_scale(without_number ? copysign(1, e.c) : e.c, whole);
 }
 
-/// Calls `visit` for each slip of the kinds before `end` that can happen. Returns how many there
-/// are.
-static int visit_slips(hn_value_search *f, const node_list *list, int end,
+/// At how many places of an expression a node stands, as far as `most`.
+static int count_places(const hn_graph *g, int32_t from, int32_t node, int most) {
+    const hn_node_view view = hn_graph_node(g, from);
+    int n = from == node;
+    for (int i = 0; i < view.n_args && n < most; i++) {
+        n += count_places(g, view.args[i].n, node, most - n);
+    }
+    return n;
+}
+
+/// Calls `visit` for each slip of the kinds before `end` that can happen, everywhere or, where
+/// `single`, at one of several places. Returns how many there are.
+static int visit_slips(hn_value_search *f, const node_list *list, int end, bool single,
                        void (*visit)(hn_value_search *, const slip *)) {
     const bool symbolic = f->sheet->symbolic;
     const hn_graph *g = f->sheet->draw->graph;
+    const int32_t whole = f->sheet->reference.e[f->entry].n;
     int n = 0;
     for (int i = 0; i < list->n; i++) {
         const int n_args = hn_graph_node(g, list->node[i]).n_args;
+        const int places = single ? count_places(g, whole, list->node[i], MAX_PLACES) : 0;
+        const int last = places > 1 ? places : 0;
         for (int k = 0; k < n_args * end; k++) {
-            const slip s = {(kind)(k % end), list->node[i], k / end};
-            if ((symbolic || ROWS[s.kind].numbers) && can_happen(g, &s)) {
+            slip s = {(kind)(k % end), list->node[i], k / end, 0};
+            if ((!symbolic && !ROWS[s.kind].numbers) || !can_happen(g, &s)) {
+                continue;
+            }
+            for (s.place = single; s.place <= last; s.place++) {
                 n++;
                 if (visit) {
                     visit(f, &s);
@@ -217,7 +236,8 @@ static int visit_slips(hn_value_search *f, const node_list *list, int end,
 
 static void try_slip(hn_value_search *f, const slip *s) {
     const struct slip_row *row = &ROWS[s->kind];
-    const hn_ex e = rewrite(f->sheet->draw->graph, f->sheet->reference.e[f->entry], s);
+    int seen = 0;
+    const hn_ex e = rewrite(f->sheet->draw->graph, f->sheet->reference.e[f->entry], s, &seen);
     hn_value_search_try(f, e, 1, row->id, row->share, "%s", row->says);
 }
 
@@ -230,13 +250,19 @@ void hn_value_slips_try(hn_value_search *f) {
     }
 
     // the usual slips first; the more there are, the closer one of them must be
-    const int ends[2] = {FIRST_RARE, N_KINDS};
-    for (int i = 0; i < 2 && f->n_found == 0; i++) {
-        const int n = visit_slips(f, &list, ends[i], NULL);
-        f->closeness = symbolic || n <= FEW ? 1 : 2;
-        if (symbolic || n <= MANY) {
-            visit_slips(f, &list, ends[i], try_slip);
+    static const struct {
+        int end;
+        bool single;
+    } ROUNDS[] = {{FIRST_RARE, false}, {N_KINDS, false}, {N_KINDS, true}};
+    int before = 0;
+    for (int i = 0; i < 3 && f->n_found == 0; i++) {
+        const int n = visit_slips(f, &list, ROUNDS[i].end, ROUNDS[i].single, NULL);
+        const int all = ROUNDS[i].single ? before + n : n;
+        f->closeness = symbolic || all <= FEW ? 1 : 2;
+        if (symbolic || all <= MANY) {
+            visit_slips(f, &list, ROUNDS[i].end, ROUNDS[i].single, try_slip);
         }
+        before = all;
     }
     f->closeness = 0;
 }

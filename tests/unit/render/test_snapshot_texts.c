@@ -85,7 +85,7 @@ static void dimension_lines_of_bars_on_one_line_lie_apart(void **state) {
     assert_int_equal(placed.n, 6);
     double away[3]; // of the lines of O A, O B and B A from that line
     for (int i = 0; i < 3; i++) {
-        const double(*line)[2] = placed.line[i == 0 ? 0 : i + 1];
+        double(*line)[2] = placed.line[i == 0 ? 0 : i + 1];
         double o[2], a[2];
         hn_sheet_pixel(&sheet, points, o);
         hn_sheet_pixel(&sheet, points + 6, a);
@@ -118,11 +118,38 @@ static void an_angle_without_an_arc_has_no_text(void **state) {
     hn_canvas_free(c);
 }
 
+// both rails of a guide cross the drawing, far from the point that it is given by
+static void a_name_keeps_off_the_rails_of_a_guide(void **state) {
+    (void)state;
+    static const hn_shape rails[] = {
+        {.kind = HN_SHAPE_GUIDE, .p = 0, .q = 5, .body = HN_GROUND},
+        {.kind = HN_SHAPE_SLIDER, .p = 4, .q = 0, .body = 0},
+        {.kind = HN_SHAPE_BAR, .p = 2, .q = 4, .body = 1},
+    };
+    hn_drawing d = pantograph;
+    d.shapes = rails;
+    d.n_shapes = 3;
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    const hn_sheet sheet = make_sheet(&opts);
+    hn_canvas *c = create();
+    hn_label_places placed = {0};
+    hn_snapshot_labels(c, &sheet, &d, &pose, &opts, &placed);
+    hn_canvas_free(c);
+    double rail[2];
+    hn_sheet_pixel(&sheet, points, rail);
+    assert_int_equal(placed.n, N_POINTS);
+    for (int i = 0; i < placed.n; i++) {
+        const double away = fabs(placed.at[i][1] - rail[1]);
+        assert_true(fabs(away - 1.02 * sheet.bar) > 0.4 * sheet.font);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_and_angles_stand_beside_the_bars),
         cmocka_unit_test(dimension_lines_of_bars_on_one_line_lie_apart),
         cmocka_unit_test(an_angle_without_an_arc_has_no_text),
+        cmocka_unit_test(a_name_keeps_off_the_rails_of_a_guide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
