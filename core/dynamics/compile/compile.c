@@ -50,6 +50,21 @@ static bool depends_on_time(const hn_system *sys) {
     return false;
 }
 
+static hn_status find_angles(hn_system *sys) {
+    sys->is_angle = hn_arena_get(sys->arena, (size_t)sys->nq + 1);
+    if (!sys->is_angle) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < sys->nv; i++) {
+        const int at = hn_system_position_of(sys, i);
+        if (at >= 0) {
+            const int user = hn_system_user_coordinate(sys, i);
+            sys->is_angle[at] = sys->scene->coordinates[user].kind == HN_ANGLE;
+        }
+    }
+    return HN_OK;
+}
+
 static hn_status finish(hn_system *sys) {
     HN_TRY(hn_graph_status(sys->g));
     if (hn_arena_failed(sys->arena) || sys->M.failed || sys->J.failed || sys->efforts.failed) {
@@ -65,6 +80,7 @@ static hn_status finish(hn_system *sys) {
     sys->info.nc = sys->nc;
     sys->info.n_loops = sys->n_loops;
     sys->info.has_time = depends_on_time(sys) || sys->n_pulls > 0;
+    HN_TRY(find_angles(sys));
     return check_freedoms(sys);
 }
 

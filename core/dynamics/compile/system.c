@@ -124,6 +124,10 @@ int hn_system_position_of(const hn_system *sys, int i) {
     return sys->scene->is_lagrangian ? i : sys->tree.position[i];
 }
 
+const bool *hn_system_angles(const hn_system *sys) {
+    return sys->is_angle;
+}
+
 hn_pull_log *hn_system_pulls(const hn_system *sys) {
     return sys->pulls;
 }

@@ -81,6 +81,7 @@ struct hn_system {
     hn_ex *f, *phi, *phi_t, *gamma, *points;
     hn_ex kinetic, potential;
 
+    bool *is_angle; ///< nq
     hn_row *rows;
     const char **dropped; ///< names of the info.rows_dropped rows that vanish identically
     int n_loops;

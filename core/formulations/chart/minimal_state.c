@@ -17,7 +17,8 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
     s->q = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nq);
     s->v = hn_arena_doubles(arena, nv);
     s->last_v = hn_arena_doubles(arena, nv);
-    if (!s->q || !s->v || !s->last_v) {
+    s->is_angle = hn_arena_get(arena, nv * sizeof *s->is_angle);
+    if (!s->q || !s->v || !s->last_v || !s->is_angle) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     const hn_status status = hn_chart_init(&s->chart, sys, 1, arena, diag);
@@ -112,7 +113,8 @@ void hn_minimal_ode(void *self, hn_ode *out) {
                     .rhs = rhs,
                     .kinematics = kinematics,
                     .jacobian = jacobian,
-                    .prepare = prepare};
+                    .prepare = prepare,
+                    .is_angle = s->is_angle};
 }
 
 // the closed form takes over at the closed pose `here`; 0: a dyad stands at its dead point
@@ -197,7 +199,9 @@ static hn_status settle_in(hn_minimal_state *s, double t, double *y) {
         HN_TRY(hn_minimal_tape_begin(&s->tape, chart, s->arena));
     }
     for (int j = 0; j < chart->r; j++) {
-        y[j] = s->q[chart->at[chart->ind[j]]];
+        const int at = chart->at[chart->ind[j]];
+        s->is_angle[j] = hn_system_angles(chart->sys)[at];
+        y[j] = s->q[at];
         y[chart->r + j] = s->v[chart->ind[j]];
     }
     hn_status status = hn_chart_settle(chart);

@@ -33,6 +33,7 @@ typedef struct hn_minimal_state {
     double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step
     double *last_v; ///< nv
+    bool *is_angle; ///< nv, of the independent coordinates: the first r entries
 } hn_minimal_state;
 
 /// Closed forms add nodes to the system's graph when the state is set (dynamics/compile/system.h

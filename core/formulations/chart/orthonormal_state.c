@@ -53,7 +53,8 @@ void hn_orthonormal_ode(void *self, hn_ode *out) {
                     .n_vel = s->space.r,
                     .self = self,
                     .rhs = rhs,
-                    .kinematics = kinematics};
+                    .kinematics = kinematics,
+                    .is_angle = hn_system_angles(s->space.sys)};
 }
 
 // the loops closed along Y0 from q as it is

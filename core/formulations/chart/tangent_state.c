@@ -119,7 +119,8 @@ void hn_tangent_ode(void *self, hn_ode *out) {
                     .rhs = rhs,
                     .kinematics = kinematics,
                     .jacobian = has_derivatives(s) ? jacobian : NULL,
-                    .prepare = has_derivatives(s) ? prepare : NULL};
+                    .prepare = has_derivatives(s) ? prepare : NULL,
+                    .is_angle = hn_system_angles(s->chart.sys)};
 }
 
 // u such that N u + s = v for a v that J allows, else the nearest in the sense of the basis

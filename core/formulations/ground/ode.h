@@ -9,6 +9,8 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
+
 /// Newton's systems of an implicit integrator, solved by the structure of the equations; the matrix
 /// dF/dy itself is full and hides that structure. `self` is that of the hn_ode.
 typedef struct hn_ode_newton {
@@ -37,6 +39,9 @@ typedef struct hn_ode {
     /// Units of the absolute tolerance of each entry (n_pos + n_vel), see
     /// hn_tolerance_units() in integrators/step/control.h; NULL: all 1.
     const double *unit;
+    /// Which positions (n_pos) are angles: relative to a whole turn, see hn_tolerance_size() there;
+    /// NULL: none.
+    const bool *is_angle;
     /// Reserves the memory that jacobian and newton need from the formulation's arena; otherwise
     /// their first call does so. NULL: they need none.
     hn_status (*prepare)(void *self);

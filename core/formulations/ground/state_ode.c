@@ -87,6 +87,7 @@ void hn_state_ode_get(void *self, hn_status (*rhs)(void *, double, const double 
                     .kinematics = kinematics,
                     .jacobian = jacobian,
                     .newton = &newton,
+                    .is_angle = hn_system_angles(ode->sys),
                     .prepare = prepare};
 }
 

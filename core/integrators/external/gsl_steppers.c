@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "integrators/step/control.h"
+#include "integrators/external/gsl_control.h"
 #include "integrators/step/options.h"
+#include "linalg/dense.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -25,7 +26,7 @@ typedef struct gsl_stepper {
     int start_order; // power of h in the error of the first step
     int n;
     double rtol, atol, h0, hmax;
-    bool has_units; ///< the library has the units of the tolerance
+    bool has_tolerance; ///< the library has units and angles of the tolerance
     gsl_odeiv2_system system;
     gsl_odeiv2_driver *driver; // NULL: no entries
     const hn_ode *ode;         // of the call that is under way
@@ -36,6 +37,8 @@ typedef struct gsl_stepper {
     int refusals;              // in this step
     int trouble;               // see advance()
     double *f0, *f1, *moved;   // n
+    double *turns;             // n: whole turns of angles, left out of what the library sees
+    double *whole;             // n: a state of the library with these turns
     long long rejected;
     unsigned long failed_before;
     char why[160];
@@ -53,9 +56,18 @@ static int told(gsl_stepper *s, hn_status status) {
     return status == HN_OK ? GSL_SUCCESS : GSL_FAILURE;
 }
 
+// The library sees angles without the whole turns that they had at its last start: its own measures
+// are relative to |y| (the weights of bsimp, say).
+static const double *with_turns(gsl_stepper *s, const double *y) {
+    for (int i = 0; i < s->n; i++) {
+        s->whole[i] = y[i] + s->turns[i];
+    }
+    return s->whole;
+}
+
 static int give_slope(double t, const double *y, double *ydot, void *user) {
     gsl_stepper *s = user;
-    return told(s, s->ode->rhs(s->ode->self, t, y, ydot));
+    return told(s, s->ode->rhs(s->ode->self, t, with_turns(s, y), ydot));
 }
 
 // Displacement of a difference quotient that balances truncation and rounding (Hairer & Wanner
@@ -82,8 +94,10 @@ static hn_status difference_jacobian(gsl_stepper *s, double t, const double *y, 
     return HN_OK;
 }
 
-static int give_jacobian(double t, const double *y, double *jac, double *time_slope, void *user) {
+static int give_jacobian(double t, const double *state, double *jac, double *time_slope,
+                         void *user) {
     gsl_stepper *s = user;
+    const double *y = with_turns(s, state);
     const double later = t + probe(t);
     hn_status status = s->ode->rhs(s->ode->self, t, y, s->f0);
     HN_THEN(status, s->ode->rhs(s->ode->self, later, y, s->f1));
@@ -100,7 +114,7 @@ static int give_jacobian(double t, const double *y, double *jac, double *time_sl
 static gsl_stepper *create(const gsl_odeiv2_step_type *type, int start_order, int n,
                            hn_arena *arena) {
     gsl_stepper *s = hn_arena_get(arena, sizeof *s);
-    double *const room = hn_arena_doubles(arena, 3 * (size_t)n);
+    double *const room = hn_arena_doubles(arena, 5 * (size_t)n);
     if (!s || !room) {
         return NULL;
     }
@@ -112,6 +126,8 @@ static gsl_stepper *create(const gsl_odeiv2_step_type *type, int start_order, in
     s->f0 = room;
     s->f1 = room + n;
     s->moved = room + 2 * (size_t)n;
+    s->turns = room + 3 * (size_t)n;
+    s->whole = room + 4 * (size_t)n;
     s->rtol = s->atol = 1e-6;
     s->hmax = FAR_STEP;
     s->system = (gsl_odeiv2_system){give_slope, give_jacobian, (size_t)n, s};
@@ -150,24 +166,24 @@ static void accepted(void *self, int changed) {
 
 // ---- a step ----
 
-/// Gives the library the units of the tolerance where they are not all 1; once, as it allocates.
-static hn_status use_units(gsl_stepper *s) {
-    bool plain = true;
+/// Gives the library the units and angles of the tolerance; once, as it allocates.
+static hn_status use_tolerance(gsl_stepper *s) {
+    bool plain = !s->ode->is_angle;
     for (int i = 0; i < s->n && s->ode->unit; i++) {
         plain = plain && s->ode->unit[i] == 1;
     }
-    if (plain || s->has_units) {
+    if (plain || s->has_tolerance) {
         return HN_OK;
     }
-    gsl_odeiv2_control *c =
-        gsl_odeiv2_control_scaled_new(s->atol, s->rtol, 1, 0, s->ode->unit, (size_t)s->n);
+    const hn_tolerance tol = hn_tolerance_for(s->ode, s->rtol, s->atol);
+    gsl_odeiv2_control *c = hn_gsl_control_create(&tol, s->n);
     if (!c) {
         return HN_ERR_MEMORY;
     }
     gsl_odeiv2_control_free(s->driver->c);
     s->driver->c = c;
     gsl_odeiv2_control_set_driver(c, s->driver);
-    s->has_units = true;
+    s->has_tolerance = true;
     return HN_OK;
 }
 
@@ -176,7 +192,9 @@ static hn_status restart(gsl_stepper *s, double t, const double *y) {
     gsl_odeiv2_evolve_reset(s->driver->e);
     s->failed_before = 0;
     s->fresh = 0;
-    HN_TRY(use_units(s));
+    const hn_tolerance tol = hn_tolerance_for(s->ode, s->rtol, s->atol);
+    hn_whole_turns(&tol, s->n, y, s->turns);
+    HN_TRY(use_tolerance(s));
     if (s->h > 0) {
         return HN_OK; // the motion goes on at its pace
     }
@@ -225,10 +243,14 @@ static hn_status advance(void *self, const hn_ode *ode, double t, double t_stop,
     gsl_odeiv2_evolve *e = s->driver->e;
     const double wish = s->h;
     s->h = fmin(s->h, s->hmax);
-    memcpy(y_new, y, (size_t)s->n * sizeof *y);
+    for (int i = 0; i < s->n; i++) {
+        y_new[i] = y[i] - s->turns[i];
+    }
     *t_new = t;
     const int code = gsl_odeiv2_evolve_apply(e, s->driver->c, s->driver->s, &s->system, t_new,
                                              fmin(t_stop, FAR), &s->h, y_new);
+
+    hn_axpy(s->n, 1, s->turns, y_new);
 
     // count what the library rejected, and explain a failure
     s->rejected += (long long)(e->failed_steps - s->failed_before);

@@ -137,6 +137,22 @@ static int give_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector
     return 0;
 }
 
+static hn_tolerance tolerance_of(const ida_stepper *s) {
+    return (hn_tolerance){s->rtol, s->atol, s->unit, hn_system_angles(s->problem.sys),
+                          s->problem.nq};
+}
+
+// one over the error allowed in each entry; as the library's own, but for angles
+static int give_weights(N_Vector y, N_Vector weight, void *user) {
+    const ida_stepper *s = user;
+    const hn_tolerance tol = tolerance_of(s);
+    for (int i = 0; i < s->n; i++) {
+        const double size = hn_tolerance_size(&tol, i, data_of(y)[i]);
+        data_of(weight)[i] = 1 / (s->rtol * size + data_of(s->tolerance)[i]);
+    }
+    return 0;
+}
+
 // the library prints its messages otherwise; the flag that comes back says the same
 static void be_silent(int code, const char *module, const char *function, char *message,
                       void *user) {
@@ -283,7 +299,7 @@ static int configure_ida(ida_stepper *s, double t) {
     int flag = IDAInit(s->ida, give_residual, t, s->y, s->ydot);
     flag = flag ? flag : IDASetErrHandlerFn(s->ida, be_silent, NULL);
     flag = flag ? flag : IDASetUserData(s->ida, s);
-    flag = flag ? flag : IDASVtolerances(s->ida, s->rtol, s->tolerance);
+    flag = flag ? flag : IDAWFtolerances(s->ida, give_weights);
     flag = flag ? flag : IDASetNonlinConvCoef(s->ida, s->newton);
     flag = flag ? flag : IDASetId(s->ida, s->id);
     flag = flag ? flag : IDASetSuppressAlg(s->ida, s->suppress != SUPPRESS_NONE);
@@ -375,19 +391,9 @@ static hn_status choose_first_step(ida_stepper *s, double t, const double *y) {
                                      s->hmax > 0 ? s->hmax : HUGE_VAL, &s->first);
 }
 
-static void choose_units(ida_stepper *s, const double *v) {
-    if (s->default_atol) {
-        hn_tolerance_units(s->problem.sys, v, s->unit);
-        return;
-    }
-    for (int i = 0; i < s->problem.nq + s->problem.nv; i++) {
-        s->unit[i] = 1;
-    }
-}
-
 static hn_status start(void *self, double t, const double *y) {
     ida_stepper *s = self;
-    choose_units(s, y + s->problem.nq);
+    hn_tolerance_units(s->problem.sys, !s->default_atol, y + s->problem.nq, s->unit);
     HN_TRY(choose_first_step(s, t, y));
     HN_TRY(hn_ida_problem_start(&s->problem, t, y, s->start_y, s->start_ydot));
     add_counters(s, &s->cost);
@@ -405,8 +411,9 @@ static bool is_another_state(const ida_stepper *s, const double *y) {
     const int n = s->problem.nq + s->problem.nv;
     const double *mine = data_of(s->y);
     double sum = 0;
+    const hn_tolerance tol = tolerance_of(s);
     for (int i = 0; i < n; i++) {
-        const double d = (y[i] - mine[i]) / (s->atol * s->unit[i] + s->rtol * fabs(y[i]));
+        const double d = (y[i] - mine[i]) / hn_tolerance_of(&tol, i, y[i], y[i]);
         sum += d * d;
     }
     return sqrt(sum / n) > SAME_STATE;

@@ -218,7 +218,12 @@ hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *s
                                     double atol, const double *unit, double hmax, double *h) {
     enum { ERROR_POWER = 2 }; // of h in the error of a step of order 1
     const size_t n = (size_t)(p->nq + p->nv);
-    const hn_ode ode = {.n_pos = p->nq, .n_vel = p->nv, .self = p, .rhs = slope, .unit = unit};
+    const hn_ode ode = {.n_pos = p->nq,
+                        .n_vel = p->nv,
+                        .self = p,
+                        .rhs = slope,
+                        .unit = unit,
+                        .is_angle = hn_system_angles(p->sys)};
     HN_TRY(hn_first_step(&ode, t, state, ERROR_POWER, rtol, atol, hmax, p->slope, p->slope + n,
                          p->slope + 2 * n, h));
     *h = fmin(fmax(*h, least_first_step(p, state, rtol, atol, unit)), hmax);

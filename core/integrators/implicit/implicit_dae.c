@@ -251,21 +251,11 @@ void hn_implicit_dae_destroy(void *self) {
     s->projector = NULL;
 }
 
-static void choose_units(implicit_dae *s, const double *v) {
-    if (s->opts.default_atol) {
-        hn_tolerance_units(s->sys, v, s->unit);
-        return;
-    }
-    for (int i = 0; i < s->nq + s->nv; i++) {
-        s->unit[i] = 1;
-    }
-}
-
 hn_status hn_implicit_dae_start(void *self, double t, const double *y) {
     implicit_dae *s = self;
     s->h = s->last_h = 0;
     s->why[0] = '\0';
-    choose_units(s, y + s->nq);
+    hn_tolerance_units(s->sys, !s->opts.default_atol, y + s->nq, s->unit);
     const hn_status status =
         hn_accel_eval(s->accel, t, y, y + s->nq, 0, 0, s->a_start, s->lambda_start, NULL);
     s->accelerations++;
@@ -281,20 +271,24 @@ hn_status hn_implicit_dae_start(void *self, double t, const double *y) {
 
 // ---- one step ----
 
+static hn_tolerance tolerance_of(const implicit_dae *s) {
+    return (hn_tolerance){s->opts.rtol, s->opts.atol, s->unit, hn_system_angles(s->sys), s->nq};
+}
+
 static void set_scale(implicit_dae *s, double h) {
+    const hn_tolerance tol = tolerance_of(s);
     const double size_q = 1 + hn_norm_max(s->nq, s->q0), size_v = 1 + hn_norm_max(s->nv, s->v0);
     double *scale = s->st.scale;
     // phi cannot be closed better than its own rounding, which stands divided by h in the speeds
     s->st.floor = s->opts.rtol > 0 ? 0 : ROUNDING + 2 * DBL_EPSILON * size_q / (h * size_v);
     for (int i = 0; i < s->nv; i++) {
         const int at = hn_system_position_of(s->sys, i);
-        const double q = at >= 0 ? fabs(s->q0[at]) : 1;
         const int chosen = s->opts.rtol > 0;
-        const double unit = at >= 0 ? s->unit[at] : 1;
-        scale[i] = chosen ? (s->opts.atol * unit + s->opts.rtol * q) / s->weight : size_q;
+        const double allowed =
+            at >= 0 ? hn_tolerance_of(&tol, at, s->q0[at], s->q0[at]) : tol.atol + tol.rtol;
+        scale[i] = chosen ? allowed / s->weight : size_q;
         scale[s->nv + i] =
-            chosen ? (s->opts.atol * s->unit[s->nq + i] + s->opts.rtol * fabs(s->v0[i])) / s->weight
-                   : size_v;
+            chosen ? hn_tolerance_of(&tol, s->nq + i, s->v0[i], s->v0[i]) / s->weight : size_v;
     }
 }
 
@@ -418,7 +412,8 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     weigh_for_error(s, h, 1, ew);
     filter_error(s, s->v0, s->force, ex, ew);
     put_error(s, t, h, err);
-    if (hn_error_norm(n, err, y, y_new, s->opts.rtol, s->opts.atol, s->unit) < 1) {
+    const hn_tolerance tol = tolerance_of(s);
+    if (hn_error_norm(n, err, y, y_new, &tol) < 1) {
         return;
     }
     place(s, s->st.parts, 1);

@@ -205,9 +205,9 @@ hn_status hn_implicit_ode_prepare(void *self, const hn_ode *ode) {
 static void set_scale(implicit_ode *s, const hn_ode *ode) {
     const double size_pos = 1 + hn_norm_max(ode->n_pos, s->y0);
     const double size_vel = 1 + hn_norm_max(ode->n_vel, s->y0 + ode->n_pos);
+    const hn_tolerance tol = hn_tolerance_for(ode, s->rtol, s->atol);
     for (int i = 0; i < s->n; i++) {
-        const double unit = ode->unit ? ode->unit[i] : 1;
-        s->nw.scale[i] = s->rtol > 0      ? (s->atol * unit + s->rtol * fabs(s->y0[i])) / s->weight
+        s->nw.scale[i] = s->rtol > 0      ? hn_tolerance_of(&tol, i, s->y0[i], s->y0[i]) / s->weight
                          : i < ode->n_pos ? size_pos
                                           : size_vel;
     }
@@ -243,6 +243,7 @@ static hn_status estimate_error(implicit_ode *s, double t, double h, const doubl
     const hn_collocation *col = &s->nw.col;
     const int n = s->n;
     double *const weighted = s->nw.parts;
+    const hn_tolerance tol = hn_tolerance_for(s->ode, s->rtol, s->atol);
 
     // the embedded weights give the difference of two slopes
     for (int k = 0; k < n; k++) {
@@ -263,7 +264,7 @@ static hn_status estimate_error(implicit_ode *s, double t, double h, const doubl
         for (int k = 0; k < n; k++) {
             err[k] *= s->weight;
         }
-        if (pass == 1 || hn_error_norm(n, err, s->y0, y_new, s->rtol, s->atol, s->ode->unit) < 1) {
+        if (pass == 1 || hn_error_norm(n, err, s->y0, y_new, &tol) < 1) {
             return HN_OK;
         }
         for (int k = 0; k < n; k++) {

@@ -3,14 +3,35 @@
 
 #include "dynamics/compile/coordinates.h"
 
+#include <float.h>
 #include <math.h>
 
-double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
-                     double atol, const double *unit) {
+double hn_tolerance_size(const hn_tolerance *tol, int i, double y) {
+    // rounding of an angle and of the few sums that it enters
+    static const double ROUNDING = 64 * DBL_EPSILON;
+    const double size = fabs(y);
+    const bool is_angle = tol->is_angle && i < tol->n_pos && tol->is_angle[i];
+    return is_angle && size > M_PI ? fmax(fabs(remainder(y, 2 * M_PI)), ROUNDING * size / tol->rtol)
+                                   : size;
+}
+
+void hn_whole_turns(const hn_tolerance *tol, int n, const double *y, double *turns) {
+    for (int i = 0; i < n; i++) {
+        const bool is_angle = tol->is_angle && i < tol->n_pos && tol->is_angle[i];
+        turns[i] = is_angle ? 2 * M_PI * round(y[i] / (2 * M_PI)) : 0;
+    }
+}
+
+double hn_tolerance_of(const hn_tolerance *tol, int i, double y0, double y1) {
+    const double size = fmax(hn_tolerance_size(tol, i, y0), hn_tolerance_size(tol, i, y1));
+    return tol->atol * (tol->unit ? tol->unit[i] : 1) + tol->rtol * size;
+}
+
+double hn_error_norm(int n, const double *err, const double *y0, const double *y1,
+                     const hn_tolerance *tol) {
     double sum = 0;
     for (int i = 0; i < n; i++) {
-        const double e =
-            err[i] / (atol * (unit ? unit[i] : 1) + rtol * fmax(fabs(y0[i]), fabs(y1[i])));
+        const double e = err[i] / hn_tolerance_of(tol, i, y0[i], y1[i]);
         if (!isfinite(e) || !isfinite(y1[i])) {
             return HUGE_VAL;
         }
@@ -95,16 +116,19 @@ static double fastest_rate(const hn_system *sys, const double *v) {
     return rate;
 }
 
-void hn_tolerance_units(const hn_system *sys, const double *v, double *unit) {
+void hn_tolerance_units(const hn_system *sys, bool is_chosen, const double *v, double *unit) {
     const hn_system_info info = hn_system_get_info(sys);
+    for (int i = 0; i < info.nq + info.nv; i++) {
+        unit[i] = 1;
+    }
+    if (is_chosen) {
+        return;
+    }
     const double length =
         round_unit(hn_system_length(sys), HN_UNIT_LENGTH_LEAST, HN_UNIT_LENGTH_MOST);
     const double rate = round_unit(fastest_rate(sys, v), HN_UNIT_RATE_LEAST, HN_UNIT_RATE_MOST);
 
     // quaternions and angles are numbers of order one
-    for (int i = 0; i < info.nq; i++) {
-        unit[i] = 1;
-    }
     for (int i = 0; i < info.nv; i++) {
         const int at = hn_system_position_of(sys, i);
         const double own = is_length(sys, i) ? length : 1;
@@ -115,17 +139,16 @@ void hn_tolerance_units(const hn_system *sys, const double *v, double *unit) {
     }
 }
 
-static double scaled_norm(const hn_ode *ode, const double *x, const double *y, double rtol,
-                          double atol) {
-    return hn_error_norm(ode->n_pos + ode->n_vel, x, y, y, rtol, atol, ode->unit);
-}
-
 hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order, double rtol,
                         double atol, double hmax, double *f0, double *work, double *work2,
                         double *h) {
     const int n = ode->n_pos + ode->n_vel;
+    const hn_tolerance tol = hn_tolerance_for(ode, rtol, atol);
     HN_TRY(ode->rhs(ode->self, t, y, f0));
-    const double d0 = scaled_norm(ode, y, y, rtol, atol), d1 = scaled_norm(ode, f0, y, rtol, atol);
+    for (int i = 0; i < n; i++) {
+        work[i] = hn_tolerance_size(&tol, i, y[i]);
+    }
+    const double d0 = hn_error_norm(n, work, y, y, &tol), d1 = hn_error_norm(n, f0, y, y, &tol);
     double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
     h0 = fmin(h0, hmax);
     for (int i = 0; i < n; i++) {
@@ -135,7 +158,7 @@ hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
     for (int i = 0; i < n; i++) {
         work2[i] -= f0[i];
     }
-    const double d2 = scaled_norm(ode, work2, y, rtol, atol) / h0;
+    const double d2 = hn_error_norm(n, work2, y, y, &tol) / h0;
     const double steepest = fmax(d1, d2);
     const double h1 = steepest <= 1e-15 ? fmax(1e-6, h0 * 1e-3) : pow(0.01 / steepest, 1.0 / order);
     *h = fmin(fmin(100 * h0, h1), hmax);

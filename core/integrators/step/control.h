@@ -7,14 +7,42 @@
 #include "base/status.h"
 #include "formulations/ground/formulation.h"
 
+#include <stdbool.h>
+
 #define HN_STEP_SAFETY 0.9
 #define HN_STEP_GROW 5.0
 #define HN_STEP_SHRINK 0.2
 
-/// sqrt(mean((err_i / (atol unit_i + rtol max(|y0_i|, |y1_i|)))^2)); accepted when <= 1. `unit`:
-/// NULL: all 1. Infinite when an entry is not finite, 0 for n = 0.
-double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
-                     double atol, const double *unit);
+/// The error that a step may make in each entry of y: atol unit_i + rtol size_i.
+typedef struct hn_tolerance {
+    double rtol, atol;
+    const double *unit;   ///< of atol; NULL: all 1
+    const bool *is_angle; ///< of the first n_pos entries; NULL: none is an angle
+    int n_pos;
+} hn_tolerance;
+
+/// The tolerance of the state of an equation.
+static inline hn_tolerance hn_tolerance_for(const hn_ode *ode, double rtol, double atol) {
+    return (hn_tolerance){rtol, atol, ode->unit, ode->is_angle, ode->n_pos};
+}
+
+/// Returns the size of entry i that rtol refers to: |y|, and for an angle its distance from the
+/// nearest whole turn, at most pi, so that a crank many turns ahead is computed as at the start.
+/// This size is continuous in y, the same after any whole number of turns, and |y| itself up to pi;
+/// where it is small atol decides, as it does near y = 0. It is not below the rounding of y over
+/// rtol: no step can be more accurate.
+double hn_tolerance_size(const hn_tolerance *tol, int i, double y);
+/// Returns the error allowed in entry i on the way from y0 to y1: the larger of both sizes counts.
+double hn_tolerance_of(const hn_tolerance *tol, int i, double y0, double y1);
+
+/// Writes the whole turns of the angles in y and 0 elsewhere to `turns` (n): a library whose own
+/// measures are relative to |y| gets y without them.
+void hn_whole_turns(const hn_tolerance *tol, int n, const double *y, double *turns);
+
+/// sqrt(mean((err_i / (atol unit_i + rtol size_i))^2)); accepted when <= 1. Infinite when an entry
+/// is not finite, 0 for n = 0.
+double hn_error_norm(int n, const double *err, const double *y0, const double *y1,
+                     const hn_tolerance *tol);
 
 /// Units of an absolute tolerance that the user did not choose, so that a mechanism of any size is
 /// computed alike: atol of an entry is rtol times its unit.
@@ -26,8 +54,8 @@ double hn_error_norm(int n, const double *err, const double *y0, const double *y
 /// serve, which are easier to read.
 ///
 /// v     in  (nv) velocities at the start
-/// unit  out (nq + nv)
-void hn_tolerance_units(const hn_system *sys, const double *v, double *unit);
+/// unit  out (nq + nv), all 1 where the user chose atol
+void hn_tolerance_units(const hn_system *sys, bool is_chosen, const double *v, double *unit);
 #define HN_UNIT_LENGTH_LEAST 1e-2
 #define HN_UNIT_LENGTH_MOST 1e2
 #define HN_UNIT_RATE_LEAST 1e-2
@@ -56,7 +84,7 @@ double hn_drive_norm(const hn_system *sys, const double *q0, const double *q1);
 double hn_drive_first_step(const hn_system *sys, const double *v);
 
 /// A first step size from two right-hand sides: h such that an explicit Euler step and the change
-/// of slope stay small. f0 and work are (n) scratch. Fails with the right-hand side's status.
+/// of slope stay small. f0, work and work2 are (n) scratch. Fails with the right-hand side's status.
 HN_MUST_CHECK hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
                                       double rtol, double atol, double hmax, double *f0,
                                       double *work, double *work2, double *h);

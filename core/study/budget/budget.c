@@ -279,7 +279,11 @@ static hn_status create_parts(hn_budget_work *b) {
 
     // the splitting of displacements, and the equations that the flows solve
     b->saddle = status == HN_OK ? hn_saddle_ws_create(b->arena, b->info.nv, b->info.nc) : NULL;
-    b->plain = (hn_ode){.n_pos = b->info.nq, .n_vel = b->info.nv, .self = b, .rhs = plain_rhs};
+    b->plain = (hn_ode){.n_pos = b->info.nq,
+                        .n_vel = b->info.nv,
+                        .self = b,
+                        .rhs = plain_rhs,
+                        .is_angle = hn_system_angles(b->sys)};
     return status == HN_OK && !b->saddle ? HN_ERR_MEMORY : status;
 }
 

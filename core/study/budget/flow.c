@@ -90,6 +90,7 @@ static double even_part(double rest, double size) {
 static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double h, const double *y,
                     path *along) {
     const hn_stepper *dop853 = &hn_stepper_dop853;
+    const hn_tolerance allowed = {tol, tol, NULL, ode->is_angle, ode->n_pos};
     double done = 0, next = f->size > 0 ? f->size : h;
     // error and size of the trial before, where it was rejected
     double refused = 0, refused_part = h;
@@ -106,9 +107,8 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
         const double part = even_part(h - done, next);
         const hn_status status =
             dop853->step(f->stepper, ode, t + done, part, f->y, f->y_new, f->err);
-        const double err = status == HN_OK
-                               ? hn_error_norm(f->n, f->err, f->y, f->y_new, tol, tol, NULL)
-                               : HUGE_VAL;
+        const double err =
+            status == HN_OK ? hn_error_norm(f->n, f->err, f->y, f->y_new, &allowed) : HUGE_VAL;
         next = part * factor_of(err, dop853->order);
 
         // an error that does not fall with the step is rounding, and is accepted

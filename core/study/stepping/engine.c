@@ -52,7 +52,7 @@ static void use_units(hn_engine *e, const double *v) {
     const bool chosen = hn_method_option(e->spec, "atol", 0) > 0;
     e->ode.unit = NULL;
     if (whole && !chosen) {
-        hn_tolerance_units(e->sys, v, e->unit);
+        hn_tolerance_units(e->sys, false, v, e->unit);
         e->ode.unit = e->unit;
     }
 }
@@ -183,7 +183,11 @@ static hn_status dae_create(hn_engine *e, hn_diag *diag) {
     if (f->create && form == f->form) {
         HN_TRY(f->create(e->sys, e->spec->formulation_set, e->arena, &e->formulation, diag));
     }
-    e->ode = (hn_ode){.n_pos = e->info.nq, .n_vel = e->info.nv, .self = e, .rhs = slope};
+    e->ode = (hn_ode){.n_pos = e->info.nq,
+                      .n_vel = e->info.nv,
+                      .self = e,
+                      .rhs = slope,
+                      .is_angle = hn_system_angles(e->sys)};
     return dae_of(e)->create(e->sys, form, e->spec->stepper_set, e->spec->formulation_set, e->arena,
                              &e->stepper, diag);
 }

@@ -185,7 +185,8 @@ static double try_adaptive(hn_stepping *s, double h, const hn_step_tolerances *t
 
     // the error of the trial; without degrees of freedom it is that of the drive
     const int n = e->ode.n_pos + e->ode.n_vel;
-    double err = hn_error_norm(n, e->err, e->y, e->y_new, tol->rtol, tol->atol, e->ode.unit);
+    const hn_tolerance allowed = hn_tolerance_for(&e->ode, tol->rtol, tol->atol);
+    double err = hn_error_norm(n, e->err, e->y, e->y_new, &allowed);
     if (is_driven(s)) {
         *status = hn_engine_read(e, s->now.t + h, e->y_new, s->work, s->work + s->info.nq);
         err = *status == HN_OK ? hn_drive_norm(s->sys, s->now.q, s->work) : HUGE_VAL;

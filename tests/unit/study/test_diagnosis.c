@@ -276,7 +276,7 @@ static void an_end_after_a_wrong_motion_says_since_when_it_was_wrong(void **stat
 static void a_tolerance_near_rounding_is_answered_by_a_coarser_one(void **state) {
     (void)state;
     hn_model m;
-    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_model_open_closed(&m, "slider-crank", NULL);
     hn_run *run = hn_motion_start(&m, "ggl@radau5:rtol=1e-14");
     assert_int_equal(hn_run_advance(run, 5), HN_ERR_NO_CONVERGENCE);
     hn_run_diagnose(run);
