@@ -84,7 +84,8 @@ double hn_drive_norm(const hn_system *sys, const double *q0, const double *q1);
 double hn_drive_first_step(const hn_system *sys, const double *v);
 
 /// A first step size from two right-hand sides: h such that an explicit Euler step and the change
-/// of slope stay small. f0, work and work2 are (n) scratch. Fails with the right-hand side's status.
+/// of slope stay small. f0, work and work2 are (n) scratch. Fails with the right-hand side's
+/// status.
 HN_MUST_CHECK hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
                                       double rtol, double atol, double hmax, double *f0,
                                       double *work, double *work2, double *h);
