@@ -215,7 +215,7 @@ class Stability(unittest.TestCase):
     def test_a_map_draws_the_predicted_limit_among_its_cells(self):
         text = self.call(*SMALL).stdout.decode()
         self.assertIn("\u2501", text)
-        self.assertRegex(text, r"prediction within 5 % on \d of \d columns")
+        self.assertRegex(text, r"prediction within 5 % in \d of \d columns")
         # one column is not counted; a stiff one agrees with its prediction
         study = strict(self.call("study", "stiff-four-bar", "stability", "--preset", "limits", "--time-limit", "0", "--methods", "projection@rk4", "--json").stdout)
         self.assertEqual(study["methods"][0]["agreement"]["text"], "prediction within 5 %")

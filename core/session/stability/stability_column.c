@@ -455,6 +455,23 @@ static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_colum
     }
 }
 
+/// Of one column whose limit was not found where it was predicted.
+static void put_disagreement(hn_strbuf *b, const hn_map *map, int m, const hn_map_agreement *a) {
+    const double predicted = hn_map_column_at(map, m, 0)->predicted[0];
+    if (a->unseen) {
+        hn_strbuf_printf(b,
+                         "beyond the predicted limit, h = %.3g s, the error grows too slowly to "
+                         "be seen",
+                         predicted);
+    } else if (a->earlier) {
+        hn_strbuf_add(b, "the runs end earlier than predicted");
+        put_first_earlier(b, map, m);
+    } else {
+        hn_strbuf_printf(b, "the runs stay stable beyond the predicted limit, h = %.3g s",
+                         predicted);
+    }
+}
+
 void hn_map_steps_text(hn_strbuf *b, const hn_map *map, int m) {
     hn_strbuf_printf(b, "%s: ", map->steps->names[m]);
     hn_map_agreement_text(b, map->steps, m);
@@ -475,14 +492,18 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
     }
 
     // one column says it without counts
-    if (a.by_columns && map->x.n == 1 && a.agree == 1) {
-        hn_strbuf_printf(b, "prediction within %.0f %%", 100 * HN_MAP_AGREES);
+    if (a.by_columns && map->x.n == 1) {
+        if (a.agree == 1) {
+            hn_strbuf_printf(b, "prediction within %.0f %%", 100 * HN_MAP_AGREES);
+        } else {
+            put_disagreement(b, map, m, &a);
+        }
         return;
     }
 
     // how many columns or cells agree
     hn_strbuf_printf(b,
-                     a.by_columns ? "prediction within %.0f %% on %d of %d columns"
+                     a.by_columns ? "prediction within %.0f %% in %d of %d columns"
                                   : "prediction right, %.0f %% or more from the boundary, in %d of "
                                     "%d cells",
                      100 * HN_MAP_AGREES, a.agree, a.compared);

@@ -10,7 +10,7 @@
 
 /// Whether the predicted limit of method m and the observed one agree, over all columns.
 hn_map_agreement hn_map_agrees(const hn_map *map, int m);
-/// "prediction within 5 % on 31 of 32 columns; 1: growth too slow to be seen"
+/// "prediction within 5 % in 31 of 32 columns; 1: growth too slow to be seen"
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m);
 /// The same of method m of the map of steps that chose this map, hn_map_steps(), after its name.
 void hn_map_steps_text(hn_strbuf *b, const hn_map *map, int m);

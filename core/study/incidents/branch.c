@@ -95,8 +95,10 @@ static void finish_passing(hn_watch *w, double angle) {
     }
     hn_incident *i = &w->log.list[passing - 1];
     if (angle == HUGE_VAL) {
-        hn_incident_append(&w->log, i,
-                           "; the steps are too long to say on which branch the run continued");
+        hn_incident_append(
+            &w->log, i,
+            "; the steps are too long, or the loops too far open, to say on which branch "
+            "the run continued");
     } else if (angle > HN_RUN_WARN_TURN) {
         hn_incident_append(&w->log, i,
                            w->heading.explained

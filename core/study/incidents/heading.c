@@ -19,6 +19,7 @@ static const double CHANGE = 0.5; // a continuation that changes the heading by 
 static const double INSIDE =
     0.02; // of the largest sigma_min: an isolated configuration is left at once
 enum { PILOT_FINER = 8, PILOT_MOST = 400 }; // steps of the pilot run: in one of the run, in all
+static const double ACROSS = 0.5;           // of HN_RUN_WARN_TURN, see is_across()
 static const double WANDER = 0.3;           // of the length, in the loops' own displacement
 
 hn_status hn_heading_create(hn_watch *w) {
@@ -147,6 +148,19 @@ static void keep_outside(hn_watch *w) {
     memcpy(w->heading.outside.v, s->now.v, (size_t)s->info.nv * sizeof(double));
 }
 
+// Velocities that violate the constraints by g are off those that the loops allow by up to g /
+// sigma_min: a penalty's springs swing across the motion where links nearly line up. A direction
+// that may be off by a good part of what is reported says nothing about the branch.
+static bool is_across(const hn_watch *w) {
+    const double *scale = hn_singularity_scale(w->singular.monitor);
+    double speed = 0;
+    for (int i = 0; i < w->run->info.nv; i++) {
+        speed = hypot(speed, w->run->now.v[i] / scale[i]);
+    }
+    const double across = w->measure.velocity_gap / (w->length * w->singular.info.sigma_min);
+    return across > ACROSS * HN_RUN_WARN_TURN * speed;
+}
+
 double hn_heading_check(hn_watch *w) {
     hn_heading_record *r = &w->heading;
     const int n = w->run->info.nv + 1;
@@ -155,6 +169,10 @@ double hn_heading_check(hn_watch *w) {
     if (!has_heading(w) || w->singular.info.sigma_min < CLOSE * w->singular.largest ||
         !take_heading(w, &r->now)) {
         return angle;
+    }
+    if (is_across(w)) {
+        r->n = 0; // begins anew where the velocities follow the loops again
+        return HUGE_VAL;
     }
     if (r->n > 0 && is_line) {
         align(n, r->last.e, r->now.e);
