@@ -68,7 +68,7 @@ const hn_stepper hn_stepper_hem4_adaptive = {
              "PHEM56 (Murua 1997), would need fewer evaluations; it is not included, because no "
              "source was found with which its coefficients could be checked. rtol limits the error "
              "of one step, not that of the motion: over the shipped scenes at rtol=1e-6 the median "
-             "error is 250 times rtol, and one scene in ten has more than 9800 times rtol.",
+             "error is 320 times rtol, and one scene in ten has more than 9000 times rtol.",
     .source = "Brasey & Hairer 1993; Hairer, Norsett & Wanner 1993, section II.4",
     .order = 4,
     .control_order = 5,

@@ -171,9 +171,9 @@ const hn_stepper hn_stepper_dop853 = {
     .about = "Order 8; chooses its own, long steps from rtol and atol. A trial step costs twelve "
              "evaluations, the dense output of order 7 of an accepted step four more. For tight "
              "tolerances and references. After 5 s the motion of a pole on a cart is off by about "
-             "10 times rtol; over the shipped scenes at rtol=1e-6 the median error is 12 times "
+             "10 times rtol; over the shipped scenes at rtol=1e-6 the median error is 10 times "
              "rtol, and one "
-             "scene in ten has more than 480 times rtol.",
+             "scene in ten has more than 430 times rtol.",
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.5, II.6, II.10",
     .order = 8,
     .stages = STAGES,

@@ -13,7 +13,7 @@ const hn_stepper hn_stepper_dopri5 = {
              "undamped springs it takes smaller steps than rk4. After 5 s the motion of a pole on "
              "a cart is off by about 5 times rtol; over the shipped scenes at rtol=1e-6 the median "
              "error "
-             "is 46 times rtol, and one scene in ten has more than 2900 times rtol.",
+             "is 32 times rtol, and one scene in ten has more than 2600 times rtol.",
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.4-II.6",
     .order = 5,
     .stages = 6,

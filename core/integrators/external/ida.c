@@ -533,7 +533,7 @@ const hn_stepper hn_stepper_ida = {
              "(option safety). rtol limits the error of one step, not that of the motion: after 5 "
              "s the motion of a pole on a cart is off by about 30 times rtol; over the shipped "
              "scenes at "
-             "rtol=1e-6 the median error is 27 times rtol, and one scene in ten has more than 4300 "
+             "rtol=1e-6 the median error is 23 times rtol, and one scene in ten has more than 1500 "
              "times rtol.",
     .source = "Hindmarsh et al. 2005; Brenan, Campbell & Petzold 1996",
     .order = 5,

@@ -52,8 +52,8 @@ const hn_stepper hn_stepper_radau5 = {
         "forms. rtol limits the error of one step, not that of the motion: after 5 s the motion of "
         "a pole on a cart is off by about 60 times rtol; over the shipped scenes at rtol=1e-6 the "
         "median "
-        "error is 17 times rtol, and one scene in ten has more than 460 times rtol (index3: 34 and "
-        "1200).",
+        "error is 16 times rtol, and one scene in ten has more than 440 times rtol (index3: 32 and "
+        "730).",
     .source = "Hairer & Wanner 1996, IV.5 and IV.8",
     .order = 5,
     .control_order = 4,
