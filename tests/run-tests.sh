@@ -5,9 +5,10 @@
 # line for each as it ends and the failures in full, and closes with "N passed, N failed". A program speaks cmocka's text or TAP;
 # a crash, a time-out, a test that was planned and not run, or no test at all count as a failure. What a test skips stands below
 # the line of its program. Exit status 1 if anything failed.
-# A browser's program (.mjs) shares the machine's time with all others. One that failed is run a second time when all have ended,
-# alone. The second try counts; the first stands in full above, and a line before the last names what passed only then. Where
-# more than three failed, something is broken: then none is tried again.
+# A browser's program (.mjs) and one that drives servers, terminals or students' programs (.py) shares the machine's time with all
+# others. One that failed is run a second time when all have ended, alone. The second try counts; the first stands in full above,
+# and a line before the last names what passed only then. Where more than three failed, something is broken: then none is tried
+# again.
 set -u
 export TEST_TIMEOUT="${TEST_TIMEOUT:-600}"
 
@@ -61,13 +62,13 @@ for program in "$@"; do
     printf '%04d\0%s\0' "$n" "$program"
 done | xargs -0 -r -n 2 -P "${TEST_JOBS:-$(nproc)}" sh "$0" --one "$work"
 
-# the browser's programs that failed, as "number program" lines
+# the browser's and the driving programs that failed, as "number program" lines
 i=0
 for program in "$@"; do
     i=$((i + 1))
     number=$(printf '%04d' "$i")
     case $program in
-    *.mjs) grep -qs ' 0$' "$work/$number.count" || echo "$number $program" ;;
+    *.mjs | *.py) grep -qs ' 0$' "$work/$number.count" || echo "$number $program" ;;
     esac
 done >"$work/again"
 

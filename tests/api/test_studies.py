@@ -528,9 +528,8 @@ class Bounded(unittest.TestCase):
 
     def test_the_server_ends_cleanly_while_studies_run(self):
         server = driver.Server()
-        for body in (LONG, but(BUDGET, time=10)):
-            start(server, body)
-        time.sleep(0.5)
+        studies = [start(server, body) for body in (LONG, but(LONG, levels=6))]
+        self.assertTrue(driver.until(lambda: any(look(server, study)["progress"] > 0 for study in studies)))
         self.assertEqual(server.stop(), 0, "".join(server.errors))
         self.assertIn("the server ends while 2 of its studies run; their results are lost", "".join(server.errors))
 

@@ -26,6 +26,25 @@ def call(*words):
     return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=600)
 
 
+def in_terminal(columns, *words, rows=24, stdin=subprocess.DEVNULL, env=None):
+    """Exit status, what a terminal of that size gets (bytes), what stderr gets (text). `stdin` None: the terminal itself."""
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    with tempfile.TemporaryFile("w+") as errors, \
+            subprocess.Popen([PROGRAM, *words], stdin=slave if stdin is None else stdin, stdout=slave, stderr=errors, env=env) as process:
+        os.close(slave)
+        shown = b""
+        try:
+            while more := os.read(master, 65536):
+                shown += more
+        except OSError:  # the last writer has closed the terminal
+            pass
+        os.close(master)
+        status = process.wait(timeout=600)
+        errors.seek(0)
+        return status, shown, errors.read()
+
+
 def candidates(*words):
     return [line.split("\t")[0] for line in call("complete", "--", *words).stdout.splitlines()]
 
@@ -199,14 +218,9 @@ class Help(unittest.TestCase):
             self.assertEqual(call(kind).stdout, call("list", kind).stdout)
 
     def test_a_long_text_goes_through_the_pager_of_a_terminal(self):
-        master, slave = pty.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 10, 80, 0, 0))
         env = {**os.environ, "PAGER": "sed -n 's/^/paged /;1p'", "LC_ALL": "C.UTF-8"}
-        with subprocess.Popen([PROGRAM, "list", "scenes"], stdin=slave, stdout=slave, env=env) as process:
-            process.wait(timeout=600)
-        os.close(slave)
-        self.assertTrue(os.read(master, 4096).startswith(b"paged "))
-        os.close(master)
+        _, shown, _ = in_terminal(80, "list", "scenes", rows=10, stdin=None, env=env)
+        self.assertTrue(shown.startswith(b"paged "), shown)
 
 
 class Width(unittest.TestCase):
@@ -290,35 +304,26 @@ class Width(unittest.TestCase):
 
     def test_a_terminal_gets_colours_unless_it_says_no(self):
         for more, coloured in (({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)):
-            master, slave = pty.openpty()
-            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 60, 80, 0, 0))
             env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **more}
             if "NO_COLOR" not in more:
                 env.pop("NO_COLOR", None)
-            with subprocess.Popen([PROGRAM, "list", "problems"], stdin=subprocess.DEVNULL, stdout=slave, env=env) as process:
-                process.wait(timeout=600)
-            os.close(slave)
-            self.assertEqual(b"\033[1m" in os.read(master, 4096), coloured, more)
-            os.close(master)
+            _, shown, _ = in_terminal(80, "list", "problems", rows=60, env=env)
+            self.assertEqual(b"\033[1m" in shown, coloured, more)
 
 
 class NearMisses(unittest.TestCase):
     def test_a_terminal_gets_a_table_of_a_run_that_fits_and_a_pipe_the_samples(self):
         words = ("run", "four-bar", "--time", "0.1", "--every", "0.02", "--method", "index1@rk4:h=0.01")
         for columns in (60, 80, 200):
-            master, slave = pty.openpty()
-            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-            done = subprocess.run([PROGRAM, *words], stdout=slave, stderr=subprocess.PIPE, timeout=600)
-            os.close(slave)
-            rows = os.read(master, 65536).decode().splitlines()
-            os.close(master)
-            self.assertEqual(len(rows), 7)
+            _, shown, told = in_terminal(columns, *words)
+            rows = shown.decode().splitlines()
+            self.assertEqual(len(rows), 7, rows)
             self.assertEqual(len({len(row) for row in rows}), 1, "aligned")
             self.assertLessEqual(len(rows[0]), columns)
             # the gap stays when there is little room, and what was left out is told
             self.assertEqual(rows[0].split()[0], "t")
             self.assertIn("gap", rows[0].split())
-            self.assertRegex(" ".join(done.stderr.decode().split()), r"\d+ of 27 columns have no room here; all of them, with all digits: holonom run four-bar --format csv > FILE")
+            self.assertRegex(" ".join(told.split()), r"\d+ of 27 columns have no room here; all of them, with all digits: holonom run four-bar --format csv > FILE")
         self.assertTrue(call(*words).stdout.startswith("t,th1,a2,th3,"))
 
     def test_one_method_and_several_are_typed_with_either_option(self):

@@ -85,7 +85,7 @@ printf 'echo "not ok 1 - why"\necho "ok 2 - that # SKIP no network"\n' >"$work/w
 expect 'a failure is told with its output, and again at the end; what was skipped is told' '4' \
     "$(sh tests/run-tests.sh "$work/why.sh" | grep -c -e '^    not ok 1 - why' -e '^     ok 2' -e "^  $work/why.sh: not ok 1" -e '^FAIL ')"
 
-# a browser's program is tried again, alone; no other is
+# a program that drives a browser, a server or a terminal is tried again, alone; no other is
 cat >"$work/late.mjs" <<'X'
 import { existsSync, writeFileSync } from "node:fs";
 import { test } from "node:test";
@@ -101,6 +101,10 @@ expect 'a browser program that fails beside others is tried again, and the count
     '0 1 passed, 0 failed' "$? $(tail -n 1 "$work/late.said")"
 expect 'the first failure stays to be read, and the second try is named' '3' \
     "$(grep -c -e '^FAIL ' -e 'too early' -e "^passed only when tried again, alone: $work/late.mjs" "$work/late.said")"
+printf 'import os, sys\nbefore = sys.argv[0] + ".ran"\nsecond = os.path.exists(before)\nopen(before, "w").close()\nprint("ok 1 - a" if second else "not ok 1 - a")\nprint("1..1")\n' >"$work/late.py"
+expect 'a program that drives a server is tried again too' '1 passed, 0 failed' "$(sh tests/run-tests.sh "$work/late.py" | tail -n 1)"
+printf 'if [ -e "$0.ran" ]; then echo "ok 1 - a"; else touch "$0.ran"; echo "not ok 1 - a"; fi\n' >"$work/late.sh"
+expect 'a program that computes alone is not' '0 passed, 1 failed' "$(sh tests/run-tests.sh "$work/late.sh" | tail -n 1)"
 printf 'import { test } from "node:test";\ntest("never", () => { throw new Error("no"); });\n' >"$work/bad.mjs"
 expect 'what fails twice has failed' '0 passed, 1 failed' "$(sh tests/run-tests.sh "$work/bad.mjs" | tail -n 1)"
 for k in 1 2 3 4; do cp "$work/bad.mjs" "$work/bad$k.mjs"; done
