@@ -162,6 +162,22 @@ class NobodyWaitsForAnother(Timed):
         reason = answer.json()["latest"]["methods"][0]["reason"]
         self.assertRegex(reason, r"times as long as real time; take a larger step")
 
+    def test_a_slow_frame_is_reported_while_it_is_computed(self):
+        """Nothing was sent, and the lag was 0, until all methods had used up their 2 s for the frame."""
+        c = self.server.compare(methods=["projection@rk4:h=1e-9", "index1@rk4:h=1e-9"], paused=False)
+        events = driver.Events(self.server, c["id"])
+        slow = events.until("slow")[-1][2]
+        self.assertEqual((slow["generation"], slow["frame"], slow["method"]), (0, 1, 0))
+        self.assertGreater(slow["slowness"], 1)
+        self.assertLess(slow["computed_s"], 1)
+        self.assertRegex(slow["detail"], r"^projection@rk4:h=1e-09 runs [0-9.e+]+ times slower than the clock")
+        self.assertRegex(slow["hint"], "take a larger step, .* more than 2 s for a frame is stopped")
+        late = []  # a method has 2 s of computing, so there is time to ask
+        self.assertTrue(driver.until(lambda: late.append(self.server.ask("GET", "/api/v1/comparisons/" + c["id"]).json()) or late[-1]["lag"] > 0))
+        self.assertEqual(late[-1]["frame"], 0)
+        events.close()
+        self.server.ask("DELETE", "/api/v1/comparisons/" + c["id"])
+
     def test_steps_make_way_for_a_later_request(self):
         def attempt():
             c = self.server.compare(**RING, methods=["projection@rk4:h=1e-4"])

@@ -5,7 +5,7 @@
 // repeat.
 import { api } from "./client.js";
 
-const EVENTS = ["hello", "frame", "incident", "reset", "state", "gap", "end"];
+const EVENTS = ["hello", "frame", "slow", "incident", "reset", "state", "gap", "end"];
 const RETRY_FIRST = 500; // [ms]
 const RETRY_MOST = 2000;
 

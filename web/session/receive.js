@@ -54,6 +54,8 @@ export function createReceiver(store, notice) {
   let covered = 0;
   /** id of the newest event that told a state: the state in an older answer is out of date */
   let stated = 0;
+  /** generation whose slowness was shown */
+  let slowTold = -1;
 
   /** The present run becomes the one "before" if only its methods or settings change. */
   function keepBefore(description) {
@@ -167,6 +169,12 @@ export function createReceiver(store, notice) {
   const onEvent = {
     hello: ({ description }) => applyDescription(description),
     frame: (frame) => applyFrame(withExtras(frame)),
+    slow: ({ generation, detail, hint }) => {
+      if (generation === data.generation && slowTold !== generation) {
+        slowTold = generation; // once a run: the events go on
+        notice(`${detail}; ${hint}`);
+      }
+    },
     incident: applyIncident,
     reset: ({ description }) => applyDescription(description),
     state: (change, id) => {

@@ -264,6 +264,22 @@ bool hn_comparison_finished(const hn_comparison *c) {
     return true;
 }
 
+int hn_comparison_slowest(const hn_comparison *c, double *slowness) {
+    int slowest = -1;
+    double most = 0;
+    for (int i = 0; i < c->n && c->in_frame; i++) {
+        const entry *e = &c->entries[i];
+        const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;
+        if (is_live(e) && cpu > most) {
+            const double moved = hn_run_time(e->run) - e->frame_t;
+            most = cpu;
+            slowest = i;
+            *slowness = cpu / (moved > 0 ? moved : c->frame_dt); // a first step: at least so slow
+        }
+    }
+    return slowest;
+}
+
 /// Stops a method whose frame has cost too much; 1 when it did.
 static bool check_cpu_limit(const hn_comparison *c, entry *e) {
     const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;

@@ -89,6 +89,9 @@ bool hn_comparison_is_live(const hn_comparison *c, int method); ///< neither fai
 double hn_comparison_cpu_limit(const hn_comparison *c);         ///< [s] of one frame
 /// Computing time over simulated time in the frame that took too long; 0 where none did.
 double hn_comparison_slowness(const hn_comparison *c, int method);
+/// Returns the method that has computed for longest in the frame in progress, -1 where none has or
+/// no frame is, and in *slowness its computing time over simulated time in this frame so far [-].
+int hn_comparison_slowest(const hn_comparison *c, double *slowness);
 const hn_hand *hn_comparison_hand(const hn_comparison *c); ///< borrowed
 /// Returns the accuracy watch, borrowed, and in *track what it has seen of the method.
 const hn_accuracy *hn_comparison_accuracy(const hn_comparison *c, const hn_accuracy_track **track,

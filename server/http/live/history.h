@@ -13,6 +13,7 @@ enum { HN_EVENT_MAX_EXTRAS = 3 };
 
 #define HN_EVENT_LIST(X)             \
     X(HN_EVENT_FRAME, "frame")       \
+    X(HN_EVENT_SLOW, "slow")         \
     X(HN_EVENT_INCIDENT, "incident") \
     X(HN_EVENT_RESET, "reset")       \
     X(HN_EVENT_STATE, "state")       \

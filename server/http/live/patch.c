@@ -161,6 +161,7 @@ static hn_status restart(hn_session *session) {
     session->generation++;
     session->frame = 0;
     session->lag = 0;
+    session->slow = (hn_slow_frame){0};
     if (session->state == HN_SESSION_FINISHED) {
         session->state = HN_SESSION_PAUSED;
     }

@@ -15,9 +15,6 @@
 #include <sys/random.h>
 #include <time.h>
 
-/// Frames that come later than this are not caught up: the clock is set anew and the loss is told
-/// as `lag`.
-static const double LATE = 0.25; // [s]
 /// A running comparison whose readers have left goes on for so long, until one is back [s].
 static const double LEFT_ALONE = 2;
 
@@ -59,11 +56,13 @@ static bool is_unwatched(const hn_session *session) {
 
 /// A frame that is due; its lateness is kept as lag rather than caught up in a burst.
 static void advance_on_time(hn_session *session, double due) {
+    session->due = due;
     pthread_mutex_unlock(&session->lock);
     hn_session_advance(session);
     pthread_mutex_lock(&session->lock);
-    double late = hn_clock_wall() - due;
-    if (late > LATE) {
+    const double late = hn_session_lateness(session);
+    session->due = 0;
+    if (late > 0) {
         session->lag += late;
         hn_session_set_anchor(session);
     }

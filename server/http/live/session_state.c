@@ -13,6 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// Frames that come later than this are not caught up: the clock is set anew and the loss is told
+/// as `lag`.
+static const double LATE = 0.25; // [s]
+
 // ---- what is compared ----
 
 void hn_subject_reset(hn_subject *bench) {
@@ -92,7 +96,7 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
     hn_json_put_number(b, "frame_dt", session->frame_dt);
     hn_json_put_number(b, "duration", session->duration);
     hn_json_put_int(b, "generation", session->generation);
-    hn_json_put_number(b, "lag", session->lag);
+    hn_json_put_number(b, "lag", session->lag + hn_session_lateness(session));
     hn_json_put_int(b, "last_event", (long long)session->history.last_id);
     hn_json_put_int(b, "pulls", session->n_pulls);
 
@@ -282,8 +286,27 @@ void hn_session_publish_frame(hn_session *session) {
     hn_strbuf_reset(&latest);
 }
 
+/// Publishes how slow the frame in progress is, where that is due.
+static void publish_slowness(hn_session *session) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_put_int(&b, "generation", session->generation);
+    const bool is_due =
+        hn_slow_frame_report(&session->slow, session->bench.comparison, session->speed, &b);
+    hn_json_end_object(&b);
+    if (is_due) {
+        pthread_mutex_lock(&session->lock);
+        hn_history_add(&session->history, HN_EVENT_SLOW, &b);
+        hn_session_wake_streams(session);
+        pthread_mutex_unlock(&session->lock);
+    }
+    hn_strbuf_reset(&b);
+}
+
 static int must_yield(void *user) {
     hn_session *session = user;
+    publish_slowness(session);
     const int interrupt = atomic_load(&session->interrupt);
     return interrupt == HN_INTERRUPT_END ||
            (interrupt == HN_INTERRUPT_REQUEST && hn_clock_wall() > session->undisturbed);
@@ -296,11 +319,19 @@ void hn_session_set_interrupt(hn_session *session) {
 }
 
 int hn_session_advance(hn_session *session) {
-    if (!hn_comparison_work(session->bench.comparison, must_yield, session)) {
+    hn_slow_frame_begin(&session->slow);
+    const bool is_whole = hn_comparison_work(session->bench.comparison, must_yield, session);
+    hn_slow_frame_end(&session->slow, is_whole);
+    if (!is_whole) {
         return 0;
     }
     hn_session_publish_frame(session);
     return 1;
+}
+
+double hn_session_lateness(const hn_session *session) {
+    const double late = session->due > 0 ? hn_clock_wall() - session->due : 0;
+    return late > LATE ? late : 0;
 }
 
 void hn_session_set_anchor(hn_session *session) {

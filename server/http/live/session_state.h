@@ -5,6 +5,7 @@
 // and its readers (stream.c).
 
 #include "http/live/session.h"
+#include "http/live/slow_frame.h"
 #include "http/request/request.h"
 
 #include <pthread.h>
@@ -47,6 +48,7 @@ struct hn_session {
     double undisturbed;         ///< until then no request interrupts [s, wall clock]
     double load_end;            ///< until then equations must be there [s, thread's own clock]
     bool interrupted;           ///< they were given up
+    hn_slow_frame slow;         ///< the frame in progress
     hn_request *maker;          ///< the request that makes the session; NULL on its own thread
     const atomic_int *stopping; ///< the server ends
 
@@ -55,6 +57,7 @@ struct hn_session {
     double speed;
     long long frame, generation;
     double lag;         ///< real time by which the frames came too late, in all [s]
+    double due;         ///< when the frame that is computed was due; 0: none is [s, wall clock]
     double anchor_time; ///< pacing: frame `anchor_frame` was due then
     long long anchor_frame;
     double frame_dt, duration;
@@ -102,6 +105,9 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *session);
 void hn_session_put_state(hn_strbuf *b, const hn_session *session); ///< members "state" and "speed"
 void hn_session_wake_streams(hn_session *session);
 void hn_session_set_anchor(hn_session *session);
+/// Real time by which the frame that is computed comes too late so far; 0 where that is caught up
+/// [s].
+double hn_session_lateness(const hn_session *session);
 void hn_session_set_interrupt(hn_session *session); ///< by what waits
 void hn_reader_wake(hn_reader *r);
 #endif

@@ -163,6 +163,7 @@ static const struct {
      "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
     {"Events",
      "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), "
+     "slow (frame, method, slowness, computed_s, detail, hint: this frame takes long, and why), "
      "incident (Incident), "
      "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
     {"RunEvents",
