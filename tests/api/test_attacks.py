@@ -5,6 +5,7 @@ import concurrent.futures
 import http.client
 import json
 import math
+import socket
 import threading
 import time
 
@@ -194,6 +195,41 @@ class NobodyWaitsForAnother(Timed):
             return took, max(1 * driver.SLOW, 10 * usual)
 
         self.assert_within(attempt)
+
+
+class NobodyReads(Timed):
+    def test_answers_to_runs_that_nobody_reads_are_bounded(self):
+        """One run, asked for by many who do not read: each had its copy, however many there were."""
+        server = driver.Server()
+        question = {"scene": "four-bar", "method": "index1@rk4:h=1e-2", "time": 30, "every": 1e-3}
+        size = len(driver.run_to_end(server, question).body)
+        bound = server.ask("GET", "/api/v1/").json()["limits"]["unread_bytes"]
+        most = bound // size
+        question["time"] -= 1e-3  # another one, which all wait for at once
+        body = json.dumps(question).encode()
+        head = f"POST /api/v1/runs?wait=60 HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+        sockets = []
+        for _ in range(most + 8):
+            s = socket.socket()
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            s.settimeout(60 * driver.SLOW)
+            s.connect(("127.0.0.1", server.port))
+            s.sendall(head.encode() + body)
+            sockets.append(s)
+        answers = [s.recv(2048) for s in sockets]
+        refused = [a for a in answers if a.startswith(b"HTTP/1.1 429 ")]
+        self.assertEqual(len(refused) + sum(a.startswith((b"HTTP/1.1 200 ", b"HTTP/1.1 201 ")) for a in answers), len(answers))
+        self.assertGreaterEqual(len(refused), 7)
+        for answer in refused:
+            self.assertIn(b"\r\nRetry-After: 5\r\n", answer)
+
+        # whoever reads again has the whole
+        for s in sockets:
+            s.close()
+        again = []
+        self.assertTrue(driver.until(lambda: again.append(server.ask("POST", "/api/v1/runs", question)) or again[-1].status == 200))
+        self.assertGreater(len(again[-1].body), 0.9 * size)
+        self.assertEqual(server.stop(), 0, server.errors)
 
 
 class GoingDown(Timed):

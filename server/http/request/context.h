@@ -27,13 +27,14 @@ typedef struct hn_context {
     struct hn_studies *studies;
     struct hn_runs *runs;
     struct hn_run_list *run_list;
-    hn_kept_text scenes;       ///< the list of shipped scenes, as JSON
-    hn_kept_text openapi;      ///< the description of the API
-    struct hn_shares *streams; ///< places of open streams
-    struct hn_jobs *quick;     ///< threads of requests that take no time
-    struct hn_jobs *heavy;     ///< threads of long requests
-    atomic_int open_requests;  ///< begun and not completed
-    _Atomic long long unread;  ///< bytes of answers that wait for their readers
-    atomic_int stopping;       ///< 1: the server ends; nothing new is started
+    hn_kept_text scenes;                ///< the list of shipped scenes, as JSON
+    hn_kept_text openapi;               ///< the description of the API
+    struct hn_shares *streams;          ///< places of open streams
+    struct hn_jobs *quick;              ///< threads of requests that take no time
+    struct hn_jobs *heavy;              ///< threads of long requests
+    atomic_int open_requests;           ///< begun and not completed
+    _Atomic long long unread;           ///< bytes of answers that are made and not yet read
+    struct hn_connections *connections; ///< with those that read too slowly
+    atomic_int stopping;                ///< 1: the server ends; nothing new is started
 } hn_context;
 #endif

@@ -57,6 +57,7 @@ void hn_reply_compress(hn_request *r, size_t most) {
     if (hn_gzip(&small, hn_strbuf_text(&r->text), r->text.n)) {
         hn_strbuf_reset(&r->text);
         r->text = small;
+        hn_request_count_answer(r);
         hn_reply_header_add(r, "Content-Encoding", "gzip");
         hn_reply_header_add(r, "Vary", "Accept-Encoding");
     } else {

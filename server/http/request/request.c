@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/json_text.h"
+#include "http/ground/connections.h"
 #include "http/request/context.h"
 #include "session/job/field.h"
 
@@ -150,6 +151,7 @@ void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_s
     r->status = status;
     r->media_type = media_type;
     r->stage = HN_STAGE_ANSWERED;
+    hn_request_count_answer(r);
 }
 
 void hn_reply_json(hn_request *r, unsigned status, hn_strbuf *text) {
@@ -176,6 +178,7 @@ void hn_reply_kept(hn_request *r, hn_kept_text *kept,
 
 void hn_reply_empty(hn_request *r, unsigned status) {
     hn_strbuf_reset(&r->text);
+    hn_request_count_answer(r);
     r->status = status;
     r->media_type = NULL;
     r->stage = HN_STAGE_ANSWERED;
@@ -210,6 +213,32 @@ void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, con
     vsnprintf(detail, sizeof detail, format, args);
     va_end(args);
     reply_document(r, kind, detail, hint, -1, NULL);
+}
+
+/// Counts n bytes for the answer; returns how many are unread in all without it.
+static long long count_unread(hn_request *r, long long n) {
+    const long long before = atomic_fetch_add(&r->context->unread, n - r->n_unread) - r->n_unread;
+    r->n_unread = n;
+    return before;
+}
+
+void hn_request_count_answer(hn_request *r) {
+    count_unread(r, (long long)r->text.n);
+}
+
+bool hn_request_may_answer(hn_request *r, size_t n) {
+    const hn_http_opts *opts = &r->context->opts;
+    const long long others = count_unread(r, (long long)n);
+    if (others <= 0 || others + (long long)n <= opts->max_unread) {
+        return true;
+    }
+    hn_connections_end_slowest(r->context->connections, opts->unread_patience);
+    hn_reply_problem(r, HN_PROBLEM_BUSY, "read the answers that were asked for, then ask again",
+                     "%lld bytes of answers have not been read by their clients, and this one has "
+                     "%zu; at most %lld may wait (unread_bytes of the index)",
+                     others, n, opts->max_unread);
+    hn_reply_header_add(r, "Retry-After", "5");
+    return false;
 }
 
 void hn_reply_queue_full(hn_request *r, hn_jobs *jobs) {

@@ -74,7 +74,7 @@ typedef struct hn_request {
     bool has_place;     ///< it has waited for a place, and has it
 
     // the reply
-    long long n_unread; ///< bytes handed to the HTTP library, until the request is completed
+    long long n_unread; ///< bytes of the answer that count as unread, until it is completed
     unsigned status;
     const char *media_type; ///< static text
     hn_strbuf text;
@@ -123,6 +123,12 @@ void hn_reply_empty(hn_request *r, unsigned status);
 void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response);
 void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
                       ...) HN_PRINTF(4, 5);
+/// Counts an answer of about n bytes as unread before it is made. Returns false where it would be
+/// one too many of those that wait for their readers: the reply is then a problem, and the slowest
+/// reader is given up. An answer that waits for nobody else is never too large.
+HN_MUST_CHECK bool hn_request_may_answer(hn_request *r, size_t n);
+/// Counts the bytes of the answer that is there, in place of what was counted for it before.
+void hn_request_count_answer(hn_request *r);
 /// A pool has not taken the request: its queue is full, in all or for this client.
 void hn_reply_queue_full(hn_request *r, hn_jobs *jobs);
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.

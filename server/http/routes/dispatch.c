@@ -186,7 +186,7 @@ void hn_dispatch_job(void *job, hn_job_turn *turn) {
     hn_request_add_time(r);
     if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is shutting down");
-    } else if (hn_request_read_body(r)) {
+    } else if (hn_request_may_answer(r, 0) && hn_request_read_body(r)) { // it may have waited long
         const bool own = r->route->work == HN_WORK_QUICK_OWN || r->route->work == HN_WORK_HEAVY_OWN;
         r->route->handle(r);
         if (own) {
@@ -198,16 +198,9 @@ void hn_dispatch_job(void *job, hn_job_turn *turn) {
 }
 
 /// Gives the request to a pool, or refuses it with the time after which there will be a place.
-static void push(hn_dispatch *d, hn_request *r, hn_jobs *jobs) {
+static void push(hn_request *r, hn_jobs *jobs) {
     hn_request_suspend(r);
-    const long long unread = atomic_load(&r->context->unread);
-    if (unread > r->context->opts.max_unread) {
-        hn_connections_end_slowest(d->connections, r->context->opts.unread_patience);
-        hn_reply_problem(
-            r, HN_PROBLEM_BUSY, NULL,
-            "%lld bytes of answers have not been read by their clients; at most %lld may wait",
-            unread, r->context->opts.max_unread);
-        hn_reply_header_add(r, "Retry-After", "5");
+    if (!hn_request_may_answer(r, 0)) {
         hn_request_finish(r);
     } else if (!hn_jobs_push(jobs, r, r->queues_as)) {
         hn_reply_queue_full(r, jobs);
@@ -245,7 +238,7 @@ static bool start_work(hn_dispatch *d, hn_request *r) {
     case HN_WORK_QUICK_OWN:
     case HN_WORK_HEAVY:
     case HN_WORK_HEAVY_OWN:
-        push(d, r, is_quick(r) ? d->quick : d->heavy);
+        push(r, is_quick(r) ? d->quick : d->heavy);
         return false;
     }
     return true;
@@ -282,8 +275,6 @@ static enum MHD_Result send_reply(hn_dispatch *d, hn_request *r) {
     }
     if (!response) {
         size_t n = r->text.n;
-        r->n_unread = (long long)n;
-        atomic_fetch_add(&r->context->unread, r->n_unread);
         char *text = n ? hn_strbuf_take(&r->text) : NULL;
         response = MHD_create_response_from_buffer(
             n, text ? text : "", text ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);

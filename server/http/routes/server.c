@@ -13,6 +13,7 @@
 #include "http/runs/runs.h"
 #include "http/studies/studies.h"
 
+#include <malloc.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,9 @@
 enum { LOOP_CONNECTIONS = 120 };
 /// Of an event loop itself, and of all that is not a connection: files, libraries, guests.
 enum { LOOP_DESCRIPTORS = 4, OTHER_DESCRIPTORS = 128 };
+/// Texts of this size have pages of their own, which go back to the system with them; the C library
+/// otherwise raises the bound as such texts are freed, and keeps later ones [byte].
+enum { LARGE_TEXT = 1 << 20 };
 enum { DRAIN_LOOKS = 30, DRAIN_NS = 10000000 }; // 0.3 s in all
 
 struct hn_server {
@@ -104,6 +108,7 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     c->quick = s->dispatch.quick;
     c->heavy = s->dispatch.heavy;
     s->dispatch.connections = hn_connections_create(o);
+    c->connections = s->dispatch.connections;
     c->streams = hn_shares_create(o->max_streams, hn_http_opts_share(o, o->max_streams));
     c->comparisons = hn_comparisons_create(o, c->lib);
     c->studies = hn_studies_create(o, c->lib);
@@ -147,6 +152,7 @@ hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts, hn_se
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
+    mallopt(M_MMAP_THRESHOLD, LARGE_TEXT);
     s->context.lib = lib;
     s->context.routes = hn_routes();
     s->context.opts = *opts;

@@ -99,8 +99,12 @@ static bool forget_oldest(hn_runs *all) {
     return true;
 }
 
-static void put_in(hn_runs *all, hn_kept_run *run) {
+static void make_room(hn_runs *all) {
     while ((all->n >= MAX_RUNS || all->bytes > MAX_BYTES) && forget_oldest(all)) {}
+}
+
+static void put_in(hn_runs *all, hn_kept_run *run) {
+    make_room(all);
     run->next = all->first;
     all->first = run;
     all->n++;
@@ -338,7 +342,9 @@ static void compute(void *arg, hn_job_turn *turn) {
     hn_kept_run **place = find_place(all, run->id);
     const int known = *place == run;
     if (known && run->phase == HN_RUN_DONE) {
+        run->touched = hn_clock_wall(); // it makes room for itself last
         all->bytes += run->bytes;
+        make_room(all);
     } else if (known) {
         run->bytes = 0;
         drop(take_out(all, place));

@@ -114,6 +114,9 @@ void hn_run_reply(hn_request *r, const hn_kept_run *run) {
     }
 
     // the whole for who asked the question, the summary for who asks again
+    if (post && phase == HN_RUN_DONE && !hn_request_may_answer(r, run->bytes)) {
+        return;
+    }
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_run_put_json(&b, run, phase, post);
