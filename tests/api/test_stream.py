@@ -256,6 +256,24 @@ class Streams(driver.ServerCase):
             self.assertEqual(events[-1], ("stopping", {"detail": "the server is shutting down"}))
             reader.close()
 
+    def test_readers_that_lag_are_told_of_the_end_of_the_server_too(self):
+        """What they had not read filled the buffers, and the stream broke off without a word."""
+        server = driver.Server()
+        c = server.compare(methods=[METHODS[0]] * 8, duration=600)
+        # some 8 MB of frames, more than the systems on both sides keep
+        self.assertEqual(server.ask("PATCH", "/api/v1/comparisons/" + c["id"], {"step": 600}, timeout=120).json()["frame"], 600)
+        question = {"scene": "four-bar", "method": METHODS[0], "time": 20, "every": 1e-3}
+        run = driver.run_to_end(server, question).json()["id"]
+        readers = [Events(server, c["id"], receive_buffer=4096), Events(server, None, address=f"/api/v1/runs/{run}/events", receive_buffer=4096)]
+        for reader in readers:
+            reader.take(2)
+        self.assertEqual(server.stop(), 0)
+        for reader in readers:
+            events = [(name, data) for name, _, data in reader if name != "comment"]
+            self.assertEqual(events[-1], ("stopping", {"detail": "the server is shutting down"}))
+            reader.close()
+        self.assertGreater(len(events), 1)
+
     def test_deleting_ends_the_stream_with_an_end(self):
         c = self.server.compare(paused=False, duration=100)
         reader = Events(self.server, c["id"])

@@ -247,7 +247,9 @@ void hn_session_end(hn_session *session, int deleted) {
     hn_session_set_interrupt(session);
     session->deleted |= deleted;
     pthread_cond_signal(&session->wake);
-    hn_session_wake_streams(session);
+    for (hn_reader *r = session->readers; r; r = r->next) {
+        hn_stream_end(r);
+    }
     pthread_mutex_unlock(&session->lock);
 }
 

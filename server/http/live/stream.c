@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "build.h"
+#include "http/ground/stream_socket.h"
 #include "http/live/session_state.h"
 #include "http/request/context.h"
 #include "session/compare/comparison_doc.h"
@@ -36,6 +37,11 @@ struct hn_stream {
 static bool has_gone(const hn_stream *s) {
     struct pollfd look = {.fd = s->fd, .events = POLLRDHUP};
     return s->reader.waiting && poll(&look, 1, 0) > 0 && look.revents;
+}
+
+void hn_stream_end(hn_reader *reader) {
+    hn_stream_socket_end(((hn_stream *)reader)->fd);
+    hn_reader_wake(reader);
 }
 
 void hn_stream_tick(hn_reader *reader, double now) {
@@ -106,6 +112,23 @@ static void put_new_events(hn_stream *s) {
     }
 }
 
+/// The last event of a stream: the comparison was deleted, or the server ends. A reader that lags
+/// when the server ends is told what it will not get: there is no time for it.
+static void put_last_event(hn_stream *s) {
+    const uint64_t last = s->session->history.last_id;
+    if (s->session->deleted) {
+        hn_strbuf_add(&s->text, "event: end\ndata: {\"deleted\":true}\n\n");
+    } else {
+        if (s->cursor <= last) {
+            put_gap(s, s->cursor, last);
+            s->cursor = last + 1;
+        }
+        hn_strbuf_add(&s->text,
+                      "event: stopping\ndata: {\"detail\":\"the server is shutting down\"}\n\n");
+    }
+    s->said_end = 1;
+}
+
 /// 1 when the reader has seen all there will be (until somebody resets the comparison).
 static bool is_at_end(const hn_stream *s) {
     return s->session->ending ||
@@ -118,15 +141,12 @@ static void fill(hn_stream *s) {
     if (!s->said_hello) {
         put_hello(s);
     }
-    put_new_events(s);
-    if (s->text.n == 0 && s->session->deleted && !s->said_end) {
-        hn_strbuf_add(&s->text, "event: end\ndata: {\"deleted\":true}\n\n");
-        s->said_end = 1;
+    if (!s->said_end) {
+        put_new_events(s);
     }
-    if (s->text.n == 0 && s->session->ending && !s->said_end) {
-        hn_strbuf_add(&s->text,
-                      "event: stopping\ndata: {\"detail\":\"the server is shutting down\"}\n\n");
-        s->said_end = 1;
+    const bool is_served = s->session->deleted && s->cursor <= s->session->history.last_id;
+    if (s->session->ending && !is_served && !s->said_end) {
+        put_last_event(s);
     }
     if (s->text.n == 0 && !is_at_end(s) &&
         hn_clock_wall() - s->last_sent >= s->session->opts->keep_alive) {
@@ -257,6 +277,7 @@ static void reply_stream(hn_stream *s, hn_request *r) {
     }
     hn_reply_response(r, MHD_HTTP_OK, response);
     r->is_endless = true;
+    hn_stream_socket_begin(s->fd);
     hn_reply_header_add(r, "Content-Type", "text/event-stream");
     hn_reply_header_add(r, "Cache-Control", "no-cache");
     hn_reply_header_add(r, "X-Accel-Buffering", "no");

@@ -12,6 +12,9 @@ typedef struct hn_stream hn_stream;
 /// server's until it is closed.
 void hn_stream_open(hn_session *session, struct hn_request *r);
 
+/// Wakes the stream and makes room for its last events: the session ends. With the session's lock
+/// held.
+void hn_stream_end(hn_reader *reader);
 /// Wakes the stream where a keep-alive line is due or its reader has left. With the session's lock
 /// held.
 void hn_stream_tick(hn_reader *reader, double now);

@@ -165,13 +165,14 @@ static const struct {
      "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), "
      "slow (frame, method, slowness, computed_s, detail, hint: this frame takes long, and why), "
      "incident (Incident), "
-     "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
-    {"RunEvents",
-     "{\"type\":\"string\",\"description\":\"hello (schema, build, id), progress "
-     "(state, progress), "
-     "sample (method, the columns), incident (method, Incident), problem (detail: a "
-     "column that the "
-     "run does not have), end (Run without samples; state stopped: it was deleted)\"}"},
+     "reset (generation, description), state (state, speed), gap (from, to), end (summary), "
+     "stopping (detail: the server ends)\"}"},
+    {"RunEvents", "{\"type\":\"string\",\"description\":\"hello (schema, build, id), progress "
+                  "(state, progress), "
+                  "sample (method, the columns), incident (method, Incident), problem (detail: a "
+                  "column that the "
+                  "run does not have), end (Run without samples; state stopped: it was deleted), "
+                  "stopping (detail: the server ends)\"}"},
     {"StudyList",
      "{\"type\":\"object\",\"required\":[\"studies\"],\"properties\":{\"studies\":" OBJECTS "}}"},
     {"Study",

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "http/ground/jobs.h"
+#include "http/ground/stream_socket.h"
 #include "http/request/gzip.h"
 #include "http/request/request.h"
 #include "http/runs/run_folder.h"
@@ -387,8 +388,18 @@ void hn_runs_tell_end(hn_runs *all) {
     for (hn_kept_run *run = all->first; run; run = run->next) {
         atomic_store(&run->stop, 1);
     }
+    for (const hn_run_reader *r = all->readers; r; r = r->next) {
+        hn_stream_socket_end(r->fd);
+    }
     pthread_cond_signal(&all->wake);
     pthread_mutex_unlock(&all->lock);
+}
+
+bool hn_runs_is_ending(hn_runs *all) {
+    pthread_mutex_lock(&all->lock);
+    const bool is_ending = all->stop;
+    pthread_mutex_unlock(&all->lock);
+    return is_ending;
 }
 
 void hn_runs_stop(hn_runs *all) {

@@ -17,6 +17,7 @@ typedef struct hn_runs hn_runs;
 typedef struct hn_run_reader {
     struct MHD_Connection *connection;
     hn_kept_run *run;
+    int fd;       ///< of the connection
     bool waiting; ///< the connection is suspended; under the lock, as are the next two
     double due;   ///< it is then woken [s, wall clock]
     struct hn_run_reader *next;
@@ -29,6 +30,7 @@ typedef void (*hn_run_answer)(struct hn_request *r, const hn_kept_run *run);
 hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib, hn_run_answer answer);
 /// Tells what computes to end, and waits for nothing.
 void hn_runs_tell_end(hn_runs *all);
+bool hn_runs_is_ending(hn_runs *all); ///< it was told to
 /// Stops what computes, answers who waits, and joins the threads. NULL is legal.
 void hn_runs_stop(hn_runs *all);
 void hn_runs_free(hn_runs *all);

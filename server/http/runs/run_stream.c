@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "build.h"
+#include "http/ground/stream_socket.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/runs/json_scan.h"
@@ -160,6 +161,11 @@ static void fill(run_stream *s) {
     }
     if (phase < HN_RUN_DONE) {
         put_progress(s, phase);
+    }
+    if (!s->ended && hn_runs_is_ending(s->runs)) {
+        hn_strbuf_add(&s->text,
+                      "event: stopping\ndata: {\"detail\":\"the server is shutting down\"}\n\n");
+        s->ended = true;
     } else if (!s->ended && (phase == HN_RUN_REFUSED || atomic_load(&s->reader.run->stop))) {
         const bool stopped = atomic_load(&s->reader.run->stop);
         hn_strbuf_printf(&s->text, "event: end\ndata: {\"state\":\"%s\"}\n\n",
@@ -188,7 +194,7 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
         if (s->text.n == 0 && hn_runs_suspend_reader(s->runs, &s->reader, PROGRESS)) {
             return 0;
         }
-        if (s->text.n == 0 && atomic_load(&s->reader.run->stop)) {
+        if (s->text.n == 0 && atomic_load(&s->reader.run->stop) && !hn_runs_is_ending(s->runs)) {
             return MHD_CONTENT_READER_END_OF_STREAM;
         }
     }
@@ -260,11 +266,12 @@ static run_stream *create_stream(hn_request *r, hn_kept_run *run) {
         hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
         return NULL;
     }
-    *s = (run_stream){.reader = {.connection = r->connection, .run = run},
-                      .runs = c->runs,
-                      .places = c->streams,
-                      .client = r->client,
-                      .fields = copy};
+    *s = (run_stream){
+        .reader = {.connection = r->connection, .fd = hn_request_socket(r), .run = run},
+        .runs = c->runs,
+        .places = c->streams,
+        .client = r->client,
+        .fields = copy};
     return s;
 }
 
@@ -279,6 +286,7 @@ static void reply_stream(hn_request *r, run_stream *s) {
     hn_runs_add_reader(s->runs, &s->reader);
     hn_reply_response(r, MHD_HTTP_OK, response);
     r->is_endless = true;
+    hn_stream_socket_begin(s->reader.fd);
     hn_reply_header_add(r, "Content-Type", "text/event-stream");
     hn_reply_header_add(r, "Cache-Control", "no-cache");
     hn_reply_header_add(r, "X-Accel-Buffering", "no");
