@@ -48,11 +48,13 @@ typedef struct hn_snapshot_load {
     const char *unit; ///< "N"
 } hn_snapshot_load;
 
-/// The angle of a coordinate, drawn at a pivot of the selected pose.
+/// The angle of a coordinate, drawn at a pivot of the selected pose: an arc in the world, seen as
+/// the view shows it.
 typedef struct hn_snapshot_angle {
-    int pivot, end; ///< points of the drawing: the bar that the coordinate turns
-    /// [rad] by which the bar has turned, counter-clockwise in this view, from where it lies at 0
-    double value;
+    int pivot, end;    ///< points of the drawing: the bar that the coordinate turns
+    double zero[3];    ///< unit, world: where the bar lies at 0
+    double quarter[3]; ///< unit, world: where the bar lies at pi/2
+    double value;      ///< [rad] by which the bar has turned
     const char *name;
 } hn_snapshot_angle;
 

@@ -13,24 +13,48 @@ static const double FIRST_RADIUS = 2.4; // [letters]
 static const double SAME_PLACE = 2;     // [px]
 static const double BEYOND = 0.8;       // [letters] that the dashed line is longer than the radius
 
-/// An angle on the sheet [px, rad], counted clockwise as pixels are.
+static const double EDGE_ON = 0.25; // a circle seen narrower than this share has no arc
+enum { ARC_POINTS = 49 };
+
+/// An angle on the sheet: part of a circle, which is an ellipse where it is seen at a slant.
 typedef struct arc {
-    double pivot[2], radius;
-    double from, to;
+    double pivot[2], radius;    ///< [px]
+    double zero[2], quarter[2]; ///< where directions of length 1 at 0 and pi/2 are seen [1]
+    double to;                  ///< [rad] from 0, within a turn
 } arc;
 
-/// False: the bar is too short in this view, or its angle is too small to be seen.
+/// The point of the arc at an angle, or `beyond` [px] farther from the pivot.
+static void arc_point(const arc *a, double angle, double beyond, double out[2]) {
+    double seen[2];
+    for (int k = 0; k < 2; k++) {
+        seen[k] = a->zero[k] * cos(angle) + a->quarter[k] * sin(angle);
+    }
+    const double length = hypot(seen[0], seen[1]);
+    for (int k = 0; k < 2; k++) {
+        out[k] = a->pivot[k] + (a->radius + (length > 0 ? beyond / length : 0)) * seen[k];
+    }
+}
+
+/// A direction as it is seen [px down and right].
+static void see(const hn_sheet *s, const double world[3], double out[2]) {
+    hn_view_project(&s->look, world, out);
+    out[1] = -out[1];
+}
+
+/// False: the bar is too short in this view, its angle is too small to be seen, or the circle is
+/// seen edge on.
 static bool lay_arc(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,
                     int i, arc *out) {
     const hn_snapshot_angle *angle = &opts->angles[i];
     double end[2], other[2];
     hn_sheet_pixel(s, pose->points + 3 * angle->pivot, out->pivot);
     hn_sheet_pixel(s, pose->points + 3 * angle->end, end);
-    const double across = end[0] - out->pivot[0], down = end[1] - out->pivot[1];
-    const double length = hypot(across, down), value = fmod(angle->value, TURN);
-    out->to = atan2(down, across);
-    out->from = out->to + value;
-    if (!(fabs(value) >= SMALLEST) || !(length > 1.5 * s->font)) {
+    see(s, angle->zero, out->zero);
+    see(s, angle->quarter, out->quarter);
+    out->to = fmod(angle->value, TURN);
+    const double length = hypot(end[0] - out->pivot[0], end[1] - out->pivot[1]);
+    const double open = out->zero[0] * out->quarter[1] - out->zero[1] * out->quarter[0];
+    if (!(fabs(out->to) >= SMALLEST) || !(length > 1.5 * s->font) || !(fabs(open) >= EDGE_ON)) {
         return false;
     }
 
@@ -47,22 +71,24 @@ static bool lay_arc(const hn_sheet *s, const hn_snapshot_pose *pose, const hn_sn
 static void draw_arc(hn_canvas *c, const hn_sheet *s, const arc *a) {
     const uint32_t ink = hn_surface_get(hn_canvas_theme(c))->muted;
     const double dash[2] = {0.4 * s->font, 0.3 * s->font}, head = 0.5 * s->font;
-    const double beyond = a->radius + BEYOND * s->font;
     const hn_stroke thin = hn_stroke_solid(ink, 0.7 * s->line);
+    double xy[ARC_POINTS][2], far[2];
     hn_stroke dashed = thin;
     dashed.dash = dash;
     dashed.n_dash = 2;
-    hn_canvas_segment(c, a->pivot[0], a->pivot[1], a->pivot[0] + beyond * cos(a->from),
-                      a->pivot[1] + beyond * sin(a->from), &dashed);
+    arc_point(a, 0, BEYOND * s->font, far);
+    hn_canvas_segment(c, a->pivot[0], a->pivot[1], far[0], far[1], &dashed);
 
     // the arc ends in an arrow whose head is a chord of it
-    const double sense = a->to > a->from ? 1 : -1;
-    const double turn = fmin(head / a->radius, 0.9 * fabs(a->to - a->from));
-    const double neck = a->to - sense * turn;
-    hn_canvas_arc(c, a->pivot[0], a->pivot[1], a->radius, a->from, neck, &thin);
-    hn_canvas_arrow(c, a->pivot[0] + a->radius * cos(neck), a->pivot[1] + a->radius * sin(neck),
-                    a->pivot[0] + a->radius * cos(a->to), a->pivot[1] + a->radius * sin(a->to),
-                    fmin(head, 0.9 * turn * a->radius), &thin);
+    const double turn = fmin(head / a->radius, 0.9 * fabs(a->to));
+    const double neck = a->to - copysign(turn, a->to);
+    for (int k = 0; k < ARC_POINTS; k++) {
+        arc_point(a, neck * k / (ARC_POINTS - 1), 0, xy[k]);
+    }
+    hn_canvas_line(c, xy[0], ARC_POINTS, &thin);
+    arc_point(a, a->to, 0, far);
+    const double *from = xy[ARC_POINTS - 1];
+    hn_canvas_arrow(c, from[0], from[1], far[0], far[1], fmin(head, 0.9 * turn * a->radius), &thin);
 }
 
 /// Of places outside the arc and inside it, the one with the most room; returns that room [px].
@@ -73,10 +99,12 @@ static double place_text(const hn_sheet *s, const hn_drawing *d, const hn_snapsh
     double most = -HUGE_VAL;
     for (size_t r = 0; r < sizeof rings / sizeof *rings; r++) {
         for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
-            const double angle = a->from + shares[k] * (a->to - a->from);
-            const double wider = half * fabs(cos(angle)) * (rings[r] < 0 ? -1 : 1);
-            const double away = a->radius + rings[r] * s->font + wider;
-            const double xy[2] = {a->pivot[0] + away * cos(angle), a->pivot[1] + away * sin(angle)};
+            double xy[2];
+            arc_point(a, shares[k] * a->to, 0, xy);
+            const double away = hypot(xy[0] - a->pivot[0], xy[1] - a->pivot[1]);
+            const double level = away > 0 ? fabs(xy[0] - a->pivot[0]) / away : 0;
+            const double wider = half * level * (rings[r] < 0 ? -1 : 1);
+            arc_point(a, shares[k] * a->to, rings[r] * s->font + wider, xy);
             const double room = hn_label_room_of_all(s, d, pose->points, placed, xy, half);
             const double worth = fmin(room, 0.3 * s->font) - 0.02 * s->font * (double)(7 * r + k);
             if (worth > most) {
@@ -109,21 +137,22 @@ static void draw_text(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     hn_label_remember(placed, xy, half);
 }
 
+static void keep_off_line(hn_label_places *placed, const double from[2], const double to[2]) {
+    const double line[2][2] = {{from[0], from[1]}, {to[0], to[1]}};
+    hn_label_keep_off_line(placed, line);
+}
+
 /// Keeps texts off the arc, in chords, and off the dashed line before it.
 static void keep_off(const hn_sheet *s, const arc *a, hn_label_places *placed) {
     enum { CHORDS = 4 };
-    const double near = 0.5 * s->font, far = a->radius + BEYOND * s->font;
-    const double dashed[2][2] = {
-        {a->pivot[0] + near * cos(a->from), a->pivot[1] + near * sin(a->from)},
-        {a->pivot[0] + far * cos(a->from), a->pivot[1] + far * sin(a->from)}};
-    hn_label_keep_off_line(placed, dashed);
-    const double step = (a->to - a->from) / CHORDS;
+    double from[2], to[2];
+    arc_point(a, 0, 0.5 * s->font - a->radius * hypot(a->zero[0], a->zero[1]), from);
+    arc_point(a, 0, BEYOND * s->font, to);
+    keep_off_line(placed, from, to);
     for (int k = 0; k < CHORDS; k++) {
-        const double from = a->from + step * k, to = from + step;
-        const double line[2][2] = {
-            {a->pivot[0] + a->radius * cos(from), a->pivot[1] + a->radius * sin(from)},
-            {a->pivot[0] + a->radius * cos(to), a->pivot[1] + a->radius * sin(to)}};
-        hn_label_keep_off_line(placed, line);
+        arc_point(a, a->to * k / CHORDS, 0, from);
+        arc_point(a, a->to * (k + 1) / CHORDS, 0, to);
+        keep_off_line(placed, from, to);
     }
 }
 

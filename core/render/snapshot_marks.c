@@ -325,6 +325,8 @@ void hn_snapshot_primitives(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d
         hn_json_put_number(b, "value", angle->value);
         hn_json_put_numbers(b, "pivot", poses[s->selected].points + 3 * angle->pivot, 3);
         hn_json_put_numbers(b, "end", poses[s->selected].points + 3 * angle->end, 3);
+        hn_json_put_numbers(b, "zero", angle->zero, 3);
+        hn_json_put_numbers(b, "quarter", angle->quarter, 3);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);

@@ -12,6 +12,7 @@
 static const double GHOST_OPACITY = 0.6;
 static const double FAINT_OPACITY = 0.3;
 static const double SELECTED_TINT = 0.30;
+static const double PIN_NEARER = 1e-3;  // [scale bars] than the nearest of its bars
 static const double FARTHEST = 0.45;    // of its colour that the farthest shape in space keeps
 enum { COILS = 7, MAX_POLYGON = 1000 }; // the scene format allows no larger one
 enum { TRACE_PIECE = 256 };
@@ -343,7 +344,7 @@ static double pin_depth(const pen *p, const hn_drawing *d, const hn_shape *pin) 
             depth = fmax(depth, middle_depth(p, bar));
         }
     }
-    return depth + 1e-3 * p->s->scale_bar;
+    return depth + PIN_NEARER * p->s->scale_bar;
 }
 
 /// Shell sort: stable enough, in place, and a drawing has hundreds of shapes, not millions.
@@ -391,7 +392,8 @@ static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
     for (int k = 0; k < n; k++) {
         const hn_shape *shape = &d->shapes[p->s->shapes[k] / N_ORDERS];
         const double back = p->s->depth[0], deep = p->s->depth[n - 1] - back;
-        const double near = deep > 0 ? (p->s->depth[k] - back) / deep : 1;
+        const bool flat = deep <= 2 * PIN_NEARER * p->s->scale_bar; // a plane seen from behind
+        const double near = flat ? 1 : (p->s->depth[k] - back) / deep;
         const pen here = at_depth(p, near);
         row_of(shape->kind, p->s->shapes[k] % N_ORDERS, ground)->draw(&here, shape);
     }

@@ -48,6 +48,20 @@ class Snapshot(Command):
         self.assertEqual(bare["picture"]["angles"], [])
         self.assertGreater(svg.count(b"<path"), plain.count(b"<path"))
 
+    def test_the_angle_of_a_joint_is_measured_round_its_axis_in_the_world(self):
+        for scene, names in (("four-bar", "a2 th1 th3"), ("rssr", "ps th"), ("oblique-four-bar", "a2 th1 th3")):
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "a.svg")
+                done = call("snapshot", scene, "--time", "0.3", "--dimensions", "-o", path, "--describe")
+                angles = strict(self.assert_exit(done, DONE))["picture"]["angles"]
+            self.assertEqual(" ".join(sorted(angle["name"] for angle in angles)), names, scene)
+            for angle in angles:
+                bar = [end - pivot for end, pivot in zip(angle["end"], angle["pivot"])]
+                length = math.hypot(*bar)
+                for k in range(3):
+                    turned = math.cos(angle["value"]) * angle["zero"][k] + math.sin(angle["value"]) * angle["quarter"][k]
+                    self.assertAlmostEqual(bar[k] / length, turned, 9, (scene, angle["name"]))
+
     def test_ball_and_universal_joints_have_symbols_of_their_own(self):
         expected = {"rssr": {"spherical", "revolute"}, "cardan-shaft": {"universal", "revolute"}, "stewart-6-6": {"spherical", "universal"}, "four-bar": {"revolute"}}
         with tempfile.TemporaryDirectory() as folder:

@@ -281,8 +281,7 @@ static hn_status gather_angles(hn_picture_moment *p, hn_diags *diags) {
         hn_system_to_user(sys, q, user);
         sample.q = user;
     }
-    p->n_angles = sample.q ? hn_picture_angles(p->model, sample.q, p->angles) : 0;
-    return HN_OK;
+    return sample.q ? hn_picture_angles(p->model, &sample, p->angles, &p->n_angles) : HN_OK;
 }
 
 // ---- forces ----

@@ -51,8 +51,18 @@ static hn_canvas *create(void) {
 static void names_and_angles_stand_beside_the_bars(void **state) {
     (void)state;
     static const hn_snapshot_angle angles[] = {
-        {.pivot = 0, .end = 2, .value = 0.93, .name = "th1"},
-        {.pivot = 2, .end = 4, .value = -1.85, .name = "a"},
+        {.pivot = 0,
+         .end = 2,
+         .value = 0.93,
+         .zero = {1, 0, 0},
+         .quarter = {0, 1, 0},
+         .name = "th1"},
+        {.pivot = 2,
+         .end = 4,
+         .value = -1.85,
+         .zero = {0.6, 0.8, 0},
+         .quarter = {-0.8, 0.6, 0},
+         .name = "a"},
     };
     hn_snapshot_opts opts = hn_snapshot_opts_default();
     opts.dimensions = true;
@@ -101,7 +111,8 @@ static void dimension_lines_of_bars_on_one_line_lie_apart(void **state) {
 // a full turn is no arc, and neither is an angle that cannot be seen
 static void an_angle_without_an_arc_has_no_text(void **state) {
     (void)state;
-    hn_snapshot_angle angle = {.pivot = 0, .end = 2, .name = "th1"};
+    hn_snapshot_angle angle = {
+        .pivot = 0, .end = 2, .zero = {1, 0, 0}, .quarter = {0, 1, 0}, .name = "th1"};
     hn_snapshot_opts opts = hn_snapshot_opts_default();
     opts.angles = &angle;
     opts.n_angles = 1;
@@ -116,6 +127,40 @@ static void an_angle_without_an_arc_has_no_text(void **state) {
         assert_int_equal(placed.n, texts[i]);
     }
     hn_canvas_free(c);
+}
+
+// whatever the side looked from, the arc ends at the bar; seen edge on there is none
+static void an_arc_ends_at_its_bar_in_every_view(void **state) {
+    (void)state;
+    static const char *const views[] = {"front", "180,0", "space", "215,-22", "top", "side"};
+    static const int arcs[] = {1, 1, 1, 1, 0, 0};
+    const hn_snapshot_angle angle = {.pivot = 0,
+                                     .end = 2,
+                                     .value = 0.927295218001612232,
+                                     .zero = {1, 0, 0},
+                                     .quarter = {0, 1, 0},
+                                     .name = "th1"};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    opts.angles = &angle;
+    opts.n_angles = 1;
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        assert_int_equal(hn_view_parse(views[i], &opts.look, NULL), HN_OK);
+        const hn_sheet sheet = make_sheet(&opts);
+        hn_canvas *c = create();
+        hn_label_places placed = {0};
+        hn_snapshot_angles(c, &sheet, &pantograph, &pose, &opts, &placed);
+        hn_canvas_free(c);
+        assert_int_equal(placed.n, arcs[i]);
+        if (arcs[i]) { // the last chord of the arc ends on the line from O to A
+            const double *tip = placed.line[placed.n_lines - 1][1];
+            double o[2], a[2];
+            hn_sheet_pixel(&sheet, points, o);
+            hn_sheet_pixel(&sheet, points + 6, a);
+            const double u[2] = {a[0] - o[0], a[1] - o[1]}, w[2] = {tip[0] - o[0], tip[1] - o[1]};
+            assert_true(u[0] * w[0] + u[1] * w[1] > 0);
+            assert_true(fabs(u[0] * w[1] - u[1] * w[0]) < 1e-6 * (u[0] * u[0] + u[1] * u[1]));
+        }
+    }
 }
 
 // both rails of a guide cross the drawing, far from the point that it is given by
@@ -149,6 +194,7 @@ int main(void) {
         cmocka_unit_test(names_and_angles_stand_beside_the_bars),
         cmocka_unit_test(dimension_lines_of_bars_on_one_line_lie_apart),
         cmocka_unit_test(an_angle_without_an_arc_has_no_text),
+        cmocka_unit_test(an_arc_ends_at_its_bar_in_every_view),
         cmocka_unit_test(a_name_keeps_off_the_rails_of_a_guide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
