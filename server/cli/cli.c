@@ -49,7 +49,8 @@ static void describe_all(hn_strbuf *b) {
         "... The commands program, rubric write and export --blanks write over a file only with "
         "--force.",
         "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault, 4 a run ended "
-        "early with its reason, or a prediction of 'extreme' failed, 130 Ctrl-C ended the "
+        "early with its reason, a prediction of 'extreme' failed, or 'regrade' found another "
+        "score, 130 Ctrl-C ended the "
         "workbench in the terminal. A run that reaches its end has status 0 even if its motion is "
         "WRONG: read the verdict, or use --json.",
         "'holonom lessons' is short for 'holonom list lessons'; the same holds for problems, "

@@ -24,6 +24,7 @@ struct hn_rubric {
     hn_strbuf text;
     cJSON *root;
     uint64_t hash;
+    char file[80];        ///< its name, without folders
     const char *exercise; ///< borrowed from the tree
 };
 
@@ -296,6 +297,8 @@ hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags
         return HN_ERR_MEMORY;
     }
     hn_strbuf_init(&r->text);
+    const char *slash = strrchr(path, '/');
+    snprintf(r->file, sizeof r->file, "%s", slash ? slash + 1 : path);
     hn_status status = hn_file_load(path, MAX_BYTES, &r->text, diags);
     if (status == HN_OK) {
         r->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, hn_strbuf_text(&r->text), r->text.n));
@@ -328,6 +331,10 @@ void hn_rubric_free(hn_rubric *rubric) {
 
 const char *hn_rubric_exercise(const hn_rubric *r) {
     return r->exercise;
+}
+
+const char *hn_rubric_file(const hn_rubric *r) {
+    return r ? r->file : "";
 }
 
 uint64_t hn_rubric_hash(const hn_rubric *r) {

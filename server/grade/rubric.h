@@ -32,6 +32,7 @@ HN_MUST_CHECK hn_status hn_rubric_load_file(const char *path, hn_rubric **out, h
 bool hn_rubric_is_toml(const char *path);
 void hn_rubric_free(hn_rubric *rubric);             ///< NULL is legal
 const char *hn_rubric_exercise(const hn_rubric *r); ///< id of the exercise that it is for
+const char *hn_rubric_file(const hn_rubric *r);     ///< name without folders; "" for NULL
 uint64_t hn_rubric_hash(const hn_rubric *r);        ///< of the file's text; 0 for NULL
 /// The share of the points that a mistake earns; `otherwise` where the rubric, which may be NULL,
 /// says nothing.

@@ -121,6 +121,16 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         hn_strbuf_printf(b, "variant of seed %llu%s%s\n", (unsigned long long)v->seed,
                          v->student[0] ? ", " : "", v->student);
     }
+    if (v->problem->rubric) {
+        char hash[17];
+        hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);
+        hn_strbuf_printf(b, "points and tolerances of the rubric %s (hash %s)\n",
+                         hn_rubric_file(v->problem->rubric), hash);
+    }
+}
+
+const char *hn_verdict_status(const hn_verdict *v) {
+    return v->kind == HN_VERDICT_GRADED ? "graded" : v->no_submission ? "failed" : "ungradable";
 }
 
 static void put_entry(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
@@ -190,6 +200,7 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     if (v->problem->rubric) {
         hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);
         hn_json_put_string(b, "rubric_hash", hash);
+        hn_json_put_string(b, "rubric_file", hn_rubric_file(v->problem->rubric));
     }
 
     // who handed in what, and which build graded it
@@ -220,7 +231,7 @@ void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
     // what was graded, and the outcome
     hn_json_object(b);
     put_origin(b, v);
-    hn_json_put_string(b, "status", v->kind == HN_VERDICT_GRADED ? "graded" : "ungradable");
+    hn_json_put_string(b, "status", hn_verdict_status(v));
     if (v->kind == HN_VERDICT_UNGRADABLE) {
         hn_json_put_string(b, "reason", v->reason);
         hn_json_put_string(b, "hint", v->hint);
@@ -284,7 +295,7 @@ void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_t
     int graded = v->kind == HN_VERDICT_GRADED;
     hn_strbuf output;
     hn_strbuf_init(&output);
-    hn_strbuf_printf(&output, graded ? "%s%s" : "The submission cannot be graded: %s. %s",
+    hn_strbuf_printf(&output, graded ? "%s%s" : "This cannot be graded: %s. %s",
                      graded ? v->summary : v->reason, graded ? "" : v->hint);
     if (graded && v->note[0]) {
         hn_strbuf_printf(&output, "\nNote: %s.", v->note);
@@ -311,7 +322,7 @@ void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_t
     hn_json_end_array(b);
     hn_json_key(b, "extra_data");
     hn_json_object(b);
-    hn_json_put_string(b, "status", graded ? "graded" : "ungradable");
+    hn_json_put_string(b, "status", hn_verdict_status(v));
     put_origin(b, v);
     hn_json_end_object(b);
     hn_json_end_object(b);

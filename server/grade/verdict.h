@@ -38,6 +38,7 @@ typedef enum hn_verdict_kind { HN_VERDICT_GRADED, HN_VERDICT_UNGRADABLE } hn_ver
 
 typedef struct hn_verdict {
     hn_verdict_kind kind;
+    bool no_submission;          ///< ungradable, and the exercise or the rubric is at fault
     char reason[HN_GRADE_TEXT];  ///< ungradable: why, and where
     char hint[HN_GRADE_TEXT];    ///< ungradable: what to do
     char summary[HN_GRADE_TEXT]; ///< one sentence on the whole
@@ -63,6 +64,8 @@ typedef struct hn_verdict {
     char submission[HN_VERDICT_KEPT]; ///< the submission itself, "" when it is longer
 } hn_verdict;
 
+/// "graded", "ungradable" (the submission is at fault) or "failed" (exercise or rubric are).
+const char *hn_verdict_status(const hn_verdict *v);
 /// For a person: one line an entry, and under a wrong one given, expected, allowed difference and
 /// the kind of mistake.
 void hn_verdict_text(hn_strbuf *b, const hn_verdict *v);

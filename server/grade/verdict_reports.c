@@ -78,7 +78,8 @@ void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v, const char *submission)
     if (!graded) {
         hn_strbuf_add(b, "    <testcase classname=\"");
         hn_verdict_escape(b, v->problem->id);
-        hn_strbuf_add(b, "\" name=\"submission\"><error type=\"ungradable\">");
+        hn_strbuf_add(b, "\" name=\"submission\">");
+        hn_strbuf_printf(b, "<error type=\"%s\">", hn_verdict_status(v));
         hn_verdict_escape(b, v->reason);
         hn_strbuf_add(b, "</error></testcase>\n");
     }
@@ -246,8 +247,8 @@ void hn_verdict_csv(hn_strbuf *b, const hn_verdict *v, int head) {
     hn_strbuf_add(b, ",");
     // a program without a student is known by its file
     put_field(b, v->student[0] || !v->program ? v->student : v->program->file);
-    hn_strbuf_printf(b, ",%llu,%s,%g,%g,", (unsigned long long)v->seed,
-                     graded ? "graded" : "ungradable", graded ? v->score : 0, v->max_score);
+    hn_strbuf_printf(b, ",%llu,%s,%g,%g,", (unsigned long long)v->seed, hn_verdict_status(v),
+                     graded ? v->score : 0, v->max_score);
     put_field(b, graded ? hn_strbuf_text(&mistakes) : v->reason);
     hn_strbuf_add(b, "\n");
     b->failed |= mistakes.failed;

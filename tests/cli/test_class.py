@@ -435,7 +435,7 @@ class Class(unittest.TestCase):
             done = call("grade", "p3", folder)
             self.assertEqual(done.returncode, 2)
             self.assertIn(said, done.stdout + done.stderr)
-        self.assertEqual(call("grade", "no-such", self.temporary.name).returncode, 2)
+        self.assertEqual(call("grade", "no-such", self.temporary.name).returncode, 3)
 
 
 if __name__ == "__main__":

@@ -291,7 +291,6 @@ class CommandLine(Command):
             (("run", "four-bar", "--set", "l1=0.5,l1=0.6"), "--set gives 'l1' twice"),
             (("study", "four-bar", "budget", "--time-limit", "1", "--time-limit", "2"), "--time-limit is given twice"),
             (("serve", "--port", "0", "--port", "0"), "--port is given twice"),
-            (("grade", "p33", "x.json"), "p3"),
             (("grade", "p3"), "needs"),
             (("grade", "p3", "x.json", "--format", "gradscope"), "gradescope"),
             (("serve", "--port", "99999"), "65535"),

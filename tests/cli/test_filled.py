@@ -245,7 +245,7 @@ class Filled(unittest.TestCase):
         self.assertEqual((notes["exercise:ring"], notes["scene:ring"]), ("", ""))
         self.assertEqual(call("grade", "scene:four-bar", right).returncode, 2)
         done = call("grade", "scene:p3", right)
-        self.assertEqual((done.returncode, "no shipped scene is called 'p3'" in done.stderr), (2, True), done.stderr)
+        self.assertEqual((done.returncode, "no shipped scene is called 'p3'" in done.stderr), (3, True), done.stderr)
 
     def test_a_verdict_holds_the_program_and_is_made_again_from_it(self):
         _, filled = blank_and_filled("four-bar", "c")

@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import re
 import sys
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -168,6 +169,9 @@ def names(folder):
     for second, third in (("θ2", "theta_3"), ("th_2", "th3")):
         found = verdict(folder, "assemble", {"a": {second: right[0], third: right[1]}})
         expect(f"{second} and {third} are read", found["score"] == 4 and found["note"] == "", str(found["entries"][:2]) + found["note"])
+    for off, said in ((0.12, "not exact enough"), (0.9, "not this configuration")):
+        texts = {e["explanation"] for sign in (-1, 1) for e in verdict(folder, "assemble", {"a": {"th2": right[0] + sign * off, "th3": right[1]}})["entries"] if e["name"] == "a.th2"}
+        expect(f"a configuration that is off by {off} gives no distance", all(re.fullmatch(f"{said}; with the whole answer the loop is open by [0-9.]+ m", text) for text in texts), str(texts))
     found = verdict(folder, "assemble", {"a": {"th2": right[0], "th4": right[1]}})
     expect("another name is told", found["score"] == 2 and "the field 'th4' was not read" in found["note"], found["note"])
     found = entry(folder, "turning", "a", {"l_1": 0.1, "l₃": 0.1})

@@ -58,10 +58,15 @@ def rubrics(folder):
         bad = write(folder, "bad.json", fields if isinstance(fields, list) else {"rubric": 1, "exercise": "fourbar", **fields})
         for words in (("rubric", "check", bad), ("grade", "fourbar", slip, "--rubric", bad)):
             done = run(*words)
-            expect(f"{words[0]} refuses {fields}", done.returncode == 2 and said in " ".join(done.stderr.split()), f"{done.returncode} {done.stderr}")
+            expect(f"{words[0]} refuses {fields}", done.returncode == (2 if words[0] == "rubric" else 3) and said in " ".join(done.stderr.split()), f"{done.returncode} {done.stderr}")
 
     kept = write(folder, "kept.json", verdict)
-    expect("a verdict names its rubric", "name it with --rubric" in run("regrade", kept).stdout)
+    again = run("regrade", kept)
+    expect("a verdict names its rubric", "before, none now; name it with --rubric" in again.stdout and "other.json (hash" in again.stdout, again.stdout)
+    expect("and says so as text", "points and tolerances of the rubric other.json (hash" in run("grade", "fourbar", slip, "--rubric", path).stdout)
+    expect("another score is seen by a script", (again.returncode, "ANOTHER SCORE" in again.stdout) == (4, True), again.stdout)
+    expect("the same score is 0", run("regrade", kept, "--rubric", path).returncode == 0)
+    expect("a rubric that is missing is no fault of the submission", run("regrade", kept, "--rubric", os.path.join(folder, "none.json")).returncode == 3)
     expect("and is reproduced with it", json.loads(run("regrade", kept, "--rubric", path, "--json").stdout)["same"])
     loose = write(folder, "loose.json", dict(other, tolerance={"d": {"relative": 0.3}}))
     d = json.loads(run("grade", "fourbar", write(folder, "ask.json", {"d": [1e150, 1e150]}), "--show-expected", "--json").stdout)["entries"]

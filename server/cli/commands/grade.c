@@ -29,13 +29,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/// An unknown id is the fault of the command line; an exercise that does not load is the program's.
-static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_status status,
-                               const hn_diags *diags) {
-    const hn_exit result = hn_report_diags(args, status, diags);
-    return hn_cli_is_exercise(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
-}
-
 /// A bar for every entry, and one for the score.
 static void write_bars(hn_strbuf *b, const hn_verdict *v) {
     static hn_bar bars[HN_GRADE_MAX_ENTRIES + 1];
@@ -353,6 +346,52 @@ static hn_exit grade_files(task t) {
     return result;
 }
 
+/// The verdict of a submission that nobody can grade: an exercise or a rubric is at fault.
+static hn_exit write_failure(const task *t, const hn_exercise *exercise, const hn_diag *why) {
+    hn_verdict *v = calloc(1, sizeof *v);
+    if (!v) {
+        return HN_EXIT_PROGRAM;
+    }
+    hn_submission_refuse(v, "tell your teacher; your file was not read",
+                         "the exercise or its rubric is at fault, not the submission (%.300s)",
+                         why->message);
+    v->no_submission = true;
+    v->problem = exercise;
+    v->shown_entry = -1;
+    snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");
+    write_result(t, v, 0);
+    free(v);
+    return HN_EXIT_PROGRAM;
+}
+
+/// Reports a fault of the teacher. Where a file or the form of a platform was asked for, each
+/// submission gets it as its verdict, so that no platform takes the fault for a missing result.
+static hn_exit fail_all(task t, const owned_subject *own, hn_status status, const hn_diags *diags) {
+    const hn_args *args = t.args;
+    const hn_exercise unknown = {.id = args->words.word[0], .title = args->words.word[0]};
+    const hn_exercise *exercise = own->exercise ? own->exercise : &unknown;
+    hn_verdict_names names = {0};
+    hn_diags more = {0};
+    hn_diag diag = {0};
+    hn_report_diags(args, status, diags);
+    if ((!args->out && !args->format) || choose_form(args, &t.form, &diag) != HN_OK) {
+        return HN_EXIT_PROGRAM;
+    }
+    if (args->out &&
+        hn_verdict_names_choose(&names, args->out, args->words.word + 1, args->words.n - 1,
+                                t.form->ending, t.form->results, &more) != HN_OK) {
+        hn_report_diags(args, more.item[0].status, &more);
+        return HN_EXIT_PROGRAM;
+    }
+    for (int i = 1; i < args->words.n; i++) {
+        t.submission = args->words.word[i];
+        t.target = args->out ? names.path[i - 1] : NULL;
+        write_failure(&t, exercise, &diags->item[0]);
+    }
+    hn_verdict_names_reset(&names);
+    return HN_EXIT_PROGRAM;
+}
+
 /// Refuses options that would say nothing here, and two that say different things.
 static hn_status check_options(const hn_args *args, bool class, bool programs, hn_diags *diags) {
     const bool text = !args->json && (!args->format || strcmp(args->format, "text") == 0);
@@ -403,16 +442,21 @@ hn_exit hn_command_grade(const hn_library *lib, const hn_args *typed) {
     hn_status status = choose_scene(lib, args, kind, class, &own.is_scene, &diags);
     const bool chosen = status == HN_OK;
     HN_THEN(status, find_subject(lib, args, &own, &t.subject, &diags));
-    const bool lost = chosen && status != HN_OK && !own.is_scene;
+    bool failed = chosen && status != HN_OK;
     HN_THEN(status, check_options(args, class, t.subject.programs, &diags));
-    HN_THEN(status, apply_rubric(args, &own, &diags));
+    if (status == HN_OK) {
+        status = apply_rubric(args, &own, &diags);
+        failed = status != HN_OK;
+    }
     if (status == HN_OK && folder && own.model) {
         status = hn_blank_programs_init(&own.blanks, own.model, lib);
         t.subject.blanks = &own.blanks;
     }
-    if (status != HN_OK) {
-        result = lost ? report_exercise(lib, args, status, &diags)
-                      : hn_report_diags(args, status, &diags);
+    if (failed && !class) {
+        result = fail_all(t, &own, status, &diags);
+    } else if (status != HN_OK) {
+        result = hn_report_diags(args, status, &diags);
+        result = failed ? HN_EXIT_PROGRAM : result;
     } else if (args->merge) {
         result = hn_grade_merge(args, &t.subject);
     } else if (folder || args->shard) {

@@ -122,6 +122,12 @@ static void add_entry_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *
     }
 }
 
+/// "r.toml (hash 0123456789abcdef)", or "none".
+static void add_rubric(hn_strbuf *b, const char *file, const char *hash) {
+    hn_strbuf_printf(b, "%s%s", file, file[0] ? " " : "");
+    hn_strbuf_printf(b, hash[0] ? "(hash %s)" : "none", hash);
+}
+
 /// Says what differs between the verdict and this program, a line each.
 static void add_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     char hash[17];
@@ -131,8 +137,11 @@ static void add_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     }
     hn_hash_hex(hn_rubric_hash(v->problem->rubric), hash);
     if (strcmp(text_of(old, "rubric_hash"), v->problem->rubric ? hash : "") != 0) {
-        hn_strbuf_printf(b, "the rubric is another one than was used%s\n",
-                         v->problem->rubric ? "" : ": name it with --rubric");
+        hn_strbuf_add(b, "the rubric is another one than was used: ");
+        add_rubric(b, text_of(old, "rubric_file"), text_of(old, "rubric_hash"));
+        hn_strbuf_add(b, " before, ");
+        add_rubric(b, hn_rubric_file(v->problem->rubric), v->problem->rubric ? hash : "");
+        hn_strbuf_printf(b, " now%s\n", v->problem->rubric ? "" : "; name it with --rubric");
     }
     hn_hash_hex(v->submission_hash, hash);
     if (strcmp(text_of(old, "submission_hash"), hash) != 0) {
@@ -208,8 +217,10 @@ static bool is_same(const cJSON *old, const hn_verdict *v) {
             (fabs(score - v->score) <= rounding && fabs(most - v->max_score) <= rounding));
 }
 
+/// Another score is an outcome that a script must see: HN_EXIT_ENDED.
 static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *v) {
     const bool same = is_same(old, v);
+    const hn_exit outcome = same ? HN_EXIT_DONE : HN_EXIT_ENDED;
 
     // as a document, or as text with the changes
     hn_strbuf b;
@@ -224,12 +235,14 @@ static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *
         hn_json_put_number(&b, "max_score", v->max_score);
         put_changes(&b, old, v, true);
         hn_json_end_object(&b);
-        return hn_cli_print(&b);
+        const hn_exit printed = hn_cli_print(&b);
+        return printed == HN_EXIT_DONE ? outcome : printed;
     }
     put_scores(&b, old, v, same);
     put_changes(&b, old, v, false);
     hn_verdict_text(&b, v);
-    return hn_cli_print_text(&b);
+    const hn_exit printed = hn_cli_print_text(&b);
+    return printed == HN_EXIT_DONE ? outcome : printed;
 }
 
 /// The exercise of the verdict: the file that was named to grade it, or the one of this id.
@@ -291,7 +304,7 @@ static hn_exit end_again(const hn_args *args, const cJSON *old, hn_verdict *v, h
     }
     snprintf(v->student, sizeof v->student, "%s", text_of(old, "student"));
     const hn_exit result = compare(args, old, v);
-    return result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE ? HN_EXIT_INPUT : result;
+    return result != HN_EXIT_PROGRAM && v->kind == HN_VERDICT_UNGRADABLE ? HN_EXIT_INPUT : result;
 }
 
 /// The program of a scene: the file named, or the text that the verdict holds.
@@ -335,7 +348,11 @@ static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJS
     // the submission: the file named, or the copy that the verdict holds
     hn_status status = load_exercise(lib, old, &e, &diags);
     HN_THEN(status, take_letters(old, e, &diags));
-    HN_THEN(status, hn_cli_apply_rubric(args, e, &diags));
+    if (status == HN_OK && hn_cli_apply_rubric(args, e, &diags) != HN_OK) {
+        hn_report_diags(args, diags.item[0].status, &diags);
+        hn_exercise_free(e);
+        return HN_EXIT_PROGRAM; // no fault of the submission
+    }
     if (status == HN_OK && args->words.n > 1) {
         status = hn_grade_file(e, args->words.word[1], seed, v);
     } else if (status == HN_OK && submission[0]) {

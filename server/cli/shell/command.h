@@ -10,7 +10,8 @@ typedef enum hn_exit {
     HN_EXIT_DONE = 0,    ///< also a wrong answer that was graded low
     HN_EXIT_INPUT = 2,   ///< the input is at fault
     HN_EXIT_PROGRAM = 3, ///< the program is at fault
-    HN_EXIT_ENDED = 4    ///< a run ended early and said why
+    /// a run ended early and said why, a prediction failed, or regrade found another score
+    HN_EXIT_ENDED = 4
 } hn_exit;
 
 struct hn_args;

@@ -28,6 +28,7 @@
 enum { MAX = HN_PART_ENTRIES, MAX_ASKED = HN_PART_RESULTS, MAX_TRIES = 40, MAX_STEPS = 200000 };
 static const double PI = 3.14159265358979324;
 static const double WITHIN = 0.03, STRIDE = 0.05;
+static const double NEAR = 3; // times `within`: an answer so near is a matter of exactness
 static const double LARGEST_ANGLE = 1e6; // [rad] beyond, nobody means a direction
 
 /// The mechanism, what is asked, and the configuration that is expected.
@@ -391,9 +392,10 @@ static void judge(const sheet *s, int k, const double *given, bool all, bool bra
         hn_part_wrong(r, SLIPS[slip].id, SLIPS[slip].share, "%s%s", SLIPS[slip].says, open);
         r->likely = slip != DEGREES || fabs(given[k]) < 2 * PI;
     } else {
-        hn_part_wrong(r, "other", 0, "%.3g %s away from the configuration%s",
-                      apart(s, i, given[k], s->expected[i]) * hn_pose_solver_reach(s->solver, i),
-                      unit_of(s, k), open);
+        // the difference itself would give the right value away
+        const bool near = apart(s, i, given[k], s->expected[i]) <= NEAR * s->within;
+        hn_part_wrong(r, "other", 0, "%s%s", near ? "not exact enough" : "not this configuration",
+                      open);
     }
 }
 

@@ -111,6 +111,7 @@ static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_resu
         hn_part_result *r = &results[k];
         *r = (hn_part_result){.mistake = ""};
         name_entry(s, k, r);
+        write_expected(s, k, r);
         hn_part_keep_given(r, k ? NULL : given);
         if (transposed) {
             hn_part_wrong(r, "transposed", 0,
