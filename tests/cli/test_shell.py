@@ -347,7 +347,7 @@ class NearMisses(unittest.TestCase):
                              (["run", "four-bar", "--mehtod", "x"], "--method"), (["run", "four-bar", "--method", "baumgrate@rk4"], "baumgarte"),
                              (["run", "four-bar", "--method", "index1@rk5"], "rk4"), (["run", "four-bar", "--set", "l11=1"], "l1"),
                              (["run", "four-bar", "--method", "baumgarte:alpa=3@rk4"], "alpha"), (["problem", "p33"], "p3"),
-                             (["grade", "p33", "x.json"], "p3"), (["export", "four-bar", "--language", "pyton"], "python"),
+                             (["problem", "p33", "--check", "--seeds", "1..2"], "p3"), (["export", "four-bar", "--language", "pyton"], "python"),
                              (["run", "four-bar", "--format", "cvs"], "csv"), (["equations", "four-bar", "--format", "latx"], "latex"),
                              (["snapshot", "four-bar", "-o", "never-written.png", "--view", "fornt"], "front"),
                              (["snapshot", "four-bar", "-o", "never-written.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
