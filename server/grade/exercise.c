@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json_line.h"
 #include "base/json_text.h"
 #include "grade/exam.h"
 #include "grade/mistakes.h"
@@ -170,20 +171,30 @@ static void check_fields(reader *r, const cJSON *root) {
     }
 }
 
+/// The pointer of a fault in the part of this index, whose own pointers begin with "/parts".
+static void point_into_part(int part, const char *pointer, char out[HN_DIAG_POINTER]) {
+    const bool own = strncmp(pointer, "/parts", 6) == 0;
+    snprintf(out, HN_DIAG_POINTER, "/parts/%d%.150s", part, own ? pointer + 6 : "");
+}
+
 /// Form 2: parts with kinds of answers, and hints.
 static void read_parts(reader *r, cJSON *root) {
     hn_exercise *p = r->p;
     const cJSON *m;
     hn_diag diag = {0};
+    int index = -1;
     check_fields(r, root);
 
     // a part that cannot be read is reported, and the next one is tried
     cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(root, "parts")) {
+        index++;
         if (p->n_parts == HN_GRADE_MAX_PARTS) {
             fault(r, "/parts", "too many parts");
         } else if (hn_part_open(&p->parts[p->n_parts], m, &diag) != HN_OK) {
+            char pointer[HN_DIAG_POINTER];
+            point_into_part(index, diag.pointer, pointer);
             r->status =
-                hn_diags_add(r->diags, HN_ERR_INPUT, diag.pointer, diag.hint, "%s", diag.message);
+                hn_diags_add(r->diags, HN_ERR_INPUT, pointer, diag.hint, "%s", diag.message);
         } else {
             p->points += p->parts[p->n_parts++].points;
         }
@@ -248,10 +259,23 @@ static hn_status check_problem(const hn_exercise *p, hn_diags *diags) {
     return status;
 }
 
+/// Puts the line before each fault that says where it is.
+static void name_lines(hn_diags *diags, int from, const char *text) {
+    for (int i = from; diags && text && i < diags->n; i++) {
+        hn_diag *item = &diags->item[i];
+        const hn_diag old = *item;
+        if (old.pointer[0] == '/') {
+            hn_diag_set(item, old.status, old.pointer, old.hint, "line %d: %s",
+                        hn_json_line(text, old.pointer), old.message);
+        }
+    }
+}
+
 hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, hn_diags *diags) {
     HN_ASSERT(out && (text || n == 0));
     *out = NULL;
     hn_diag diag = {0};
+    const int n_before = diags ? diags->n : 0;
     hn_status status = hn_json_text_check(text, n, 16, &diag);
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "", diag.hint, "%s", diag.message);
@@ -266,6 +290,11 @@ hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, h
     if (p) {
         p->arena = arena;
         p->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, text, n));
+        char *copy = hn_arena_get(arena, n + 1);
+        if (copy) {
+            memcpy(copy, text, n);
+        }
+        p->text = copy;
         reader r = {.p = p, .diags = diags, .status = HN_OK};
         if (!cJSON_IsObject(root)) {
             fault(&r, "", "expected an object");
@@ -279,6 +308,7 @@ hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, h
             }
         }
         status = r.status != HN_OK ? r.status : p->n_parts ? HN_OK : check_problem(p, diags);
+        name_lines(diags, n_before, p->text);
     }
     if (status != HN_OK || !p->root) {
         cJSON_Delete(root);
@@ -302,6 +332,14 @@ hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *d
     hn_diags_name_file(diags, n_before, path);
     hn_strbuf_reset(&text);
     return status;
+}
+
+int hn_exercise_line(const hn_exercise *problem, int part, const char *pointer) {
+    char own[HN_DIAG_POINTER];
+    if (part >= 0) {
+        point_into_part(part, pointer, own);
+    }
+    return problem->text ? hn_json_line(problem->text, part >= 0 ? own : pointer) : 1;
 }
 
 void hn_exercise_free(hn_exercise *problem) {

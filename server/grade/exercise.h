@@ -49,6 +49,7 @@ typedef struct hn_variant_owner {
 typedef struct hn_exercise {
     hn_arena *arena;
     const char *id, *title, *scene, *statement, *lesson, *section, *answer;
+    const char *text;      ///< the file, for the lines of faults
     const char *file;      ///< borrowed; where it was read, as the caller named it; NULL: by its id
     int n_names, n_params; ///< parameters first
     hn_grade_name names[HN_GRADE_MAX_NAMES];
@@ -86,6 +87,9 @@ HN_MUST_CHECK hn_status hn_exercise_load_file(const char *path, hn_exercise **ou
 HN_MUST_CHECK hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out,
                                               hn_diags *diags);
 void hn_exercise_free(hn_exercise *problem); ///< NULL is legal
+/// The line of the file on which the value of a JSON pointer stands, or the deepest one on the way
+/// to it. part >= 0: the pointer is that of a fault of this part, "/parts/answer" for its answer.
+int hn_exercise_line(const hn_exercise *problem, int part, const char *pointer);
 const char *hn_exercise_id(const hn_exercise *problem);
 const char *hn_exercise_title(const hn_exercise *problem);
 /// Returns the id of the scene that draws a state of it, "" if there is none.

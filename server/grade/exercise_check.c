@@ -40,9 +40,31 @@ static void complain(trial *t, const char *part, const char *format, ...) {
     }
 }
 
+/// Complains of what stands in the file, with its line. `i`: index of a part, -1: none.
+static void complain_of_file(trial *t, int i, const hn_diag *diag) {
+    const hn_exercise *e = t->variant.exercise;
+    const char *part = i >= 0 ? t->variant.part[i].id : "";
+    complain(t, part, "%.300s (line %d of the file)", hn_part_without_name(part, diag->message),
+             hn_exercise_line(e, i, diag->pointer));
+}
+
+/// What a line of the list says behind its seed.
+static const char *behind_seed(const char *line) {
+    return line + strcspn(line, ",:");
+}
+
+/// Puts one line in the place of many where every variant has the same fault: that of the file.
+static void join_list(hn_exercise_report *r) {
+    if (r->same && r->bad > 1 && r->bad == r->variants) {
+        snprintf(r->list, sizeof r->list, "every seed%s\n", behind_seed(r->first));
+    }
+}
+
 /// Counts a variant; a bad one stands in the list as long as its line fits.
 static void end_trial(const trial *t) {
     hn_exercise_report *r = t->report;
+    r->same =
+        r->variants == 0 || (r->same && strcmp(behind_seed(r->first), behind_seed(t->first)) == 0);
     r->variants++;
     r->bad += !t->good;
     if (!r->first[0]) {
@@ -74,7 +96,10 @@ static hn_status try_right(trial *t, const hn_part *p) {
     // the answer that the exercise itself gives
     cJSON *answer = p->kind->right(p, &diag);
     if (!answer) {
-        complain(t, p->id, "there is no right answer: %s", diag.message);
+        hn_diag none = diag;
+        hn_diag_set(&none, HN_ERR_INPUT, diag.pointer, NULL, "there is no right answer: %s",
+                    hn_part_without_name(p->id, diag.message));
+        complain_of_file(t, (int)(p - t->variant.part), &none);
         return HN_OK;
     }
     t->report->rights++;
@@ -157,11 +182,45 @@ static void try_checks(trial *t, const hn_part *p) {
     }
 }
 
+/// A name in braces that is no number of the variant, most likely a slip of the pen. `nodes`: a
+/// text, or a list of texts or of objects with a text.
+static void try_text(trial *t, int part, const cJSON *nodes, const char *pointer) {
+    char word[80];
+    int k = 0;
+    const cJSON *list = cJSON_IsArray(nodes) ? nodes->child : nodes;
+    for (const cJSON *m = list; m; m = cJSON_IsArray(nodes) ? m->next : NULL, k++) {
+        const char *text = cJSON_IsObject(m) ? hn_part_text(m, "text") : cJSON_GetStringValue(m);
+        if (text && hn_draw_find_unknown(&t->variant.draw, text, word, sizeof word)) {
+            hn_diag diag = {0};
+            char where[HN_DIAG_POINTER];
+            snprintf(where, sizeof where, cJSON_IsArray(nodes) ? "%s/%d" : "%s", pointer, k);
+            hn_diag_set(&diag, HN_ERR_INPUT, where, NULL,
+                        word[0] == '=' ? "{%s} is no formula of the numbers that are drawn"
+                                       : "{%s} is no number that is drawn",
+                        word);
+            complain_of_file(t, part, &diag);
+        }
+    }
+}
+
+/// The texts that a student reads.
+static void try_texts(trial *t) {
+    const cJSON *root = t->variant.exercise->root;
+    try_text(t, -1, cJSON_GetObjectItemCaseSensitive(root, "statement"), "/statement");
+    try_text(t, -1, cJSON_GetObjectItemCaseSensitive(root, "hints"), "/hints");
+    for (int i = 0; i < t->variant.n_parts; i++) {
+        const cJSON *node = t->variant.part[i].node;
+        try_text(t, i, cJSON_GetObjectItemCaseSensitive(node, "ask"), "/parts/ask");
+        try_text(t, i, cJSON_GetObjectItemCaseSensitive(node, "options"), "/parts/options");
+        try_text(t, i, cJSON_GetObjectItemCaseSensitive(node, "reasons"), "/parts/reasons");
+    }
+}
+
 static hn_status try_part(trial *t, const hn_part *p) {
     hn_diag diag = {0};
     try_checks(t, p);
     if (p->kind->prove && p->kind->prove(p, &diag) != HN_OK) {
-        complain(t, p->id, "%s", diag.message);
+        complain_of_file(t, (int)(p - t->variant.part), &diag);
     }
     HN_TRY(try_right(t, p));
     return try_faults(t, p);
@@ -298,11 +357,13 @@ static hn_status try_seed(const hn_exercise *exercise, uint64_t seed, uint64_t *
         for (int k = 0; k < HN_DRAW_CONDITIONS; k++) {
             out->refused[k] += t.variant.draw.refused[k];
         }
+        try_texts(&t);
         for (int i = 0; i < t.variant.n_parts && status == HN_OK; i++) {
             status = try_part(&t, &t.variant.part[i]);
         }
     } else {
-        complain(&t, "", "%s", diag.message);
+        t.variant.exercise = exercise;
+        complain_of_file(&t, -1, &diag);
         status = status == HN_ERR_MEMORY ? status : HN_OK;
     }
     end_trial(&t);
@@ -320,6 +381,7 @@ hn_status hn_exercise_check(const hn_exercise *exercise, uint64_t from, uint64_t
         status =
             (exercise->n_parts ? try_seed : try_matrix_seed)(exercise, from + i, &hashes[i], out);
     }
+    join_list(out);
     out->distinct = hashes ? count_distinct(hashes, out->variants) : 0;
     free(hashes);
     return status;

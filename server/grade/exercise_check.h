@@ -20,8 +20,9 @@ typedef struct hn_exercise_report {
     /// draws that were refused, by the first condition that did not hold
     long long refused[HN_DRAW_CONDITIONS];
     char first[2 * HN_GRADE_TEXT]; ///< the first fault found, "" if none: seed, part, what happened
+    bool same;                     ///< every variant has the same fault
     /// for each bad variant, as long as there is room: its seed, part, and the first thing that
-    /// happened; one a line
+    /// happened; one a line. Where `same`, one line for all of them.
     char list[2000];
 } hn_exercise_report;
 

@@ -153,6 +153,22 @@ def the_guide_for_teachers(folder):
     report = json.loads(done.stdout)
     expect("the guide's exercise passes its check", done.returncode == 0 and report["variants"] == 200 and report["bad"] == 0, done.stdout)
 
+    second = text[text.index("    {\n", text.index("This is a second part of the ramp")) :]
+    ramp["parts"].append(json.loads(second[: second.index("\n    }\n") + 6]))
+    done = run("problem", write(folder, "two.json", ramp), "--seeds", "1..50", "--check", "--json")
+    expect("and so does its part with states", done.returncode == 0 and json.loads(done.stdout)["right_answers"] == 100, done.stdout + done.stderr)
+
+    # a fault of the file is said once, with its line
+    for change, said in (({"statement": ["{m} kg", "{len} m"]}, "every seed: {len} is no number that is drawn (line 9 of the file)"),
+                         ({"hints": ["{=m*q} N"]}, "every seed: {=m*q} is no formula of the numbers that are drawn (line"),
+                         ({"draw": dict(ramp["draw"], m={"range": [2, 0.3]})}, "every seed: the name 'm' has a range whose first number is above its second (line 11 of the file)"),
+                         ({"parts": [dict(ramp["parts"][0], ask="{mm} kg?")]}, "every seed, part a: {mm} is no number that is drawn (line"),
+                         ({"parts": [dict(ramp["parts"][0], answer="m*q")]}, "every seed, part a: column 3: 'q' is not known here (line")):  # fmt: skip
+        path = write(folder, "slip.json", json.dumps(dict(ramp, **change), indent=1))
+        done = run("problem", path, "--seeds", "1..20", "--check")
+        lines = [line.strip() for line in done.stdout.splitlines() if " seed" in line]
+        expect(f"a slip in the file is one line: {said}", done.returncode == 3 and len(lines) == 1 and lines[0].startswith(said), done.stdout)
+
     # the script, with its folders here and this program
     place = os.path.join(folder, "autograder")
     os.makedirs(os.path.join(place, "submission"))

@@ -78,7 +78,7 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
         hn_strbuf_printf(b, "  %.*s\n", (int)strcspn(at, "\n"), at);
         listed++;
     }
-    if (listed < r->bad) {
+    if (listed < r->bad && !r->same) {
         hn_strbuf_printf(b, "  and %lld more\n", r->bad - listed);
     }
     put_spread(b, e, r);
@@ -198,7 +198,10 @@ static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     if (status != HN_OK) {
-        hn_report_diag(args, &diag);
+        hn_diag where;
+        hn_diag_set(&where, status, diag.pointer, diag.hint, "line %d: %s",
+                    hn_exercise_line(e, -1, diag.pointer), diag.message);
+        hn_report_diag(args, &where);
     } else if (args->out) {
         result = write_figures(args, e, &x);
     } else if (args->hint > 0) {

@@ -163,7 +163,9 @@ typedef struct source {
 } source;
 
 static hn_status refuse(const char *name, const char *what, hn_diag *diag) {
-    return hn_diag_set(diag, HN_ERR_INPUT, "/draw", NULL, "the name '%.40s' %s", name, what);
+    char pointer[80];
+    snprintf(pointer, sizeof pointer, "/draw/%.60s", name);
+    return hn_diag_set(diag, HN_ERR_INPUT, pointer, NULL, "the name '%.40s' %s", name, what);
 }
 
 static hn_status read_source(hn_draw *d, const cJSON *node, source *out, hn_diag *diag) {
@@ -182,6 +184,9 @@ static hn_status read_source(hn_draw *d, const cJSON *node, source *out, hn_diag
     if (cJSON_GetArraySize(range) == 2) {
         out->low = cJSON_GetNumberValue(range->child);
         out->high = cJSON_GetNumberValue(range->child->next);
+        if (!(out->low <= out->high)) {
+            return refuse(node->string, "has a range whose first number is above its second", diag);
+        }
     } else if (cJSON_IsNumber(value)) {
         out->low = out->high = value->valuedouble;
     } else if (cJSON_IsString(formula)) {
@@ -281,9 +286,17 @@ hn_status hn_draw_init(hn_draw *d, const cJSON *names, const cJSON *conditions,
     }
     cJSON_ArrayForEach(node, conditions) {
         if (!cJSON_IsString(node) || n_conditions == HN_DRAW_CONDITIONS) {
-            return refuse("conditions", "takes at most 24 formulas", diag);
+            return hn_diag_set(diag, HN_ERR_INPUT, "/conditions", NULL,
+                               "conditions are at most %d formulas in quotes", HN_DRAW_CONDITIONS);
         }
-        HN_TRY(hn_draw_parse(d, node->valuestring, &positive[n_conditions++], diag));
+        const hn_status status =
+            hn_draw_parse(d, node->valuestring, &positive[n_conditions++], diag);
+        if (status == HN_ERR_INPUT && diag) {
+            const hn_diag why = *diag;
+            return hn_diag_set(diag, status, "/conditions", NULL, "the condition '%.60s': %s",
+                               node->valuestring, why.message);
+        }
+        HN_TRY(status);
     }
     return draw_states(d, first, sources, positive, n_conditions, seed, diag);
 }
@@ -316,18 +329,43 @@ static int put_value(hn_strbuf *b, hn_draw *d, const char *word) {
     return 1;
 }
 
+/// The word between the braces that begin at `text`; 0 bytes where there is none that fits.
+static size_t read_word(const char *text, char word[MAX_WORD]) {
+    const char *end = *text == '{' ? strchr(text, '}') : NULL;
+    const size_t n = end ? (size_t)(end - text - 1) : 0;
+    word[0] = 0;
+    if (n > 0 && n < MAX_WORD) {
+        snprintf(word, MAX_WORD, "%.*s", (int)n, text + 1);
+    }
+    return strlen(word);
+}
+
+bool hn_draw_find_unknown(hn_draw *d, const char *text, char *word, size_t size) {
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    char found[MAX_WORD];
+    hn_strbuf value;
+    hn_strbuf_init(&value);
+    bool unknown = false;
+    for (; *text && !unknown; text++) {
+        const size_t n = read_word(text, found);
+        unknown = n > 0 && (found[0] == '=' || strspn(found, letters) == n) &&
+                  !put_value(&value, d, found);
+    }
+    if (unknown) {
+        snprintf(word, size, "%s", found);
+    }
+    hn_strbuf_reset(&value);
+    return unknown;
+}
+
 void hn_draw_text(hn_strbuf *b, hn_draw *d, const char *text) {
     while (*text) {
         char word[MAX_WORD];
-        const char *end = *text == '{' ? strchr(text, '}') : NULL;
-        const size_t n = end ? (size_t)(end - text - 1) : 0;
-        if (end && n < sizeof word) {
-            snprintf(word, sizeof word, "%.*s", (int)n, text + 1);
-            if (put_value(b, d, word)) {
-                text = end + 1;
-                continue;
-            }
+        const size_t n = read_word(text, word);
+        if (n > 0 && put_value(b, d, word)) {
+            text += n + 2;
+        } else {
+            hn_strbuf_add_n(b, text++, 1);
         }
-        hn_strbuf_add_n(b, text++, 1);
     }
 }

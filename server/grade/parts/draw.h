@@ -14,6 +14,7 @@
 #include "expr/graph.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { HN_DRAW_NAMES = 64, HN_DRAW_STATES = 16, HN_DRAW_CONDITIONS = 24 };
@@ -59,6 +60,10 @@ HN_MUST_CHECK hn_status hn_draw_value(hn_draw *d, const char *text, double *out,
 /// Copies text with {name} replaced by the drawn number and {=formula} by its value with four
 /// digits; a brace that is neither stays.
 void hn_draw_text(hn_strbuf *b, hn_draw *d, const char *text);
+/// Finds the first {name} or {=formula} of a text that hn_draw_text() leaves as it stands, though
+/// it looks like one: letters, digits and _ between the braces, or = at first. Writes it without
+/// braces; false: there is none.
+bool hn_draw_find_unknown(hn_draw *d, const char *text, char *word, size_t size);
 /// The k-th random number in [0, 1) of a seed.
 double hn_draw_random(uint64_t seed, uint64_t k);
 /// 1 when the name is an angle or a rate of one: its unit is rad, deg or rad/s.
