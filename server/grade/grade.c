@@ -434,6 +434,9 @@ static hn_status grade_tree(hn_verdict *v, cJSON *root, bool chosen) {
     if (!chosen && !hn_variant_check_names(v->problem, root, v)) {
         return HN_OK;
     }
+    if (!chosen && !said && v->problem->n_parts) {
+        hn_submission_remark_nobody(v);
+    }
     if (v->problem->n_parts) {
         return grade_parts(v, root);
     }

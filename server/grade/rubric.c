@@ -10,6 +10,7 @@
 #include "grade/toml_text.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -25,6 +26,7 @@ struct hn_rubric {
     cJSON *root;
     uint64_t hash;
     char file[80];        ///< its name, without folders
+    bool toml;            ///< suggestions are written as TOML
     const char *exercise; ///< borrowed from the tree
 };
 
@@ -153,8 +155,16 @@ static hn_status check_numbers(const hn_rubric *r, const char *section, double m
     return status;
 }
 
+/// A relative tolerance that is allowed, as near as can be to the one that was given, in the
+/// syntax of the file; NaN: half a per cent.
+static void suggest_relative(const hn_rubric *r, double given, char hint[HN_DIAG_HINT]) {
+    const double x = isnan(given) ? 0.005 : fmin(fmax(given, TIGHTEST), LOOSEST);
+    snprintf(hint, HN_DIAG_HINT, r->toml ? "relative = %g" : "\"relative\": %g", x);
+}
+
 static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
     const cJSON *m, *x;
+    char hint[HN_DIAG_HINT];
     hn_status status = HN_OK;
     cJSON_ArrayForEach(m, hn_rubric_section(r, "tolerance")) {
         cJSON_ArrayForEach(x, m) {
@@ -167,8 +177,9 @@ static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
                                          "the %s tolerance of part %.20s needs a number from 0",
                                          x->string, m->string);
             } else if (relative && !(x->valuedouble >= TIGHTEST && x->valuedouble <= LOOSEST)) {
+                suggest_relative(r, x->valuedouble, hint);
                 status = hn_rubric_fault(
-                    r, diags, "tolerance", m->string, "\"relative\": 0.005",
+                    r, diags, "tolerance", m->string, hint,
                     "the relative tolerance %g of part %.20s is %s; %g to %g is allowed",
                     x->valuedouble, m->string,
                     x->valuedouble < TIGHTEST ? "below the error of the reference"
@@ -187,8 +198,13 @@ static hn_status check_tolerance_shapes(hn_rubric *r, hn_diags *diags) {
     for (cJSON *m = tolerance ? tolerance->child : NULL, *next; m; m = next) {
         next = m->next;
         if (!cJSON_IsObject(m)) {
-            status = hn_rubric_fault(r, diags, "tolerance", m->string, "{\"relative\": 0.005}",
-                                     "the tolerance of part %.20s is an object", m->string);
+            char relative[HN_DIAG_HINT], hint[HN_DIAG_HINT];
+            suggest_relative(r, cJSON_IsNumber(m) ? m->valuedouble : (double)NAN, relative);
+            snprintf(hint, sizeof hint, r->toml ? "%.20s = {%.60s}" : "\"%.20s\": {%.60s}",
+                     m->string, relative);
+            status = hn_rubric_fault(r, diags, "tolerance", m->string, hint,
+                                     "the tolerance of part %.20s is %s", m->string,
+                                     r->toml ? "a table" : "an object");
             cJSON_Delete(cJSON_DetachItemViaPointer(tolerance, m));
         }
     }
@@ -199,14 +215,16 @@ static hn_status check_tolerance_shapes(hn_rubric *r, hn_diags *diags) {
 /// A field of another shape is left out after its fault is added, so that the rest is checked too.
 static hn_status check_shapes(hn_rubric *r, hn_diags *diags) {
     static const struct {
-        const char *field, *says, *hint;
+        const char *field, *says, *json, *toml;
         bool list;
-    } ROWS[] = {{"points", "an object with a number for each part", "{\"a\": 2}", false},
-                {"tolerance", "an object with a member for each part",
-                 "{\"a\": {\"relative\": 0.005}}", false},
-                {"shares", "an object with a number for each mistake", "{\"sign\": 0.5}", false},
-                {"visibility", "an object with a word for each part", "{\"a\": \"hidden\"}", false},
-                {"hints", "a list with the cost of each hint", "[0.5, 1]", true}};
+    } ROWS[] = {
+        {"points", "with a number for each part", "{\"a\": 2}", "{a = 2}", false},
+        {"tolerance", "with a member for each part", "{\"a\": {\"relative\": 0.005}}",
+         "{a = {relative = 0.005}}", false},
+        {"shares", "with a number for each mistake", "{\"sign\": 0.5}", "{sign = 0.5}", false},
+        {"visibility", "with a word for each part", "{\"a\": \"hidden\"}", "{a = \"hidden\"}",
+         false},
+        {"hints", "with the cost of each hint", "[0.5, 1]", "[0.5, 1]", true}};
     hn_status status = HN_OK;
     if (!cJSON_IsObject(r->root)) {
         return hn_rubric_fault(r, diags, "", NULL, "holonom rubric write ID",
@@ -219,7 +237,13 @@ static hn_status check_shapes(hn_rubric *r, hn_diags *diags) {
         // more than one where the field is there twice
         for (; node && !(ROWS[i].list ? cJSON_IsArray(node) : cJSON_IsObject(node));
              node = hn_rubric_section(r, field)) {
-            status = hn_rubric_fault(r, diags, field, NULL, ROWS[i].hint, "\"%s\" is %s", field,
+            char hint[HN_DIAG_HINT];
+            snprintf(hint, sizeof hint, r->toml ? "%s = %s" : "\"%s\": %s", field,
+                     r->toml ? ROWS[i].toml : ROWS[i].json);
+            status = hn_rubric_fault(r, diags, field, NULL, hint, "\"%s\" is %s %s", field,
+                                     ROWS[i].list ? "a list"
+                                     : r->toml    ? "a table"
+                                                  : "an object",
                                      ROWS[i].says);
             cJSON_DeleteItemFromObjectCaseSensitive(r->root, field);
             if (strcmp(field, "points") == 0) {
@@ -255,7 +279,8 @@ static hn_status check_fields(hn_rubric *r, hn_diags *diags) {
     if (hn_part_number(r->root, "rubric", 0) != 1 || !r->exercise) {
         return hn_rubric_fault(
             r, diags, "rubric", NULL, "holonom rubric write ID",
-            "a rubric begins with \"rubric\": 1 and the \"exercise\" that it is for");
+            r->toml ? "a rubric begins with rubric = 1 and the exercise that it is for"
+                    : "a rubric begins with \"rubric\": 1 and the \"exercise\" that it is for");
     }
     const hn_status checked[] = {status,
                                  check_numbers(r, "points", 1e6, diags),
@@ -299,10 +324,11 @@ hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags
     hn_strbuf_init(&r->text);
     const char *slash = strrchr(path, '/');
     snprintf(r->file, sizeof r->file, "%s", slash ? slash + 1 : path);
+    r->toml = hn_rubric_is_toml(path);
     hn_status status = hn_file_load(path, MAX_BYTES, &r->text, diags);
     if (status == HN_OK) {
         r->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, hn_strbuf_text(&r->text), r->text.n));
-        status = hn_rubric_is_toml(path) ? translate(r, &diag) : HN_OK;
+        status = r->toml ? translate(r, &diag) : HN_OK;
         const char *text = hn_strbuf_text(&r->text);
         HN_THEN(status, hn_json_text_check(text, r->text.n, MAX_DEPTH, &diag));
         if (status != HN_OK) {

@@ -86,6 +86,13 @@ void hn_submission_remark_read_as(hn_verdict *v) {
     }
 }
 
+void hn_submission_remark_nobody(hn_verdict *v) {
+    hn_submission_remark(v,
+                         "no student and no seed is named: graded with the numbers of the "
+                         "exercise itself, seed %llu",
+                         (unsigned long long)v->seed);
+}
+
 int hn_submission_check_once(hn_verdict *v, const cJSON *root, const char *const *fields) {
     for (; *fields; fields++) {
         if (hn_repeated_member_is(root, *fields)) {

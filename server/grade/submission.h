@@ -15,6 +15,8 @@ void hn_submission_remark(hn_verdict *v, const char *format, ...) HN_PRINTF(2, 3
 void hn_submission_remark_unread(hn_verdict *v, const cJSON *root, const char *const *fields,
                                  int n);
 /// Remarks on formulas that were not written in the spelling of the exercise: the first one as it
+/// Remarks that nothing says whose variant was answered.
+void hn_submission_remark_nobody(hn_verdict *v);
 /// was read, and how many more there are.
 void hn_submission_remark_read_as(hn_verdict *v);
 /// Refuses a field that says which variant or exercise is answered, or what it cost, and is there

@@ -216,7 +216,7 @@ def what_looks_like_an_answer(folder):
     told = entries("gears", {"seed": 3, "c": k + 1})
     expect("nor a count of gears", "two mistakes" not in told["c"][1], str(told))
 
-    note = json.loads(run("grade", "turning", write(folder, "answer.json", {"a": {"l1": 1, "l3": 2, "d": 0.1}}), "--json").stdout)["note"]
+    note = json.loads(run("grade", "turning", write(folder, "answer.json", {"seed": 1, "a": {"l1": 1, "l3": 2, "d": 0.1}}), "--json").stdout)["note"]
     expect("what an answer holds beside its names is told", note == "in part a the field 'd' was not read", note)
     row = ["-1.1372*sin(th1)", "-l2*th2^3", "l3*sin(th3)", "l4*sin(th4)"]
     said = run("grade", "p3", write(folder, "answer.json", {"J": [row, ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]})).stdout

@@ -60,6 +60,21 @@ def rubrics(folder):
             done = run(*words)
             expect(f"{words[0]} refuses {fields}", done.returncode == (2 if words[0] == "rubric" else 3) and said in " ".join(done.stderr.split()), f"{done.returncode} {done.stderr}")
 
+    # suggestions are written as the file is, and are no looser than what was meant
+    for name, text, hint in (("t.toml", "rubric = 1\nexercise = \"closure\"\n[tolerance.a]\nrelative = 1e-12\n", "relative = 1e-09"),
+                             ("t.json", '{"rubric": 1, "exercise": "closure", "tolerance": {"a": {"relative": 1e-12}}}', '"relative": 1e-09'),
+                             ("t.toml", "rubric = 1\nexercise = \"closure\"\n[tolerance]\na = 1e-6\n", "a = {relative = 1e-06}"),
+                             ("t.json", '{"rubric": 1, "exercise": "closure", "tolerance": {"a": 1e-6}}', '"a": {"relative": 1e-06}'),
+                             ("t.toml", "rubric = 1\nexercise = \"closure\"\npoints = 3\n", "points = {a = 2}"),
+                             ("t.toml", "rubric = 1\nexercise = \"closure\"\nshares = 3\n", "shares = {sign = 0.5}")):  # fmt: skip
+        done = run("rubric", "check", write(folder, name, text))
+        said = done.stderr.strip().splitlines()[-1].strip()
+        expect(f"suggested is {hint}", (done.returncode, said) == (2, hint), done.stderr)
+        key, _, value = text.partition("[tolerance.a]\nrelative = 1e-12" if "tolerance.a" in text else "a = 1e-6" if "a = 1e-6" in text else "points = 3")
+        if value and name == "t.toml":  # what is suggested is accepted
+            mended = run("rubric", "check", write(folder, name, key + ("[tolerance.a]\n" if "tolerance.a" in text else "") + hint + value))
+            expect(f"{hint} is accepted", mended.returncode == 0, mended.stderr)
+
     kept = write(folder, "kept.json", verdict)
     again = run("regrade", kept)
     expect("a verdict names its rubric", "before, none now; name it with --rubric" in again.stdout and "other.json (hash" in again.stdout, again.stdout)

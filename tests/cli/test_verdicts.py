@@ -318,6 +318,11 @@ def for_teachers(folder):
     right = run("grade", "fourbar", path, "--show-expected").stdout.split("expected  ")[1].split()[0]
     expect("no verdict of a student has the right number", not any(right in text for text in told[::2]), right)
     expect("a teacher's verdict has it", all(right in text for text in told[1:5:2]), str(told[1:5:2]))
+    nobody = "no student and no seed is named: graded with the numbers of the exercise itself, seed 1"
+    for named, more in (({}, []), ({"seed": 1}, []), ({"student": "ada"}, []), ({}, ["--seed", "1"]), ({}, ["--student", "ada"])):
+        path = write(folder, "whose.json", {"a": 1, **named})
+        found = [nobody in run("grade", "fourbar", path, "--format", form, *more).stdout for form in ("text", "json", "html", "gradescope")]
+        expect(f"a submission of nobody is remarked on: {named} {more}", found == [not named and not more] * 4, str(found))
     shaped = run("grade", "fourbar", write(folder, "three.json", {"seed": 3, "d": [1, 2, 3]}), "--show-expected", "--json").stdout
     two = run("grade", "fourbar", write(folder, "two.json", {"seed": 3, "d": [1, 2]}), "--show-expected", "--json").stdout
     d = [[e["expected"] for e in json.loads(text)["entries"] if e["name"].startswith("d.")] for text in (shaped, two)]
