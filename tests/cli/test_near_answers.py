@@ -307,6 +307,22 @@ def plots(folder):
     expect("it has a background", 'class="paper" fill="none" width="640" height="300"' in svg and ".paper{fill:#fcfcfa}" in svg, svg[:400])
 
 
+def two_at_once(folder):
+    """Two mistakes in different terms of a formula of matrices are both named; two in one term are not taken for them."""
+    for text, words in (("-gamma - J*v*alpha - beta^2*phi", ["the factor 2 before alpha"]),
+                        ("gamma - 2*alpha*J*v - beta*phi", ["two mistakes at once", "gamma has the wrong sign", "beta is a rate"]),
+                        ("2*alpha*J*v - beta*phi - gamma", ["two mistakes at once", "the term in J v has the wrong sign", "beta is a rate"]),
+                        ("gamma - alpha*J*v - beta^2*phi", ["two mistakes at once", "gamma has the wrong sign", "the factor 2 before alpha"])):  # fmt: skip
+        found = entry(folder, "drift", "e", text, "--seed", "3")
+        expect(f"{text} is named", all(word in found["explanation"] for word in words) and (len(words) > 1) == ("two mistakes" in found["explanation"]), found["explanation"])
+    found = entry(folder, "drift", "e", "-gamma + alpha*J*v - beta^2*phi", "--seed", "3")
+    expect("a term is not missing where it has the wrong sign", "oscillates" not in found["explanation"], found["explanation"])
+    # an angle of hundredths has the cosine of none
+    for exercise, answer in (("quaternion", 1), ("joint-shaft", json.loads(run("problem", "joint-shaft", "--seed", "3", "--json").stdout)["numbers"]["w"])):
+        found = entry(folder, exercise, "a", answer, "--seed", "3")
+        expect(f"{exercise}: degrees are not the only cause", "the angle was left out, or sine and cosine were taken of degrees" in found["explanation"], found["explanation"])
+
+
 def quaternions(folder):
     """-p is named, as what it is."""
     right = float(entry(folder, "quaternion", "a", 1e150, "--show-expected")["expected"].split()[0])
@@ -340,4 +356,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, pasted, shown, branches, plots, quaternions, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, pasted, shown, branches, plots, quaternions, two_at_once, proofs]))

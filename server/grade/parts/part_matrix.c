@@ -5,6 +5,7 @@
 #include "grade/parts/world.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -40,6 +41,65 @@ static const char *fault_answer(const cJSON *fault) {
     return hn_part_text(fault, "answer");
 }
 
+/// Whether two mistakes are in one term: in every world they change the reference in proportion.
+static bool is_one_term(const hn_part *p, hn_world *worlds, const cJSON *first,
+                        const cJSON *second) {
+    char text[1200];
+    double ratio = 0;
+    for (int i = 0; i < WORLDS; i++) {
+        hn_matrix change[2];
+        const cJSON *faults[2] = {first, second};
+        for (int k = 0; k < 2; k++) {
+            snprintf(text, sizeof text, "(%.500s)-(%.500s)", fault_answer(faults[k]),
+                     hn_part_text(p->node, "answer"));
+            if (hn_world_eval(&worlds[i], text, &change[k], NULL) != HN_OK) {
+                return true;
+            }
+        }
+        double largest = 0;
+        const int n = change[1].rows * change[1].cols;
+        for (int k = 0; i == 0 && k < n && n == change[0].rows * change[0].cols; k++) {
+            if (fabs(change[1].x[k]) > largest) {
+                largest = fabs(change[1].x[k]);
+                ratio = change[0].x[k] / change[1].x[k];
+            }
+        }
+        if (!(hn_world_distance(&change[0], &change[1], ratio) <= ALLOWED)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Two listed mistakes in different terms at once: the answer is a + b - reference, perhaps with the
+/// other sign.
+static bool explain_two(const hn_part *p, hn_world *worlds, const char *given, hn_part_result *r) {
+    const cJSON *first, *second;
+    hn_strbuf both;
+    bool found = false;
+    hn_strbuf_init(&both);
+    for (int i = 1; !found && (second = hn_part_fault_at(p, i)) != NULL; i++) {
+        for (int j = 0; !found && j < i; j++) {
+            first = hn_part_fault_at(p, j);
+            hn_strbuf_clear(&both);
+            hn_strbuf_printf(&both, "(%s)+(%s)-(%s)", fault_answer(first), fault_answer(second),
+                             hn_part_text(p->node, "answer"));
+            found = same(worlds, given, hn_strbuf_text(&both), 1, 0) &&
+                    !is_one_term(p, worlds, first, second);
+            if (found) {
+                const double share = hn_part_number(first, "share", 0);
+                hn_part_wrong(r, hn_part_text(first, "id"),
+                              share * hn_part_number(second, "share", 0),
+                              "two mistakes at once: %s; and %s", hn_part_text(first, "says"),
+                              hn_part_text(second, "says"));
+                r->alone = share;
+            }
+        }
+    }
+    hn_strbuf_reset(&both);
+    return found;
+}
+
 /// Names the mistake in a formula that can be read.
 static void explain(const hn_part *p, hn_world *worlds, const char *given, hn_part_result *r) {
     const char *reference = hn_part_text(p->node, "answer");
@@ -70,7 +130,9 @@ static void explain(const hn_part *p, hn_world *worlds, const char *given, hn_pa
             return;
         }
     }
-    hn_part_wrong(r, "other", 0, "wrong; the cause is none of the known mistakes");
+    if (!explain_two(p, worlds, given, r)) {
+        hn_part_wrong(r, "other", 0, "wrong; the cause is none of the known mistakes");
+    }
 }
 
 /// Reads the answer in the first world; 0 after the result has said why it cannot be used.

@@ -188,6 +188,20 @@ static void try_signed(hn_value_search *f, hn_ex e, const char *id, double share
     }
 }
 
+/// Whether a number cannot tell two candidates apart: at all states they are as near as an answer
+/// may be.
+static bool is_alike(const hn_value_search *f, hn_ex a, hn_ex b) {
+    const hn_value_sheet *s = f->sheet;
+    for (int i = 0; i < s->draw->n_states; i++) {
+        const double x = hn_draw_eval(s->draw, a, i), y = hn_draw_eval(s->draw, b, i);
+        const double own = fmax(fabs(s->reference.x[f->entry][i]), 1e-300);
+        if (!(fabs(x - y) <= 2 * s->allowed[f->entry] * fmax(fabs(x), fabs(y)) / own)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// Angles in degrees, sine for cosine.
 static void try_angles(hn_value_search *f) {
     static const double DEGREES[] = {57.29577951308232, 0.017453292519943295};
@@ -199,8 +213,12 @@ static void try_angles(hn_value_search *f) {
         }
     }
     for (int i = 0; i < 2 && n > 0; i++) {
-        try_signed(f, replace_names(f, names, n, 0, DEGREES[i]), "degrees", 0.5,
-                   "sine and cosine were taken of degrees");
+        // the cosine of a few hundredths is that of 0, so the angle may not be there at all
+        const hn_ex turned = replace_names(f, names, n, 0, DEGREES[i]);
+        const bool left_out = is_alike(f, turned, replace_names(f, names, n, 0, 0));
+        try_signed(f, turned, "degrees", 0.5,
+                   left_out ? "the angle was left out, or sine and cosine were taken of degrees"
+                            : "sine and cosine were taken of degrees");
     }
     if (n > 0) {
         hn_value_search_try(f, replace_names(f, names, n, 1.5707963267948966, -1), 1, "sine", 0.25,
