@@ -347,17 +347,22 @@ static bool is_on_grid(const entry *e, double t) {
     return e->h > 0 && fabs(t - round(t / e->h) * e->h) <= 1e-9 * e->h;
 }
 
+/// Operations of all methods so far.
+static double total_ops(const hn_comparison *c) {
+    double ops = 0;
+    for (int i = 0; i < c->n; i++) {
+        ops += hn_run_ops(c->entries[i].run);
+    }
+    return ops;
+}
+
 /// Compares the methods at t with the run of the accuracy watch, where that is due and within its
 /// share. Methods that have no step end there are compared at some frames alone.
 static void watch_accuracy(hn_comparison *c, double t, bool at_frame) {
     const bool inside =
         at_frame && (t >= c->next_inside || t >= c->duration * (1 - 1e-9)); // a frame of these
-    double ops = 0;
-    for (int i = 0; i < c->n; i++) {
-        ops += hn_run_ops(c->entries[i].run);
-    }
     if ((!inside && !hn_accuracy_is_due(c->accuracy, t)) ||
-        !hn_accuracy_reach(c->accuracy, t, ops)) {
+        !hn_accuracy_reach(c->accuracy, t, total_ops(c))) {
         return;
     }
     for (int i = 0; i < c->n; i++) {
@@ -442,8 +447,14 @@ static bool advance_all(hn_comparison *c, double t, int (*stop)(void *user), voi
         for (int k = 0; k < c->n; k++) {
             // the order rotates, so that no method always starts with cold caches
             entry *e = &c->entries[(k + c->frame) % c->n];
-            if (is_live(e) && (to == t || e->h > 0) && !advance_entry(c, e, to, stop, user)) {
+            if (!is_live(e) || (to < t && !(e->h > 0))) {
+                continue;
+            }
+            if (!advance_entry(c, e, to, stop, user)) {
                 return false;
+            }
+            if (!is_live(e)) {
+                hn_accuracy_see_end(c->accuracy, e->run, total_ops(c), &e->track);
             }
         }
         watch_accuracy(c, to, to == t);

@@ -46,12 +46,14 @@ static const hn_incident *find_wrong(const hn_run *run, double t_run) {
 }
 
 /// `wrong`: what find_wrong() returns. Where the estimate ends before it, the incident decides.
-static const char *verdict_of(const hn_estimate *e, double t_run, const hn_incident *wrong) {
+/// `lost`: the run ended as its motion was no longer the mechanism's.
+static const char *verdict_of(const hn_estimate *e, double t_run, const hn_incident *wrong,
+                              bool lost) {
     // a run that ended where it began shows no motion to be right
-    if (!(t_run > 0) || (!e->known && !wrong)) {
+    if (!(t_run > 0) || (!e->known && !wrong && !lost)) {
         return "unknown";
     }
-    if (!e->known || e->q >= HN_ACCURACY_WRONG || (wrong && e->t < wrong->t)) {
+    if (lost || !e->known || e->q >= HN_ACCURACY_WRONG || (wrong && e->t < wrong->t)) {
         return "wrong";
     }
     return wrong || fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? "inaccurate"
@@ -63,6 +65,8 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
                              const hn_accuracy_track *track, double t_run, const hn_run *run) {
     const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
     const hn_incident *wrong = find_wrong(run, t_run);
+    const hn_run_summary s = hn_run_get_summary(run);
+    const bool lost = s.status == HN_ERR_DIVERGED && s.t <= t_run;
     char text[560], reactions[64] = "more than their largest value";
     int used = 0;
     if (e.reaction <= 1) {
@@ -83,13 +87,16 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
                                  : "the error is not known",
                          e.reason[0] ? e.reason : "nothing was compared");
     }
-    if (wrong && !(e.known && e.q >= HN_ACCURACY_WRONG) && used < (int)sizeof text) {
+    const bool said = e.known && e.q >= HN_ACCURACY_WRONG;
+    if (lost && !said && used < (int)sizeof text) {
+        snprintf(text + used, sizeof text - (size_t)used, "; at t = %.4g s the run diverged", s.t);
+    } else if (wrong && !said && used < (int)sizeof text) {
         snprintf(text + used, sizeof text - (size_t)used, "; at t = %.4g s %s", wrong->t,
                  hn_incident_kinds()[wrong->code]->name);
     }
     hn_json_key(b, "verdict");
     hn_json_object(b);
-    hn_json_put_string(b, "is", verdict_of(&e, t_run, wrong));
+    hn_json_put_string(b, "is", verdict_of(&e, t_run, wrong, lost));
     hn_json_put_string(b, "text", text);
     hn_json_end_object(b);
 }

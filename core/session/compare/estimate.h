@@ -23,8 +23,9 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
 /// HN_ACCURACY_WRONG on, "inaccurate" above HN_ACCURACY_WARN, "right" below, "unknown" where there
 /// is no estimate, or none up to t_run and nothing wrong before. An incident of the run that calls
 /// the motion wrong makes the verdict "inaccurate" at least, and "wrong" where it comes after the
-/// end of the estimate. It is not the status of the run, which says only whether it reached its
-/// end.
+/// end of the estimate. A run that diverged is "wrong", whatever time was asked for and however
+/// few of its states were compared. It is not the status of the run, which says only whether it
+/// reached its end.
 void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
                              const hn_accuracy_track *track, double t_run, const hn_run *run);
 #endif

@@ -202,6 +202,9 @@ static hn_status record(hn_run *run, const schedule *s, recorder *rec) {
         t <= s->request->time && hn_run_sample(run, t, &last) == HN_OK) {
         add_sample(rec, &last, run, s->request);
     }
+    if (status != HN_OK) {
+        hn_accuracy_see_end(rec->accuracy, run, hn_run_ops(run), &rec->track);
+    }
     return status;
 }
 

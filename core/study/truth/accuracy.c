@@ -211,18 +211,28 @@ bool hn_accuracy_is_due(const hn_accuracy *a, double t) {
     return t >= hn_accuracy_next(a) * (1 - 1e-9); // rounding of t
 }
 
+/// Brings both to t and takes the pilot's sample there. Returns false where that cannot be had.
+static bool bring_to(hn_accuracy *a, double t, double ops) {
+    return is_there(a) && !has_ended(a) && step_to(a, a->run[ROUGH], t, ops) &&
+           step_to(a, a->run[PILOT], t, ops) &&
+           hn_run_sample(a->run[PILOT], t, &a->sample) == HN_OK;
+}
+
+/// Takes the pilot's sample as the truth. Returns false where it may be off too much itself.
+static bool take_truth(hn_accuracy *a) {
+    raise_scales(a, &a->sample);
+    const hn_state_seen at = seen_of(&a->sample);
+    return measure_own(a, &at);
+}
+
 bool hn_accuracy_reach(hn_accuracy *a, double t, double ops) {
-    if (!is_there(a) || has_ended(a) || !step_to(a, a->run[ROUGH], t, ops) ||
-        !step_to(a, a->run[PILOT], t, ops) ||
-        hn_run_sample(a->run[PILOT], t, &a->sample) != HN_OK) {
+    if (!bring_to(a, t, ops)) {
         return false;
     }
     while (hn_accuracy_is_due(a, t)) {
         a->looks++;
     }
-    raise_scales(a, &a->sample);
-    const hn_state_seen at = seen_of(&a->sample);
-    return measure_own(a, &at);
+    return take_truth(a);
 }
 
 // ---- what is seen of the runs ----
@@ -240,6 +250,15 @@ void hn_accuracy_see(hn_accuracy *a, const hn_sample *s, hn_accuracy_track *trac
     }
     track->t = s->t;
     track->n++;
+}
+
+void hn_accuracy_see_end(hn_accuracy *a, hn_run *run, double ops, hn_accuracy_track *track) {
+    const double t = hn_run_time(run);
+    hn_sample last;
+    if (t <= a->t_end && bring_to(a, t, ops) && take_truth(a) &&
+        hn_run_sample(run, t, &last) == HN_OK) {
+        hn_accuracy_see(a, &last, track);
+    }
 }
 
 /// The largest difference seen, no less than what the pilot may be off, over the scale.

@@ -77,6 +77,10 @@ double hn_accuracy_next(const hn_accuracy *a);
 bool hn_accuracy_reach(hn_accuracy *a, double t, double ops);
 /// Compares a sample of the time reached last. `track` starts as zeros.
 void hn_accuracy_see(hn_accuracy *a, const hn_sample *sample, hn_accuracy_track *track);
+/// Compares the last state of a run that ended early, whether or not a comparison is due there: how
+/// far a failed run went wrong then does not depend on the time that was asked for. `ops` as in
+/// hn_accuracy_reach(). A pilot that has gone past that time, or cannot reach it, compares nothing.
+void hn_accuracy_see_end(hn_accuracy *a, hn_run *run, double ops, hn_accuracy_track *track);
 /// The estimate of a run whose samples were seen; t_run: time that it has reached.
 hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *track,
                                  double t_run);
