@@ -231,7 +231,13 @@ class Services(OneFile):
         self.assertEqual(done.returncode, DONE, done.stderr)
         done = call("study", "pendulum", "--methods", method, "projection@rk4", "--time", "0.2", "--levels", "3", "--samples", "0", "--json", ALLOW, cwd=self.folder.name)
         self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertEqual([p["state"] for p in json.loads(done.stdout)["methods"][0]["points"]], ["done"] * 3)
+        own = json.loads(done.stdout)["methods"][0]
+        self.assertEqual([p["state"] for p in own["points"]], ["done"] * 3)
+        # nobody has said which order its steps have
+        self.assertIsNone(own["class"]["theory"])
+        self.assertNotRegex(own["class"]["text"], "theory|integrator|nan")
+        shown = call("compare", "pendulum", "--methods", method, "baumgarte@rk4:h=1e-2", "--time", "0.1", "--json", ALLOW, cwd=self.folder.name)
+        self.assertEqual(shown.returncode, DONE, shown.stderr)
 
     def test_a_program_that_ends_at_once_is_no_motion_that_diverged(self):
         method = "program:./mine.py@own:h=1e-2"

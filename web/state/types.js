@@ -50,7 +50,7 @@
  * A method of the comparison; `slot` gives colour, dash and marker, `label` is unique.
  * @typedef {{
  *   slot: number, short: string, label: string, rule: string, drift: string,
- *   model_error: boolean, keeps_gap: boolean, order: number,
+ *   model_error: boolean, keeps_gap: boolean, order: number | null,
  *   spelling: string, formulation: string, integrator: string, title: string,
  * }} Method
  */

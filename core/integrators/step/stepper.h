@@ -12,7 +12,7 @@ typedef struct hn_dae_stepper hn_dae_stepper;
 typedef struct hn_stepper {
     const char *name, *title; ///< "rk4", "Runge-Kutta 4"
     const char *about, *source;
-    int order;         ///< of the solution that is kept
+    int order;         ///< of the solution that is kept; 0: not known, of a program's own steps
     int control_order; ///< order of the embedded solution + 1, used to choose the step; 0: `order`
     int stages;        ///< right-hand sides per step
     /// chooses its own step from rtol and atol; an option h > 0, where there is one, fixes the step

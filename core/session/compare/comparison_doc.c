@@ -201,7 +201,7 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_bool(b, "model_error", spec->formulation->model_error);
         hn_json_put_bool(b, "keeps_gap",
                          (spec->formulation->traits & HN_TRAIT_CLOSES_POSITION) != 0);
-        hn_json_put_int(b, "order", spec->stepper->order);
+        hn_json_put_number(b, "order", spec->stepper->order > 0 ? spec->stepper->order : nan(""));
         put_warning(b, c, i);
         hn_json_key(b, "method");
         hn_method_json(b, spec);

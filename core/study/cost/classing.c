@@ -84,9 +84,9 @@ static bool goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
 /// First point of the flat end, below which errors only wander. l->n when there is none.
 static int find_floor(const ladder *l, double theory, double known) {
     const double sure = fmax(known, ROUNDING);
+    const double flat = FLAT * (isnan(theory) ? 1 : theory);
     for (int i = 0; i < l->n; i++) {
-        if (l->e[i] > sure &&
-            (i == 0 || slope(l, i) >= FLAT * theory || l->e[i] > HN_CLASS_OFFSET)) {
+        if (l->e[i] > sure && (i == 0 || slope(l, i) >= flat || l->e[i] > HN_CLASS_OFFSET)) {
             // still falling, or too large for a floor: the method is not yet convergent
             continue;
         }
@@ -239,11 +239,13 @@ static void describe_fine_end(const hn_wp *wp, int m, const hn_class *c, char fl
 
 /// The observed order, or why there is none.
 static void describe_order(const hn_wp *wp, int m, hn_class *c) {
-    char floor[120];
+    char floor[120], theory[48] = "";
     describe_fine_end(wp, m, c, floor);
-    if (c->kind == HN_CLASS_CONVERGES && c->as_theory) {
-        snprintf(c->text, sizeof c->text, "converges with order %.2f (theory %g)%s", c->order,
-                 c->theory, floor);
+    if (!isnan(c->theory)) {
+        snprintf(theory, sizeof theory, " (theory %g)", c->theory);
+    }
+    if (c->kind == HN_CLASS_CONVERGES && (c->as_theory || isnan(c->theory))) {
+        snprintf(c->text, sizeof c->text, "converges with order %.2f%s%s", c->order, theory, floor);
     } else if (c->kind == HN_CLASS_CONVERGES) {
         char why[140];
         explain_order(c, why);
@@ -257,14 +259,14 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
     } else if (c->first >= 0 && c->last - c->first < 2) {
         snprintf(c->text, sizeof c->text,
                  "not in the asymptotic range: only two points have an error between 0.5 and "
-                 "rounding, with a slope of %.1f (theory %g)%s",
-                 c->order, c->theory, floor);
+                 "rounding, with a slope of %.1f%s%s",
+                 c->order, theory, floor);
     } else if (c->first >= 0) {
         char why[200];
         why_unsettled(c, wp->ref->T, why);
         snprintf(c->text, sizeof c->text,
-                 "not in the asymptotic range: slopes from %.1f to %.1f (theory %g)%s%s", c->low,
-                 c->high, c->theory, why, floor);
+                 "not in the asymptotic range: slopes from %.1f to %.1f%s%s%s", c->low, c->high,
+                 theory, why, floor);
     } else {
         snprintf(c->text, sizeof c->text,
                  "not in the asymptotic range: fewer than two points have an error between 0.5 and "
@@ -313,8 +315,9 @@ void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
     const ladder l = collect(wp, m);
     const hn_wp_method *method = &wp->methods[m];
     const double known = HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q];
+    const int order = method->spec.stepper->order;
     *out = (hn_class){.kind = HN_CLASS_UNSETTLED,
-                      .theory = method->spec.stepper->order,
+                      .theory = order > 0 ? order : (double)NAN,
                       .order = (double)NAN,
                       .floor = (double)NAN,
                       .first = -1,

@@ -37,7 +37,7 @@ const char *hn_class_name(hn_class_kind kind);
 typedef struct hn_class {
     hn_class_kind kind;
     double order;        ///< of the coordinates against the number of steps; NaN: not found
-    double theory;       ///< the integrator's
+    double theory;       ///< the integrator's; NaN: not known, of a program's own steps
     double energy_order; ///< the same of the energy's error; NaN: it is rounding
     double finest;       ///< slope between the last two points that were fitted
     bool as_theory;      ///< observed within the bounds above

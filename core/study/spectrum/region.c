@@ -60,6 +60,9 @@ static hn_status matrix(void *self, double t, const double *y, double *jac) {
 }
 
 const char *hn_stability_why_not(const hn_stepper *stepper) {
+    if (stepper->order == 0) {
+        return "its steps are made by a program outside, of which nothing is known";
+    }
     if (!stepper->create) {
         return "it solves differential-algebraic systems only, to which the test equation does not "
                "apply";

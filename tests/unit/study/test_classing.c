@@ -80,6 +80,30 @@ static void an_order_that_is_not_the_integrators_is_told_as_such(void **state) {
     assert_non_null(strstr(c.text, "where its integrator has 4"));
 }
 
+// as of a program that makes its own steps
+static void where_theory_is_not_known_none_is_claimed(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {1e-2, 1e-2 / 32, 1e-2 / 1024, 1e-2 / 32768, 1e-2 / 1048576};
+    const double bent[4] = {1e-2, 1e-2 / 2, 1e-2 / 40, 1e-2 / 90};
+    hn_stepper unknown = {.name = "own", .order = 0};
+    write_one(&w, e, 5, 0, 1e-13);
+    for (int k = 0; k < 5; k++) {
+        w.methods[0].point[k].worst[HN_ERROR_ENERGY] = e[k] / 75;
+    }
+    w.methods[0].spec.stepper = &unknown;
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_CONVERGES);
+    assert_string_equal(c.text, "converges with order 5.00");
+    assert_true(isnan(c.theory));
+    assert_false(c.as_theory);
+
+    write_one(&w, bent, 4, 0, 1e-13);
+    w.methods[0].spec.stepper = &unknown;
+    assert_null(strstr(class_of(&w, 0).text, "theory"));
+    assert_null(strstr(class_of(&w, 0).text, "nan"));
+}
+
 // a Runge-Kutta method of order 4 loses energy with order 5: where that carries the phase, the
 // coordinates converge with order 5 too
 static void
@@ -463,6 +487,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_fourth_order_ladder_converges_with_order_four),
         cmocka_unit_test(an_order_that_is_not_the_integrators_is_told_as_such),
+        cmocka_unit_test(where_theory_is_not_known_none_is_claimed),
         cmocka_unit_test(
             an_order_above_the_integrators_is_put_down_to_the_energy_where_it_follows_it),
         cmocka_unit_test(a_slope_that_rises_towards_theory_is_told),
