@@ -32,6 +32,10 @@ static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J
 // do where they close no further
 static const double VELOCITY_TOL = 2e-16;
 static const double VELOCITY_ROUNDING = 4e-15;
+// The same where rows depend on each other. Such rows agree on the velocities no better than the
+// positions are closed, which is to 1e-12 lengths where rounding allows no more: several turns of
+// an angle, or a row that is a large multiple of another.
+static const double DEPENDENT_ROUNDING = 1e-12;
 // A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic
 // there, and a step phi / sigma would be larger than the range in which J means something.
 static const double PROJECTOR_RANK_TOL = 1e-7;
@@ -417,7 +421,7 @@ static hn_status correct_velocity(hn_projector *p, double *v) {
 /// weakest direction of J is weaker than the strongest.
 static double rounding_of_gap(const hn_projector *p) {
     const bool dependent = p->have_factor && p->dense && p->rank < p->nc;
-    return VELOCITY_ROUNDING / (dependent ? p->weakest : 1);
+    return dependent ? DEPENDENT_ROUNDING / p->weakest : VELOCITY_ROUNDING;
 }
 
 /// The problem is linear, so a fresh factor closes the gap at once and a near one does in two or
@@ -493,6 +497,7 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
         // no better than before: rounding if the gap was small already
         const bool rounding = status == HN_OK && info->gap_before <= rounding_of_gap(p) * scale;
         info->gap = info->gap_before;
+        info->rank = p->have_factor ? p->rank : p->nc;
         memcpy(v, p->best, (size_t)p->nv * sizeof *v);
         return rounding ? HN_OK : (status != HN_OK ? status : HN_ERR_NO_CONVERGENCE);
     }

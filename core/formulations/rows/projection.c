@@ -13,6 +13,8 @@ enum { WHAT_BOTH, WHAT_POSITION, WHAT_VELOCITY };
 // rounding is coarser
 #define GAP_TOL 3e-16
 #define GAP_TOL_COARSE 1e-12
+// likewise: a step that is too long opens dependent rows by more
+#define CONTRADICTION 1e-6
 
 typedef struct projection {
     hn_accel_ode ode; // first: see accel_ode.h
@@ -48,8 +50,17 @@ static void destroy(void *self) {
     hn_accel_ode_destroy(self);
 }
 
-static hn_status tell(projection *p, hn_status status, double t, const char *part) {
-    if (status != HN_OK) {
+/// `limit`: where equations depend on each other, a gap below it is no matter of the step.
+static hn_status tell(projection *p, hn_status status, double t, const char *part,
+                      const hn_project_info *info, double limit) {
+    const double gap = fmin(info->gap_before, info->gap);
+    if (status == HN_ERR_NO_CONVERGENCE && info->rank < p->ode.base.nc && gap < limit) {
+        snprintf(p->ode.base.why, sizeof p->ode.base.why,
+                 "the projection of %s at t = %.6g s failed: %d of %d constraint equations depend "
+                 "on the others and contradict them by %.2g, as rounded numbers of a scene do; "
+                 "then no step is short enough",
+                 part, t, p->ode.base.nc - info->rank, p->ode.base.nc, gap);
+    } else if (status != HN_OK) {
         snprintf(p->ode.base.why, sizeof p->ode.base.why,
                  "the projection of %s at t = %.6g s failed: %s; the step was too long for it",
                  part, t, hn_status_text(status));
@@ -82,7 +93,8 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     if (p->what != WHAT_VELOCITY) {
         const hn_status status = project_position(p, t, y, &info);
         if (status != HN_OK) {
-            return tell(p, status, t, "the position");
+            return tell(p, status, t, "the position", &info,
+                        CONTRADICTION * hn_system_length(p->ode.base.sys));
         }
     }
 
@@ -90,7 +102,7 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     if (p->what != WHAT_POSITION) {
         const hn_status status = hn_project_velocity(p->projector, t, y, y + p->ode.base.nq, &info);
         if (status != HN_OK) {
-            return tell(p, status, t, "the speeds");
+            return tell(p, status, t, "the speeds", &info, HUGE_VAL);
         }
         p->ode.base.cost.energy_removed += info.energy_removed;
     }

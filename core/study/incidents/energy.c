@@ -117,8 +117,10 @@ void hn_energy_explain(const hn_watch *w, char why[256]) {
     const double size = e->t_max + (e->v_max - e->v_min);
     const size_t used = strlen(why);
     if (e->conservative && fabs(change) > ANOTHER * size) {
-        snprintf(why + used, 256 - used,
-                 "; the energy had changed by %.3g J before, " HN_ENERGY_ANOTHER, change);
+        const int more =
+            snprintf(why + used, 256 - used,
+                     "; the energy had changed by %.3g J before, " HN_ENERGY_ANOTHER, change);
+        why[more < 256 - (int)used ? (int)used + more : (int)used] = '\0'; // no half a number
     }
 }
 

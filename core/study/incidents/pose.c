@@ -58,10 +58,11 @@ void hn_pose_explain(const hn_watch *w, char why[256]) {
     const hn_singular_record *s = &w->singular;
     const size_t used = strlen(why);
     if (w->run->info.nc > 0 && s->info.sigma_min < SINGULAR * s->largest) {
-        snprintf(
+        const int more = snprintf(
             why + used, 256 - used,
             "; the constraints are almost dependent there: the smallest singular value of J is "
             "%.2g, and was %.2g before",
             s->info.sigma_min, s->largest);
+        why[more < 256 - (int)used ? (int)used + more : (int)used] = '\0'; // no half a number
     }
 }
