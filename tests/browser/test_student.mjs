@@ -130,7 +130,7 @@ test("on the first page, where every method ends wrong, the record lists the dea
   await line.first().locator("summary").click();
   assert.match(
     await line.first().locator(".message").innerText(),
-    /^th3 turns back there .* After 1\.\d\d s every method has left the true motion/,
+    /^th3 turns back there .* are listed until 1\.\d\d s: every method has left the true motion/,
   );
 });
 

@@ -108,8 +108,8 @@ function soundMethods(data, shown) {
 }
 
 /**
- * The method that stayed right the longest, and the last frame of that: where all have left the
- * true motion, its dead points until then are the mechanism's own.
+ * The method that stayed right the longest, and the last frame of that: where none is right any
+ * more, its dead points until then are the mechanism's own.
  * @param {import("./store.js").Data} data @param {number} shown a frame where none is right
  */
 function longestSound(data, shown) {
@@ -126,9 +126,24 @@ function longestSound(data, shown) {
 }
 
 /**
+ * What became of the methods where none is right: how many stopped, how many run on and are wrong.
+ * @param {import("./store.js").Data} data @param {number} shown a frame where none is right
+ */
+function fatesWords({ history, methods }, shown) {
+  const all = methods.length;
+  const stopped = methods.filter((_, m) => history.ended[m] <= history.t[shown]).length;
+  const have = (count) => `${count} ${count === 1 ? "has" : "have"}`;
+  if (stopped > 0 && stopped < all) {
+    return `of ${all} methods ${have(stopped)} stopped and ${have(all - stopped)} left the true motion`;
+  }
+  return `${all === 1 ? "the" : "every"} method has ${stopped ? "stopped" : "left the true motion"}`;
+}
+
+/**
  * Dead points as lines of the record of incidents, by coordinate: those of the methods that are
- * right; where none is, those of the time when one still was. Methods that find the same number share a line, with the times of the best of them; `of`
- * names them where others find another number, and is "" where all agree.
+ * right; where none is, those of the time when one still was. Methods that find the same number
+ * share a line, with the times of the best of them; `of` names them where others find another
+ * number, and is "" where all agree.
  * @param {import("./store.js").Data} data @param {number} shown
  * @returns {{
  *   name: string, of: string, count: number, first: number, last: number, words: string,
@@ -141,7 +156,7 @@ export function deadPointLines(data, shown) {
   const found = list.map((m) => ({ m, all: deadPointsOf(data, m, until) }));
   const end =
     until < shown
-      ? ` After ${seconds(data.history.t[until], data.duration)} every method has left the true motion: no dead point is listed then.`
+      ? ` Dead points are listed until ${seconds(data.history.t[until], data.duration)}: ${fatesWords(data, shown)} since.`
       : "";
   return data.scene.coordinates.flatMap(({ name }, k) => {
     const own = found.map(({ m, all }) => ({
@@ -174,11 +189,14 @@ export function noDeadPointWords(data, shown) {
   if (scene.dof !== 1) {
     return `Dead points are listed for mechanisms with one degree of freedom; this one has ${scene.dof}.`;
   }
-  const until = seconds(history.t[shown], duration);
-  const what = "At a dead point a coordinate turns back while the mechanism moves on";
-  return soundMethods(data, shown).length > 0
-    ? `No dead point until ${until}: no coordinate turned back while the mechanism moved on.`
-    : `${what}: a force along that coordinate moves nothing then. None is listed: until ${until} every method has left the true motion, and a wrong motion turns back at other places. A smaller step lists them.`;
+  const sound = soundMethods(data, shown).length > 0;
+  const until = sound ? shown : longestSound(data, shown).until;
+  const none =
+    `No dead point until ${seconds(history.t[until], duration)}: ` +
+    "no coordinate turned back while the mechanism moved on.";
+  return sound
+    ? none
+    : `${none} None is listed after that: ${fatesWords(data, shown)} since. A smaller step lists more.`;
 }
 
 /** How a method fares at a dead point of a coordinate. */
