@@ -18,11 +18,22 @@ for line in sys.stdin:
     print(json.dumps({"id": ask["id"], "a": [-9.81 * math.sin(ask["q"][0])]}), flush=True)
 `;
 
-/** A page on a server whose folder has mine.py and other.py. */
+// the same bob, by semi-implicit steps of its own
+const STEPS = `import json, math, sys
+sys.stdin.readline()
+print(json.dumps({"holonom": 1, "provides": "step"}), flush=True)
+for line in sys.stdin:
+    ask = json.loads(line)
+    v = ask["v"][0] - ask["h"] * 9.81 * math.sin(ask["q"][0])
+    print(json.dumps({"id": ask["id"], "q": [ask["q"][0] + ask["h"] * v], "v": [v]}), flush=True)
+`;
+
+/** A page on a server whose folder has mine.py, other.py and steps.py. */
 async function openWithPrograms(t, hash = "#pendulum") {
   const folder = mkdtempSync(join(tmpdir(), "programs-"));
   writeFileSync(join(folder, "mine.py"), PENDULUM);
   writeFileSync(join(folder, "other.py"), PENDULUM);
+  writeFileSync(join(folder, "steps.py"), STEPS);
   writeFileSync(join(folder, "notes.txt"), "no program");
   const server = await bench.server(t, ["--programs", folder]);
   t.after(async () => {
@@ -57,7 +68,7 @@ test("programs stand among the formulations, each once, with the step of the oth
   const step = other.split("h=")[1];
   await openDialog(page);
   const offered = await page.locator("#pick-formulation optgroup option").allTextContents();
-  assert.deepEqual(offered, ["mine.py", "other.py"]);
+  assert.deepEqual(offered, ["mine.py", "other.py", "steps.py"]);
   await page.selectOption("#pick-formulation", "program:mine.py");
   await soon(async () =>
     assert.equal(await page.inputValue("#pick-spelling"), `program:mine.py@${other}`),
@@ -103,6 +114,31 @@ test("a program runs at another step, is changed, named by its file, and stays w
   await until(page, (data) => data.scene.id === "double-pendulum");
   const there = (await spellingsOf(page)).map((text) => text.split("@")[0]);
   assert.ok(there.includes("program:mine.py") && there.includes("program:other.py"), String(there));
+});
+
+test("a program is added by the steps that it takes: its own, or those of an integrator", async (t) => {
+  const page = await openWithPrograms(t);
+  await add(page, "program:steps.py"); // offered with the integrator of the other methods
+  const step = (await spellingsOf(page))[0].split("h=")[1];
+  await soon(async () =>
+    assert.equal((await spellingsOf(page)).at(-1), `program:steps.py@own:h=${step}`),
+  );
+  await until(page, (data) =>
+    data.notice.startsWith('steps.py provides "step", so it makes its own steps'),
+  );
+  await page.getByRole("button", { name: "Change or remove steps.py" }).click();
+  const offered = () => page.locator("#pick-integrator option").allTextContents();
+  await soon(async () => assert.deepEqual(await offered(), ["its own steps"]));
+  await page.getByRole("button", { name: "Cancel" }).click();
+
+  // a program of accelerations that was asked for steps of its own
+  await openDialog(page);
+  await page.fill("#pick-spelling", `program:mine.py@own:h=${step}`);
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await until(page, (data) => data.notice.startsWith("mine.py provides accelerations"));
+  await soon(async () =>
+    assert.match((await spellingsOf(page)).at(-1), /^program:mine\.py@(?!own)/),
+  );
 });
 
 test("a server that allows none shows no list of programs", async (t) => {

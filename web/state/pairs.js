@@ -2,7 +2,7 @@
 // @ts-check
 // Which formulation and integrator fit, from their cards, and why others do not.
 import { parseQuantity, plain, prettyUnit } from "./format.js";
-import { isProgram, ownSteps } from "./program-card.js";
+import { ownSteps } from "./program-card.js";
 import { cardOf } from "./spelling.js";
 
 /** What each form asks an integrator for, as the end of a sentence. */
@@ -28,7 +28,7 @@ const wordsOf = (form) => FORMS[form] ?? form;
 export function partnersOf(catalogue, formulation) {
   const names = cardOf(catalogue, "formulation", formulation)?.integrators ?? [];
   const known = catalogue.integrators.filter(({ name }) => names.includes(name));
-  return isProgram(formulation) ? [...known, ownSteps] : known;
+  return names.includes(ownSteps.name) ? [...known, ownSteps] : known;
 }
 
 /** One and another and a third. @param {string[]} list */

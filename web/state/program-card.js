@@ -25,12 +25,34 @@ export const ownSteps = {
 /** Serves an integrator any ordinary differential equation of second order? */
 const servesAny = ({ forms }) => forms.includes("ode");
 
+/** Where a refusal of the server says what a program provides. */
+const PROVIDES = /^the program provides (accelerations|step|solve)$/;
+
 /**
- * @param {{integrators: any[]}} catalogue
+ * What a program provides, as the server says it where a method does not fit; "" where a refusal
+ * is about something else.
+ * @param {{detail: string}[]} errors of a problem document
+ */
+export const providedBy = (errors) => PROVIDES.exec(errors[0]?.detail ?? "")?.[1] ?? "";
+
+/** @param {string} name program:FILE @param {string} provided */
+export function providesWords(name, provided) {
+  const file = name.trim().slice(PREFIX.length);
+  return provided === "accelerations"
+    ? `${file} provides accelerations, so an integrator makes its steps`
+    : `${file} provides "${provided}", so it makes its own steps`;
+}
+
+/**
+ * `provided`: by name, as far as a refusal has said it; all integrators are offered before.
+ * @param {{integrators: any[], provided?: Record<string, string>}} catalogue
  * @param {string} name program:FILE
  */
 export function cardOfProgram(catalogue, name) {
   const file = name.trim().slice(PREFIX.length);
+  const provided = catalogue.provided?.[name.trim()] ?? "";
+  const steps = provided === "step" || provided === "solve";
+  const served = steps ? [] : catalogue.integrators.filter(servesAny).map((card) => card.name);
   return {
     name: name.trim(),
     title: file,
@@ -40,8 +62,8 @@ export function cardOfProgram(catalogue, name) {
       "or it makes its own steps.",
     when_not: "comparing computing times, because every answer crosses a pipe",
     drift: "as the equations of the program say",
-    form: "ode",
+    form: steps ? "program" : "ode",
     options: [],
-    integrators: [...catalogue.integrators.filter(servesAny).map((card) => card.name), "own"],
+    integrators: provided === "accelerations" ? served : [...served, ownSteps.name],
   };
 }

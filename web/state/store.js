@@ -89,7 +89,9 @@ function initialData() {
   return {
     build: "",
     /** @type {any} */ look: null,
-    /** @type {{formulations: any[], integrators: any[], programs?: string[]}} */
+    /** `provided`: what programs of one's own provide, by name, as far as it is known
+     * @type {{formulations: any[], integrators: any[], programs?: string[],
+     *   provided?: Record<string, string>}} */
     catalogue: { formulations: [], integrators: [] },
     /** @type {{id: string, title: string, duration: number}[]} */ scenes: [],
     /** @type {Lesson[]} */ lessons: [],

@@ -2,7 +2,7 @@
 // @ts-check
 // Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the
 // server checks.
-import { sentenceOf } from "../api/client.js";
+import { Problem, sentenceOf } from "../api/client.js";
 import { parseQuantity, plain, prettyUnit, withPowers } from "../state/format.js";
 import { capital } from "../state/words.js";
 import {
@@ -13,7 +13,7 @@ import {
   misfitsOf,
   partnersOf,
 } from "../state/pairs.js";
-import { isProgram } from "../state/program-card.js";
+import { isProgram, providedBy, providesWords } from "../state/program-card.js";
 import { cardOf, formatSpelling, parseSpelling, settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
@@ -283,16 +283,45 @@ export function createMethodDialog(el, store, actions) {
     form.dataset.kind = text ? "error" : "";
   }
 
-  async function commit(spellings) {
+  /**
+   * What a program provides is known once the server has started it: a method that does not fit is
+   * spelled as the program takes it, and the status line says so.
+   * @param {unknown} problem @param {string} wrong
+   * @returns {string} "" where this is not what was wrong
+   */
+  function respell(problem, wrong) {
+    const provided = problem instanceof Problem ? providedBy(problem.errors) : "";
+    const { name } = parseSpelling(wrong).formulation;
+    if (!provided || !isProgram(name) || data.catalogue.provided?.[name] === provided) {
+      return "";
+    }
+    data.catalogue.provided = { ...data.catalogue.provided, [name]: provided };
+    onTyped();
+    onFormulation();
+    return `${providesWords(name, provided)}: it runs as ${spelling.value}`;
+  }
+
+  /**
+   * @param {string[]} spellings @param {number} [at] the one that was chosen here
+   * @param {string} [said] once it is done
+   */
+  async function commit(spellings, at = -1, said = "") {
     try {
       await actions.setMethods(spellings);
-      dialog.close();
-      return true;
     } catch (problem) {
+      const words = at < 0 ? "" : respell(problem, spellings[at]);
+      if (words) {
+        return commit(spellings.with(at, spelling.value), at, words);
+      }
       tell(sentenceOf(problem));
       spelling.focus();
       return false;
     }
+    dialog.close();
+    if (said) {
+      actions.notice(said);
+    }
+    return true;
   }
 
   async function onSubmit(event) {
@@ -307,7 +336,7 @@ export function createMethodDialog(el, store, actions) {
     const spellings = data.methods.map((method) => method.spelling);
     const at = place < 0 ? spellings.length : place;
     spellings[at] = spelling.value.trim();
-    if (await commit(spellings)) {
+    if (await commit(spellings, at)) {
       actions.select(at);
     }
   }
