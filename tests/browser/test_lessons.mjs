@@ -150,7 +150,7 @@ test("an exhibit runs beside its text, a prediction is kept", async (t) => {
   await soon(async () => assert.equal(await page.locator(".katex-error").count(), 0));
   await soon(async () =>
     assert.deepEqual(
-      await page.locator(".lesson-text p a").evaluateAll((list) => list.map(({ href }) => href)),
+      await page.locator(".lesson-text p:not(.about) a").evaluateAll((list) => list.map(({ href }) => href)),
       ["https://example.org/"],
     ),
   );
@@ -307,6 +307,69 @@ test("every lesson of the server is shown, with no formula in error", async (t) 
       true,
     ),
   );
+});
+
+test("the address names the lesson that is read; back returns to the one before", async (t) => {
+  const page = await open(t, { hash: "#/lessons/3" });
+  const reads = (id, shown = id) =>
+    soon(async () => {
+      assert.equal(new URL(page.url()).hash, `#/lessons/${id}`);
+      assert.equal(await page.inputValue("#lesson"), shown);
+    });
+  const ids = await read(page, (data) => data.lessons.map(({ id }) => id));
+  await reads(ids[2]);
+  const turn = (name) => page.getByRole("button", { name, exact: true }).last().click();
+  await turn("next");
+  await reads(ids[3]);
+  await turn("next");
+  await reads(ids[4]);
+  await page.goBack();
+  await reads(ids[3]);
+  await page.goBack();
+  await reads(ids[2]);
+  await page.goForward();
+  await reads(ids[3]);
+
+  // closed by hand the address is the scene's; the comparison has stayed the same
+  const run = await read(page, (data) => data.id);
+  await page.keyboard.press("Escape");
+  await page.locator(".lesson-panel").waitFor({ state: "hidden" });
+  await soon(async () => assert.equal(new URL(page.url()).hash, "#four-bar"));
+
+  // an address that is typed; by number, by name, and one that is none
+  for (const [typed, id] of [
+    ["7", ids[6]],
+    [ids[1].replace(/^\d+-/, ""), ids[1]],
+  ]) {
+    await page.evaluate((to) => (location.hash = `#/lessons/${to}`), typed);
+    await page.locator(".lesson-panel").waitFor();
+    await reads(id);
+  }
+  await page.evaluate(() => (location.hash = "#/lessons/99"));
+  await until(page, (data) => /no lesson is called '99'; there are 1 to \d+/.test(data.notice));
+  await reads(ids[1]);
+  assert.equal(await read(page, (data) => data.id), run);
+});
+
+test("several lessons that were read are one step of back once they are closed", async (t) => {
+  const page = await open(t, { hash: "#slider-crank" });
+  const turn = (name) => page.getByRole("button", { name, exact: true }).last().click();
+  const hash = (text) =>
+    soon(async () => assert.equal(new URL(page.url()).hash, text, "address of the page"));
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.waitForSelector(".lesson-text h2");
+  const first = await page.inputValue("#lesson");
+  await hash(`#/lessons/${first}`);
+  await turn("next");
+  await soon(async () => assert.notEqual(await page.inputValue("#lesson"), first));
+  await turn("next");
+  await turn("close");
+  await page.locator(".lesson-panel").waitFor({ state: "hidden" });
+  await hash("#slider-crank");
+  await page.selectOption("#scene", "pendulum");
+  await hash("#pendulum");
+  await page.goBack();
+  await until(page, (data) => data.scene.id === "slider-crank" && data.view.panel === "");
 });
 
 test("a lesson is put on paper with every picture, seen or not", async (t) => {

@@ -5,9 +5,9 @@
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { limits, readIndex, studyKinds } from "../state/catalogue.js";
 import { plain } from "../state/format.js";
-import { LONGEST_NOTE, decodeLink, encodeLink, fits } from "../state/link.js";
+import { LONGEST_NOTE, decodeLink, encodeLink, fits, isLessonAddress } from "../state/link.js";
 import { sourceOf } from "../state/store.js";
-import { showLinked, shownOf } from "../state/shown.js";
+import { showLesson, showLinked, shownOf } from "../state/shown.js";
 import { noStudy } from "../state/studies.js";
 import { nearest } from "../state/near.js";
 import { isProgram } from "../state/program-card.js";
@@ -233,11 +233,30 @@ export function createSceneActions(store, exchange, notice) {
       keeper.begin(fragment === "");
     },
     /**
+     * Opens the lesson of an address beside the scene that is open, or beside the first one.
+     * @param {import("../state/link.js").Linked} link
+     */
+    async openLesson({ lesson }) {
+      if (!data.scene) {
+        await actions.loadScene(FIRST_SCENE);
+      }
+      const [fault] = showLesson(data, lesson);
+      data.view.panel = "lessons";
+      if (fault) {
+        notice(`the link: ${fault}`);
+      }
+      store.emit("view");
+    },
+    /**
      * Opens a link. What it says wrongly is named in the status line and stays as the scene has it.
      * @param {string} fragment
      */
     async openLink(fragment) {
       const { link, faults } = decodeLink(fragment);
+      if (isLessonAddress(fragment)) {
+        await actions.openLesson(link);
+        return;
+      }
       const ids = data.scenes.map(({ id }) => id);
       const id = [link.scene, FIRST_SCENE, ids[0]].find((one) => ids.includes(one)) ?? FIRST_SCENE;
       if (link.scene && id !== link.scene) {

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The browser's own history: every scene that is opened, and every view that lies over the page, is
-// a place to which "back" returns. A scene comes back with the methods and parameters that it had.
+// a place to which "back" returns; so is every lesson. A scene comes back with the methods and
+// parameters that it had. The address names the lesson that is read, else the scene.
 import { sentenceOf } from "../api/client.js";
+import { isLessonAddress, lessonAddress } from "../state/link.js";
+import { lessonOf } from "../state/shown.js";
 import { listen, sourceOf } from "../state/store.js";
 
 /**
- * What lies over the page.
- * @typedef {{study: string, panel: string, gallery: boolean}} Over
+ * What lies over the page. `lesson`: the one that is read, or "".
+ * @typedef {{study: string, panel: string, gallery: boolean, lesson: string}} Over
  * @typedef {{scene: number, over: Over}} Place scene: a number of its own for each that was opened
  */
 
 /** @param {Over} over */
 const isPlain = ({ study, panel, gallery }) => !study && !panel && !gallery;
-const PLAIN = { study: "", panel: "", gallery: false };
+const PLAIN = { study: "", panel: "", gallery: false, lesson: "" };
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -32,8 +35,15 @@ export function createTrail(store, actions) {
   /** @returns {Over} */
   const overNow = () => {
     const { study, panel, gallery } = data.view;
-    return { study, panel, gallery };
+    return { study, panel, gallery, lesson: panel === "lessons" ? lessonOf(data) : "" };
   };
+
+  /** The address of a place; a scene of one's own has none but the page's. @param {Over} over */
+  function addressOf({ lesson }) {
+    const id = sourceOf(data);
+    const page = `${location.pathname}${location.search}`;
+    return lesson ? `#${lessonAddress(lesson)}` : typeof id === "string" ? `#${id}` : page;
+  }
 
   /** The present comparison, so that it can be opened again. */
   function keep() {
@@ -41,12 +51,12 @@ export function createTrail(store, actions) {
     kept.set(place.scene, { source: sourceOf(data), settings: { ...data.settings }, methods });
   }
 
-  /** @param {Place} next @param {string} [address] */
-  function push(next, address) {
+  /** @param {Place} next */
+  function push(next) {
     // the gallery has led here: nobody wants to go back to it
     const act = place.over.gallery ? "replaceState" : "pushState";
     place = next;
-    window.history[act](place, "", address);
+    window.history[act](place, "", addressOf(next.over));
   }
 
   function onMethods() {
@@ -59,8 +69,7 @@ export function createTrail(store, actions) {
     // an edited document is the same place; another scene is a new one
     const edits = typeof now === "object" && typeof kept.get(place.scene)?.source === "object";
     if (other && !edits) {
-      const address = typeof now === "string" ? `#${now}` : undefined;
-      push({ scene: ++count, over: { ...overNow(), gallery: false } }, address);
+      push({ scene: ++count, over: { ...overNow(), gallery: false } });
     }
     keep();
   }
@@ -70,21 +79,27 @@ export function createTrail(store, actions) {
     if (going || JSON.stringify(now) === JSON.stringify(place.over)) {
       return;
     }
-    if (isPlain(now) && window.history.state?.opened) {
-      place = { ...place, over: now };
-      window.history.back(); // closed by hand: the place where it was open is left
+    const before = place.over;
+    /** how many places lie between this one and the page without anything over it */
+    const opened = Number(window.history.state?.opened ?? 0);
+    place = { ...place, over: now };
+    if (isPlain(now) && opened) {
+      window.history.go(-opened); // closed by hand: the places where it was open are left
       return;
     }
     if (isPlain(now)) {
-      place = { ...place, over: now };
-      window.history.replaceState(place, "");
+      const address = before.lesson ? addressOf(now) : undefined;
+      window.history.replaceState(place, "", address);
       return;
     }
-    const opened = isPlain(place.over);
-    place = { ...place, over: now };
-    window.history[opened ? "pushState" : "replaceState"](
-      { ...place, opened: opened || Boolean(window.history.state?.opened) },
+    const opens = isPlain(before);
+    const turns = Boolean(before.lesson && now.lesson); // to another lesson
+    const depth = opens ? 1 : turns && opened ? opened + 1 : opened;
+    const changes = before.lesson || now.lesson;
+    window.history[opens || turns ? "pushState" : "replaceState"](
+      { ...place, opened: depth },
       "",
+      changes ? addressOf(now) : undefined,
     );
   }
 
@@ -106,10 +121,16 @@ export function createTrail(store, actions) {
     going = true;
     try {
       if (!wanted) {
-        place = { scene: ++count, over: PLAIN }; // a link was put into the address line
-        await actions.openLink(location.hash.slice(1));
+        const fragment = location.hash.slice(1); // a link was put into the address line
+        const scene = isLessonAddress(fragment) ? place.scene : ++count;
+        place = { scene, over: PLAIN };
+        await actions.openLink(fragment);
         place.over = overNow();
-        window.history.replaceState(place, "");
+        window.history.replaceState(
+          place,
+          "",
+          place.over.lesson ? addressOf(place.over) : undefined,
+        );
       } else {
         const other = wanted.scene !== place.scene;
         place = { scene: wanted.scene, over: wanted.over };
@@ -117,7 +138,8 @@ export function createTrail(store, actions) {
           await restore(wanted.scene);
         }
         if (JSON.stringify(overNow()) !== JSON.stringify(wanted.over)) {
-          actions.setView({ ...wanted.over });
+          const { lesson, ...over } = wanted.over;
+          actions.setView(lesson ? { ...over, lesson } : over); // closed, it is remembered
         }
       }
     } catch (error) {
@@ -129,7 +151,7 @@ export function createTrail(store, actions) {
   }
 
   place.over = overNow();
-  window.history.replaceState(place, "");
+  window.history.replaceState(place, "", place.over.lesson ? addressOf(place.over) : undefined);
   keep();
   const stop = listen(store, { methods: onMethods, view: onView });
   addEventListener("popstate", onMove);

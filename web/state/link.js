@@ -130,6 +130,14 @@ export function encodeLink(what) {
   return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
 }
 
+const LESSON = /^\/lessons(?:\/([\w.-]{0,80}))?$/;
+
+/** The address of a lesson, as the fragment of the page's. @param {string} id */
+export const lessonAddress = (id) => `/lessons/${id}`;
+
+/** Does a fragment name a lesson and nothing else? @param {string} fragment */
+export const isLessonAddress = (fragment) => LESSON.test(fragment);
+
 /** May a link of this length be sent around? @param {string} text */
 export const fits = (text) => text.length <= LONGEST;
 
@@ -257,6 +265,12 @@ export function decodeLink(fragment) {
   const link = EMPTY();
   /** @type {string[]} */
   const faults = [];
+  const lesson = LESSON.exec(fragment);
+  if (lesson) {
+    link.panel = "lessons";
+    link.lesson = lesson[1] ?? "";
+    return { link, faults };
+  }
   if (!fragment.includes("=")) {
     link.scene = decode(fragment) ?? "";
     return { link, faults };

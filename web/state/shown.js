@@ -131,13 +131,42 @@ function spaceOf({ show, camera }) {
 }
 
 /**
+ * A lesson by its id, its number, or its id without the number; undefined where there is none.
+ * @param {import("./store.js").Data["lessons"]} lessons @param {string} name
+ */
+const lessonNamed = (lessons, name) =>
+  lessons.find(({ id }) => id === name) ??
+  lessons[/^\d+$/.test(name) ? Number(name) - 1 : -1] ??
+  lessons.find(({ id }) => id.replace(/^\d+-/, "") === name);
+
+/** The lesson that is read, or would be: the one chosen last, else that of the scene.
+ * @param {import("./store.js").Data} data */
+export const lessonOf = ({ view, lessons, scene }) =>
+  view.lesson || (lessons.find(({ scenes }) => scenes.includes(scene?.id)) ?? lessons[0])?.id || "";
+
+/**
+ * Opens the lesson that a link names.
+ * @param {import("./store.js").Data} data @param {string} name "": the one chosen last
+ * @returns {string[]} a sentence where there is no such lesson
+ */
+export function showLesson({ view, lessons }, name) {
+  const lesson = lessonNamed(lessons, name);
+  if (name && !lesson) {
+    const known = lessons.length ? `; there are 1 to ${lessons.length}` : "";
+    return [`no lesson is called '${name}'${known}`];
+  }
+  view.lesson = lesson?.id ?? view.lesson;
+  return [];
+}
+
+/**
  * Puts what a link says of the view into the data, once its scene is there.
  * @param {import("./store.js").Data} data
  * @param {import("./link.js").Linked} link
  * @returns {string[]} a sentence for what this scene does not have
  */
 export function showLinked(data, link) {
-  const { view, scene, lessons } = data;
+  const { view, scene } = data;
   const faults = [];
   Object.assign(view, Object.fromEntries(SWITCHES.map((name) => [name, link.show.includes(name)])));
   const spatial = Boolean(scene.view?.spatial);
@@ -161,10 +190,6 @@ export function showLinked(data, link) {
   view.budget = link.budget;
   view.split = { scene: scene.id, time: link.until, step: link.step };
   view.panel = link.panel;
-  if (link.lesson && !lessons.some(({ id }) => id === link.lesson)) {
-    faults.push(`no lesson is called '${link.lesson}'`);
-  } else if (link.lesson) {
-    view.lesson = link.lesson;
-  }
+  faults.push(...showLesson(data, link.lesson));
   return faults;
 }

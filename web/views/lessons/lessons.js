@@ -4,8 +4,10 @@
 // exercises. The page makes room for them; what was read and solved is kept in this browser.
 import { sentenceOf } from "../../api/client.js";
 import { documents } from "../../api/documents.js";
+import { lessonAddress } from "../../state/link.js";
 import { createProgress } from "../../state/progress.js";
-import { h, loadStyle, say } from "../../widgets/dom.js";
+import { lessonOf } from "../../state/shown.js";
+import { h, loadStyle } from "../../widgets/dom.js";
 import { hasMath, make, wordsOf } from "./blocks.js";
 import { createExercise } from "./exercise.js";
 import { makeExhibit, makePrediction, makeSlip } from "./live.js";
@@ -188,11 +190,13 @@ export function createLessons(el, store, actions) {
       end,
     );
     const following = data.lessons[placeOf(lesson.id) + 1];
-    say(
-      end,
-      following
-        ? `The end of this lesson. Next: ${following.title}`
-        : "The end of the last lesson.",
+    end.replaceChildren(
+      ...(following
+        ? [
+            "The end of this lesson. Next: ",
+            h("a", { href: `#${lessonAddress(following.id)}` }, following.title),
+          ]
+        : ["The end of the last lesson."]),
     );
     text.scrollTop = 0;
     text.setAttribute("aria-label", wordsOf(lesson.blocks.slice(0, 1)) || lesson.title);
@@ -218,8 +222,7 @@ export function createLessons(el, store, actions) {
     if (!wanted) {
       return;
     }
-    const own = data.lessons.find(({ scenes }) => scenes.includes(data.scene?.id));
-    const id = data.view.lesson || shown || (own?.id ?? data.lessons[0].id);
+    const id = lessonOf(data);
     if (id !== shown) {
       show(id);
     }
