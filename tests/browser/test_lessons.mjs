@@ -11,6 +11,7 @@ import {
   readChoice,
   summaryOf,
 } from "../../web/state/answers.js";
+import { exhibitOf } from "../../web/state/exhibit.js";
 import { violations } from "./axe.mjs";
 import { createBench, read, screenshot, soon, until } from "./support.mjs";
 
@@ -145,12 +146,81 @@ test("a field asks for no quotes: they belong to files of answers", () => {
   );
 });
 
+test("an exhibit that gives a command alone has its scene, methods and options from it", () => {
+  const of = (command) => exhibitOf({ kind: "exhibit", command });
+  const stiff =
+    "compare stiff-four-bar --set k=1e4 --set c=1e5 --methods a@b:h=1,c=2 d@e --time 1 --no-color";
+  assert.deepEqual(of(stiff), {
+    scene: "stiff-four-bar",
+    methods: ["a@b:h=1,c=2", "d@e"],
+    settings: { k: 1e4, c: 1e5 },
+    time: 1,
+    act: "run",
+    study: "",
+  });
+  const short = (command) => [of(command).act, of(command).scene, of(command).study];
+  assert.deepEqual(short("holonom inspect four-bar"), ["scene", "four-bar", ""]);
+  assert.deepEqual(short("terms fb0 --q th1=1 th2=0.5"), ["scene", "fb0", ""]);
+  assert.deepEqual(short("study pendulum work-precision --time 1"), [
+    "study",
+    "pendulum",
+    "work-precision",
+  ]);
+  assert.deepEqual(short("extreme x5"), ["", "", ""], "what the page does not show has no button");
+  const own = { scene: "fb0", set: ["k=2"], methods: ["a@b"], time: 3, command: "run pendulum" };
+  assert.deepEqual(exhibitOf(own), {
+    scene: "fb0",
+    methods: ["a@b"],
+    settings: { k: 2 },
+    time: 3,
+    act: "run",
+    study: "",
+  });
+});
+
+test("every comparison of a lesson can be run where it is read", async (t) => {
+  const page = await open(t, { hash: "#/lessons/8" });
+  const stiff = page.locator(".exhibit", { hasText: "stiff-four-bar" });
+  await stiff.getByRole("button", { name: "Run it" }).click();
+  await until(page, (data) => data.scene.id === "stiff-four-bar" && data.latest?.t > 0);
+  assert.deepEqual(
+    await read(page, (data) => [data.methods.map(({ spelling }) => spelling), data.settings]),
+    [["projection@dopri5:rtol=1e-06", "ggl@radau5:rtol=1e-06"], { k: 1e4, c: 1e5 }],
+  );
+
+  // whatever has a button names what the server has
+  const { scenes, lessons, studies } = await read(page, (data) => ({
+    scenes: data.scenes.map(({ id }) => id),
+    lessons: data.lessons.map(({ id }) => id),
+    studies: Object.keys(data.studies),
+  }));
+  const inside = (blocks) =>
+    blocks.flatMap((block) => [
+      block,
+      ...inside(block.children ?? []),
+      ...inside(block.after ?? []),
+    ]);
+  for (const id of lessons) {
+    const answer = await fetch(new URL(`/api/v1/lessons/${id}`, page.url()));
+    const { blocks } = await answer.json();
+    for (const block of inside(blocks).filter(({ kind }) => kind === "exhibit")) {
+      const { act, scene, study } = exhibitOf(block);
+      const words = `${id}: ${block.command}`;
+      assert.ok(act || /^extreme /.test(block.command), words);
+      assert.ok(!act || scenes.includes(scene), words);
+      assert.ok(!study || studies.includes(study), words);
+    }
+  }
+});
+
 test("an exhibit runs beside its text, a prediction is kept", async (t) => {
   const page = await openLesson(t, { viewport: { width: 1366, height: 768 } });
   await soon(async () => assert.equal(await page.locator(".katex-error").count(), 0));
   await soon(async () =>
     assert.deepEqual(
-      await page.locator(".lesson-text p:not(.about) a").evaluateAll((list) => list.map(({ href }) => href)),
+      await page
+        .locator(".lesson-text p:not(.about) a")
+        .evaluateAll((list) => list.map(({ href }) => href)),
       ["https://example.org/"],
     ),
   );

@@ -2,19 +2,13 @@
 // @ts-check
 // Exhibits that run in the page, predictions to be made before a run, slips of printed lessons.
 import { api, sentenceOf } from "../../api/client.js";
+import { exhibitOf } from "../../state/exhibit.js";
 import { h, say, set } from "../../widgets/dom.js";
 import { makeThumbnail } from "../../widgets/thumbnail.js";
 import { make } from "./blocks.js";
 
-/** "l1=1.2" as [name, number]. @param {string} text @returns {[string, number]} */
-function readSetting(text) {
-  const [name, value] = text.split("=");
-  return [name, Number(value)];
-}
-
-/** @param {any} list words in one string, or a list */
-const wordsIn = (list) =>
-  (Array.isArray(list) ? list : String(list ?? "").split(/\s+/)).filter(Boolean);
+/** What the button of an exhibit says, by what it does. */
+const WORDS = { run: "Run it", scene: "Open this scene", study: "Open this study" };
 
 /**
  * @param {import("./blocks.js").Block} block
@@ -25,22 +19,22 @@ const wordsIn = (list) =>
  * }} place number: in the lesson
  */
 export function makeExhibit(block, kit, actions, { number, whenSeen }) {
-  const { scene, command, children } = block;
+  const { command, children } = block;
+  const { scene, methods, settings, time, act, study } = exhibitOf(block);
   const picture = h("div", { class: "exhibit-picture" });
   const said = h("p", { role: "status", class: "about" });
-  const settings = Object.fromEntries(wordsIn(block.set).map(readSetting));
-  const link = { settings, methods: wordsIn(block.methods), end: Number(block.time) || 0 };
 
   async function run() {
     say(said, "opening");
     try {
-      await actions.loadScene(scene, link);
-      const { end } = link;
-      say(
-        said,
-        end > 0 ? `runs beside this text; look at it until ${end} s` : "runs beside this text",
-      );
-      await actions.play();
+      await actions.loadScene(scene, { settings, methods, end: time });
+      if (act === "run") {
+        say(said, `runs beside this text${time > 0 ? `; look at it until ${time} s` : ""}`);
+        await actions.play();
+      } else {
+        say(said, study ? "the study is open" : "the scene stands beside this text");
+        actions.setView({ study });
+      }
     } catch (error) {
       say(said, sentenceOf(error));
     }
@@ -65,11 +59,11 @@ export function makeExhibit(block, kit, actions, { number, whenSeen }) {
       command
         ? h("pre", { tabindex: "0" }, h("code", {}, `holonom ${command.replace(/^holonom /, "")}`))
         : "",
-      scene
+      act
         ? h(
             "div",
             { class: "choices" },
-            h("button", { type: "button", class: "primary", onclick: run }, "Run it"),
+            h("button", { type: "button", class: "primary", onclick: run }, WORDS[act]),
             said,
           )
         : "",
