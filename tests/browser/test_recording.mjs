@@ -235,8 +235,10 @@ test("the recording is saved as CSV and NDJSON with every digit, the drawing as 
     ]);
     return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
   };
+  await until(page, (data) => data.reference?.state === "ready");
   const kept = await read(page, (data) => ({
     count: data.history.count,
+    stride: data.reference.stride,
     t: data.history.t[3],
     gap: data.history.columns[1].gap[3],
     spelling: data.methods[1].spelling,
@@ -245,13 +247,24 @@ test("the recording is saved as CSV and NDJSON with every digit, the drawing as 
   const csv = await fetchFile("CSV");
   assert.equal(csv.name, "four-bar.csv");
   const lines = csv.bytes.toString().trim().split("\n");
-  assert.match(lines[0], /^t,method,th1,a2,th3,w1,wa2,w3,gap,velocity_gap,energy_change/);
+  const head =
+    "t [s],method,th1 [rad],a2 [rad],th3 [rad],w1 [rad/s],wa2 [rad/s],w3 [rad/s]," +
+    "error [m],gap [m],velocity_gap [m/s],energy_change [J],ops,evals,cpu [s],steps,pivot_ratio," +
+    "work [J],sigma_min,condition,lambda_max [N or N m]";
+  assert.equal(lines[0], head);
   assert.equal(lines.length, 1 + 5 * kept.count);
   assert.ok(lines.some((line) => line.includes(`,${kept.gap},`)));
 
   const rows = (await fetchFile("NDJSON")).bytes.toString().trim().split("\n").map(JSON.parse);
   const row = rows.find((one) => one.t === kept.t && one.method === kept.spelling);
   assert.equal(row.gap, kept.gap);
+
+  // the error is known at the samples of the reference, and is that of the plot
+  const [, first, second] = [...new Set(rows.map(({ t: time }) => time))].map((time) =>
+    rows.find((one) => one.t === time && one.method === kept.spelling),
+  );
+  assert.equal(kept.stride, 1);
+  assert.ok(first.error > 0 && first.error < second.error && second.error < 1e-3, second.error);
 
   const svg = (await fetchFile("SVG")).bytes.toString();
   assert.match(svg, /^<svg[^>]* xmlns="http:\/\/www.w3.org\/2000\/svg"/);

@@ -106,13 +106,15 @@ export function createExportDialog(el, store, actions, mechanism) {
     {
       ending: "csv",
       word: "CSV",
-      about: "every frame of the recording, a row per method: coordinates, velocities, gap, energy",
+      about:
+        "every frame of the recording, a row per method, units in the head: coordinates, " +
+        "velocities, error, gap, energy, cost",
       make: text(toCsv, "text/csv"),
     },
     {
       ending: "ndjson",
       word: "NDJSON",
-      about: "the same rows, one JSON object per line",
+      about: "the same rows, one JSON object per line, in SI units",
       make: text(toNdjson, "application/x-ndjson"),
     },
     {
