@@ -13,7 +13,11 @@ import { chromium } from "playwright-core";
 export const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../..");
 export const PROGRAM = join(ROOT, process.env.HOLONOM || "build/holonom");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const START_LIMIT = 30000; // [ms] on a busy machine
+/**
+ * [ms] How long a test waits for what must come: a bound on what never comes, no guess about how
+ * fast a machine is. A test that holds does not wait for it.
+ */
+export const PATIENCE = 120000;
 const FLAGS = [
   "--headless",
   "--no-sandbox",
@@ -48,8 +52,8 @@ export async function startServer(options = []) {
   const url = await new Promise((resolve, reject) => {
     const timer = setTimeout(() => {
       child.kill("SIGKILL"); // or the program of the tests would wait for it
-      reject(new Error(`no address within ${START_LIMIT} ms: ${text}`));
-    }, START_LIMIT);
+      reject(new Error(`no address within ${PATIENCE} ms: ${text}`));
+    }, PATIENCE);
     const read = (chunk) => {
       text += chunk;
       const address =
@@ -63,7 +67,17 @@ export async function startServer(options = []) {
     child.stderr.on("data", read);
     child.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${text}`)));
   });
-  return { url, port: Number(new URL(url).port), stop: () => end(child) };
+  let stopped = false;
+  /** How it ended although nobody asked it to; "" while it serves. */
+  const ended = () => {
+    const how = child.signalCode ?? child.exitCode;
+    return stopped || how === null ? "" : `the server ended with ${how}: ${text.slice(-2000)}`;
+  };
+  const stop = () => {
+    stopped = true;
+    return end(child);
+  };
+  return { url, port: Number(new URL(url).port), id: child.pid, stop, ended };
 }
 
 /**
@@ -114,11 +128,27 @@ function watch(page, host) {
 }
 
 /**
+ * What something promises, or an error where it does not come: a page that computes without end
+ * answers nothing, and would stop all tests of its file.
+ * @template T @param {Promise<T>} promise @param {string} what @returns {Promise<T>}
+ */
+async function within(promise, what) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`${what} within ${PATIENCE} ms`)), PATIENCE);
+  });
+  try {
+    return await Promise.race([promise, late]);
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
+/**
  * What a file of tests drives: a server and a browser, from before its first test until after its
- * last. A page, and a line,
- * live as long as the test that opened them; pages with the same options share what the browser
- * keeps of the files it
- * loaded, unless they ask to be `fresh`.
+ * last. Where a test is the end of one of them, that test fails and the next one gets another. A
+ * page, and a line, live as long as the test that opened them; pages with the same options share
+ * what the browser keeps of the files it loaded, unless they ask to be `fresh`.
  */
 export function createBench() {
   let server;
@@ -141,13 +171,27 @@ export function createBench() {
     await server?.stop();
   });
 
+  /** Server and browser again, where a test before was the end of them. */
+  async function revive() {
+    if (server.ended()) {
+      server = await startServer();
+    }
+    if (!browser.isConnected()) {
+      browser = await startBrowser();
+      homes.clear();
+    }
+  }
+
   function homeOf(fresh, options) {
-    const make = () =>
-      browser.newContext({
+    const make = async () => {
+      const home = await browser.newContext({
         viewport: { width: 1280, height: 900 },
         reducedMotion: "no-preference",
         ...options,
       });
+      home.setDefaultTimeout(PATIENCE);
+      return home;
+    };
     const key = JSON.stringify(options);
     if (!fresh && !homes.has(key)) {
       homes.set(key, make());
@@ -160,6 +204,10 @@ export function createBench() {
     get url() {
       return server.url;
     },
+    /** Id of the server's process. */
+    get serverId() {
+      return server.id;
+    },
     /** Faults of a page so far; what is taken out of the list is forgiven. */
     faultsOf: (page) => faultsOf.get(page),
     /**
@@ -170,6 +218,7 @@ export function createBench() {
      *   keep?: boolean}} [options] and those of a browser's context; keep: what other pages stored
      */
     async open(t, options = {}) {
+      await revive();
       const {
         url = server.url,
         hash = "",
@@ -179,15 +228,23 @@ export function createBench() {
         keep = false,
         ...context
       } = options;
+      const serves = server;
       const home = await homeOf(fresh, context);
       const page = await home.newPage();
       const faults = watch(page, new URL(url).host);
       faultsOf.set(page, faults);
       t.after(async () => {
-        if (context.javaScriptEnabled !== false) {
-          await page.evaluate(() => location.protocol === "about:" || localStorage.clear());
+        try {
+          if (context.javaScriptEnabled !== false) {
+            const cleared = page.evaluate(
+              () => location.protocol === "about:" || localStorage.clear(),
+            );
+            await within(cleared, "the page did not answer");
+          }
+        } finally {
+          await (fresh ? home : page).close();
         }
-        await (fresh ? home : page).close();
+        assert.equal(serves.ended(), "");
         assert.deepEqual(faults, []);
       });
       if (!keep) {
@@ -210,6 +267,7 @@ export function createBench() {
      * @param {import("node:test").TestContext} t
      */
     async line(t) {
+      await revive();
       const line = await startLine(server.port);
       t.after(() => line.close());
       return line;
@@ -237,13 +295,13 @@ function forgetOthers() {
 
 /** A look at the page's data, by a function that gets it. */
 export function read(page, pick) {
-  return page.evaluate(`(${pick})(globalThis.holonom.data)`);
+  return within(page.evaluate(`(${pick})(globalThis.holonom.data)`), "the page did not answer");
 }
 
 /**
  * Waits until the data fulfil a condition; asked from here, since the page forbids text as script.
  */
-export async function until(page, condition, timeout = 20000) {
+export async function until(page, condition, timeout = PATIENCE) {
   const end = Date.now() + timeout;
   while (!(await read(page, condition))) {
     assert.ok(
@@ -259,7 +317,7 @@ export async function until(page, condition, timeout = 20000) {
  * failure is thrown when time is up.
  * @param {() => Promise<unknown>} check throws while it does not hold
  */
-export async function soon(check, timeout = 20000) {
+export async function soon(check, timeout = PATIENCE) {
   const end = Date.now() + timeout;
   for (;;) {
     try {

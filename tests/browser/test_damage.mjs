@@ -7,7 +7,7 @@ import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { damaged, randomFrom } from "./damage.mjs";
-import { createBench, playTo, read, ROOT, soon, until } from "./support.mjs";
+import { createBench, PATIENCE, playTo, read, ROOT, soon, until } from "./support.mjs";
 
 const LINKS = Number(process.env.DAMAGED_LINKS ?? 16);
 const EVERY = process.env.EVERY_SCENE ? 1 : 6;
@@ -18,7 +18,6 @@ const WINDOWS = [
   { width: 360, height: 740 },
 ];
 const AT_ONCE = 8; // links that a page opens by itself
-const LONG = 60000; // [ms] that an answer may take on a busy machine
 
 const bench = createBench();
 const { open } = bench;
@@ -157,7 +156,7 @@ test(`a link damaged ${LINKS} times: the other entries run, and what is shown is
   const work = pages.map(async (page) => {
     while (links.length > 0) {
       const some = links.splice(0, AT_ONCE);
-      assert.deepEqual(await page.evaluate(openLinks, { links: some, limit: LONG }), []);
+      assert.deepEqual(await page.evaluate(openLinks, { links: some, limit: PATIENCE }), []);
       assert.deepEqual(bench.faultsOf(page), [], "nothing on the console");
       opened += some.length;
       if (opened % 200 < AT_ONCE && total > 200) {
@@ -201,7 +200,7 @@ test("scenes with every kind of error, put into the editor: each is said at a li
         now.faults.every((fault) => /^line \d+..+/.test(fault)),
         `${name}: ${now.faults}`,
       );
-    }, LONG);
+    });
     assert.deepEqual(
       await read(page, ({ id, run, scene }) => ({ id, run, scene: scene.id })),
       before,
@@ -214,7 +213,7 @@ test("scenes with every kind of error, put into the editor: each is said at a li
     "#editor-text",
     good.replace(/"title": *"[^"]*"/, '"title": "After all of them"'),
   );
-  await until(page, (data) => data.scene.title === "After all of them", LONG);
+  await until(page, (data) => data.scene.title === "After all of them");
   await soon(async () => assert.equal(await page.locator(".editor-faults li").count(), 0));
 });
 
@@ -257,7 +256,7 @@ test("two tabs and another client: each tab keeps its own run, equal to the bit;
   await fetch(new URL(`/api/v1/comparisons/${id}`, one.url()), { method: "DELETE" });
   await one.focus("#play");
   await one.keyboard.press("Space");
-  await until(one, `(data) => data.id !== "${id}" && data.latest?.t > 0.05`, LONG);
+  await until(one, `(data) => data.id !== "${id}" && data.latest?.t > 0.05`);
   assert.deepEqual(await read(two, ({ id: own, run }) => ({ id: own, run })), kept);
   const faults = bench.faultsOf(one);
   const others = faults.filter((fault) => !(/^not found/.test(fault) && fault.includes(id)));

@@ -90,9 +90,7 @@ test("the gallery draws every scene, filters, and opens the chosen one", async (
   const page = await open(t, { viewport: { width: 1366, height: 768 }, bypassCSP: true });
   await page.getByRole("button", { name: "gallery" }).click();
   const all = await read(page, (data) => data.scenes.length);
-  await page.waitForFunction((n) => document.querySelectorAll(".thumbnail").length === n, all, {
-    timeout: 60000,
-  });
+  await page.waitForFunction((n) => document.querySelectorAll(".thumbnail").length === n, all);
   assert.doesNotMatch(await page.innerHTML(".gallery .cards"), /NaN|undefined/);
   await screenshot(page, "gallery-1366", { seen: true });
   await soon(async () => assert.deepEqual(await violations(page), []));

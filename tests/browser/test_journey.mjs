@@ -190,7 +190,7 @@ test("the page works below a prefix: it runs, opens what it loads later, and sav
   await page.keyboard.press("Escape");
   await page.focus("#play");
   await page.keyboard.press("e");
-  await until(page, (data) => data.studies.budget.state === "finished", 60000);
+  await until(page, (data) => data.studies.budget.state === "finished");
   const report = await read(page, (data) => data.studies.budget.report);
   assert.ok(report.startsWith(`${PREFIX}/api/v1/`), report);
   const status = await page.evaluate((path) => fetch(path).then((one) => one.status), report);

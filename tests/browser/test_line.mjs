@@ -2,9 +2,7 @@
 // The line between page and server: cut and mended, hidden, late, and after the end of a run.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, drawn, fastest, playTo, read, soon, until } from "./support.mjs";
-
-const LONG = 60000; // [ms] that a run may take on a busy machine
+import { createBench, PATIENCE, drawn, fastest, playTo, read, soon, until } from "./support.mjs";
 
 const bench = createBench();
 const { open } = bench;
@@ -19,7 +17,7 @@ function show(page, visible) {
 
 /** Waits until a comparison is in a state, asked of the server itself. */
 async function stateOnServer(id, state) {
-  const end = Date.now() + 20000;
+  const end = Date.now() + PATIENCE;
   for (;;) {
     const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`);
     if ((await answer.json()).state === state) {
@@ -95,7 +93,7 @@ test("a finished run stops the clock; another step runs it again, Backspace sets
   }
   await until(page, (data) => data.speed === 10);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "finished", LONG);
+  await until(page, (data) => data.state === "finished");
   await soon(async () => assert.match(await page.textContent("#play"), /Replay/));
   const generation = await read(page, (data) => data.generation);
   await type(page, "#set-h", "0.002");
@@ -147,7 +145,7 @@ test("an answer that comes after the run's end, told by the stream, does not set
   await fastest(page);
   await page.route("**/api/v1/comparisons/*", async (route) => {
     const answer = await route.fetch(); // made while it runs, and on its way until the end
-    await until(page, (data) => data.state === "finished", LONG);
+    await until(page, (data) => data.state === "finished");
     await route.fulfill({ response: answer });
   });
   const late = page.waitForResponse((answer) => answer.request().method() === "PATCH");

@@ -9,7 +9,6 @@ import { createBench, read, screenshot, soon, until } from "./support.mjs";
 const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
 const STABILISED =
   "#scene=four-bar&method=index1@rk4:h=1e-3&method=baumgarte:alpha=5,beta=5@rk4:h=1e-3";
-const LONG = 60000; // [ms] that a study may take on a busy machine
 
 const bench = createBench();
 const { open } = bench;
@@ -38,7 +37,7 @@ test("W draws error against cost; a point's step is taken over by click and by k
   await page.keyboard.press("w");
   const dialog = page.getByRole("dialog", { name: /Studies/ });
   await dialog.getByRole("progressbar").waitFor();
-  await until(page, hasEnded("work-precision"), LONG);
+  await until(page, hasEnded("work-precision"));
   const spots = dialog.locator(".scatter [data-spot]");
   const points = await read(
     page,
@@ -82,7 +81,7 @@ test("W draws error against cost; a point's step is taken over by click and by k
 test("a finished study is saved as one file without network", async (t) => {
   const page = await open(t, { hash: SHORT });
   await page.getByRole("button", { name: "studies" }).click();
-  await until(page, hasEnded("work-precision"), LONG);
+  await until(page, hasEnded("work-precision"));
   const [download] = await Promise.all([
     page.waitForEvent("download"),
     page.getByRole("link", { name: "Save as a report" }).click(),
@@ -100,9 +99,9 @@ test("a finished study is saved as one file without network", async (t) => {
 test("a study that is stopped shows what was done, and says so", async (t) => {
   const page = await open(t);
   await page.keyboard.press("w");
-  await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
+  await until(page, (data) => data.studies["work-precision"].progress > 0.1);
   await page.getByRole("button", { name: "Stop" }).click();
-  await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
+  await until(page, (data) => data.studies["work-precision"].state === "stopped");
   await page
     .locator(".study-run")
     .getByText(/stopped on request/)
@@ -113,9 +112,9 @@ test("a study that is stopped shows what was done, and says so", async (t) => {
 test("Escape stops a study that runs and keeps what it found; the next one closes", async (t) => {
   const page = await open(t);
   await page.keyboard.press("b");
-  await until(page, (data) => data.studies.stability.progress > 0.05, LONG);
+  await until(page, (data) => data.studies.stability.progress > 0.05);
   await page.keyboard.press("Escape");
-  await until(page, (data) => data.studies.stability.state === "stopped", LONG);
+  await until(page, (data) => data.studies.stability.state === "stopped");
   const dialog = page.getByRole("dialog", { name: /Studies/ });
   assert.ok(await dialog.isVisible(), "the part of the map that is there can be used");
   await soon(async () => assert.ok((await dialog.locator("[data-spot]").count()) > 0));
@@ -132,17 +131,17 @@ test("a stopped study goes on with what is left, and is not begun again", async 
     }
   });
   await page.keyboard.press("w");
-  await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
+  await until(page, (data) => data.studies["work-precision"].progress > 0.1);
   await page.getByRole("button", { name: "Stop" }).click();
-  await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
+  await until(page, (data) => data.studies["work-precision"].state === "stopped");
   const { id, done } = await read(page, (data) => ({
     id: data.studies["work-precision"].id,
     done: data.studies["work-precision"].document.methods.flatMap(({ points }) => points).length,
   }));
   const before = asked.length;
   await page.getByRole("button", { name: "Go on" }).click();
-  await until(page, (data) => data.studies["work-precision"].state !== "stopped", LONG);
-  await until(page, hasEnded("work-precision"), LONG);
+  await until(page, (data) => data.studies["work-precision"].state !== "stopped");
+  await until(page, hasEnded("work-precision"));
   const after = await read(page, (data) => ({
     id: data.studies["work-precision"].id,
     done: data.studies["work-precision"].document.methods.flatMap(({ points }) => points).length,
@@ -156,7 +155,7 @@ test("a stopped study goes on with what is left, and is not begun again", async 
 test("B maps alpha and beta with letters and the predicted boundary; a cell sets both", async (t) => {
   const page = await open(t, { hash: STABILISED });
   await page.keyboard.press("b");
-  await until(page, hasEnded("stability"), LONG);
+  await until(page, hasEnded("stability"));
   await soon(async () =>
     assert.ok((await page.locator(".maps .contour").count()) > 0, "at first as heat"),
   );
@@ -232,7 +231,7 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   await dragTo(1, (await middle(".maps .here-handle"))[1]);
   await until(page, `(data) => ${set}[1] < ${wanted[0]} && ${set}[1] > 0`);
   await page.getByLabel("over", { exact: true }).selectOption("limits");
-  await until(page, (data) => data.studies.stability.document?.x === null, LONG);
+  await until(page, (data) => data.studies.stability.document?.x === null);
   await soon(async () =>
     assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side"),
   );
@@ -244,7 +243,7 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
 test("the powers of ten in a map of heat can be read in both themes", async (t) => {
   for (const colorScheme of ["light", "dark"]) {
     const page = await open(t, { hash: `${STABILISED}&study=stability`, colorScheme });
-    await until(page, hasEnded("stability"), LONG);
+    await until(page, hasEnded("stability"));
     const worst = await page.evaluate(() => {
       const pen = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
       /** Relative luminance, by the definition of contrast in the guidelines. */
@@ -273,7 +272,7 @@ test("a map of steps whose axis ends before the present step is made again with 
   const page = await open(t, {
     hash: "#scene=four-bar&method=projection@rk4:h=1e-4&study=stability&map=limits",
   });
-  await until(page, hasEnded("stability"), LONG);
+  await until(page, hasEnded("stability"));
   const { low } = await read(page, (data) => ({
     low: data.studies.stability.document.y.values[0],
   }));
@@ -283,7 +282,6 @@ test("a map of steps whose axis ends before the present step is made again with 
     page,
     ({ studies: { stability } }) =>
       stability.state !== "running" && stability.document?.y.values[0] <= 1e-4,
-    LONG,
   );
   await soon(async () =>
     assert.match(
@@ -299,7 +297,7 @@ test("the parts of a budget have the server's names, letters and words", async (
   const { parts } = index.studies.find(({ name }) => name === "budget");
   await page.focus("#play");
   await page.keyboard.press("e");
-  await until(page, (data) => data.studies.budget.state === "finished", LONG);
+  await until(page, (data) => data.studies.budget.state === "finished");
   const panel = page.locator("#study-budget");
   for (const [of, word] of [
     ["error", "position error"],
@@ -322,7 +320,7 @@ test("the parts of a budget have the server's names, letters and words", async (
 
 test("E shows the parts of each method's error, that add up to it", async (t) => {
   const page = await open(t, { hash: "#scene=pendulum&method=index1@rk4:h=0.05&study=budget" });
-  await until(page, hasEnded("budget"), LONG);
+  await until(page, hasEnded("budget"));
   const { value, parts } = await read(
     page,
     (data) => data.studies.budget.document.methods[0].error,
@@ -340,7 +338,7 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   const page = await open(t, {
     hash: "#scene=four-bar&method=index1@rk4:h=0.02&method=projection@rk4:h=0.02&study=budget",
   });
-  await until(page, hasEnded("budget"), LONG);
+  await until(page, hasEnded("budget"));
   const { methods } = await read(page, (data) => data.studies.budget.document);
   const held = methods.filter(({ error }) => error?.holds).length;
   assert.ok(held < methods.length, "ten seconds at this step are too long for one of them");
@@ -373,7 +371,6 @@ test("an error that is not the sum of its parts has no bar, and the time until w
     ({ studies: { budget } }) =>
       budget.state === "finished" &&
       budget.document.methods.every(({ method }) => /h=0\.005$/.test(method)),
-    LONG,
   );
   await page.getByLabel("step h =").fill("");
   await page.keyboard.press("Enter");
@@ -387,7 +384,6 @@ test("an error that is not the sum of its parts has no bar, and the time until w
       view.split.time > 0 &&
       budget.state === "finished" &&
       budget.document.methods.some(({ error }) => error?.holds),
-    LONG,
   );
   await soon(async () =>
     assert.match(await page.getByLabel("until t =").inputValue(), /^[\d.]+ s$/),
@@ -397,7 +393,6 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   await until(
     page,
     ({ view, studies: { budget } }) => view.split.time === 0 && budget.state === "finished",
-    LONG,
   );
 
   // of a coordinate that is chosen
@@ -408,13 +403,12 @@ test("an error that is not the sum of its parts has no bar, and the time until w
     page,
     `({ studies: { budget } }) => budget.state === "finished" &&
       budget.document.methods.every(({ error }) => error.coordinate === "${other}")`,
-    LONG,
   );
 });
 
 test("a link opens its study, and other methods ask for it anew", async (t) => {
   const page = await open(t, { hash: `${SHORT}&study=work-precision` });
-  await until(page, hasEnded("work-precision"), LONG);
+  await until(page, hasEnded("work-precision"));
   await page
     .locator(".study-run")
     .getByText(/^done in|before all was done/)
@@ -423,7 +417,7 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
   await until(page, (data) => data.methods.length === 1 && data.view.study === "");
   await soon(async () => assert.equal(await page.getByRole("dialog").count(), 0));
   await page.keyboard.press("w");
-  await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
+  await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1);
 
   // a budget with its fields, which the next link holds as well
   const fields = "study=budget&judged=th&until=0.5&step=0.005&budget=energy";
@@ -435,7 +429,6 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
     page,
     ({ studies: { budget } }) =>
       budget.state === "finished" && /h=0\.005$/.test(budget.document.methods[0].method),
-    LONG,
   );
   const { time, methods } = await read(page, (data) => data.studies.budget.document);
   assert.deepEqual([time, methods[0].error.coordinate], [0.5, "th"]);
@@ -450,7 +443,7 @@ test("a link opens its study, and other methods ask for it anew", async (t) => {
 test("the dialog fits 360 pixels in both themes, and the page does not scroll sideways", async (t) => {
   const page = await open(t, { hash: SHORT, viewport: { width: 360, height: 760 } });
   await page.keyboard.press("w");
-  await until(page, hasEnded("work-precision"), LONG);
+  await until(page, hasEnded("work-precision"));
   for (const colorScheme of ["light", "dark"]) {
     await page.emulateMedia({ colorScheme });
     await until(page, `(data) => data.theme === "${colorScheme}"`);
