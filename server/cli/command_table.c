@@ -43,9 +43,9 @@ static const hn_command COMMANDS[] = {
      1, 1, hn_command_export},
     {"program", "python|javascript|octave|c|cpp|java|julia",
      "write a starting point for a solver of your own, which runs as the method program:FILE@rk4; "
-     "the one in Python needs numpy. It answers t, q, v with accelerations. A program can also "
-     "step "
-     "by itself: it says \"provides\": \"step\", is asked t, h, q, v, answers q, v at t + h, and "
+     "the one in Python needs numpy. It answers t, q, v with accelerations, which depend on "
+     "t, q and v alone. A program can also step by itself: it says \"provides\": \"step\", is "
+     "asked t, h, q, v, answers q, v at t + h, and "
      "runs as program:FILE@own:h=1e-3. server/program/README.md has the format. run and compare "
      "run it with --allow-programs; serve --programs DIR lets the page run the programs in DIR",
      "--out -o --force", 1, 1, hn_command_program},

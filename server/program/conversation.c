@@ -249,8 +249,8 @@ static hn_status greet(hn_conversation *c) {
 
 static hn_status take_memory(hn_conversation *c, hn_arena *arena) {
     const size_t nu = (size_t)c->nu, nv = (size_t)c->nv, nc = (size_t)c->nc;
-    double **const places[] = {&c->uq, &c->uv, &c->ua, &c->P,       &c->scratch,
-                               &c->M,  &c->J,  &c->f,  &c->ahead_q, &c->ahead_v};
+    double **const places[] = {&c->uq, &c->uv, &c->ua,      &c->P,       &c->scratch, &c->M,
+                               &c->J,  &c->f,  &c->ahead_q, &c->ahead_v, &c->answer};
     const size_t sizes[] = {nu,
                             nu,
                             nv,
@@ -260,7 +260,8 @@ static hn_status take_memory(hn_conversation *c, hn_arena *arena) {
                             nc * nu,
                             nu,
                             nu * HN_CONVERSATION_AHEAD,
-                            nu * HN_CONVERSATION_AHEAD};
+                            nu * HN_CONVERSATION_AHEAD,
+                            nu};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         *places[i] = hn_arena_doubles(arena, sizes[i] + 1);
     }
@@ -278,6 +279,7 @@ hn_status hn_conversation_begin(hn_conversation *c, const hn_system *sys, char *
 
     // the process, its greeting, the terms that it wants
     HN_TRY(take_memory(c, arena));
+    HN_TRY(hn_repeated_question_init(&c->repeated, c->nq, c->nv, c->nu, arena));
     hn_status status = hn_guest_process_start(&c->process, argv, file, limits, &c->why);
     HN_THEN(status, greet(c));
     if (status == HN_OK && c->wants) {
@@ -402,11 +404,8 @@ static cJSON *end_question(hn_conversation *c) {
     return answer;
 }
 
-hn_status hn_conversation_accelerations(hn_conversation *c, double t, const double *q,
-                                        const double *v, double *a) {
-    if (c->failed) {
-        return c->why.status;
-    }
+/// Asks for the accelerations in the scene's coordinates, into c->uv.
+static hn_status ask_accelerations(hn_conversation *c, double t, const double *q, const double *v) {
     begin_question(c, t, q, v);
     put_terms(c, t, q, v);
     cJSON *answer = end_question(c);
@@ -416,10 +415,40 @@ hn_status hn_conversation_accelerations(hn_conversation *c, double t, const doub
     const hn_status status =
         read_numbers(c, cJSON_GetObjectItemCaseSensitive(answer, "a"), "a", c->nu, c->uv);
     cJSON_Delete(answer);
-    if (status == HN_OK) {
-        hn_system_rates_from_user(c->sys, c->uv, a);
-    }
     return status;
+}
+
+/// Asks an earlier question again.
+static hn_status ask_again(hn_conversation *c) {
+    const hn_repeated_question *r = &c->repeated;
+    HN_TRY(ask_accelerations(c, r->t, r->q, r->v));
+    const int i = hn_repeated_question_compare(r, c->uv);
+    return i < 0 ? HN_OK
+                 : REFUSE(c,
+                          "question %lld (t = %.4g s) was asked again as question %lld: a[%d] was "
+                          "%.10g and is %.10g now; an answer may depend on t, q and v alone",
+                          r->id, r->t, c->id, i, r->a[i], c->uv[i]);
+}
+
+hn_status hn_conversation_accelerations(hn_conversation *c, double t, const double *q,
+                                        const double *v, double *a) {
+    if (c->failed) {
+        return c->why.status;
+    }
+    HN_TRY(ask_accelerations(c, t, q, v));
+    hn_system_rates_from_user(c->sys, c->uv, a);
+
+    // the question that is kept comes once more, then this one is kept
+    const bool is_due = hn_repeated_question_is_due(c->id);
+    if (c->repeated.id == 0 || is_due) {
+        const long long id = c->id;
+        memcpy(c->answer, c->uv, (size_t)c->nu * sizeof *c->uv);
+        if (is_due) {
+            HN_TRY(ask_again(c));
+        }
+        hn_repeated_question_keep(&c->repeated, id, t, q, v, c->answer);
+    }
+    return HN_OK;
 }
 
 static hn_status ask_step(hn_conversation *c, double t, double h, const double *q,

@@ -19,6 +19,7 @@
 #include "dynamics/compile/system.h"
 #include "dynamics/evaluate/eval.h"
 #include "program/guest_process.h"
+#include "program/repeated_question.h"
 
 #include <stdbool.h>
 
@@ -46,6 +47,9 @@ typedef struct hn_conversation {
     double *ahead_q, *ahead_v; ///< HN_CONVERSATION_AHEAD x nu
     double ahead_t, ahead_h;
     int n_ahead, next_ahead;
+    // of a program that gives accelerations
+    hn_repeated_question repeated;
+    double *answer; ///< (nu) to the question asked last, while another one is asked again
     hn_strbuf text, line;
 } hn_conversation;
 
@@ -60,8 +64,9 @@ HN_MUST_CHECK hn_status hn_conversation_begin(hn_conversation *c, const hn_syste
 /// integrator. Fails: HN_ERR_INPUT, with the other spelling in diag. A program that did not greet
 /// passes.
 HN_MUST_CHECK hn_status hn_conversation_check(const hn_conversation *c, bool own, hn_diag *diag);
-/// Asks for the accelerations a (nv, system coordinates) at (t, q, v). After a failure the
-/// conversation is over: later calls fail in the same way.
+/// Asks for the accelerations a (nv, system coordinates) at (t, q, v). Now and then an earlier
+/// question is asked again; a program whose answer differs by more than rounding has failed. After
+/// a failure the conversation is over: later calls fail in the same way.
 HN_MUST_CHECK hn_status hn_conversation_accelerations(hn_conversation *c, double t, const double *q,
                                                       const double *v, double *a);
 /// Asks for the state at t + h; of a program that solves, for the next steps too. q_new (nq), v_new

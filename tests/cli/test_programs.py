@@ -261,6 +261,37 @@ class Services(OneFile):
         # 200 steps of 4 questions, and what is sampled between
         self.assertLess(int(re.search(r"asked (\d+) times", done.stderr).group(1)), 1200)
 
+    def test_an_answer_depends_on_the_state_alone_or_the_program_is_told(self):
+        """Samples between two steps are questions of the same process: what it remembers would make the motion depend on them."""
+        sine = "    say(id=ask['id'], a=[-9.81 * math.sin(q) {} for q in ask['q']])\n"
+        begin = "import math\ngreet()\nlast, seen = 0.0, 0\nfor ask in questions():\n"
+        memories = {"the time of the last question": ("- 0.1 * (ask['t'] - last)", "    last = ask['t']\n", 0.2),
+                    "how often it was asked": ("+ 1e-3 * seen", "    seen += 1\n", 0.2),
+                    # one that begins to count late is found as well
+                    "many questions": ("+ (seen > 300) * 1e-3 * seen", "    seen += 1\n", 2)}
+        for what, (term, more, end) in memories.items():
+            with open(os.path.join(self.folder.name, "mine.py"), "w", encoding="utf-8") as f:
+                f.write(GREETING + begin + sine.format(term) + more)
+            done = call("run", "pendulum", "--method", "program:./mine.py@rk4:h=1e-2", "--time", str(end), ALLOW, cwd=self.folder.name)
+            self.assertEqual(done.returncode, ENDED, (what, done.stderr))
+            self.assertRegex(" ".join(done.stderr.split()), r"question \d+ \(t = \S+ s\) was asked again as question \d+: a\[0\] was \S+ and is \S+ now; "
+                             "an answer may depend on t, q and v alone", what)
+        # one without a memory is asked again too, and its motion is that of the workbench
+        own, ours = json.loads(self.run_program(begin + sine.format(""), "--json", method="program:./mine.py@rk4:h=1e-2").stdout)["methods"]
+        self.assertEqual((own["state"], own["evals"]), ("finished", ours["evals"]))
+        for text in (call("program", "--help").stdout, *(call("program", language).stdout for language in ENDINGS)):
+            self.assertIn("t, q and v alone", re.sub(r"\s+", " ", text))
+
+    def test_nobody_says_which_order_steps_of_its_own_have(self):
+        self.run_program(STEP)
+        words = ("study", "pendulum", "--methods", "program:./mine.py@own", "--time", "0.2", "--levels", "4", "--samples", "0", ALLOW)
+        done = call(*words, "--json", cwd=self.folder.name)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        found = json.loads(done.stdout)["methods"][0]
+        self.assertNotIn("integrator has", json.dumps(found))
+        self.assertIsNone(found["theory"] if "theory" in found else found["class"]["theory"])
+        self.assertNotIn("theory", call(*words, cwd=self.folder.name).stdout)
+
     def test_they_are_off_until_the_command_line_allows_them(self):
         done = self.run_program(STEP, allow=None)
         self.assertEqual(done.returncode, INPUT)
