@@ -18,8 +18,8 @@ static hn_status add_language(hn_blank_programs *p, const hn_model *model, const
     hn_status status = hn_model_export(&text, model, lib, &request, &diags);
     if (status == HN_OK) {
         p->of[p->n].suffix = language->suffix;
-        p->of[p->n].source = hn_given_source_read(hn_strbuf_text(&text),
-                                                  hn_filled_program_has_lines(language->suffix));
+        p->of[p->n].source =
+            hn_given_source_read(hn_strbuf_text(&text), hn_source_style_of(language->suffix));
         status = p->of[p->n].source ? HN_OK : HN_ERR_MEMORY;
         p->n += status == HN_OK;
     }

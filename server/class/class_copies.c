@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_NAMED = 5 };
+enum { MOST_NAMED = 5, MOST_PAIRS = 30 };
 /// Share of common statements from which on two programs are listed. Honest programs of the tests
 /// have at most 0.4 in common, a copy with a statement or two added or taken apart at least 0.8.
 static const double ALIKE = 0.6;
@@ -27,23 +27,6 @@ static double share_of(const hn_class_copy *a, const hn_class_copy *b) {
     return share >= ALIKE ? share : 0;
 }
 
-/// Programs that are alike come into one group, whose number is that of its first.
-static void group_alike(hn_class_copies *c) {
-    for (int i = 0; i < c->n; i++) {
-        c->item[i].group = i;
-        for (int k = 0; k < i; k++) {
-            const int from = c->item[i].group, to = c->item[k].group;
-            if (from == to || share_of(&c->item[i], &c->item[k]) == 0) {
-                continue;
-            }
-            const int first = from < to ? from : to, last = from < to ? to : from;
-            for (int m = 0; m <= i; m++) {
-                c->item[m].group = c->item[m].group == last ? first : c->item[m].group;
-            }
-        }
-    }
-}
-
 void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool programs) {
     *c = (hn_class_copies){
         .n = r->n, .programs = programs, .item = calloc((size_t)r->n + 1, sizeof *c->item)};
@@ -59,9 +42,6 @@ void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool pro
             hn_fingerprint_parse(&c->item[i].own, own ? own : "");
         }
         cJSON_Delete(o);
-    }
-    if (c->item && programs) {
-        group_alike(c);
     }
 }
 
@@ -99,76 +79,80 @@ static void put_group(hn_strbuf *b, const hn_class_copies *c, int i, bool by_tex
     }
 }
 
-/// Adds whom program i shares most of its statements with, and how many at least.
+/// Two programs and what they share.
+typedef struct pair {
+    int first, second;
+    double share;
+} pair;
+
+/// Takes a pair into a list that falls with the share; of equal ones the earlier stays in front.
+/// Where `most` are there the last one goes.
+static void take_pair(pair *list, int *n, int most, pair new) {
+    if (*n == most && list[most - 1].share >= new.share) {
+        return;
+    }
+    int i = *n < most ? (*n)++ : most - 1;
+    for (; i > 0 && list[i - 1].share < new.share; i--) {
+        list[i] = list[i - 1];
+    }
+    list[i] = new;
+}
+
+/// Adds whom program i shares most of its statements with, the most alike first, and how many at
+/// least.
 static void put_shares(hn_strbuf *b, const hn_class_copies *c, int i) {
+    pair list[MOST_NAMED];
     double least = 1;
-    int n = 0;
+    int n = 0, shown = 0;
     for (int k = 0; k < c->n; k++) {
         const double share = share_of(&c->item[i], &c->item[k]);
-        n += share > 0;
-        least = share > 0 && share < least ? share : least;
+        if (share > 0) {
+            n++;
+            least = fmin(least, share);
+            take_pair(list, &shown, MOST_NAMED, (pair){i, k, share});
+        }
     }
     if (n == 0) {
         return;
     }
     hn_strbuf_printf(b, "%sshares %s%.0f %% of its statements with ", b->n == 0 ? "" : "; ",
                      n > 1 ? "at least " : "", floor(100 * least));
-    int named = 0;
-    for (int k = 0; k < c->n && named < MOST_NAMED; k++) {
-        if (share_of(&c->item[i], &c->item[k]) > 0) {
-            hn_strbuf_printf(b, "%s%s", named++ > 0 ? ", " : "", c->item[k].student);
-        }
+    for (int k = 0; k < shown; k++) {
+        hn_strbuf_printf(b, "%s%s", k > 0 ? ", " : "", c->item[list[k].second].student);
     }
     if (n > MOST_NAMED) {
         hn_strbuf_printf(b, " and %d more", n - MOST_NAMED);
     }
 }
 
-/// The least and the largest share within the group of item i; how many are in it.
-static int measure_group(const hn_class_copies *c, int i, double *least, double *most) {
-    int n = 0;
-    *least = 1;
-    *most = 0;
-    for (int k = i; k < c->n; k++) {
-        if (c->item[k].group != i) {
-            continue;
-        }
-        n++;
-        for (int m = i; m < k; m++) {
-            const double share = c->item[m].group == i ? share_of(&c->item[m], &c->item[k]) : 0;
-            *least = share > 0 && share < *least ? share : *least;
-            *most = share > *most ? share : *most;
-        }
-    }
-    return n;
-}
-
 void hn_class_copies_put_alike(hn_strbuf *b, const hn_class_copies *c) {
-    int shown = 0;
+    pair list[MOST_PAIRS];
+    int shown = 0, n = 0;
     for (int i = 0; c->item && i < c->n; i++) {
-        double least, most;
-        if (c->item[i].group != i || measure_group(c, i, &least, &most) < 2) {
-            continue;
-        }
-        if (shown++ == 0) {
-            hn_strbuf_printf(b,
-                             "programs that share %.0f %% or more of their statements (without "
-                             "those that everyone is given;\nnames, comments and order aside): "
-                             "compare them yourself, short ones are alike by chance\n",
-                             100 * ALIKE);
-        }
-        const char *between = "  ";
-        for (int k = i; k < c->n; k++) {
-            if (c->item[k].group == i) {
-                hn_strbuf_printf(b, "%s%s", between, c->item[k].student);
-                between = ", ";
+        for (int k = i + 1; k < c->n; k++) {
+            const double share = share_of(&c->item[i], &c->item[k]);
+            if (share > 0) {
+                n++;
+                take_pair(list, &shown, MOST_PAIRS, (pair){i, k, share});
             }
         }
-        hn_strbuf_printf(b, ": %.0f", floor(100 * least));
-        if (floor(100 * most) > floor(100 * least)) {
-            hn_strbuf_printf(b, " to %.0f", floor(100 * most));
-        }
-        hn_strbuf_add(b, " %\n");
+    }
+    if (n == 0) {
+        return;
+    }
+
+    // the threshold, then the pairs
+    hn_strbuf_printf(b,
+                     "pairs of programs that share %.0f %% or more of their statements, the most "
+                     "alike first (names, comments\nand order aside, without the statements that "
+                     "everyone is given): compare them yourself, short ones are alike by chance\n",
+                     100 * ALIKE);
+    for (int k = 0; k < shown; k++) {
+        hn_strbuf_printf(b, "  %3.0f %%  %s, %s\n", floor(100 * list[k].share),
+                         c->item[list[k].first].student, c->item[list[k].second].student);
+    }
+    if (n > shown) {
+        hn_strbuf_printf(b, "  and %d more pairs of %.0f %% or more\n", n - shown, 100 * ALIKE);
     }
 }
 

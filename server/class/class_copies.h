@@ -10,7 +10,6 @@
 typedef struct hn_class_copy {
     char student[128], texts[20], shape[20]; ///< texts "": it is compared with none
     hn_fingerprint own;                      ///< of a program
-    int group; ///< the first that it is linked to by programs alike in most statements
 } hn_class_copy;
 
 typedef struct hn_class_copies {
@@ -29,8 +28,9 @@ const char *hn_class_copies_near(bool programs);
 /// statements with Ned" for submission i, after "; " where the buffer is not empty; nothing where
 /// it is like no other.
 void hn_class_copies_put(hn_strbuf *b, const hn_class_copies *c, int i);
-/// Adds the groups of programs that share most of their statements and are more than near-copies,
-/// under a heading; nothing where there is none.
+/// Adds the pairs of programs that share most of their statements and are more than near-copies,
+/// the most alike first, at most 30, under a heading with the least share; nothing where there is
+/// none.
 void hn_class_copies_put_alike(hn_strbuf *b, const hn_class_copies *c);
 
 #endif

@@ -144,9 +144,10 @@ static void put_likeness(const grading *g, hn_strbuf *b, const char *text, const
     const bool is_program = g->opts->programs != NULL;
     cJSON *submission = is_program ? NULL : cJSON_Parse(text);
     char texts[17], shape[17];
-    hn_hash_hex(is_program ? hn_likeness_program_texts(text) : hn_likeness_texts(submission),
+    hn_hash_hex(is_program ? hn_likeness_program_texts(text, hn_source_style_of(file))
+                           : hn_likeness_texts(submission),
                 texts);
-    hn_hash_hex(is_program ? hn_likeness_program_shape(text, hn_filled_program_has_lines(file))
+    hn_hash_hex(is_program ? hn_likeness_program_shape(text, hn_source_style_of(file))
                            : hn_likeness_shape(submission),
                 shape);
     cJSON_Delete(submission);

@@ -170,7 +170,7 @@ static void put_like(hn_strbuf *b, counts *c, bool programs) {
     }
 }
 
-/// Groups of programs that share most of their statements.
+/// Pairs of programs that share most of their statements.
 static void put_programs_alike(hn_strbuf *b, const hn_class_result *r, bool programs) {
     if (programs) {
         hn_class_copies copies;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "class/entry_faults.h"
 
+#include "base/hash.h"
+#include "session/export/exam_changes.h"
+
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,19 +39,38 @@ static const struct fault {
     {"inertia-term", "is 3 times the right one, as m l^2 (a point mass) in place of m l^2/3", true,
      true, 3, 0.25}};
 
-/// The faults of a term stand behind those of the whole; two of them are a bit of hn_entry_faults.
-enum { N_FAULTS = sizeof FAULTS / sizeof *FAULTS, OF_TERM = 7, MOST_SAID = 3 };
-_Static_assert((N_FAULTS - OF_TERM) * (N_FAULTS - OF_TERM) <= 64, "a bit for any two faults");
-/// Two faults in one entry leave less than either does, a factor that nobody knows as little.
+/// The faults of a term stand behind those of the whole.
+enum { N_FAULTS = sizeof FAULTS / sizeof *FAULTS, OF_TERM = 7, MOST_SAID = 3, MOST_CHANGES = 200 };
+/// What a factor that nobody knows leaves, and what another name does.
 static const double SHARE_OF_FACTOR = 0.25;
 static const double EQUAL_FACTORS = 1e-8; // relative
 
-static int bit_of_two(int a, int b) {
-    return (a - OF_TERM) * (N_FAULTS - OF_TERM) + b - OF_TERM;
+/// Keeps an explanation; one that says the same is the same.
+static void HN_PRINTF(5, 6) keep(hn_entry_faults *out, const char *id, double share, uint64_t key,
+                                 const char *format, ...) {
+    char says[HN_ENTRY_FAULT_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(says, sizeof says, format, args);
+    va_end(args);
+    for (int i = 0; i < out->n; i++) {
+        if (strcmp(out->fault[i].says, says) == 0) {
+            return;
+        }
+    }
+
+    out->share = out->found++ == 0 ? share : fmin(out->share, share);
+    if (out->n < HN_ENTRY_FAULTS) {
+        struct hn_entry_fault *fault = &out->fault[out->n++];
+        *fault = (struct hn_entry_fault){.id = id, .share = share, .key = key};
+        memcpy(fault->says, says, sizeof says);
+    }
 }
 
-static bool is_possible(const hn_entry_values *entry, int f) {
-    return !FAULTS[f].of_mass || entry->is_mass;
+static bool is_possible(const hn_entry_values *entry, int f, const hn_entry_faults *out) {
+    // the missing terms of a parameter have been named by it
+    const bool is_named = FAULTS[f].factor == 0 && out->n > 0;
+    return !is_named && (!FAULTS[f].of_mass || entry->part == HN_EXPORT_MASS);
 }
 
 /// Whether the entry with `change` added at each state is what was given.
@@ -55,6 +78,18 @@ static bool is_given(const hn_entry_values *entry, const double *change) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         if (!(fabs(entry->given[k] - entry->right[k] - change[k]) <= entry->allowed)) {
             return false;
+        }
+    }
+    return true;
+}
+
+/// Whether no term moves: two faults in two of them then explain a wrong number by chance.
+static bool is_constant(const hn_entry_values *entry) {
+    for (int m = 0; m < entry->sum->n; m++) {
+        for (int k = 1; k < HN_EXPORT_EXAM_STATES; k++) {
+            if (fabs(entry->sum->t[m][k] - entry->sum->t[m][0]) > entry->allowed) {
+                return false;
+            }
         }
     }
     return true;
@@ -68,14 +103,24 @@ static void add_change(const hn_entry_values *entry, int f, int m, double *chang
     }
 }
 
+static void keep_one(int f, hn_entry_faults *out) {
+    const uint64_t key = hn_hash_word(HN_HASH_START, (uint64_t)f);
+    char where[40] = "";
+    if (f >= OF_TERM) {
+        snprintf(where, sizeof where, "one of its %d terms ", out->terms);
+    }
+    keep(out, FAULTS[f].id, FAULTS[f].share, key, "%s%s", where, FAULTS[f].says);
+}
+
 static void find_one(const hn_entry_values *entry, hn_entry_faults *out) {
+    const hn_entry_faults before = *out;
     for (int f = 0; f < N_FAULTS; f++) {
         const int terms = f < OF_TERM ? 0 : out->terms > 1 ? out->terms : -1;
-        for (int m = f < OF_TERM ? -1 : 0; m < terms && is_possible(entry, f); m++) {
+        for (int m = f < OF_TERM ? -1 : 0; m < terms && is_possible(entry, f, &before); m++) {
             double change[HN_EXPORT_EXAM_STATES] = {0};
             add_change(entry, f, m, change);
             if (is_given(entry, change)) {
-                out->one |= 1ULL << f;
+                keep_one(f, out);
             }
         }
     }
@@ -97,33 +142,36 @@ static bool are_both(const hn_entry_values *entry, int a, int b) {
 }
 
 static void find_two(const hn_entry_values *entry, hn_entry_faults *out) {
+    const hn_entry_faults before = *out;
     for (int a = OF_TERM; a < N_FAULTS && out->terms > 1; a++) {
         for (int b = a; b < N_FAULTS; b++) {
-            if (is_possible(entry, a) && is_possible(entry, b) && are_both(entry, a, b)) {
-                out->two |= 1ULL << bit_of_two(a, b);
+            if (is_possible(entry, a, &before) && is_possible(entry, b, &before) &&
+                are_both(entry, a, b)) {
+                const uint64_t pair = (uint64_t)(N_FAULTS * (a + 1) + b);
+                keep(out, "two-terms", FAULTS[a].share * FAULTS[b].share,
+                     hn_hash_word(HN_HASH_START, pair), "one of its %d terms %s and another one %s",
+                     out->terms, FAULTS[a].says, FAULTS[b].says);
             }
         }
     }
 }
 
 /// Names two parameters of one unit whose ratio is the factor, where these are the only ones.
-static void name_factor(const hn_scene *scene, hn_entry_faults *out) {
+static void name_factor(const hn_scene *scene, double factor, char instead[112]) {
     int found = 0;
     for (int i = 0; i < scene->n_params; i++) {
         for (int k = 0; k < scene->n_params; k++) {
             const hn_param *wrong = &scene->params[i], *right = &scene->params[k];
             if (i != k && wrong->value != right->value && wrong->unit && right->unit &&
                 strcmp(wrong->unit, right->unit) == 0 &&
-                fabs(wrong->value - out->factor * right->value) <=
-                    EQUAL_FACTORS * fabs(wrong->value)) {
+                fabs(wrong->value - factor * right->value) <= EQUAL_FACTORS * fabs(wrong->value)) {
                 found++;
-                snprintf(out->instead, sizeof out->instead, "%.40s in place of %.40s", wrong->name,
-                         right->name);
+                snprintf(instead, 112, ", as %.40s in place of %.40s", wrong->name, right->name);
             }
         }
     }
     if (found != 1) {
-        out->instead[0] = '\0';
+        instead[0] = '\0';
     }
 }
 
@@ -131,6 +179,7 @@ static void name_factor(const hn_scene *scene, hn_entry_faults *out) {
 /// any term would do.
 static void find_factor(const hn_entry_values *entry, hn_entry_faults *out) {
     int found = 0;
+    double factor = 0;
     for (int m = 0; m < out->terms && out->terms > 1; m++) {
         double above = 0, below = 0, least = HUGE_VAL, most = -HUGE_VAL;
         for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
@@ -146,94 +195,196 @@ static void find_factor(const hn_entry_values *entry, hn_entry_faults *out) {
         }
         if (most - least > entry->allowed && is_given(entry, change)) {
             found++;
-            out->factor = 1 + above / below;
+            factor = 1 + above / below;
         }
     }
-    if (found != 1) {
-        out->factor = 0;
-    } else {
-        name_factor(entry->scene, out);
+    if (found == 1) {
+        char instead[112] = "";
+        name_factor(entry->scene, factor, instead);
+        keep(out, instead[0] ? "other-name" : "factor-term", SHARE_OF_FACTOR,
+             hn_hash_text(hn_hash_double(HN_HASH_START, factor), instead),
+             "one of its %d terms is %.4g times the right one%s", out->terms, factor, instead);
+    }
+}
+
+// ---- a symbol in place of another ----
+
+/// What a change makes of an entry.
+typedef struct changed {
+    hn_exam_change change;
+    double whole[HN_EXPORT_EXAM_STATES];
+    hn_export_sum terms;
+} changed;
+
+/// Whether the whole entry, times the sign, is what the change makes of it.
+static bool is_whole(const hn_entry_values *entry, const changed *c, double sign) {
+    double change[HN_EXPORT_EXAM_STATES];
+    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+        change[k] = sign * c->whole[k] - entry->right[k];
+    }
+    return is_given(entry, change);
+}
+
+/// Whether one term of several, times the sign, is what the change makes of it.
+static bool is_term(const hn_entry_values *entry, const changed *c, double sign) {
+    for (int m = 0; m < entry->sum->n && entry->sum->n > 1; m++) {
+        double change[HN_EXPORT_EXAM_STATES];
+        for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
+            change[k] = sign * c->terms.t[m][k] - entry->sum->t[m][k];
+        }
+        if (is_given(entry, change)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void keep_change(const hn_entry_values *entry, const changed *c, bool whole,
+                        hn_entry_faults *out) {
+    const hn_exam_change *change = &c->change;
+    const char *from = change->from < 0 ? "" : hn_exam_symbol_name(entry->exam, change->from);
+    const char *to = change->to < 0 ? "" : hn_exam_symbol_name(entry->exam, change->to);
+    char where[40] = "it";
+    uint64_t key = hn_hash_word(HN_HASH_START, 1000 + (uint64_t)change->kind);
+    key = hn_hash_text(hn_hash_text(key, from), to);
+    if (!whole) {
+        snprintf(where, sizeof where, "one of its %d terms", out->terms);
+    }
+
+    // the same words for a name that is wrong everywhere and at one place
+    const double share = SHARE_OF_FACTOR;
+    switch (change->kind) {
+    case HN_CHANGE_NAME:
+    case HN_CHANGE_ONE:
+        keep(out, "other-coordinate", share, key, "%s has %.30s in place of %.30s", where, to,
+             from);
+        break;
+    case HN_CHANGE_POWER:
+        keep(out, "power", share, key, "%s lacks a factor %.30s", where, from);
+        break;
+    case HN_CHANGE_QUARTER:
+        keep(out, "sine-cosine", share, key, "%s has sine and cosine exchanged", where);
+        break;
+    case HN_CHANGE_WITHOUT:
+        keep(out, "missing-term", share, key, "all terms with %.30s are missing", from);
+        break;
+    case HN_CHANGE_DEGREES:
+        keep(out, "degrees", share, key, "its angles count as degrees, and they are in radians");
+        break;
+    case HN_CHANGE_RADIANS:
+        keep(out, "degrees", share, key, "its angles are converted to radians, which they are in");
+        break;
+    }
+}
+
+/// Explanations by a symbol: those by a parameter whose terms are missing, or the others.
+static void find_changes(const hn_entry_values *entry, bool missing, hn_entry_faults *out) {
+    hn_exam_change list[MOST_CHANGES];
+    const int n = hn_exam_changes_list(entry->exam, entry->part, entry->i, list, MOST_CHANGES);
+    for (int i = 0; i < n; i++) {
+        changed c = {.change = list[i]};
+        if ((list[i].kind == HN_CHANGE_WITHOUT) != missing ||
+            hn_exam_change_apply(entry->exam, entry->part, entry->i, &list[i], c.whole, &c.terms) !=
+                HN_OK) {
+            continue;
+        }
+        const bool of_term = list[i].kind < HN_CHANGE_WITHOUT;
+        const bool turns = list[i].kind == HN_CHANGE_QUARTER;
+        if (is_whole(entry, &c, 1) || (turns && is_whole(entry, &c, -1))) {
+            keep_change(entry, &c, true, out);
+        } else if (of_term && (is_term(entry, &c, 1) || (turns && is_term(entry, &c, -1)))) {
+            keep_change(entry, &c, false, out);
+        }
     }
 }
 
 hn_entry_faults hn_entry_faults_find(const hn_entry_values *entry) {
     hn_entry_faults out = {.terms = entry->sum->n};
+    const bool moves = !is_constant(entry);
+    if (entry->thorough) {
+        find_changes(entry, true, &out);
+    }
     find_one(entry, &out);
-    if (!out.one) {
+    if (out.found == 0 && moves) {
         find_factor(entry, &out);
     }
-    if (!out.one && out.factor == 0) {
+    if (out.found == 0 && entry->thorough) {
+        find_changes(entry, false, &out);
+    }
+    if (out.found == 0 && moves) {
         find_two(entry, &out);
     }
     return out;
 }
 
-double hn_entry_faults_share(const hn_entry_faults *faults) {
-    double share = faults->factor != 0 ? SHARE_OF_FACTOR : 1;
-    bool any = faults->factor != 0;
-    for (int f = 0; f < N_FAULTS; f++) {
-        if (faults->one & 1ULL << f) {
-            share = fmin(share, FAULTS[f].share);
-            any = true;
+// ---- several explanations ----
+
+/// How many of the entries a fault explains.
+static int count_entries(const hn_entry_faults *all, int n, uint64_t key) {
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < all[i].n; k++) {
+            count += all[i].fault[k].key == key;
         }
     }
-    for (int a = OF_TERM; a < N_FAULTS; a++) {
-        for (int b = a; b < N_FAULTS; b++) {
-            if (faults->two & 1ULL << bit_of_two(a, b)) {
-                share = fmin(share, FAULTS[a].share * FAULTS[b].share);
-                any = true;
-            }
+    return count;
+}
+
+/// Sorts by insertion: of equal ones the first stays in front.
+static void rank_entry(hn_entry_faults *e) {
+    for (int k = 1; k < e->n; k++) {
+        const struct hn_entry_fault one = e->fault[k];
+        int at = k;
+        for (; at > 0 && e->fault[at - 1].entries < one.entries; at--) {
+            e->fault[at] = e->fault[at - 1];
+        }
+        e->fault[at] = one;
+    }
+    if (e->n > 1 && e->fault[0].entries > 1 && e->fault[0].entries > e->fault[1].entries) {
+        e->n = e->found = 1;
+        e->share = e->fault[0].share;
+    }
+}
+
+void hn_entry_faults_rank(hn_entry_faults *all, int n) {
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < all[i].n; k++) {
+            all[i].fault[k].entries = count_entries(all, n, all[i].fault[k].key);
         }
     }
-    return any ? share : 0;
+    for (int i = 0; i < n; i++) {
+        rank_entry(&all[i]);
+    }
 }
 
 const char *hn_entry_faults_id(const hn_entry_faults *faults) {
-    for (int f = 0; f < N_FAULTS; f++) {
-        if ((faults->one & 1ULL << f) && FAULTS[f].share == hn_entry_faults_share(faults)) {
-            return FAULTS[f].id;
+    for (int i = 0; i < faults->n; i++) {
+        if (faults->fault[i].share == faults->share) {
+            return faults->fault[i].id;
         }
     }
-    return faults->instead[0]    ? "other-name"
-           : faults->factor != 0 ? "factor-term"
-           : faults->two         ? "two-terms"
-                                 : "";
+    return faults->n > 0 ? faults->fault[0].id : "";
 }
 
-static int count_bits(uint64_t bits) {
-    int n = 0;
-    for (; bits; bits &= bits - 1) {
-        n++;
+/// The first so many explanations.
+static void put_first(hn_strbuf *b, const hn_entry_faults *faults, int n) {
+    for (int i = 0; i < n; i++) {
+        hn_strbuf_printf(b, "%s%s", i > 0 ? ", or " : "", faults->fault[i].says);
     }
-    return n;
+    hn_strbuf_add(b, faults->found > n ? ", or others" : "");
 }
 
-void hn_entry_faults_put(hn_strbuf *b, const hn_entry_faults *faults) {
-    int said = 0;
-    for (int f = 0; f < N_FAULTS; f++) {
-        if (!(faults->one & 1ULL << f) || said == MOST_SAID) {
-            continue;
-        }
-        hn_strbuf_add(b, said++ > 0 ? ", or " : "");
-        if (FAULTS[f].of_term) {
-            hn_strbuf_printf(b, "one of its %d terms ", faults->terms);
-        }
-        hn_strbuf_add(b, FAULTS[f].says);
-    }
-    for (int a = OF_TERM; a < N_FAULTS; a++) {
-        for (int k = a; k < N_FAULTS; k++) {
-            if ((faults->two & 1ULL << bit_of_two(a, k)) && said < MOST_SAID) {
-                hn_strbuf_printf(b, "%sone of its %d terms %s and another one %s",
-                                 said++ > 0 ? ", or " : "", faults->terms, FAULTS[a].says,
-                                 FAULTS[k].says);
-            }
+void hn_entry_faults_put(hn_strbuf *b, const hn_entry_faults *faults, int room) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    for (int n = faults->n < MOST_SAID ? faults->n : MOST_SAID; n > 0; n--) {
+        hn_strbuf_clear(&text);
+        put_first(&text, faults, n);
+        if (n == 1 || (int)text.n <= room) {
+            break;
         }
     }
-    if (count_bits(faults->one) + count_bits(faults->two) > said) {
-        hn_strbuf_add(b, ", or others");
-    }
-    if (faults->factor != 0) {
-        hn_strbuf_printf(b, "one of its %d terms is %.4g times the right one%s%s", faults->terms,
-                         faults->factor, faults->instead[0] ? ", as " : "", faults->instead);
-    }
+    hn_strbuf_add(b, hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
 }

@@ -4,8 +4,8 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "class/entry_faults.h"
 #include "class/filled_origin.h"
+#include "class/filled_parts.h"
 #include "export/language.h"
 #include "grade/submission.h"
 #include "program/guest_process.h"
@@ -17,57 +17,6 @@
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
-
-static const double POINTS = 2; // of a part
-/// Wrong entries of a part whose faults are named; letters that these take at most.
-enum { MOST_NAMED = 3, LONGEST_FAULTS = 320 };
-/// Difference that is allowed, relative to the largest entry of the part: the two programs round in
-/// another order, and a student may divide where we multiply.
-static const double ALLOWED = 1e-9;
-/// An entry this small beside its terms has lost four digits; a difference of 1e-13 of the terms,
-/// some hundred roundings, is allowed there.
-static const double CANCELS = 1e-4;
-
-// ---- what is expected ----
-
-/// The largest number that rounds on the way to entry i: of its terms, 1 where they are not known.
-static double terms_size(const hn_export_exam *exam, int part, int i) {
-    const hn_export_sum *sum = &exam->sum[part][i];
-    double size = 0;
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        for (int m = 0; m < sum->n; m++) {
-            size = fmax(size, fabs(sum->t[m][k]));
-        }
-        if (sum->n == 0 && exam->question[k].answer[part][i] != 0) {
-            size = 1;
-        }
-    }
-    return size;
-}
-
-static bool is_asked(const hn_export_exam *exam, int part) {
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        for (int i = 0; i < exam->size[part]; i++) {
-            if (fabs(exam->question[k].answer[part][i]) > ALLOWED * terms_size(exam, part, i)) {
-                return true;
-            }
-        }
-    }
-    return false; // all zero, rounding aside: nothing is to be filled in
-}
-
-/// What a difference in a part is measured by: its largest entry, whatever its unit; where its
-/// terms cancel, what they round to.
-static double size_of(const hn_export_exam *exam, int part) {
-    double size = 0;
-    for (int i = 0; i < exam->size[part]; i++) {
-        size = fmax(size, CANCELS * terms_size(exam, part, i));
-        for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-            size = fmax(size, fabs(exam->question[k].answer[part][i]));
-        }
-    }
-    return size;
-}
 
 hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model, hn_diags *diags) {
     const hn_walk_limits none = {0};
@@ -85,9 +34,9 @@ hn_status hn_filled_exam_init(hn_filled_exam *f, const hn_model *model, hn_diags
     f->exercise =
         (hn_exercise){.id = scene->id, .title = f->title, .scene = "", .hash = scene->hash};
     for (int part = 0; part < HN_EXPORT_PARTS; part++) {
-        f->exercise.n_parts += is_asked(&f->exam, part);
+        f->exercise.n_parts += hn_filled_part_is_asked(&f->exam, (hn_export_part)part);
     }
-    f->exercise.points = POINTS * f->exercise.n_parts;
+    f->exercise.points = HN_FILLED_POINTS * f->exercise.n_parts;
     return HN_OK;
 }
 
@@ -112,22 +61,11 @@ bool hn_filled_program_is(const char *path) {
     return language_of(path) != NULL;
 }
 
-bool hn_filled_program_has_lines(const char *path) {
-    const hn_language *language = language_of(path);
-    return language && !strchr(language->constant, ';');
-}
-
 // ---- asking ----
-
-/// What a program has answered: for each state all parts behind each other.
-typedef struct answers {
-    int n; ///< numbers a state
-    double *value;
-} answers;
 
 /// Sends one state and reads the numbers of its answer.
 static hn_status ask(const hn_export_exam *exam, hn_guest_process *process, int k, double seconds,
-                     answers *out, hn_diag *diag) {
+                     hn_filled_answers *out, hn_diag *diag) {
     const hn_export_question *question = &exam->question[k];
     hn_strbuf text, line;
     hn_strbuf_init(&text);
@@ -165,7 +103,7 @@ static hn_status ask(const hn_export_exam *exam, hn_guest_process *process, int 
     return status;
 }
 
-static hn_status ask_all(const hn_export_exam *exam, const char *path, answers *out,
+static hn_status ask_all(const hn_export_exam *exam, const char *path, hn_filled_answers *out,
                          hn_diag *diag) {
     const hn_program_limits limits = hn_program_limits_default();
     hn_sandbox_command command;
@@ -178,307 +116,6 @@ static hn_status ask_all(const hn_export_exam *exam, const char *path, answers *
     }
     hn_guest_process_end(&process);
     return status;
-}
-
-// ---- comparing ----
-
-/// One part over all states: what is expected and what was given.
-typedef struct part_view {
-    const hn_export_exam *exam;
-    const hn_scene *scene;
-    const answers *given;
-    int part, offset;
-    double size; ///< what differences are measured by
-} part_view;
-
-static double expected_at(const part_view *p, int k, int i) {
-    return p->exam->question[k].answer[p->part][i];
-}
-
-static double given_at(const part_view *p, int k, int i) {
-    return p->given->value[k * p->given->n + p->offset + i];
-}
-
-static double force_at_rest(const part_view *p, int k, int i) {
-    return p->exam->question[k].still[i];
-}
-
-static double negative_at(const part_view *p, int k, int i) {
-    return -expected_at(p, k, i);
-}
-
-static double zero_at(const part_view *p, int k, int i) {
-    (void)p, (void)k, (void)i;
-    return 0;
-}
-
-/// The lower triangle of a symmetric matrix, where the upper one was left out.
-static double lower_at(const part_view *p, int k, int i) {
-    const int n = p->exam->nv;
-    return i % n > i / n ? 0 : expected_at(p, k, i);
-}
-
-static double upper_at(const part_view *p, int k, int i) {
-    const int n = p->exam->nv;
-    return i % n < i / n ? 0 : expected_at(p, k, i);
-}
-
-/// The matrix written column by column, as its transpose is.
-static double transposed_at(const part_view *p, int k, int i) {
-    const int columns = p->exam->columns[p->part], rows = p->exam->size[p->part] / columns;
-    return expected_at(p, k, i % rows * columns + i / rows);
-}
-
-/// Whether every given entry is what `like` says; the largest difference is at *state, *entry.
-static bool is_like(const part_view *p, double (*like)(const part_view *, int, int), int *state,
-                    int *entry) {
-    double worst = -1;
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        for (int i = 0; i < p->exam->size[p->part]; i++) {
-            const double d = fabs(given_at(p, k, i) - like(p, k, i));
-            if (!(d <= worst)) {
-                worst = isnan(d) ? HUGE_VAL : d;
-                *state = k;
-                *entry = i;
-            }
-        }
-    }
-    return worst <= ALLOWED * p->size;
-}
-
-/// The factor by which every entry is off, 0: there is none.
-static double factor_of(const part_view *p) {
-    double above = 0, below = 0, worst = 0;
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        for (int i = 0; i < p->exam->size[p->part]; i++) {
-            above += given_at(p, k, i) * expected_at(p, k, i);
-            below += expected_at(p, k, i) * expected_at(p, k, i);
-        }
-    }
-    const double factor = above / below;
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        for (int i = 0; i < p->exam->size[p->part]; i++) {
-            worst = fmax(worst, fabs(given_at(p, k, i) - factor * expected_at(p, k, i)));
-        }
-    }
-    return worst <= ALLOWED * p->size ? factor : 0;
-}
-
-static const struct {
-    const char *id, *text;
-    bool parts[HN_EXPORT_PARTS]; ///< of which it is a mistake
-    double (*like)(const part_view *, int, int);
-} MISTAKES[] = {{"empty",
-                 "every entry is zero: this part was not filled in",
-                 {true, true, true, true},
-                 zero_at},
-                {"sign", "every entry has the wrong sign", {true, true, true, true}, negative_at},
-                {"transposed",
-                 "the matrix is transposed: one row for each constraint, one column for each "
-                 "velocity",
-                 {false, false, true, false},
-                 transposed_at},
-                {"velocity",
-                 "the terms of the velocities, C v, are missing",
-                 {false, true, false, false},
-                 force_at_rest},
-                {"symmetry",
-                 "the entries above the diagonal are missing",
-                 {true, false, false, false},
-                 lower_at},
-                {"symmetry",
-                 "the entries below the diagonal are missing",
-                 {true, false, false, false},
-                 upper_at}};
-
-static void name_mistake(const part_view *p, hn_entry_verdict *e) {
-    int state, entry;
-    for (size_t i = 0; i < sizeof MISTAKES / sizeof *MISTAKES; i++) {
-        if (MISTAKES[i].parts[p->part] && is_like(p, MISTAKES[i].like, &state, &entry)) {
-            e->mistake = MISTAKES[i].id;
-            snprintf(e->explanation, sizeof e->explanation, "%s", MISTAKES[i].text);
-            return;
-        }
-    }
-    // no mistake explains a number that is none
-    const bool is_number = is_like(p, given_at, &state, &entry);
-    const double factor = is_number ? factor_of(p) : 0;
-    if (factor != 0) {
-        e->mistake = "factor";
-        snprintf(e->explanation, sizeof e->explanation, "every entry is %.6g times the right one",
-                 factor);
-    }
-}
-
-/// "force[0]" as the student's language counts.
-static void name_entry(const part_view *p, const hn_language *language, int entry, char out[64]) {
-    const int columns = p->exam->columns[p->part], first = language->first;
-    const char *name = hn_export_part_name((hn_export_part)p->part);
-    if (columns) {
-        snprintf(out, 64, "%s[%d, %d]", name, entry / columns + first, entry % columns + first);
-    } else {
-        snprintf(out, 64, "%s[%d]", name, entry + first);
-    }
-}
-
-/// The entry with the largest difference, as the student's language counts.
-static void show_entry(const part_view *p, const hn_language *language, int state, int entry,
-                       hn_entry_verdict *e) {
-    e->state = state;
-    e->given_value = given_at(p, state, entry);
-    e->expected_value = expected_at(p, state, entry);
-    e->allowed = ALLOWED * p->size;
-    char place[64];
-    name_entry(p, language, entry, place);
-    snprintf(e->given, sizeof e->given, "%s", place);
-    snprintf(e->expected, sizeof e->expected, "%s", place);
-    if (!isfinite(e->given_value)) {
-        e->mistake = "number";
-        snprintf(e->explanation, sizeof e->explanation,
-                 "%s is not a finite number at state %d of %d (t = %.4g s)", place, state + 1,
-                 HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
-    } else if (!e->mistake[0]) {
-        e->mistake = "other";
-        snprintf(e->explanation, sizeof e->explanation,
-                 "no known mistake; %s differs most, at state %d of %d (t = %.4g s)", place,
-                 state + 1, HN_EXPORT_EXAM_STATES, p->exam->question[state].t);
-    }
-}
-
-/// Whether entry i is right at every state.
-static bool is_right(const part_view *p, int i) {
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        if (!(fabs(given_at(p, k, i) - expected_at(p, k, i)) <= ALLOWED * p->size)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static hn_entry_faults find_faults(const part_view *p, int i) {
-    hn_entry_values entry = {.sum = &p->exam->sum[p->part][i],
-                             .allowed = ALLOWED * p->size,
-                             .is_mass = p->part == HN_EXPORT_MASS,
-                             .scene = p->scene};
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        entry.right[k] = expected_at(p, k, i);
-        entry.given[k] = given_at(p, k, i);
-    }
-    return hn_entry_faults_find(&entry);
-}
-
-/// What the entries of a part are worth together.
-typedef struct part_credit {
-    int asked, right; ///< entries that are not 0 everywhere; those that are right
-    double share;     ///< of the points
-    int named;        ///< wrong entries with a known fault, the first of which are kept
-    int entry[MOST_NAMED];
-    hn_entry_faults faults[MOST_NAMED];
-} part_credit;
-
-/// Whether `value` is 0 in entry i at every state, rounding aside.
-static bool is_zero_entry(const part_view *p, int i, double (*value)(const part_view *, int, int)) {
-    for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-        if (!(fabs(value(p, k, i)) <= ALLOWED * p->size)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// Entries count alike; one that is 0 everywhere gives nothing, but takes as much if it is wrong.
-static part_credit credit_part(const part_view *p) {
-    part_credit c = {0};
-    double sum = 0;
-    for (int i = 0; i < p->exam->size[p->part]; i++) {
-        const bool is_zero = is_zero_entry(p, i, expected_at), right = is_right(p, i);
-        c.asked += !is_zero;
-        c.right += !is_zero && right;
-        if (right || is_zero) {
-            sum += is_zero ? -(double)!right : 1;
-            continue;
-        }
-        if (is_zero_entry(p, i, given_at)) {
-            continue; // nothing was written, which has no fault of its own
-        }
-        const hn_entry_faults faults = find_faults(p, i);
-        const double share = hn_entry_faults_share(&faults);
-        sum += share;
-        if (share > 0 && c.named < MOST_NAMED) {
-            c.entry[c.named] = i;
-            c.faults[c.named++] = faults;
-        }
-    }
-    c.share = c.asked > 0 && sum > 0 ? sum / c.asked : 0;
-    return c;
-}
-
-/// The faults of the first wrong entries, where no mistake of the whole part is known.
-static void name_entry_faults(const part_view *p, const hn_language *language, const part_credit *c,
-                              hn_entry_verdict *e) {
-    if (e->mistake[0]) {
-        return;
-    }
-    hn_strbuf all;
-    hn_strbuf_init(&all);
-    for (int i = 0; i < c->named; i++) {
-        char place[64];
-        hn_strbuf one;
-        hn_strbuf_init(&one);
-        name_entry(p, language, c->entry[i], place);
-        hn_strbuf_printf(&one, "%s%s: ", i > 0 ? "; " : "", place);
-        hn_entry_faults_put(&one, &c->faults[i]);
-        // what would be cut off is left out
-        if (i == 0 || all.n + one.n < LONGEST_FAULTS) {
-            hn_strbuf_add(&all, hn_strbuf_text(&one));
-        }
-        hn_strbuf_reset(&one);
-    }
-    if (c->named > 0) {
-        e->mistake = hn_entry_faults_id(&c->faults[0]);
-        snprintf(e->explanation, sizeof e->explanation, "%.*s", LONGEST_FAULTS,
-                 hn_strbuf_text(&all));
-    }
-    hn_strbuf_reset(&all);
-}
-
-static void compare_part(const part_view *p, const hn_language *language, hn_entry_verdict *e) {
-    int state = 0, entry = 0;
-    snprintf(e->name, sizeof e->name, "%s", hn_export_part_name((hn_export_part)p->part));
-    e->n_whole = (int)strlen(e->name);
-    e->max_points = POINTS;
-    e->mistake = "";
-    e->state = -1;
-    e->right = is_like(p, expected_at, &state, &entry);
-    e->points = POINTS;
-    if (!e->right) {
-        // hundredths of a point: a share is no more exact than the rubric
-        const part_credit credit = credit_part(p);
-        e->points = round(100 * POINTS * credit.share) / 100;
-        name_mistake(p, e);
-        name_entry_faults(p, language, &credit, e);
-        show_entry(p, language, state, entry, e);
-        const size_t n = strlen(e->explanation);
-        snprintf(e->explanation + n, sizeof e->explanation - n, "; %d of %d entries are right",
-                 credit.right, credit.asked);
-    }
-}
-
-static void compare_all(const hn_filled_exam *f, const hn_language *language, const answers *given,
-                        hn_verdict *v) {
-    part_view p = {.exam = &f->exam, .scene = f->scene, .given = given};
-    for (; p.part < HN_EXPORT_PARTS; p.offset += f->exam.size[p.part++]) {
-        if (is_asked(&f->exam, p.part)) {
-            p.size = size_of(&f->exam, p.part);
-            hn_entry_verdict *e = &v->entry[v->n_entries];
-            e->row = v->n_entries++;
-            compare_part(&p, language, e);
-            v->n_right += e->right;
-            v->score += e->points;
-        }
-    }
-    v->n_states = HN_EXPORT_EXAM_STATES;
-    snprintf(v->summary, sizeof v->summary, "%d of %d parts are right", v->n_right, v->n_entries);
 }
 
 // ---- the whole ----
@@ -539,7 +176,7 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
     hn_strbuf_reset(&text);
 
     // its answers, compared part by part
-    answers given = {0};
+    hn_filled_answers given = {0};
     for (int part = 0; part < HN_EXPORT_PARTS; part++) {
         given.n += f->exam.size[part];
     }
@@ -549,7 +186,11 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
     }
     HN_THEN(status, ask_all(&f->exam, path, &given, &diag));
     if (status == HN_OK) {
-        compare_all(f, language, &given, v);
+        const hn_status compared = hn_filled_parts_compare(f, language, &given, v);
+        if (compared != HN_OK) {
+            free(given.value);
+            return compared;
+        }
     } else {
         hn_submission_refuse(v, diag.hint, "%s", diag.message);
     }

@@ -31,7 +31,5 @@ HN_MUST_CHECK hn_status hn_filled_program_grade_text(const hn_filled_exam *f, co
                                                      const char *text, size_t n, hn_verdict *v);
 /// Whether a file has the ending of a program that can be graded.
 bool hn_filled_program_is(const char *path);
-/// Whether the end of a line ends a statement in the language of such a file.
-bool hn_filled_program_has_lines(const char *path);
 
 #endif

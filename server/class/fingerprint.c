@@ -2,7 +2,6 @@
 #include "class/fingerprint.h"
 
 #include "base/hash.h"
-#include "class/source_text.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -16,7 +15,7 @@ static const int FEWEST_KNOWN = 2;
 static const int LEAST_WEIGHT = 40;
 
 struct hn_given_source {
-    bool by_lines;
+    hn_source_style style;
     int n_names, n_statements;
     uint64_t name[MOST_NAMES];
     uint32_t statement[MOST_GIVEN];
@@ -91,7 +90,7 @@ static const char *read_number(reader *r, const char *at) {
 static void read_sign(reader *r, char c) {
     const bool opens = c == '(' || c == '[', closes = c == ')' || c == ']';
     r->depth += opens - closes;
-    const bool line = c == '\n' && r->given->by_lines;
+    const bool line = c == '\n' && hn_source_is_by_lines(r->given->style);
     if (c == ';' || c == '{' || c == '}' || ((line || c == ',') && r->depth <= 0)) {
         r->depth = r->depth < 0 || c != ',' ? 0 : r->depth;
         end_statement(r);
@@ -102,7 +101,7 @@ static void read_sign(reader *r, char c) {
 
 static void read_source(reader *r, const char *text) {
     for (const char *at = text; *at;) {
-        const char *skipped = hn_source_skip_comment(at);
+        const char *skipped = hn_source_skip_comment(r->given->style, at);
         skipped = skipped ? skipped : hn_source_skip_quotes(text, at);
         if (skipped) {
             at = skipped;
@@ -125,7 +124,7 @@ static void read_source(reader *r, const char *text) {
 static void keep_names(hn_given_source *given, const char *text) {
     const char *end = strstr(text, "YOUR PART");
     for (const char *at = text; *at && (!end || at < end);) {
-        const char *skipped = hn_source_skip_comment(at);
+        const char *skipped = hn_source_skip_comment(given->style, at);
         skipped = skipped ? skipped : hn_source_skip_quotes(text, at);
         size_t n = 0;
         while (!skipped && hn_source_continues_name(at[n])) {
@@ -147,10 +146,10 @@ static void keep_given(void *user, uint32_t hash, int known) {
     }
 }
 
-hn_given_source *hn_given_source_read(const char *text, bool by_lines) {
+hn_given_source *hn_given_source_read(const char *text, hn_source_style style) {
     hn_given_source *given = calloc(1, sizeof *given);
     if (given) {
-        given->by_lines = by_lines;
+        given->style = style;
         keep_names(given, text);
         reader r = {.given = given, .end = keep_given, .user = given};
         read_source(&r, text);

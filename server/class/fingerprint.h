@@ -6,6 +6,7 @@
 // brackets count. A statement that is added, or taken apart, leaves the others what they are.
 
 #include "base/strbuf.h"
+#include "class/source_text.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,8 +17,8 @@ enum { HN_FINGERPRINT_MOST = 256 };
 typedef struct hn_given_source hn_given_source;
 
 /// Reads a given program. Names before the words YOUR PART are known: they are told apart.
-/// by_lines: the end of a line ends a statement, else a semicolon alone does. NULL: memory is out.
-hn_given_source *hn_given_source_read(const char *text, bool by_lines);
+/// NULL: memory is out.
+hn_given_source *hn_given_source_read(const char *text, hn_source_style style);
 void hn_given_source_free(hn_given_source *given);
 
 /// The statements of a program, sorted by their hash; of more than HN_FINGERPRINT_MOST those with

@@ -2,7 +2,6 @@
 #include "class/likeness.h"
 
 #include "base/hash.h"
-#include "class/source_text.h"
 
 #include <ctype.h>
 #include <stdbool.h>
@@ -20,6 +19,7 @@ typedef struct reader {
     uint64_t hash;
     names *names; ///< NULL: names stay as they are
     bool is_program;
+    hn_source_style style; ///< of a program
 } reader;
 
 /// The number of a name; one beyond the last that is kept counts as itself.
@@ -51,7 +51,7 @@ static const char *read_name(reader *r, const char *at) {
 
 static void read_text(reader *r, const char *at) {
     while (*at) {
-        const char *end = r->is_program ? hn_source_skip_comment(at) : NULL;
+        const char *end = r->is_program ? hn_source_skip_comment(r->style, at) : NULL;
         if (end) {
             at = end;
         } else if (hn_source_begins_name(*at)) {
@@ -108,8 +108,8 @@ uint64_t hn_likeness_shape(const cJSON *submission) {
     return hn_hash_mix(r.hash);
 }
 
-uint64_t hn_likeness_program_texts(const char *text) {
-    reader r = {.hash = HN_HASH_START, .is_program = true};
+uint64_t hn_likeness_program_texts(const char *text, hn_source_style style) {
+    reader r = {.hash = HN_HASH_START, .is_program = true, .style = style};
     read_text(&r, text);
     return hn_hash_mix(r.hash);
 }
@@ -254,10 +254,11 @@ static void read_sign(statements *s, char c) {
     }
 }
 
-uint64_t hn_likeness_program_shape(const char *text, bool by_lines) {
+uint64_t hn_likeness_program_shape(const char *text, hn_source_style style) {
+    const bool by_lines = hn_source_is_by_lines(style);
     statements s = {.all = HN_HASH_START, .one = HN_HASH_START, .by_lines = by_lines};
     for (const char *at = text; *at;) {
-        const char *end = hn_source_skip_comment(at);
+        const char *end = hn_source_skip_comment(style, at);
         const char *behind = end ? end : hn_source_skip_quotes(text, at);
         if (by_lines && s.depth <= 0 && at > text && at[-1] == '\n' && *at != '\n' && !end) {
             end_blocks(&s, isspace((unsigned char)*at) ? s.level | 1 : 0);

@@ -3,6 +3,25 @@
 
 #include <ctype.h>
 #include <string.h>
+#include <strings.h>
+
+hn_source_style hn_source_style_of(const char *file) {
+    static const struct {
+        const char *ending;
+        hn_source_style style;
+    } ENDINGS[] = {{".py", HN_SOURCE_PYTHON}, {".m", HN_SOURCE_OCTAVE}, {".jl", HN_SOURCE_JULIA}};
+    const char *dot = strrchr(file, '.');
+    for (size_t i = 0; dot && i < sizeof ENDINGS / sizeof *ENDINGS; i++) {
+        if (strcasecmp(dot, ENDINGS[i].ending) == 0) {
+            return ENDINGS[i].style;
+        }
+    }
+    return HN_SOURCE_C;
+}
+
+bool hn_source_is_by_lines(hn_source_style style) {
+    return style == HN_SOURCE_PYTHON || style == HN_SOURCE_JULIA;
+}
 
 bool hn_source_begins_name(char c) {
     return isalpha((unsigned char)c) || c == '_';
@@ -24,14 +43,32 @@ bool hn_source_is_function(const char *name, size_t n) {
     return false;
 }
 
-const char *hn_source_skip_comment(const char *at) {
-    if (*at == '#' || *at == '%' || (at[0] == '/' && at[1] == '/')) {
-        // in C '%' is an operator and '#' a directive: what is behind them counts for nobody
-        return at + strcspn(at, "\n");
-    }
-    if (at[0] == '/' && at[1] == '*') {
-        const char *end = strstr(at + 2, "*/");
-        return end ? end + 2 : at + strlen(at);
+static const char *skip_line(const char *at) {
+    return at + strcspn(at, "\n");
+}
+
+/// What ends with the two letters of `end`, or with the text.
+static const char *skip_block(const char *at, const char *end) {
+    const char *found = strstr(at + 2, end);
+    return found ? found + 2 : at + strlen(at);
+}
+
+const char *hn_source_skip_comment(hn_source_style style, const char *at) {
+    switch (style) {
+    case HN_SOURCE_C:
+        return *at == '#' || (at[0] == '/' && at[1] == '/') ? skip_line(at)
+               : at[0] == '/' && at[1] == '*'               ? skip_block(at, "*/")
+                                                            : NULL;
+    case HN_SOURCE_PYTHON:
+        return *at == '#' ? skip_line(at) : NULL;
+    case HN_SOURCE_OCTAVE:
+        return (*at == '%' || *at == '#') && at[1] == '{' ? skip_block(at, *at == '%' ? "%}" : "#}")
+               : *at == '%' || *at == '#'                 ? skip_line(at)
+                                                          : NULL;
+    case HN_SOURCE_JULIA:
+        return at[0] == '#' && at[1] == '=' ? skip_block(at, "=#")
+               : *at == '#'                 ? skip_line(at)
+                                            : NULL;
     }
     return NULL;
 }

@@ -170,6 +170,70 @@ class Filled(unittest.TestCase):
             self.assertRegex(entry["explanation"], r"; \d of \d entries are right$")
             self.assertAlmostEqual(entry["points"], round(2 * of_entries / entries[part], 2), 9, name)
 
+    def test_a_wrong_symbol_degrees_and_another_order_are_named(self):
+        """Faults that depend on the state: no constant factor explains them."""
+        blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
+        right, degree = honest_programs.FOUR_BAR["direct"], "57.29577951308232*"
+        degrees = "its angles count as degrees, and they are in radians"
+        cases = {
+            # name: (what is changed, part, mistake, explanation, share of the part that is left)
+            "whole": ([("l1*l2/2*cos(th1 - theta_coupler)", "l1*l2/2*cos(th1 - th3)")], "mass", "other-coordinate", "mass[0, 1], mass[1, 0]: it has th3 in place of theta_coupler", 3.5 / 5),
+            "term": ([("l2/2*cos(theta_coupler)", "l2/2*cos(th1)")], "force", "other-coordinate", "force[1]: one of its 2 terms has th1 in place of theta_coupler", 2.25 / 3),
+            "velocity": ([("l3*cos(th3)*w3*w3", "l3*cos(th3)*w1*w3")], "bias", "other-coordinate", "bias[0]: one of its 3 terms has w1 in place of w3", 1.25 / 2),
+            "square": ([("l3*cos(th3)*w3*w3", "l3*cos(th3)*w3")], "bias", "power", "bias[0]: one of its 3 terms lacks a factor w3", 1.25 / 2),
+            "sine": ([("jacobian[0][2] = l3*sin", "jacobian[0][2] = l3*cos")], "jacobian", "sine-cosine", "jacobian[0, 2]: it has sine and cosine exchanged", 5.25 / 6),
+            "degrees": ([(f"{call}({angle}", f"{call}({degree}{angle}") for call in ("sin", "cos") for angle in ("th3", "theta_coupler")]
+                        + [("(th1", f"({degree}th1"), ("- theta_coupler", f"- {degree}theta_coupler")], "force", "degrees", f"force[0], force[1], force[2]: {degrees}", 0.25),
+            "rows": ([("jacobian[0]", "jacobian[2]"), ("jacobian[1]", "jacobian[0]"), ("jacobian[2]", "jacobian[1]")], "jacobian", "exchanged", "rows 0 and 1 are exchanged", 0.25),
+            "coordinates": ([("mass[0][0] =", "mass[3][3] ="), ("mass[2][2] =", "mass[0][0] ="), ("mass[3][3] =", "mass[2][2] ="), ("mass[0][1] =", "mass[2][1] ="),
+                             ("mass[1][0] = mass[0][1]", "mass[1][2] = mass[2][1]")], "mass", "exchanged", "rows and columns 0 and 2 are exchanged", 2 / 5),
+            # with the terms of gravity go guesses that explain one entry each
+            "gravity": ([(" - (m1/2 + m2)*g*l1*cos(th1)", ""), (" - m2*g*l2/2*cos(theta_coupler)", "")], "force", "missing-term", "force[0], force[1]: all terms with g are missing", 1.5 / 3),
+            # any number is some multiple of constant terms
+            "constant": ([("m1*l1*l1/3 + m2*l1*l1", "2*m1*l1*l1/3 + m2*l1*l1/12")], "mass", "other", "no known mistake; mass[0, 0] differs most, at state 1 of 5 (t = 0 s)", 4 / 5)}  # fmt: skip
+        jobs = []
+        for name, (changes, *_) in cases.items():
+            text = right
+            for a, b in changes:
+                self.assertIn(a, text, name)
+                text = text.replace(a, b)
+            jobs.append(("four-bar", self.put(f"{name}.c", honest_programs.fill(blank, text))))
+        for (name, (_, part, mistake, says, share)), (_, (_, verdict)) in zip(cases.items(), self.two_at_a_time(self.grade, jobs)):
+            entry = {e["name"]: e for e in verdict["entries"]}[part]
+            self.assertEqual((entry["mistake"], entry["explanation"].rsplit("; ", 1)[0]), (mistake, says), name)
+            self.assertAlmostEqual(entry["points"], round(2 * share, 2), 9, name)
+
+    def test_an_explanation_ends_where_a_sentence_does(self):
+        # each entry of the mass matrix has another fault with long words
+        blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
+        text = honest_programs.FOUR_BAR["direct"]
+        for a, b in (("m1*l1*l1/3", "m1*l1*l1/12"), ("m2*l2*l2/3", "m2*l2*l2/4"), ("m3*l3*l3/3", "m3*l3*l3"), ("l1*l2/2*cos(th1 -", "l1*l2*cos(th1 -")):
+            self.assertIn(a, text)
+            text = text.replace(a, b)
+        _, verdict = self.grade("four-bar", self.put("long.c", honest_programs.fill(blank, text)))
+        explanation = verdict["entries"][0]["explanation"]
+        self.assertLessEqual(len(explanation), 360)
+        ends = r"(in place of m l\^2/(3|12)|is missing|wrong sign|a factor (2|1/2)|are missing|or others)"
+        for piece in explanation.rsplit("; ", 1)[0].split("; "):
+            self.assertRegex(piece, ends + "$", explanation)
+
+    def test_what_a_comment_is_depends_on_the_language(self):
+        """In C a '%' divides: formulas that differ behind one are no copies; in Python '//' divides."""
+        blank = {language: call("export", "four-bar", "--language", language, "--blanks").stdout for language in ("c", "python")}
+        for language, ending, behind in (("c", "c", ("int k = 7 % 4; mass[0][0] = k*m1*l1*l1;", "int k = 7 % 4; mass[0][0] = k*m2*l2*l3;")),
+                                         ("python", "py", ("    k = 7 // 4; mass[0, 0] = k*m1*l1*l1", "    k = 7 // 4; mass[0, 0] = k*m2*l2*l3"))):
+            if language == "python" and not has_numpy():
+                continue
+            folder = tempfile.mkdtemp(dir=self.temporary.name)
+            for name, statement in zip(("ann", "bob"), behind):
+                lines = blank[language].splitlines()
+                at = max(i for i, line in enumerate(lines) if "YOUR PART" in line)
+                self.put(os.path.join(folder, f"{name}.{ending}"), "\n".join(lines[: at + 1] + [statement] + lines[at + 1 :]) + "\n")
+            done = call("grade", "four-bar", folder)
+            self.assertIn("2 graded, 0 not gradable", done.stdout, done.stderr)
+            self.assertNotIn("near-copies", done.stdout, language)
+            self.assertNotIn("the same", done.stdout, language)
+
     def test_a_small_mechanism_is_marked_as_a_large_one(self):
         for size, mass in ((0.01, 0.001), (1e-4, 1e-9), (1e3, 1e6)):
             settings = [word for name, value in (("l1", size), ("l2", size), ("m1", mass), ("m2", mass)) for word in ("--set", f"{name}={value}")]
@@ -366,7 +430,7 @@ class Filled(unittest.TestCase):
             self.assertEqual([line.strip() for line in "".join(groups).splitlines()], ["own, own-renamed"], (language, done.stdout))
 
     def alike_groups(self, scene, programs):
-        """The groups of programs that the summary calls alike in most statements, as sets of names."""
+        """The groups of programs that the pairs of the summary link, as sets of names; the remarks."""
         folder = tempfile.mkdtemp(dir=self.temporary.name)
         for name, text in programs.items():
             self.put(os.path.join(folder, f"{name}.c"), text)
@@ -374,8 +438,13 @@ class Filled(unittest.TestCase):
         self.assertIn(f"{len(programs)} graded, 0 not gradable", done.stdout)
         with open(folder + ".csv", encoding="utf-8") as f:
             remarks = {row["student"]: row["remark"] for row in csv.DictReader(f)}
-        found = re.search(r"(?s)programs that share 60 % or more .*? by chance\n((?:  .*\n)+)", done.stdout)
-        groups = [set(line.strip().split(": ")[0].split(", ")) for line in found[1].splitlines()] if found else []
+        found = re.search(r"(?s)pairs of programs that share 60 % or more of their statements, the most alike first .*? by chance\n((?:  .*\n)+)", done.stdout)
+        pairs = re.findall(r"(?m)^ +(\d+) %  (\S+), (\S+)$", found[1]) if found else []
+        shares, groups = [int(share) for share, *_ in pairs], []
+        self.assertEqual((len(pairs), shares), (len(found[1].splitlines()) if found else 0, sorted(shares, reverse=True)))
+        for _, *names in pairs:
+            linked = [group for group in groups if group & set(names)]
+            groups = [group for group in groups if group not in linked] + [set(names).union(*linked)]
         return groups, remarks
 
     def test_ten_honest_programs_are_not_called_alike(self):

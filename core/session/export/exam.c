@@ -20,6 +20,12 @@ const char *hn_export_part_name(hn_export_part part) {
     return PARTS[part].name;
 }
 
+const hn_ex *hn_export_exam_entry(const hn_export_exam *exam, hn_export_part part) {
+    const hn_exporter *e = &exam->e;
+    const hn_ex *const parts[HN_EXPORT_PARTS] = {e->M, e->x.f, e->J, e->x.gamma};
+    return parts[part];
+}
+
 static const double *copy(hn_arena *arena, const double *x, int n) {
     double *own = hn_arena_doubles(arena, (size_t)n + 1);
     if (own && n > 0) {
@@ -43,8 +49,9 @@ static void ask(hn_export_exam *exam, hn_eval *eval, const hn_export_state *at,
     out->still = copy(exam->arena, hn_eval_get(eval, HN_TERM_F), exam->nv);
 }
 
-/// The values of all symbols at a state: parameters, coordinates, velocities, time.
-static void put_symbols(const hn_exporter *e, const hn_export_question *at, double *x) {
+void hn_export_exam_symbols(const hn_export_exam *exam, int k, double *x) {
+    const hn_exporter *e = &exam->e;
+    const hn_export_question *at = &exam->question[k];
     const hn_scene *scene = hn_model_scene(e->model);
     for (int i = 0; i < scene->n_params; i++) {
         const int symbol = hn_graph_find_symbol(hn_system_graph(e->sys), scene->params[i].name);
@@ -64,9 +71,9 @@ static void put_symbols(const hn_exporter *e, const hn_export_question *at, doub
 }
 
 /// Splits each entry of the parts into its terms, and evaluates them at every state.
-static hn_status split_entries(hn_export_exam *exam, const hn_exporter *e) {
+static hn_status split_entries(hn_export_exam *exam) {
+    const hn_exporter *e = &exam->e;
     hn_graph *g = hn_system_graph(e->sys);
-    const hn_ex *const parts[HN_EXPORT_PARTS] = {e->M, e->x.f, e->J, e->x.gamma};
     double *x = hn_arena_doubles(exam->arena, (size_t)hn_graph_n_symbols(g) + 1);
     for (int part = 0; part < HN_EXPORT_PARTS; part++) {
         const size_t bytes = ((size_t)exam->size[part] + 1) * sizeof(hn_export_sum);
@@ -76,12 +83,12 @@ static hn_status split_entries(hn_export_exam *exam, const hn_exporter *e) {
         }
         for (int i = 0; i < exam->size[part]; i++) {
             hn_export_sum *sum = &exam->sum[part][i];
-            hn_ex term[HN_EXPORT_EXAM_TERMS];
-            sum->n = hn_angles_terms(g, parts[part][i], term, HN_EXPORT_EXAM_TERMS);
+            sum->n = hn_angles_terms(g, hn_export_exam_entry(exam, (hn_export_part)part)[i],
+                                     sum->term, HN_EXPORT_EXAM_TERMS);
             for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
-                put_symbols(e, &exam->question[k], x);
+                hn_export_exam_symbols(exam, k, x);
                 for (int m = 0; m < sum->n; m++) {
-                    sum->t[m][k] = hn_graph_eval(g, term[m], x);
+                    sum->t[m][k] = hn_graph_eval(g, sum->term[m], x);
                 }
             }
         }
@@ -89,7 +96,8 @@ static hn_status split_entries(hn_export_exam *exam, const hn_exporter *e) {
     return hn_graph_failed(g) ? HN_ERR_MEMORY : HN_OK;
 }
 
-static hn_status ask_all(hn_export_exam *exam, hn_exporter *e, hn_diags *diags) {
+static hn_status ask_all(hn_export_exam *exam, hn_diags *diags) {
+    hn_exporter *e = &exam->e;
     hn_eval *eval = NULL;
     const int nv = e->info.nv, nc = e->info.nc;
     exam->nq = e->info.nq;
@@ -115,27 +123,26 @@ static hn_status ask_all(hn_export_exam *exam, hn_exporter *e, hn_diags *diags) 
         }
     }
     hn_eval_free(eval);
-    HN_THEN(status, split_entries(exam, e));
+    HN_THEN(status, split_entries(exam));
     return status == HN_OK && hn_arena_failed(exam->arena) ? HN_ERR_MEMORY : status;
 }
 
 hn_status hn_export_exam_init(hn_export_exam *exam, const hn_model *model,
                               const hn_walk_limits *limits, hn_diags *diags) {
     *exam = (hn_export_exam){.arena = hn_arena_create(0)};
-    hn_exporter e = {.model = model,
-                     .arena = exam->arena,
-                     .limits = limits ? *limits : (hn_walk_limits){0},
-                     .started = hn_clock_thread()};
+    exam->e = (hn_exporter){.model = model,
+                            .arena = exam->arena,
+                            .limits = limits ? *limits : (hn_walk_limits){0},
+                            .started = hn_clock_thread()};
     if (!exam->arena) {
         return HN_ERR_MEMORY;
     }
-    hn_status status = hn_export_states_find(&e, diags);
-    HN_THEN(status, ask_all(exam, &e, diags));
-    hn_system_free(e.sys);
-    return status;
+    const hn_status status = hn_export_states_find(&exam->e, diags);
+    return status == HN_OK ? ask_all(exam, diags) : status;
 }
 
 void hn_export_exam_reset(hn_export_exam *exam) {
+    hn_system_free(exam->e.sys);
     hn_arena_free(exam->arena);
     *exam = (hn_export_exam){0};
 }

@@ -4,9 +4,7 @@
 // Expected values of the parts of an exported program that a student fills in (export --blanks):
 // mass, force, jacobian and bias at states of the motion.
 
-#include "base/arena.h"
-#include "session/model/model.h"
-#include "study/run/walk.h"
+#include "session/export/places.h"
 
 enum { HN_EXPORT_EXAM_STATES = 5, HN_EXPORT_EXAM_TERMS = 12 };
 
@@ -32,6 +30,7 @@ typedef struct hn_export_question {
 /// The terms whose sum an entry is: t[i][k] is the value of term i at state k. n = 0: not known.
 typedef struct hn_export_sum {
     int n;
+    hn_ex term[HN_EXPORT_EXAM_TERMS];
     double t[HN_EXPORT_EXAM_TERMS][HN_EXPORT_EXAM_STATES];
 } hn_export_sum;
 
@@ -41,6 +40,7 @@ typedef struct hn_export_exam {
     int size[HN_EXPORT_PARTS], columns[HN_EXPORT_PARTS]; ///< of a part; columns 0: a vector
     hn_export_question question[HN_EXPORT_EXAM_STATES];
     hn_export_sum *sum[HN_EXPORT_PARTS]; ///< size of each part
+    hn_exporter e;                       ///< whose expressions exam_changes.h evaluates; owned
 } hn_export_exam;
 
 /// Works out the exam of a model. hn_export_exam_reset() in any case.
@@ -48,5 +48,10 @@ typedef struct hn_export_exam {
 HN_MUST_CHECK hn_status hn_export_exam_init(hn_export_exam *exam, const hn_model *model,
                                             const hn_walk_limits *limits, hn_diags *diags);
 void hn_export_exam_reset(hn_export_exam *exam);
+/// Returns the expressions of a part, entry by entry.
+const hn_ex *hn_export_exam_entry(const hn_export_exam *exam, hn_export_part part);
+/// Writes the values of all symbols of the graph at state k to x: parameters, coordinates,
+/// velocities, time.
+void hn_export_exam_symbols(const hn_export_exam *exam, int k, double *x);
 
 #endif
