@@ -37,6 +37,9 @@ struct hn_recording {
     _Atomic(hn_true_motion *) truth; ///< owned; NULL: none, or not yet
     atomic_int frames, wanted;
     atomic_bool stop, asked; ///< asked: the reference is being fetched or computed
+    double limit;            ///< of computing [s]; 0: none; set before the thread starts
+    atomic_bool out_of_time; ///< the limit ended the recording
+    _Atomic double computed; ///< by the thread up to the last frame [s]
     int n_errors;            ///< frames whose errors are known; of the reader
     hn_model *own_model;     ///< owned, of the thread that computes a reference; NULL: none
     pthread_t truth_thread;
@@ -203,6 +206,12 @@ static bool wait_for_work(hn_recording *r) {
     return !atomic_load(&r->stop);
 }
 
+/// Whether a frame is to be left unfinished: the thread ends, or its computing time is used up.
+static int must_break(void *user) {
+    hn_recording *r = user;
+    return atomic_load(&r->stop) || (r->limit > 0 && hn_clock_thread() >= r->limit);
+}
+
 static void *record(void *user) {
     hn_recording *r = user;
     hn_diags diags = {0};
@@ -211,10 +220,15 @@ static void *record(void *user) {
     atomic_store(&r->asked, false);
     while (atomic_load(&r->frames) <= r->last && wait_for_work(r)) {
         const double start = hn_clock_wall();
-        hn_comparison_next(r->comparison);
+        if (must_break(r) || !hn_comparison_work(r->comparison, must_break, r)) {
+            break;
+        }
         keep_frame(r, atomic_load(&r->frames));
         atomic_store(&r->frame_seconds, hn_clock_wall() - start);
+        atomic_store(&r->computed, hn_clock_thread());
     }
+    const bool is_whole = atomic_load(&r->frames) > r->last;
+    atomic_store(&r->out_of_time, !is_whole && !atomic_load(&r->stop));
     return NULL;
 }
 
@@ -268,9 +282,9 @@ static bool allocate(hn_recording *r) {
 }
 
 static hn_status open_comparison(hn_recording *r, const char *const *methods, int n_methods,
-                                 double duration, hn_diags *diags) {
+                                 hn_diags *diags) {
     hn_comparison_opts opts = hn_comparison_opts_default();
-    const double end = duration > 0 ? duration : hn_model_scene(r->model)->duration;
+    const double end = hn_model_scene(r->model)->duration;
     opts.duration = end;
     HN_TRY(hn_comparison_create(r->model, methods, n_methods, &opts, &r->comparison, diags));
 
@@ -293,12 +307,13 @@ static hn_status open_comparison(hn_recording *r, const char *const *methods, in
 }
 
 hn_status hn_recording_create(const hn_model *model, const char *const *methods, int n_methods,
-                              double duration, hn_recording **out, hn_diags *diags) {
+                              double limit, hn_recording **out, hn_diags *diags) {
     hn_recording *r = calloc(1, sizeof *r);
     if (!r) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     r->model = model;
+    r->limit = limit;
     r->n_errors = 1; // all methods start where the reference does
     pthread_mutex_init(&r->lock, NULL);
     pthread_cond_init(&r->more, NULL);
@@ -306,7 +321,7 @@ hn_status hn_recording_create(const hn_model *model, const char *const *methods,
     atomic_store(&r->asked, true);
 
     // nothing runs before all memory is there
-    hn_status status = open_comparison(r, methods, n_methods, duration, diags);
+    hn_status status = open_comparison(r, methods, n_methods, diags);
     if (status == HN_OK && !allocate(r)) {
         status = hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
@@ -376,6 +391,14 @@ void hn_recording_want(hn_recording *r, int frame) {
 
 int hn_recording_frames(const hn_recording *r) {
     return atomic_load(&r->frames);
+}
+
+bool hn_recording_is_out_of_time(const hn_recording *r) {
+    return atomic_load(&r->out_of_time);
+}
+
+double hn_recording_computed(const hn_recording *r) {
+    return atomic_load(&r->computed);
 }
 
 int hn_recording_last(const hn_recording *r) {

@@ -40,20 +40,22 @@ typedef struct hn_track_end {
     char reason[480];
 } hn_track_end;
 
-/// Starts recording; the model must outlive it. duration 0: the scene's. Faults of a spelling are
-/// in diags ("/methods/2").
+/// Starts recording the scene's duration; the model must outlive it. limit: of computing time [s],
+/// after which no frame follows; 0: none. Faults of a spelling are in diags ("/methods/2").
 HN_MUST_CHECK hn_status hn_recording_create(const hn_model *model, const char *const *methods,
-                                            int n_methods, double duration, hn_recording **out,
+                                            int n_methods, double limit, hn_recording **out,
                                             hn_diags *diags);
-/// Stops the thread after the frame that it is at, and frees all.
+/// Stops the thread within the frame that it is at, and frees all.
 void hn_recording_free(hn_recording *r);
 
 /// Asks for all frames up to this one.
 void hn_recording_want(hn_recording *r, int frame);
 int hn_recording_frames(const hn_recording *r);      ///< recorded so far, at least 1
-int hn_recording_last(const hn_recording *r);        ///< index of the frame at the duration
-double hn_recording_frame_dt(const hn_recording *r); ///< [s]
-double hn_recording_duration(const hn_recording *r); ///< [s]
+double hn_recording_computed(const hn_recording *r); ///< computing time of its frames so far [s]
+bool hn_recording_is_out_of_time(const hn_recording *r); ///< its limit ended it before its end
+int hn_recording_last(const hn_recording *r);            ///< index of the frame at the duration
+double hn_recording_frame_dt(const hn_recording *r);     ///< [s]
+double hn_recording_duration(const hn_recording *r);     ///< [s]
 /// The time of a frame; the last one may begin within the duration and reach beyond: it counts as
 /// the end [s].
 double hn_recording_time(const hn_recording *r, int frame);

@@ -6,7 +6,7 @@
 
 #include "tui/workbench.h"
 
-enum { HN_WHY_WORDS = 320 };
+enum { HN_WHY_WORDS = 480 };
 
 /// Whether an incident of the selected method has a remedy.
 bool hn_why_has_remedy(const hn_workbench *w);

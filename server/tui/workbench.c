@@ -280,6 +280,18 @@ static bool only_drifts(const hn_workbench *w, const char *spelling) {
            !(spec.formulation->traits & cares);
 }
 
+/// When the selected method, which is wrong now, went wrong first [s]: what it did stays worst.
+static double wrong_since(const hn_workbench *w) {
+    int right = 0, wrong = hn_workbench_frame(w);
+    while (wrong - right > 1) {
+        const int middle = (right + wrong) / 2;
+        const bool bad =
+            hn_recording_verdict(w->recording, w->selected, middle).tone == HN_TONE_BAD;
+        *(bad ? &wrong : &right) = middle;
+    }
+    return hn_recording_time(w->recording, wrong);
+}
+
 /// While the card of a method is open that went on and is wrong: has shorter steps tried.
 static void try_steps(hn_workbench *w) {
     const char *spelling = w->methods[w->selected];
@@ -297,7 +309,8 @@ static void try_steps(hn_workbench *w) {
     hn_diags diags = {0};
     hn_step_trial_free(w->step_trial);
     w->step_trial = NULL;
-    if (hn_step_trial_start(w->library, &source, spelling, &w->step_trial, &diags) != HN_OK) {
+    const hn_step_trial_request request = {.spelling = spelling, .wrong_at = wrong_since(w)};
+    if (hn_step_trial_start(w->library, &source, &request, &w->step_trial, &diags) != HN_OK) {
         memcpy(w->untried, spelling, sizeof w->untried);
     }
 }
