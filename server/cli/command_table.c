@@ -56,7 +56,7 @@ static const hn_command COMMANDS[] = {
      "gets "
      "a table that fits it unless a format is asked for",
      MODEL_OPTIONS " --allow-programs --trust-programs --answer-time --method --time --at --every "
-                   "--raw-lambda --reactions --format=csv|ndjson|json --plot",
+                   "--raw-lambda --reactions --format=csv|ndjson|json --plot --wide",
      1, 1, hn_command_run},
     {"compare", "SCENE", "run several methods side by side: which are right, and what they cost",
      MODEL_OPTIONS

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terminal/width.h"
 
+#include <curses.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <term.h>
 #include <unistd.h>
+
+#undef columns // term.h makes a macro of it
 
 enum { LEAST = 40, MOST = 300, USUAL = 80 };
 
@@ -49,7 +53,18 @@ int hn_terminal_error_limit(void) {
     return limit_of(STDERR_FILENO);
 }
 
+/// Whether the terminal is known, and its description says that it has colours.
+static bool has_colours(const char *term) {
+    int known = 0;
+    bool has = false;
+    if (term && term[0] && setupterm(term, STDOUT_FILENO, &known) == OK) {
+        has = tigetnum("colors") > 0;
+        del_curterm(cur_term);
+    }
+    return has;
+}
+
 bool hn_terminal_colours(void) {
-    const char *no = getenv("NO_COLOR"), *term = getenv("TERM");
-    return isatty(STDOUT_FILENO) && !(no && no[0]) && term && strcmp(term, "dumb") != 0;
+    const char *no = getenv("NO_COLOR");
+    return isatty(STDOUT_FILENO) && !(no && no[0]) && has_colours(getenv("TERM"));
 }

@@ -2,8 +2,11 @@
 #include "tui/link.h"
 
 #include "base/shortest.h"
+#include "base/suggest.h"
+#include "cli/shell/args.h"
 
 #include <ctype.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,34 +56,93 @@ static void unescape(char *text) {
     *to = '\0';
 }
 
+/// Fields of the page's links (web/state/link.js) that a terminal has no use for.
+static const char *const OF_THE_PAGE[] = {
+    "hidden", "show",   "look",  "camera", "upper",  "lower", "zoom",   "why",  "speed", "study",
+    "map",    "judged", "until", "step",   "budget", "panel", "lesson", "note", "build"};
+/// Those that are read here; "set." begins the name of a parameter.
+static const char *const FIELDS[] = {"scene", "method", "frame", "selected", "pulls", "set."};
+enum {
+    N_OF_THE_PAGE = sizeof OF_THE_PAGE / sizeof *OF_THE_PAGE,
+    N_FIELDS = sizeof FIELDS / sizeof *FIELDS
+};
+
+HN_PRINTF(2, 3) static void add_fault(hn_tui_link *link, const char *format, ...) {
+    const size_t n = strlen(link->faults);
+    va_list list;
+    if (n + 3 < sizeof link->faults) {
+        snprintf(link->faults + n, sizeof link->faults - n, "%s", n > 0 ? "; " : "");
+        const size_t at = strlen(link->faults);
+        va_start(list, format);
+        vsnprintf(link->faults + at, sizeof link->faults - at, format, list);
+        va_end(list);
+    }
+}
+
 static void take_setting(hn_tui_link *link, const char *name, const char *value) {
-    if (link->n_settings < HN_TUI_SETTINGS) {
+    double number;
+    if (!hn_number_parse(value, &number)) {
+        add_fault(link, "%.40s is '%.40s', which is no number; it has the scene's value", name,
+                  value);
+    } else if (link->n_settings < HN_TUI_SETTINGS) {
         char *to = link->names[link->n_settings];
         snprintf(to, sizeof *link->names, "%s", name);
-        link->settings[link->n_settings++] = (hn_setting){to, strtod(value, NULL)};
+        link->settings[link->n_settings++] = (hn_setting){to, number};
+    } else {
+        add_fault(link, "more than %d parameters; '%.40s' is left out", HN_TUI_SETTINGS, name);
+    }
+}
+
+static void take_method(hn_tui_link *link, const char *value) {
+    if (link->n_methods < HN_COMPARISON_MAX_METHODS) {
+        snprintf(link->methods[link->n_methods++], HN_SPEC_MAX, "%.250s", value);
+    } else {
+        add_fault(link, "more than %d methods; '%.60s' is left out", HN_COMPARISON_MAX_METHODS,
+                  value);
     }
 }
 
 /// A whole number from 0 to `most`; a value that is none leaves what was there.
-static void take_number(int *to, const char *value, double most) {
-    char *end;
-    const double number = strtod(value, &end);
-    if (end != value && *end == '\0' && number >= 0 && number <= most) {
+static void take_number(hn_tui_link *link, int *to, const char *name, const char *value,
+                        double most) {
+    double number;
+    if (hn_number_parse(value, &number) && number >= 0 && number <= most) {
         *to = (int)number;
+    } else {
+        add_fault(link, "%s is '%.40s'; a number from 0 to %g is needed", name, value, most);
     }
+}
+
+/// A field that is not read: one of the page alone, or misspelt.
+static void take_other(hn_tui_link *link, const char *name) {
+    const char *names[N_FIELDS + N_OF_THE_PAGE];
+    char hint[HN_DIAG_HINT];
+    memcpy(names, FIELDS, sizeof FIELDS);
+    memcpy(names + N_FIELDS, OF_THE_PAGE, sizeof OF_THE_PAGE);
+    for (int i = 0; i < N_OF_THE_PAGE; i++) {
+        if (strcmp(name, OF_THE_PAGE[i]) == 0) {
+            return;
+        }
+    }
+    hn_suggest(hint, name, names, N_FIELDS + N_OF_THE_PAGE, "");
+    add_fault(link, "no field is called '%.40s'%s%s", name, hint[0] ? "; " : "", hint);
 }
 
 static void take_item(hn_tui_link *link, const char *name, const char *value) {
     if (strcmp(name, "scene") == 0) {
         snprintf(link->scene, sizeof link->scene, "%s", value);
-    } else if (strcmp(name, "method") == 0 && link->n_methods < HN_COMPARISON_MAX_METHODS) {
-        snprintf(link->methods[link->n_methods++], HN_SPEC_MAX, "%.250s", value);
+    } else if (strcmp(name, "method") == 0) {
+        take_method(link, value);
     } else if (strncmp(name, "set.", 4) == 0) {
         take_setting(link, name + 4, value);
     } else if (strcmp(name, "frame") == 0) {
-        take_number(&link->frame, value, 1e6);
+        take_number(link, &link->frame, name, value, 1e6);
     } else if (strcmp(name, "selected") == 0) {
-        take_number(&link->selected, value, HN_COMPARISON_MAX_METHODS - 1);
+        take_number(link, &link->selected, name, value, HN_COMPARISON_MAX_METHODS - 1);
+    } else if (strcmp(name, "pulls") == 0) {
+        add_fault(link, "a hand pulls at the mechanism there; here the motion is without it");
+    } else {
+        take_other(link, name);
     }
 }
 
@@ -92,10 +154,20 @@ bool hn_workbench_read_link(const char *text, hn_tui_link *link) {
         return false;
     }
     snprintf(copy, sizeof copy, "%s", hash ? hash + 1 : text);
+    if (strlen(hash ? hash + 1 : text) >= sizeof copy) {
+        add_fault(link, "what is behind its %zu bytes is left out", sizeof copy - 1);
+    }
+    const bool is_scene = !strchr(copy, '='); // the name of a scene alone
     for (char *rest = copy, *item = strsep(&rest, "&"); item; item = strsep(&rest, "&")) {
         char *value = strchr(item, '=');
-        if (!value) {
+        if (is_scene) {
             snprintf(link->scene, sizeof link->scene, "%s", item);
+            continue;
+        }
+        if (!value) {
+            if (*item) {
+                add_fault(link, "'%.40s' has no value", item);
+            }
             continue;
         }
         *value++ = '\0';

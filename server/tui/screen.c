@@ -55,6 +55,7 @@ static struct {
     double questioned_at;
     char answer[128];
     const char *farewell; ///< before the terminal is left
+    char back[256];       ///< sequences that put the terminal back
 } screen;
 
 // ---- leaving the terminal as it was ----
@@ -73,12 +74,34 @@ static void swallow_answer(void) {
     }
 }
 
+/// What undoes the modes that ncurses sets: keys, colours, the cursor, the other screen with the
+/// title of the window. Made beforehand, as a handler of signals may not ask for it.
+static void prepare_restoring(void) {
+    static const char *const names[] = {"rmkx", "sgr0", "op", "cnorm", "rmcup"};
+    size_t n = 0;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *at = tigetstr(names[i]);
+        at = at && at != (char *)-1 ? at : "";
+        while (*at && n + 2 < sizeof screen.back) {
+            const char *end = strncmp(at, "$<", 2) == 0 ? strchr(at, '>') : NULL;
+            if (end) { // a pause for a slow terminal
+                at = end + 1;
+            } else {
+                screen.back[n++] = *at++;
+            }
+        }
+    }
+    screen.back[n] = '\r';
+    screen.back[n + 1] = '\0';
+}
+
 /// Only calls that a signal may interrupt: writes the sequences that ncurses would have written.
 static void restore_and_die(int number) {
-    static const char back[] = "\033[?1000l\033[?1002l\033[?1006l\033[0m\033[?25h\033[?1049l\r";
+    static const char no_mouse[] = "\033[?1000l\033[?1002l\033[?1006l";
     const char *farewell = screen.farewell ? screen.farewell : "";
     const ssize_t ignored = write(STDOUT_FILENO, farewell, strlen(farewell)) +
-                            write(STDOUT_FILENO, back, sizeof back - 1);
+                            write(STDOUT_FILENO, no_mouse, screen.mouse ? strlen(no_mouse) : 0) +
+                            write(STDOUT_FILENO, screen.back, strlen(screen.back));
     (void)ignored;
     if ((screen.asked && screen.answers) || screen.questions > 0) {
         swallow_answer();
@@ -368,6 +391,9 @@ bool hn_screen_open(int theme, bool colours) {
         return false;
     }
     screen.open = true;
+    prepare_restoring();
+    atexit(hn_screen_close);
+    watch_signals();
     screen.colours = colours && has_colors();
     if (screen.colours) {
         make_colours(theme);
@@ -386,8 +412,6 @@ bool hn_screen_open(int theme, bool colours) {
     prepare_asking();
     ask_early();
     screen.mouse = has_mouse();
-    atexit(hn_screen_close);
-    watch_signals();
     return true;
 }
 

@@ -17,8 +17,6 @@
 #include <poll.h>
 #include <string.h>
 
-static const double FRAME = 1.0 / 20; // [s] between two pictures; a slow line shows fewer
-
 static const double LATE = 1.5; // [s] until a picture of pixels has arrived
 
 /// What is on the screen.
@@ -183,7 +181,7 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
 
         // all keys that have come, so that nothing lags behind a held key
         hn_mouse mouse = {0};
-        int key = hn_screen_key(FRAME, &mouse);
+        int key = hn_screen_key(HN_TUI_FRAME, &mouse);
         while (key != HN_KEY_NONE && !w->quit) {
             obey(w, &v, key, mouse);
             key = hn_screen_key(0, &mouse);

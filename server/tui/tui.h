@@ -5,6 +5,8 @@
 
 #include "tui/workbench.h"
 
+static const double HN_TUI_FRAME = 1.0 / 20; ///< [s] between two pictures; a slow line shows fewer
+
 typedef struct hn_tui_opts {
     bool ascii, blocks; ///< dots in ASCII or quadrants; neither: braille
     bool colours;

@@ -505,9 +505,8 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
     hn_plot_draw(c, inside, &plot, w->form);
 }
 
-/// The least size of a screen for what is shown: with less the views would be empty, or lie over
-/// each other.
-static void find_least_size(const hn_workbench *w, int *columns, int *rows) {
+// with less the views would be empty, or lie over each other
+void hn_views_least_size(const hn_workbench *w, int *columns, int *rows) {
     const bool views = w->panel == HN_PANEL_MAIN;
     // the header, the views, the table with its frame, the notice, the keys
     const int needed = 1 + LEAST_VIEW_ROWS + w->n_methods + 2 + NOTICE_ROWS + 1;
@@ -517,7 +516,7 @@ static void find_least_size(const hn_workbench *w, int *columns, int *rows) {
 
 bool hn_views_too_small(const hn_workbench *w, int columns, int rows) {
     int least_columns, least_rows;
-    find_least_size(w, &least_columns, &least_rows);
+    hn_views_least_size(w, &least_columns, &least_rows);
     return columns < least_columns || rows < least_rows;
 }
 
@@ -528,7 +527,7 @@ static bool draw_too_small(hn_cells *c, const hn_workbench *w) {
     if (!hn_views_too_small(w, c->columns, c->rows)) {
         return false;
     }
-    find_least_size(w, &columns, &rows);
+    hn_views_least_size(w, &columns, &rows);
     snprintf(words, sizeof words, "%dx%d is too small: %dx%d is needed; q quits", c->columns,
              c->rows, columns, rows);
     hn_cells_fold(c, (hn_area){0, 0, c->columns, c->rows}, 0, HN_CELL_ALARM, words);

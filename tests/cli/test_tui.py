@@ -200,7 +200,11 @@ class Keys(unittest.TestCase):
             terminal = self.open("four-bar")
             terminal.process.send_signal(number)
             self.assertEqual(terminal.ended(), -number)
-            self.assertIn(b"\033[?1049l", terminal.seen)
+            # each mode that was set is what it was: keys, mouse, the other screen; the title comes back
+            modes = dict(re.findall(rb"\033\[\?(\d+)([hl])", terminal.seen))
+            self.assertEqual((modes[b"1049"], modes[b"1"], modes[b"25"], modes[b"1006"]), (b"l", b"l", b"h", b"l"), number)
+            self.assertEqual(re.findall(rb"\033([=>])", terminal.seen)[-1], b">")
+            self.assertEqual(terminal.seen.count(b"\033[22;0;0t"), terminal.seen.count(b"\033[23;0;0t"))
             self.assertEqual(termios.tcgetattr(terminal.slave)[3] & termios.ECHO, terminal.modes[3] & termios.ECHO)
 
     def test_it_ends_after_the_pictures_asked_for(self):

@@ -16,6 +16,7 @@
 #include "terminal/motion_plot.h"
 #include "terminal/width.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -154,6 +155,17 @@ static void take_exhibit(const hn_model *model, const char *method, hn_strbuf *e
     }
 }
 
+/// The least time between two samples of a request [s].
+static double spacing_of(const hn_run_request *r) {
+    enum { SAMPLES = 200 }; // where no times are asked for
+    double least = r->every > 0 ? r->every : r->time / SAMPLES;
+    for (int i = 0; r->at && i < r->n_at; i++) {
+        const double step = r->at[i] - (i > 0 ? r->at[i - 1] : 0);
+        least = i == 0 ? (step > 0 ? step : least) : step > 0 ? fmin(least, step) : least;
+    }
+    return least;
+}
+
 /// `rows`: prints them as they are made; NULL: the document alone.
 static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_rows *rows,
                            hn_strbuf *b, hn_strbuf *exhibit, hn_status *ended, hn_diags *diags) {
@@ -173,6 +185,10 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_run_ro
                                   .row = rows ? take_row : NULL,
                                   .row_user = rows,
                                   .user = &progress};
+        if (rows) {
+            rows->spacing = spacing_of(&request);
+        }
+
         // rows on a terminal are progress enough
         request.progress = rows && isatty(STDOUT_FILENO) ? NULL : tell_progress;
 
@@ -288,7 +304,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     hn_run_rows rows = {.ndjson = format && strcmp(format, "ndjson") == 0};
     // a terminal gets a table that fits it, unless a format is asked for
     if (!args->format && !args->json && isatty(STDOUT_FILENO)) {
-        rows.width = hn_terminal_limit();
+        rows.width = args->wide ? INT_MAX : hn_terminal_limit();
     }
     const bool streams = format && strcmp(format, "json") != 0 && !args->plot;
     hn_status status =

@@ -181,14 +181,27 @@ static void put_table_head(hn_strbuf *b, const hn_run_rows *rows, column *column
     hn_strbuf_add(b, "\n");
 }
 
+/// A time with three digits of what lies between two rows, five at least behind the point.
+static void put_time(hn_strbuf *b, double t, double spacing, int wide) {
+    enum { LEAST = 5, MOST = NUMBER_COLUMNS };
+    const int digits = spacing > 0 ? 2 - (int)floor(log10(spacing)) : LEAST;
+    if (digits > MOST) {
+        hn_strbuf_printf(b, "%*.5e", wide, t);
+    } else {
+        hn_strbuf_printf(b, "%*.*f", wide, digits < LEAST ? LEAST : digits, t);
+    }
+}
+
 /// Points stand below each other; the time, which rises evenly, needs no power of ten.
 static void put_table_row(hn_strbuf *b, const hn_run_rows *rows, const double *values) {
     for (int i = 0; i < rows->n_shown; i++) {
         const int c = rows->shown[i], wide = rows->width_of[c];
         if (!isfinite(values[c])) {
             hn_strbuf_printf(b, "%*s", wide, "-");
+        } else if (c == 0) {
+            put_time(b, values[c], rows->spacing, wide);
         } else {
-            hn_strbuf_printf(b, c == 0 ? "%*.5f" : "%*.4e", wide, values[c]);
+            hn_strbuf_printf(b, "%*.4e", wide, values[c]);
         }
     }
     hn_strbuf_add(b, "\n");

@@ -10,9 +10,10 @@
 
 typedef struct hn_run_rows {
     bool ndjson;
-    int width;     ///< [columns] 0: CSV or NDJSON; else a table for people that fits them
-    int *shown;    ///< of that table: its columns; owned
-    int *width_of; ///< and how wide each is; owned
+    int width;      ///< [columns] 0: CSV or NDJSON; else a table for people that fits them
+    double spacing; ///< of such a table: least time between two rows [s]; 0: not known
+    int *shown;     ///< of that table: its columns; owned
+    int *width_of;  ///< and how wide each is; owned
     int n_shown;
     bool begun;     ///< the head was printed
     bool failed;    ///< memory ran out

@@ -10,6 +10,7 @@
 #include "cli/shell/scene_word.h"
 #include "render/look.h"
 #include "terminal/keys.h"
+#include "terminal/width.h"
 #include "tui/foreground.h"
 #include "tui/link.h"
 #include "tui/views.h"
@@ -89,11 +90,6 @@ static hn_status check_keys(const char *text, hn_diags *diags) {
     return HN_OK;
 }
 
-static bool colours_wanted(void) {
-    const char *no = getenv("NO_COLOR"), *term = getenv("TERM");
-    return !(no && no[0]) && !(term && strcmp(term, "dumb") == 0);
-}
-
 /// --t is a time of the motion.
 static hn_status check_time(double t, const hn_workbench *w, hn_diags *diags) {
     const double end = hn_recording_duration(w->recording);
@@ -104,14 +100,47 @@ static hn_status check_time(double t, const hn_workbench *w, hn_diags *diags) {
     return HN_OK;
 }
 
+/// A frame as text needs room for all its views.
+static hn_status check_size(const hn_args *args, const hn_workbench *w, const hn_tui_opts *opts,
+                            hn_diags *diags) {
+    int columns, rows;
+    hn_views_least_size(w, &columns, &rows);
+    if (args->size && (opts->columns < columns || opts->rows < rows)) {
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/size", NULL,
+            "--size is '%.40s', which is too small for %d method%s; %dx%d is needed", args->size,
+            w->n_methods, w->n_methods == 1 ? "" : "s", columns, rows);
+    }
+    return HN_OK;
+}
+
+/// The frames as text: one, at the end of the motion unless a time is given, or with --frames as
+/// many as a terminal would show from the start on.
+static void add_frames(hn_strbuf *b, const hn_args *args, hn_workbench *w, hn_tui_opts *opts,
+                       bool paused) {
+    const double end = hn_recording_duration(w->recording);
+    const int n = args->once || opts->frames == 0 ? 1 : opts->frames;
+    double t = !isnan(args->t) ? args->t
+               : paused        ? w->clock * hn_recording_frame_dt(w->recording)
+               : n > 1         ? 0
+                               : end;
+    for (int i = 0; i < n; i++) {
+        hn_strbuf_add(b, i > 0 ? "\n" : "");
+        opts->t = t;
+        hn_tui_frame(b, w, opts);
+        opts->keys = NULL; // they were typed
+        t = fmin(t + HN_TUI_FRAME * w->speed, end);
+    }
+}
+
 /// `paused`: a link names the frame, which --t alone changes.
-static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, bool paused) {
+static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, bool paused,
+                    hn_diags *diags) {
     const bool terminal = isatty(STDOUT_FILENO) && isatty(STDIN_FILENO);
-    opts->colours = colours_wanted() && isatty(STDOUT_FILENO);
+    opts->colours = hn_terminal_colours();
     if (terminal && !args->once) {
         // a terminal that cannot place its cursor would show a heap of lines
         const char *name = getenv("TERM");
-        opts->colours = opts->colours && name && strcmp(name, "dumb") != 0;
         if (!hn_foreground_wait()) {
             hn_cli_note("holonom: tui was started in the background, where it can neither draw nor "
                         "read keys; start it without &, or use --once for one frame as text\n");
@@ -126,12 +155,13 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
     }
 
     // no terminal, or one frame was asked for
+    const hn_status status = check_size(args, w, opts, diags);
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, diags);
+    }
     hn_strbuf b;
     hn_strbuf_init(&b);
-    const double otherwise = paused ? w->clock * hn_recording_frame_dt(w->recording)
-                                    : hn_recording_duration(w->recording);
-    opts->t = isnan(args->t) ? otherwise : args->t;
-    hn_tui_frame(&b, w, opts);
+    add_frames(&b, args, w, opts, paused);
     if (opts->ascii) {
         hn_strbuf plain;
         hn_strbuf_init(&plain);
@@ -173,6 +203,9 @@ static hn_status open_workbench(hn_workbench *w, const hn_library *lib, const hn
     const bool is_link = args->methods.n == 0 && args->set.n == 0 && args->words.n > 0 &&
                          strcmp(args->words.word[0], o->scene) != 0;
     char said[HN_TUI_MESSAGE] = "";
+    if (o->faults[0]) {
+        snprintf(said, sizeof said, "the link: %.*s", HN_TUI_MESSAGE - 16, o->faults);
+    }
     for (;;) {
         const hn_status status = hn_workbench_open(w, lib, o->scene, o->settings, o->n_settings,
                                                    methods, o->n_methods, diags);
@@ -218,7 +251,7 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     }
     hn_workbench_go_to_link(&w, &o);
     status = check_time(args->t, &w, &diags);
-    const hn_exit result = status == HN_OK ? show(args, &w, &opts, o.frame >= 0)
+    const hn_exit result = status == HN_OK ? show(args, &w, &opts, o.frame >= 0, &diags)
                                            : hn_report_diags(args, status, &diags);
     hn_workbench_close(&w);
     return result;

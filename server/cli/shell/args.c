@@ -96,7 +96,7 @@ static const option OPTIONS[] = {
     {"--keys", "KEYS", OPTION_TEXT, AT(keys),
      "keys pressed before the frame of --once: characters, and names such as <Enter> or <Down>"},
     {"--once", NULL, OPTION_FLAG, AT(once), "print one frame as text, at the time --t"},
-    {"--frames", "N", OPTION_COUNT, AT(frames), "end after N pictures"},
+    {"--frames", "N", OPTION_COUNT, AT(frames), "end after N pictures (text in a pipe)"},
     {"--ascii", NULL, OPTION_FLAG, AT(ascii), "ASCII characters only"},
     {"--pictures", "auto|kitty|sixel|off", OPTION_TEXT, AT(pictures),
      "how the mechanism is drawn: as a picture by kitty graphics or sixels, or in characters; auto "
@@ -329,7 +329,9 @@ static hn_status report_unknown(const hn_command *command, const char *name, hn_
     const hn_field *fields[MOST_FIELDS];
     char hint[HN_DIAG_HINT], field_names[MOST_FIELDS][OPTION_NAME];
     int n = 0;
+    bool is_slip = true; // an option of another command is none
     for (int i = 0; i < N_OPTIONS; i++) {
+        is_slip = is_slip && strcmp(OPTIONS[i].name, name) != 0;
         if (is_offered(command, &OPTIONS[i])) {
             names[n++] = OPTIONS[i].name;
         }
@@ -341,7 +343,7 @@ static hn_status report_unknown(const hn_command *command, const char *name, hn_
     }
     char help[80];
     snprintf(help, sizeof help, "'holonom help %.40s' lists its options", command->name);
-    hn_suggest(hint, name, names, n, help);
+    hn_suggest(hint, name, names, is_slip ? n : 0, help);
     return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%s' has no option '%.60s'", command->name,
                        name);
 }
