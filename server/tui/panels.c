@@ -225,9 +225,12 @@ static const char MISSING_TERM[] = "it solves     N' M N du/dt = N' f\n"
 static void show_equations(hn_workbench *w) {
     hn_diags diags = {0};
     hn_text_panel_open(w, "equations of motion: Esc goes back");
-    const hn_track *track = hn_recording_track(w->recording, w->selected);
-    if (strncmp(track->spelling, AS_PRINTED, strlen(AS_PRINTED)) == 0) {
-        hn_strbuf_printf(&w->text, "%s: %s\n%s\n", track->name, track->rule, MISSING_TERM);
+    for (int m = 0; m < w->n_methods; m++) { // whichever is selected
+        const hn_track *track = hn_recording_track(w->recording, m);
+        if (strncmp(track->spelling, AS_PRINTED, strlen(AS_PRINTED)) == 0) {
+            hn_strbuf_printf(&w->text, "%s: %s\n%s\n", track->name, track->rule, MISSING_TERM);
+            break;
+        }
     }
     if (hn_model_equations(&w->text, w->model, HN_EQUATIONS_TEXT, &diags) != HN_OK) {
         w->panel = HN_PANEL_MAIN;

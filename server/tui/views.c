@@ -407,6 +407,20 @@ static void put_number(hn_cells *c, hn_area area, int right, int y, double value
     hn_cells_put(c, area, right - hn_text_columns(text), y, HN_CELL_INK, 0, text);
 }
 
+/// Puts words of a verdict that say the same in less room, until it fits.
+static void shorten(char *line, int room) {
+    static const char *const words[][2] = {{" from the true motion", " off"},
+                                           {"model error: closed, but ", "model error: "}};
+    for (size_t i = 0; i < sizeof words / sizeof *words && hn_text_columns(line) > room; i++) {
+        char *at = strstr(line, words[i][0]);
+        if (at) {
+            const char *rest = at + strlen(words[i][0]);
+            memcpy(at, words[i][1], strlen(words[i][1]));
+            memmove(at + strlen(words[i][1]), rest, strlen(rest) + 1);
+        }
+    }
+}
+
 static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, int frame) {
     const hn_track *track = hn_recording_track(w->recording, m);
     const table_columns at = lay_out(w, area.columns);
@@ -426,6 +440,7 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     char line[HN_MOTION_VERDICT_TEXT + 32];
     snprintf(line, sizeof line, "%s %s%s%s", v.arrow, w->hidden[m] ? "(hidden) " : "",
              track->model_error ? "model error: " : "", v.text);
+    shorten(line, area.columns - at.verdict);
     hn_cells_put_fitted(c, area, at.verdict, m, calm ? HN_CELL_INK : HN_CELL_ALARM,
                         calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);
 }

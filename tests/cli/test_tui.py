@@ -499,6 +499,18 @@ class Keys(unittest.TestCase):
     def test_a_model_error_is_said_in_the_table(self):
         _, out, _ = once("four-bar", "--once", "--t", "1", "--size", "120x30", "--methods", "nullspace-as-printed@rk4:h=0.001")
         self.assertRegex(out, r"model error: closed, but \d+ mm from the true motion")
+        # whole in a narrow terminal too, and with a long name
+        words = ("four-bar", "--once", "--t", "1", "--methods", "nullspace@rk4:h=0.001")
+        _, out, _ = once(*words, "nullspace-as-printed@rk4:h=0.001")
+        self.assertRegex(out, r"model error: closed, but \d+ mm off +│")
+        _, out, _ = once(*words, "nullspace-as-printed:basis=unit-length@rk4:h=0.001")
+        self.assertRegex(out, r"model error: \d+ mm off +│")
+
+    def test_the_missing_term_stands_above_the_equations_whichever_method_is_selected(self):
+        words = ("four-bar", "--once", "--t", "0.1", "--methods", "index1@rk4:h=0.01", "nullspace-as-printed@rk4:h=0.001")
+        for keys in ("f", "2f"):
+            self.assertIn("MISSING, left  + N' M (dN/dt) u", once(*words, "--keys", keys)[1])
+        self.assertNotIn("MISSING", once("four-bar", "--once", "--t", "0.1", "--keys", "f", *METHODS)[1])
 
     def test_what_is_typed_is_searched_in_the_list_of_scenes(self):
         def found(keys, size="120x40"):
