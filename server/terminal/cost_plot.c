@@ -49,7 +49,8 @@ void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time) {
     *p = (hn_cost_plot){.by_time = by_time, .levels = wp->n_levels};
     p->scatter.n = wp->n_methods;
     p->scatter.y_high = 1;
-    p->scatter.x_unit = p->by_time ? "s" : ""; // of operations the title speaks
+    p->scatter.x_unit = p->by_time ? "s" : "";
+    p->scatter.x_name = p->by_time ? "CPU time" : "operations";
     for (int m = 0; m < wp->n_methods; m++) {
         const int slot = hn_look_slot(m);
         p->scatter.series[m].colour = slot;
@@ -62,8 +63,8 @@ void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time) {
 }
 
 const char *hn_cost_plot_title(const hn_cost_plot *p) {
-    return p->by_time ? "error of the coordinates over CPU time (logarithmic; ╳: ended early)"
-                      : "error of the coordinates over operations (logarithmic; ╳: ended early)";
+    return p->by_time ? "error of the coordinates over CPU time (log, error without unit; ╳: ended)"
+                      : "error of the coordinates over operations (log, no units; ╳: ended)";
 }
 
 bool hn_cost_plot_draw(hn_cells *c, hn_area area, const hn_cost_plot *p, hn_dot_form form) {

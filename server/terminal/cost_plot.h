@@ -18,7 +18,7 @@ typedef struct hn_cost_plot {
 bool hn_cost_plot_has_times(const hn_wp *wp);
 /// Copies what is done so far, over CPU time or over operations.
 void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time);
-/// "error of the coordinates over CPU time, both logarithmic; ╳: ended early"
+/// "error of the coordinates over CPU time (log, error without unit; ╳: ended)"
 const char *hn_cost_plot_title(const hn_cost_plot *p);
 /// Draws the points. Returns false, and draws nothing, while they span no range.
 bool hn_cost_plot_draw(hn_cells *c, hn_area area, const hn_cost_plot *p, hn_dot_form form);

@@ -64,6 +64,9 @@ static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_scatter
     hn_cells_put(c, area, LABEL_COLUMNS, foot, HN_CELL_MUTED, 0, text);
     hn_si_format(hn_round_digits(pow(10, r.right), 2), s->x_unit, 2, text);
     hn_cells_put(c, area, area.columns - hn_text_columns(text), foot, HN_CELL_MUTED, 0, text);
+    const char *name = s->x_name ? s->x_name : "";
+    const int middle = LABEL_COLUMNS + (inner.columns - hn_text_columns(name)) / 2;
+    hn_cells_put(c, area, middle, foot, HN_CELL_MUTED, 0, name);
 }
 
 /// The first glyph in a cell stays.

@@ -20,14 +20,14 @@ typedef struct hn_scatter_series {
 } hn_scatter_series;
 
 typedef struct hn_scatter {
-    const char *x_unit; ///< static text
-    double y_high;      ///< upper end of the vertical axis
+    const char *x_unit, *x_name; ///< static texts; x_name NULL: none
+    double y_high;               ///< upper end of the vertical axis
     int n;
     hn_scatter_series series[HN_SCATTER_SERIES];
 } hn_scatter;
 
-/// Draws into the area: decades to the left, the ends of the horizontal axis below. Points without
-/// a range, or an area too small for axes, leave it blank; the return value says whether something
+/// Draws into the area: decades to the left, the ends of the horizontal axis and its name below.
+/// Points without a range, or an area too small for axes, leave it blank; the return value says whether something
 /// was drawn.
 bool hn_scatter_draw(hn_cells *c, hn_area area, const hn_scatter *s, hn_dot_form form);
 #endif

@@ -15,7 +15,7 @@
 static const double LONGEST = 2;      // [s] of motion, so that something is seen within seconds
 static const double LONGEST_MAP = 3;  // [s]
 static const double TIME_LIMIT = 120; // wall time [s]
-enum { LEVELS = 6, SAMPLES = 3, FOLDER = 400 };
+enum { LEVELS = 6, FOLDER = 400 };
 
 struct hn_tui_study {
     hn_tui_study_kind kind;
@@ -44,7 +44,7 @@ static int must_stop(void *user) {
 static void take(hn_tui_study *s) {
     pthread_mutex_lock(&s->lock);
     if (s->kind == HN_TUI_COST) {
-        // over operations, as the sentences beside it: few samples rank no times
+        // over operations, as the sentences beside it: no times are sampled
         hn_cost_plot_take(&s->cost, hn_study_wp(hn_job_work(s->job)), false);
     } else {
         hn_map_plot_take(&s->map, hn_job_work(s->job), 0);
@@ -135,7 +135,7 @@ static hn_status make_request(hn_tui_study *s, const hn_tui_study_request *r, hn
     // a ladder of sizes, or the plane of Baumgarte's two numbers
     if (cost) {
         hn_job_request_set(&s->request, "levels", LEVELS);
-        hn_job_request_set(&s->request, "samples", SAMPLES);
+        hn_job_request_set(&s->request, "samples", 0); // operation counts alone
     } else {
         hn_job_request_set_text(&s->request, "preset", "baumgarte");
         hn_job_request_set(&s->request, "columns", r->columns);

@@ -278,7 +278,8 @@ static int draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
                      p->scatter.series[m].glyph);
         int x = 2 + hn_cells_printf(c, area, 2, m, HN_CELL_INK, 0, "%d/%d ", p->done[m], p->levels);
         if (p->failed[m] > 0) {
-            x += hn_cells_printf(c, area, x, m, HN_CELL_ALARM, 0, "%d ended early ", p->failed[m]);
+            x +=
+                hn_cells_printf(c, area, x, m, HN_CELL_ALARM, 0, "╳ %d ended early ", p->failed[m]);
         }
         char shown[HN_SPEC_MAX];
         hn_short_spelling(p->name[m], shown, sizeof shown);

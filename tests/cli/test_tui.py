@@ -428,6 +428,10 @@ class Keys(unittest.TestCase):
             out = " ".join("".join(line[100:149] for line in study("").split("\n")[2:20]).split())
             self.assertRegex(out, r"For 1 mm at the end of [\d.]+ m, an error of \S+ up to t = 2 s of the scene's 10 s: index1@rk4 with h = \S+ s is the cheapest, ((about|at most) )?\d\S*")
             self.assertIn("In this study errors are the largest at 1024 times", out)
+            # the axes have names, and no unit where there is none
+            out = study("")
+            self.assertIn("error of the coordinates over operations (log, no units; ╳: ended)", out)
+            self.assertRegex(out, r"(?m)^│ +\d\S* +operations +\d\S* ")
             self.assertIn("is no error above 0; type one as 1 mm", study("e<CtrlU>0<Enter>"))
             self.assertIn("no run of this study is accurate enough", study("e<CtrlU>1e-15<Enter><Enter>"))
             # what is added by Enter has the error that was asked for, in the study's 2 s; a third of it at least, as its size is read off a line between two points for half of it
