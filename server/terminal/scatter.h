@@ -27,7 +27,7 @@ typedef struct hn_scatter {
 } hn_scatter;
 
 /// Draws into the area: decades to the left, the ends of the horizontal axis and its name below.
-/// Points without a range, or an area too small for axes, leave it blank; the return value says whether something
-/// was drawn.
+/// Points without a range, or an area too small for axes, leave it blank; the return value says
+/// whether something was drawn.
 bool hn_scatter_draw(hn_cells *c, hn_area area, const hn_scatter *s, hn_dot_form form);
 #endif

@@ -44,7 +44,8 @@ void hn_projector_free(hn_projector *p); ///< NULL is legal
 HN_MUST_CHECK hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
                                             hn_project_info *info);
 /// Corrects v in place so that J v + phi_t = 0 at q, to rounding; where rows depend on each other
-/// they agree to 1e-12 of the velocities only. `info` may be NULL. Allocates nothing. Fails likewise; v is then untouched.
+/// they agree to 1e-12 of the velocities only. `info` may be NULL. Allocates nothing. Fails
+/// likewise; v is then untouched.
 HN_MUST_CHECK hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double *v,
                                             hn_project_info *info);
 /// Evaluations of phi, of J v + phi_t, and factorisations so far.

@@ -71,7 +71,7 @@ static bool is_one_term(const hn_part *p, hn_world *worlds, const cJSON *first,
     return true;
 }
 
-/// Two listed mistakes in different terms at once: the answer is a + b - reference, perhaps with the
+/// Two listed mistakes in different terms at once: the answer is a + b - reference, maybe with the
 /// other sign.
 static bool explain_two(const hn_part *p, hn_world *worlds, const char *given, hn_part_result *r) {
     const cJSON *first, *second;
