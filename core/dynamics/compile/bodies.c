@@ -265,6 +265,8 @@ static hn_status make_mech(hn_system *sys, hn_mech *m) {
     m->to_world = hn_arena_get(sys->arena, ng * sizeof *m->to_world);
     m->position = hn_arena_get(sys->arena, nl * sizeof *m->position);
     m->path = hn_arena_ints(sys->arena, nl);
+    m->place_row = hn_arena_ints(sys->arena, (size_t)tree->n_cut + 1);
+    m->passed = hn_arena_ints(sys->arena, nl);
     return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
@@ -323,7 +325,9 @@ static hn_status trace_terms(hn_mech *m) {
     HN_TRY(hn_mech_trace_constraints(m));
     hn_geometry geometry = {.self = m, .span = span_of_points, .spin = spin_of_body};
     HN_TRY(hn_loads_compile(m->sys, &geometry));
-    return trace_points(m);
+    HN_TRY(trace_points(m));
+    // for solving, not for reading
+    return m->sys->opts.symbolic_params ? HN_OK : hn_mech_trace_legs(m);
 }
 
 /// In the order of their velocities.

@@ -19,6 +19,8 @@ hn_status hn_closure_begin(hn_mech *m, int index, int a, const hn_quantity *at_a
     hn_vec3 arm_a, arm_b;
     HN_TRY(hn_mech_arm_of(m, a, at_a, &arm_a));
     HN_TRY(hn_mech_arm_of(m, b, at_b, &arm_b));
+    out->arm[0] = arm_a;
+    out->arm[1] = arm_b;
     HN_TRY(hn_mech_relate(m, hn_tree_common(m->tree, a, b), a, arm_a, b, arm_b, &out->rel));
     size_t cap = (size_t)(out->rel.a.n + out->rel.b.n) + 1;
     out->coordinate = hn_arena_ints(arena, cap);

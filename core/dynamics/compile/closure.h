@@ -24,7 +24,8 @@ typedef struct hn_closure {
     hn_mech *m;
     int index; ///< loop
     const char *name, *pointer;
-    int link[2]; ///< of ends a and b
+    int link[2];    ///< of ends a and b
+    hn_vec3 arm[2]; ///< of the two points, in E of their links
     hn_relative rel;
     hn_vec3 delta, delta_rate, delta_acc; ///< end a minus end b
     int n;                                ///< coordinates met, those of end a first

@@ -206,6 +206,9 @@ void hn_system_free(hn_system *sys) {
     hn_entries_reset(&sys->M);
     hn_entries_reset(&sys->J);
     hn_entries_reset(&sys->efforts);
+    for (int k = 0; k < sys->n_legs; k++) {
+        hn_entries_reset(&sys->legs[k].J);
+    }
     hn_pull_log_free(sys->pulls);
     hn_graph_free(sys->g);
     hn_arena_free(sys->arena);

@@ -15,6 +15,7 @@
 #include "dynamics/compile/loops.h"
 
 #include "dynamics/compile/closure.h"
+#include "dynamics/compile/leg.h"
 #include "expr/construct.h"
 
 #include <math.h>
@@ -118,9 +119,11 @@ static hn_status turn_rows(loop *l, int turns, const hn_direction *parent,
 static hn_status close_joint(loop *l) {
     const closing *rule = &CLOSINGS[l->joint->type];
     hn_direction parent[3], child[3];
+    const int first = l->c.m->sys->nc;
     for (int i = 0; i < 3 && rule->all_places; i++) {
         HN_TRY(hn_closure_position_row(&l->c, i));
     }
+    l->c.m->place_row[l->c.index] = l->c.m->sys->nc == first + 3 ? first : -1;
     joint_axes(l, parent, child);
     if (rule->along) {
         HN_TRY(measured_rows(l, rule->along, parent, child));
@@ -241,5 +244,19 @@ hn_status hn_mech_trace_loops(hn_mech *m) {
         hn_closure_collect(&l.c);
         HN_TRY(close_joint(&l));
     }
+    return HN_OK;
+}
+
+hn_status hn_mech_trace_legs(hn_mech *m) {
+    const int before = hn_graph_size(m->g);
+    hn_leg_count_passes(m);
+    for (int k = 0; k < m->tree->n_cut; k++) {
+        loop l;
+        if (m->place_row[k] >= 0) {
+            HN_TRY(begin_loop(m, k, &l));
+            HN_TRY(hn_leg_trace(&l.c, m->place_row[k]));
+        }
+    }
+    m->sys->leg_nodes[0] += hn_graph_size(m->g) - before;
     return HN_OK;
 }

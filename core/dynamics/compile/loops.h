@@ -9,6 +9,8 @@
 
 /// Adds the closure rows of every cut joint.
 HN_MUST_CHECK hn_status hn_mech_trace_loops(hn_mech *m);
+/// Writes the position rows of spatial loops a second time, seen from their legs (leg.h).
+HN_MUST_CHECK hn_status hn_mech_trace_legs(hn_mech *m);
 /// Writes the scene coordinates of cut joints as expressions, where they have one.
 HN_MUST_CHECK hn_status hn_mech_cut_coordinates(hn_mech *m);
 

@@ -193,6 +193,7 @@ static void trace_ball(hn_mech *m, int link) {
         }
         R = transposed(&R);
     }
+    m->at[link].turned = R;
     m->group_X[l->group] = hn_mat3_mul(m->g, &here, &R);
 }
 

@@ -24,7 +24,8 @@ typedef struct hn_link_trace {
     hn_vec3 slide; ///< prismatic: direction of a growing coordinate, in E(parent)
     /// ball: column k is the axis of velocity k, in E (a turning link also has z: hn_mech_axis)
     hn_mat3 spin;
-    hn_vec3 r; ///< arm in the parent's work frame
+    hn_mat3 turned; ///< ball: the turn of its frame against the joint's axes on the parent
+    hn_vec3 r;      ///< arm in the parent's work frame
 
     // own body, about its joint point, in E
     hn_ex mass;
@@ -62,6 +63,8 @@ typedef struct hn_mech {
     hn_mat3 *to_world; ///< per group: F to world
     hn_vec3 *position; ///< per link: joint point in the world
     int *path;         ///< scratch, n_links
+    int *place_row; ///< per cut joint: the first of its three position rows, -1: it has not three
+    int *passed;    ///< per link: closures whose loop it is part of
 } hn_mech;
 
 /// Whether the link's work frame is F.

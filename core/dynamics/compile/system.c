@@ -12,7 +12,7 @@ const hn_scene *hn_system_scene(const hn_system *sys) {
 
 hn_system_info hn_system_get_info(const hn_system *sys) {
     hn_system_info info = sys->info;
-    info.nodes = hn_graph_size(sys->g);
+    info.nodes = hn_graph_size(sys->g) - sys->leg_nodes[0];
     return info;
 }
 

@@ -43,7 +43,8 @@ typedef struct hn_system_info {
     /// closure rows written down, and those that vanished identically
     int rows_before, rows_dropped;
     bool has_time; ///< phi or f depend on t explicitly
-    int nodes;     ///< graph size
+    /// graph size, without what the rows seen from legs add (leg.h): they replace others
+    int nodes;
 } hn_system_info;
 hn_system_info hn_system_get_info(const hn_system *sys);
 

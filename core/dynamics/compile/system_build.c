@@ -117,7 +117,10 @@ hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n
     sys->rows = hn_arena_get(sys->arena, m * sizeof *sys->rows);
     sys->dropped = hn_arena_get(sys->arena, m * sizeof *sys->dropped);
     sys->loops = hn_arena_get(sys->arena, (size_t)n_loops * sizeof *sys->loops);
+    sys->leg_nodes = hn_arena_ints(sys->arena, 1);
+    sys->legs = hn_arena_get(sys->arena, (size_t)n_loops * sizeof *sys->legs);
     sys->ldls = hn_arena_get(sys->arena, HN_SYSTEM_LDLS * sizeof(struct hn_ldl *));
+    sys->solve_rows = hn_arena_get(sys->arena, sizeof(struct hn_solve_rows *));
     return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 

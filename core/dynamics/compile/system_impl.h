@@ -29,6 +29,14 @@ typedef struct hn_row {
     hn_row_wrench wrench; ///< bodies only; zero for gears and formulas, which act along coordinates
 } hn_row;
 
+/// Three rows of J from `row` on, seen from the leg of their loop (leg.h).
+typedef struct hn_leg {
+    int row;
+    hn_mat3 turn; ///< the leg's axes to the frame of the rows
+    hn_ex phi[3], gamma[3];
+    hn_entries J; ///< owned; sorted
+} hn_leg;
+
 typedef struct hn_loop {
     const char *name;
     int joint;       ///< scene joint, -1: a tear or formula
@@ -86,6 +94,9 @@ struct hn_system {
     const char **dropped; ///< names of the info.rows_dropped rows that vanish identically
     int n_loops;
     hn_loop *loops;
+    int n_legs;
+    hn_leg *legs;   ///< as many as loops at most
+    int *leg_nodes; ///< one: nodes of the graph that were made for them
     double length;
     hn_drawing drawing;
     const struct hn_mech *mech; ///< bodies: the trace, kept for reactions
@@ -94,7 +105,8 @@ struct hn_system {
     hn_ex *pull_inputs;         ///< HN_PULL_INPUTS symbols for each, in the order of pull.h
     hn_pull_log *pulls;         ///< owned; NULL where nothing can be pulled
     struct hn_ldl **ldls; ///< HN_SYSTEM_LDLS factorisations, NULL until asked for (ldl_kept.h)
-    hn_entries efforts;   ///< row, scene coordinate: d phi / dx of gears and formulas
+    struct hn_solve_rows **solve_rows; ///< NULL until asked for (solve_rows.h)
+    hn_entries efforts;                ///< row, scene coordinate: d phi / dx of gears and formulas
 };
 
 #endif

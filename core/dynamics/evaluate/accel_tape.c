@@ -2,39 +2,13 @@
 #include "dynamics/evaluate/accel_tape.h"
 
 #include "dynamics/evaluate/accel.h"
-#include "dynamics/evaluate/ldl_kept.h"
+#include "dynamics/evaluate/solve_rows.h"
 #include "expr/construct.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-/// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
-static void closure_rhs(const hn_system *sys, bool baumgarte, hn_ex *rhs) {
-    hn_graph *g = sys->g;
-    if (!baumgarte) {
-        for (int i = 0; i < sys->nc; i++) {
-            rhs[i] = hn_neg(sys->gamma[i]);
-        }
-        return;
-    }
-    for (int i = 0; i < sys->nc; i++) {
-        rhs[i] = sys->phi_t[i]; // gathers J v + phi_t
-    }
-    for (int k = 0; k < sys->J.n; k++) {
-        const hn_entry *J = &sys->J.at[k];
-        rhs[J->row] = hn_add(g, rhs[J->row], hn_mul(g, J->e, sys->v[J->col]));
-    }
-
-    // with Baumgarte's terms
-    hn_ex damping = hn_scale(2, sys->alpha), stiffness = hn_mul(g, sys->beta, sys->beta);
-    for (int i = 0; i < sys->nc; i++) {
-        hn_ex terms[3] = {sys->gamma[i], hn_mul(g, damping, rhs[i]),
-                          hn_mul(g, stiffness, sys->phi[i])};
-        rhs[i] = hn_neg(hn_sum(g, terms, 3));
-    }
-}
 
 /// Outputs of the tape: a, lambda, guards, rows. Returns owned, or NULL.
 static hn_ex *list_outputs(hn_accel_tape *tape, const hn_system *sys, const hn_ldl *ldl,
@@ -80,10 +54,11 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
     }
 
     // the order of elimination; without one there is no tape
-    const hn_ldl *ldl = NULL;
+    const hn_solve_rows *rows = NULL;
     hn_ex *x = NULL, *outputs = NULL;
-    hn_status status = hn_ldl_kept_get(sys, HN_FACTOR_MASS, &ldl);
-    tape->available = status == HN_OK && ldl->available;
+    hn_status status = hn_solve_rows_get(sys, &rows);
+    const hn_ldl *ldl = status == HN_OK ? rows->ldl : NULL;
+    tape->available = ldl && ldl->available;
     if (tape->available) {
         x = hn_arena_get(scratch, ((size_t)ldl->n + 1) * sizeof *x);
         status = x ? HN_OK : HN_ERR_MEMORY;
@@ -91,9 +66,9 @@ hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool bau
 
     // the solution for these right-hand sides
     if (status == HN_OK && tape->available) {
-        memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
-        closure_rhs(sys, baumgarte, x + sys->nv);
+        hn_solve_rows_rhs(sys, rows, baumgarte, x);
         status = hn_ldl_solve(sys->g, ldl, x, x);
+        hn_solve_rows_turn(sys, rows, x + sys->nv);
         outputs = status == HN_OK ? list_outputs(tape, sys, ldl, x, want_lambda) : NULL;
         status = outputs ? compile_checked(sys, outputs, tape, arena, inputs) : HN_ERR_MEMORY;
     }

@@ -16,10 +16,11 @@ typedef struct work {
     hn_symmat *K;
     hn_ldl *out;
     hn_arena *arena;
-    char *gone;    ///< per unknown
-    char *massive; ///< coordinates whose own entry of W is not zero
-    char *shared;  ///< coordinates that touch the rows of several loops: see SHARED_ROWS
-    int *partner;  ///< per unknown: the other half of its pair, -1: alone
+    char *gone;        ///< per unknown
+    char *massive;     ///< coordinates whose own entry of W is not zero
+    char *shared;      ///< coordinates that touch the rows of several loops: see SHARED_ROWS
+    bool shared_began; ///< one of them has been eliminated
+    int *partner;      ///< per unknown: the other half of its pair, -1: alone
     /// eligible unknowns by live neighbours; shared coordinates only when nothing else is left
     hn_least_heap eligible;
     hn_ex *ref; ///< per unknown: reference of its pivot
@@ -37,7 +38,8 @@ enum { MAX_UPDATES = 50000 };
 /// spare, is shared by legs (a platform's). Rows need not wait for it: what each leg has of its own
 /// gives them pivots, and the platform comes last. Otherwise every leg's rows would be coupled with
 /// every other's (a hexapod: 3 times the entries of L). Where a leg loses a direction, the guard
-/// sees it.
+/// sees it. A row to which its leg gives no pivot at all, as one along a leg of given length, waits
+/// for the whole platform: what one of its coordinates gives serves one such row, and not the next.
 enum { SHARED_ROWS = 6 };
 
 // ---- setting up ----
@@ -115,7 +117,7 @@ static int list_live(work *w, int i, int *blocked) {
             }
             w->marked[j] = 1;
             w->live[n++] = j;
-            *blocked |= j < w->out->nv && w->massive[j] && !w->shared[j];
+            *blocked |= j < w->out->nv && w->massive[j] && (!w->shared[j] || w->shared_began);
         }
     }
     for (int k = 0; k < n; k++) {
@@ -310,6 +312,7 @@ static hn_status eliminate(work *w, int i) {
     }
 
     const int first_row = out->nnz;
+    w->shared_began |= w->shared[pair[0]];
     remove_unknowns(w, pair);
     fill_column(w, pair, n);
 

@@ -7,8 +7,9 @@
 //
 // Order: minimum degree under the rule that a multiplier is never eliminated before every massive
 // coordinate it touches (its pivot, zero at first, is then minus a sum of squares), except those
-// that the legs of a platform share, and a massless coordinate only once a multiplier gave it a
-// pivot. Pivots are 1 x 1, or two multipliers of the same pattern taken together as 2 x 2.
+// that the legs of a platform share where its own leg gives it a pivot, and a massless coordinate
+// only once a multiplier gave it a pivot. Pivots are 1 x 1, or two multipliers of the same pattern
+// taken together as 2 x 2.
 //
 // No pivoting by size happens at run time, so every pivot comes with a reference: a coordinate's
 // own entry of W; for a multiplier the sum that the coordinates alone contribute, shared ones
