@@ -6,6 +6,7 @@
 #include "dynamics/evaluate/ldl_kept.h"
 #include "expr/construct.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -110,28 +111,73 @@ static hn_status make_leg_rows(const hn_system *sys, hn_solve_rows *out) {
 
 // ---- the choice ----
 
-/// Operations of accelerations and multipliers with these rows.
-static hn_status count_ops(const hn_system *sys, const hn_solve_rows *rows, int *ops) {
-    const hn_ldl *ldl = rows->ldl;
-    hn_arena *scratch = hn_arena_create(0);
-    hn_ex *x = scratch ? hn_arena_get(scratch, ((size_t)ldl->n + 1) * sizeof *x) : NULL;
-    hn_status status = x ? HN_OK : HN_ERR_MEMORY;
-    if (x) {
-        hn_inputs in = {0};
-        hn_solve_rows_rhs(sys, rows, false, x);
-        status = hn_ldl_solve(sys->g, ldl, x, x);
-        hn_solve_rows_turn(sys, rows, x + sys->nv);
-        HN_THEN(status, hn_inputs_compile(sys, x, ldl->n, scratch, &in));
-        *ops = status == HN_OK ? hn_tape_get_info(in.tape).ops : 0;
-        hn_inputs_free(&in);
+/// Accelerations and multipliers (n of them, from the scratch arena) with these rows.
+static hn_status solve(const hn_system *sys, const hn_solve_rows *rows, hn_arena *scratch,
+                       hn_ex **x) {
+    *x = hn_arena_get(scratch, ((size_t)rows->ldl->n + 1) * sizeof **x);
+    if (!*x) {
+        return HN_ERR_MEMORY;
     }
+    hn_solve_rows_rhs(sys, rows, false, *x);
+    HN_TRY(hn_ldl_solve(sys->g, rows->ldl, *x, *x));
+    hn_solve_rows_turn(sys, rows, *x + sys->nv);
+    return hn_graph_status(sys->g);
+}
+
+typedef struct search {
+    char *seen; ///< per node
+    int *stack; ///< nodes that are still to be counted
+    int top;
+} search;
+
+static void meet(search *s, int node) {
+    if (!s->seen[node]) {
+        s->seen[node] = 1;
+        s->stack[s->top++] = node;
+    }
+}
+
+/// Sums, products and functions of all nodes that n expressions need, each once. A tape takes
+/// fewer, in about the same proportion, and longer to compile.
+static hn_status count_work(const hn_graph *g, const hn_ex *x, int n, hn_arena *scratch,
+                            long *work) {
+    const size_t size = (size_t)hn_graph_size(g);
+    search s = {.seen = hn_arena_get(scratch, size), .stack = hn_arena_ints(scratch, size)};
+    if (!s.seen || !s.stack) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < n; i++) {
+        meet(&s, x[i].n);
+    }
+    *work = 0;
+    while (s.top > 0) {
+        const hn_node_view node = hn_graph_node(g, s.stack[--s.top]);
+        *work += node.op == HN_OP_SUM ? node.n_args - 1 : node.n_args > 0;
+        for (int k = 0; k < node.n_args; k++) {
+            const bool is_number = node.args[k].n == HN_NODE_ONE;
+            *work += node.op == HN_OP_SUM && !is_number && fabs(node.args[k].c) != 1;
+            meet(&s, node.args[k].n);
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status find_work(const hn_system *sys, const hn_solve_rows *rows, long *work) {
+    hn_arena *scratch = hn_arena_create(0);
+    hn_ex *x;
+    hn_status status = scratch ? solve(sys, rows, scratch, &x) : HN_ERR_MEMORY;
+    HN_THEN(status, count_work(sys->g, x, rows->ldl->n, scratch, work));
     hn_arena_free(scratch);
     return status;
 }
 
-static hn_status choose(const hn_system *sys, hn_solve_rows *out) {
+static hn_status own_rows(const hn_system *sys, hn_solve_rows *out) {
     *out = (hn_solve_rows){.J = sys->J, .phi = sys->phi, .gamma = sys->gamma};
-    HN_TRY(hn_ldl_kept_get(sys, HN_FACTOR_MASS, &out->ldl));
+    return hn_ldl_kept_get(sys, HN_FACTOR_MASS, &out->ldl);
+}
+
+static hn_status choose(const hn_system *sys, hn_solve_rows *out) {
+    HN_TRY(own_rows(sys, out));
     if (sys->n_legs == 0) {
         return HN_OK;
     }
@@ -143,15 +189,15 @@ static hn_status choose(const hn_system *sys, hn_solve_rows *out) {
     if (!legs.ldl->available) {
         return HN_OK;
     }
-    HN_TRY(count_ops(sys, &legs, &legs.ops_legs));
+    HN_TRY(find_work(sys, &legs, &legs.work_legs));
     sys->leg_nodes[0] += hn_graph_size(sys->g) - before;
     if (out->ldl->available) {
-        HN_TRY(count_ops(sys, out, &out->ops_own));
+        HN_TRY(find_work(sys, out, &out->work_own));
     }
 
-    out->ops_legs = legs.ops_legs;
-    legs.ops_own = out->ops_own;
-    if (!out->ldl->available || legs.ops_legs < legs.ops_own) {
+    out->work_legs = legs.work_legs;
+    legs.work_own = out->work_own;
+    if (!out->ldl->available || legs.work_legs < legs.work_own) {
         *out = legs;
     }
     return HN_OK;
@@ -165,5 +211,33 @@ hn_status hn_solve_rows_get(const hn_system *sys, const hn_solve_rows **out) {
         *kept = made;
     }
     *out = *kept;
+    return HN_OK;
+}
+
+static hn_status count_ops(const hn_system *sys, const hn_solve_rows *rows, int *ops) {
+    hn_arena *scratch = hn_arena_create(0);
+    hn_inputs in = {0};
+    hn_ex *x;
+    hn_status status = scratch ? solve(sys, rows, scratch, &x) : HN_ERR_MEMORY;
+    HN_THEN(status, hn_inputs_compile(sys, x, rows->ldl->n, scratch, &in));
+    *ops = status == HN_OK ? hn_tape_get_info(in.tape).ops : 0;
+    hn_inputs_free(&in);
+    hn_arena_free(scratch);
+    return status;
+}
+
+hn_status hn_solve_rows_saved(const hn_system *sys, int *ops) {
+    const hn_solve_rows *rows;
+    hn_solve_rows own;
+    int before, after;
+    *ops = 0;
+    HN_TRY(hn_solve_rows_get(sys, &rows));
+    HN_TRY(own_rows(sys, &own));
+    if (!rows->of_legs || !own.ldl->available) {
+        return HN_OK;
+    }
+    HN_TRY(count_ops(sys, &own, &before));
+    HN_TRY(count_ops(sys, rows, &after));
+    *ops = before - after;
     return HN_OK;
 }
