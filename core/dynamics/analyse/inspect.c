@@ -449,8 +449,8 @@ static void put_left_out(hn_strbuf *b, const hn_system *sys, const counts *c) {
     }
     if (c->legs_save > 0) {
         put_absence(b,
-                    "in solving for accelerations: places of spatial loops seen from their last "
-                    "link instead of from the ground",
+                    "in solving for accelerations: spatial loops closed in the axes of their last "
+                    "link, not of the body where their ends part",
                     sys->n_legs, c->legs_save);
     }
     hn_json_end_array(b);
