@@ -56,9 +56,9 @@ class Proxy(unittest.TestCase):
         except OSError:
             return False
 
-    def ask(self, method, path, body=None):
+    def ask(self, method, path, body=None, headers=()):
         c = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
-        c.request(method, path, json.dumps(body) if body else None, {"Host": NAME, "Content-Type": "application/json"})
+        c.request(method, path, json.dumps(body) if body else None, {"Host": NAME, "Content-Type": "application/json", **dict(headers)})
         answer = driver.Answer(c.getresponse())
         c.close()
         return answer
@@ -123,6 +123,18 @@ class Proxy(unittest.TestCase):
                 self.assertEqual(next_frame(), k)
                 time.sleep(0.1)
             c.close()
+
+    def test_the_origin_of_a_page_has_the_port_of_the_proxy(self):
+        """The proxy dropped the port from the Host header, so that the page's own requests came from elsewhere."""
+        own, body = f"{NAME}:{self.port}", {"scene": "four-bar", "methods": ["projection@rk4:h=1e-2"]}
+        for prefix in ("", "/mechanisms"):
+            for origin, status in ((f"http://{own}", 201), (f"http://{NAME}:{self.port + 1}", 403), (f"http://{NAME}", 403)):
+                answer = self.ask("POST", prefix + "/api/v1/comparisons", body, {"Host": own, "Origin": origin})
+                self.assertEqual(answer.status, status, (prefix, origin, answer.body[:300]))
+
+    def test_a_body_that_is_too_large_is_refused_by_the_server(self):
+        answer = self.ask("POST", "/api/v1/runs", {"scene": "x" * (1 << 20)})
+        self.assertEqual((answer.status, answer.type), (413, "application/problem+json"))
 
     def test_another_name_is_refused(self):
         c = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)

@@ -100,8 +100,11 @@ class Runs(unittest.TestCase):
     def test_faults_of_a_query_are_told(self):
         address = self.ask(RUN).json()["links"]["samples"]
         for query, status, word in (("?stride=0", 422, "stride"), ("?fields=t,qq", 422, "did you mean 'q'"), ("?fields=", 422, "columns: t, "),
-                                    ("?fields=" + "t," * 30, 422, "more than"), ("?strid=2", 400, "did you mean 'stride'"),
-                                    ("?from=x", 422, "from"), ("?limit=1e9", 422, "limit"), ("?method=1", 422, "method"), ("?cursor=-1", 422, "cursor")):
+                                    ("?fields=" + "t," * 30, 422, "the column 't' twice"), ("?fields=t,gap,t", 422, "the column 't' twice"), ("?strid=2", 400, "did you mean 'stride'"),
+                                    ("?from=x", 422, "from"), ("?limit=1e9", 422, "limit"), ("?method=1", 422, "method"), ("?cursor=-1", 422, "cursor"),
+                                    ("?cursor=0x10", 422, "in digits"), ("?cursor=%2B1", 422, "in digits"), ("?cursor=%201", 422, "in digits"),
+                                    ("?limit=1.0", 422, "in digits"), ("?from=0x1p-1", 422, "from"), ("?to=inf", 422, "to"), ("?to=.5", 422, "to"),
+                                    ("?from=0.5&to=0.25", 422, "no time is between them"), ("?from=1e400", 422, "from")):
             answer = self.server.ask("GET", address + query)
             self.assertEqual((answer.status, answer.type), (status, "application/problem+json"), query)
             self.assertIn(word, json.dumps(answer.json()), query)

@@ -179,7 +179,7 @@ class FairShares(Timed):
         self.assertEqual(modest.ask("POST", self.NO_WAIT, self.STUDY).status, 202)
         refused = third.ask("POST", self.NO_WAIT, self.STUDY)
         self.assertEqual(refused.status, 503)
-        self.assertIn("all places for studies are taken", refused.json()["detail"])
+        self.assertIn("all 2 places for studies are taken", refused.json()["detail"])
         # nor does it by letting a study go on
         stopped = f"{self.STUDIES}/{first.json()['id']}"
         greedy.ask("PATCH", stopped, {"state": "stopped"})
@@ -205,7 +205,7 @@ class FairShares(Timed):
             time.sleep(0.3)
         refused = clients[4].ask("POST", self.NO_WAIT, self.STUDY)
         self.assertEqual(refused.status, 503)
-        self.assertRegex(refused.json()["detail"], r"; [12] requests wait before this one$")
+        self.assertRegex(refused.json()["detail"], r"; [12] requests wait before this one; Retry-After estimates when this request would have one$")
         self.assertGreater(int(refused.headers["retry-after"]), 1)
         threads[1].join()
         self.assertEqual(answers["hasty"].status, 503)
@@ -252,7 +252,7 @@ class FairShares(Timed):
         while (on := first.ask("PATCH", study + "?wait=0", {"state": "running"})).status == 409:
             pass
         self.assertEqual(on.status, 503, on.json())
-        self.assertRegex(on.json()["detail"], "^all places for studies are taken; one client may have 1 of 2; [01] requests wait before this one$")
+        self.assertRegex(on.json()["detail"], "^all 2 places for studies are taken; [01] requests wait before this one; Retry-After estimates when this request would have one$")
         thread.join()
         self.assertEqual(answers[0].status, 202)
         self.assertEqual(server.stop(), 0)

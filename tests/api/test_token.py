@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A server for other machines: a token in its link, then in a cookie, or in a header; guests read."""
 
+import subprocess
 import unittest
 import urllib.request
 
@@ -15,45 +16,46 @@ def next_frame(guest):
 
 class Token(unittest.TestCase):
     def serve(self, *options):
-        server = driver.Server("--token", "secret-1", *options)
+        server = driver.Server("--token", "a-long-secret-1", *options)
         self.addCleanup(lambda: self.assertEqual(server.stop(), 0, server.errors))
         return server
 
     def test_nothing_is_served_without_the_token_or_with_a_wrong_one(self):
         server = self.serve()
-        for headers in ({}, {"Authorization": "Bearer secret-2"}, {"Authorization": "Bearer secret-11"}, {"Authorization": "Bearer "},
-                        {"Cookie": "holonom_token=secret"}):
-            for method, path in (("GET", "/"), ("GET", "/api/v1/"), ("POST", "/api/v1/comparisons"), ("GET", "/?token=secret-2"), ("GET", "/nowhere")):
+        for headers in ({}, {"Authorization": "Bearer a-long-secret-2"}, {"Authorization": "Bearer a-long-secret-11"}, {"Authorization": "Bearer "},
+                        {"Cookie": "holonom_token=a-long-secret"}):
+            for method, path in (("GET", "/"), ("GET", "/api/v1/"), ("POST", "/api/v1/comparisons"), ("GET", "/?token=a-long-secret-2"), ("GET", "/nowhere")):
                 answer = server.ask(method, path, BODY if method == "POST" else None, headers)
                 self.assertEqual((answer.status, answer.headers.get("www-authenticate")), (401, 'Bearer realm="holonom"'), (path, headers))
                 self.assertEqual(answer.type, "application/problem+json")
-                self.assertNotIn(b"secret-1", answer.body)
+                self.assertNotIn(b"a-long-secret-1", answer.body)
         self.assertEqual(server.ask("GET", "/healthz").status, 200)
 
     def test_the_link_becomes_a_cookie(self):
         server = self.serve()
-        first = server.ask("GET", "/?token=secret-1")
+        first = server.ask("GET", "/?token=a-long-secret-1")
         self.assertEqual((first.status, first.headers["location"]), (303, "./"))  # relative: below a prefix of a proxy it holds too
-        self.assertEqual(server.ask("GET", "/index.html?token=secret-1").headers["location"], "./index.html")
+        self.assertEqual(server.ask("GET", "/index.html?token=a-long-secret-1").headers["location"], "./index.html")
         cookie = first.headers["set-cookie"]
         self.assertIn("HttpOnly; SameSite=Strict", cookie)
+        self.assertNotIn("Path", cookie)  # the browser takes the folder of the link, with the prefix of a proxy
         headers = {"Cookie": cookie.split(";")[0]}
         self.assertEqual(server.ask("GET", "/", headers=headers).status, 200)
         self.assertEqual(server.ask("POST", "/api/v1/comparisons", BODY, headers).status, 201)
 
     def test_a_script_sends_a_header_or_the_query(self):
         server = self.serve()
-        self.assertEqual(server.ask("POST", "/api/v1/comparisons", BODY, {"Authorization": "Bearer secret-1"}).status, 201)
+        self.assertEqual(server.ask("POST", "/api/v1/comparisons", BODY, {"Authorization": "Bearer a-long-secret-1"}).status, 201)
         for scheme in ("bearer", "BEARER", "Bearer "):
-            self.assertEqual(server.ask("GET", "/api/v1/scenes", headers={"Authorization": scheme + " secret-1"}).status, 200, scheme)
-        for header in ("Basic secret-1", "secret-1", "bearersecret-1"):
+            self.assertEqual(server.ask("GET", "/api/v1/scenes", headers={"Authorization": scheme + " a-long-secret-1"}).status, 200, scheme)
+        for header in ("Basic a-long-secret-1", "a-long-secret-1", "bearera-long-secret-1"):
             self.assertEqual(server.ask("GET", "/api/v1/scenes", headers={"Authorization": header}).status, 401, header)
-        self.assertEqual(server.ask("GET", "/api/v1/scenes?token=secret-1").status, 200)
-        self.assertEqual(server.ask("GET", "/api/v1/openapi.json?token=secret-1").json()["security"], [{"token": []}])
+        self.assertEqual(server.ask("GET", "/api/v1/scenes?token=a-long-secret-1").status, 200)
+        self.assertEqual(server.ask("GET", "/api/v1/openapi.json?token=a-long-secret-1").json()["security"], [{"token": []}])
 
     def test_guests_read_and_change_nothing(self):
         server = self.serve("--guests")
-        bearer = {"Authorization": "Bearer secret-1"}
+        bearer = {"Authorization": "Bearer a-long-secret-1"}
         made = server.ask("POST", "/api/v1/comparisons", BODY, bearer).json()
         for path in ("/", "/api/v1/", "/api/v1/scenes/four-bar", made["links"]["self"]):
             self.assertEqual(server.ask("GET", path).status, 200, path)
@@ -64,9 +66,27 @@ class Token(unittest.TestCase):
         self.assertEqual(events.status, 200)
         events.close()
 
+    def test_a_wrong_token_is_told_where_guests_read(self):
+        """Who mistyped it was a guest without knowing."""
+        server = self.serve("--guests")
+        for path, headers in (("/api/v1/?token=a-long-secret-2", {}), ("/?token=", {}), ("/api/v1/", {"Authorization": "Bearer a-long-secret-2"})):
+            answer = server.ask("GET", path, headers=headers)
+            self.assertEqual(answer.status, 401, path)
+            self.assertEqual(answer.json()["detail"], "the token that was sent is not that of this server")
+        # a cookie of an earlier server, and what a proxy asks for itself, make a guest
+        for headers in ({"Cookie": "holonom_token=a-long-secret-2"}, {"Authorization": "Basic YTpi"}):
+            self.assertEqual(server.ask("GET", "/api/v1/", headers=headers).status, 200, headers)
+
+    def test_a_token_that_can_be_guessed_is_refused(self):
+        for token, said in (("", "has 0 characters; 12 to 128"), ("eleven-char", "has 11 characters"), ("x" * 129, "has 129 characters"),
+                            ("two words and more", "no blanks"), (" ", "no blanks"), ("a-long-secret\n", "no blanks")):
+            done = subprocess.run([driver.PROGRAM, "serve", "--port", "0", "--token", token], capture_output=True, text=True, timeout=60 * driver.SLOW)
+            self.assertEqual(done.returncode, 2, token)
+            self.assertIn(said, done.stderr)
+
     def test_two_guests_at_once_read_the_same_frames(self):
         server = self.serve("--guests")
-        bearer = {"Authorization": "Bearer secret-1"}
+        bearer = {"Authorization": "Bearer a-long-secret-1"}
         made = server.ask("POST", "/api/v1/comparisons", BODY, bearer).json()
         guests = [driver.Events(server, made["id"]) for _ in range(2)]
         self.assertEqual([guest.status for guest in guests], [200, 200])

@@ -119,6 +119,27 @@ static bool is_this_machine(const char *host) {
     return false;
 }
 
+/// A token that can stand in a link and in a cookie, and that nobody finds by trying: some thousand
+/// can be tried in a second, and 12 characters have 10^18 values at least.
+static hn_status check_token(const char *token, hn_diag *diag) {
+    enum { SHORTEST = 12, LONGEST = 128 };
+    static const char hint[] = "--token auto makes one, and --token none asks for none";
+    const size_t n = strlen(token);
+    if (strspn(token, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.~") != n) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
+                           "--token takes only letters, digits and -_.~, no blanks, because it "
+                           "becomes part of a link");
+    }
+    if (n < SHORTEST || n > LONGEST) {
+        return hn_diag_set(
+            diag, HN_ERR_INPUT, NULL, hint,
+            "--token has %zu characters; %d to %d are allowed, because a shorter one "
+            "can be found by trying",
+            n, SHORTEST, LONGEST);
+    }
+    return HN_OK;
+}
+
 /// The token that was given, one that is made where others can reach the server, or none.
 static hn_status choose_token(const hn_args *args, hn_http_opts *opts, char made[HN_TOKEN],
                               hn_diag *diag) {
@@ -132,13 +153,7 @@ static hn_status choose_token(const hn_args *args, hn_http_opts *opts, char made
         return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, "take --token TEXT",
                            "no token could be made: the system gives no random numbers");
     }
-    if (opts->token && strspn(opts->token, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                                           "0123456789-_.~") != strlen(opts->token)) {
-        return hn_diag_set(
-            diag, HN_ERR_INPUT, NULL, NULL,
-            "--token takes only letters, digits and -_.~ because it becomes part of a link");
-    }
-    return HN_OK;
+    return opts->token ? check_token(opts->token, diag) : HN_OK;
 }
 
 static void announce(const hn_server *server, const hn_args *args, const hn_http_opts *opts) {

@@ -314,11 +314,25 @@ int hn_guard_query(hn_request *r) {
     return 0;
 }
 
+/// Whether the parameters of a media type leave the text in UTF-8, which JSON always has.
+static bool is_utf8(const char *parameters) {
+    for (const char *at = parameters; (at = strchr(at, ';')) != NULL;) {
+        at += 1 + strspn(at + 1, " \t");
+        if (strncasecmp(at, "charset=", 8) == 0) {
+            at += 8 + (at[8] == '"');
+            const size_t n = strcspn(at, "\"; \t");
+            return (n == 5 && strncasecmp(at, "utf-8", n) == 0) ||
+                   (n == 8 && strncasecmp(at, "us-ascii", n) == 0);
+        }
+    }
+    return true;
+}
+
 bool hn_is_json_type(const char *content_type) {
     static const char json[] = "application/json";
     size_t n = sizeof json - 1;
     return content_type && strncasecmp(content_type, json, n) == 0 &&
-           (content_type[n] == 0 || strchr("; \t", content_type[n]));
+           (content_type[n] == 0 || strchr("; \t", content_type[n])) && is_utf8(content_type + n);
 }
 
 int hn_guard_body_type(hn_request *r) {
@@ -326,7 +340,7 @@ int hn_guard_body_type(hn_request *r) {
     if (!r->route->fields || hn_is_json_type(type)) {
         return 1;
     }
-    hn_reply_problem(r, HN_PROBLEM_MEDIA_TYPE, "Content-Type: application/json",
+    hn_reply_problem(r, HN_PROBLEM_MEDIA_TYPE, "Content-Type: application/json; the text in UTF-8",
                      type ? "the Content-Type of the body is '%.100s'"
                           : "the Content-Type header is missing%s",
                      type ? type : "");

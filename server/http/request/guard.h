@@ -11,7 +11,7 @@
 
 /// 1 when an Accept header (NULL: none) lets `media_type` through.
 int hn_accepts(const char *accept, const char *media_type);
-/// 1 for application/json, with or without parameters.
+/// 1 for application/json in UTF-8, with or without parameters.
 bool hn_is_json_type(const char *content_type);
 
 /// Checks the form of the head, and takes blanks off the ends of its values; before any other look

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/json_text.h"
 #include "http/ground/connections.h"
+#include "http/ground/plain_number.h"
 #include "http/request/context.h"
 #include "session/job/field.h"
 
@@ -30,19 +31,17 @@ const char *hn_request_query(const hn_request *r, const char *name) {
 bool hn_request_query_number(hn_request *r, const char *name, double low, double high, bool whole,
                              double *out) {
     const char *text = hn_request_query(r, name);
-    char *end = NULL;
+    double value = 0;
     if (!text) {
         return true;
     }
-    const double value = strtod(text, &end);
-    if (end == text || *end || !(value >= low && value <= high) ||
-        (whole && value != floor(value))) {
+    if (!hn_plain_number(text, whole, &value) || !(value >= low && value <= high)) {
         char pointer[32];
         hn_diags diags = {0};
         snprintf(pointer, sizeof pointer, "/%s", name);
         hn_diags_add(&diags, HN_ERR_INPUT, pointer, NULL,
                      "'%s' is '%.40s'; %s from %g to %g is allowed", name, text,
-                     whole ? "a whole number" : "a number", low, high);
+                     whole ? "a whole number, in digits," : "a number", low, high);
         hn_reply_diags(r, HN_ERR_INPUT, &diags);
         return false;
     }

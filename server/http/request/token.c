@@ -59,7 +59,10 @@ static void redirect(hn_request *r, const char *token) {
     hn_reply_empty(r, MHD_HTTP_SEE_OTHER);
     const char *last = strrchr(r->path, '/');
     hn_reply_header_add(r, "Location", ".%s", last ? last : "/");
-    hn_reply_header_add(r, "Set-Cookie", "%s=%s; Path=/; HttpOnly; SameSite=Strict", COOKIE, token);
+    // the path of a cookie is the folder of the address as the browser has it, with the prefix
+    const bool is_at_root = !last || last == r->path;
+    hn_reply_header_add(r, "Set-Cookie", "%s=%s; %sHttpOnly; SameSite=Strict", COOKIE, token,
+                        is_at_root ? "" : "Path=/; ");
 }
 
 int hn_token_check(hn_request *r, const char *method) {
@@ -78,14 +81,19 @@ int hn_token_check(hn_request *r, const char *method) {
         return 1;
     }
 
-    // no token, or a wrong one
-    if (r->context->opts.guests && may_guest(r, method)) {
+    // no token, or a wrong one; a cookie may be of an earlier server, so it makes a guest
+    const bool is_wrong = query || read_bearer(header);
+    if (r->context->opts.guests && !is_wrong && may_guest(r, method)) {
         return 1;
     }
     hn_reply_problem(r, HN_PROBLEM_TOKEN,
-                     "open the link that the server printed, or send Authorization: Bearer TOKEN",
-                     r->context->opts.guests ? "guests may read; this needs the token"
-                                             : "this server asks for a token");
+                     is_wrong && r->context->opts.guests
+                         ? "take the token that the server printed, or read as a guest without one"
+                         : "open the link that the server printed, or send Authorization: Bearer "
+                           "TOKEN",
+                     is_wrong ? "the token that was sent is not that of this server"
+                     : r->context->opts.guests ? "guests may read; this needs the token"
+                                               : "this server asks for a token");
     hn_reply_header_add(r, "WWW-Authenticate", "Bearer realm=\"holonom\"");
     return 0;
 }

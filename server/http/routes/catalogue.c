@@ -6,6 +6,7 @@
 
 #include "build.h"
 #include "grade/exercise_shelf.h"
+#include "http/ground/plain_number.h"
 #include "http/live/comparisons.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
@@ -156,9 +157,8 @@ typedef struct query_settings {
 static hn_status see_setting(void *user, const char *value) {
     query_settings *q = user;
     size_t n = strcspn(value, ":=");
-    char *end;
-    double x = value[n] ? strtod(value + n + 1, &end) : 0;
-    if (!value[n] || n == 0 || end == value + n + 1 || *end) {
+    double x = 0;
+    if (!value[n] || n == 0 || !hn_plain_number(value + n + 1, false, &x)) {
         return hn_diags_add(q->diags, HN_ERR_INPUT, "/parameters", "set=l1:1.2",
                             "'%.80s' is not of the form parameter:number", value);
     }
@@ -212,9 +212,9 @@ enum { MEANS = 3 };
 static hn_status read_number(const hn_request *r, const char *name, double most, double *out,
                              hn_diags *diags) {
     const char *text = hn_request_query(r, name);
-    char *end = NULL, pointer[32];
-    *out = text ? strtod(text, &end) : (double)NAN;
-    if (text && (end == text || *end || !(*out > 0) || !(*out <= most))) {
+    char pointer[32];
+    *out = (double)NAN;
+    if (text && (!hn_plain_number(text, false, out) || !(*out > 0) || !(*out <= most))) {
         snprintf(pointer, sizeof pointer, "/%s", name);
         return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
                             "'%.40s' is not a time above 0 and at most %g s", text, most);

@@ -50,6 +50,13 @@ static void reply_off_routes(hn_request *r, const char *method, const hn_route_m
         }
     }
 
+    // a tunnel: its address is a host, and no address here takes it
+    if (strcmp(method, "CONNECT") == 0) {
+        reply_verb(r, method,
+                   match->allow[0] ? match->allow : "GET, HEAD, POST, PATCH, DELETE, OPTIONS");
+        return;
+    }
+
     // a file of the page
     if ((strcmp(method, "GET") == 0 || r->is_head) &&
         hn_static_files_reply(r->context->files, r, r->path)) {

@@ -6,6 +6,7 @@
 #include "grade/exercise_text.h"
 #include "grade/grade.h"
 #include "grade/variant.h"
+#include "http/ground/plain_number.h"
 #include "http/live/pulls.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
@@ -242,9 +243,9 @@ void hn_handle_snapshot(hn_request *r) {
 static int hint_asked(const hn_request *r, const hn_exercise *problem, hn_diags *diags,
                       hn_status *status) {
     const char *text = hn_request_query(r, "hint");
-    char *end = NULL;
-    const long number = text ? strtol(text, &end, 10) : 0;
-    if (text && (*end || end == text || number < 1 || number > problem->n_hints)) {
+    double number = 0;
+    if (text &&
+        (!hn_plain_number(text, true, &number) || number < 1 || number > problem->n_hints)) {
         *status = hn_diags_add(diags, HN_ERR_INPUT, "/hint", "hint=1",
                                "'%.40s' is not the number of a hint; this exercise has %d", text,
                                problem->n_hints);

@@ -51,9 +51,11 @@ static hn_status choose_columns(reader *r, const char *fields, hn_diags *diags) 
         if (!column) {
             return refuse_column(name, d, diags);
         }
-        if (r->n == MAX_COLUMNS) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/fields", NULL,
-                                "'fields' names more than %d columns", MAX_COLUMNS);
+        for (int i = 0; i < r->n; i++) {
+            if (strcmp(r->columns[i].name, name) == 0) {
+                return hn_diags_add(diags, HN_ERR_INPUT, "/fields", NULL,
+                                    "'fields' names the column '%s' twice", name);
+            }
         }
         r->columns[r->n++] = *column;
         at += n + (at[n] == ',');

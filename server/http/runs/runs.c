@@ -240,6 +240,13 @@ static bool read_samples_request(hn_request *r, hn_samples_request *q) {
         !hn_request_query_number(r, "to", 0, 1e12, 0, &q->to)) {
         return false;
     }
+    if (q->from > q->to) {
+        hn_diags diags = {0};
+        hn_diags_add(&diags, HN_ERR_INPUT, "/from", NULL,
+                     "'from' is %.17g and 'to' is %.17g: no time is between them", q->from, q->to);
+        hn_reply_diags(r, HN_ERR_INPUT, &diags);
+        return false;
+    }
     q->stride = (long long)stride;
     q->cursor = (long long)cursor;
     q->limit = (long long)limit;

@@ -61,11 +61,17 @@ static void refuse_place(hn_studies *all, hn_request *r, int n_before, const cha
     }
     const int share = hn_http_opts_share(all->opts, all->opts->max_studies);
     const double seconds = time_to_turn(all, r->client, n_before);
-    hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "ask again, or stop one that is running",
-                     hn_shares_has_share(all->places, r->client)
-                         ? "your client runs %d of %d studies, which is its share%s"
-                         : "all places for studies are taken; one client may have %d of %d%s",
-                     share, all->opts->max_studies, tail);
+    if (hn_shares_has_share(all->places, r->client)) {
+        hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "wait, or stop one that is running",
+                         "your client runs %d of %d studies, which is its share%s; Retry-After "
+                         "estimates when the first of yours ends",
+                         share, all->opts->max_studies, tail);
+    } else {
+        hn_reply_problem(r, HN_PROBLEM_STUDIES_BUSY, "wait, or stop one that is running",
+                         "all %d places for studies are taken%s; Retry-After estimates when this "
+                         "request would have one",
+                         all->opts->max_studies, tail);
+    }
     hn_reply_header_add(r, "Retry-After", "%d", (int)fmin(LONGEST_RETRY, 1 + floor(seconds)));
 }
 

@@ -65,6 +65,10 @@ static void json_types_may_have_parameters(void **state) {
     (void)state;
     assert_true(hn_is_json_type("application/json"));
     assert_true(hn_is_json_type("Application/JSON; charset=utf-8"));
+    assert_true(hn_is_json_type("application/json;a=b; charset=\"UTF-8\""));
+    assert_false(hn_is_json_type("application/json; charset=utf-16"));
+    assert_false(hn_is_json_type("application/json;charset=\"iso-8859-1\""));
+    assert_false(hn_is_json_type("application/json; charset="));
     assert_false(hn_is_json_type("application/jsonp"));
     assert_false(hn_is_json_type("text/json"));
     assert_false(hn_is_json_type(NULL));
