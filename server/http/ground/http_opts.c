@@ -51,7 +51,8 @@ hn_jobs_opts hn_http_opts_pool(const hn_http_opts *opts) {
                           .n_waiting = opts->queue,
                           .n_waiting_of_one = hn_http_opts_share(opts, opts->queue),
                           .n_aside = opts->aside,
-                          .n_aside_of_one = opts->aside_of_one};
+                          .n_aside_of_one = opts->aside_of_one,
+                          .longest = opts->max_run_cpu};
 }
 
 int hn_http_opts_share(const hn_http_opts *opts, int places) {

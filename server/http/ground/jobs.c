@@ -272,26 +272,32 @@ int hn_jobs_push(hn_jobs *jobs, void *work_item, hn_client client) {
     return taken;
 }
 
-/// What the jobs that go on have used so far, on average, where they share the threads evenly [s].
-/// With the lock held.
-static double mean_so_far(const hn_jobs *jobs) {
+/// What a job that has worked for `used` still needs [s]: as much as the mean of those before
+/// leaves; one that went on for longer will go on for as long again, up to the longest that a job
+/// may.
+static double needs_still(const hn_jobs *jobs, double used) {
+    return used < jobs->mean ? jobs->mean - used : fmin(used, fmax(0, jobs->opts.longest - used));
+}
+
+/// When the first of the jobs that are begun ends, which share the threads evenly [s]. With the
+/// lock held.
+static double time_to_end(const hn_jobs *jobs) {
     const double now = hn_clock_wall();
-    double sum = 0;
-    int n = 0;
+    const int n = jobs->n_threads - count_turns(jobs, TURN_IDLE);
+    const double share = fmin(1, (double)jobs->opts.at_once / (n > 0 ? n : 1));
+    double first = HUGE_VAL;
     for (int i = 0; i < jobs->n_threads; i++) {
-        if (jobs->turns[i].state != TURN_IDLE) {
-            sum += now - jobs->turns[i].taken_up;
-            n++;
+        const hn_job_turn *t = &jobs->turns[i];
+        if (t->state != TURN_IDLE) {
+            first = fmin(first, needs_still(jobs, (now - t->taken_up) * share) / share);
         }
     }
-    return n == 0 ? 0 : sum / n * fmin(1, (double)jobs->opts.at_once / n);
+    return n > 0 ? first : 0;
 }
 
 int hn_jobs_wait(hn_jobs *jobs) {
     pthread_mutex_lock(&jobs->lock);
-    // jobs that went on for long will go on for long, whatever those before them took
-    const int n = jobs->n + count_turns(jobs, TURN_ASIDE) + 1;
-    const double seconds = fmax(jobs->mean, mean_so_far(jobs)) * n / jobs->opts.at_once;
+    const double seconds = time_to_end(jobs); // then one that waits is begun, and leaves its place
     pthread_mutex_unlock(&jobs->lock);
     return (int)fmin(60, fmax(1, ceil(seconds)));
 }

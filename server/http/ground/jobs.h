@@ -20,13 +20,15 @@ typedef struct hn_jobs_opts {
     int n_waiting_of_one; ///< of them of one client
     int n_aside;          ///< jobs that are set aside, at most; 0: a job works to its end
     int n_aside_of_one;   ///< jobs of one client that make way for another job of that client
+    double longest;       ///< work of one job, at most [s]; 0: short
 } hn_jobs_opts;
 
 /// `run` does one job, on a thread of the pool. NULL when memory or threads are out.
 hn_jobs *hn_jobs_create(const hn_jobs_opts *opts, void (*run)(void *job, hn_job_turn *turn));
 /// Returns 0 when the queue is full, in all or for this client, or the pool is stopping.
 int hn_jobs_push(hn_jobs *jobs, void *job, hn_client client);
-/// Returns the seconds after which a job that is pushed now will probably be taken up: 1 to 60.
+/// Returns the seconds after which the queue will probably have a place: when the first of the jobs
+/// that are begun ends, and one that waits is begun. 1 to 60.
 int hn_jobs_wait(hn_jobs *jobs);
 /// Takes on nothing new, works off what is queued, and joins the threads. NULL is legal.
 void hn_jobs_stop(hn_jobs *jobs);

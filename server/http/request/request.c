@@ -244,7 +244,9 @@ void hn_reply_queue_full(hn_request *r, hn_jobs *jobs) {
     const hn_http_opts *opts = &r->context->opts;
     hn_reply_problem(
         r, HN_PROBLEM_BUSY, NULL,
-        "%d requests of this kind are waiting already, or your client has its share of them",
+        "%d requests of this kind are waiting already, or your client has its share of them; "
+        "Retry-After estimates when the first that is computed ends, and one of them leaves its "
+        "place",
         jobs == r->context->quick ? opts->quick_queue : opts->queue);
     hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
 }

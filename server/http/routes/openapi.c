@@ -25,12 +25,22 @@
     ",\"t\":" MAYBE_NUMBER ",\"over_rtol\":" MAYBE_NUMBER ",\"reason\":" TEXT "}}"
 #define STATUS_NAME(value, name, text) ",\"" name "\""
 #define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
+#define FAILURE "{\"oneOf\":[{\"$ref\":\"#/components/schemas/Failure\"},{\"type\":\"null\"}]}"
 #define OBJECTS "{\"type\":\"array\",\"items\":{\"type\":\"object\"}}"
 
 static const struct {
     const char *name, *schema;
 } SCHEMAS[] = {
     {"Text", "{\"type\":\"string\"}"},
+    {"Failure",
+     "{\"type\":\"object\",\"description\":\"why a run or a method ended early, as data; null "
+     "where "
+     "it did not. reason, beside it, is the same as one sentence for people, and equals message\","
+     "\"required\":[\"code\",\"quantity\",\"value\",\"limit\",\"t\",\"message\",\"remedies\"],"
+     "\"properties\":{\"code\":" TEXT
+     ",\"quantity\":{\"type\":[\"string\",\"null\"]},\"value\":" MAYBE_NUMBER
+     ",\"limit\":" MAYBE_NUMBER ",\"t\":{\"type\":\"number\"},\"message\":" TEXT
+     ",\"remedies\":" TEXTS "}}"},
     {"RunList",
      "{\"type\":\"object\",\"required\":[\"runs\",\"spoilt\",\"unchecked\"],\"properties\":{"
      "\"runs\":" TEXTS
@@ -98,7 +108,7 @@ static const struct {
      "\"id\":" TEXT ",\"state\":{\"enum\":[\"waiting\",\"running\",\"finished\"]},"
      "\"progress\":{\"type\":\"number\"},\"links\":{\"type\":\"object\"},\"runs\":" OBJECTS ","
      "\"scene\":{\"type\":[\"string\",\"null\"]},"
-     "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT
+     "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT ",\"failure\":" FAILURE
      ",\"verdict\":{\"type\":\"object\",\"description\":\"verdict on the motion by its error "
      "estimate; status only says whether the run reached its "
      "end\",\"properties\":{\"is\":{\"enum\":[\"right\",\"inaccurate\",\"wrong\",\"unknown\"]},"
@@ -121,7 +131,7 @@ static const struct {
      "\"methods\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"state\","
      "\"status\"],\"properties\":{"
      "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"status\":" STATUS
-     ",\"t\":{\"type\":\"number\"},"
+     ",\"reason\":" TEXT ",\"failure\":" FAILURE ",\"t\":{\"type\":\"number\"},"
      "\"q\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      "},\"v\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
      "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER
@@ -303,11 +313,35 @@ static void put_reference(hn_strbuf *b, const char *schema) {
     hn_json_end_object(b);
 }
 
+/// What a status means where it says more than that all is well.
+static const struct {
+    const char *schema, *verb, *status, *about;
+} STATUSES[] = {
+    {"Run", "POST", "201", "The run is new and has ended: the whole document, with its samples."},
+    {"Run", "POST", "200", "The same request was made before: its document, not computed again."},
+    {"Run", "POST", "202",
+     "The run has not ended within wait (25 s when left out; wait=0 answers at once): its id, "
+     "state and progress. It goes on; GET its Location, with wait, until state is finished."},
+    {"Run", "GET", "200",
+     "Where it has ended the summary, without samples; otherwise its state and progress."},
+};
+
+static const char *about_answer(const hn_route *route, const char *status) {
+    for (size_t i = 0; route->schema && i < sizeof STATUSES / sizeof *STATUSES; i++) {
+        if (strcmp(STATUSES[i].schema, route->schema) == 0 &&
+            strcmp(STATUSES[i].verb, route->method) == 0 &&
+            strcmp(STATUSES[i].status, status) == 0) {
+            return STATUSES[i].about;
+        }
+    }
+    return route->summary;
+}
+
 /// One answer that is no problem document.
 static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) {
     hn_json_key(b, status);
     hn_json_object(b);
-    hn_json_put_string(b, "description", route->summary);
+    hn_json_put_string(b, "description", about_answer(route, status));
     if (route->schema) {
         char type[64];
         hn_json_key(b, "content");

@@ -175,7 +175,9 @@ void hn_handle_runs_create(hn_request *r) {
     }
     if (status == HN_ERR_LIMIT && diags.n == 0) {
         hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
-                         "%d runs are waiting already, or your client has its share of them",
+                         "%d runs are waiting already, or your client has its share of them; "
+                         "Retry-After estimates when the first that is computed ends, and one of "
+                         "them leaves its place",
                          r->context->opts.queue);
         hn_reply_header_add(r, "Retry-After", "%d", hn_runs_wait(all));
     } else {
