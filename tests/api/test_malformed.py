@@ -270,6 +270,17 @@ class Malformed(driver.ServerCase):
         document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", {"scen": 1, "time": "x", "every": -1}), 422)
         self.assertEqual({"/scen", "/time", "/every", "/scene"}, {e["pointer"] for e in document["errors"]})
 
+    def test_a_missing_field_hides_no_misspelt_method_or_scene(self):
+        """They were told one request after the other."""
+        for path, body, pointers in (
+                ("runs", {"scene": "four-bra", "method": "projektion@rk4"}, ["/method", "/time", "/scene"]),
+                ("runs", {"scene": "four-bar", "methods": ["index1@rk4", "indx1@rk4", "index1@rk5"], "time": 1}, ["/methods/1", "/methods/2"]),
+                ("comparisons", {"scene": "four-bra", "methods": ["indx1@rk4"], "speed": 0}, ["/methods/0", "/speed", "/scene"]),
+                ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=x"]}, ["/methods/0", "/time"])):
+            with self.subTest(path=path, body=body):
+                document = self.assert_problem(self.server.ask("POST", "/api/v1/" + path, body), 422)
+                self.assertEqual([e["pointer"] for e in document["errors"]], pointers)
+
     def test_faults_inside_a_scene_are_told_by_their_place_in_the_body(self):
         scene = json.load(open("lessons/01-closed-loops/scenes/pendulum.json"))
         scene["bodies"][0]["mass"] = "heavy +"

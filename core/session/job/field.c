@@ -2,6 +2,7 @@
 #include "session/job/field.h"
 
 #include "base/suggest.h"
+#include "integrators/method/method_spec.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -211,6 +212,29 @@ static hn_status check_all_names(const cJSON *value, const char *pointer, hn_dia
     return status;
 }
 
+/// Checks that a text, or each of a list, spells a method.
+static hn_status check_spelling(const cJSON *value, const char *pointer, hn_diags *diags) {
+    hn_status status = HN_OK;
+    if (cJSON_IsString(value)) {
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        status = hn_method_parse(value->valuestring, &spec, &diag);
+        return status == HN_OK
+                   ? HN_OK
+                   : hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
+    }
+    int index = 0;
+    const cJSON *item;
+    cJSON_ArrayForEach(item, value) {
+        char place[HN_DIAG_POINTER], number[16];
+        snprintf(number, sizeof number, "%d", index++);
+        member_pointer(place, pointer, number);
+        const hn_status one = check_spelling(item, place, diags);
+        status = one != HN_OK ? one : status;
+    }
+    return status;
+}
+
 static hn_status check_member(const cJSON *value, const hn_field *f, const char *pointer,
                               bool served, hn_diags *diags) {
     if (!has_type(value, f)) {
@@ -218,7 +242,10 @@ static hn_status check_member(const cJSON *value, const hn_field *f, const char 
                             type_words(f));
     }
     if (cJSON_IsNumber(value) || cJSON_IsArray(value)) {
-        return check_range(value, f, pointer, served, diags);
+        HN_TRY(check_range(value, f, pointer, served, diags));
+    }
+    if (f->is_method && served) {
+        return check_spelling(value, pointer, diags);
     }
     if (f->type == HN_FIELD_BY_NAME && cJSON_GetArraySize(value) > MAX_MEMBERS) {
         return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,

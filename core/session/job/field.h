@@ -29,6 +29,7 @@ typedef struct hn_field {
     const char *name; ///< in JSON; as an option of the command line "--" and dashes for underscores
     hn_field_type type;
     bool required;
+    bool is_method;                ///< texts are spellings of methods; checked where served
     double min, max;               ///< of a number, or how many entries; both 0: any finite number
     double served_max;             ///< the bound of a request to a server; 0: `max`
     const char *argument;          ///< of the option: "N"; NULL: no option of the command line

@@ -4,6 +4,7 @@
 
 #include "base/bundle.h"
 #include "base/folder.h"
+#include "base/suggest.h"
 #include "session/model/installed.h"
 
 #include <pthread.h>
@@ -271,6 +272,18 @@ const char *hn_library_scene_path(const hn_library *lib, const char *id) {
 
 const char *const *hn_library_scene_ids(const hn_library *lib) {
     return get_shelf(lib, SCENES)->ids;
+}
+
+hn_status hn_library_check_scene(const hn_library *lib, const char *id, const char *pointer,
+                                 hn_diags *diags) {
+    char hint[HN_DIAG_HINT];
+    if (hn_library_scene_path(lib, id)) {
+        return HN_OK;
+    }
+    hn_suggest(hint, id, hn_library_scene_ids(lib), hn_library_n_scenes(lib),
+               "'holonom list scenes' names them all");
+    return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "no shipped scene is called '%.80s'",
+                        id);
 }
 
 const char *hn_library_problem_path(const hn_library *lib, const char *id) {

@@ -24,6 +24,9 @@ int hn_library_n_scenes(const hn_library *lib);
 const char *hn_library_scene_id(const hn_library *lib, int i);
 const char *hn_library_scene_path(const hn_library *lib, const char *id); ///< NULL when unknown
 const char *const *hn_library_scene_ids(const hn_library *lib);
+/// Reports at `pointer` that no shipped scene has this id, with a near miss. Fails: HN_ERR_INPUT.
+hn_status hn_library_check_scene(const hn_library *lib, const char *id, const char *pointer,
+                                 hn_diags *diags);
 /// Shipped problems, by id ("p3").
 const char *hn_library_problem_path(const hn_library *lib, const char *id);
 int hn_library_n_problems(const hn_library *lib);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/model.h"
 
-#include "base/suggest.h"
 #include "base/units.h"
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
@@ -37,15 +36,9 @@ static const char *find_reference(hn_arena *arena, const hn_library *lib, const 
 
 static hn_status load_shipped(const hn_library *lib, const hn_model_source *source,
                               hn_scene **scene, hn_diags *diags) {
-    const char *path = hn_library_scene_path(lib, source->name);
-    if (!path) {
-        char hint[HN_DIAG_HINT];
-        hn_suggest(hint, source->name, hn_library_scene_ids(lib), hn_library_n_scenes(lib),
-                   "'holonom list scenes' names them all");
-        return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint,
-                            "no shipped scene is called '%.80s'", source->name);
-    }
-    return hn_scene_load_file(path, source->settings, source->n_settings, scene, diags);
+    HN_TRY(hn_library_check_scene(lib, source->name, "/scene", diags));
+    return hn_scene_load_file(hn_library_scene_path(lib, source->name), source->settings,
+                              source->n_settings, scene, diags);
 }
 
 static hn_status load_scene(const hn_library *lib, const hn_model_source *source, hn_scene **scene,

@@ -293,6 +293,15 @@ hn_interrupt hn_request_interrupt(hn_request *r) {
     return (hn_interrupt){must_end, r};
 }
 
+/// Adds to the faults of a body that it names a scene which is not there.
+static void check_scene_name(const hn_request *r, hn_diags *diags) {
+    const hn_field *field = hn_fields_find(r->route->fields, "scene");
+    const char *name = hn_fields_text(r->json, "scene");
+    if (field && field->type == HN_FIELD_SCENE && name) {
+        hn_library_check_scene(r->context->lib, name, "/scene", diags);
+    }
+}
+
 int hn_request_read_body(hn_request *r) {
     if (!r->route->fields || r->json) {
         return 1;
@@ -318,6 +327,9 @@ int hn_request_read_body(hn_request *r) {
         status = hn_diags_add(&diags, HN_ERR_INPUT, "", NULL, "the body must be a JSON object");
     } else {
         status = hn_fields_check(r->json, r->route->fields, "", true, &diags);
+        if (status != HN_OK) { // otherwise its reader says so
+            check_scene_name(r, &diags);
+        }
     }
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);
