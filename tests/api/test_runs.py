@@ -117,9 +117,10 @@ class Runs(unittest.TestCase):
         """The answer was a finished run whose computing time was used up, after a second of it."""
         server, answers = driver.Server(), []
         threads = [threading.Thread(target=lambda q=q: answers.append(server.ask("POST", "/api/v1/runs?wait=50", q, timeout=90))) for q in (LONG, {**LONG, "time": 999})]
+        before = server.cpu()
         for t in threads:
             t.start()
-        time.sleep(1)
+        server.is_at_work(before)
         self.assertEqual(server.stop(), 0)
         for t in threads:
             t.join()

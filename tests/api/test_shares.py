@@ -3,6 +3,7 @@
 
 import http.client
 import json
+import re
 import socket
 import subprocess
 import threading
@@ -32,10 +33,15 @@ class FairShares(Timed):
         def ask(wait):
             answers.append(server.ask("POST", f"/api/v1/comparisons?wait={wait}", self.MAKE[2], timeout=90))
 
+        def waiting():
+            detail = server.ask("POST", "/api/v1/comparisons?wait=0", self.MAKE[2]).json()["detail"]
+            return int(re.search(r"(\d+) requests wait before", detail).group(1))
+
         def begin(wait):
             threads.append(threading.Thread(target=ask, args=(wait,)))
             threads[-1].start()
-            time.sleep(0.5)
+            # it waits, or has waited for so short a time that it was not seen to
+            self.assertTrue(driver.until(lambda: waiting() == len(threads) or len(answers) > 0))
 
         # the first of three waits for longest, the second too short a time, the third goes away
         threads = []
@@ -68,7 +74,8 @@ class FairShares(Timed):
         events.take(1)
         thread = threading.Thread(target=lambda: answers.append(server.ask(*self.MAKE, timeout=90)))
         thread.start()
-        time.sleep(0.5)
+        busy = lambda: server.ask(*self.AT_ONCE).json()["detail"]
+        self.assertTrue(driver.until(lambda: "1 requests wait before" in busy()))
         self.assertEqual(server.stop(), 0)
         thread.join()
         self.assertEqual(answers[0].status, 503)
@@ -166,6 +173,11 @@ class FairShares(Timed):
     STUDIES = "/api/v1/studies"
     NO_WAIT = STUDIES + "?wait=0"
 
+    def waiting(self, client):
+        """How many requests wait for the place of a study, as one more is told."""
+        found = re.search(r"; (\d+) requests wait before", client.ask("POST", self.NO_WAIT, self.STUDY).json().get("detail", ""))
+        return int(found.group(1)) if found else 0
+
     def test_one_client_does_not_hold_every_place_for_studies(self):
         server = driver.Server()
         greedy, modest, third = (From(server, f"127.0.0.{k}") for k in (2, 3, 4))
@@ -202,7 +214,7 @@ class FairShares(Timed):
         for name, client, wait in (("patient", clients[2], 25), ("hasty", clients[3], 1)):
             threads.append(threading.Thread(target=ask, args=(name, client, wait)))
             threads[-1].start()
-            time.sleep(0.3)
+            self.assertTrue(driver.until(lambda: self.waiting(clients[4]) >= 1))
         refused = clients[4].ask("POST", self.NO_WAIT, self.STUDY)
         self.assertEqual(refused.status, 503)
         self.assertRegex(refused.json()["detail"], r"; [12] requests wait before this one; Retry-After estimates when this request would have one$")
@@ -217,7 +229,7 @@ class FairShares(Timed):
         # who has its share waits for an end of its own, and is told when the server ends
         threads = [threading.Thread(target=ask, args=("own", clients[2], 25))]
         threads[0].start()
-        time.sleep(0.5)
+        self.assertTrue(driver.until(lambda: self.waiting(clients[4]) == 1))
         self.assertEqual(server.stop(), 0)
         threads[0].join()
         self.assertEqual((answers["own"].status, answers["own"].json()["type"]), (503, "/api/v1/errors/stopping"))

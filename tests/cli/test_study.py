@@ -7,6 +7,7 @@ import json
 import os
 import re
 import signal
+import subprocess
 import resource
 import sys
 import tempfile
@@ -193,6 +194,22 @@ class Study(unittest.TestCase):
                 self.assertEqual(text.returncode, DONE)
                 found = re.search(rb"continuing with (\d+) points", text.stderr)
                 self.assertEqual(int(found.group(1)) if found else 0, done)
+
+    def test_an_end_before_anything_is_finished_says_so(self):
+        """It said "stopped on request" alone, and nothing of what had become of the work."""
+        # the reference motion alone takes seconds; the signal comes as soon as it is caught
+        argv, env = studies.command(["study", "stewart-6-6", "work-precision", "--time-limit", "0"], self.folder)
+        with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            def is_caught():
+                with open(f"/proc/{process.pid}/status", encoding="ascii") as f:
+                    caught = int(re.search(r"SigCgt:\s*([0-9a-f]+)", f.read()).group(1), 16)
+                return caught >> (signal.SIGTERM - 1) & 1
+
+            self.assertTrue(driver.until(is_caught, 60, 0.002))
+            process.send_signal(signal.SIGTERM)
+            _, err = process.communicate(timeout=60 * driver.SLOW)
+        self.assertEqual(process.returncode, ENDED, err)
+        self.assertIn("nothing was finished yet", err.decode())
 
     def test_time_left_is_shown_and_again_when_the_study_goes_on(self):
         words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--time-limit", "0"]

@@ -77,12 +77,14 @@ typedef struct command {
     char folder[400];
     hn_job_request request;
     hn_progress progress;
+    double share; ///< done of the whole, as far as was told
 } command;
 
 static void show_progress(void *user, const char *part, double share) {
     command *c = user;
     char what[100];
     snprintf(what, sizeof what, "%s%s%.60s", c->kind->name, part[0] ? " " : "", part);
+    c->share = share;
     hn_progress_tell(&c->progress, what, share);
 }
 
@@ -208,7 +210,8 @@ static void report_end(const command *c, const hn_job_end *end) {
                        : end->lost ? "; the finished part could not be written and is lost"
                                    : "; the same command continues from here";
     if (end->stopped) {
-        hn_cli_note("holonom: stopped on request%s\n", kept);
+        hn_cli_note("holonom: stopped on request%s%s\n", kept,
+                    c->share > 0 ? "" : " (nothing was finished yet)");
     } else if (end->out_of_time) {
         const double limit = c->request.limits.time_limit;
         char which[64] = " (--time-limit)";
@@ -270,6 +273,9 @@ static hn_exit run_prepared(command *c) {
     // without a document there is only the reason
     if (status != HN_OK) {
         const hn_exit said = hn_report_diags(c->args, status, &diags);
+        if (hn_is_interrupted(NULL) && !c->args->json) {
+            hn_cli_note("holonom: nothing was finished yet, so nothing is kept\n");
+        }
         hn_job_free(job);
         return status == HN_ERR_NO_CONVERGENCE || hn_is_interrupted(NULL) ? HN_EXIT_ENDED : said;
     }
