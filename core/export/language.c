@@ -11,7 +11,8 @@
 #define OWN                                                                                       \
     " q v mass force jacobian bias closure closure_rate energy NQ NV NC START_Q START_V START_A " \
     "ENERGY "                                                                                     \
-    "CHECK_T CHECK_Q CHECK_V CHECK_A ALPHA BETA rates terms move slope close "
+    "CHECK_T CHECK_Q CHECK_V CHECK_A ALPHA BETA METHOD METHOD_H METHOD_STEPS METHOD_GAP steps "   \
+    "rates terms move slope close "
 #define WOLFRAM_OWN                                                                          \
     "startQ startV startA startEnergy checkQ checkV checkA checkT rate nQ nV nC end motion " \
     "checks "
@@ -117,6 +118,7 @@ static const hn_language LANGUAGES[] = {
     {.name = "python",
      .suffix = ".py",
      .about = "Python with numpy and scipy",
+     .has_steps = true,
      .comment = "#",
      .constant = "#1 = #2",
      .vector = "#1[#2] = #3",
@@ -133,6 +135,7 @@ static const hn_language LANGUAGES[] = {
     {.name = "c",
      .suffix = ".c",
      .about = "C99, nothing but the C library",
+     .has_steps = true,
      .comment = "//",
      .constant = "const double #1 = #2;",
      .vector = "#1[#2] = #3;",
@@ -144,6 +147,7 @@ static const hn_language LANGUAGES[] = {
     {.name = "cpp",
      .suffix = ".cpp",
      .about = "C++17, nothing but the standard library",
+     .has_steps = true,
      .comment = "//",
      .constant = "const double #1 = #2;",
      .vector = "#1[#2] = #3;",
@@ -177,6 +181,7 @@ static const hn_language LANGUAGES[] = {
     {.name = "octave",
      .suffix = ".m",
      .about = "GNU Octave or MATLAB, with ode45",
+     .has_steps = true,
      .comment = "%",
      .constant = "#1 = #2;",
      .vector = "#1(#2) = #3;",

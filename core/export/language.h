@@ -48,6 +48,7 @@ typedef struct hn_language {
     void (*put_unit)(hn_strbuf *b, const char *unit); ///< NULL: as words
     /// the ways to solve, behind each other up to one without a name; the first when none is asked
     /// for; NULL: there is one way only
+    bool has_steps; ///< its text repeats the steps of a method with its first solver
     const hn_language_solver *solvers;
     /// how functions are called: #1 and #2 for the arguments; NULL: as in a scene, name(#1, #2)
     const char *call[HN_OP_COUNT];

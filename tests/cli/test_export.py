@@ -382,6 +382,48 @@ def methods(folder):
     return faults if "c" in known else ["no C"]
 
 
+def run_text(folder, name, language, text):
+    """What a program of this text prints, built and run as the table of languages says."""
+    ending, build, run = languages()[language]
+    file = os.path.join(folder, name + ending)
+    with open(file, "w", encoding="utf-8") as f:
+        f.write(text)
+    fill = {"file": file, "out": file + ".x", "optimise": "-O1"}
+    for words in (build, run):
+        done = call([word.format(**fill) for word in words]) if words else None
+    return done.returncode, done.stdout + done.stderr
+
+
+def steps_of_the_method(folder):
+    """With a fixed step of euler, heun or rk4 a program repeats the steps, and finds the gap that `compare` prints; else it says why not."""
+    faults, known = [], languages()
+    for method, time in (("index1@rk4:h=0.01", 10), ("baumgarte@heun:h=0.01", 10), ("index1@euler:h=0.001", 2)):
+        gap = json.loads(call([PROGRAM, "compare", "four-bar", "--methods", method, "--time", str(time), "--json"]).stdout)["methods"][0]["worst_gap"]
+        for language in [name for name in ("c", "python", "cpp", "octave") if name in known and (name == "c" or method.startswith("index1@rk4"))]:
+            text = call([PROGRAM, "export", "four-bar", "--language", language, "--method", method]).stdout
+            status, said = run_text(folder, f"steps{time}", language, text)
+            found = re.search(rf"(?m)^ok  worst gap of {re.escape(method)}, to t = {time}: (\S+) m, in the workbench (\S+) m", said)
+            # six digits are printed
+            if status != 0 or not found or any(abs(float(x) - gap) > 1e-5 * gap for x in found.groups()):
+                faults.append(f"{method} in {language}: exit {status}, {gap} expected: {said}")
+    # a gap that is off is found
+    text = call([PROGRAM, "export", "four-bar", "--language", "c", "--method", "index1@rk4:h=0.01"]).stdout
+    status, said = run_text(folder, "steps_off", "c", text.replace("METHOD_GAP = 0.0333", "METHOD_GAP = 0.0334"))
+    if status != 1 or "BAD worst gap" not in said:
+        faults.append(f"a gap that is off: exit {status}: {said}")
+    # others say why, on standard error and in the program
+    for language, scene, method, why in (("c", "four-bar", "index1@dopri5:rtol=1e-6", "it can take the steps of euler, heun and rk4"),
+                                         ("java", "four-bar", "index1@rk4:h=0.01", "it has one integrator, which is its own"),
+                                         ("c", "heavy-top", "index1@rk4:h=0.01", "its own integrator alone takes orientations"),
+                                         ("c", "bennett", "index1@rk4:h=0.01", "its constraints depend on each other"),
+                                         ("c", "parallelogram", "baumgarte@rk4:h=0.002", "rounding changes its motion too much")):  # fmt: skip
+        done = call([PROGRAM, "export", scene, "--language", language, "--method", method])
+        wanted = f"does not take the steps of {method}: {why}".replace("rtol=1e-6", "rtol=1e-06")
+        if done.returncode != 0 or wanted not in done.stdout or why not in " ".join(done.stderr.split()):
+            faults.append(f"{scene} by {method} in {language}: {wanted} is not said: {done.stderr}")
+    return faults
+
+
 def slip(folder):
     """A self-check that cannot fail checks nothing: a changed parameter must be found."""
     file = os.path.join(folder, "slip.c")
@@ -537,6 +579,7 @@ def main():
         results.append(("a limit on a program counts its computing alone", limits()))
         results.append(("only a reason in the table excuses a scene", ends()))
         results.append(("a method says how the loops are held", methods(folder)))
+        results.append(("a method's own steps open the loops as far as the workbench says", steps_of_the_method(folder)))
         results.append(("a skeleton is the program without its self-check", skeleton()))
         results.append(("a program without its libraries says so in its first line", without_numpy()))
         results.append(("a skeleton in a compiled language prints the motion", tables(folder)))

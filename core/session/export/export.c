@@ -7,6 +7,7 @@
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
 #include "session/export/calls.h"
+#include "session/export/own_steps.h"
 #include "session/export/places.h"
 #include "session/export/states.h"
 
@@ -82,19 +83,20 @@ static hn_status check_blanks(const hn_exporter *e, hn_diags *diags) {
 }
 
 /// Reads how the loops are held from a method's spelling.
-static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_diags *diags) {
+static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_method_spec *out,
+                                      hn_diags *diags) {
     static const double USUAL = 10; // [1/s]
-    hn_method_spec spec;
     hn_diag diag = {0};
     e->alpha = e->beta = USUAL;
     if (!method) {
         return HN_OK;
     }
-    const hn_status status = hn_method_parse(method, &spec, &diag);
+    const hn_status status = hn_method_parse(method, out, &diag);
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
     }
 
+    const hn_method_spec spec = *out;
     // the two that are an ordinary differential equation in the scene's own coordinates
     const bool is_plain = strcmp(spec.formulation->name, "index1") == 0;
     if (!is_plain && strcmp(spec.formulation->name, "baumgarte") != 0) {
@@ -116,8 +118,12 @@ static hn_status choose_stabilisation(hn_exporter *e, const char *method, hn_dia
     return HN_OK;
 }
 
-static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib, hn_diags *diags) {
+static hn_status export_to(hn_strbuf *b, hn_exporter *e, const hn_library *lib,
+                           const hn_method_spec *method, hn_diags *diags) {
     HN_TRY(hn_export_states_find(e, diags));
+    if (method) {
+        HN_TRY(hn_export_own_steps_find(e, method, diags));
+    }
     e->calls = hn_export_calls(e);
 
     hn_strbuf text;
@@ -144,13 +150,15 @@ hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library 
     if (!e.arena) {
         return HN_ERR_MEMORY;
     }
+    hn_method_spec method;
     hn_status status = choose_language(&e, request->language, diags);
     HN_THEN(status, choose_solver(&e, request->solver, diags));
     HN_THEN(status, check_blanks(&e, diags));
-    HN_THEN(status, choose_stabilisation(&e, request->method, diags));
-    HN_THEN(status, export_to(b, &e, lib, diags));
+    HN_THEN(status, choose_stabilisation(&e, request->method, &method, diags));
+    HN_THEN(status, export_to(b, &e, lib, request->method ? &method : NULL, diags));
     if (status == HN_OK) {
         request->suffix = e.language->suffix;
+        snprintf(request->remark, sizeof request->remark, "%.160s", e.steps.why);
         request->comment = e.language->comment;
         request->comment_end = e.language->comment_end ? e.language->comment_end : "";
     }

@@ -20,10 +20,15 @@
 //   @ALPHA@ @BETA@           of Baumgarte's stabilisation [1/s]
 //   @FUNCTIONS@              the functions of mathematics that the terms call: cos, sin
 //   @T1@ @Q1@ @V1@ @A1@      a later state of the motion, and its accelerations
+//   @METHOD@ @METHOD_WHY@    the method that was asked for; why its steps are not taken
+//   @METHOD_A@ @METHOD_B@ @METHOD_C@ @METHOD_STAGES@ @METHOD_H@ @METHOD_STEPS@ @METHOD_GAP@
+//   @METHOD_ALLOWED@         its tableau, its step, how many of them are compared, the largest gap
 //
 //   @IF BLANKS@ @IF SKELETON@ @IF EIGEN@ @ELSE@ @END@ in lines of their own: lines for programs
 //                            with blanks, for skeletons, for the solver of that name (language.h),
 //                            or for the others; one may stand in another
+//   @IF METHOD@ @IF OTHER_METHOD@
+//                            likewise, where the steps of a method are taken, or not
 //   @IF ORIENTATION@ @IF LOOPS@ @IF SIGN@ @IF STEP@ @IF FUNCTIONS@
 //                            likewise, for scenes with a unit quaternion, with constraints, and
 //                            for terms that call sign, step, or any function of @FUNCTIONS@
@@ -36,18 +41,20 @@
 
 #include <stdbool.h>
 
-/// The request of an export. The last three members are answers: the ending of a file's name, and
-/// the marks that begin and end a comment.
+/// The request of an export. The last members are answers: the ending of a file's name, the marks
+/// that begin and end a comment, and why the program does not take the steps of `method`.
 typedef struct hn_export_request {
     const char *language; ///< a row of export/language.h
-    /// index1@... or baumgarte:alpha=...,beta=...@...: how the program holds its loops; its
-    /// integrator is that of the language. NULL: Baumgarte's, alpha = beta = 10/s
+    /// index1@... or baumgarte:alpha=...,beta=...@...: how the program holds its loops, and the
+    /// steps that it repeats where its language can (own_steps.h). Its own integrator is that of
+    /// the language. NULL: Baumgarte's, alpha = beta = 10/s, and no other steps
     const char *method;
     const char *solver;    ///< one of the language's (export/language.h); NULL: its first
     bool blanks;           ///< leave the parts of exam.h out, and mark them
     bool skeleton;         ///< leave the self-check out; not together with blanks
     hn_walk_limits limits; ///< of the run to the later state; zero: none
     const char *suffix, *comment, *comment_end;
+    char remark[168]; ///< "": it takes them, or none were asked for
 } hn_export_request;
 
 /// Writes the program for `model` to `b`.

@@ -6,6 +6,7 @@
 #include "expr/angles.h"
 #include "expr/construct.h"
 #include "session/export/calls.h"
+#include "session/export/own_steps.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -388,6 +389,10 @@ static void fill_place(hn_strbuf *b, const hn_exporter *e, const char *place) {
         hn_export_put_functions(b, e->calls);
         return;
     }
+    if (strncmp(place, "METHOD", 6) == 0) {
+        hn_export_own_steps_put(b, e, place);
+        return;
+    }
     const bool is_scene = strcmp(place, "SCENE") == 0;
     HN_ASSERT(is_scene || strcmp(place, "TITLE") == 0);
     const char *words = is_scene ? scene->id : scene->title;
@@ -438,6 +443,9 @@ static bool holds(const hn_exporter *e, const char *condition) {
     }
     if (strcmp(condition, "SKELETON") == 0) {
         return e->skeleton;
+    }
+    if (strcmp(condition, "METHOD") == 0 || strcmp(condition, "OTHER_METHOD") == 0) {
+        return e->steps.asked && (e->steps.why[0] == '\0') == (condition[0] == 'M');
     }
     if (strcmp(condition, "ORIENTATION") == 0) {
         return e->info.nq != e->info.nv;

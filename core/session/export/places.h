@@ -7,6 +7,7 @@
 #include "base/strbuf.h"
 #include "dynamics/compile/system.h"
 #include "export/language.h"
+#include "integrators/method/method_spec.h"
 #include "session/model/model.h"
 #include "study/run/walk.h"
 
@@ -16,6 +17,17 @@
 typedef struct hn_export_state {
     double t, *q, *v, *a;
 } hn_export_state;
+
+/// The steps of the method that was asked for, as own_steps.h finds them.
+typedef struct hn_export_steps {
+    bool asked;                       ///< a method was named
+    char method[HN_SPEC_MAX];         ///< its spelling
+    char why[160];                    ///< why the program cannot take its steps; "": it can
+    const struct hn_tableau *tableau; ///< of the steps
+    int n;                            ///< steps that are compared
+    double h, t;                      ///< [s] a step; n of them
+    double gap, allowed;              ///< largest gap at the end of a step; how far another may be
+} hn_export_steps;
 
 typedef struct hn_exporter {
     hn_arena *arena;
@@ -27,9 +39,10 @@ typedef struct hn_exporter {
     const hn_language *language;
     const hn_language_solver *solver; ///< NULL: the language has one way only
     double alpha, beta;               ///< Baumgarte's [1/s]
-    bool blanks;                      ///< the student's parts are left out
-    bool skeleton;                    ///< without what checks the program and shows the motion
-    unsigned calls;                   ///< operators of the terms, bit hn_op each (calls.h)
+    hn_export_steps steps;
+    bool blanks;    ///< the student's parts are left out
+    bool skeleton;  ///< without what checks the program and shows the motion
+    unsigned calls; ///< operators of the terms, bit hn_op each (calls.h)
     hn_walk_limits limits;
     double started; ///< hn_clock_thread()
     hn_export_state start, later;

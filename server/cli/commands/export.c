@@ -51,13 +51,18 @@ static hn_status check_style(const hn_args *args, hn_diags *diags) {
 }
 
 static hn_status write_program(const hn_library *lib, const hn_args *args, const hn_model *model,
-                               hn_strbuf *b, hn_diags *diags) {
+                               hn_strbuf *b, hn_strbuf *remarks, hn_diags *diags) {
     hn_export_request request = {.language = args->language ? args->language : "python",
                                  .method = args->method,
                                  .solver = args->solver,
                                  .blanks = args->blanks,
                                  .skeleton = args->style && strcmp(args->style, "skeleton") == 0};
-    return hn_model_export(b, model, lib, &request, diags);
+    const hn_status status = hn_model_export(b, model, lib, &request, diags);
+    if (status == HN_OK && request.remark[0]) {
+        hn_strbuf_printf(remarks, "the program does not take the steps of %s: %s\n", args->method,
+                         request.remark);
+    }
+    return status;
 }
 
 hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
@@ -78,7 +83,7 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
     if (status == HN_OK) {
         status = args->format ? hn_model_export_mechanism(&b, args->loops ? &loops : NULL,
                                                           &left_out, model, args->format, &diags)
-                              : write_program(lib, args, model, &b, &diags);
+                              : write_program(lib, args, model, &b, &left_out, &diags);
     }
     if (status == HN_OK && args->blanks) {
         status = hn_cli_protect_work(args, &b, &diags);
