@@ -11,6 +11,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_PROGRAMS = 32, NAME = 220 };
@@ -256,6 +257,18 @@ static void hide_folder(hn_diag *diag) {
     }
 }
 
+/// Whether a file is in the folder or below it once links are followed. One that is not there is
+/// refused later, with its reason.
+static bool is_inside(const char *file, const char *folder) {
+    char *target = realpath(file, NULL), *home = realpath(folder, NULL);
+    const size_t n = home ? strlen(home) : 0;
+    const bool inside = !target || (home && strncmp(target, home, n) == 0 &&
+                                    (target[n] == '/' || (n > 0 && home[n - 1] == '/')));
+    free(target);
+    free(home);
+    return inside;
+}
+
 /// The file of a name; in a folder of the server a name is no path.
 static hn_status find_file(const char *name, char file[1024], hn_diag *diag) {
     if (!options.folder) {
@@ -269,7 +282,12 @@ static hn_status find_file(const char *name, char file[1024], hn_diag *diag) {
                            "'%.100s' is no name of a program here", name);
     }
     snprintf(file, 1024, "%.700s/%.300s", options.folder, name);
-    return HN_OK;
+    return is_inside(file, options.folder)
+               ? HN_OK
+               : hn_diag_set(diag, HN_ERR_INPUT, NULL,
+                             "put the program itself into the folder that serve was given with "
+                             "--programs",
+                             "'%.100s' is a link to a file outside of it", name);
 }
 
 /// The entry of a program, made when it is first asked for. Under the lock.

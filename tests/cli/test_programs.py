@@ -478,9 +478,16 @@ class InTheServer(OneFile):
             f.write(GREETING + STEP)
         with open(os.path.join(self.folder.name, "readme.txt"), "w", encoding="utf-8") as f:
             f.write("no program")
+        # links: one to a program outside, one to a program of the folder
+        outside = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, outside)
+        shutil.copy(os.path.join(self.folder.name, "mine.py"), os.path.join(outside, "other.py"))
+        os.symlink(os.path.join(outside, "other.py"), os.path.join(self.folder.name, "away.py"))
+        os.symlink("mine.py", os.path.join(self.folder.name, "again.py"))
         body = {"scene": "pendulum", "method": "program:mine.py@own:h=1e-2", "time": 0.1}
         for options, methods in (([], {"program:mine.py@own:h=1e-2": 422}),
-                                 (["--programs", self.folder.name], {"program:mine.py@own:h=1e-2": 201, "program:../mine.py": 422, "program:/bin/true": 422, "program:gone.py@own": 422})):
+                                 (["--programs", self.folder.name], {"program:mine.py@own:h=1e-2": 201, "program:../mine.py": 422, "program:/bin/true": 422, "program:gone.py@own": 422,
+                                                                     "program:away.py@own:h=1e-2": 422, "program:again.py@own:h=1e-2": 201})):
             server = driver.Server(*options)
             try:
                 for method, status in methods.items():
@@ -490,7 +497,7 @@ class InTheServer(OneFile):
                     self.assertNotIn(self.folder.name.encode(), answer.body)
                 # the page offers what the server lists: files that can be started, of the folder that was given
                 listed = server.ask("GET", "/api/v1/methods").json()["programs"]
-                self.assertEqual(listed, ["program:mine.py"] if options else [])
+                self.assertEqual(listed, ["program:again.py", "program:mine.py"] if options else [])
             finally:
                 server.stop()
 
