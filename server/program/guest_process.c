@@ -3,6 +3,7 @@
 #include "program/guest_process.h"
 
 #include "base/clock.h"
+#include "program/crash_words.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -69,10 +70,25 @@ static int open_file(const char *name) {
     return fd;
 }
 
+static const char *base_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/// The program of a command line without a sandbox, or its argument.
+static const char *last_word(char *const *argv) {
+    const char *word = "";
+    for (; *argv; argv++) {
+        word = base_name(*argv);
+    }
+    return word;
+}
+
 hn_status hn_guest_process_start(hn_guest_process *p, char *const *argv, const char *file,
                                  const hn_program_limits *limits, hn_diag *diag) {
     int in[2] = {-1, -1}, out[2] = {-1, -1}, err[2] = {-1, -1};
     *p = (hn_guest_process){.in = -1, .out = -1, .err = -1, .limits = *limits};
+    snprintf(p->file, sizeof p->file, "%s", file ? base_name(file) : last_word(argv));
     hn_strbuf_init(&p->pending);
     int failed = pipe2(in, O_CLOEXEC) || pipe2(out, O_CLOEXEC) || pipe2(err, O_CLOEXEC) ? errno : 0;
     const int fd = failed ? -1 : open_file(file);
@@ -236,23 +252,9 @@ static bool read_output(hn_guest_process *p) {
 static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
     const int ended = hn_guest_process_wait(p, FAREWELL);
 
-    // the last line that it wrote to standard error
-    char last[160];
-    const char *errors = hn_guest_process_errors(p);
-    size_t n = strlen(errors);
-    while (n > 0 && errors[n - 1] == '\n') {
-        n--;
-    }
-    // of a compiler, the line that says what is wrong: a picture of the place comes after it
-    const char *fault = strstr(errors, "error: ");
-    if (fault) {
-        n = (size_t)(fault - errors) + strcspn(fault, "\n");
-    }
-    size_t from = n;
-    while (from > 0 && errors[from - 1] != '\n') {
-        from--;
-    }
-    snprintf(last, sizeof last, "%.*s", (int)(n - from), errors + from);
+    // what it wrote to standard error
+    char last[320];
+    hn_crash_words(hn_guest_process_errors(p), p->file, &p->limits, last);
 
     // a limit that it reached, a signal, or an end of its own
     if (ended == 128 + SIGXCPU || (ended == 128 + SIGKILL && p->cpu >= 0.9 * p->limits.cpu)) {
@@ -264,8 +266,8 @@ static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
                            p->limits.files >> 20);
     }
     if (ended > 128) {
-        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "it was ended by signal %d%s%s",
-                           ended - 128, last[0] ? ": " : "", last);
+        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "it was ended by signal %d (%s)%s%s",
+                           ended - 128, strsignal(ended - 128), last[0] ? ": " : "", last);
     }
     return ended >= 0 ? hn_diag_set(diag, HN_ERR_IO, NULL, NULL,
                                     "it ended with exit status %d instead of an answer%s%s", ended,

@@ -20,6 +20,7 @@ typedef struct hn_guest_process {
     hn_strbuf pending;            ///< read, but not yet asked for
     char errors[HN_GUEST_ERRORS]; ///< the beginning of its standard error
     int n_errors;
+    char file[64];  ///< name of the program's file
     long long peak; ///< [bytes] of memory, the most that was seen
     double cpu;     ///< [s]; known after hn_guest_process_end()
 } hn_guest_process;

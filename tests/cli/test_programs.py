@@ -440,6 +440,26 @@ class Hostile(OneFile):
     def test_whatever_it_does_its_line_says_what(self):
         self.check_all(HOSTILE)
 
+    def test_a_crash_names_the_line_and_what_ran_out_its_limit(self):
+        """Line n of the program is line n of its file: the greeting of these tests stands before it."""
+        begin = GREETING.count("\n") + 1
+        crashes = {"greet('step')\ndef half(x):\n    raise ValueError('wrong sign')\nhalf(2)\n": rf"ValueError: wrong sign \(mine\.py, line {begin + 2}\)",
+                   "greet('step')\nx = []\nwhile True: x.append(bytearray(1 << 24))\n": rf"MemoryError \(mine\.py, line {begin + 2}\); 768 MB of memory are allowed|holds \d+ MB of memory; 768 MB are allowed"}
+        if not TROUBLE:
+            crashes["greet('step')\nfor k in range(99):\n    open('/tmp/%d' % k, 'wb').write(b'x' * (1 << 23))\n"] = r"No space left on device \(mine\.py, line \d+\); 16 MB of files are allowed"
+        for text, said in crashes.items():
+            done = self.run_program(text, "--answer-time", "60")
+            self.assertEqual(done.returncode, ENDED, done.stderr)
+            self.assertRegex(" ".join(done.stderr.split()), said, text)
+
+    @unittest.skipIf(not shutil.which("node"), "node is not here")
+    def test_a_crash_in_javascript_names_its_message(self):
+        with open(os.path.join(self.folder.name, "mine.js"), "w", encoding="utf-8") as f:
+            f.write(call("program", "javascript").stdout.replace("function accelerations(", "null.x;\nfunction accelerations("))
+        done = call("run", "four-bar", "--method", "program:./mine.js@rk4:h=1e-2", "--time", "0.1", ALLOW, cwd=self.folder.name)
+        self.assertEqual(done.returncode, ENDED, done.stderr)
+        self.assertRegex(" ".join(done.stderr.split()), r"TypeError: Cannot read properties of null \(reading 'x'\) \(mine\.js, line \d+\)")
+
     @unittest.skipIf(TROUBLE, TROUBLE)
     def test_the_sandbox_holds(self):
         self.check_all(CONFINED)

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_PROGRAM_CRASH_WORDS_H
+#define HN_PROGRAM_CRASH_WORDS_H
+// What a program that ended says about it on standard error: the message, and the line of its own
+// file where that is told.
+
+#include "program/limits.h"
+
+/// Writes "ValueError: wrong sign (mine.py, line 12)", and what is allowed where the message is
+/// about memory, processes or disk: "MemoryError (mine.py, line 3); 768 MB are allowed". "" where
+/// nothing was said. file: the path or name of the program, NULL: not known. Python, JavaScript,
+/// Java, Octave, Julia and compilers are known; of others the last line is taken.
+void hn_crash_words(const char *errors, const char *file, const hn_program_limits *limits,
+                    char out[320]);
+
+#endif
