@@ -108,7 +108,10 @@ static const hn_command COMMANDS[] = {
      "writes a file for each. A folder is a class: a folder, file or zip for each "
      "student, whose name chooses the variant unless --seed does; --out FILE.ndjson or .csv. ID is "
      "an exercise, or a scene whose program (export --blanks) was filled in; where both have the "
-     "name, scene:ID or exercise:ID says which, and a class is of the exercise",
+     "name, scene:ID or exercise:ID says which, and a class is of the exercise. --ndjson prints a "
+     "line for each submission as it ends. A class that was interrupted goes on when the same "
+     "command is given again. On several machines: --shard I/N for each, then grade ID --merge "
+     "PART... --out FILE",
      MODEL_OPTIONS
      " --format=text|json|gradescope|prairielearn|autolab|coderunner|lti-score|junit|csv|html "
      "--out -o --seed --student --rubric --plot --show-expected --no-pictures "

@@ -476,6 +476,14 @@ class Filled(unittest.TestCase):
             self.assertRegex(remarks["print"], rf"^shares at least \d\d % of its statements with .*\b{student}\b")
             self.assertEqual(remarks["careful"], "")
 
+    def test_a_zip_file_of_a_class_is_answered_with_how_to_unpack_it(self):
+        path = self.put("class.bin", "")
+        shutil.make_archive(path[:-4], "zip", os.path.dirname(__file__), "frames")
+        for subject in ("four-bar", "p3"):
+            status, verdict = self.grade(subject, path[:-4] + ".zip")
+            self.assertEqual((status, verdict["status"], verdict["reason"]), (2, "ungradable", "it is a zip file"), verdict)
+            self.assertIn("unzip FILE.zip -d FOLDER", verdict["hint"])
+
     def test_a_class_of_programs_is_graded_in_parts_through_kills_with_the_same_bytes(self):
         folder, out = self.make_class(), os.path.join(self.temporary.name, "scores.ndjson")
         done = call("grade", "four-bar", folder, "--out", out)

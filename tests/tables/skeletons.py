@@ -47,6 +47,11 @@ def skeleton_slope(m):
     return slope
 
 
+def to_rounding(difference):
+    """A difference in words: below 1e-12 its digits depend on the libraries that are installed."""
+    return "less than 1e-12" if difference < 1e-12 else f"{difference:.0e}"
+
+
 def gap(m, y):
     return float(np.linalg.norm(m.terms(0.0, y[: m.NQ], np.zeros(m.NV))[4]))
 
@@ -90,7 +95,7 @@ def rows():
     except np.linalg.LinAlgError:
         did = f"Bennett: rank {rank} of {len(matrix)}; LinAlgError, nothing is computed"
     good = np.abs(b.accelerations(0.0, b.START_Q, b.START_V)[0] - b.START_A).max()
-    yield ("all five", "the system is solved as if J had full rank", did, f"scaled, to rank, least squares: a differs by {good:.1g}", rank < len(matrix) and good < 1e-9)
+    yield ("all five", "the system is solved as if J had full rank", did, f"scaled, to rank, least squares: a differs by {to_rounding(good)}", rank < len(matrix) and good < 1e-9)
     yield ("C++", "fullPivLu().solve() without a question about the rank", "not run here: complete pivoting gives one of many sets of multipliers without a word",
            "multipliers that are not unique are what the rank leaves; the accelerations are checked", True)  # fmt: skip
     yield ("Java, MATLAB", "the boolean of solve() is dropped; K \\ rhs prints a warning and goes on", "not run here", "a self-check that ends with 1", True)
@@ -99,7 +104,7 @@ def rows():
     mass, force, jacobian, *_ = m.terms(0.0, m.START_Q, m.START_V)
     x = np.linalg.solve(*saddle(m, m.START_Q, m.START_V, upper=1.0))
     balance = np.abs(mass @ x[: m.NV] - force - jacobian.T @ x[m.NV :]).max() / np.abs(jacobian.T @ x[m.NV :]).max()
-    yield ("Java", "J' is put into K where -J' belongs", f"a is right (differs by {np.abs(x[: m.NV] - a).max():.0e}), every force of a constraint has the wrong sign: M a - f - J' lambda is {balance:.2g} of J' lambda",
+    yield ("Java", "J' is put into K where -J' belongs", f"a is right (differs by {to_rounding(np.abs(x[: m.NV] - a).max())}), every force of a constraint has the wrong sign: M a - f - J' lambda is {balance:.2g} of J' lambda",
            "[M J'; J 0] [a; -lambda]: the sign is in the unknown, and is turned", abs(balance - 2) < 1e-6)  # fmt: skip
     yield ("Java", "Sa() and tauA() return null", "NullPointerException in the first step (S.getNumRows())", "drives are in the force of the scene", True)
     yield ("C++, Java, MATLAB", "the right-hand side alone: no integrator, no start that closes the loop", "nothing moves", "an integrator, a closed start, close() where parameters were changed", True)

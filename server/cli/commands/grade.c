@@ -126,6 +126,17 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
     return written != HN_EXIT_DONE ? written : drawn;
 }
 
+/// Whether a file begins as zip files do.
+static bool is_zip(const char *path) {
+    char begin[4] = "";
+    FILE *file = fopen(path, "re");
+    const bool read = file && fread(begin, 1, sizeof begin, file) == sizeof begin;
+    if (file) {
+        fclose(file);
+    }
+    return read && memcmp(begin, "PK\003\004", sizeof begin) == 0;
+}
+
 static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
@@ -139,6 +150,13 @@ static hn_exit grade_one(const task *t) {
         : t->subject.programs
             ? hn_filled_program_grade(t->subject.programs, t->submission, &program, v)
             : hn_grade_file(t->subject.exercise, t->submission, seed, v);
+
+    if (status == HN_OK && v->kind == HN_VERDICT_UNGRADABLE && is_zip(t->submission)) {
+        hn_submission_refuse(v,
+                             "unpack it: unzip FILE.zip -d FOLDER; a FOLDER is graded as a class, "
+                             "and may hold a zip file for each student",
+                             "it is a zip file");
+    }
 
     // a submission that cannot be graded is the fault of the input
     hn_exit result = HN_EXIT_PROGRAM;
