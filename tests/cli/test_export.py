@@ -424,6 +424,18 @@ def steps_of_the_method(folder):
     return faults
 
 
+def no_warnings(folder):
+    """A trial step that is too long is no warning of numpy's: the program of Bennett's linkage tries one."""
+    python = find_python()
+    if not python:
+        return []
+    file = os.path.join(folder, "quiet.py")
+    with open(file, "w", encoding="utf-8") as f:
+        f.write(call([PROGRAM, "export", "bennett", "--language", "python"]).stdout)
+    done = call([python, file])
+    return [done.stderr] if done.returncode != 0 or "Warning" in done.stderr else []
+
+
 def slip(folder):
     """A self-check that cannot fail checks nothing: a changed parameter must be found."""
     file = os.path.join(folder, "slip.c")
@@ -580,6 +592,7 @@ def main():
         results.append(("only a reason in the table excuses a scene", ends()))
         results.append(("a method says how the loops are held", methods(folder)))
         results.append(("a method's own steps open the loops as far as the workbench says", steps_of_the_method(folder)))
+        results.append(("a trial step that is too long prints no warning", no_warnings(folder)))
         results.append(("a skeleton is the program without its self-check", skeleton()))
         results.append(("a program without its libraries says so in its first line", without_numpy()))
         results.append(("a skeleton in a compiled language prints the motion", tables(folder)))
