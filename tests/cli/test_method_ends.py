@@ -110,6 +110,27 @@ class DrivenMechanisms(unittest.TestCase):
 
 
 class OneMechanismInOtherUnits(unittest.TestCase):
+    def test_no_number_with_a_unit_decides_how_ida_or_a_rank_sees_a_mechanism(self):
+        # 8 nm and 0.08 nm: the absolute tolerance has the units of the mechanism at both, and the rest is rounding and the
+        # decisions that hang on it, far below the tolerance; numbers in newtons or metres showed as 4 rad, and as a lost row
+        with tempfile.TemporaryDirectory() as folder:
+            for method in "index1@ida:rtol=1e-8", "ggl@ida:rtol=1e-6", "index3@ida:rtol=1e-5":
+                angles = []
+                for s in 1e-8, 1e-10:
+                    T = 0.5 * math.sqrt(s)
+                    done = run(similarity.scaled("slider-crank", s, folder), method, "--time", repr(T), "--at", repr(T))
+                    self.assertEqual(done["status"], "ok", (method, s, done["reason"]))
+                    angles.append(done["q"][-1][0])
+                self.assertLess(abs(angles[0] - angles[1]), 1e-4, method)
+            sigma = []
+            for s in 1, 1e-9, 1e-10:
+                path = similarity.scaled("slider-crank", s, folder)
+                seen = json.loads(subprocess.run([driver.PROGRAM, "inspect", path, "--json"], capture_output=True).stdout)["start"]
+                self.assertEqual((seen["rank"], seen["dof"]), (2, 1), s)
+                sigma.append(seen["sigma_min"] * s**1.5)  # J grows with s, the root of a mass with s^2.5
+            for other in sigma[1:]:
+                self.assertLess(abs(other / sigma[0] - 1), 1e-9)
+
     def test_similar_mechanisms_have_the_same_angles_by_every_method(self):
         # 1e-12: rounding, in any units; the penalty multiplies it by its weight, an adaptive step follows its tolerance
         bounds = {"penalty": 1e-7, "rtol": 1e-5, "ali3p": 1e-10}

@@ -3,6 +3,7 @@
 
 #include "dynamics/compile/system_impl.h"
 #include "dynamics/evaluate/eval.h"
+#include "dynamics/evaluate/mass_scales.h"
 #include "linalg/dense.h"
 #include "linalg/row_check.h"
 
@@ -106,22 +107,6 @@ static void put_follower(hn_strbuf *b, const hn_system *sys, basis *s, int row) 
     hn_json_end_object(b);
 }
 
-/// diag(M)^-1/2, velocities without mass as the heaviest, as in the rank that assembly reports.
-static void weigh(const hn_eval *eval, int n, double *d) {
-    const double *M = hn_eval_list(eval, HN_TERM_M);
-    const int *row, *col, n_M = hn_eval_pattern(eval, HN_TERM_M, &row, &col);
-    double heaviest = 0;
-    for (int k = 0; k < n_M; k++) {
-        if (row[k] == col[k]) {
-            d[row[k]] = M[k];
-            heaviest = fmax(heaviest, M[k]);
-        }
-    }
-    for (int k = 0; k < n; k++) {
-        d[k] = 1 / sqrt(d[k] > 1e-14 * heaviest ? d[k] : (heaviest > 0 ? heaviest : 1));
-    }
-}
-
 /// Whether every row of a large mechanism stands well apart from the others, so that none follows.
 static hn_status rows_stand_apart(const hn_system *sys, const hn_eval *eval, const double *d,
                                   hn_arena *arena, bool *yes) {
@@ -179,7 +164,7 @@ static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, con
 
     // rows measured by diag(M)^-1/2
     hn_eval_run(eval, t, q, NULL);
-    weigh(eval, sys->nv, d);
+    hn_mass_scales(sys, eval, d);
     hn_status status = rows_stand_apart(sys, eval, d, arena, &apart);
     if (status == HN_OK && !apart) {
         status = split_rows(b, sys, eval, d, arena);

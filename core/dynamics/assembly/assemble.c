@@ -11,6 +11,7 @@
 #include "dynamics/assembly/mode.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
+#include "dynamics/evaluate/mass_scales.h"
 #include "linalg/dense.h"
 #include "linalg/gram.h"
 #include "linalg/qr.h"
@@ -194,23 +195,6 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
     return status;
 }
 
-/// D = diag(M)^-1/2; massless velocities count as the heaviest.
-static void scale_by_mass(const hn_assembler *s, double *d) {
-    const double *M = hn_eval_list(s->eval, HN_TERM_M);
-    const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_M, &row, &col);
-    double heaviest = 0;
-    memset(d, 0, (size_t)s->n * sizeof *d);
-    for (int k = 0; k < n; k++) {
-        if (row[k] == col[k]) {
-            d[row[k]] = M[k];
-            heaviest = fmax(heaviest, M[k]);
-        }
-    }
-    for (int k = 0; k < s->n; k++) {
-        d[k] = 1 / sqrt(d[k] > 1e-14 * heaviest ? d[k] : (heaviest > 0 ? heaviest : 1));
-    }
-}
-
 /// Entries of J D, rows brought to length 1 or as they are.
 static void scale_entries(const hn_assembler *s, const double *d, bool unit_rows, double *entry) {
     const double *J = hn_eval_list(s->eval, HN_TERM_J);
@@ -285,7 +269,7 @@ static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
     if (!d) {
         return HN_ERR_MEMORY;
     }
-    scale_by_mass(s, d);
+    hn_mass_scales(s->sys, s->eval, d);
     if (hn_assemble_is_large(s)) {
         HN_TRY(find_sigma_sparse(s, d, report, &found));
     }

@@ -14,7 +14,7 @@
 // library allocates when an instance is made and nothing in a step.
 
 #define ROUNDING 1e-16 // see probe()
-#define PROBE_MIN 1e-5 // so that an entry near zero is moved by a sensible amount
+#define PROBE_MIN 1e-5 // of its unit: an entry near zero is moved by a sensible amount
 #define FAR 1e30       // no bound on time [s]
 #define FAR_STEP 1e10  // a state without entries has no error to choose a step by [s]
 // A trial that was refused outright adds REFUSED_TRIAL, a step without takes 1 away: steps that
@@ -72,15 +72,15 @@ static int give_slope(double t, const double *y, double *ydot, void *user) {
 
 // Displacement of a difference quotient that balances truncation and rounding (Hairer & Wanner
 // 1996, section IV.8).
-static double probe(double x) {
-    return sqrt(ROUNDING * fmax(PROBE_MIN, fabs(x)));
+static double probe(double x, double unit) {
+    return sqrt(ROUNDING * unit * fmax(PROBE_MIN * unit, fabs(x)));
 }
 
 static hn_status difference_jacobian(gsl_stepper *s, double t, const double *y, double *jac) {
     const int n = s->n;
     memcpy(s->moved, y, (size_t)n * sizeof *y);
     for (int j = 0; j < n; j++) {
-        s->moved[j] = y[j] + probe(y[j]);
+        s->moved[j] = y[j] + probe(y[j], s->ode->unit ? s->ode->unit[j] : 1);
         const double d = s->moved[j] - y[j];
         const hn_status status = s->ode->rhs(s->ode->self, t, s->moved, s->f1);
         if (status != HN_OK) {
@@ -98,7 +98,7 @@ static int give_jacobian(double t, const double *state, double *jac, double *tim
                          void *user) {
     gsl_stepper *s = user;
     const double *y = with_turns(s, state);
-    const double later = t + probe(t);
+    const double later = t + probe(t, 1);
     hn_status status = s->ode->rhs(s->ode->self, t, y, s->f0);
     HN_THEN(status, s->ode->rhs(s->ode->self, later, y, s->f1));
     for (int i = 0; status == HN_OK && i < s->n; i++) {

@@ -58,8 +58,7 @@ enum { SUPPRESS_AUTO, SUPPRESS_NONE, SUPPRESS_MULTIPLIERS, SUPPRESS_SPEEDS };
 #define H0_OF_LIBRARY -1
 #define NEWTON_OF_LIBRARY 0.33 // of the tolerance: its default, IDASetNonlinConvCoef()
 #define LEAST_RTOL 1e-12 // smaller ones are given as they are: rounding leaves no room for safety
-#define LARGE_FORCE \
-    1e3                // [N] or [N m]: multipliers below this keep the tolerance that was asked for
+#define LARGE 1e3 // times its unit: a multiplier below this keeps the tolerance that was asked for
 #define SAME_STATE 1.0 // of the tolerance: a state changed by less goes on without a new start
 
 typedef struct ida_stepper {
@@ -70,7 +69,7 @@ typedef struct ida_stepper {
     double first;                        // step, 0: the library's choice
     int suppress, max_order, by_differences;
     bool default_atol;
-    double *unit; // nq + nv, of the absolute tolerance
+    double *unit, *force_unit; // nq + nv, n - nq - nv: of the absolute tolerance
     SUNContext context;
     void *ida;
     int n; // of the vectors below
@@ -255,6 +254,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     s->start_ydot = hn_arena_doubles(arena, room);
     s->lambda = hn_arena_doubles(arena, (size_t)s->problem.nc);
     s->unit = hn_arena_doubles(arena, (size_t)(s->problem.nq + s->problem.nv));
+    s->force_unit = hn_arena_doubles(arena, room);
     if (hn_arena_failed(arena) || SUNContext_Create(NULL, &s->context) != 0) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
@@ -279,17 +279,19 @@ static void fill_weights(ida_stepper *s) {
     const int speeds = s->problem.nq, multipliers = speeds + s->problem.nv;
 
     // the tolerance of large multipliers, as of a heavy mechanism, is in units of their size
-    double force = LARGE_FORCE;
+    double force = 0;
     for (int i = multipliers; i < s->n; i++) {
         force = fmax(force, fabs(s->start_y[i]));
     }
+    hn_ida_problem_units(&s->problem, s->start_y + speeds, !s->default_atol, s->force_unit);
     for (int i = 0; i < s->n; i++) {
         const bool tested = s->suppress == SUPPRESS_SPEEDS ? i < speeds : i < multipliers;
         data_of(s->id)[i] = tested ? 1 : 0;
 
         // rounding is divided by h once more in the multipliers than in speeds that are not tested
-        const double loosened = i < multipliers ? s->unit[i] * (tested ? 1 : sqrt(s->loosen))
-                                                : s->loosen * force / LARGE_FORCE;
+        const double loosened =
+            i < multipliers ? s->unit[i] * (tested ? 1 : sqrt(s->loosen))
+                            : s->loosen * fmax(s->force_unit[i - multipliers], force / LARGE);
         data_of(s->tolerance)[i] = s->atol * loosened;
     }
 }

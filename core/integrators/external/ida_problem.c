@@ -45,11 +45,13 @@ static hn_status create_memory(hn_ida_problem *p, hn_arena *arena) {
     p->lambda = hn_arena_doubles(arena, nc);
     p->work = hn_arena_doubles(arena, nv > nc ? nv : nc);
     p->slope = hn_arena_doubles(arena, 3 * ((size_t)p->nq + nv));
+    p->unit = hn_arena_doubles(arena, nv);
     p->kept = hn_arena_ints(arena, nc);
     p->place = hn_arena_ints(arena, nc);
     if (hn_arena_failed(arena) || !hn_qr_init(&p->qr, arena, p->nv, p->nc)) {
         return HN_ERR_MEMORY;
     }
+    hn_coordinate_units(p->sys, p->unit);
     const hn_accel_opts opts = {.baumgarte = is_stabilised(p), .want_lambda = 1};
     HN_TRY(hn_eval_create(p->sys, terms_of(p->form), arena, &p->eval));
     p->n_M = hn_eval_pattern(p->eval, HN_TERM_M, &p->M_row, &p->M_col);
@@ -90,10 +92,29 @@ int hn_ida_problem_room(const hn_ida_problem *p) {
     return p->nq + p->nv + (has_mu(p) ? 2 : 1) * p->nc;
 }
 
+// row k of the matrix that is to be factored: a row of J in units of the coordinates
+static void put_row(hn_ida_problem *p, int k, const double *row) {
+    for (int j = 0; j < p->nv; j++) {
+        p->qr.a[(size_t)k * (size_t)p->nv + (size_t)j] = row[j] * p->unit[j];
+    }
+}
+
+static void put_rows(hn_ida_problem *p, const double *J) {
+    for (int row = 0; row < p->nc; row++) {
+        put_row(p, row, J + (size_t)row * (size_t)p->nv);
+    }
+}
+
+static void in_units(const hn_ida_problem *p, double *x) {
+    for (int j = 0; j < p->nv; j++) {
+        x[j] *= p->unit[j];
+    }
+}
+
 // The first columns of the pivoted QR of J' are rows that span all of them; J' lambda = b with
 // those alone.
 static void keep_independent_rows(hn_ida_problem *p, const double *J) {
-    memcpy(p->qr.a, J, (size_t)p->nc * (size_t)p->nv * sizeof *J);
+    put_rows(p, J);
     hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
     if (p->most_kept > 0 && p->qr.rank > p->most_kept) {
         p->qr.rank = p->most_kept; // R of the first columns is that of the whole
@@ -120,7 +141,7 @@ bool hn_ida_problem_rows_hold(hn_ida_problem *p, double t, const double *state) 
     const size_t nv = (size_t)p->nv;
 
     // the same number of rows, the best ones
-    memcpy(p->qr.a, J, (size_t)p->nc * nv * sizeof *J);
+    put_rows(p, J);
     hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
     if (p->qr.rank < p->n_kept) {
         return true; // a singular pose: there is no better choice
@@ -130,7 +151,7 @@ bool hn_ida_problem_rows_hold(hn_ida_problem *p, double t, const double *state) 
 
     // those that are kept
     for (int k = 0; k < p->n_kept; k++) {
-        memcpy(p->qr.a + (size_t)k * nv, J + (size_t)p->kept[k] * nv, nv * sizeof *J);
+        put_row(p, k, J + (size_t)p->kept[k] * nv);
     }
     hn_qr_factor(&p->qr, p->nv, p->n_kept, ROW_RANK);
     return p->qr.rank == p->n_kept && hn_qr_pivot_ratio(&p->qr) > WORSE_ROWS * best;
@@ -141,6 +162,7 @@ static void solve_multipliers(hn_ida_problem *p) {
     const double *M = hn_eval_get(p->eval, HN_TERM_M), *f = hn_eval_get(p->eval, HN_TERM_F);
     hn_mat_vec(p->nv, p->nv, M, p->a, p->work);
     hn_axpy(p->nv, -1, f, p->work);
+    in_units(p, p->work);
     hn_qr_apply_qt(&p->qr, p->work);
     hn_qr_solve_r(&p->qr, p->work);
     memset(p->lambda, 0, (size_t)p->nc * sizeof *p->lambda);
@@ -156,6 +178,7 @@ static void close_velocity(hn_ida_problem *p, double *v) {
     hn_mat_vec(p->nc, p->nv, J, v, p->lambda);
     hn_axpy(p->nc, 1, phi_t, p->lambda);
     hn_qr_least_norm(&p->qr, p->lambda, p->work);
+    in_units(p, p->work);
     hn_axpy(p->nv, -1, p->work, v);
 }
 
@@ -228,6 +251,17 @@ hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *s
                          p->slope + 2 * n, h));
     *h = fmin(fmax(*h, least_first_step(p, state, rtol, atol, unit)), hmax);
     return HN_OK;
+}
+
+void hn_ida_problem_units(const hn_ida_problem *p, const double *v, bool is_chosen, double *unit) {
+    const double *M = is_chosen ? NULL : hn_eval_get(p->eval, HN_TERM_M);
+    const hn_force_units of = hn_tolerance_forces(p->sys, M, v);
+    for (int k = 0; k < p->n_kept; k++) {
+        unit[k] = hn_system_row_is_length(p->sys, p->kept[k]) ? of.force : of.moment;
+        if (has_mu(p)) {
+            unit[p->n_kept + k] = unit[k] / of.rate; // an impulse
+        }
+    }
 }
 
 // r -= J' x over the kept rows

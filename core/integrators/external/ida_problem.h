@@ -40,6 +40,7 @@ typedef struct hn_ida_problem {
     hn_qr qr;
     double *a, *lambda, *work; ///< nv, nc, max(nv, nc)
     double *slope;             ///< 3 (nq + nv)
+    double *unit;              ///< nv: of coordinates, so that rows are told apart in any size
     long long residuals;       ///< evaluated so far
 } hn_ida_problem;
 
@@ -67,6 +68,9 @@ HN_MUST_CHECK hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const 
 HN_MUST_CHECK hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state,
                                                   double rtol, double atol, const double *unit,
                                                   double hmax, double *h);
+/// Units of the multipliers of the state that hn_ida_problem_start() was given last, in the order
+/// of y (n - nq - nv): see hn_tolerance_forces(). `is_chosen`: all are 1.
+void hn_ida_problem_units(const hn_ida_problem *p, const double *v, bool is_chosen, double *unit);
 /// r (n).
 void hn_ida_problem_residual(hn_ida_problem *p, double t, const double *y, const double *ydot,
                              double *r);

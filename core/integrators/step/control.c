@@ -116,6 +116,14 @@ static double fastest_rate(const hn_system *sys, const double *v) {
     return rate;
 }
 
+void hn_coordinate_units(const hn_system *sys, double *unit) {
+    const double length =
+        round_unit(hn_system_length(sys), HN_UNIT_LENGTH_LEAST, HN_UNIT_LENGTH_MOST);
+    for (int i = 0; i < hn_system_get_info(sys).nv; i++) {
+        unit[i] = is_length(sys, i) ? length : 1; // quaternions and angles are of order one
+    }
+}
+
 void hn_tolerance_units(const hn_system *sys, bool is_chosen, const double *v, double *unit) {
     const hn_system_info info = hn_system_get_info(sys);
     for (int i = 0; i < info.nq + info.nv; i++) {
@@ -124,19 +132,40 @@ void hn_tolerance_units(const hn_system *sys, bool is_chosen, const double *v, d
     if (is_chosen) {
         return;
     }
-    const double length =
-        round_unit(hn_system_length(sys), HN_UNIT_LENGTH_LEAST, HN_UNIT_LENGTH_MOST);
     const double rate = round_unit(fastest_rate(sys, v), HN_UNIT_RATE_LEAST, HN_UNIT_RATE_MOST);
-
-    // quaternions and angles are numbers of order one
+    hn_coordinate_units(sys, unit + info.nq);
     for (int i = 0; i < info.nv; i++) {
         const int at = hn_system_position_of(sys, i);
-        const double own = is_length(sys, i) ? length : 1;
+        const double own = unit[info.nq + i];
         if (at >= 0) {
             unit[at] = own;
         }
         unit[info.nq + i] = own * rate;
     }
+}
+
+hn_force_units hn_tolerance_forces(const hn_system *sys, const double *M, const double *v) {
+    const size_t nv = (size_t)hn_system_get_info(sys).nv;
+    const double length = hn_system_length(sys), rate = fastest_rate(sys, v);
+    double energy = 0;
+    if (!M) {
+        return (hn_force_units){1, 1, 1};
+    }
+    for (size_t j = 0; j < nv; j++) {
+        const double speed = unit_of(sys, (int)j) * rate;
+        energy = fmax(energy, M[j * nv + j] * speed * speed);
+    }
+    return (hn_force_units){
+        .force = round_unit(energy / length, HN_UNIT_FORCE_LEAST, HUGE_VAL),
+        .moment = round_unit(energy, HN_UNIT_FORCE_LEAST, HUGE_VAL),
+        .rate = round_unit(rate, HN_UNIT_RATE_LEAST, HN_UNIT_RATE_MOST),
+    };
+}
+
+/// [s] of a state in plain numbers 1, else the time in which a velocity of its unit changes a
+/// coordinate by its unit.
+static double time_unit(const hn_ode *ode) {
+    return ode->unit && ode->n_pos > 0 && ode->n_vel > 0 ? ode->unit[0] / ode->unit[ode->n_pos] : 1;
 }
 
 hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order, double rtol,
@@ -149,7 +178,8 @@ hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
         work[i] = hn_tolerance_size(&tol, i, y[i]);
     }
     const double d0 = hn_error_norm(n, work, y, y, &tol), d1 = hn_error_norm(n, f0, y, y, &tol);
-    double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
+    const double least = 1e-6 * time_unit(ode);
+    double h0 = d0 < 1e-5 || d1 < 1e-5 ? least : 0.01 * d0 / d1;
     h0 = fmin(h0, hmax);
     for (int i = 0; i < n; i++) {
         work[i] = y[i] + h0 * f0[i];
@@ -160,7 +190,8 @@ hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
     }
     const double d2 = hn_error_norm(n, work2, y, y, &tol) / h0;
     const double steepest = fmax(d1, d2);
-    const double h1 = steepest <= 1e-15 ? fmax(1e-6, h0 * 1e-3) : pow(0.01 / steepest, 1.0 / order);
+    const double h1 =
+        steepest <= 1e-15 ? fmax(least, h0 * 1e-3) : pow(0.01 / steepest, 1.0 / order);
     *h = fmin(fmin(100 * h0, h1), hmax);
     return HN_OK;
 }

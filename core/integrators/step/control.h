@@ -61,6 +61,22 @@ void hn_tolerance_units(const hn_system *sys, bool is_chosen, const double *v, d
 #define HN_UNIT_RATE_LEAST 1e-2
 #define HN_UNIT_RATE_MOST 1e3
 
+/// unit out (nv) of the coordinates of velocities: as above, those of angles are 1.
+void hn_coordinate_units(const hn_system *sys, double *unit);
+
+/// Units of the multipliers for such a tolerance: of a force [N], and of a moment [N m]. They are 1
+/// from HN_UNIT_FORCE_LEAST on, and below it powers of ten of what gives the mechanism its rate w:
+/// the largest M_jj (unit_j w)^2, over L for a force. `rate` is the unit of w, for what is a force
+/// times a time.
+///
+/// M   in  (nv x nv) mass matrix at the start, or NULL: the user chose atol, and all units are 1
+/// v   in  (nv) velocities at the start
+typedef struct hn_force_units {
+    double force, moment, rate;
+} hn_force_units;
+hn_force_units hn_tolerance_forces(const hn_system *sys, const double *M, const double *v);
+#define HN_UNIT_FORCE_LEAST 1e-3
+
 /// A PI controller; start from {.last = 1}.
 typedef struct hn_step_control {
     double last;       ///< error norm of the last accepted step, not below 1e-4

@@ -16,7 +16,8 @@
 /// Share of a step: a grid point that is closer than this to the requested end counts as the end.
 #define HN_STEPPING_LANDING 1e-9
 #define HN_STEPPING_KEPT 100 ///< steps between states that are kept for trials of remedies
-/// A larger coordinate or velocity ends the run: no mechanism has such a state.
+/// A larger coordinate or velocity ends the run [m, rad, or per second]: no mechanism has such a
+/// state. It tells numbers that have blown up, in whatever unit, and nothing is rounded by it.
 #define HN_STEPPING_BOUND 1e9
 
 /// The tolerances by which an adaptive method chooses its steps.
