@@ -53,8 +53,9 @@ double hn_error_norm(int n, const double *err, const double *y0, const double *y
 /// HN_UNIT_LENGTH_MOST [m], and HN_UNIT_RATE_LEAST and HN_UNIT_RATE_MOST [1/s]: there plain numbers
 /// serve, which are easier to read.
 ///
-/// v     in  (nv) velocities at the start
-/// unit  out (nq + nv), all 1 where the user chose atol
+/// is_chosen  in  the user chose atol: all units are 1
+/// v          in  (nv) velocities at the start
+/// unit       out (nq + nv)
 void hn_tolerance_units(const hn_system *sys, bool is_chosen, const double *v, double *unit);
 #define HN_UNIT_LENGTH_LEAST 1e-2
 #define HN_UNIT_LENGTH_MOST 1e2
