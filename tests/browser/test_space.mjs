@@ -263,6 +263,17 @@ test("without WebGL the flat drawing stays, and nothing is fetched for solids", 
     files.filter((name) => /three|views\/space/.test(name)),
     [],
   );
+
+  // it stays in the picture to its end, where it goes farther than a look ahead at the start knows
+  await until(page, (data) => data.reference?.state === "ready");
+  await playTo(page, 2);
+  const box = (selector) =>
+    page.locator(selector).evaluate((one) => one.getBoundingClientRect().toJSON());
+  const [seen, picture] = [await box(".picture .ghosts"), await box(".picture")];
+  assert.ok(
+    seen.left >= picture.left && seen.right <= picture.right,
+    `${seen.left} to ${seen.right} in ${picture.left} to ${picture.right}`,
+  );
 });
 
 /** An answer of the server. */

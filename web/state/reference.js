@@ -169,6 +169,18 @@ export function referenceAt(reference, frame) {
   return b ? a.map((x, i) => x + (at - low) * (b[i] - x)) : null;
 }
 
+const MOST_POSES = 100;
+
+/**
+ * The drawn points at some times of the reference solution, for whoever asks how far the motion
+ * goes; none until it is here.
+ * @param {Reference | null} reference @returns {Float64Array[]}
+ */
+export function posesOf(reference) {
+  const all = reference?.state === "ready" ? reference.points : [];
+  return all.filter((_, i) => i % Math.ceil(all.length / MOST_POSES) === 0);
+}
+
 /**
  * Distance of the drawn point that is farthest from the reference [m], never less than the
  * reference's own error; NaN where it is not known.

@@ -68,7 +68,7 @@ export function createDrawing(el, store, actions) {
   );
   const kindOf = h("span");
   const counts = h("span", { class: "counts" });
-  const caption = h("p", { class: "caption" }, kindOf, counts);
+  const caption = h("p", { class: "caption" }, kindOf, " ", counts);
   const tools = h("div", { class: "undo-tools" }, ...lengths.tools, ...hand.tools);
   const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note, tools);
   const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
@@ -146,7 +146,7 @@ export function createDrawing(el, store, actions) {
   }
 
   function makeGhosts() {
-    const [, kind, rest] = /^(.*?)( \(.*)?$/s.exec(data.scene?.caption ?? "") ?? [];
+    const [, kind, rest] = /^(.*?)(?: (\(.*))?$/s.exec(data.scene?.caption ?? "") ?? [];
     say(kindOf, kind ?? "");
     say(counts, rest ?? "");
     demonstrations.hidden = !(data.scene?.m > 0);
@@ -172,7 +172,7 @@ export function createDrawing(el, store, actions) {
       ? `the reference solution, grey: ${known.means.join(" and ")} agree to ${digits}`
       : (known?.reason ?? "");
     set(toggles.reference, { "aria-disabled": ready ? null : "true" });
-    if (stage.camera3) {
+    if (data.scene?.extremes) {
       fit(); // the motion may go farther than was known
     } else {
       draw();

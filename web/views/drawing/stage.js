@@ -3,10 +3,11 @@
 // The frame of the drawing: camera, pen, and what changes only with the scene and the size.
 import { quantity } from "../../state/format.js";
 import { lookOf } from "../../state/look.js";
+import { posesOf } from "../../state/reference.js";
 import { boxAround, createCamera, seenBox } from "../../widgets/camera.js";
 import { s, set } from "../../widgets/dom.js";
 import { createNamePlaces } from "../../widgets/name-places.js";
-import { baseOf, createPen } from "../../widgets/pieces.js";
+import { baseOf, createPen, drawnPoints } from "../../widgets/pieces.js";
 
 const GLASS_ROOM = 104; // [px] for the magnified cut joint, below the mechanism
 const TOOLS_ROOM = 52; // [px] for the buttons over the drawing, and half a joint below them
@@ -67,10 +68,20 @@ export function createStage(svg, layers, data) {
     refresh();
   }
 
+  /**
+   * Points in space that must be seen: the extremes, and what the reference solution reaches.
+   * @param {number[]} extremes
+   */
+  function farthest(extremes) {
+    const drawn = drawnPoints(data.scene);
+    const place = (points) => drawn.flatMap((i) => [...points.slice(3 * i, 3 * i + 3)]);
+    return [...extremes, ...posesOf(data.reference).flatMap(place)];
+  }
+
   function makeFlatCamera() {
     const from = lookOf(data);
     const box = data.scene.extremes
-      ? seenBox(data.scene.extremes, from)
+      ? seenBox(farthest(data.scene.extremes), from)
       : boxAround(data.scene.envelope, data.scene.points);
     return createCamera(box, size.width, size.height, from, stage.foot, TOOLS_ROOM);
   }

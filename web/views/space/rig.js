@@ -3,6 +3,7 @@
 // Where the viewer stands in space: direction from the store, and besides it zoom, place, and
 // perspective. It is the camera of the drawing's SVG too, so that names and arrows fit the solids.
 import { lookOf } from "../../state/look.js";
+import { posesOf } from "../../state/reference.js";
 import { scaleBarOf } from "../../widgets/camera.js";
 import { drawnPoints } from "../../widgets/pieces.js";
 import { feetOf } from "./box.js";
@@ -10,7 +11,6 @@ import { feetOf } from "./box.js";
 const HALF_ANGLE = 0.3; // [rad] half the vertical angle of view
 const MARGIN = { side: 44, top: 36, bottom: 48 }; // [px]
 const STACKED = { query: "(max-width: 639.5px)", top: 96 }; // [px] two rows of buttons lie there
-const MOST_POSES = 100; // of the reference solution
 const ZOOM = { least: 0.1, most: 30 }; // of what fits
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -39,20 +39,13 @@ export function createRig(data, size) {
   const halfHeight = () => fitted / zoom;
   const distance = () => halfHeight() / Math.tan(HALF_ANGLE);
 
-  /** The reference solution of this scene, as far as it is here. */
-  const motionOf = () => {
-    const { reference } = data;
-    const all = reference?.state === "ready" ? reference.points : [];
-    return all.filter((_, i) => i % Math.ceil(all.length / MOST_POSES) === 0);
-  };
-
   /** Points that must be seen. */
   function pointsOf() {
     const { scene } = data;
     const drawn = drawnPoints(scene);
     const place = (list, i) => [...list.slice(3 * i, 3 * i + 3)];
     const far = scene.extremes ?? [];
-    const poses = [scene.points, ...motionOf()];
+    const poses = [scene.points, ...posesOf(data.reference)];
     return [
       ...Array.from({ length: far.length / 3 }, (_, i) => place(far, i)),
       ...feetOf(scene),
