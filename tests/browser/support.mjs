@@ -332,6 +332,17 @@ export async function soon(check, timeout = PATIENCE) {
   }
 }
 
+/**
+ * Where an element is on the screen: one that is drawn anew has no place for a moment.
+ * @param {import("playwright-core").Locator} locator
+ */
+export async function screenBox(locator) {
+  /** @type {{x: number, y: number, width: number, height: number} | null} */
+  let place = null;
+  await soon(async () => assert.ok((place = await locator.boundingBox())));
+  return place;
+}
+
 /** Until no colour fades into another one any more. */
 export function settled(page) {
   return page.evaluate(() => {

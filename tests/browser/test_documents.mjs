@@ -12,7 +12,7 @@ import { parseQuantity } from "../../web/state/format.js";
 import { addBar, addMotor, addPin, addSlider, writeScene } from "../../web/state/scene-parts.js";
 import { violations } from "./axe.mjs";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
-import { createBench, read, ROOT, screenshot, soon, until } from "./support.mjs";
+import { createBench, read, ROOT, screenBox, screenshot, soon, until } from "./support.mjs";
 
 const { open } = createBench();
 const SCHEMA = JSON.parse(readFileSync(join(ROOT, "core/scene/scene.schema.json"), "utf8"));
@@ -187,7 +187,7 @@ test("bars, pins and motors are put with the mouse, and the document follows", a
   await page.getByRole("button", { name: "new", exact: true }).click();
   await until(page, (data) => data.scene.id === "mine");
   const tip = async () => {
-    const box = await page.locator(".ghost.selected .outline").first().boundingBox();
+    const box = await screenBox(page.locator(".ghost.selected .outline").first());
     return [box.x + box.width - 9, box.y + 9];
   };
   await page.getByRole("button", { name: "bar", exact: true }).click();

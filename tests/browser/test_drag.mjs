@@ -3,7 +3,7 @@
 // with a reason, and every change can be undone.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, drawn, jointAt, playTo, read, soon, until } from "./support.mjs";
+import { createBench, drawn, jointAt, playTo, read, screenBox, soon, until } from "./support.mjs";
 
 const { open } = createBench();
 
@@ -126,7 +126,7 @@ test("a length has a handle on its bar; one that cannot be assembled is held bac
   await page.waitForSelector(".length-handle");
   const names = await page.locator(".length-handle text").allTextContents();
   assert.deepEqual(names, ["l1 0.5 m", "l2 1.2 m", "l3 0.8 m", "l4 1 m"]);
-  const coupler = await page.locator(".length-handle rect").nth(1).boundingBox();
+  const coupler = await screenBox(page.locator(".length-handle rect").nth(1));
   const [x, y] = [coupler.x + coupler.width / 2, coupler.y + coupler.height / 2];
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -194,7 +194,7 @@ test("the place of a dragged length is where the next run starts, also late in a
   await soon(async () =>
     assert.equal(await read(page, (data) => data.view.shown), 0, "lengths are those of the start"),
   );
-  const coupler = await page.locator(".length-handle rect").nth(1).boundingBox();
+  const coupler = await screenBox(page.locator(".length-handle rect").nth(1));
   const [x, y] = [coupler.x + coupler.width / 2, coupler.y + coupler.height / 2];
   await page.mouse.move(x, y);
   await page.mouse.down();

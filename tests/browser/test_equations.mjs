@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { partsOf } from "../../web/state/belongs.js";
 import { PLAIN, TEX, foldAngles } from "../../web/state/fold.js";
 import { evaluate } from "../../web/state/formula.js";
-import { createBench, playTo, read, screenshot, soon } from "./support.mjs";
+import { createBench, playTo, read, screenBox, screenshot, soon } from "./support.mjs";
 
 const { open } = createBench();
 
@@ -121,7 +121,7 @@ test("terms light up links and curves, links light up terms; numbers follow the 
     return { points: [...history.pointsAt(view.selected, 0)], shape: scene.drawing.shapes[0] };
   });
   assert.equal(bar.shape.kind, "bar");
-  const box = await page.locator(".ghost.selected .outline").first().boundingBox();
+  const box = await screenBox(page.locator(".ghost.selected .outline").first());
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.waitForSelector(".term-block .line.lit", { state: "attached" });
 

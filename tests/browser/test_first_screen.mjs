@@ -2,7 +2,7 @@
 // What a student needs for "why does it fall apart?" is on the first screen and stays in its place.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, playTo, read, screenshot, soon, until } from "./support.mjs";
+import { createBench, playTo, read, screenBox, screenshot, soon, until } from "./support.mjs";
 import { mainThreadTime } from "./trace.mjs";
 
 const TRACED = ["toplevel", "devtools.timeline", "disabled-by-default-devtools.timeline"];
@@ -259,7 +259,7 @@ test("what a change has changed is one line for the selected method, and a list 
     const text = await line.textContent();
     assert.match(text, /^index-1 until 1\.0\d s: .* before, .* now \(and 4 methods more\)$/);
   });
-  const { height } = await line.boundingBox();
+  const { height } = await screenBox(line);
   assert.ok(height < 30, `one line: ${height} px`);
   const others = page.locator(".change li");
   assert.ok(!(await others.first().isVisible()));

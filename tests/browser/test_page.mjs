@@ -9,6 +9,7 @@ import {
   drawn,
   playTo,
   read,
+  screenBox,
   screenshot,
   settled,
   soon,
@@ -303,7 +304,7 @@ test("a click on a curve shows that time, and the table, the drawing and the clo
   const page = await open(t);
   await playTo(page, 1);
   const before = await page.getAttribute(".ghost.selected .outline", "d");
-  const box = await page.locator(".u-over").first().boundingBox();
+  const box = await screenBox(page.locator(".u-over").first());
   await page.mouse.click(box.x + 0.05 * box.width, box.y + 20);
   await until(page, (data) => data.view.shown >= 0);
   await drawn(page);
@@ -325,7 +326,7 @@ test("the axes of time are those of the scene shown, after another one as well",
   await until(page, (data) => data.latest?.t > 0.01);
   await page.keyboard.press("ArrowRight");
   await stood(page);
-  const { x, y, width } = await page.locator(".u-over").first().boundingBox();
+  const { x, y, width } = await screenBox(page.locator(".u-over").first());
   await page.mouse.click(x + 0.1 * width, y + 20);
   await until(page, (data) => data.view.shown >= 0);
   const shown = await read(page, (data) => data.history.t[data.view.shown] / data.duration);
@@ -339,7 +340,7 @@ test("a server that is lost is told in sight of the mechanism", async (t) => {
   line.cut();
   const told = page.locator(".lost");
   await told.getByText("goes on by itself when the server is back").waitFor();
-  const { y, height } = await told.boundingBox();
+  const { y, height } = await screenBox(told);
   assert.ok(y > 0 && y + height <= 720, `at ${y} px of 720`);
 });
 

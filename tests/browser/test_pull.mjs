@@ -2,7 +2,17 @@
 // A hand that pulls the mechanism while it runs: with the mouse, by keys, and again from its log.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { createBench, drawn, jointAt, playTo, read, soon, stood, until } from "./support.mjs";
+import {
+  createBench,
+  drawn,
+  jointAt,
+  playTo,
+  read,
+  screenBox,
+  soon,
+  stood,
+  until,
+} from "./support.mjs";
 
 const bench = createBench();
 
@@ -209,7 +219,7 @@ test("a recording that plays is not pulled, and the page says why", async (t) =>
 test("a drag over empty places of the drawing marks no text", async (t) => {
   const page = await bench.open(t);
   await drawn(page);
-  const box = await page.locator("svg.picture").boundingBox();
+  const box = await screenBox(page.locator("svg.picture"));
   await page.mouse.move(box.x + 3, box.y + box.height * 0.2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width - 3, box.y + box.height - 60, { steps: 5 });

@@ -3,7 +3,7 @@
 // words over a scale or a panel over the mechanism.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createBench, drawn, playTo, soon } from "./support.mjs";
+import { createBench, drawn, playTo, screenBox, soon } from "./support.mjs";
 
 const { open } = createBench();
 const NARROW = { width: 360, height: 740 };
@@ -23,7 +23,7 @@ for (const viewport of [LAPTOP, NARROW]) {
     const { height } = viewport;
     const isInSight = async (name) => {
       const button = page.locator("dialog[open]").getByRole("button", { name, exact: true });
-      const box = await button.boundingBox();
+      const box = await screenBox(button);
       assert.ok(box && box.y >= 0 && box.y + box.height <= height, `${name}: ${box?.y}`);
       await button.click({ trial: true });
     };
@@ -60,7 +60,7 @@ test("the name of the coordinate of a phase plot can be read", async (t) => {
     const menu = page.getByLabel("Coordinate of the phase plot").last();
     await soon(async () => {
       // the text and the arrow of the menu: "th1" takes some 20 px
-      const { width } = await menu.boundingBox();
+      const { width } = await screenBox(menu);
       assert.ok(width >= 56, `${width} px`);
     });
   }

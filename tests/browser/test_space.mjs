@@ -4,7 +4,16 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createKinematics, jointPlace } from "../../web/state/kinematics.js";
 import { violations } from "./axe.mjs";
-import { createBench, drawn, playTo, read, screenshot, soon, until } from "./support.mjs";
+import {
+  createBench,
+  drawn,
+  playTo,
+  read,
+  screenBox,
+  screenshot,
+  soon,
+  until,
+} from "./support.mjs";
 
 const bench = createBench();
 const { open } = bench;
@@ -90,7 +99,7 @@ test("a scene in space is drawn with solids, with names where the joints are", a
   await soon(async () => {
     const places = await namePlaces(page);
     assert.deepEqual(Object.keys(places).sort(), ["J1", "J2", "J3", "J4"]);
-    const box = await page.locator(".stage").boundingBox();
+    const box = await screenBox(page.locator(".stage"));
     for (const [x, y] of Object.values(places)) {
       assert.ok(x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height);
     }
@@ -115,7 +124,7 @@ test("wheel, keys, buttons and the right mouse button move through space", async
   await page.keyboard.press("0");
   await soon(async () => assert.deepEqual(await namePlaces(page), start));
 
-  const { x, y } = await stage.boundingBox();
+  const { x, y } = await screenBox(stage);
   await page.mouse.move(x + 200, y + 200);
   await page.mouse.wheel(0, 400);
   await page.waitForFunction((before) => {
@@ -179,7 +188,7 @@ for (const [theme, width] of [
       assert.ok(names.every((name) => /^S[1-6]$/.test(name)) && names.length >= 4, String(names));
     });
     await soon(async () => {
-      const tools = await page.locator(".space-tools").boundingBox();
+      const tools = await screenBox(page.locator(".space-tools"));
       const tops = Object.values(await namePlaces(page)).map(([, y]) => y);
       const lowest = tools.y + tools.height - 4; // above it no name has room beside its joint
       assert.ok(width > 639 || Math.min(...tops) > lowest, `${tops} below ${lowest}`);

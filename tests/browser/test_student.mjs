@@ -127,9 +127,11 @@ test("on the first page, where every method ends wrong, the record lists the dea
   const line = page.locator(".record .dead-point");
   await soon(async () => assert.match(await line.first().innerText(), /dead point of th3/));
   await line.first().locator("summary").click();
-  assert.match(
-    await line.first().locator(".message").innerText(),
-    /^th3 turns back there .* are listed until 1\.\d\d s: every method has left the true motion/,
+  await soon(async () =>
+    assert.match(
+      await line.first().locator(".message").innerText(),
+      /^th3 turns back there .* are listed until 1\.\d\d s: every method has left the true motion/,
+    ),
   );
 });
 

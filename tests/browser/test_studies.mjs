@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { dotsOf, ruleOf } from "../../web/state/study-documents.js";
 import { cheapestFor } from "../../web/state/wanted.js";
-import { createBench, read, screenshot, soon, until } from "./support.mjs";
+import { createBench, read, screenBox, screenshot, soon, until } from "./support.mjs";
 
 const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
 const STABILISED =
@@ -209,7 +209,7 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
     let box = null; // the ring is drawn anew when the run has changed
     while (!box) {
       await page.locator(selector).waitFor();
-      box = await page.locator(selector).boundingBox();
+      box = await screenBox(page.locator(selector));
     }
     return [box.x + box.width / 2, box.y + box.height / 2];
   };
@@ -346,7 +346,7 @@ test("an error that is not the sum of its parts has no bar, and the time until w
   await soon(async () =>
     assert.match(
       await page.locator(".budgets").textContent(),
-      /the error is too large to be split, the parts add up to .*; they agree until/,
+      /It is too large to be split: its parts add up to .*\. Until .* add up to the error/,
     ),
   );
 

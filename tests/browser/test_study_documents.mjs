@@ -293,7 +293,26 @@ test("counts are said in words, and an error of a position as a length", () => {
     "Errors of 10⁻³: projection@rk4, 606 thousand operations to 1.1 million operations; 817 operations before.",
   ]);
   assert.deepEqual(sentencesOf(study, "v", "operations"), []);
-  assert.match(meaningOf("q", 1.2), /10⁻³ is 1 mrad of an angle: 1\.2 mm at the end of 1\.2 m/);
+
+  // by the names that the page has, of which one spelling may begin with another
+  const two = {
+    methods: [{ method: "baumgarte@rk4" }, { method: "baumgarte@rk4:h=0.1" }],
+    pareto: [
+      {
+        error: "q",
+        cost: "operations",
+        sentences: "Errors of 1e-03: baumgarte@rk4:h=0.1, 606 kop; next baumgarte@rk4 at 1.45.",
+      },
+    ],
+  };
+  assert.deepEqual(
+    sentencesOf(two, "q", "operations", (m) => ["Baumgarte", "Baumgarte h=0.1"][m]),
+    ["Errors of 10⁻³: Baumgarte h=0.1, 606 thousand operations; next Baumgarte at 1.45."],
+  );
+  assert.match(
+    meaningOf("q", 1.2),
+    /10⁻³ is 1 mrad of an angle: 1\.2 mm at the end of a bar of 1\.2 m/,
+  );
   assert.equal(meaningOf("v", 1.2), "");
 });
 

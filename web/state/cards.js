@@ -134,7 +134,7 @@ export function tryOfRemedy(text) {
     return { label: `${setting[1]} = ${setting[2]}`, key: setting[1], value: Number(setting[2]) };
   }
   return /^[\w-]+(:[^@\s]*)?@\S+$/.test(text.trim())
-    ? { label: text.trim(), method: text.trim() }
+    ? { label: text.trim().replace(/e-0(?=\d)/g, "e-"), method: text.trim() }
     : { label: text.trim() };
 }
 

@@ -219,10 +219,28 @@ export const ruleOf = (study, error) => ({
 
 const COUNTS = { k: "thousand ", M: "million ", G: "billion ", "": "" };
 
-/** Sentences on who reaches which accuracy for the least. @returns {string[]} */
-export function sentencesOf(study, error, cost) {
+/** A text for a regular expression. @param {string} text */
+const literally = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+
+/**
+ * Sentences on who reaches which accuracy for the least.
+ * @param {any} study @param {string} error @param {string} cost
+ * @param {(m: number) => string} [labelOf] names of the methods in place of their spellings
+ * @returns {string[]}
+ */
+export function sentencesOf(study, error, cost, labelOf = (m) => study.methods[m].method) {
   const found = study.pareto.find((one) => one.error === error && one.cost === cost);
-  const text = withPowers(found?.sentences ?? "").replace(
+  const named = (study.methods ?? [])
+    .map(({ method }, m) => ({ method, m }))
+    .sort((a, b) => b.method.length - a.method.length)
+    .reduce(
+      (words, { method, m }) =>
+        words.replace(new RegExp(`(?<![\\w-])${literally(method)}(?![\\w:-])`, "g"), () =>
+          labelOf(m),
+        ),
+      found?.sentences ?? "",
+    );
+  const text = withPowers(named).replace(
     /(?<=\d )([kMG]?)op\b/g,
     (_, prefix) => `${COUNTS[prefix]}operations`,
   );
@@ -235,7 +253,7 @@ export function sentencesOf(study, error, cost) {
  */
 export const meaningOf = (error, length) =>
   error === "q"
-    ? `An error of 10⁻³ is 1 mrad of an angle: ${quantity(1e-3 * length, "m")} at the end of ${quantity(length, "m")}.`
+    ? `An error of 10⁻³ is 1 mrad of an angle: ${quantity(1e-3 * length, "m")} at the end of a bar of ${quantity(length, "m")}.`
     : "";
 
 /**

@@ -146,7 +146,8 @@ export function createGallery(el, store, actions) {
           known.set(id, scene);
           const card = cards.get(id);
           card?.picture.replaceChildren(makeThumbnail(scene));
-          say(card?.caption ?? count, scene.caption);
+          // a difference stays in one line
+          say(card?.caption ?? count, scene.caption.replaceAll(" − ", "\u00a0−\u00a0"));
         } catch (error) {
           say(cards.get(id)?.caption ?? count, sentenceOf(error));
         }

@@ -106,6 +106,7 @@ export function createStudies(el, store, actions) {
   const state = h("span", { class: "number" });
   const spoken = h("p", { class: "hidden", role: "status" });
   const note = h("p", { class: "study-note", role: "alert" });
+  const coming = h("p", { class: "about", hidden: true });
   const stop = h(
     "button",
     {
@@ -179,6 +180,7 @@ export function createStudies(el, store, actions) {
       ...tabs,
     ),
     h("div", { class: "study-run" }, bar, state, stop, goOn, again, report),
+    coming,
     note,
     spoken,
     ...panels,
@@ -255,6 +257,15 @@ export function createStudies(el, store, actions) {
     show();
   }
 
+  /** What is to come, while a study that has nothing to show yet runs. */
+  const COMING = {
+    "work-precision":
+      "Every method runs with a row of steps. The picture comes when all have run; Stop shows those that have.",
+    stability: "Every cell of the map is a run. The map fills in as they end.",
+    budget:
+      "Every method runs several times, so that the sources of its error can be told apart. The bars come when all have run.",
+  };
+
   function stateWords({ state: now, progress, left, elapsed, reason, document }) {
     if (now === "running") {
       return `${Math.round(100 * progress)} %${left === null ? "" : `, ${span(left)} left at most`}`;
@@ -287,6 +298,8 @@ export function createStudies(el, store, actions) {
         : "";
     say(state, words + old);
     state.dataset.kind = study.state === "failed" ? "error" : "";
+    coming.hidden = !runs || Boolean(study.document);
+    say(coming, coming.hidden ? "" : COMING[kind]);
     const of = `${kind} ${study.state}`;
     if (!runs || of !== toldOf || Date.now() - told > TOLD_EVERY) {
       told = Date.now();

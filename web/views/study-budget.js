@@ -191,12 +191,14 @@ export function createStudyBudget(store, actions) {
     const partly = method.state === "failed" ? ` (it ended early: ${method.reason})` : "";
     const ended = budget && !budget.holds;
     const agree =
-      ended && budget.until !== null ? `; they agree until ${seconds(budget.until)}` : "";
+      ended && budget.until !== null
+        ? `. Until ${seconds(budget.until)} the parts add up to the error`
+        : "";
     const sum =
       ended && Math.abs(budget.sum) <= ABSURD * Math.abs(budget.total)
-        ? `, the parts add up to ${numberOf(budget.sum, budget.unit)}`
+        ? `: its parts add up to ${numberOf(budget.sum, budget.unit)}`
         : "";
-    const warning = ended ? `: the error is too large to be split${sum}${agree}` : "";
+    const warning = ended ? `. It is too large to be split${sum}${agree}` : "";
     const words = budget
       ? `${budget.what} ${numberOf(budget.total, budget.unit)}${warning}${partly}`
       : why;

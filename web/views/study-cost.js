@@ -362,7 +362,7 @@ export function createStudyCost(store, onPick) {
     fillTable();
     const { error, cost } = view;
     wanted.show(dots, error, isRanked(study(), error, cost), ruleOf(study(), error));
-    const lines = sentencesOf(study(), error, cost);
+    const lines = sentencesOf(study(), error, cost, labelOf);
     say(meaning, meaningOf(error, data.scene.length));
     say(leftOut, leftOutOf(study(), labelOf));
     sentences.replaceChildren(

@@ -169,14 +169,14 @@ export function fillLegend(legend, map, { heat, here, step, widen }) {
     );
   const limit = baumgarteLimit(map, map.methods[0], step);
   const limitWords = limit > 0 ? `: h β = ${plain(Number(limit.toPrecision(3)))} on α = β` : "";
-  const unit = kind?.unit ? ` ${kind.unit}` : "";
+  const inUnit = kind?.unit ? ` in ${kind.unit}` : "";
   legend.replaceChildren(
     ...(kind
       ? [
           h(
             "li",
             {},
-            `in the cells: ${kind.word} as a power of ten${unit}, the lighter the smaller; framed: the least`,
+            `in the cells: ${kind.word}${inUnit}, as a power of ten; the fainter the smaller; framed: the least`,
           ),
         ]
       : []),

@@ -502,11 +502,15 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
     }
 
     // how many columns or cells agree
-    hn_strbuf_printf(b,
-                     a.by_columns ? "prediction within %.0f %% in %d of %d columns"
-                                  : "prediction right, %.0f %% or more from the boundary, in %d of "
-                                    "%d cells",
-                     100 * HN_MAP_AGREES, a.agree, a.compared);
+    if (a.by_columns) {
+        hn_strbuf_printf(b, "prediction within %.0f %% in %d of %d columns", 100 * HN_MAP_AGREES,
+                         a.agree, a.compared);
+    } else {
+        hn_strbuf_printf(b,
+                         "prediction right in %d of the %d cells that lie %.0f %% or more from the "
+                         "boundary",
+                         a.agree, a.compared, 100 * HN_MAP_AGREES);
+    }
 
     // the others, by the kind of disagreement
     if (a.unseen) {
