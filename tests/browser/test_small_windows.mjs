@@ -238,3 +238,43 @@ test("the numbers of a method stand apart from each other", async (t) => {
     }
   }
 });
+
+test("at 320 px buttons keep one line, and above a lesson the mechanism has its room", async (t) => {
+  const page = await open(t, { viewport: { width: 320, height: 640 }, hash: "#four-bar" });
+  const heights = await page
+    .locator("#method-list .title button")
+    .evaluateAll((list) => list.map((one) => one.getBoundingClientRect().height));
+  assert.ok(heights.length >= 3 && Math.max(...heights) < 40, String(heights));
+  const title = await boxOf(page, "#methods-title");
+  const cheapest = await boxOf(page, "#method-list .title button");
+  assert.ok(cheapest.top >= title.bottom || cheapest.left >= title.right + 4);
+
+  await page.getByRole("button", { name: "lessons" }).click();
+  await page.locator(".lesson-panel").waitFor();
+  await soon(async () => {
+    const stage = await boxOf(page, ".stage");
+    const tools = await boxOf(page, ".undo-tools");
+    assert.equal(tools.bottom - tools.top, 0, "no line of buttons over it");
+    const names = await page
+      .locator(".picture .labels text")
+      .evaluateAll((list) => list.map((one) => one.getBoundingClientRect().top));
+    assert.ok(
+      names.every((top) => top >= stage.top),
+      `${names} below ${stage.top}`,
+    );
+  });
+});
+
+test("where no joint is cut the words stand at the edge, clear of the mechanism", async (t) => {
+  const page = await open(t, { viewport: LAPTOP, hash: "#planetary-gear" });
+  await page.locator(".tear-inset.none").waitFor();
+  await soon(async () => {
+    const [stage, words] = [await boxOf(page, ".stage"), await boxOf(page, ".tear-inset")];
+    assert.ok(Math.abs(stage.right - words.right) <= 1, `${words.right} of ${stage.right}`);
+    const ring = await boxOf(page, ".picture .fixed .base");
+    assert.ok(
+      words.top >= ring.bottom - 1,
+      `the words begin at ${words.top}, the ring ends at ${ring.bottom}`,
+    );
+  });
+});

@@ -339,6 +339,8 @@ test("of a stopped run the card offers what the engine found, and nothing that h
 test("a remedy becomes a button only when it can be carried out", () => {
   assert.deepEqual(tryOfRemedy("h=0.005"), { label: "h = 0.005", key: "h", value: 0.005 });
   assert.equal(tryOfRemedy("projection@rk4:h=1e-3").method, "projection@rk4:h=1e-3");
+  const radau = { label: "ggl@radau5:rtol=1e-6", method: "ggl@radau5:rtol=1e-06" };
+  assert.deepEqual(tryOfRemedy("ggl@radau5:rtol=1e-06"), radau, "numbers as people write them");
   assert.deepEqual(tryOfRemedy("look at the start"), { label: "look at the start" });
 });
 
