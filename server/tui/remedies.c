@@ -23,24 +23,26 @@ static bool is_recorded(const hn_workbench *w) {
     return hn_recording_frames(w->recording) > hn_recording_last(w->recording);
 }
 
-/// Each remedy once, with what it gave in a trial, or what it is a remedy of.
-static void list_remedies(hn_workbench *w, const hn_incident *incident) {
+/// Each remedy once, with what it gave in a trial, or what it is a remedy of; `running`: those that
+/// run already, else the others.
+static void list_remedies(hn_workbench *w, const hn_incident *incident, bool running) {
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
         const char *tried = incident->tried[k];
         const int runs = hn_methods_find(w, incident->remedy[k]);
-        if (!is_listed(w, incident->remedy[k])) {
-            char words[2 * HN_TUI_LINE], already[48] = "";
-            if (runs >= 0) {
-                snprintf(already, sizeof already, "runs already as method %d; ", runs + 1);
-            }
-            if (tried[0]) {
-                snprintf(words, sizeof words, "%s%s", already, tried);
-            } else {
-                snprintf(words, sizeof words, "%s%s, against: %.400s", already,
-                         is_recorded(w) ? "not tried" : "not tried yet", incident->message);
-            }
-            hn_list_add(w, incident->remedy[k], words);
+        if ((runs >= 0) != running || is_listed(w, incident->remedy[k])) {
+            continue;
         }
+        char words[2 * HN_TUI_LINE], already[48] = "";
+        if (running) {
+            snprintf(already, sizeof already, "runs already as method %d; ", runs + 1);
+        }
+        if (tried[0]) {
+            snprintf(words, sizeof words, "%s%s", already, tried);
+        } else {
+            snprintf(words, sizeof words, "%s%s, against: %.400s", already,
+                     is_recorded(w) ? "not tried" : "not tried yet", incident->message);
+        }
+        hn_list_add(w, incident->remedy[k], words);
     }
 }
 
@@ -56,9 +58,9 @@ void hn_remedies_open(hn_workbench *w) {
     if (hn_workbench_step_report(w, &step) && step.remedy[0]) {
         hn_list_add(w, step.remedy, step.tried);
     }
-    for (int i = 0; i < n; i++) {
-        if (whose[i] == w->selected) {
-            list_remedies(w, &list[i]);
+    for (int i = 0; i < 2 * n; i++) { // what runs already comes last
+        if (whose[i % n] == w->selected) {
+            list_remedies(w, &list[i % n], i >= n);
         }
     }
     if (w->n_items == 0) {

@@ -124,11 +124,10 @@ static bool tells_count(const hn_incident *list, const int *entry, int e) {
     return is_first && list[entry[e]].times > HN_INCIDENT_MOST_OF_ONE_KIND;
 }
 
-/// Entry e with what to try that is not said above.
-static void put_entry(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
-                      int e) {
+/// What entry e says of its incident.
+static void put_message(page *p, const hn_incident *list, const int *entry, int e) {
     const hn_incident *incident = &list[entry[e]];
-    char line[640], words[HN_WHY_WORDS], message[480];
+    char line[640], message[480];
     hn_wording_behind_time(incident->t, incident->message, message, sizeof message);
     const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, message);
     if (tells_count(list, entry, e) && n < (int)sizeof line) {
@@ -136,10 +135,20 @@ static void put_entry(page *p, const hn_workbench *w, const hn_incident *list, c
                  incident->times, HN_INCIDENT_MOST_OF_ONE_KIND);
     }
     put(p, 0, HN_CELL_ALARM, line);
-    for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
-        if (!is_said(list, entry, e, k)) {
-            put_remedy(w, incident, k, words);
-            put(p, 2, HN_CELL_INK, words);
+}
+
+/// What to try against entry e that is not said above: what runs already comes last.
+static void put_remedies(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
+                         int e) {
+    const hn_incident *incident = &list[entry[e]];
+    char words[HN_WHY_WORDS];
+    for (int runs = 0; runs <= 1; runs++) {
+        for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
+            const bool is_running = hn_methods_find(w, incident->remedy[k]) >= 0;
+            if (is_running == (runs == 1) && !is_said(list, entry, e, k)) {
+                put_remedy(w, incident, k, words);
+                put(p, 2, HN_CELL_INK, words);
+            }
         }
     }
 }
@@ -158,36 +167,58 @@ static void put_step(page *p, const hn_workbench *w) {
     }
 }
 
-/// Why the method ended where no entry says so (`ending`: the first one does), or what became of it
-/// and whether its step is the cause; then the rule of the method.
-static void put_head(page *p, const hn_workbench *w, bool ending) {
-    const hn_track *track = hn_recording_track(w->recording, w->selected);
+/// What became of the method: the entry that ended it (`ending`: it is the first one), why it ended
+/// where no entry says so, or the worst of it and whether its step is the cause.
+static void put_head(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
+                     bool ending) {
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     const hn_motion_verdict v =
         hn_recording_verdict(w->recording, w->selected, hn_workbench_frame(w));
     char line[HN_MOTION_VERDICT_TEXT + 32];
-    if (end.failed && !ending) {
+    if (ending) {
+        put_message(p, list, entry, 0);
+    } else if (end.failed) {
         char reason[sizeof end.reason + 48];
         hn_wording_behind_time(end.t, end.reason, reason, sizeof reason);
         put(p, 0, HN_CELL_ALARM, reason);
-    } else if (!end.failed && v.tone != HN_TONE_CALM) {
+    } else if (v.tone != HN_TONE_CALM) {
         snprintf(line, sizeof line, "worst so far: %s", v.text);
         put(p, 0, HN_CELL_ALARM, line);
         put_step(p, w);
     }
-    put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
 }
 
-/// Writes the card; p->line is then the number of its lines.
+/// The first entry that has something to try; -1: none has.
+static int first_remedied(const hn_incident *list, const int *entry, int entries) {
+    for (int e = 0; e < entries; e++) {
+        if (list[entry[e]].remedy[0][0]) {
+            return e;
+        }
+    }
+    return -1;
+}
+
+/// Writes the card: what became of the method, what to try, the rule, then each incident. p->line
+/// is then the number of its lines.
 static void put_card(page *p, const hn_workbench *w) {
     static hn_incident list[MOST_INCIDENTS];
     static int whose[MOST_INCIDENTS], entry[MOST_INCIDENTS];
     const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
     const int entries = list_entries(w, list, whose, n, entry);
-    put_head(p, w, entries > 0 && standing_of(w, &list[entry[0]]) == ENDING);
-    for (int e = 0; e < entries; e++) {
+    const bool ending = entries > 0 && standing_of(w, &list[entry[0]]) == ENDING;
+    const hn_track *track = hn_recording_track(w->recording, w->selected);
+    const int first = first_remedied(list, entry, entries);
+    put_head(p, w, list, entry, ending);
+    if (first >= 0) {
+        put_remedies(p, w, list, entry, first);
+    }
+    put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
+    for (int e = ending; e < entries; e++) {
         p->line++;
-        put_entry(p, w, list, entry, e);
+        put_message(p, list, entry, e);
+        if (e != first) {
+            put_remedies(p, w, list, entry, e);
+        }
     }
 
     // those of one cause after the first

@@ -359,17 +359,26 @@ class Messages(unittest.TestCase):
         self.assertGreater(out.count("a singular configuration (J"), 1)
         self.assertEqual(out.count("projection@rk4:h=0.007: not tried"), 1)
 
+    def test_the_card_begins_with_what_to_try_and_offers_critical_damping(self):
+        for size in ("80x24", "120x40"):
+            _, out, _ = once("four-bar", "--once", "--t", "3.5", "--size", size, "--keys", "i", *OPENS)
+            column = out.split("\n")[1].index("why:") - 2
+            card = " ".join("".join(line[column:-1] + " " for line in out.split("\n")[2:14]).split())
+            self.assertRegex(card, r"^worst so far: open by .* off try h=0\.01 \(tried until .*\) try baumgarte:alpha=20,beta=20@rk4:h=0\.02 \(tried until"
+                                   r" t = [\d.]+ s: largest gap 0\.000\d+ m, .*\) projection@rk4:h=0\.02 runs already: method 2", size)
+
     def test_a_remedy_that_runs_already_is_said_and_selected(self):
         def frame(keys, *methods):
             return once("four-bar", "--once", "--t", "4", "--size", "120x40", "--keys", keys, *(methods or OPENS))[1]
         self.assertIn("projection@rk4:h=0.02 runs already: method 2", frame("i"))
         self.assertRegex(frame("i<Enter>"), r"(?m)^│ projection@rk4:h=0\.02 +runs already as method 2; ")
-        taken = frame("i<Enter><Enter>")
+        # what runs already is the last of the list
+        taken = frame("i<Enter><End><Enter>")
         self.assertEqual(message(taken), "projection@rk4:h=0.02 runs already: it is method 2, now selected")
         self.assertIn("why: projection", taken)
         self.assertEqual(len(re.findall(r"(?m)^│\d\S", taken)), 2)
         # another spelling of it is the same method
-        other = frame("i<Enter><Enter>", "--methods", "index1@rk4:h=0.02", "projection@rk4:h=2e-2")
+        other = frame("i<Enter><End><Enter>", "--methods", "index1@rk4:h=0.02", "projection@rk4:h=2e-2")
         self.assertEqual(len(re.findall(r"(?m)^│\d\S", other)), 2)
         # where it does not run, it is tried
         self.assertRegex(" ".join(frame("i", "--methods", "index1@rk4:h=0.02").split()), r"try projection@rk4:h=0\.02 \(tried")

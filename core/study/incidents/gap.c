@@ -32,7 +32,7 @@ const hn_incident_kind hn_incident_gap_open = {
     .rule = "This method imposes the constraint on accelerations only. Nothing corrects the errors "
             "of the two integrations that follow, and the gap grows with the square of time.",
     .check = check,
-    .remedies = {{hn_remedy_close, 0}, {hn_remedy_finer, 0.5}, {hn_remedy_feedback, 0}},
+    .remedies = {{hn_remedy_close, 0}, {hn_remedy_finer, 0.5}, {hn_remedy_feedback, 0.4}},
 };
 
 hn_status hn_gap_judge(const hn_watch *w, char why[256]) {

@@ -100,11 +100,19 @@ bool hn_remedy_robust_near(const hn_watch *w, double factor, hn_remedy out) {
 }
 
 bool hn_remedy_feedback(const hn_watch *w, double factor, hn_remedy out) {
-    (void)factor;
     const unsigned cares = CLOSED | HN_TRAIT_PULLS_GAP;
-    return !(formulation_of(w)->traits & cares) &&
-           write_formulation(w, hn_formulation_with(HN_TRAIT_PULLS_GAP, HN_TRAIT_ADDS_VIBRATIONS),
-                             out);
+    const hn_method_spec *spec = &w->run->spec;
+    const double h = hn_method_option(spec, "h", 0);
+    const hn_formulation *f = hn_formulation_with(HN_TRAIT_PULLS_GAP, HN_TRAIT_ADDS_VIBRATIONS);
+    if (formulation_of(w)->traits & cares || !write_formulation(w, f, out)) {
+        return false;
+    }
+    if (h > 0 && fits(f, spec->stepper)) {
+        const double rate = fmin(factor / h, f->options[0].max);
+        snprintf(out, sizeof(hn_remedy), "%s:alpha=%.3g,beta=%.3g@%s:h=%.4g", f->name, rate, rate,
+                 spec->stepper->name, h);
+    }
+    return true;
 }
 
 bool hn_remedy_right_model(const hn_watch *w, double factor, hn_remedy out) {

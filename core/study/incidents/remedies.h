@@ -16,7 +16,8 @@ bool hn_remedy_close(const hn_watch *w, double factor, hn_remedy out);
 bool hn_remedy_robust(const hn_watch *w, double factor, hn_remedy out);
 /// The same, only where the run is close to a singular configuration.
 bool hn_remedy_robust_near(const hn_watch *w, double factor, hn_remedy out);
-/// Feedback on the gap, for a formulation that does nothing about it.
+/// Feedback on the gap, for a formulation that does nothing about it: critically damped, at the
+/// rate factor / h where the step is fixed.
 bool hn_remedy_feedback(const hn_watch *w, double factor, hn_remedy out);
 /// The right formulation beside one that is a counter-example or converges to another model.
 bool hn_remedy_right_model(const hn_watch *w, double factor, hn_remedy out);
