@@ -334,8 +334,9 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     char shown[HN_SPEC_MAX];
     hn_short_spelling(map.name, shown, sizeof shown);
     const int used = 1 + hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);
-    hn_cells_put(c, in, used + 2, 0, HN_CELL_MUTED, 0,
-                 "the gap e obeys e'' + 2 alpha e' + beta² e = 0");
+    hn_cells_printf(c, in, used + 2, 0, HN_CELL_MUTED, 0,
+                    "the gap e obeys e'' + 2 alpha e' + %s e = 0",
+                    w->form == HN_DOTS_ASCII ? "beta^2" : "beta²");
     hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
 
     // the cell under the cursor, or what the map says as a whole

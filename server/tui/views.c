@@ -2,6 +2,7 @@
 #include "tui/views.h"
 
 #include "base/units.h"
+#include "cli/shell/plain.h"
 #include "render/look.h"
 #include "study/incidents/wording.h"
 #include "terminal/plot.h"
@@ -440,6 +441,9 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     char line[HN_MOTION_VERDICT_TEXT + 32];
     snprintf(line, sizeof line, "%s %s%s%s", v.arrow, w->hidden[m] ? "(hidden) " : "",
              track->model_error ? "model error: " : "", v.text);
+    if (w->form == HN_DOTS_ASCII) {
+        hn_plain_powers(line);
+    }
     shorten(line, area.columns - at.verdict);
     hn_cells_put_fitted(c, area, at.verdict, m, calm ? HN_CELL_INK : HN_CELL_ALARM,
                         calm ? HN_CELL_PLAIN : HN_CELL_BOLD, line);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/why_view.h"
 
+#include "cli/shell/plain.h"
 #include "study/incidents/kinds.h"
 #include "study/incidents/log.h"
 #include "study/incidents/wording.h"
@@ -183,6 +184,9 @@ static void put_head(page *p, const hn_workbench *w, const hn_incident *list, co
         put(p, 0, HN_CELL_ALARM, reason);
     } else if (v.tone != HN_TONE_CALM) {
         snprintf(line, sizeof line, "worst so far: %s", v.text);
+        if (w->form == HN_DOTS_ASCII) {
+            hn_plain_powers(line);
+        }
         put(p, 0, HN_CELL_ALARM, line);
         put_step(p, w);
     }

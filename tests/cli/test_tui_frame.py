@@ -126,6 +126,15 @@ class Frame(unittest.TestCase):
             said = subprocess.run([PROGRAM, word], capture_output=True, text=True, timeout=600).stdout
             self.assertRegex(said, r"130\s+Ctrl\\?-C\s+ended\s+the\s+workbench\s+in\s+the\s+terminal", word)
 
+    def test_in_ascii_a_power_is_written_as_one(self):
+        out = once("four-bar", "--once", "--ascii", "--t", "1", "--size", "120x30", "--keys", "i", "--methods", "index1@rk4:h=1e-3")[1]
+        self.assertTrue(out.isascii())
+        self.assertRegex(out, r"gap \d\.\de-10 m and growing +\|\n")
+        self.assertNotIn("x10-", out)
+        self.assertEqual(len({len(line) for line in out.split("\n")[1:26]}), 1)
+        with tempfile.TemporaryDirectory() as cache:
+            self.assertIn("beta^2 e = 0", once("four-bar", "--once", "--ascii", "--t", "0.1", "--keys", "b", HOLONOM_CACHE=cache)[1])
+
     def test_json_is_refused(self):
         status, out, err = once("--json")
         self.assertEqual(status, 2)

@@ -376,7 +376,6 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
     return a;
 }
 
-// Writes how the first column ended that became unstable before the prediction.
 /// The first cell that ended though its margin is below the boundary.
 static void put_first_earlier_cell(hn_strbuf *b, const hn_map *map, int m) {
     for (int j = 0; j < map->y.n; j++) {
@@ -391,6 +390,7 @@ static void put_first_earlier_cell(hn_strbuf *b, const hn_map *map, int m) {
     }
 }
 
+/// Writes how the first column ended that became unstable before the prediction.
 static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
     for (int i = 0; i < map->x.n; i++) {
         const hn_map_column *c = hn_map_column_at(map, m, i);

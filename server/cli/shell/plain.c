@@ -87,15 +87,58 @@ static char like(const char *text, size_t n) {
     return '?';
 }
 
+/// Writes "e-10" for the "×10⁻¹⁰" that begins here. Returns the bytes of the latter; 0: none does.
+static size_t read_power(const char *utf8, char out[16]) {
+    static const char ten[] = "×10";
+    size_t n = strlen(ten), digits = 1;
+    if (strncmp(utf8, ten, n) != 0) {
+        return 0;
+    }
+    out[0] = 'e';
+    while (digits < 15 && (unsigned char)utf8[n] >= 0x80) {
+        const size_t bytes = length_of(utf8 + n);
+        const char c = like(utf8 + n, bytes);
+        if (c != '-' && (c < '0' || c > '9')) {
+            break;
+        }
+        out[digits++] = c;
+        n += bytes;
+    }
+    out[digits] = '\0';
+    return digits > 1 ? n : 0;
+}
+
+void hn_plain_powers(char *text) {
+    char power[16], *to = text;
+    for (const char *from = text; *from;) {
+        const size_t n = read_power(from, power);
+        if (n > 0) {
+            memcpy(to, power, strlen(power));
+            to += strlen(power);
+            from += n;
+        } else {
+            *to++ = *from++;
+        }
+    }
+    *to = '\0';
+}
+
 void hn_plain_add(hn_strbuf *b, const char *utf8) {
+    char power[16];
     while (*utf8) {
+        const size_t bytes = read_power(utf8, power);
+        if (bytes > 0) { // two columns shorter: what stands behind it stays where it is
+            hn_strbuf_printf(b, "%s  ", power);
+            utf8 += bytes;
+            continue;
+        }
         size_t n = 0;
         while (utf8[n] && (unsigned char)utf8[n] < 0x80) {
             n++;
         }
         hn_strbuf_add_n(b, utf8, n);
         utf8 += n;
-        if (*utf8) {
+        if (*utf8 && read_power(utf8, power) == 0) {
             n = length_of(utf8);
             const char ascii = like(utf8, n);
             hn_strbuf_add_n(b, &ascii, 1);

@@ -10,6 +10,8 @@
 /// LANG that says anything. Where none does, as in a container, nothing is known of the terminal
 /// and 0 is returned. Each may be NULL.
 int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang);
-/// The text with ASCII characters alone; what has no likeness becomes '?'.
+/// Turns each power of ten, "×10⁻¹⁰", into "e-10", in place.
+void hn_plain_powers(char *text);
+/// The text with ASCII characters alone, in as many columns; what has no likeness becomes '?'.
 void hn_plain_add(hn_strbuf *b, const char *utf8);
 #endif

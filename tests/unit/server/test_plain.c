@@ -32,6 +32,11 @@ static void every_character_becomes_one_of_ascii(void **state) {
     assert_plain("1 freedom (3 \xe2\x88\x92 2), 4 \xc2\xb5s", "1 freedom (3 - 2), 4 us");
     assert_plain("\xe2\x94\xa4\xe2\x94\x82 \xe2\x89\xa4 2", "|| < 2");
     assert_plain("\xe4\xb8\xad", "?"); // no likeness
+    // a power of ten is no product with 1010, and what stands behind it stays where it is
+    assert_plain("2.5×10⁻¹⁰ m│ ×10⁶ ×10 m²", "2.5e-10   m| e6   x10 m2");
+    char power[] = "gap 2.5×10⁻¹⁰ m, 3×10";
+    hn_plain_powers(power);
+    assert_string_equal(power, "gap 2.5e-10 m, 3×10");
     // bytes that are no UTF-8 stand for themselves, and no text is read beyond its end
     assert_plain("a\xff"
                  "b\xe2",
