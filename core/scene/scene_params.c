@@ -251,7 +251,12 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
     } else if ((p->value < p->min || p->value > p->max) && is_set(r, p) && is_possible(p)) {
         p->beyond = true;
     } else if (has_other_sign(p)) {
-        hn_rd_fault(r, NULL, "%s = %g%s%s must be %s", p->name, p->value, p->unit[0] ? " " : "",
+        char usual[HN_DIAG_HINT] = "";
+        if (isfinite(p->min) && isfinite(p->max)) {
+            snprintf(usual, sizeof usual, "%.40s is usually %g to %g%s%.40s", p->name, p->min,
+                     p->max, p->unit[0] ? " " : "", p->unit);
+        }
+        hn_rd_fault(r, usual, "%s = %g%s%s must be %s", p->name, p->value, p->unit[0] ? " " : "",
                     p->unit, needed_sign(p));
     } else if (p->value < p->min || p->value > p->max) {
         const double limit = p->value < p->min ? p->min : p->max;

@@ -332,9 +332,9 @@ static const char *command_word(const char *word) {
                                                                   : word;
 }
 
-/// `holonom complete -- WORD...`: what shells ask; the last word may be unfinished. No command of
-/// its own in the help.
-static hn_exit complete(int n, char **words) {
+/// `holonom complete -- WORD...`: what shells ask; the last word may be unfinished. Exits with 1
+/// where no file may stand. No command of its own in the help.
+static int complete(int n, char **words) {
     hn_library *lib = NULL;
     hn_diag diag = {0};
     hn_strbuf b;
@@ -343,11 +343,12 @@ static hn_exit complete(int n, char **words) {
         return HN_EXIT_PROGRAM;
     }
     const int skip = n > 0 && strcmp(words[0], "--") == 0;
-    hn_completion_candidates(&b, lib, (const char *const *)words + skip, n - skip);
+    const bool files =
+        hn_completion_candidates(&b, lib, (const char *const *)words + skip, n - skip);
     hn_library_free(lib);
     fputs(hn_strbuf_text(&b), stdout);
     hn_strbuf_reset(&b);
-    return HN_EXIT_DONE;
+    return files ? HN_EXIT_DONE : 1;
 }
 
 int hn_cli_main(int argc, char **argv) {

@@ -215,7 +215,30 @@ static const char *option_before(const hn_command *command, const char *const *w
     return "";
 }
 
-void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *const *words,
+/// Whether a name of words or of an argument is that of a file: "FILE", "PART...", "SCENE".
+static bool names_file(const char *text) {
+    static const char *const files[] = {"FILE", "DIR",        "FOLDER", "SCENE",
+                                        "PART", "SUBMISSION", "VERDICT"};
+    for (size_t i = 0; text && i < sizeof files / sizeof *files; i++) {
+        if (strstr(text, files[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Whether the value of an option, or without one a word of the command, may be a file.
+static bool takes_file(const hn_command *command, const char *option) {
+    hn_option_row o;
+    for (int i = 0; option[0] && hn_args_option(command, i, &o); i++) {
+        if (strcmp(o.name, option) == 0) {
+            return names_file(o.argument);
+        }
+    }
+    return names_file(command->words);
+}
+
+bool hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *const *words,
                               int n) {
     const char *last = n > 0 ? words[n - 1] : "";
     const completing c = {b, last, last, 0};
@@ -223,11 +246,11 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
         for (int i = 0; i < hn_command_count(); i++) {
             offer(&c, hn_command_at(i)->name, "", hn_command_at(i)->about);
         }
-        return;
+        return false;
     }
     const hn_command *command = hn_command_find(words[0]);
     if (!command) {
-        return;
+        return false;
     }
 
     // what the last word is decides what may stand there
@@ -243,6 +266,7 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
     } else {
         offer_word(&c, lib, command, n == 2);
     }
+    return last[0] != '-' && takes_file(command, option);
 }
 
 // ---- what a shell needs ----
@@ -252,14 +276,16 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
 // candidates (COMP_TYPE: the code of ? ! or @), what each is about stands beside it
 static const char BASH[] =
     "_holonom() {\n"
-    "    local IFS=$'\\n' line=${COMP_LINE:0:COMP_POINT} cur breaks kept= one i\n"
+    "    local IFS=$'\\n' line=${COMP_LINE:0:COMP_POINT} cur breaks kept= found one i\n"
     "    local -a words rows\n"
     "    IFS=$' \\t' read -ra words <<<\"$line\"\n"
     "    [[ $line == *[$' \\t'] ]] && words+=('')\n"
     "    cur=${words[${#words[@]} - 1]}\n"
+    "    found=$(holonom complete -- \"${words[@]:1}\" 2>/dev/null) || compopt +o default "
+    "2>/dev/null\n"
     "    while IFS= read -r one; do\n"
-    "        rows+=(\"$one\")\n"
-    "    done < <(holonom complete -- \"${words[@]:1}\" 2>/dev/null)\n"
+    "        [[ $one ]] && rows+=(\"$one\")\n"
+    "    done <<<\"$found\"\n"
     "    COMPREPLY=(\"${rows[@]%%$'\\t'*}\")\n"
     "    [[ ${COMPREPLY[0]} == *[=@] ]] && compopt -o nospace 2>/dev/null\n"
     "    breaks=${COMP_WORDBREAKS//[^:=@]/}\n"
@@ -277,8 +303,9 @@ static const char BASH[] =
 static const char ZSH[] =
     "#compdef holonom\n_holonom() {\n"
     "    local -a found open whole says_open says_whole rows\n"
-    "    local one name says\n"
-    "    found=(${(f)\"$(holonom complete -- \"${(@)words[2,CURRENT]}\" 2>/dev/null)\"})\n"
+    "    local one name says lines files=1\n"
+    "    lines=\"$(holonom complete -- \"${(@)words[2,CURRENT]}\" 2>/dev/null)\" || files=0\n"
+    "    found=(${(f)lines})\n"
     "    for one in $found; do\n"
     "        name=${one%%$'\\t'*} says=$name\n"
     "        if [[ $one == *$'\\t'* ]]; then\n"
@@ -292,14 +319,14 @@ static const char ZSH[] =
     "    done\n"
     "    (( $#open )) && compadd $rows -d says_open -S '' -Q -- $open\n"
     "    (( $#whole )) && compadd $rows -d says_whole -Q -- $whole\n"
-    "    (( $#found )) || _files\n"
+    "    (( $#found || ! files )) || _files\n"
     "}\n"
     "if [[ $funcstack[1] == _holonom ]]; then _holonom \"$@\"; else compdef _holonom holonom; fi\n";
 static const char FISH[] =
     "complete -c holonom -f -a '(holonom complete -- (commandline -opc)[2..-1] (commandline -ct) "
     "2>/dev/null)'\n"
-    "complete -c holonom -n 'test (count (holonom complete -- (commandline -opc)[2..-1] "
-    "(commandline -ct) 2>/dev/null)) -eq 0' -F\n";
+    "complete -c holonom -n 'set -l found (holonom complete -- (commandline -opc)[2..-1] "
+    "(commandline -ct) 2>/dev/null); and test (count $found) -eq 0' -F\n";
 
 hn_exit hn_command_completion(const hn_library *lib, const hn_args *args) {
     static const struct {

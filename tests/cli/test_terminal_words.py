@@ -72,6 +72,12 @@ class Options(unittest.TestCase):
         self.assertIn("'holonom help report' lists its options", err)
         self.assertIn("did you mean '--time'?", said("run", "four-bar", "--tim", "3")[2])
 
+    def test_a_parameter_that_is_refused_has_its_usual_range(self):
+        for value in ("-1", "50"):
+            status, _, err = said("run", "four-bar", "--set", f"l1={value}", "--time", "0.1")
+            self.assertEqual(status, 2)
+            self.assertRegex(err, r"l1 (is|= 0\.5) \(?usually 0\.1 to 3 m")
+
     def test_a_size_without_room_is_refused_with_the_smallest(self):
         status, out, err = once("four-bar", "--once", "--size", "20x8")
         self.assertEqual((status, out), (2, ""))

@@ -33,6 +33,8 @@ CASES = (("holonom sna", "holonom snapshot "), ("holonom run slider-c", "holonom
 # what Tab lists, and what it says of it: a language, a parameter with its range, an exercise
 LISTS = (("holonom export four-bar --language ", r"wolfram", r"wolfram"), ("holonom run four-bar --set ", r"start\.w1", r"0\.1 to 3 m, now 0\.5: length of the crank"),
          ("holonom problem p", r"p2", r"Null-space projection"))
+# values that are no files, though a file begins so: Tab leaves the line, and the next letter stands behind it
+NO_FILES = ("holonom run four-bar --time my", "holonom run four-bar --set l1=my", "holonom list my")
 
 
 class Completion(Tmux):
@@ -52,6 +54,13 @@ class Completion(Tmux):
             self.wait_for(rf"> {re.escape(typed)}\s*\n")
             self.keys("Tab")
             self.assertTrue(self.stands(wanted), f"{shell}: after '{typed}' and Tab there is\n{self.screen()}")
+        for typed in NO_FILES:
+            self.drop_line()
+            self.keys("-l", typed)
+            self.wait_for(rf"> {re.escape(typed)}\s*\n")
+            self.keys("Tab")
+            self.keys("-l", "x")
+            self.assertTrue(self.stands(typed + "x"), f"{shell}: after '{typed}', Tab and x there is\n{self.screen()}")
         for typed, name, says in LISTS:
             self.drop_line()
             self.keys("C-l")

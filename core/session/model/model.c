@@ -94,8 +94,13 @@ static void put_changes(const hn_scene *scene, hn_diag *why) {
                  changes[0] ? ", " : "with ", p->name, digits, p->value, space, p->unit, digits,
                  p->initial);
         left_out += left_out > 0 || !add_part(changes, sizeof changes, part);
-        snprintf(part, sizeof part, "%s%.40s = %.*g", back[0] ? ", " : "go back towards ", p->name,
-                 digits, p->initial);
+        char usual[64] = "";
+        if (p->beyond) {
+            snprintf(usual, sizeof usual, " (usually %g to %g%s%.20s)", p->min, p->max, space,
+                     p->unit);
+        }
+        snprintf(part, sizeof part, "%s%.40s = %.*g%s", back[0] ? ", " : "go back towards ",
+                 p->name, digits, p->initial, usual);
         add_part(back, sizeof back, part);
     }
     if (changes[0]) {
