@@ -335,7 +335,7 @@ class Run(Command):
             told = done.stderr.decode()
             self.assertIn("with l1 = 50 m (0.5 in the scene), loop B cannot be closed: ground+crank spans", told)
             self.assertIn("m are missing with th1 = 1 held", told)
-            self.assertIn("go back towards l1 = 0.5, or", told)
+            self.assertIn("go back towards l1 = 0.5 (usually 0.1 to 3 m), or", told)
             self.assertNotIn("make ", told)  # a rocker of 48 m
 
     def test_a_loop_that_cannot_be_closed_cuts_no_name_of_what_was_changed(self):
