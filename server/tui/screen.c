@@ -49,6 +49,7 @@ static struct {
     uint64_t shown;                   ///< hash of the last picture
     bool with_sequence;               ///< the last picture had one
     double delay;                     ///< [s] of the last picture with a sequence
+    double pause;                     ///< [s] to the next one, while it is not known
 
     // questions about pictures
     int questions; ///< of those that end in the name: still unanswered
@@ -233,7 +234,7 @@ static void choose_patience(void) {
 
 bool hn_screen_ready(void) {
     // while it is not known whether the terminal answers
-    static double drawn = 0, pause = 0; // [s]
+    static double drawn = 0; // [s]
     const double now = hn_clock_wall();
     if (!screen.asked) {
         return true;
@@ -246,12 +247,12 @@ bool hn_screen_ready(void) {
     }
 
     // a terminal that never answers is not asked again
-    pause = fmax(pause, SPARSE);
-    if (now - screen.first_asked < UNKNOWN && now - fmax(drawn, screen.first_asked) < pause) {
+    if (now - screen.first_asked < UNKNOWN &&
+        now - fmax(drawn, screen.first_asked) < screen.pause) {
         return false;
     }
     drawn = now;
-    pause *= 2;
+    screen.pause *= 2;
     return true;
 }
 
@@ -391,6 +392,7 @@ bool hn_screen_open(int theme, bool colours) {
         return false;
     }
     screen.open = true;
+    screen.pause = SPARSE;
     prepare_restoring();
     atexit(hn_screen_close);
     watch_signals();
@@ -581,6 +583,9 @@ int hn_screen_key(double seconds, hn_mouse *mouse) {
     if (key == KEY_MOUSE) {
         take_mouse();
         return next_mouse(mouse) ? HN_KEY_MOUSE : HN_KEY_NONE;
+    }
+    if (key != ERR && key <= KEY_MAX) {
+        screen.pause = SPARSE; // what is typed is seen soon
     }
     return key == ERR ? HN_KEY_NONE : translate(key);
 }
