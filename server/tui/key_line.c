@@ -39,12 +39,13 @@ static const char *whole_line(const hn_workbench *w, bool more, int columns) {
     case HN_PANEL_STUDY:
         if (hn_tui_study_running(w->study)) {
             return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                       ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc stop"
-                       : "e error wanted  t time  ↑↓ scroll  Esc stop";
+                       ? "arrows choose a cell  Enter take its alpha and beta  t time  ? menu  Esc "
+                         "stop"
+                       : "e error wanted  t time  ↑↓ scroll  ? menu  Esc stop";
         }
         return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                   ? "arrows choose a cell  Enter take its alpha and beta  t time  Esc back"
-                   : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  Esc back";
+                   ? "arrows choose a cell  Enter take its alpha and beta  t time  ? menu  Esc back"
+                   : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  ? menu  Esc back";
     default:
         if (w->why && more) {
             return hn_why_has_remedy(w)

@@ -16,9 +16,9 @@ typedef struct hn_tui_link {
     char names[HN_TUI_SETTINGS][64];
     char methods[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     int n_settings, n_methods;
-    int frame;                   ///< of the page, at which it is paused; -1: it runs from the start
+    int frame;                   ///< of the page; -1: none, it is at the start
     int selected;                ///< method
-    char faults[HN_TUI_MESSAGE]; ///< what could not be read, separated by "; "; "": nothing
+    char faults[HN_TUI_MESSAGE]; ///< what could not be read; "": nothing
 } hn_tui_link;
 
 /// Reads a link of the page (the part after #, or the whole address). False: it is no link; scene

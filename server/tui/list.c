@@ -10,6 +10,7 @@ void hn_list_begin(hn_workbench *w, hn_list_kind kind, const char *title) {
     w->panel = HN_PANEL_LIST;
     w->list = kind;
     w->n_items = w->cursor = w->scroll = 0;
+    w->over_study = false;
     w->n_search = kind == HN_LIST_SCENES ? w->n_search : 0;
     snprintf(w->title, sizeof w->title, "%s", title);
 }

@@ -9,13 +9,15 @@ enum { PREVIEW_COLUMNS = 60 }; // from which on the list of scenes has a picture
 enum { ABOUT_COLUMNS = 24 };   // in fewer of them most titles would be cut: they stand below alone
 enum { LEAST_FOOT = 3 };       // rows, with the empty one above
 
-/// The column of names is as wide as the longest one, within bounds.
+/// The column of names is as wide as the longest one, within bounds: methods are known by theirs.
 static int name_width(const hn_workbench *w) {
-    enum { LEAST = 20, MOST = 28 };
+    enum { LEAST = 20, MOST = 28, MOST_OF_METHODS = 44 };
+    const bool methods = w->list == HN_LIST_METHODS || w->list == HN_LIST_REMEDIES;
+    const int most = methods ? MOST_OF_METHODS : MOST;
     int width = LEAST;
     for (int i = 0; i < w->n_items; i++) {
         const int n = hn_text_columns(w->items[i].name);
-        width = n > width && n <= MOST ? n : width;
+        width = n > width && n <= most ? n : width;
     }
     return width;
 }

@@ -207,9 +207,14 @@ static void list_actions(hn_workbench *w) {
     const int n = hn_tui_keys(&keys);
     hn_list_begin(w, HN_LIST_ACTIONS, "keys: Enter does it, Esc goes back");
     for (int i = 0; i < n; i++) {
+        if (keys[i].action == HN_TUI_CYCLE) {
+            hn_list_add(w, "1 to 8", "select a method");
+        }
         hn_list_add(w, keys[i].shown, keys[i].means);
     }
-    hn_list_add(w, "1 to 8", "select a method");
+    hn_list_add(w, "in a study",
+                "e the error wanted, t the time of motion, Enter takes the answer");
+    hn_list_add(w, "in methods", "x removes the method, Enter changes it");
     hn_list_add(w, "mouse",
                 "a joint can be dragged to another start; a click takes a time in the plot, or a "
                 "method in the table");
@@ -281,14 +286,27 @@ static void go_back(hn_workbench *w) {
     } else if (w->panel == HN_PANEL_LIST && w->list == HN_LIST_FORMULATIONS) {
         list_methods(w);
         w->cursor = w->n_items - 1;
+    } else if (w->panel == HN_PANEL_LIST && w->over_study) {
+        w->panel = HN_PANEL_STUDY;
     } else {
         w->panel = HN_PANEL_MAIN;
     }
 }
 
+/// The action of the row that the cursor of the menu is on; HN_TUI_NONE: it is a remark.
+static hn_tui_action action_of_row(const hn_workbench *w) {
+    const hn_tui_key *keys;
+    const int n = hn_tui_keys(&keys);
+    for (int i = 0; i < n; i++) {
+        if (strcmp(keys[i].shown, w->items[w->cursor].name) == 0) {
+            return keys[i].action;
+        }
+    }
+    return HN_TUI_NONE;
+}
+
 static void choose(hn_workbench *w) {
     const hn_item *item = &w->items[w->cursor];
-    const hn_tui_key *keys;
     char text[HN_TUI_LINE];
     switch (w->list) {
     // another scene: the name is copied, since the list goes with the old one
@@ -324,8 +342,13 @@ static void choose(hn_workbench *w) {
         hn_remedies_take(w);
         break;
     case HN_LIST_ACTIONS:
-        w->panel = HN_PANEL_MAIN;
-        w->chosen = w->cursor < hn_tui_keys(&keys) ? (int)keys[w->cursor].action : HN_TUI_NONE;
+        w->chosen = (int)action_of_row(w);
+        if (w->over_study && w->chosen != HN_TUI_NONE) {
+            hn_tui_study_free(w->study);
+            w->study = NULL;
+            w->over_study = false;
+        }
+        w->panel = w->over_study ? HN_PANEL_STUDY : HN_PANEL_MAIN;
         break;
     }
 }
@@ -431,7 +454,10 @@ static void list_key(hn_workbench *w, int key) {
 }
 
 void hn_panel_key(hn_workbench *w, int key) {
-    if (w->panel == HN_PANEL_STUDY) {
+    if (w->panel == HN_PANEL_STUDY && key == '?') {
+        list_actions(w);
+        w->over_study = true;
+    } else if (w->panel == HN_PANEL_STUDY) {
         hn_study_panel_key(w, key);
     } else if (w->panel == HN_PANEL_LIST && hn_scene_list_key(w, key)) {
         // the search has taken it

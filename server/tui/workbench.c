@@ -95,7 +95,6 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
     // what is not given comes from the scene
     *w = (hn_workbench){.library = library,
                         .speed = 1,
-                        .playing = true,
                         .wanted = "1 mm",
                         .pictures = hn_pictures_start(HN_PIXELS_OFF, HN_THEME_DARK)};
     hn_strbuf_init(&w->text);
@@ -199,9 +198,8 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
         return false;
     }
     hn_versions_free(fresh.versions);
-    const bool same = strcmp(scene, w->scene) == 0;
-    fresh.playing = !same || w->playing;
-    if (same) {
+    fresh.playing = w->playing;
+    if (strcmp(scene, w->scene) == 0) {
         memcpy(fresh.study_time, w->study_time, sizeof fresh.study_time);
     }
     carry_over(&fresh, w);

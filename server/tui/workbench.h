@@ -171,6 +171,7 @@ typedef struct hn_workbench {
     char writes[HN_TUI_LINE];  ///< the file that this command writes; "": none
     hn_preview preview;
     hn_tui_study *study;               ///< of its panel; owned, NULL otherwise
+    bool over_study;                   ///< the menu lies over that panel
     double study_time[HN_TUI_STUDIES]; ///< [s] of motion that was typed for each kind; 0: none
     hn_tui_cheapest cheapest;          ///< of the study of another length before this one
     char wanted[32];                   ///< error that is wanted of a method, as it was typed

@@ -54,9 +54,9 @@ def measure(columns, rows, drawn):
     watched = Watched(columns, rows, drawn)
     # ten times the speed to the end: then every frame is recorded
     watched.read_for(1.0)
-    os.write(watched.master, b"===")
+    os.write(watched.master, b" ===")
     seen = b""
-    while not re.search(rb"paused", seen):
+    while not re.search(rb"running(.|\n)*paused", seen):
         seen += watched.read_for(0.2)
     os.write(watched.master, b"--- ")
     watched.read_for(0.5)

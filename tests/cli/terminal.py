@@ -9,14 +9,19 @@ import select
 import signal
 import struct
 import subprocess
+import sys
 import tempfile
 import termios
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
 PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 STATE = tempfile.TemporaryDirectory()  # scores of exercises are kept here and not in the user's own folder
-PATIENCE = 20.0  # [s] a crowded machine; what is waited for comes in a fraction of a second
+PATIENCE = 60.0 * driver.SLOW  # [s] a crowded machine; what is waited for comes in a fraction of a second
+END = b"<the program has ended>"
 
 
 def once(*words, **environment):
@@ -44,7 +49,9 @@ class Terminal:
         """For terminals that know more."""
 
     def read(self, seconds=0.05):
+        """Waits so long for something, and takes all that is there; a motion that goes on writing does not hold it up."""
         while select.select([self.master], [], [], seconds)[0]:
+            seconds = 0
             try:
                 self.seen += os.read(self.master, 65536)
             except OSError:
@@ -75,9 +82,26 @@ class Terminal:
         while time.monotonic() < end:
             self.read(0.02)
             if self.process.poll() is not None:
-                self.read(0.02)
-                return self.process.returncode
+                return self.process.returncode if self.read_to_the_end(end) else None
         return None
+
+    def read_to_the_end(self, end):
+        """All that the program has written stands before what is written after it."""
+        os.write(self.slave, END)
+        while END not in self.seen and time.monotonic() < end:
+            self.read()
+        found = END in self.seen
+        self.seen = self.seen.replace(END, b"")
+        return found
+
+    def taken(self):
+        """Waits until the program has read all that was typed."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            self.read(0.02)
+            if struct.unpack("i", fcntl.ioctl(self.slave, termios.FIONREAD, b"\0" * 4))[0] == 0:
+                return True
+        return False
 
     def close(self):
         if self.process.poll() is None:

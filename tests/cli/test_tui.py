@@ -112,6 +112,9 @@ class Keys(unittest.TestCase):
     def open(self, *words, **more):
         terminal = Terminal(*words, **more)
         self.addCleanup(terminal.close)
+        # nothing moves before Space
+        self.assertTrue(terminal.wait_for(rb"t 0\.000 s(.|\n)*paused"))
+        terminal.type(" ")
         self.assertTrue(terminal.wait_for(rb"running"))
         return terminal
 
@@ -140,8 +143,9 @@ class Keys(unittest.TestCase):
             terminal.clear()
             terminal.type(key)
             self.assertTrue(terminal.wait_for(wanted), key)
+            terminal.clear()
             terminal.type("\033")
-            time.sleep(0.2)
+            self.assertTrue(terminal.wait_for(rb"loop gap"), key)
 
     def test_a_lesson_is_shown_as_text_not_as_its_source(self):
         terminal = self.open("four-bar")
@@ -568,11 +572,11 @@ class Keys(unittest.TestCase):
         self.assertTrue(terminal.wait_for(rb"paused"))
 
     def test_a_click_does_nothing_while_the_window_is_too_small(self):
-        terminal = Terminal("four-bar", columns=31, rows=24)
-        self.addCleanup(terminal.close)
+        terminal = self.open("four-bar")
+        terminal.resize(31, 24)
         self.assertTrue(terminal.wait_for(rb"too small"))
         terminal.type("\033[<0;25;4M\033[<0;25;4m")  # where the plot would be
-        terminal.read(0.5)
+        self.assertTrue(terminal.taken())
         terminal.clear()
         terminal.resize(100, 30)
         self.assertTrue(terminal.wait_for(rb"running|paused"))

@@ -70,7 +70,7 @@ class Background(unittest.TestCase):
 
         # in front it is as ever, and the shell is there after it
         shell.type("fg\n")
-        self.assertTrue(shell.until(rb"running"))
+        self.assertTrue(shell.until(rb"paused"))
         shell.type("q")
         self.assertTrue(shell.until(rb"1049l(.|\n)*ready> "))
 

@@ -163,6 +163,8 @@ class Pictures(unittest.TestCase):
     def open(self, *words, **more):
         terminal = Shown(*words, **more)
         self.addCleanup(terminal.close)
+        self.assertTrue(terminal.wait_for(rb"paused"))
+        terminal.type(" ")
         self.assertTrue(terminal.wait_for(rb"running"))
         return terminal
 

@@ -104,11 +104,14 @@ class SlowLine:
 
 class ASlowLine(unittest.TestCase):
     def open(self, rate=2000.0):
-        """The workbench after eight seconds: what queues up has queued up by then."""
+        """The workbench after eight seconds of motion: what queues up has queued up by then."""
         terminal = Terminal("four-bar")
         self.addCleanup(terminal.close)
         line = SlowLine(terminal, rate)
-        self.assertTrue(line.serve(lambda: line.read_bytes > 8 * line.rate and line.time_shown() is not None, 3 * PATIENCE), line.top)
+        self.assertTrue(line.serve(line.paused, 3 * PATIENCE), line.top)
+        terminal.type(" ")
+        begun = line.read_bytes
+        self.assertTrue(line.serve(lambda: line.read_bytes - begun > 8 * line.rate and not line.paused() and line.time_shown() is not None, 3 * PATIENCE), line.top)
         return terminal, line
 
     def test_fewer_pictures_are_sent_and_none_is_late(self):

@@ -419,6 +419,17 @@ class Studies(unittest.TestCase):
         with tempfile.TemporaryDirectory() as cache:
             return once(scene, "--once", "--t", "0.5", "--size", "120x40", *(more or self.METHODS), "--keys", keys, HOLONOM_CACHE=cache)[1]
 
+    def test_the_menu_opens_over_a_study_which_is_there_again_after_it(self):
+        self.assertIn("select a method", self.study("w?"))
+        self.assertIn("what accuracy costs in 2 s: Esc goes back", self.study("w?<Esc>"))
+        # what is chosen is done, and the study is gone
+        self.assertIn("equations of motion: Esc goes back", self.study("w?" + "<Down>" * 23 + "<Enter>"))
+        self.assertIn("loop gap", self.study("w?" + "<Down>" * 23 + "<Enter><Esc>"))
+        # a remark of the menu does nothing
+        self.assertIn("what accuracy costs in 2 s", self.study("w?<End><Enter>"))
+        # a method that is taken leaves the study: the next list goes back to the motion
+        self.assertIn("loop gap", self.study("w<Enter>m<Esc>"))
+
     def test_a_method_has_one_symbol_in_table_and_plot(self):
         table = dict(re.findall(r"(?m)^│\d(\S) (\S+)", self.study("")))
         legend = dict((name.split("@")[0], glyph) for glyph, name in re.findall(r"(\S) 6/6 (\S+)", self.study("w")))
