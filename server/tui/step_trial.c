@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIALS = 4, UNTIL = 64 };
+enum { TRIALS = 4, UNTIL = 96 };
 static const double STEP_FACTOR = 0.5, TOLERANCE_FACTOR = 0.1;
 /// An error that shrinks by less with a step half as long does not depend on the step: the weakest
 /// methods, of order 1, halve it, and less where it is as large as the mechanism from the start.

@@ -27,7 +27,7 @@ typedef struct hn_step_report {
     char tried[320]; ///< what it gave: "tried until t = 10 s: right to 2 digits"
 } hn_step_report;
 
-static const double HN_STEP_TRIAL_LIMIT = 8; ///< [s] of computing for all steps together
+static const double HN_STEP_TRIAL_LIMIT = 3; ///< [s] of computing for all steps together
 
 typedef struct hn_step_trial_request {
     const char *spelling; ///< of the method
