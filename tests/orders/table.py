@@ -83,6 +83,7 @@ REASONS = {
     ("spatial", "baumgarte", "gauss3"): FALLING,
     ("spatial", "index1", "gauss3"): RISING,
     ("spatial", "udwadia-kalaba", "gauss3"): RISING,
+    ("spatial", "nullspace-solver", "gauss3"): RISING,
     ("spatial", "augmented-lagrangian", "gauss3"): FALLING,
     ("spatial", "penalty", "gauss3"): "terms of higher order lead until its own motion's error is reached",
     ("bennett", "augmented-lagrangian", "gauss3"): "terms of higher order lead until the reference's error is reached",
