@@ -115,7 +115,7 @@ bool hn_accel_tape_solve(const hn_accel_tape *tape, const hn_inputs *in, double 
     const hn_tape_verdict verdict = hn_tape_run_checked(in->tape, in->x);
     if (verdict == HN_TAPE_UNCHECKED) {
         const hn_tape_check check = check_of(tape);
-        return hn_accel_tape_take(tape, in, a, lambda) &
+        return hn_accel_tape_take(tape, in, a, lambda) &&
                hn_tape_check_guards_hold(&check, in->slots, in->x);
     }
 

@@ -12,6 +12,8 @@
 
 #include "http/ground/microhttpd.h"
 
+#undef MHD_queue_response // the function below bears the library's name itself
+
 /// Queues a problem document in place of the library's page where the status is one of those that
 /// the library gives, and the page itself otherwise. Returns what the library's function returns.
 __attribute__((visibility("default"))) enum MHD_Result

@@ -275,9 +275,9 @@ static void four_angles_are_those_of_the_library_however_they_recur(void **state
     if (!four) {
         skip();
     }
-    static const double sets[][4] = {{0, 0, 0, 0},       {-0.0, 0, 0, -0.0},  {1, 0.5, 1.5, 1},
-                                     {0.5, 1, 1.5, 1},   {1, 0.5, 1.5, 30},   {NAN, 1, 2, 3},
-                                     {1e9, 1, INFINITY}, {2.5, -2.5, 1e-9, 0}};
+    static const double sets[][4] = {
+        {0, 0, 0, 0},      {-0.0, 0, 0, -0.0},     {1, 0.5, 1.5, 1},   {0.5, 1, 1.5, 1},
+        {1, 0.5, 1.5, 30}, {(double)NAN, 1, 2, 3}, {1e9, 1, HUGE_VAL}, {2.5, -2.5, 1e-9, 0}};
     enum { SETS = sizeof sets / sizeof sets[0] };
     for (int i = 0; i < SETS; i++) {
         for (int k = 0; k < SETS; k++) {
