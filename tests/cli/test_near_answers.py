@@ -307,6 +307,33 @@ def plots(folder):
     expect("it has a background", 'class="paper" fill="none" width="640" height="300"' in svg and ".paper{fill:#fcfcfa}" in svg, svg[:400])
 
 
+def frames(folder):
+    """What stands around a formula is read or refused with words: a name before it, a unit behind it, other names in it."""
+    for exercise, part, text, note in (
+        ("fourbar", "b", "y = m2*l1*l2*cos(th1-th2)/2", "b was read as m2*l1*l2*cos(th1-th2)/2"),
+        ("passive", "a", "-B*sin(q)/2 m", "a was read as -B*sin(q)/2"),
+        ("trammel", "a", "-L*sin(th) m", "a was read as -L*sin(th)"),  # m is a mass as well
+        ("trammel", "a", "M_{12}(th) = -L*sin(th) m", "a was read as -L*sin(th)"),
+        ("p2", "b", "M_r = N^{\\top} M N", "b was read as N'*M*N"),
+        ("p2", "b", "np.transpose(N) @ M @ N", "b was read as (N)'*M*N"),
+        ("p2", "b", "N'*M*N", ""),
+        ("p2", "b", "N' * M*N", ""),
+        ("basis", "a", [["np.sin(θ2-θ3) l2 l3"], ["-l1*l3*sin(th1-th3)"], ["l1*l2*sin(th2-th1)"]], "a was read as sin(th2-th3) *l2 *l3"),
+    ):  # fmt: skip
+        found = verdict(folder, exercise, {"seed": 1, part: text})
+        right = next(e for e in found["entries"] if e["name"] == part)["right"]
+        expect(f"{text} is read, and the note says how", right and found["note"] == note, str(right) + found["note"])
+    for exercise, part, text, words in (
+        ("passive", "a", "-g*sin(q)/2", "'g' is not known here; known here: A, B, tq, q0, w, q"),
+        ("p2", "b", "N'*Q*N", "there is no matrix 'Q'; known here: M, J, N; products"),
+        ("fourbar", "b", "m2*l1 = 3", "'=' was found"),
+    ):
+        found = verdict(folder, exercise, {"seed": 1, part: text})
+        expect(f"{text} is refused with what is known", found["status"] == "ungradable" and words in found["hint"], found["hint"])
+    found = entry(folder, "trammel", "a", "-L*cos(th) m", "--seed", "1")
+    expect("a wrong formula before a unit is wrong", not found["right"] and found["points"] == 0, str(found))
+
+
 def two_at_once(folder):
     """Two mistakes in different terms of a formula of matrices are both named; two in one term are not taken for them."""
     for text, words in (("-gamma - J*v*alpha - beta^2*phi", ["the factor 2 before alpha"]),
@@ -356,4 +383,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, pasted, shown, branches, plots, quaternions, two_at_once, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, pasted, shown, branches, plots, quaternions, two_at_once, frames, proofs]))

@@ -2,6 +2,7 @@
 #include "grade/parts/matrix_text.h"
 
 #include "base/suggest.h"
+#include "grade/parts/formula_frame.h"
 #include "grade/parts/latex_letters.h"
 
 #include <ctype.h>
@@ -17,6 +18,7 @@ typedef struct parser {
     const hn_matrix_names *names;
     hn_matrix_desk desk;
     int depth;
+    hn_strbuf *read; ///< the text as it is read; NULL: not wanted
 } parser;
 
 // ---- reading ----
@@ -24,6 +26,12 @@ typedef struct parser {
 static hn_status fault(parser *p, const char *what) {
     return hn_diag_set(p->desk.diag, HN_ERR_INPUT, NULL, NULL, "column %d: %s",
                        (int)(p->at - p->start) + 1, what);
+}
+
+static void note(parser *p, const char *read) {
+    if (p->read) {
+        hn_strbuf_add(p->read, read);
+    }
 }
 
 /// How many characters `sign` takes at `at`, with blanks behind the mark of a power (^ 2, ** 2); 0
@@ -159,20 +167,32 @@ static void read_name(parser *p, char name[MAX_NAME]) {
     p->at += brace && *p->at == '}';
 }
 
+static hn_status refuse_name(parser *p, const char *name) {
+    char hint[HN_DIAG_HINT];
+    hn_strbuf known;
+    hn_strbuf_init(&known);
+    hn_suggest(hint, name, p->names->known, p->names->n_known, NULL);
+    hn_formula_put_known(&known, p->names->known, p->names->n_known);
+    const hn_status status =
+        hn_diag_set(p->desk.diag, HN_ERR_INPUT, NULL, hint,
+                    "there is no matrix '%.30s'%s%.120s; products are written with a blank or *",
+                    name, hint[0] ? "" : "; ", hint[0] ? "" : hn_strbuf_text(&known));
+    hn_strbuf_reset(&known);
+    return status;
+}
+
 static hn_status look_up(parser *p, const char *name, hn_matrix *out) {
     const hn_matrix *m = p->names->lookup(p->names->user, name);
     char other[MAX_NAME + 4];
+    snprintf(other, sizeof other, "%s", name);
     if (!m && name[0] == 'd' && name[1]) { // dN is Ndot
         snprintf(other, sizeof other, "%sdot", name + 1);
         m = p->names->lookup(p->names->user, other);
     }
     if (!m) {
-        char hint[HN_DIAG_HINT];
-        return hn_diag_set(p->desk.diag, HN_ERR_INPUT, NULL,
-                           hn_suggest(hint, name, p->names->known, p->names->n_known, NULL),
-                           "there is no matrix '%.30s'; products are written with a blank or *",
-                           name);
+        return refuse_name(p, name);
     }
+    note(p, other);
     *out = *m;
     return HN_OK;
 }
@@ -183,7 +203,10 @@ static hn_status read_group(parser *p, const char *close, hn_matrix *out) {
     if (++p->depth > MAX_DEPTH) {
         return fault(p, "brackets are nested too deeply");
     }
+    const bool round = strcmp(close, "}") != 0; // a brace of LaTeX groups nothing
+    note(p, round ? "(" : "");
     HN_TRY(read_sum(p, out));
+    note(p, round ? ")" : "");
     p->depth--;
     return take(p, close) ? HN_OK : fault(p, "a bracket is not closed");
 }
@@ -223,7 +246,9 @@ static hn_status read_word(parser *p, hn_matrix *out) {
     const bool round = (inverse || transposed) && take(p, "(");
     if (round || ((inverse || transposed) && take(p, "["))) {
         hn_matrix inner;
+        note(p, inverse ? "inv" : "");
         HN_TRY(read_group(p, round ? ")" : "]", &inner));
+        note(p, inverse ? "" : "'");
         return inverse ? hn_matrix_invert(&p->desk, &inner, out)
                        : hn_matrix_transpose(&p->desk, &inner, out);
     }
@@ -259,6 +284,9 @@ static hn_status read_primary(parser *p, hn_matrix *out) {
         }
         out->number = 1;
         out->x[0] = strtod(p->at, &end);
+        if (p->read) {
+            hn_strbuf_add_n(p->read, p->at, (size_t)(end - p->at));
+        }
         p->at = end;
         return isdigit((unsigned char)p->at[*p->at == '.']) ? fault(p, "a number in a number")
                                                             : HN_OK;
@@ -292,12 +320,16 @@ static hn_status read_factor(parser *p, hn_matrix *out) {
     HN_TRY(read_primary(p, &m));
     for (;;) {
         if (take_transpose(p)) {
+            note(p, "'");
             HN_TRY(hn_matrix_transpose(&p->desk, &m, out));
         } else if (take_any(p, SQUARE)) {
+            note(p, "^2");
             HN_TRY(hn_matrix_multiply(&p->desk, &m, &m, out));
         } else if (take_any(p, SQUARE_ENTRIES)) {
+            note(p, ".^2");
             HN_TRY(hn_matrix_multiply_entries(&p->desk, &m, &m, out));
         } else if (take_any(p, INVERSE)) {
+            note(p, "^-1");
             HN_TRY(hn_matrix_invert(&p->desk, &m, out));
         } else {
             *out = m;
@@ -314,6 +346,7 @@ static hn_status read_signed(parser *p, hn_matrix *out) {
         negative = !negative;
     }
     take_any(p, PLUS);
+    note(p, negative ? "-" : "");
     HN_TRY(read_factor(p, &m));
     if (negative) {
         return hn_matrix_multiply(&p->desk, &minus, &m, out);
@@ -435,6 +468,9 @@ static hn_status read_product(parser *p, hn_matrix *out) {
             return fault(p, "this backslash may be LaTeX or a division from the left; write * "
                             "for the product, inv(A)*b for A\\b");
         }
+        static const char *const signs[] = {
+            [PRODUCT] = "*", [BESIDE] = "*", [ENTRIES] = ".*", [QUOTIENT] = "/", [SOLVE] = "\\"};
+        note(p, signs[how]);
         HN_TRY(how == BESIDE ? read_factor(p, &right) : read_signed(p, &right));
         HN_TRY(join(p, how, &left, &right, out));
         left = *out;
@@ -450,6 +486,7 @@ static hn_status read_sum(parser *p, hn_matrix *out) {
             *out = left;
             return HN_OK;
         }
+        note(p, plus ? " + " : " - ");
         HN_TRY(read_product(p, &right));
         HN_TRY(hn_matrix_add(&p->desk, &left, &right, plus ? 1 : -1, out));
         left = *out;
@@ -458,7 +495,12 @@ static hn_status read_sum(parser *p, hn_matrix *out) {
 
 hn_status hn_matrix_eval(const char *text, const hn_matrix_names *names, hn_arena *arena,
                          hn_matrix *out, hn_diag *diag) {
-    parser p = {.start = text, .at = text, .names = names, .desk = {arena, diag}};
+    return hn_matrix_read(text, names, arena, out, NULL, diag);
+}
+
+hn_status hn_matrix_read(const char *text, const hn_matrix_names *names, hn_arena *arena,
+                         hn_matrix *out, hn_strbuf *read, hn_diag *diag) {
+    parser p = {.start = text, .at = text, .names = names, .desk = {arena, diag}, .read = read};
     if (strlen(text) > MAX_CHARS) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
                            "the formula has more than %d characters", MAX_CHARS);

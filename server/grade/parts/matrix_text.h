@@ -10,6 +10,7 @@
 // A.B is the product too, A.*B and A.^2 go entry by entry, M\x is inv(M)*x. What can be read in two
 // ways, or not at all, is refused with its column.
 
+#include "base/strbuf.h"
 #include "grade/parts/matrix.h"
 
 /// Finds the matrix of a name; NULL when there is none.
@@ -28,4 +29,9 @@ typedef struct hn_matrix_names {
 /// there), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_matrix_eval(const char *text, const hn_matrix_names *names,
                                        hn_arena *arena, hn_matrix *out, hn_diag *diag);
+/// The same, and writes the text as it was read: "N'*M*N" of N^{\top} M N.
+HN_MUST_CHECK hn_status hn_matrix_read(const char *text, const hn_matrix_names *names,
+                                       hn_arena *arena, hn_matrix *out, hn_strbuf *read,
+                                       hn_diag *diag);
+
 #endif

@@ -2,6 +2,7 @@
 // A basis of the null space of a Jacobian, as formulas: any basis is right. J N = 0 and the rank of
 // N are tested at random states.
 #include "grade/parts/part_list.h"
+#include "grade/parts/read_as.h"
 
 #include "grade/parts/spelling.h"
 #include "linalg/svd.h"
@@ -19,8 +20,14 @@ typedef struct table {
     hn_ex e[MAX_SIZE][MAX_SIZE];
 } table;
 
-/// One entry, as the student or the exercise wrote it.
-static hn_status read_entry(hn_draw *d, const cJSON *node, hn_ex *e, hn_diag *diag) {
+static const char *find_name(void *draw, const char *name) {
+    return hn_draw_answer_name(draw, name);
+}
+
+/// One entry, as the student or the exercise wrote it. `read_as` (may be NULL) says how it was read
+/// where its spelling is another one.
+static hn_status read_entry(hn_draw *d, const cJSON *node, hn_ex *e, char read_as[HN_PART_READ_AS],
+                            hn_diag *diag) {
     char number[40];
     const char *text = cJSON_GetStringValue(node);
     if (cJSON_IsNumber(node)) {
@@ -34,12 +41,16 @@ static hn_status read_entry(hn_draw *d, const cJSON *node, hn_ex *e, hn_diag *di
     hn_strbuf_init(&plain);
     hn_status status = hn_spelling_normalise(&plain, text, diag);
     HN_THEN(status, hn_draw_parse(d, hn_strbuf_text(&plain), e, diag));
+    if (status == HN_OK && read_as && !read_as[0]) {
+        hn_read_as(text, hn_strbuf_text(&plain), find_name, d, read_as, HN_PART_READ_AS);
+    }
     hn_strbuf_reset(&plain);
     return status;
 }
 
-/// Rows of formulas; a plain list is one column.
-static hn_status read_table(hn_draw *d, const cJSON *node, table *t, hn_diag *diag) {
+/// Rows of formulas; a plain list is one column. `read_as`: of the first entry in another spelling.
+static hn_status read_table(hn_draw *d, const cJSON *node, table *t, char read_as[HN_PART_READ_AS],
+                            hn_diag *diag) {
     const cJSON *row;
     *t = (table){0};
     cJSON_ArrayForEach(row, node) {
@@ -51,7 +62,7 @@ static hn_status read_table(hn_draw *d, const cJSON *node, table *t, hn_diag *di
         t->cols = cols;
         for (int j = 0; j < cols; j++) {
             const cJSON *entry = cJSON_IsArray(row) ? cJSON_GetArrayItem(row, j) : row;
-            HN_TRY(read_entry(d, entry, &t->e[t->rows][j], diag));
+            HN_TRY(read_entry(d, entry, &t->e[t->rows][j], read_as, diag));
         }
         t->rows++;
     }
@@ -164,7 +175,7 @@ static hn_status open_draw(const hn_part *p, hn_draw *d, table *J, hn_diag *diag
     HN_TRY(hn_draw_init(d, cJSON_GetObjectItemCaseSensitive(p->node, "states"),
                         cJSON_GetObjectItemCaseSensitive(p->node, "conditions"), p->draw, STATES,
                         p->seed ^ 0xba5e, diag));
-    return read_table(d, cJSON_GetObjectItemCaseSensitive(p->node, "jacobian"), J, diag);
+    return read_table(d, cJSON_GetObjectItemCaseSensitive(p->node, "jacobian"), J, NULL, diag);
 }
 
 static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, int *n,
@@ -178,7 +189,7 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, 
     // judged only when it can be read
     hn_status status = open_draw(p, &d, &J, diag);
     if (status == HN_OK && handed_in) {
-        const hn_status read = read_table(&d, given, &N, &why);
+        const hn_status read = read_table(&d, given, &N, r->read_as, &why);
         if (read == HN_OK) {
             const int wanted = (int)hn_part_number(p->node, "freedoms", J.cols - J.rows);
             judge(&d, &J, &N, wanted, r);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A formula of matrices, compared with the reference at random matrices that have the properties
 // their names stand for (J N = 0, M symmetric and definite): any form of a right answer is right.
+#include "grade/parts/formula_frame.h"
 #include "grade/parts/part_list.h"
+#include "grade/parts/read_as.h"
 #include "grade/parts/world.h"
 
 #include <math.h>
@@ -135,11 +137,21 @@ static void explain(const hn_part *p, hn_world *worlds, const char *given, hn_pa
     }
 }
 
+static const char *own_name(void *user, const char *name) {
+    (void)user;
+    return name;
+}
+
 /// Reads the answer in the first world; 0 after the result has said why it cannot be used.
 static int can_read(hn_world *world, const char *text, hn_part_result *r) {
-    hn_matrix m;
     hn_diag diag = {0};
-    const hn_status status = hn_world_eval(world, text, &m, &diag);
+    hn_strbuf read;
+    hn_strbuf_init(&read);
+    const hn_status status = hn_world_read(world, text, &read, &diag);
+    if (status == HN_OK) {
+        hn_read_as(text, hn_strbuf_text(&read), own_name, NULL, r->read_as, sizeof r->read_as);
+    }
+    hn_strbuf_reset(&read);
     if (status == HN_ERR_UNSUPPORTED || status == HN_ERR_SINGULAR) {
         hn_part_wrong(r, "shape", 0, "%s%s%s", diag.message, diag.hint[0] ? "; " : "", diag.hint);
     } else if (status != HN_OK) {
@@ -170,7 +182,8 @@ static void close_worlds(hn_world *worlds) {
 static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, int *n,
                        hn_diag *diag) {
     hn_world worlds[WORLDS];
-    const char *text = cJSON_GetStringValue(given);
+    const char *written = cJSON_GetStringValue(given);
+    const char *text = written ? hn_formula_behind_name(written) : NULL;
 
     const bool handed_in = hn_part_begin(r, n, given, "the formula");
 

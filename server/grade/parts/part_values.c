@@ -78,6 +78,18 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
         }
         return HN_OK;
     }
+
+    // its last word may be a unit that is a number's name as well
+    char read_as[HN_PART_READ_AS];
+    double before[HN_DRAW_STATES];
+    hn_ex head;
+    memcpy(read_as, r->read_as, sizeof read_as);
+    if (hn_value_entry_read_before_unit(s, node, before, &head, r) &&
+        hn_value_is_right(s, k, before)) {
+        hn_part_right(r);
+        return HN_OK;
+    }
+    memcpy(r->read_as, read_as, sizeof read_as);
     HN_TRY(hn_value_explain(s, k, x, e, r));
 
     if (s->symbolic && cJSON_IsString(node)) {

@@ -3,6 +3,7 @@
 
 #include "expr/construct.h"
 #include "expr/diff.h"
+#include "grade/parts/formula_frame.h"
 #include "grade/parts/read_as.h"
 #include "grade/parts/spelling.h"
 
@@ -87,10 +88,18 @@ static int uses_names(const hn_value_sheet *s, hn_ex e) {
     return uses;
 }
 
-/// The reason why a formula cannot be read.
-static void refuse_formula(const char *text, const hn_diag *diag, hn_part_result *r) {
-    hn_part_unreadable(r, "'%.60s' cannot be read: %.180s%s%.120s", text, diag->message,
-                       diag->hint[0] ? "; " : "", diag->hint);
+/// The reason why a formula cannot be read; of an unknown name without a near one, the known names.
+static void refuse_formula(const hn_value_sheet *s, const char *text, const hn_diag *diag,
+                           hn_part_result *r) {
+    hn_strbuf hint;
+    hn_strbuf_init(&hint);
+    hn_strbuf_add(&hint, diag->hint);
+    if (!diag->hint[0] && strstr(diag->message, "is not known here")) {
+        hn_formula_put_known(&hint, s->draw->name, s->draw->n_names);
+    }
+    hn_part_unreadable(r, "'%.60s' cannot be read: %.180s%s%.150s", text, diag->message,
+                       hint.n ? "; " : "", hn_strbuf_text(&hint));
+    hn_strbuf_reset(&hint);
 }
 
 /// Whether the text begins with a number in digits that no double holds.
@@ -152,6 +161,49 @@ static const char *find_name(void *draw, const char *name) {
     return hn_draw_answer_name(draw, name);
 }
 
+/// A formula as the student wrote it, and in r->read_as how it was read.
+static hn_status read_formula(hn_value_sheet *s, const char *text, hn_ex *e, hn_part_result *r,
+                              hn_diag *diag) {
+    hn_strbuf plain;
+    hn_strbuf_init(&plain);
+    hn_status status = hn_spelling_normalise(&plain, hn_formula_behind_name(text), diag);
+    if (status == HN_OK) {
+        status = hn_draw_parse_answer(s->draw, hn_strbuf_text(&plain), e, diag);
+        hn_read_as(text, hn_strbuf_text(&plain), find_name, s->draw, r->read_as, sizeof r->read_as);
+    }
+    hn_strbuf_reset(&plain);
+    return status;
+}
+
+/// The formula before the unit with which the text ends.
+static hn_status read_before_unit(hn_value_sheet *s, const char *text, hn_ex *e,
+                                  hn_part_result *r) {
+    char head[MAX_CHARS];
+    for (size_t at = 0; strlen(text) < MAX_CHARS && hn_formula_find_unit(text, &at);) {
+        snprintf(head, sizeof head, "%.*s", (int)at, text);
+        if (read_formula(s, head, e, r, NULL) == HN_OK) {
+            snprintf(r->read_as, sizeof r->read_as, "%s", hn_formula_behind_name(head));
+            for (size_t n = strlen(r->read_as); n > 0 && r->read_as[n - 1] == ' ';) {
+                r->read_as[--n] = 0;
+            }
+            return HN_OK;
+        }
+    }
+    return HN_ERR_INPUT;
+}
+
+bool hn_value_entry_read_before_unit(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_STATES],
+                                     hn_ex *e, hn_part_result *r) {
+    const char *text = cJSON_GetStringValue(node);
+    if (!s->symbolic || !text || read_before_unit(s, text, e, r) != HN_OK) {
+        return false;
+    }
+    for (int i = 0; i < s->draw->n_states; i++) {
+        x[i] = hn_draw_eval(s->draw, *e, i);
+    }
+    return true;
+}
+
 /// Reads text as the student wrote it; 0 after it has said why it cannot be read.
 static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *unit,
                      hn_part_result *r) {
@@ -175,22 +227,22 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
         own = number;
         status = read_quantity(s, own, e, unit, &diag);
     }
-    if (status != HN_OK) {
-        status = hn_spelling_normalise(&plain, own, &diag);
-        if (status == HN_OK && s->symbolic) {
-            status = hn_draw_parse_answer(s->draw, hn_strbuf_text(&plain), e, &diag);
-            hn_read_as(text, hn_strbuf_text(&plain), find_name, s->draw, r->read_as,
-                       sizeof r->read_as);
-        } else if (status == HN_OK) {
-            status = read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag);
+    if (s->symbolic) {
+        status = read_formula(s, text, e, r, &diag);
+        if (status == HN_ERR_INPUT && read_before_unit(s, text, e, r) == HN_OK) {
+            status = HN_OK;
         }
+    } else if (status != HN_OK) {
+        status = hn_spelling_normalise(&plain, own, &diag);
+        HN_THEN(status, read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag));
     }
     const char *read = plain.n > 0 ? hn_strbuf_text(&plain) : own;
     if (status == HN_OK && !s->symbolic && strchr(text, ',') && strcmp(read, text) != 0) {
         snprintf(r->read_as, sizeof r->read_as, "%.*s", HN_PART_READ_AS - 1, read);
     }
     if (status != HN_OK && s->symbolic) {
-        refuse_formula(text, &diag, r);
+        r->read_as[0] = 0;
+        refuse_formula(s, text, &diag, r);
     } else if (status != HN_OK) {
         refuse_number(s, text, r);
     }

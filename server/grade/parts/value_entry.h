@@ -12,4 +12,8 @@
 /// another unit; `r` then says so.
 bool hn_value_entry_read(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_STATES], hn_ex *e,
                          hn_part_result *r);
+/// Reads the formula before the unit that the text may end with, though the unit is the name of a
+/// number too: "L*sin(th) m". False: the text ends with no unit.
+bool hn_value_entry_read_before_unit(hn_value_sheet *s, const cJSON *node, double x[HN_DRAW_STATES],
+                                     hn_ex *e, hn_part_result *r);
 #endif

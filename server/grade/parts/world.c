@@ -35,6 +35,12 @@ hn_status hn_world_eval(hn_world *w, const char *text, hn_matrix *out, hn_diag *
     return hn_matrix_eval(text, &names, w->arena, out, diag);
 }
 
+hn_status hn_world_read(hn_world *w, const char *text, hn_strbuf *read, hn_diag *diag) {
+    const hn_matrix_names names = {.lookup = look_up, .user = w, .known = w->name, .n_known = w->n};
+    hn_matrix m;
+    return hn_matrix_read(text, &names, w->arena, &m, read, diag);
+}
+
 /// A size: a number, or a name of "sizes". 0 when it is neither, or too large.
 static int size_of(const hn_part *p, const cJSON *node) {
     const cJSON *sizes = cJSON_GetObjectItemCaseSensitive(p->node, "sizes");

@@ -27,6 +27,9 @@ HN_MUST_CHECK hn_status hn_world_init(hn_world *w, const hn_part *p, uint64_t se
 void hn_world_reset(hn_world *w);
 /// A formula in the names of this world.
 HN_MUST_CHECK hn_status hn_world_eval(hn_world *w, const char *text, hn_matrix *out, hn_diag *diag);
+/// Writes a formula as it is read.
+HN_MUST_CHECK hn_status hn_world_read(hn_world *w, const char *text, hn_strbuf *read,
+                                      hn_diag *diag);
 /// Largest difference relative to the largest entry of b; HUGE_VAL when the shapes differ.
 double hn_world_distance(const hn_matrix *a, const hn_matrix *b, double factor);
 /// Adds a matrix of numbers, given as JSON rows (or a list for a column); 0 when it is none or too
