@@ -119,6 +119,20 @@ hn_status hn_file_read_own(const char *path, size_t most, hn_strbuf *text, hn_di
     return read_disk(path, most, true, text, diag);
 }
 
+size_t hn_file_begin(const char *path, char *bytes, size_t n) {
+    HN_ASSERT(path && bytes);
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    // one that has more bytes is no fault here
+    const hn_status status = read_disk(path, n, false, &text, NULL);
+    const size_t found = status == HN_OK || status == HN_ERR_LIMIT ? (text.n < n ? text.n : n) : 0;
+    if (found > 0) {
+        memcpy(bytes, hn_strbuf_text(&text), found);
+    }
+    hn_strbuf_reset(&text);
+    return found;
+}
+
 hn_status hn_file_load(const char *path, size_t most, hn_strbuf *text, hn_diags *diags) {
     hn_diag diag;
     const hn_status status = hn_file_read(path, most, text, &diag);
@@ -250,7 +264,8 @@ static int write_bytes(const char *path, const void *bytes, size_t n) {
 static hn_status tell_written(const char *path, int error, hn_diag *diag) {
     return error == 0 ? HN_OK
                       : hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot write '%.200s': %s", path,
-                                    strerror(error));
+                                    error == ENXIO ? "it is a pipe that no program reads"
+                                                   : strerror(error));
 }
 
 hn_status hn_file_write(const char *path, const void *bytes, size_t n, hn_diag *diag) {

@@ -25,6 +25,10 @@ HN_MUST_CHECK hn_status hn_file_read_own(const char *path, size_t most, hn_strbu
 HN_MUST_CHECK hn_status hn_file_load(const char *path, size_t most, hn_strbuf *text,
                                      hn_diags *diags);
 
+/// Reads at most n bytes from the start of a regular file on the disk. Returns how many there are;
+/// 0 where it cannot be read, or is a folder, a FIFO, a device or a socket.
+size_t hn_file_begin(const char *path, char *bytes, size_t n);
+
 /// Reads standard input to its end, waiting for it; at most `most` bytes. Fails like
 /// hn_file_load().
 HN_MUST_CHECK hn_status hn_file_read_stdin(size_t most, hn_strbuf *text, hn_diags *diags);

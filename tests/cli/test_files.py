@@ -281,6 +281,16 @@ class Files(Command):
             self.assert_exit(done, INPUT)
             self.assertIn(b"--set is for the program of a scene", done.stderr)
 
+    def test_a_picture_goes_to_a_pipe_that_somebody_reads(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "pipe.png")
+            os.mkfifo(path)
+            self.assertIn("it is a pipe that no program reads", self.assert_exit(call("snapshot", "four-bar", "-o", path), PROGRAM))
+            with subprocess.Popen(["cat", path], stdout=subprocess.PIPE) as reader:
+                # until it has opened the pipe, nobody reads
+                self.assertTrue(driver.until(lambda: call("snapshot", "four-bar", "-o", path).returncode == DONE))
+                self.assertTrue(reader.communicate()[0].startswith(b"\x89PNG"))
+
     def test_a_submission_that_is_a_pipe_does_not_hang(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "pipe.json")

@@ -120,11 +120,7 @@ static bool is_own_picture(const char *path) {
                       svg[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
     enum { DEPTH = 24, FIRST = 37, SECOND = 50 }; // bytes at which fields of a PNG stand
     char begins[400] = "";
-    FILE *f = fopen(path, "rb");
-    const size_t n = f ? fread(begins, 1, sizeof begins - 1, f) : 0;
-    if (f) {
-        fclose(f);
-    }
+    const size_t n = hn_file_begin(path, begins, sizeof begins - 1);
     if (n > SECOND + 4 && memcmp(begins, png, sizeof png - 1) == 0) {
         const bool still =
             memcmp(begins + FIRST, "sRGB\1", 5) == 0 && memcmp(begins + SECOND, "IDAT", 4) == 0;
@@ -175,15 +171,11 @@ hn_status hn_cli_check_file(const char *path, hn_diags *diags) {
 
 /// Whether the file holds this text, to the byte.
 static bool holds(const char *path, const hn_strbuf *text) {
-    FILE *f = fopen(path, "rb");
-    bool same = f != NULL;
-    for (size_t i = 0; same && i < text->n; i++) {
-        same = getc(f) == (unsigned char)hn_strbuf_text(text)[i];
-    }
-    same = same && getc(f) == EOF;
-    if (f) {
-        fclose(f);
-    }
+    hn_strbuf there;
+    hn_strbuf_init(&there);
+    const bool same = hn_file_read(path, text->n, &there, NULL) == HN_OK && there.n == text->n &&
+                      memcmp(hn_strbuf_text(&there), hn_strbuf_text(text), text->n) == 0;
+    hn_strbuf_reset(&there);
     return same;
 }
 
