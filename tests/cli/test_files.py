@@ -285,7 +285,9 @@ class Files(Command):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "pipe.png")
             os.mkfifo(path)
-            self.assertIn("it is a pipe that no program reads", self.assert_exit(call("snapshot", "four-bar", "-o", path), PROGRAM))
+            refused = call("snapshot", "four-bar", "-o", path)
+            self.assertEqual((refused.returncode, refused.stdout), (PROGRAM, b""))
+            self.assertIn(b"it is a pipe that no program reads", refused.stderr)
             with subprocess.Popen(["cat", path], stdout=subprocess.PIPE) as reader:
                 # until it has opened the pipe, nobody reads
                 self.assertTrue(driver.until(lambda: call("snapshot", "four-bar", "-o", path).returncode == DONE))
