@@ -27,8 +27,10 @@ static const char QUESTION[] = "\033[5n", ANSWER[] = "\033[0n";
 static const char NAME[] = "\033[?", PIXELS[] = "\033[4;", GRAPHICS[] = "\033_G";
 static const char BACKGROUND[] = "\033]11;";
 enum { KEY_ANSWER = KEY_MAX + 1, KEY_NAME, KEY_PIXELS, KEY_GRAPHICS, KEY_BACKGROUND };
-/// Between the bytes of a key, of an answer, and of one that has a string.
-enum { ESCAPE_MS = 25, ANSWER_MS = 300, STRING_MS = 1000 };
+/// How long the byte after an Escape is waited for: where the user alone writes, where an answer is
+/// expected, and from a terminal that has answered before; then between the bytes of an answer that
+/// has begun. A busy machine may hand them over one by one.
+enum { ESCAPE = 27, ESCAPE_MS = 25, ANSWER_MS = 300, KNOWN_MS = 1000, BEGUN_MS = 2000 };
 
 static const double UNKNOWN = 8.0;  // [s] a terminal that is silent so long does not answer at all
 static const double SPARSE = 0.5;   // [s] to the second picture until that is known; then doubled
@@ -54,6 +56,7 @@ static struct {
     // questions about pictures
     int questions; ///< of those that end in the name: still unanswered
     double questioned_at;
+    bool parted; ///< an Escape came alone while an answer is expected: its rest may follow
     char answer[128];
     const char *farewell; ///< before the terminal is left
     char back[256];       ///< sequences that put the terminal back
@@ -175,7 +178,7 @@ static void read_answer(const char *begin, bool string) {
     size_t n = (size_t)snprintf(screen.answer, sizeof screen.answer, "%s", begin);
     bool ended = false;
     while (!ended) {
-        timeout(string ? STRING_MS : ANSWER_MS);
+        timeout(BEGUN_MS);
         const int key = getch();
         if (key == ERR || key > 0xff) {
             break;
@@ -189,6 +192,27 @@ static void read_answer(const char *begin, bool string) {
     }
 }
 
+/// Whether the key is the second byte of an answer whose Escape came alone, which is then read.
+static bool take_parted_answer(int key) {
+    if (key == ERR) {
+        return false; // its rest is still under way
+    }
+    const bool follows = screen.parted && (key == '[' || key == ']' || key == '_');
+    screen.parted = key == ESCAPE && (screen.questions > 0 || screen.early || screen.asked);
+    if (!follows) {
+        return false;
+    }
+
+    const char begin[] = {ESCAPE, (char)key, '\0'};
+    read_answer(begin, key != '[');
+    if (strcmp(screen.answer, ANSWER) == 0) {
+        take_answer();
+    } else if (strncmp(screen.answer, NAME, sizeof NAME - 1) == 0) {
+        screen.questions -= screen.questions > 0;
+    }
+    return true;
+}
+
 /// Whether the key begins an answer about pictures, which is then read.
 static bool take_picture_answer(int key) {
     if (key == KEY_NAME) {
@@ -200,7 +224,7 @@ static bool take_picture_answer(int key) {
         read_answer(GRAPHICS, true);
     } else if (key == KEY_BACKGROUND) {
         read_answer(BACKGROUND, true);
-    } else {
+    } else if (!take_parted_answer(key)) {
         return false;
     }
     screen.questioned_at = hn_clock_wall(); // it answers, however slowly
@@ -229,7 +253,8 @@ static void choose_patience(void) {
     if (screen.questions > 0 && hn_clock_wall() - screen.questioned_at > UNKNOWN) {
         screen.questions = 0;
     }
-    set_escdelay(screen.questions > 0 ? ANSWER_MS : ESCAPE_MS);
+    const bool known = screen.answers && screen.asked;
+    set_escdelay(known ? KNOWN_MS : screen.questions > 0 ? ANSWER_MS : ESCAPE_MS);
 }
 
 bool hn_screen_ready(void) {
@@ -506,7 +531,7 @@ static int translate(int key) {
                  {KEY_ENTER, HN_KEY_ENTER},
                  {'\n', HN_KEY_ENTER},
                  {'\r', HN_KEY_ENTER},
-                 {27, HN_KEY_ESCAPE},
+                 {ESCAPE, HN_KEY_ESCAPE},
                  {'\t', HN_KEY_TAB},
                  {KEY_SLEFT, HN_KEY_SHIFT_LEFT},
                  {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},

@@ -79,10 +79,11 @@ def decode_pixels(width, height, data):
 
 class Shown(Terminal):
     """A terminal that answers what it is asked. name: its answer to 'who are you', None: none; kitty: it knows the graphics protocol; pixels: its
-    line says how large it is, else it says so when it is asked; late: [s] until it has read a picture; background: its answer to 'which background', None: none; piecemeal: answers come byte by byte."""
+    line says how large it is, else it says so when it is asked; late: [s] until it has read a picture; background: its answer to 'which background',
+    None: none; piecemeal: answers come byte by byte; parted: [s] between the first byte of an answer and the others."""
 
-    def __init__(self, *words, name=None, kitty=False, pixels=True, late=0.0, background=None, piecemeal=False, **more):
-        self.background = background
+    def __init__(self, *words, name=None, kitty=False, pixels=True, late=0.0, background=None, piecemeal=False, parted=0.0, **more):
+        self.background, self.parted = background, parted
         self.name, self.kitty, self.late, self.piecemeal = name, kitty, late, piecemeal
         self.images = {}  # of kitty: number -> (keys, rows of pixels)
         self.pieces = b""
@@ -96,6 +97,10 @@ class Shown(Terminal):
             fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", self.rows, self.columns, self.columns * CELL[0], self.rows * CELL[1]))
 
     def answer(self, text):
+        if self.parted:
+            os.write(self.master, text[:1])
+            time.sleep(self.parted)
+            text = text[1:]
         for piece in ([bytes([c]) for c in text] if self.piecemeal else [text]):
             os.write(self.master, piece)
             time.sleep(0.06 if self.piecemeal else 0)
@@ -270,6 +275,13 @@ class Pictures(unittest.TestCase):
         terminal = self.open("four-bar", *METHODS, piecemeal=True, **SIXEL)
         self.assertTrue(terminal.until(terminal.sixels))
         # a 'c' would have switched the picture, a '4' selected nothing, a '2' the second method
+        self.assertNotIn(b"characters", terminal.seen)
+        terminal.type("i")
+        self.assertTrue(terminal.wait_for(rb"why: index-1"))
+
+    def test_an_answer_whose_escape_came_alone_is_no_key(self):
+        terminal = self.open("four-bar", *METHODS, parted=0.6, **SIXEL)
+        self.assertTrue(terminal.until(terminal.sixels))
         self.assertNotIn(b"characters", terminal.seen)
         terminal.type("i")
         self.assertTrue(terminal.wait_for(rb"why: index-1"))
