@@ -150,6 +150,15 @@ static void act(hn_workbench *w, hn_tui_action action) {
     }
 }
 
+/// A letter or digit that does nothing here says so, with the way to those that do.
+static void say_unknown(hn_workbench *w, int key) {
+    if (key >= '1' && key <= '8') {
+        hn_workbench_say(w, "there is no method %c, but 1 to %d; m adds one", key, w->n_methods);
+    } else if (key > ' ' && key < 127) {
+        hn_workbench_say(w, "%c has no meaning here; ? lists the keys", key);
+    }
+}
+
 void hn_controls_key(hn_workbench *w, int key) {
     // nothing changes that cannot be seen
     if (hn_views_too_small(w, w->columns, w->rows)) {
@@ -175,6 +184,8 @@ void hn_controls_key(hn_workbench *w, int key) {
                       key == HN_KEY_PAGE_DOWN ? 1 : -1);
     } else if (w->reactions && (key == HN_KEY_PAGE_UP || key == HN_KEY_PAGE_DOWN)) {
         hn_reactions_scroll(w, key == HN_KEY_PAGE_DOWN ? 1 : -1);
+    } else if (hn_tui_action_of(key) == HN_TUI_NONE) {
+        say_unknown(w, key);
     } else {
         act(w, hn_tui_action_of(key));
     }

@@ -344,8 +344,7 @@ static void choose(hn_workbench *w) {
     case HN_LIST_ACTIONS:
         w->chosen = (int)action_of_row(w);
         if (w->over_study && w->chosen != HN_TUI_NONE) {
-            hn_tui_study_free(w->study);
-            w->study = NULL;
+            hn_study_panel_close(w);
             w->over_study = false;
         }
         w->panel = w->over_study ? HN_PANEL_STUDY : HN_PANEL_MAIN;

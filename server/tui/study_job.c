@@ -26,7 +26,9 @@ struct hn_tui_study {
     hn_job *job; ///< owned; of the thread until `done`; NULL while it opens
     pthread_t thread;
     bool started;
-    atomic_bool stop, done, ranked; ///< ranked: its methods can be compared
+    atomic_bool stop, done;
+    atomic_bool ranked; ///< its methods can be compared
+    atomic_bool whole;  ///< ranked, and nothing was left out
     _Atomic double share;
     pthread_mutex_t lock; ///< guards what follows
     hn_cost_plot cost;
@@ -113,6 +115,7 @@ static void *compute(void *user) {
         pthread_mutex_unlock(&s->lock);
     }
     atomic_store(&s->ranked, status == HN_OK && !end.stopped && s->kind == HN_TUI_COST);
+    atomic_store(&s->whole, atomic_load(&s->ranked) && !end.out_of_time);
     atomic_store(&s->done, true);
     return NULL;
 }
@@ -200,6 +203,10 @@ void hn_tui_study_free(hn_tui_study *s) {
 
 bool hn_tui_study_running(const hn_tui_study *s) {
     return !atomic_load(&s->done);
+}
+
+bool hn_tui_study_is_whole(const hn_tui_study *s) {
+    return atomic_load(&s->done) && atomic_load(&s->whole);
 }
 
 double hn_tui_study_share(const hn_tui_study *s) {

@@ -33,6 +33,8 @@ void hn_tui_study_stop(hn_tui_study *s);
 /// Whether it was asked to stop.
 bool hn_tui_study_stopping(const hn_tui_study *s);
 bool hn_tui_study_running(const hn_tui_study *s);
+/// Whether it has come to its end with nothing left out: it was not stopped, and no limit cut it.
+bool hn_tui_study_is_whole(const hn_tui_study *s);
 double hn_tui_study_share(const hn_tui_study *s); ///< of the whole that is done, 0 to 1
 hn_tui_study_kind hn_tui_study_get_kind(const hn_tui_study *s);
 double hn_tui_study_time(const hn_tui_study *s); ///< of motion [s]

@@ -5,6 +5,7 @@
 #include "render/look.h"
 #include "terminal/keys.h"
 #include "terminal/short_spelling.h"
+#include "terminal/width.h"
 #include "tui/methods.h"
 #include "tui/seconds.h"
 
@@ -45,18 +46,12 @@ static const char *mapped_method(const hn_workbench *w, double *alpha, double *b
     return FALLBACK;
 }
 
-void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
+/// Starts a study of the scene over `time` of motion [s]; 0: a short one.
+static hn_status start(hn_workbench *w, hn_tui_study_kind kind, double time, hn_tui_study **out,
+                       hn_diags *diags) {
     const hn_model_source source = hn_workbench_source(w);
     const char *methods[HN_COMPARISON_MAX_METHODS];
-    hn_diags diags = {0};
     int n = 0;
-    if (kind == HN_TUI_STABILITY && hn_system_get_info(hn_model_system(w->model)).nc == 0) {
-        hn_workbench_say(w,
-                         "%s has no loop: there is nothing to stabilise, and no map of alpha "
-                         "and beta",
-                         hn_model_scene(w->model)->id);
-        return;
-    }
     for (; kind == HN_TUI_COST && n < w->n_methods; n++) {
         methods[n] = w->methods[n];
     }
@@ -71,15 +66,25 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
                                           .kind = kind,
                                           .methods = methods,
                                           .n_methods = n,
-                                          .time = w->study_time[kind],
+                                          .time = time,
                                           .columns = MAP_COLUMNS,
                                           .rows = room < LEAST_MAP_ROWS  ? LEAST_MAP_ROWS
                                                   : room > MOST_MAP_ROWS ? MOST_MAP_ROWS
                                                                          : room};
-    hn_tui_study_free(w->study);
-    w->study = NULL;
-    if (hn_tui_study_start(&request, &w->study, &diags) != HN_OK) {
-        w->panel = HN_PANEL_MAIN;
+    return hn_tui_study_start(&request, out, diags);
+}
+
+void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
+    hn_diags diags = {0};
+    if (kind == HN_TUI_STABILITY && hn_system_get_info(hn_model_system(w->model)).nc == 0) {
+        hn_workbench_say(w,
+                         "%s has no loop: there is nothing to stabilise, and no map of alpha "
+                         "and beta",
+                         hn_model_scene(w->model)->id);
+        return;
+    }
+    hn_study_panel_close(w);
+    if (start(w, kind, w->study_time[kind], &w->study, &diags) != HN_OK) {
         hn_workbench_say_fault(w, &diags);
         return;
     }
@@ -88,24 +93,68 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
     w->at = (hn_map_place){-1, -1};
 }
 
-/// The cheapest method of the study shown, without its step; false: there is none.
-static bool find_cheapest(const hn_workbench *w, hn_tui_cheapest *out) {
+void hn_study_panel_close(hn_workbench *w) {
+    hn_tui_study_free(w->study);
+    hn_tui_study_free(w->longer);
+    w->study = w->longer = NULL;
+    w->longer_failed = false;
+    w->panel = HN_PANEL_MAIN;
+}
+
+/// The cheapest method of a study, without its step; false: there is none.
+static bool find_cheapest(const hn_workbench *w, const hn_tui_study *study, hn_tui_cheapest *out) {
     char spelling[HN_SPEC_MAX];
     hn_method_spec spec;
     hn_diag diag = {0};
     hn_strbuf b;
     hn_strbuf_init(&b);
-    const bool known = hn_tui_study_get_kind(w->study) == HN_TUI_COST &&
-                       hn_tui_study_wanted(w->study, w->wanted, &b, spelling) && spelling[0] &&
+    const bool known = hn_tui_study_get_kind(study) == HN_TUI_COST &&
+                       hn_tui_study_wanted(study, w->wanted, &b, spelling) && spelling[0] &&
                        hn_method_parse(spelling, &spec, &diag) == HN_OK;
     hn_strbuf_reset(&b);
     if (known) {
-        *out = (hn_tui_cheapest){.time = hn_tui_study_time(w->study)};
+        *out = (hn_tui_cheapest){.time = hn_tui_study_time(study)};
         snprintf(out->wanted, sizeof out->wanted, "%s", w->wanted);
         snprintf(out->method, sizeof out->method, "%s@%s", spec.formulation->name,
                  spec.stepper->name);
     }
     return known;
+}
+
+// ---- the whole motion, behind a short study ----
+
+/// Whether the whole motion is to be measured too: nobody typed a time, and the short study has its
+/// answer, which another length may turn round.
+static bool wants_longer(const hn_workbench *w) {
+    return w->study && !w->longer && !w->longer_failed && w->study_time[HN_TUI_COST] == 0 &&
+           hn_tui_study_is_whole(w->study) &&
+           hn_tui_study_time(w->study) < hn_model_scene(w->model)->duration;
+}
+
+bool hn_study_panel_is_busy(const hn_workbench *w) {
+    return w->study && (hn_tui_study_running(w->study) || w->longer || wants_longer(w));
+}
+
+void hn_study_panel_follow(hn_workbench *w) {
+    hn_diags diags = {0};
+    if (wants_longer(w)) {
+        w->longer_failed =
+            start(w, HN_TUI_COST, hn_model_scene(w->model)->duration, &w->longer, &diags) != HN_OK;
+    }
+    if (!w->longer || hn_tui_study_running(w->longer)) {
+        return;
+    }
+
+    // it takes the place of the short one, whose answer is said beside its own
+    if (hn_tui_study_is_whole(w->longer)) {
+        find_cheapest(w, w->study, &w->cheapest);
+        hn_tui_study_free(w->study);
+        w->study = w->longer;
+    } else {
+        hn_tui_study_free(w->longer);
+        w->longer_failed = true;
+    }
+    w->longer = NULL;
 }
 
 bool hn_study_panel_set_time(hn_workbench *w, const char *text) {
@@ -118,7 +167,7 @@ bool hn_study_panel_set_time(hn_workbench *w, const char *text) {
         return false;
     }
     w->study_time[kind] = time;
-    find_cheapest(w, &w->cheapest);
+    find_cheapest(w, w->study, &w->cheapest);
     hn_study_panel_open(w, kind);
     return true;
 }
@@ -187,7 +236,7 @@ static void add_other_length(hn_strbuf *b, const hn_workbench *w) {
     const hn_tui_cheapest *before = &w->cheapest;
     const double whole = hn_model_scene(w->model)->duration;
     hn_tui_cheapest now;
-    if (!find_cheapest(w, &now)) {
+    if (!find_cheapest(w, w->study, &now)) {
         return;
     }
     const bool other =
@@ -198,6 +247,9 @@ static void add_other_length(hn_strbuf *b, const hn_workbench *w) {
     } else if (other) {
         hn_strbuf_printf(b, "For %g s of motion the cheapest is %s, for %g s it was %s.\n",
                          now.time, now.method, before->time, before->method);
+    } else if (w->longer) {
+        hn_strbuf_printf(b, "For %g s of motion; %g s are being measured, %.0f %% done.\n",
+                         now.time, whole, 100 * hn_tui_study_share(w->longer));
     } else if (now.time < whole) {
         hn_strbuf_printf(b,
                          "For %g s of motion; for %g s another may be cheaper (t measures it).\n",
@@ -237,9 +289,7 @@ void hn_study_panel_key(hn_workbench *w, int key) {
     if (key == HN_KEY_ESCAPE && hn_tui_study_running(w->study)) {
         hn_tui_study_stop(w->study);
     } else if (key == HN_KEY_ESCAPE || key == 'q') {
-        w->panel = HN_PANEL_MAIN;
-        hn_tui_study_free(w->study);
-        w->study = NULL;
+        hn_study_panel_close(w);
     } else if (map && key == HN_KEY_ENTER) {
         take_cell(w);
     } else if (!map && key == HN_KEY_ENTER) {
@@ -334,9 +384,15 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     char shown[HN_SPEC_MAX];
     hn_short_spelling(map.name, shown, sizeof shown);
     const int used = 1 + hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);
-    hn_cells_printf(c, in, used + 2, 0, HN_CELL_MUTED, 0,
-                    "the gap e obeys e'' + 2 alpha e' + %s e = 0",
-                    w->form == HN_DOTS_ASCII ? "beta^2" : "beta²");
+    const char *const square = w->form == HN_DOTS_ASCII ? "beta^2" : "beta²";
+    char law[80];
+    snprintf(law, sizeof law, "the gap e obeys e'' + 2 alpha e' + %s e = 0", square);
+    if (used + 2 + hn_text_columns(law) > in.columns) { // what an equation lacks would be another
+        snprintf(law, sizeof law, "e'' + 2 alpha e' + %s e = 0", square);
+    }
+    if (used + 2 + hn_text_columns(law) <= in.columns) {
+        hn_cells_put(c, in, used + 2, 0, HN_CELL_MUTED, 0, law);
+    }
     hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
 
     // the cell under the cursor, or what the map says as a whole

@@ -8,6 +8,14 @@
 
 /// Starts a study of the scene and opens its panel.
 void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind);
+/// Stops the study of the panel and goes back to the motion.
+void hn_study_panel_close(hn_workbench *w);
+/// When a short study of the cost has ended, for which nobody typed a time of motion: measures the
+/// whole motion behind it, and shows that in its place when it has ended too. To be called again
+/// and again.
+void hn_study_panel_follow(hn_workbench *w);
+/// Whether a study is computed, or is about to be.
+bool hn_study_panel_is_busy(const hn_workbench *w);
 /// Starts the study that is open again over another time of motion, as it was typed. false: it was
 /// refused, and the fault is said.
 bool hn_study_panel_set_time(hn_workbench *w, const char *text);

@@ -9,6 +9,7 @@
 #include "tui/drag.h"
 #include "tui/mechanism_picture.h"
 #include "tui/screen.h"
+#include "tui/study_panel.h"
 #include "tui/views.h"
 
 #include <langinfo.h>
@@ -158,6 +159,12 @@ static bool show(hn_workbench *w, view *v, const hn_tui_opts *opts) {
     return true;
 }
 
+/// Time goes on by `seconds`, for the motion and for the studies behind it.
+static void tick(hn_workbench *w, double seconds) {
+    hn_workbench_tick(w, seconds);
+    hn_study_panel_follow(w);
+}
+
 bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     view v = {.picture = {.form = HN_PIXELS_OFF}};
     choose_characters();
@@ -187,7 +194,7 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
             key = hn_screen_key(0, &mouse);
         }
         const double now = hn_clock_wall();
-        hn_workbench_tick(w, now - before);
+        tick(w, now - before);
         before = now;
     }
     hn_cells_free(&v.cells);
@@ -227,12 +234,12 @@ static void type_keys(hn_workbench *w, const hn_tui_opts *opts) {
     const char *rest = opts->keys ? opts->keys : "";
     for (int key = hn_tui_key_read(&rest); key != 0; key = hn_tui_key_read(&rest)) {
         hn_controls_key(w, key);
-        while (w->child.pid != 0 || (w->study && hn_tui_study_running(w->study))) {
-            hn_workbench_tick(w, 0);
+        while (w->child.pid != 0 || hn_study_panel_is_busy(w)) {
+            tick(w, 0);
             poll(NULL, 0, 5);
         }
         wait_for_frames(w);
-        hn_workbench_tick(w, 0);
+        tick(w, 0);
         wait_for_trial(w);
     }
 }
@@ -244,7 +251,7 @@ void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts) {
     w->form = form_of(opts);
     go_to(w, opts->t);
     type_keys(w, opts);
-    hn_workbench_tick(w, 0);
+    tick(w, 0);
     wait_for_trial(w);
     if (hn_cells_resize(&cells, w->columns, w->rows)) {
         hn_views_update(w);

@@ -125,6 +125,7 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
 void hn_workbench_close(hn_workbench *w) {
     hn_child_stop(&w->child);
     hn_tui_study_free(w->study);
+    hn_tui_study_free(w->longer);
     hn_step_trial_free(w->step_trial);
     hn_recording_free(w->recording);
     hn_view_box_free(w);
@@ -142,7 +143,7 @@ void hn_workbench_close(hn_workbench *w) {
     free(w->items);
     cJSON_Delete(w->scenes);
     w->scenes = NULL;
-    w->study = NULL;
+    w->study = w->longer = NULL;
     w->step_trial = NULL;
     w->versions = NULL;
     w->preview = (hn_preview){0};

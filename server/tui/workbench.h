@@ -171,6 +171,8 @@ typedef struct hn_workbench {
     char writes[HN_TUI_LINE];  ///< the file that this command writes; "": none
     hn_preview preview;
     hn_tui_study *study;               ///< of its panel; owned, NULL otherwise
+    hn_tui_study *longer;              ///< the same over the whole motion, behind it; owned or NULL
+    bool longer_failed;                ///< it could not be computed
     bool over_study;                   ///< the menu lies over that panel
     double study_time[HN_TUI_STUDIES]; ///< [s] of motion that was typed for each kind; 0: none
     hn_tui_cheapest cheapest;          ///< of the study of another length before this one

@@ -421,12 +421,12 @@ class Studies(unittest.TestCase):
 
     def test_the_menu_opens_over_a_study_which_is_there_again_after_it(self):
         self.assertIn("select a method", self.study("w?"))
-        self.assertIn("what accuracy costs in 2 s: Esc goes back", self.study("w?<Esc>"))
+        self.assertIn("what accuracy costs in 10 s: Esc goes back", self.study("w?<Esc>"))
         # what is chosen is done, and the study is gone
         self.assertIn("equations of motion: Esc goes back", self.study("w?" + "<Down>" * 23 + "<Enter>"))
         self.assertIn("loop gap", self.study("w?" + "<Down>" * 23 + "<Enter><Esc>"))
         # a remark of the menu does nothing
-        self.assertIn("what accuracy costs in 2 s", self.study("w?<End><Enter>"))
+        self.assertIn("what accuracy costs in 10 s", self.study("w?<End><Enter>"))
         # a method that is taken leaves the study: the next list goes back to the motion
         self.assertIn("loop gap", self.study("w<Enter>m<Esc>"))
 
@@ -437,17 +437,41 @@ class Studies(unittest.TestCase):
         self.assertEqual(len(table), 2)
 
     def test_the_time_of_a_study_is_said_and_typed(self):
-        self.assertIn("what accuracy costs in 2 s: Esc goes back", self.study("w"))
         shorter = self.study("wt500 ms<Enter>")
         self.assertIn("what accuracy costs in 0.5 s: Esc goes back", shorter)
         self.assertIn("up to t = 0.5 s", " ".join(shorter.split()))
         self.assertIn("'99' is no time of motion above 0 and up to 10 s", self.study("wt99<Enter>"))
         # whether the answer holds for another length is said where both were measured
-        self.assertIn("For 2 s of motion; for 10 s another may be cheaper (t measures it).", " ".join(self.study("w").replace("│", " ").split()))
-        self.assertRegex(" ".join(shorter.replace("│", " ").split()), r"For 2 s and for 0\.5 s of motion the cheapest is \w+@rk4|For 0\.5 s of motion the cheapest is \w+@rk4, for 2 s it was \w+@rk4")
+        self.assertRegex(" ".join(shorter.replace("│", " ").split()), r"For 10 s and for 0\.5 s of motion the cheapest is \w+@rk4|For 0\.5 s of motion the cheapest is \w+@rk4, for 10 s it was \w+@rk4")
+        # of other methods nothing has been measured yet
+        once_more = self.study("wt2<Enter><Esc>d0.01<Enter>w")
+        self.assertIn("For 2 s of motion; for 10 s another may be cheaper (t measures it).", " ".join(once_more.replace("│", " ").split()))
         # it is kept for the next study of this scene
         self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>w"))
         self.assertIn("what accuracy costs in 0.5 s", self.study("wt0.5<Enter><Esc>p<Right><Esc>w"))
+
+    def test_the_answer_about_two_seconds_is_followed_by_that_about_the_whole_motion(self):
+        out = self.study("w", "four-bar", "--methods", "index1@rk4:h=0.01", "nullspace@rk4:h=0.01")
+        self.assertIn("what accuracy costs in 10 s: Esc goes back", out)
+        words = " ".join(row.split("│")[1][-46:] for row in out.split("\n") if row.startswith("│"))
+        self.assertIn("For 10 s of motion the cheapest is nullspace@rk4, for 2 s it was index1@rk4.", " ".join(words.split()))
+        # a time that was typed is the user's own: nothing is measured beyond it
+        self.assertIn("what accuracy costs in 2 s: Esc goes back", self.study("wt2<Enter>"))
+
+    def test_a_key_without_a_meaning_says_so(self):
+        def said(keys):
+            return once("pendulum", "--once", "--t", "0.5", *self.METHODS, "--keys", keys)[1].split("\n")[-3].strip()
+        self.assertEqual(said("u"), "u has no meaning here; ? lists the keys")
+        self.assertEqual(said("7"), "there is no method 7, but 1 to 2; m adds one")
+        self.assertEqual(said("u2"), "")
+
+    def test_the_equation_above_a_map_is_whole_or_absent(self):
+        for method, law in (("baumgarte@rk4:h=0.02", "the gap e obeys e'' + 2 alpha e' + beta² e = 0 "),
+                            ("baumgarte:alpha=20,beta=20@rk4:h=0.02", "h=0.02  e'' + 2 alpha e' + beta² e = 0 "),
+                            ("baumgarte:alpha=20.123456,beta=20.123456@rk4:h=0.002", "h=0.002  ")):
+            out = once("four-bar", "--once", "--size", "80x24", "--methods", method, "--keys", "bt0.1<Enter>")[1]
+            self.assertIn(law, out.split("\n")[2])
+            self.assertNotRegex(out.split("\n")[2], r"alpha e' \+ (?!beta² e = 0 )")
 
     def test_the_legend_of_a_map_stands_beside_it_or_below_unbroken(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
