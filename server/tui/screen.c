@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "cli/shell/plain.h"
 #include "terminal/keys.h"
+#include "tui/foreground.h"
 #include "tui/screen_colours.h"
 
 #include <math.h>
@@ -302,11 +303,7 @@ static void await_answer(double seconds) {
 static void suspend(void) {
     await_answer(FAREWELL);
     screen.asked = screen.asked && !screen.answers;
-
-    // a job that is let go on in the background stops when it sets the terminal's modes
-    signal(SIGTTOU, SIG_DFL);
-    kill(0, SIGTSTP);
-    signal(SIGTTOU, SIG_IGN);
+    hn_foreground_stop();
 }
 
 static void prepare_asking(void) {
@@ -366,6 +363,7 @@ bool hn_screen_open(int theme, bool colours) {
     prepare_restoring();
     atexit(hn_screen_close);
     watch_signals();
+    hn_foreground_watch();
     screen.colours = colours && has_colors();
     if (screen.colours) {
         hn_screen_colours_make(theme);
@@ -536,7 +534,7 @@ static int next_key(double seconds) {
         const int key = getch();
         if (key == KEY_ANSWER) {
             take_answer();
-        } else if (key == SUSPEND) {
+        } else if (key == SUSPEND || hn_foreground_must_stop()) {
             suspend();
             return KEY_RESIZE;
         } else {

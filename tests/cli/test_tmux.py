@@ -3,6 +3,7 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -135,6 +136,34 @@ class Terminal(Tmux):
         self.wait_for(r"Baumgarte|baumgarte")
         self.keys("q")
         self.assert_restored()
+
+    def test_a_stop_from_outside_leaves_the_shell_its_screen(self):
+        self.start(80, 24, f"{PROGRAM} tui four-bar")
+        self.wait_for("Space run")
+        pid = self.pid()
+        # once more in the background: it stops again and draws nothing
+        for number in (signal.SIGTSTP, signal.SIGCONT):
+            os.kill(pid, number)
+            self.wait_for_state(pid, "T")
+            self.wait_for(r"Stopped")
+        self.keys("echo out'  'side", "Enter")
+        self.assertNotIn("Space run", self.wait_for(r"\nout  side\n"))
+        self.keys("fg", "Enter")
+        self.wait_for("Space run")
+        self.keys("q")
+        self.assert_restored()
+
+    def wait_for_state(self, pid, state):
+        """Waits until the process has been in this state twice in a row: it may be about to leave it."""
+        deadline, before = time.monotonic() + PATIENCE, ""
+        while time.monotonic() < deadline:
+            with open(f"/proc/{pid}/stat") as file:
+                now = file.read().rsplit(")", 1)[1].split()[0]
+            if now == before == state:
+                return
+            before = now
+            time.sleep(0.2)
+        self.fail(f"{pid} is in state {now}, not {state}")
 
     def test_a_dumb_terminal_and_a_pipe_get_plain_text(self):
         for command in (f"TERM=dumb {PROGRAM} tui four-bar", f"{PROGRAM} tui four-bar | cat"):
