@@ -317,8 +317,12 @@ test("the columns say what is now and what is worst; alpha and beta say what the
   const page = await open(t);
   const heads = await page.locator(".method-table thead th").allTextContents();
   assert.deepEqual(heads.slice(3), ["worst so far", "now", "gap", "error", "energy", "operations"]);
-  const moments = await page.locator(".method-table tbody .moment").allTextContents();
-  assert.deepEqual(moments, Array(5).fill("now"), "beside the numbers of each row");
+  // the head has the two lines of a row: "worst so far" over the verdict, "now" over the numbers
+  const head = (name) => screenBox(page.locator(`.method-table thead .${name}`));
+  const [worst, now, gap, cost] = await Promise.all(["verdict", "moment", "gap", "cost"].map(head));
+  assert.ok(worst.y + worst.height <= gap.y + 1, `${worst.y} over ${gap.y}`);
+  assert.ok(Math.abs(now.y + now.height / 2 - gap.y - gap.height / 2) < 6, "now stands before gap");
+  assert.ok(now.x + now.width <= gap.x + gap.width && gap.x < cost.x);
   assert.match(await page.textContent("label[for=set-alpha]"), /α damps the gap/);
   assert.match(await page.textContent("label[for=set-beta]"), /β pulls the gap shut/);
   assert.match(await page.textContent("#controls .law"), /φ̈ \+ 2α φ̇ \+ β² φ = 0/);
@@ -542,6 +546,7 @@ test("keys open at their first line; the step says why it is not the scene's own
   await page.waitForSelector("dialog[open] #keys-title");
   const { title, dialog } = await boxesOf(page, { title: "#keys-title", dialog: "dialog[open]" });
   assert.ok(title.top >= dialog.top, "the heading is in sight");
+  assert.equal(await page.getByText("select the method").count(), 1, "its keys share a row");
   await page.keyboard.press("Escape");
   await soon(async () =>
     assert.match(await page.textContent("#set-h-hint"), /^twice the scene's own 0\.01 s/),

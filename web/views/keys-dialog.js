@@ -15,13 +15,30 @@ export function createKeysDialog(el, store, actions) {
     id: "letters",
     onchange: () => actions.setView({ letters: letters.checked }),
   });
-  const rows = KEYS.map((key) =>
+  const row = (key, names, means) =>
     h(
       "tr",
       { class: isCharacter(key) ? "character" : "" },
-      h("th", { scope: "row" }, h("kbd", {}, keyName(key))),
-      h("td", {}, key.means),
-    ),
+      h("th", { scope: "row" }, ...names),
+      h("td", {}, means),
+    );
+  const cap = (key) => h("kbd", {}, keyName(key));
+
+  // the keys that select a method share one row
+  const selects = KEYS.filter(({ action }) => action === "select");
+  const [first, last] = [selects[0], selects[selects.length - 1]];
+  const rows = KEYS.flatMap((key) =>
+    key === first
+      ? [
+          row(
+            key,
+            [cap(first), " to ", cap(last)],
+            "select the method with this number in the list",
+          ),
+        ]
+      : key.action === "select"
+        ? []
+        : [row(key, [cap(key)], key.means)],
   );
   const title = h("h2", { id: "keys-title", tabindex: "-1" }, "Keys");
   const dialog = h(
