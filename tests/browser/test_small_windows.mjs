@@ -118,6 +118,26 @@ test("joints keep clear of the buttons that lie over the drawing", async (t) => 
   }
 });
 
+test("names of joints in space keep clear of the buttons over the drawing", async (t) => {
+  for (const viewport of [TABLET, { width: 1024, height: 768 }]) {
+    const page = await open(t, { viewport, hash: "#rssr" });
+    await page.waitForSelector(".stage.solid");
+    await playTo(page, 1); // B is highest here
+    await drawn(page);
+    await soon(async () => {
+      const [name, tools] = await page.evaluate(() => {
+        const names = [...document.querySelectorAll(".picture .labels text")];
+        const highest = names.find(({ textContent }) => textContent === "B");
+        const button = [...document.querySelectorAll("button")].find(
+          ({ textContent }) => textContent === "perspective",
+        );
+        return [highest, button].map((one) => one.getBoundingClientRect().toJSON());
+      });
+      assert.ok(name.top >= tools.bottom, `${viewport.width}: ${name.top} to ${tools.bottom}`);
+    });
+  }
+});
+
 test("a panel over the lower half leaves the mechanism and the transport in sight", async (t) => {
   for (const viewport of [NARROW, TABLET]) {
     const page = await open(t, { viewport });

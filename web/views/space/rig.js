@@ -9,7 +9,7 @@ import { drawnPoints } from "../../widgets/pieces.js";
 import { feetOf } from "./box.js";
 
 const HALF_ANGLE = 0.3; // [rad] half the vertical angle of view
-const MARGIN = { side: 44, top: 36, bottom: 48 }; // [px]
+const MARGIN = { side: 44, top: 58, bottom: 48 }; // [px]; buttons and a joint's name at the top
 const STACKED = { query: "(max-width: 639.5px)", top: 96 }; // [px] two rows of buttons lie there
 const ZOOM = { least: 0.1, most: 30 }; // of what fits
 
