@@ -137,6 +137,10 @@ class Terminal(Tmux):
         self.keys("q")
         self.assert_restored()
 
+    def test_it_opens_at_the_time_that_is_asked_for(self):
+        self.start(80, 24, f"{PROGRAM} tui four-bar --t 3 --methods projection@rk4:h=0.01")
+        self.wait_for(r"t 3\.000 s of 10 s .*paused(.|\n)*right to \d digits")
+
     def test_a_stop_from_outside_leaves_the_shell_its_screen(self):
         self.start(80, 24, f"{PROGRAM} tui four-bar")
         self.wait_for("Space run")

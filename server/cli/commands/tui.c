@@ -146,6 +146,9 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
                         "read keys; start it without &, or use --once for one frame as text\n");
             return HN_EXIT_INPUT;
         }
+        if (!isnan(args->t)) {
+            hn_workbench_go_to(w, args->t);
+        }
         if (name && strcmp(name, "dumb") != 0 && hn_tui_run(w, opts)) {
             return HN_EXIT_DONE;
         }
