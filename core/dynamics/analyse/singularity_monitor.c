@@ -46,6 +46,7 @@ struct hn_singularity {
     bool pending;        // w and top are still to be found from these
     double *x, *y;       // nv, nc scratch
     double *v, *basis;   // nv, 2 nv
+    double *beside;      // nq
     double *kept[3];     // nc: r, w and top of the last look, while a probe uses them
     hn_qr qr;            // nv x nc: (R J D)'
     double *no_speed;
@@ -78,6 +79,7 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
         *of_nc[i] = hn_arena_doubles(arena, nc);
     }
     r->basis = hn_arena_doubles(arena, 2 * nv);
+    r->beside = hn_arena_doubles(arena, (size_t)info.nq);
     if (!hn_qr_init(&r->qr, arena, info.nv, info.nc) || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
@@ -426,6 +428,65 @@ static void kernel_column(hn_singularity *r, int k, double *v) {
     for (int j = 0; j < r->nv; j++) {
         v[j] *= r->d[j];
     }
+}
+
+/// A way from a pose [rad, or of the length], and the pivot there of rows that are lost at the pose
+/// itself: of the order of the way, and of its square where the rows always depend on each other.
+static const double BESIDE = 1e-4, PARTS = 1e-6;
+/// Of the longest row: a shorter one is rounding.
+static const double NOTHING = 1e-12;
+
+/// Moves r->beside from q a little along all velocities that J allows at q, none favoured or missed.
+/// Returns false where there are none.
+static bool move_beside(hn_singularity *r, const double *q) {
+    double *way = r->basis, *one = r->basis + r->nv;
+    memset(way, 0, (size_t)r->nv * sizeof *way);
+    for (int k = r->qr.rank; k < r->nv; k++) {
+        kernel_column(r, k, one);
+        hn_axpy(r->nv, 0.5 + fmod(0.6180339887498949 * k, 1), one, way);
+    }
+    const double half_turn = hn_pilot_half_turn(hn_lookout_pilot(r->lookout), way);
+    if (!isfinite(half_turn)) {
+        return false;
+    }
+    for (int j = 0; j < r->nv; j++) {
+        way[j] *= BESIDE * half_turn / acos(-1);
+    }
+    memcpy(r->beside, q, (size_t)r->nq * sizeof *q);
+    hn_system_move(r->sys, r->beside, way);
+    return true;
+}
+
+/// As fill_qr(); a row that was nothing so far has no scale of its own, and takes that of the longest.
+static void fill_by_longest(hn_singularity *r) {
+    double shortest = 1;
+    for (int i = 0; i < r->nc; i++) {
+        shortest = r->r[i] > 0 ? fmin(shortest, r->r[i]) : shortest;
+    }
+    memcpy(r->y, r->r, (size_t)r->nc * sizeof *r->r);
+    for (int i = 0; i < r->nc; i++) {
+        r->r[i] = r->r[i] > 0 && r->r[i] * NOTHING < shortest ? r->r[i] : shortest;
+    }
+    fill_qr(r);
+    memcpy(r->r, r->y, (size_t)r->nc * sizeof *r->r);
+}
+
+bool hn_singularity_is_local(hn_singularity *r, double t, const double *q) {
+    if (r->nc == 0 || r->first) {
+        return false;
+    }
+    hn_eval_run(r->rows, t, q, r->no_speed);
+    scale(r);
+    fill_by_longest(r);
+    hn_qr_factor(&r->qr, r->nv, r->nc, RANK_TOL);
+    const int rank = r->qr.rank;
+    if (rank >= r->nc || !move_beside(r, q)) {
+        return false;
+    }
+    hn_eval_run(r->rows, t, r->beside, r->no_speed);
+    fill_by_longest(r);
+    hn_qr_factor(&r->qr, r->nv, r->nc, 0);
+    return rank < r->nv && diagonal(r, rank) > PARTS * fmax(diagonal(r, 0), BESIDE);
 }
 
 static hn_branches count_branches(hn_singularity *r, double t, const double *q, const double *w) {

@@ -69,7 +69,10 @@ void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
     const bool lost = s.status == HN_ERR_DIVERGED && s.t <= t_run;
     char text[560], reactions[64] = "more than their largest value";
     int used = 0;
-    if (e.reaction <= 1) {
+    if (e.unloaded && e.reaction <= HN_ACCURACY_WARN) {
+        snprintf(reactions, sizeof reactions,
+                 "next to nothing, as closing the loops takes next to no force");
+    } else if (e.reaction <= 1) {
         snprintf(reactions, sizeof reactions, "%.3g %% of their largest", 100 * e.reaction);
     }
     if (e.known) {

@@ -22,9 +22,14 @@ bool hn_energy_is_conservative(const hn_system *sys) {
     return !hn_system_get_info(sys).has_time;
 }
 
+/// What a tolerance leaves of these sums, of it: steps whose errors it accepts change them by less.
+static const double TOLERATED = 0.1;
+
 /// Energies are sums of terms as large as weights times lengths, whatever their sum is: rounding
-/// changes them by some eps of that. ROUNDINGS is what 1e5 steps of a swinging chain leave at most.
-static double rounding_of(const hn_watch *w) {
+/// changes them by some eps of that, and steps chosen from a tolerance by a part of the tolerance,
+/// however small the first energies of a motion from rest are. ROUNDINGS is what 1e5 steps of a
+/// swinging chain leave at most.
+static double noise_of(const hn_watch *w) {
     enum { ROUNDINGS = 10000 };
     const hn_scene *scene = hn_system_scene(w->run->sys);
     double mass = 0, gravity = 0;
@@ -36,7 +41,9 @@ static double rounding_of(const hn_watch *w) {
     }
     const double size = fabs(w->measure.potential) + w->measure.kinetic;
     const double creep = ROUNDINGS * DBL_EPSILON * w->length; // in a second: what rests may do
-    return ROUNDINGS * DBL_EPSILON * (size + mass * gravity * w->length) + mass * creep * creep;
+    const double tolerated = w->run->adaptive ? TOLERATED * w->run->tol.rtol : 0;
+    return fmax(ROUNDINGS * DBL_EPSILON, tolerated) * (size + mass * gravity * w->length) +
+           mass * creep * creep;
 }
 
 void hn_energy_start(hn_watch *w) {
@@ -45,7 +52,7 @@ void hn_energy_start(hn_watch *w) {
     e->t_max = w->measure.kinetic;
     e->start = e->last = w->measure.kinetic + w->measure.potential;
     e->change = 0;
-    e->noise = rounding_of(w);
+    e->noise = noise_of(w);
 }
 
 void hn_energy_record_state(hn_watch *w) {

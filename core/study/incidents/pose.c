@@ -56,7 +56,16 @@ void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, do
 
 void hn_pose_explain(const hn_watch *w, char why[256]) {
     const hn_singular_record *s = &w->singular;
+    const hn_state_at *now = &w->run->now;
     const size_t used = strlen(why);
+    if (now->t == w->run->t0 && hn_singularity_is_local(s->monitor, now->t, now->q)) {
+        const int more =
+            snprintf(why + used, 256 - used,
+                     "; the start is a singular configuration, and its velocities lead "
+                     "along none of the motions through it: start beside it");
+        why[more < 256 - (int)used ? (int)used + more : (int)used] = '\0';
+        return;
+    }
     if (w->run->info.nc > 0 && s->info.sigma_min < SINGULAR * s->largest) {
         const int more = snprintf(
             why + used, 256 - used,

@@ -8,6 +8,14 @@
 /// Reports redundant constraints at the start. They do no harm, so the report offers no remedy.
 static void report_redundant(hn_watch *w) {
     const int nc = w->run->info.nc, rank = w->accel_info.rank;
+    if (hn_singularity_is_local(w->singular.monitor, w->run->now.t, w->run->now.q)) {
+        hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
+                           "the start is a singular configuration: %d of %d constraint equations "
+                           "say nothing new there, but do beside it; several motions may lead out "
+                           "of it, and the run follows one",
+                           nc - rank, nc);
+        return;
+    }
     hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
                                         "%d of %d constraint equations depend on the others; the "
                                         "motion is unique, single multipliers are not",

@@ -6,6 +6,8 @@
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
+#include <math.h>
+
 // An explicit method that chooses its own steps does not fail on a stiff problem. It stays
 // accurate, with steps held at |h lambda| on the edge of its stability region, however smooth the
 // motion is: T c / (3.3 m) steps of dopri5 for a damper c on a mass m. Its own right-hand sides
@@ -68,6 +70,12 @@ static void check_headway(hn_watch *w) {
     }
     char cause[160];
     hn_headway_describe(w->run, cause, sizeof cause);
+    if (!isfinite(p->needed)) {
+        hn_incident_report(
+            w, &hn_incident_step_underflow, "steps needed", p->needed, (double)w->run->max_steps,
+            "the steps collapse: %lld trial steps did not advance the motion; %s", p->tried, cause);
+        return;
+    }
     hn_incident_report(w, &hn_incident_step_underflow, "steps needed", p->needed,
                        (double)w->run->max_steps,
                        "the steps collapse: %lld trial steps advanced the motion by %.2g s, and "

@@ -52,7 +52,7 @@ typedef struct hn_energy_record {
     /// in the last step
     double last, change;
     double v_min, v_max, t_max; ///< range of the potential, largest kinetic energy
-    double noise;               ///< changes up to this are rounding [J]
+    double noise;               ///< changes up to this are rounding, or tolerated [J]
     bool conservative;          ///< no load does work that the energy does not contain
 } hn_energy_record;
 

@@ -78,6 +78,20 @@ static void take_cost(hn_run *run) {
 
 // ---- stepping ----
 
+/// Whether the accelerations at the last good state are not numbers, or those of the start cannot
+/// be had.
+static bool is_undefined(hn_run *run) {
+    hn_stepping *s = &run->stepping;
+    double sum = 0, *a = run->watch.a;
+    hn_accel_info info;
+    const hn_status status =
+        hn_accel_eval(s->accel, s->now.t, s->now.q, s->now.v, 0, 0, a, run->watch.lambda, &info);
+    for (int i = 0; i < s->info.nv; i++) {
+        sum += a[i];
+    }
+    return status == HN_OK ? !isfinite(sum) : s->steps == 0;
+}
+
 /// Ends the run: keeps status and reason, and reports them as an incident.
 static hn_status fail(hn_run *run, hn_status status) {
     const hn_stepping *s = &run->stepping;
@@ -92,7 +106,13 @@ static hn_status fail(hn_run *run, hn_status status) {
     if (status != HN_ERR_STOPPED && status != HN_ERR_DIVERGED) {
         why = hn_engine_why(&s->engine);
     }
-    if (!run->reason[0] && status == HN_ERR_DIVERGED) {
+    if (!run->reason[0] && status == HN_ERR_DIVERGED && is_undefined(run)) {
+        snprintf(
+            run->reason, sizeof run->reason,
+            "at t = %.6g s a force or a constraint of the scene is not a number, as of a spring "
+            "without length, a division by 0 or the root of a negative number",
+            s->now.t);
+    } else if (!run->reason[0] && status == HN_ERR_DIVERGED) {
         snprintf(run->reason, sizeof run->reason,
                  "after t = %.6g s the state stopped being finite or grew beyond %g", s->now.t,
                  HN_STEPPING_BOUND);

@@ -31,8 +31,10 @@ void hn_headway_describe(const hn_stepping *s, char *out, size_t size) {
     } else if (2 * p->refused > p->tried) {
         snprintf(out, size, "the error estimate rejects %lld of %lld trial steps", p->refused,
                  p->tried);
-    } else {
+    } else if (s->h > 0) {
         snprintf(out, size, "the error estimate holds the step at %.2g s", s->h);
+    } else {
+        snprintf(out, size, "no step that the time can count keeps the error within its tolerance");
     }
 }
 

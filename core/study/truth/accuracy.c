@@ -277,7 +277,10 @@ hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *
     }
     e.q = relative(a, track->worst, HN_ERROR_Q, 1);
     e.v = relative(a, track->worst, HN_ERROR_V, a->scales.rate);
-    e.reaction = relative(a, track->worst, HN_ERROR_REACTION, a->scales.reaction);
+    const double least = hn_errors_least_reaction(a->errors, a->scales.rate);
+    e.unloaded = a->scales.reaction < least;
+    e.reaction =
+        relative(a, track->worst, HN_ERROR_REACTION, e.unloaded ? least : a->scales.reaction);
     e.own = fmax(a->own[HN_ERROR_Q], HN_ACCURACY_FLOOR);
     if (a->t_out < t_run) {
         memcpy(e.reason, a->reason, sizeof e.reason);

@@ -51,9 +51,10 @@ typedef struct hn_accuracy_track {
 typedef struct hn_estimate {
     bool known;
     double q, v, reaction; ///< as in errors.h, the largest so far; never below `own`
-    double own;            ///< of q: error of the pilot itself, at least HN_ACCURACY_FLOOR
-    double t;              ///< up to which it holds [s]
-    char reason[200];      ///< why it is not known, or ended before the run; else ""
+    bool unloaded;    ///< reactions are below hn_errors_least_reaction(), and `reaction` is of that
+    double own;       ///< of q: error of the pilot itself, at least HN_ACCURACY_FLOOR
+    double t;         ///< up to which it holds [s]
+    char reason[200]; ///< why it is not known, or ended before the run; else ""
 } hn_estimate;
 
 /// Makes the pilot and the rough run from the assembled state (q, v) in system coordinates, for

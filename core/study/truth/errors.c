@@ -130,6 +130,23 @@ double hn_errors_reaction(hn_errors *e, const hn_state_seen *at, const double *l
     return sqrt(sum);
 }
 
+double hn_errors_least_reaction(const hn_errors *e, double rate) {
+    static const double OF_WEIGHT = 1e-3, OF_INERTIA = 1e-7;
+    const hn_scene *scene = hn_system_scene(e->sys);
+    double mass = 0, gravity = 0;
+    for (int i = 0; i < scene->n_bodies; i++) {
+        mass += scene->bodies[i].mass.value;
+    }
+    for (int i = 0; i < 3; i++) {
+        gravity = hypot(gravity, scene->gravity[i].value);
+    }
+    const double inertia = rate * rate * e->length;
+    if (e->info.nc == 0) {
+        return 0;
+    }
+    return mass * e->length * (OF_WEIGHT * gravity + OF_INERTIA * inertia);
+}
+
 void hn_errors_calc(hn_errors *e, const hn_state_seen *state, const hn_state_seen *reference,
                     const hn_scales *scales, double out[HN_ERROR_COUNT]) {
     out[HN_ERROR_Q] = hn_errors_between(e, state->q, reference->q);

@@ -167,6 +167,7 @@ static void set_scales(hn_ref *ref, hn_errors *errors, const hn_system *sys, con
         rate = fmax(rate, hn_errors_rate(errors, at.v));
         reaction = fmax(reaction, hn_errors_reaction(errors, &at, at.lambda));
     }
+    reaction = fmax(reaction, hn_errors_least_reaction(errors, rate));
     ref->scales = (hn_scales){.length = or_one(hn_system_length(sys)),
                               .rate = or_one(rate),
                               .reaction = or_one(reaction),
