@@ -436,8 +436,8 @@ static const double BESIDE = 1e-4, PARTS = 1e-6;
 /// Of the longest row: a shorter one is rounding.
 static const double NOTHING = 1e-12;
 
-/// Moves r->beside from q a little along all velocities that J allows at q, none favoured or missed.
-/// Returns false where there are none.
+/// Moves r->beside from q a little along all velocities that J allows at q, none favoured or
+/// missed. Returns false where there are none.
 static bool move_beside(hn_singularity *r, const double *q) {
     double *way = r->basis, *one = r->basis + r->nv;
     memset(way, 0, (size_t)r->nv * sizeof *way);
@@ -457,7 +457,8 @@ static bool move_beside(hn_singularity *r, const double *q) {
     return true;
 }
 
-/// As fill_qr(); a row that was nothing so far has no scale of its own, and takes that of the longest.
+/// As fill_qr(); a row that was nothing so far has no scale of its own, and takes that of the
+/// longest.
 static void fill_by_longest(hn_singularity *r) {
     double shortest = 1;
     for (int i = 0; i < r->nc; i++) {
