@@ -2,10 +2,26 @@
 """A server for other machines: a token in its link, then in a cookie, or in a header; guests read."""
 
 import subprocess
+import sys
 import unittest
 import urllib.request
 
 import driver
+
+# becomes the program named behind it, for which socket(AF_NETLINK) is refused as systemd does: EAFNOSUPPORT
+WITHOUT_NETLINK = """
+import ctypes, os, platform, socket, struct, sys
+number = 41 if platform.machine() == "x86_64" else 198
+load, equal, end = 0x20, 0x15, 0x06
+steps = [(load, 0, 0, 0), (equal, 0, 3, number), (load, 0, 0, 16), (equal, 0, 1, socket.AF_NETLINK), (end, 0, 0, 0x50000 | 97), (end, 0, 0, 0x7FFF0000)]
+code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *step) for step in steps))
+program = ctypes.create_string_buffer(struct.pack("HxxxxxxP", len(steps), ctypes.addressof(code)))
+libc = ctypes.CDLL(None, use_errno=True)
+for words in ((38, 1, 0, 0, 0), (22, 2, ctypes.addressof(program), 0, 0)):
+    if libc.prctl(*map(ctypes.c_ulong, words)) != 0:
+        sys.exit("prctl: " + os.strerror(ctypes.get_errno()))
+os.execv(sys.argv[1], sys.argv[1:])
+"""
 
 BODY = {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"]}
 
@@ -134,6 +150,15 @@ class Token(unittest.TestCase):
                 self.assertNotIn("//[::]:", address)
                 with urllib.request.urlopen(urllib.request.Request(address + "/api/v1/", headers=bearer), timeout=60 * driver.SLOW) as answer:
                     self.assertEqual(answer.status, 200)
+
+    def test_a_sandbox_without_netlink_names_the_same_addresses(self):
+        """Under systemd's RestrictAddressFamilies=AF_INET AF_INET6 the link named 127.0.0.1, which opens on this machine alone."""
+        named = []
+        for program in (driver.PROGRAM, [sys.executable, "-c", WITHOUT_NETLINK, driver.PROGRAM]):
+            server = driver.Server("--host", "0.0.0.0", program=program)
+            self.addCleanup(server.stop)
+            named.append([address.rsplit(":", 1)[0] for address in server.started["addresses"]])
+        self.assertEqual(named[0], named[1])
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 enum { HN_ADDRESS_TEXT = 64, HN_OWN_ADDRESSES = 8 };
 
 /// Lists the addresses at which another machine may reach this one ("192.168.1.5",
-/// "[2001:db8::5]"), those of IPv4 first. Returns how many there are; 0 where there is no network.
+/// "[2001:db8::5]"), those of IPv4 first. A sandbox without AF_NETLINK leaves those of IPv4 alone.
+/// Returns how many there are; 0 where there is no network.
 int hn_own_addresses(bool with_ip6, char (*out)[HN_ADDRESS_TEXT]);
 #endif
