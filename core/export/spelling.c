@@ -35,7 +35,7 @@ void hn_code_number(hn_strbuf *b, const hn_language *language, double value) {
     }
     // the fewest digits that give the value again; in a formula to read no more than count, and no
     // power of ten where a number of few digits needs none
-    const bool is_plain = language->fraction && fabs(value) >= 1e-3 && fabs(value) < 1e6;
+    const bool is_plain = fabs(value) >= 1e-3 && fabs(value) < 1e6;
     const int most = language->fraction ? MOST_READ : 17;
     for (int digits = 1; digits <= most; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);

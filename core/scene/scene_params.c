@@ -189,6 +189,7 @@ bool hn_rd_param_value(hn_reader *r, int k, double *value) {
         r->loop_name = loop;
         r->n_chain--;
         p->value = ok ? q.value : 1;
+        p->formula = set ? NULL : src->formula;
         src->state = 2;
     }
     *value = p->value;

@@ -487,7 +487,7 @@ def without_numpy():
         with open(os.path.join(folder, "numpy.py"), "w", encoding="utf-8") as f:
             f.write("raise ImportError('there is no numpy here')\n")
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=600, env={**os.environ, "PYTHONPATH": folder})
-    said = "This program needs numpy and scipy (python3 -m pip install numpy scipy): there is no numpy here\n"
+    said = "This program needs numpy and scipy (on Debian: apt install python3-scipy; elsewhere: python3 -m pip install scipy): there is no numpy here\n"
     return [] if (done.returncode, done.stdout, done.stderr) == (1, "", said) else [f"{done.returncode}: {done.stderr}"]
 
 

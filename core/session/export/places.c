@@ -7,6 +7,7 @@
 #include "expr/construct.h"
 #include "session/export/calls.h"
 #include "session/export/own_steps.h"
+#include "session/export/scene_names.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -61,6 +62,25 @@ static void put_unit(hn_strbuf *b, const hn_exporter *e, const char *unit) {
     }
 }
 
+/// Unit, meaning and formula of a parameter, as far as it has them, each behind a blank.
+static void put_meaning(hn_strbuf *b, const hn_exporter *e, const hn_param *p) {
+    const char *separator = " ";
+    if (p->unit[0]) {
+        hn_strbuf_add(b, separator);
+        put_unit(b, e, p->unit);
+        separator = ", ";
+    }
+    if (p->about[0]) {
+        hn_strbuf_add(b, separator);
+        hn_code_words(b, e->language, p->about);
+        separator = ", ";
+    }
+    if (p->formula) {
+        hn_strbuf_printf(b, "%scomputed from ", separator);
+        hn_code_words(b, e->language, p->formula);
+    }
+}
+
 static void put_parameters(hn_strbuf *b, const hn_exporter *e, int indent) {
     const hn_scene *scene = hn_model_scene(e->model);
     for (int i = 0; i < scene->n_params; i++) {
@@ -73,10 +93,8 @@ static void put_parameters(hn_strbuf *b, const hn_exporter *e, int indent) {
         hn_strbuf_init(&value);
         hn_code_given(&value, e->language, p->value);
         put_constant(b, e, indent, p->name, hn_strbuf_text(&value));
-        hn_strbuf_printf(b, " %s ", e->language->comment);
-        put_unit(b, e, p->unit);
-        hn_strbuf_add(b, p->unit[0] && p->about[0] ? ", " : "");
-        hn_code_words(b, e->language, p->about);
+        hn_strbuf_printf(b, " %s", e->language->comment);
+        put_meaning(b, e, p);
         end_comment(b, e);
         b->failed |= value.failed;
         hn_strbuf_reset(&value);
@@ -122,6 +140,7 @@ static void put_names(hn_strbuf *b, const hn_exporter *e, int indent) {
     for (int i = 0; i < e->info.nv; i++) {
         put_name(b, e, indent, "v", i, symbol_name(e, e->x.v_symbols[i]));
     }
+    hn_export_put_scene_names(b, e, indent);
 }
 
 static void put_unpack(hn_strbuf *b, const hn_exporter *e, int indent) {
