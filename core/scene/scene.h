@@ -41,8 +41,8 @@ typedef struct hn_param {
     const char *name, *unit, *about; ///< unit "" when dimensionless
     double value, initial, min, max; ///< initial: as the scene file says
     const char *formula; ///< of other parameters, which gave the value; NULL: a number was given
-    bool integer;                    ///< must stay whole (numbers of loops, links)
-    bool structural;                 ///< changes how many bodies there are
+    bool integer;        ///< must stay whole (numbers of loops, links)
+    bool structural;     ///< changes how many bodies there are
     /// set outside min..max: the mechanism can be built, but its texts speak of that range
     bool beyond;
 } hn_param;

@@ -439,6 +439,44 @@ static hn_status compare_part(const part_view *p, const hn_language *language,
     return status;
 }
 
+/// Whether an entry that is asked has the symbol.
+static bool is_in_parts(const hn_export_exam *exam, int symbol) {
+    const hn_graph *g = hn_system_graph(exam->e.sys);
+    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
+        const hn_ex *entry = hn_export_exam_entry(exam, (hn_export_part)part);
+        for (int i = 0; i < exam->size[part]; i++) {
+            if (hn_depends_on(g, entry[i], symbol)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Names the parameters that are 0, whose terms no number shows: a term that is left out, or has
+/// the wrong sign, is as good as the right one.
+static void note_zeros(const hn_filled_exam *f, hn_verdict *v) {
+    char names[HN_GRADE_TEXT / 2] = "", first[64] = "";
+    size_t n = 0;
+    for (int i = 0; i < f->scene->n_params; i++) {
+        const hn_param *p = &f->scene->params[i];
+        const int symbol = hn_graph_find_symbol(hn_system_graph(f->exam.e.sys), p->name);
+        if (p->value == 0 && symbol >= 0 && is_in_parts(&f->exam, symbol) &&
+            n + strlen(p->name) + 8 < sizeof names) {
+            n += (size_t)snprintf(names + n, sizeof names - n, "%s%s = 0", n ? ", " : "", p->name);
+            if (!first[0]) {
+                snprintf(first, sizeof first, "%.60s", p->name);
+            }
+        }
+    }
+    if (n > 0) {
+        snprintf(v->note, sizeof v->note,
+                 "terms that are zero for %s were not compared; export and grade with '--set "
+                 "%s=...' compare them",
+                 names, first);
+    }
+}
+
 hn_status hn_filled_parts_compare(const hn_filled_exam *f, const hn_language *language,
                                   const hn_filled_answers *given, hn_verdict *v) {
     part_view p = {.exam = &f->exam, .scene = f->scene, .given = given};
@@ -455,5 +493,6 @@ hn_status hn_filled_parts_compare(const hn_filled_exam *f, const hn_language *la
     }
     v->n_states = HN_EXPORT_EXAM_STATES;
     snprintf(v->summary, sizeof v->summary, "%d of %d parts are right", v->n_right, v->n_entries);
+    note_zeros(f, v);
     return status;
 }

@@ -374,6 +374,16 @@ class Filled(unittest.TestCase):
         done = call("grade", "four-bar", path, "--set", "l1=0.45", "--json")
         self.assertEqual(json.loads(done.stdout)["score"], POINTS)
 
+    def test_terms_of_a_parameter_that_is_zero_are_said_to_be_not_compared(self):
+        said = "terms that are zero for T0 = 0, c = 0 were not compared; export and grade with '--set T0=...' compare them"
+        for settings, wrong, note in ([], "right", said), (["--set", "c=2", "--set", "T0=1"], "sign", ""):
+            _, filled = blank_and_filled("slider-crank", "c", *settings)
+            path = self.put("other_sign.c", filled.replace("force[2] = -(vx*c);", "force[2] = vx*c;"))
+            done = call("grade", "slider-crank", path, "--json", *settings)
+            verdict = json.loads(done.stdout)
+            force = next(e for e in verdict["entries"] if e["name"] == "force")
+            self.assertEqual((force.get("mistake") or "right", verdict.get("note", "")), (wrong, note))
+
     def test_what_does_not_answer_says_which_limit(self):
         cases = {"ends": ("import sys\nsys.exit(3)", "exit status 3"),
                  "raises": ("raise ValueError('not done')", "not done"),

@@ -103,7 +103,10 @@ static void put_linear(hn_strbuf *b, const scene_names *s, int i, int indent) {
         hn_code_name(&name, l, names[k]);
         hn_strbuf_add(b, l->named && k ? "\n" : "");
         put_sum(&sum, s, i, k == 1);
-        hn_code_fill(b, l->named ? l->named : k ? ", #1 = #2" : " #1 = #2",
+        hn_code_fill(b,
+                     l->named ? l->named
+                     : k      ? ", #1 = #2"
+                              : " #1 = #2",
                      (const char *[]){hn_strbuf_text(&name), hn_strbuf_text(&sum)});
         b->failed |= name.failed || sum.failed;
         hn_strbuf_reset(&name);
