@@ -67,9 +67,13 @@ static const char *found(parser *p, char out[32]) {
     return out;
 }
 
+static const char *how_to_shorten(const parser *p) {
+    return p->opts->shorten ? p->opts->shorten : "split it with parameters";
+}
+
 static bool enter(parser *p) {
     if (++p->depth > p->max_depth) {
-        fail(p, p->at, "split it with parameters", "nested more than %d deep", p->max_depth);
+        fail(p, p->at, how_to_shorten(p), "nested more than %d deep", p->max_depth);
         return false;
     }
     return true;
@@ -501,7 +505,7 @@ hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts, hn_
 
     // texts that are no formula
     if (n > (size_t)max_chars) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "split it with parameters",
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, how_to_shorten(&p),
                            "the formula has %zu characters; at most %d are read", n, max_chars);
     }
     if (peek(&p) == 0) {

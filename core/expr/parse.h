@@ -18,6 +18,8 @@ typedef struct hn_parse_opts {
     int n_known;
     int max_depth; ///< nesting allowed, 0: 200
     int max_chars; ///< 0: 20000
+    /// advice where a formula is too long or too deep; NULL: "split it with parameters"
+    const char *shorten;
 } hn_parse_opts;
 
 /// The expression of `text`. Fails with HN_ERR_INPUT and a diag that has the column, what was found

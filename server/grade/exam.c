@@ -69,7 +69,8 @@ hn_status hn_exam_parse(hn_exam *exam, const char *text, hn_ex *out, hn_diag *di
                           .known = known,
                           .n_known = p->n_names,
                           .max_depth = 100,
-                          .max_chars = HN_GRADE_MAX_FORMULA};
+                          .max_chars = HN_GRADE_MAX_FORMULA,
+                          .shorten = "write it shorter"};
     hn_status status = hn_parse(exam->graph, text, &opts, out, diag);
     return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : status;
 }

@@ -22,14 +22,24 @@ static int list_parts(const hn_exercise *e, const char *names[HN_GRADE_MAX_PARTS
 }
 
 /// Mistakes that every exercise can have; those that its parts list come on top.
-static const char *const GENERAL[] = {
-    "sign",          "half",         "double",      "degrees",      "radians",      "milli",
-    "kilo",          "gravity",      "sine",        "missing-name", "sign-term",    "other-entry",
-    "other",         "choice",       "transposed",  "missing-term", "not-finite",   "shape",
-    "unit",          "not-null",     "rank",        "power-of-ten", "other-place",  "other-axis",
-    "inexact",       "other-branch", "half-turn",   "absolute",     "relative",     "swapped",
-    "not-assembled", "stuck",        "some-points", "change-point", "out-of-range", "no-scene",
-    "inaccurate",    "costly",       "ended-early", "zero",         "constant",     "rounded"};
+static const char *const GENERAL[] = {"sign",           "half",         "double",
+                                      "degrees",        "radians",      "milli",
+                                      "kilo",           "gravity",      "sine",
+                                      "missing-name",   "sign-term",    "other-entry",
+                                      "other",          "choice",       "transposed",
+                                      "missing-term",   "not-finite",   "shape",
+                                      "unit",           "not-null",     "rank",
+                                      "power-of-ten",   "other-place",  "other-axis",
+                                      "inexact",        "other-branch", "half-turn",
+                                      "absolute",       "relative",     "swapped",
+                                      "not-assembled",  "stuck",        "some-points",
+                                      "change-point",   "out-of-range", "no-scene",
+                                      "inaccurate",     "costly",       "ended-early",
+                                      "zero",           "constant",     "rounded",
+                                      "double-term",    "half-term",    "no-root",
+                                      "not-squared",    "no-power",     "no-divisor",
+                                      "relative-angle", "other-name",   "exchanged-names",
+                                      "wrong-factor"};
 enum { N_GENERAL = sizeof GENERAL / sizeof *GENERAL };
 
 /// Calls for every mistake that a part names by itself: its faults, its tests, its wrong options.

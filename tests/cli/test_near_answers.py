@@ -222,7 +222,7 @@ def one_slip(folder):
     def numbers(exercise):
         return json.loads(run("problem", exercise, "--seed", "3", "--json").stdout)["numbers"]
 
-    x, y, z = numbers("energy"), numbers("slider"), numbers("trammel")
+    w, x, y, z = numbers("atwood"), numbers("energy"), numbers("slider"), numbers("trammel")
     crank, coupler, rocker = (9.81 * x["m1"] * x["l1"] / 2 * math.sin(x["t1"]), 9.81 * x["m2"] * (x["l1"] * math.sin(x["t1"]) + x["l2"] / 2 * math.sin(x["t2"])),
                               9.81 * x["m3"] * x["l3"] / 2 * math.sin(x["t3"]))  # fmt: skip
     high = 9.81 * (x["m1"] * x["l1"] * math.sin(x["t1"]) + x["m2"] * (x["l1"] * math.sin(x["t1"]) + x["l2"] * math.sin(x["t2"])) + x["m3"] * x["l3"] * math.sin(x["t3"]))
@@ -231,6 +231,7 @@ def one_slip(folder):
             ("energy", "c", crank + coupler, "no-rocker"), ("energy", "c", coupler, "coupler-alone"), ("energy", "c", high, "no-half"),
             ("energy", "c", crank + coupler - rocker, "sign-term"), ("energy", "a", coupler - 9.81 * x["m2"] * x["l2"] * math.sin(x["t2"]), "sign-term"),
             ("slider", "a", y["r"] * math.cos(y["th"]) + y["l"], "horizontal"), ("slider", "b", rod, "degrees"), ("slider", "b", -rod, "degrees"),
+            ("atwood", "b", 2 * 9.81 * w["m1"] ** 2 / (w["m1"] + w["m2"]), "lowered"), ("ring", "d", 3 * numbers("ring")["n"] - 3, "links"), ("code", "f", 0.3, "step"),
             ("energy", "b", x["m1"] * x["l1"] * x["w1"] ** 2 / 6, "not-squared"), ("trammel", "b", z["m"] * z["L"] ** 2 / 3, "uniform")):  # fmt: skip
         found = entry(folder, exercise, part, f"{answer:.5g}", "--seed", "3")
         expect(f"{exercise} {part} names {mistake}", found["mistake"] == mistake, str(found))
@@ -253,6 +254,29 @@ def one_slip(folder):
             ("loops", "a", 3 * e["b"] + 2 * e["j"], 3, "sign-term"), ("loops", "b", e["j"] + e["b"], 3, "other")):  # fmt: skip
         found = entry(folder, exercise, part, f"{answer:.{digits}g}", "--seed", "3")
         expect(f"{exercise} {part} to {digits} digits is {mistake}", found["mistake"] == mistake, str(found))
+
+
+def names_in_formulas(folder):
+    """One name in place of another, relative angles and wrong factors in a formula are named, with numbers in place of names too."""
+    kinetic, bias = "m2/2*(l1^2*w1^2+{}*l2^2*w2^2+l1*l2*cos(th1-th2)*w1*w2)", "-0.5*m2*l1*l2*sin(th1-th2)*u1^2+g*{}*l2/2*cos({})"
+    for exercise, part, answer, mistake, said in (
+            ("code", "d", kinetic.format("1/12"), "wrong-factor", "one term is 1/4 times as large as it must be"),
+            ("fourbar", "b", "m2*l1*l2*cos(th1-th2)/3", "wrong-factor", "this is 2/3 times the right formula: a number in it is wrong"),
+            ("loops", "e", "-l1*w1^2*cos(th1)-3*l2*w2^2*cos(th2)+l3*w3^2*cos(th3)", "wrong-factor", "one term is 3 times as large as it must be"),
+            ("closure", "a", "-l1*sin(th1)*u1-l1*sin(th2)*u2", "other-name", "l1 stands where l2 belongs"),
+            ("closure", "a", "-{l1}*sin(th1)*u1-{l1}*sin(th2)*u2", "other-name", "this looks like: l1 stands where l2 belongs"),
+            ("fourbar", "c", bias.format("m3", "th2"), "other-name", "m3 stands where m2 belongs in one term"),
+            ("fourbar", "c", bias.format("m2", "th1"), "other-name", "th1 stands where th2 belongs in one term"),
+            ("loops", "e", "-l1*w1^2*cos(th1)-l2*w3^2*cos(th2)+l3*w2^2*cos(th3)", "exchanged-names", "w2 and w3 are exchanged"),
+            ("closure", "a", "-l1*sin(th1)*u1-l2*sin(th1+th2)*(u1+u2)", "relative-angle", "angle 2 is taken from link 1; the angles of the question are absolute"),
+            ("fourbar", "b", "m2*l1*l2*cos(th2)/2", "relative-angle", "angle 2 is taken from link 1; the angles of the question are absolute"),
+            ("closure", "a", "-l1*sin(th1)*u1-l2*sin(th2)*u2*u1", "other", "wrong; the cause is none of the known mistakes")):  # fmt: skip
+        for name, number in json.loads(run("problem", exercise, "--seed", "2", "--json").stdout)["numbers"].items():
+            answer = answer.replace("{" + name + "}", str(number))
+        found = entry(folder, exercise, part, answer, "--seed", "2")
+        expect(f"{exercise} {part} = {answer} is {mistake}", (found["mistake"], found["explanation"]) == (mistake, said), str(found))
+    found = entry(folder, "closure", "a", "(" * 101 + "th1" + ")" * 101)
+    expect("a formula that is nested too deep is to be written shorter", found["explanation"].endswith("nested more than 100 deep; write it shorter"), found["explanation"])
 
 
 def pasted(folder):
@@ -383,4 +407,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, pasted, shown, branches, plots, quaternions, two_at_once, frames, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, names_in_formulas, pasted, shown, branches, plots, quaternions, two_at_once, frames, proofs]))

@@ -40,6 +40,11 @@ def rubrics(folder):
     half, quarter = (json.loads(run("grade", "fourbar", two, "--json", *more).stdout)["score"] for more in (["--rubric", shares], []))
     expect("a second mistake lowers the rubric's share too", half == 2 * quarter > 0, f"{half}, {quarter}")
 
+    stretched = write(folder, "stretched.json", {"c": "-0.5*m2*l1*l2*sin(th1-th2)*u1^2+g*m2*l2*cos(th2)"})
+    shares = write(folder, "shares.json", dict(json.loads(own), shares={"double-term": 0.25, "wrong-factor": 0.1}))
+    scores = [json.loads(run("grade", "fourbar", stretched, "--json", *more).stdout)["score"] for more in ([], ["--rubric", shares])]
+    expect("a slip that no exercise lists has its share in a rubric", scores == [1, 0.5], str(scores))
+
     # when Gradescope shows a part; a name that is there twice
     late = write(folder, "late.json", dict(json.loads(own), visibility={"b": "after_due_date", "d": "hidden"}))
     tests = json.loads(run("grade", "fourbar", slip, "--format", "gradescope", "--rubric", late).stdout)["tests"]

@@ -352,6 +352,7 @@ def refusals(folder):
                         (("grade", "closure", right, "--jobs", "2"), "--jobs is for a folder"), (("grade", "closure", classes, "--show-expected"), "not for a class"),
                         (("grade", "closure", right, "--format", "json", "--out", os.path.join(folder, "v.html")), "ends in .html; the form json"),
                         (("grade", "closure", right, right, "--out", os.path.join(folder, "v.html")), "is the name of one file"),
+                        (("grade", "closure", right, "--format", "html", "--out", os.path.join(folder, "v.md")), "ends in .md; the form html has files that end in .html"),
                         (("grade", "closure", classes, "--out", os.path.join(folder, "s.html")), "says no form of scores"),
                         (("grade", "closure", classes, "--out", os.path.join(classes, "s.csv")), "lies among the submissions")):
         done = run(*words)

@@ -311,6 +311,15 @@ static void free_subject(owned_subject *own) {
     hn_model_free(own->model);
 }
 
+/// The ending of a file's name that is that of no form of verdicts, with its dot: letters alone,
+/// for a folder may be called v1.2. NULL: there is none, or a slash behind it names a folder.
+static const char *find_strange_ending(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    const size_t n = dot && dot > name ? strlen(dot + 1) : 0;
+    return n > 0 && strspn(dot + 1, "abcdefghijklmnopqrstuvwxyz") == n ? dot : NULL;
+}
+
 /// The form that --format or --json names; else that of the ending of --out; else text. An --out
 /// that is the name of a file must be one of this form, and for one submission.
 static hn_status choose_form(const hn_args *args, const hn_verdict_form **out, hn_diag *diag) {
@@ -323,6 +332,13 @@ static hn_status choose_form(const hn_args *args, const hn_verdict_form **out, h
         return hn_diag_set(diag, HN_ERR_INPUT, "/out", "--out DIR, or --out FILE.txt",
                            "'%.200s' is no folder, and its ending is that of no form of verdicts",
                            args->out);
+    }
+    const char *strange = args->out && !folder && !file ? find_strange_ending(args->out) : NULL;
+    if (strange) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/out",
+                           "a folder for the verdicts has a slash at its end",
+                           "'%.200s' ends in %.20s; the form %s has files that end in .%s",
+                           args->out, strange, (*out)->name, (*out)->ending);
     }
     if (file && strcmp(file->ending, (*out)->ending) != 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/out",

@@ -127,7 +127,8 @@ hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex *out, hn_diag
                                 .known = d->name,
                                 .n_known = d->n_names,
                                 .max_depth = 100,
-                                .max_chars = MAX_CHARS};
+                                .max_chars = MAX_CHARS,
+                                .shorten = "write it shorter"};
     hn_status status = hn_parse(d->graph, text, &opts, out, diag);
     if (status == HN_ERR_INPUT && names.clash[0]) {
         status = hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s", names.clash);

@@ -66,6 +66,6 @@ void hn_draw_text(hn_strbuf *b, hn_draw *d, const char *text);
 bool hn_draw_find_unknown(hn_draw *d, const char *text, char *word, size_t size);
 /// The k-th random number in [0, 1) of a seed.
 double hn_draw_random(uint64_t seed, uint64_t k);
-/// 1 when the name is an angle or a rate of one: its unit is rad, deg or rad/s.
+/// 1 when the name is an angle: its unit is rad or deg.
 int hn_draw_is_angle(const hn_draw *d, int name);
 #endif

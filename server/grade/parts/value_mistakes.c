@@ -3,6 +3,7 @@
 
 #include "expr/construct.h"
 #include "expr/diff.h"
+#include "grade/parts/value_names.h"
 #include "grade/parts/value_search.h"
 #include "grade/parts/value_slips.h"
 
@@ -371,6 +372,7 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
     if (!is_zero(s, k, given)) {
         try_factors(&f);
         try_angles(&f);
+        hn_value_names_try_relative(&f);
         try_names(&f);
         try_entries(&f);
     }
@@ -385,6 +387,9 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
     }
     if (f.n_found == 0 && (!count || fabs(given[0]) >= LARGE_COUNT) && !is_zero(s, k, given)) {
         hn_value_slips_try(&f);
+    }
+    if (f.n_found == 0) {
+        hn_value_names_try(&f);
     }
     if (f.n_found == 0 && !count) {
         try_signed_factors(&f);

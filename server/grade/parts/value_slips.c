@@ -2,15 +2,12 @@
 #include "grade/parts/value_slips.h"
 
 #include "expr/construct.h"
+#include "grade/parts/value_places.h"
 
 #include <math.h>
 #include <stdbool.h>
-#include <string.h>
 
 enum {
-    MAX_NODES = 96, ///< distinct nodes of a reference that are visited
-    MAX_ARGS = 24,  ///< terms of a sum
-    MAX_DEPTH = 40,
     /// Candidates for a number. Each agrees by chance with one number of a thousand near it (a
     /// tenth of 0.5 % on both sides), or, where they are more, with one of a hundred thousand.
     FEW = 36,
@@ -67,34 +64,10 @@ typedef struct slip {
     int place; ///< of the places where the node stands, from 1; 0: at all of them
 } slip;
 
-/// The distinct nodes of an expression.
-typedef struct node_list {
-    int32_t node[MAX_NODES];
-    int n;
-    bool whole; ///< false: there are more of them
-} node_list;
-
-static void collect(const hn_graph *g, int32_t node, int depth, node_list *list) {
-    for (int i = 0; i < list->n; i++) {
-        if (list->node[i] == node) {
-            return;
-        }
-    }
-    const hn_node_view view = hn_graph_node(g, node);
-    if (list->n == MAX_NODES || depth == MAX_DEPTH || view.n_args > MAX_ARGS) {
-        list->whole = false;
-        return;
-    }
-    list->node[list->n++] = node;
-    for (int i = 0; i < view.n_args; i++) {
-        collect(g, view.args[i].n, depth + 1, list);
-    }
-}
-
 /// Whether a product has the factor already: all products have two, of which the first may be
 /// another product.
 static bool has_factor(const hn_graph *g, int32_t product, int32_t factor) {
-    for (int depth = 0; depth < MAX_DEPTH; depth++) {
+    for (int depth = 0; depth < HN_VALUE_DEPTH; depth++) {
         const hn_node_view view = hn_graph_node(g, product);
         if (product == factor || view.op != HN_OP_MUL) {
             return product == factor;
@@ -139,7 +112,8 @@ static bool can_happen(const hn_graph *g, const slip *s) {
 }
 
 /// The node whose arguments are `a`, with the slip.
-static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, const slip *s) {
+static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, double *c, const void *user) {
+    const slip *s = user;
     switch (s->kind) {
     case TERM_MISSING:
         a[s->arg] = hn_num(0);
@@ -162,38 +136,16 @@ static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, const slip *s) {
         return a[0];
     case DIVISOR:
         return hn_num(1);
+    case WHOLE_DIVISOR:
+        *c = copysign(1, *c);
+        return a[1 - s->arg];
     case SQUARE:
     case FACTOR:
-    case WHOLE_DIVISOR:
         return a[1 - s->arg];
     case ONE_TERM:
         return a[s->arg];
     }
     return hn_num(0);
-}
-
-/// The expression again, with the slip. `seen` counts the places of the node so far.
-static hn_ex rewrite(hn_graph *g, hn_ex e, const slip *s, int *seen) {
-    const hn_node_view view = hn_graph_node(g, e.n);
-    const hn_op op = view.op;
-    const int n = view.n_args;
-    hn_ex a[MAX_ARGS];
-    if (n == 0) {
-        return e;
-    }
-
-    // the view's arguments may move when the graph grows
-    memcpy(a, view.args, sizeof *a * (size_t)n);
-    const bool here = e.n == s->node && (++*seen == s->place || s->place == 0);
-    for (int i = 0; i < n; i++) {
-        a[i] = rewrite(g, a[i], s, seen);
-    }
-    const hn_ex whole = here              ? write_slip(g, op, a, n, s)
-                        : op == HN_OP_SUM ? hn_sum(g, a, n)
-                        : op == HN_OP_MUL ? hn_mul(g, a[0], a[1])
-                                          : hn_apply(g, op, a);
-    const bool without_number = here && s->kind == WHOLE_DIVISOR;
-    return hn_scale(without_number ? copysign(1, e.c) : e.c, whole);
 }
 
 /// At how many places of an expression a node stands, as far as `most`.
@@ -208,7 +160,7 @@ static int count_places(const hn_graph *g, int32_t from, int32_t node, int most)
 
 /// Calls `visit` for each slip of the kinds before `end` that can happen, everywhere or, where
 /// `single`, at one of several places. Returns how many there are.
-static int visit_slips(hn_value_search *f, const node_list *list, int end, bool single,
+static int visit_slips(hn_value_search *f, const hn_value_places *list, int end, bool single,
                        void (*visit)(hn_value_search *, const slip *)) {
     const bool symbolic = f->sheet->symbolic;
     const hn_graph *g = f->sheet->draw->graph;
@@ -236,15 +188,15 @@ static int visit_slips(hn_value_search *f, const node_list *list, int end, bool 
 
 static void try_slip(hn_value_search *f, const slip *s) {
     const struct slip_row *row = &ROWS[s->kind];
-    int seen = 0;
-    const hn_ex e = rewrite(f->sheet->draw->graph, f->sheet->reference.e[f->entry], s, &seen);
+    const hn_ex e = hn_value_rewrite(f->sheet->draw->graph, f->sheet->reference.e[f->entry],
+                                     s->node, s->place, write_slip, s);
     hn_value_search_try(f, e, 1, row->id, row->share, "%s", row->says);
 }
 
 void hn_value_slips_try(hn_value_search *f) {
-    node_list list = {.whole = true};
+    hn_value_places list;
     const bool symbolic = f->sheet->symbolic;
-    collect(f->sheet->draw->graph, f->sheet->reference.e[f->entry].n, 0, &list);
+    hn_value_places_find(&list, f->sheet->draw->graph, f->sheet->reference.e[f->entry]);
     if (!list.whole) {
         return;
     }
