@@ -316,7 +316,7 @@ class Class(unittest.TestCase):
         # a mistake that nobody expects: spelled otherwise, with the own number; and one that has the same name but is another
         groups = self.copies("fourbar", ann={"b": "m2*l1*l2*cos(th1-th2)/7", "c": "th1"}, bob={"b": f"cos(th2-th1) {own['bob']['l1']} l2 m2 / 7", "c": "th2"},
                              cid={"b": f"m2*{own['cid']['l1']}*l2*cos(th1-th2)/8"}, dan={"b": f"m2*{own['bob']['l1']}*l2*cos(th1-th2)/7"})
-        self.assertEqual(groups, ["b: ann, bob (other)"])
+        self.assertEqual(groups, ["b: ann, bob (wrong-factor)"])
 
         # a known mistake: the same text, or else it is only a frequent mistake
         groups = self.copies("fourbar", ann={"b": "m2*l1*l2*cos(th1+th2)/2"}, bob={"b": f"{own['bob']['m2']} * L1*l2*cos(th1+th2)/2".lower()},

@@ -96,8 +96,9 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
         hn_spelling_remark_bare(node->valuestring, r->explanation, sizeof r->explanation);
     }
 
-    // a known mistake has the same values whoever makes it
-    r->likeness = hn_value_likeness(s, node, strcmp(r->mistake, "other") == 0);
+    // a known mistake has the same values whoever makes it; a wrong factor may be any number
+    const bool rare = strcmp(r->mistake, "other") == 0 || strcmp(r->mistake, "wrong-factor") == 0;
+    r->likeness = hn_value_likeness(s, node, rare);
     return HN_OK;
 }
 
