@@ -198,26 +198,58 @@ static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], c
     hn_label_keep_off_line(placed, at->line);
 }
 
+/// The dimension line of two points of the pose, where they are not too near to each other.
+static void dimension_between(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                              const hn_snapshot_pose *pose, const int ends[2],
+                              hn_label_places *placed) {
+    double middle[2], a[2], b[2];
+    char text[HN_SI_TEXT];
+    const double *p = pose->points + 3 * ends[0], *q = pose->points + 3 * ends[1];
+    middle_of(s, d, pose->points, middle);
+    hn_sheet_pixel(s, p, a);
+    hn_sheet_pixel(s, q, b);
+    hn_si_format(hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]), "m", 3, text);
+    if (hypot(b[0] - a[0], b[1] - a[1]) >= SHORTEST_DIMENSION * s->font) {
+        const double half = 0.5 * hn_canvas_text_width(0.85 * s->font, text);
+        const dimension at = lay_dimension(s, d, pose->points, a, b, middle, half, placed);
+        draw_dimension(c, s, a, b, &at, text, placed);
+    }
+}
+
+/// Finds the two supports of a mechanism, between which the ground is its last link. False where
+/// there are more or fewer, or a bar joins them.
+static bool find_ground_link(const hn_drawing *d, int ends[2]) {
+    int n = 0;
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *shape = &d->shapes[i];
+        if (shape->kind == HN_SHAPE_GUIDE) {
+            return false;
+        }
+        if (shape->kind == HN_SHAPE_GROUND && n++ < 2) {
+            ends[n - 1] = shape->p;
+        }
+    }
+    for (int i = 0; i < d->n_shapes && n == 2; i++) {
+        const hn_shape *bar = &d->shapes[i];
+        if (bar->kind == HN_SHAPE_BAR && ((bar->p == ends[0] && bar->q == ends[1]) ||
+                                          (bar->p == ends[1] && bar->q == ends[0]))) {
+            return false;
+        }
+    }
+    return n == 2;
+}
+
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                             const hn_snapshot_pose *pose, hn_label_places *placed) {
-    double middle[2];
-    middle_of(s, d, pose->points, middle);
+    int ends[2];
     for (int i = 0; i < d->n_shapes; i++) {
         const hn_shape *bar = &d->shapes[i];
-        if (bar->kind != HN_SHAPE_BAR || is_repeated(d, i)) {
-            continue;
+        if (bar->kind == HN_SHAPE_BAR && !is_repeated(d, i)) {
+            dimension_between(c, s, d, pose, (const int[2]){bar->p, bar->q}, placed);
         }
-        double a[2], b[2];
-        char text[HN_SI_TEXT];
-        const double *p = pose->points + 3 * bar->p, *q = pose->points + 3 * bar->q;
-        hn_sheet_pixel(s, p, a);
-        hn_sheet_pixel(s, q, b);
-        hn_si_format(hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]), "m", 3, text);
-        if (hypot(b[0] - a[0], b[1] - a[1]) >= SHORTEST_DIMENSION * s->font) {
-            const double half = 0.5 * hn_canvas_text_width(0.85 * s->font, text);
-            const dimension at = lay_dimension(s, d, pose->points, a, b, middle, half, placed);
-            draw_dimension(c, s, a, b, &at, text, placed);
-        }
+    }
+    if (find_ground_link(d, ends)) {
+        dimension_between(c, s, d, pose, ends, placed);
     }
 }
 

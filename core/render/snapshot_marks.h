@@ -11,8 +11,8 @@
 /// more than one method.
 void hn_snapshot_markers(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                          const hn_snapshot_pose *poses, int n_poses);
-/// Draws the length of each bar beside it, with arrows between two extension lines. The values join
-/// the texts that later ones keep off.
+/// Draws the length of each bar beside it, with arrows between two extension lines, and that of the
+/// ground between two supports. The values join the texts that later ones keep off.
 void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                             const hn_snapshot_pose *pose, hn_label_places *placed);
 /// Writes "primitives": a list of {"kind","pose","points":[[x, y, z], ...],"pixels":[[x, y], ...],

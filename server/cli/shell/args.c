@@ -109,7 +109,7 @@ static const option OPTIONS[] = {
     {"--trace", "POINT", OPTION_WORD, AT(traces),
      "draw the path of a point by its name; may be repeated"},
     {"--dimensions", NULL, OPTION_FLAG, AT(dimensions),
-     "draw the lengths of bars and the angles of joints"},
+     "draw the lengths of bars and ground, and the angles of joints"},
     {"--forces", NULL, OPTION_FLAG, AT(forces), "draw the forces in the joints [N]"},
     {"--describe", NULL, OPTION_FLAG, AT(describe),
      "print the contents of the picture as JSON: in words, and as a list of everything drawn"},
