@@ -598,7 +598,7 @@ run-bench: $(BENCH) $(PROGRAM)
 	@cp build/bench.csv tests/tables/bench.csv && cat tests/tables/bench.csv
 
 # ---- checking -------------------------------------------------------------------------------------------------
-.PHONY: check check-house test-map check-layers check-width check-contracts check-names check-circles check-licence check-openapi check-headers check-format check-web format
+.PHONY: check check-house test-map check-layers check-width check-functions check-contracts check-names check-circles check-licence check-openapi check-headers check-format check-web format
 check: build/.packages-check check-house
 	@$(MAKE) -s --no-print-directory check-headers
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
@@ -608,7 +608,7 @@ check: build/.packages-check check-house
 	@echo 'check: all good'
 
 # what the tree promises about itself; tests/house/test_checks.sh runs it inside `make test`
-check-house: check-layers check-names check-circles check-licence check-width check-contracts
+check-house: check-layers check-names check-circles check-licence check-width check-functions check-contracts
 
 # awk gets the table above as layer:need,need and layer.room:room,room
 SPACE := $(subst x,,x x)
@@ -621,6 +621,9 @@ check-layers:
 
 check-width:
 	@LC_ALL=C awk -f tests/tools/check-width.awk $(ALL_C) $(EXAMPLES) $(HEADERS)
+
+check-functions:
+	@awk -f tests/tools/check-functions.awk $(LAYERED_C)
 
 check-contracts:
 	@awk -f tests/tools/check-contracts.awk $(filter-out tests/%,$(HEADERS))

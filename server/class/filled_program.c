@@ -120,6 +120,25 @@ static hn_status ask_all(const hn_export_exam *exam, const char *path, hn_filled
 
 // ---- the whole ----
 
+/// Runs the program and compares its answers part by part. *answered = false: `diag` says why not.
+static hn_status compare_answers(const hn_filled_exam *f, const char *path,
+                                 const hn_language *language, hn_verdict *v, bool *answered,
+                                 hn_diag *diag) {
+    hn_filled_answers given = {0};
+    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
+        given.n += f->exam.size[part];
+    }
+    given.value = calloc((size_t)given.n * HN_EXPORT_EXAM_STATES, sizeof *given.value);
+    if (!given.value) {
+        return HN_ERR_MEMORY;
+    }
+
+    *answered = ask_all(&f->exam, path, &given, diag) == HN_OK;
+    const hn_status status = *answered ? hn_filled_parts_compare(f, language, &given, v) : HN_OK;
+    free(given.value);
+    return status;
+}
+
 static void keep_program(hn_graded_program *kept, const char *path, const hn_strbuf *text) {
     const char *slash = strrchr(path, '/');
     snprintf(kept->file, sizeof kept->file, "%.79s", slash ? slash + 1 : path);
@@ -175,29 +194,16 @@ hn_status hn_filled_program_grade(const hn_filled_exam *f, const char *path,
     const bool is_other = hn_filled_origin_check(f->scene, hn_strbuf_text(&text), &origin) != HN_OK;
     hn_strbuf_reset(&text);
 
-    // its answers, compared part by part
-    hn_filled_answers given = {0};
-    for (int part = 0; part < HN_EXPORT_PARTS; part++) {
-        given.n += f->exam.size[part];
-    }
-    given.value = calloc((size_t)given.n * HN_EXPORT_EXAM_STATES, sizeof *given.value);
-    if (!given.value) {
-        return HN_ERR_MEMORY;
-    }
-    HN_THEN(status, ask_all(&f->exam, path, &given, &diag));
+    bool answered = false;
     if (status == HN_OK) {
-        const hn_status compared = hn_filled_parts_compare(f, language, &given, v);
-        if (compared != HN_OK) {
-            free(given.value);
-            return compared;
-        }
-    } else {
+        HN_TRY(compare_answers(f, path, language, v, &answered, &diag));
+    }
+    if (!answered) {
         hn_submission_refuse(v, diag.hint, "%s", diag.message);
     }
-    free(given.value);
 
     // numbers of another scene or other parameters say nothing about what was filled in
-    if (is_other && (status != HN_OK || v->n_right < v->n_entries)) {
+    if (is_other && (!answered || v->n_right < v->n_entries)) {
         v->n_entries = v->n_right = 0;
         v->score = 0;
         v->summary[0] = '\0';

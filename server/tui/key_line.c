@@ -10,60 +10,70 @@
 /// Between two keys.
 static const char GAP[] = "  ";
 
+/// Keys of the main screen: while runs stand and while they go on, with room and without.
+static const char SHORT_LINE[] =
+    "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q";
+static const char LONG_LINE[] = "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  "
+                                "w cost  m methods  s scene  p values  ? menu  q";
+static const char SHORT_STOP[] =
+    "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu q";
+static const char LONG_STOP[] = "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  "
+                                "w cost  m methods  s scene  p values  ? menu  q";
+
+static const char *const LISTS[] = {
+    [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
+    [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
+    [HN_LIST_FORMULATIONS] = "↑↓ choose  Enter types the rest  letters find  Esc back",
+    [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  letters find  Esc back",
+    [HN_LIST_LESSONS] = "↑↓ choose  Enter open  letters find  Esc back",
+    [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
+    [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back",
+    [HN_LIST_REMEDIES] = "↑↓ choose  Enter try it  Esc back"};
+
+/// Keys of a study: of a stability map or of a list, while it runs and after it.
+static const char *study_line(const hn_tui_study *study) {
+    const bool map = hn_tui_study_get_kind(study) == HN_TUI_STABILITY;
+    if (hn_tui_study_running(study)) {
+        return map ? "arrows choose a cell  Enter take its alpha and beta  t time  ? menu  Esc stop"
+                   : "e error wanted  t time  ↑↓ scroll  ? menu  Esc stop";
+    }
+    return map ? "arrows choose a cell  Enter take its alpha and beta  t time  ? menu  Esc back"
+               : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  ? menu  Esc back";
+}
+
+/// Keys of the main screen with what is open beside the picture. more: it goes on below.
+static const char *main_line(const hn_workbench *w, bool more, int columns) {
+    if (w->why && more) {
+        return hn_why_has_remedy(w)
+                   ? "Enter try a remedy  ↑↓ another method  PageDown more  i close  ? menu  q"
+                   : "↑↓ another method  PageDown more  i close  Space run  ? menu  q";
+    }
+    if (w->why) {
+        return hn_why_has_remedy(w) ? "Enter try a remedy  ↑↓ another method  i close  ? menu  q"
+                                    : "↑↓ another method  i close  Space run  ? menu  q";
+    }
+    if (w->reactions) {
+        return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";
+    }
+    if (w->playing) {
+        return hn_text_columns(LONG_STOP) <= columns ? LONG_STOP : SHORT_STOP;
+    }
+    return hn_text_columns(LONG_LINE) <= columns ? LONG_LINE : SHORT_LINE;
+}
+
 /// All keys of what is shown that a line of usual width has room for.
 static const char *whole_line(const hn_workbench *w, bool more, int columns) {
-    static const char short_line[] =
-        "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu  q";
-    static const char long_line[] = "Space run  ←→ step  1-8 method  d dt  g plot  i why  b map  "
-                                    "w cost  m methods  s scene  p values  ? menu  q";
-    static const char short_stop[] =
-        "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  s scene  ? menu q";
-    static const char long_stop[] = "Space stop  ←→ step  1-8 method  d dt  g plot  i why  b map  "
-                                    "w cost  m methods  s scene  p values  ? menu  q";
-    static const char *const lists[] = {
-        [HN_LIST_SCENES] = "letters search  Backspace  ↑↓ choose  Enter open  Esc back",
-        [HN_LIST_METHODS] = "↑↓ choose  Enter change  x remove  Esc back",
-        [HN_LIST_FORMULATIONS] = "↑↓ choose  Enter types the rest  letters find  Esc back",
-        [HN_LIST_PARAMETERS] = "↑↓ choose  ←→ change  Enter type  letters find  Esc back",
-        [HN_LIST_LESSONS] = "↑↓ choose  Enter open  letters find  Esc back",
-        [HN_LIST_EXPORTS] = "↑↓ choose  Enter name a file  Esc back",
-        [HN_LIST_ACTIONS] = "↑↓ choose  Enter do it  Esc back",
-        [HN_LIST_REMEDIES] = "↑↓ choose  Enter try it  Esc back"};
     switch (w->panel) {
     case HN_PANEL_LIST:
-        return lists[w->list];
+        return LISTS[w->list];
     case HN_PANEL_TEXT:
         return "↑↓ line  PageUp PageDown Space page  Home End  Esc back";
     case HN_PANEL_EXERCISE:
         return "↑↓ part  Enter type  c check  h hint  PageUp PageDown  Esc back";
     case HN_PANEL_STUDY:
-        if (hn_tui_study_running(w->study)) {
-            return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                       ? "arrows choose a cell  Enter take its alpha and beta  t time  ? menu  Esc "
-                         "stop"
-                       : "e error wanted  t time  ↑↓ scroll  ? menu  Esc stop";
-        }
-        return hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY
-                   ? "arrows choose a cell  Enter take its alpha and beta  t time  ? menu  Esc back"
-                   : "e error wanted  Enter add the cheapest  t time  ↑↓ scroll  ? menu  Esc back";
+        return study_line(w->study);
     default:
-        if (w->why && more) {
-            return hn_why_has_remedy(w)
-                       ? "Enter try a remedy  ↑↓ another method  PageDown more  i close  ? menu  q"
-                       : "↑↓ another method  PageDown more  i close  Space run  ? menu  q";
-        }
-        if (w->why) {
-            return hn_why_has_remedy(w)
-                       ? "Enter try a remedy  ↑↓ another method  i close  ? menu  q"
-                       : "↑↓ another method  i close  Space run  ? menu  q";
-        }
-        if (w->reactions) {
-            return "←→ step  ↑↓ another method  PageDown more  r close  Space run  ? menu  q";
-        }
-        if (w->playing) {
-            return hn_text_columns(long_stop) <= columns ? long_stop : short_stop;
-        }
-        return hn_text_columns(long_line) <= columns ? long_line : short_line;
+        return main_line(w, more, columns);
     }
 }
 

@@ -25,7 +25,7 @@ house() { # folder, target
 }
 
 # ---- the tree itself ----
-for check in layers names circles licence width; do
+for check in layers names circles licence width functions contracts; do
     expect "check-$check finds nothing in the tree" '' "$(house . check-$check | head -n 20)"
 done
 
@@ -74,6 +74,15 @@ expect 'layers: a fault is an exit status' 1 $?
 } >"$work/wide.c"
 expect 'width: a line of 101 columns is found, 100 columns of any letters are not' \
     "$work/wide.c:3: 101 columns, 100 are allowed" "$(LC_ALL=C awk -f tests/tools/check-width.awk "$work/wide.c")"
+
+# ---- functions ----
+for lines in 52 53; do
+    printf 'static void of_%d(void) {\n' $lines
+    i=0 && while [ $i -lt $lines ]; do echo '    if (x) {' && i=$((i + 1)); done
+    printf '}\n\n'
+done >"$work/long.c"
+expect 'functions: one of 53 lines is found, one of 52 is not' \
+    "$work/long.c:56: a function of 53 lines, 52 are allowed" "$(awk -f tests/tools/check-functions.awk "$work/long.c")"
 
 # ---- contracts ----
 cat >"$work/said.h" <<'EOF'

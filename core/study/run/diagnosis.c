@@ -322,6 +322,49 @@ static hn_status run_pilot(hn_run *pilot, double from, double end) {
     return hn_run_advance(pilot, end);
 }
 
+/// What a pilot run showed.
+typedef struct shown {
+    hn_status status;   ///< HN_ERR_STOPPED: its steps did not suffice
+    hn_run_summary sum; ///< of the pilot run
+    double last_gap;    ///< at its end [m]
+    bool past;          ///< it ran far enough past the event
+    bool right;         ///< it is past the event and does not show the fault
+} shown;
+
+/// Runs the pilot to `end` and judges it by its result.
+static shown run_and_judge(hn_run *pilot, double t0, double event, double end) {
+    shown out = {.status = run_pilot(pilot, t0, end), .sum = hn_run_get_summary(pilot)};
+    hn_sample last;
+    out.last_gap = hn_run_sample(pilot, out.sum.t, &last) == HN_OK ? last.gap : out.sum.worst_gap;
+    out.past = out.sum.t > event + LEAST_PAST * (event - t0);
+
+    // an error that grows, slowly as yet, is a fault too
+    double limit;
+    char cause[sizeof(hn_remedy)];
+    out.right = out.past && is_right(pilot, out.status == HN_ERR_STOPPED ? HN_OK : out.status) &&
+                !explain_instability(hn_run_watching(pilot)->run, &limit, cause, sizeof cause);
+    return out;
+}
+
+/// Says how far the trial came and what it showed there.
+static void say_result(const hn_watch *w, const shown *r, const hn_state_at *from, double end,
+                       hn_remedy said) {
+    // an adaptive method steps past the end that was asked for; past that of the run is said
+    const double reached = r->status == HN_OK ? fmin(r->sum.t, end) : r->sum.t;
+    const bool beyond = w->t_end > 0 && reached > w->t_end + w->run->h;
+
+    // a loop that is open where the trial begins is no fault of the remedy
+    char begun[40] = "";
+    if (from != &w->run->start) {
+        snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
+    }
+    snprintf(said, sizeof(hn_remedy),
+             TRIED "%suntil t = %.*g s%s: %s gap %.2g m, energy changed by %.2g J", begun,
+             begun[0] ? 4 : 3, reached, beyond ? ", beyond the end of the run" : "",
+             begun[0] ? "last" : "largest", begun[0] ? r->last_gap : r->sum.worst_gap,
+             r->sum.worst_energy_change);
+}
+
 /// Runs a remedy of report k from a state before its event to a time past it and writes the result
 /// to `said`.
 static outcome try_from(const hn_watch *w, int k, const char *text, const hn_state_at *from,
@@ -348,43 +391,19 @@ static outcome try_from(const hn_watch *w, int k, const char *text, const hn_sta
         return FAILS;
     }
 
-    // the pilot run and its result
-    const hn_status status = run_pilot(pilot, from->t, end);
-    const hn_run_summary sum = hn_run_get_summary(pilot);
-    hn_sample last;
-    const double last_gap = hn_run_sample(pilot, sum.t, &last) == HN_OK ? last.gap : sum.worst_gap;
-    const bool past = sum.t > event + LEAST_PAST * (event - from->t);
-    double limit;
-    char cause[sizeof(hn_remedy)];
-    const bool right = past && is_right(pilot, status == HN_ERR_STOPPED ? HN_OK : status) &&
-                       !explain_instability(hn_run_watching(pilot)->run, &limit, cause,
-                                            sizeof cause); // an error that grows, slowly as yet
+    const shown r = run_and_judge(pilot, from->t, event, end);
     hn_run_free(pilot);
-
-    if (status == HN_ERR_STOPPED && sum.steps == 0) {
+    if (r.status == HN_ERR_STOPPED && r.sum.steps == 0) {
         snprintf(said, sizeof(hn_remedy), "not tried: too many steps to t = %.3g s", end);
         return UNKNOWN;
     }
-    if (status == HN_ERR_STOPPED && !past) {
+    if (r.status == HN_ERR_STOPPED && !r.past) {
         snprintf(said, sizeof(hn_remedy), "not tried to the end: %lld steps to t = %.3g s",
-                 sum.steps, sum.t);
+                 r.sum.steps, r.sum.t);
         return UNKNOWN;
     }
-    // an adaptive method steps past the end that was asked for; past that of the run is said
-    const double reached = status == HN_OK ? fmin(sum.t, end) : sum.t;
-    const bool beyond = w->t_end > 0 && reached > w->t_end + s->h;
-
-    // a loop that is open where the trial begins is no fault of the remedy
-    char begun[40] = "";
-    if (from != &s->start) {
-        snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
-    }
-    snprintf(said, sizeof(hn_remedy),
-             TRIED "%suntil t = %.*g s%s: %s gap %.2g m, energy changed by %.2g J", begun,
-             begun[0] ? 4 : 3, reached, beyond ? ", beyond the end of the run" : "",
-             begun[0] ? "last" : "largest", begun[0] ? last_gap : sum.worst_gap,
-             sum.worst_energy_change);
-    return right ? REMOVES : FAILS;
+    say_result(w, &r, from, end, said);
+    return r.right ? REMOVES : FAILS;
 }
 
 /// Tries a remedy of report k. A state on the way may hold the error that the report is about:
