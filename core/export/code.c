@@ -14,7 +14,7 @@ enum { MAX_BYTES = 4 << 20, LONGEST = 160 }; // of all code; of a piece inside a
 enum { SHORT = 24, REPEATED = 120 };         // letters seen: of a piece, of its copies in a formula
 enum { MOST_NAMED = 4 };                     // coordinates and velocities beside a piece
 
-/// How tightly a piece binds; a weaker piece inside a stronger one gets parentheses.
+/// Binding strength of a piece; a weaker piece inside a stronger one gets parentheses.
 typedef enum level { LEVEL_SUM, LEVEL_PRODUCT, LEVEL_ATOM } level;
 
 typedef struct writer {

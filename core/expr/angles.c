@@ -243,7 +243,7 @@ typedef struct rewriter {
     products *room;
 } rewriter;
 
-/// What a node becomes when its arguments have.
+/// Returns what a node becomes when its arguments have.
 static hn_ex rebuild(rewriter *w, int32_t node) {
     const hn_node_view view = hn_graph_node(w->g, node);
     hn_ex *args = calloc((size_t)view.n_args + 1, sizeof *args), out = {1, node};

@@ -251,7 +251,7 @@ static char *read_sound(int fd, uint64_t key, size_t *n) {
 }
 
 /// Opens a copy in memory of the file at `path`, if it is sound; -1: it is not, or memory is out.
-/// Whatever happens to the file from now on, the program runs what has been checked.
+/// The file may change from now on: the program runs what has been checked.
 static int open_checked(const char *path, uint64_t key) {
     const int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {

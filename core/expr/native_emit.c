@@ -300,7 +300,7 @@ static bool stands_alone(const emitter *e, int32_t k) {
     return e->width && e->tape->code[k].code == TAPE_SINCOS;
 }
 
-/// Where the piece begins that ends before instruction `end`.
+/// Returns where the piece begins that ends before instruction `end`.
 static int32_t start_of(const emitter *e, int32_t end) {
     const int32_t longest = e->tape->info.instructions <= WHOLE ? WHOLE : PIECE;
     int32_t first = end - 1;

@@ -15,7 +15,7 @@
 // hn_print().
 enum { MAX_DEPTH = 2000, MAX_BYTES = 4 << 20 };
 
-/// How tightly a piece binds; a weaker piece inside a stronger one gets parentheses.
+/// Binding strength of a piece; a weaker piece inside a stronger one gets parentheses.
 typedef enum level { LEVEL_SUM, LEVEL_PRODUCT, LEVEL_POWER, LEVEL_ATOM } level;
 
 typedef struct printer {

@@ -153,7 +153,8 @@ static hn_tape_dispatch compare(const hn_tape *tape, double *w) {
 
 static void run_first(const hn_tape *tape, double *w);
 
-/// Of the process, as its processor is: what serves, and how far it is from the comparison.
+/// State of the process, as its processor is one: the form that serves, and the progress of the
+/// comparison.
 static _Atomic(interpreter) serving = run_first;
 static atomic_int seen; // instructions so far; loses some where threads count at once
 static atomic_flag is_taken = ATOMIC_FLAG_INIT;

@@ -24,7 +24,7 @@ typedef struct value {
     int32_t ir;
 } value;
 
-/// How a graph node is used: how often, and with which coefficients where they matter.
+/// Uses of a graph node: their number, and their coefficients where they matter.
 typedef struct usage {
     int32_t uses;
     int32_t n_demands;

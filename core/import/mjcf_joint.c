@@ -133,7 +133,7 @@ static void add_spring(hn_mj *m, const char *coordinate, double stiffness, doubl
     (void)hn_im_add_text(m->b, &m->b->loads, &o);
 }
 
-/// Force -stiffness (q - springref) - damping v. Of a ball or free joint only the damping is along
+/// Force -stiffness (q - springref) - damping v. A ball or free joint has only damping along
 /// coordinates.
 static void read_springs(hn_mj *m, const hn_mj_element *e, int joint, double unit) {
     double stiffness, damping, rest;

@@ -199,7 +199,7 @@ static int refine(hn_kkt *k, int max) {
         memcpy(k->step, k->r, (size_t)k->n * sizeof *k->step);
         solve(k, k->step);
 
-        // contradictory rows make multipliers grow for ever; the accelerations settle. Where forces
+        // contradictory rows make multipliers grow for ever; the accelerations settle. If forces
         // cancel in them they are known to the rounding of these
         const int proximal = k->way == HN_KKT_PROXIMAL, judged = proximal ? k->nv : k->n;
         const double cancelled = proximal ? hn_norm_max(k->n, k->b) : 0,

@@ -58,8 +58,8 @@ static double twice_area(const float *p, const float *q, const float *r) {
            ((double)r[0] - (double)p[0]) * ((double)q[1] - (double)p[1]);
 }
 
-/// How many triangles from the v-th vertex on make a fan: one first corner, each begins where the
-/// one before ended, and all turn one way.
+/// Returns how many triangles from the v-th vertex on make a fan: one first corner, each begins
+/// where the one before ended, and all turn one way.
 static int fan_length(const float *xy, int left) {
     const bool turn = twice_area(xy, xy + 2, xy + 4) >= 0;
     int n = 1;

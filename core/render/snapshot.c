@@ -108,7 +108,7 @@ static double legend_room(const hn_sheet *s, double font) {
     return s->legend.width - LEGEND_TEXT * font;
 }
 
-/// How far the next row is below this one: a name and a note of a line or more.
+/// Returns how far the next row is below this one: a name and a note of a line or more.
 static double legend_pitch(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
                            double font) {
     const double size = NOTE_SIZE * font;

@@ -91,7 +91,7 @@ static void draw_arc(hn_canvas *c, const hn_sheet *s, const arc *a) {
     hn_canvas_arrow(c, from[0], from[1], far[0], far[1], fmin(head, 0.9 * turn * a->radius), &thin);
 }
 
-/// Of places outside the arc and inside it, the one with the most room; returns that room [px].
+/// Takes the place with the most room, outside the arc or inside it; returns that room [px].
 static double place_text(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
                          const arc *a, const hn_label_places *placed, double half, double out[2]) {
     static const double shares[] = {0.5, 0.35, 0.65, 0.2, 0.8, -0.2, 1.2};

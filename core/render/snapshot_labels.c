@@ -96,7 +96,8 @@ double hn_label_room(const hn_sheet *s, const hn_label_places *placed, const dou
     return room;
 }
 
-/// How far a text lies inside the part of the sheet that is the drawing's; below 0: beyond it.
+/// Returns how far a text lies inside the part of the sheet that is the drawing's; below 0: beyond
+/// it.
 static double room_on_sheet(const hn_sheet *s, const double xy[2], double half) {
     const hn_box *box = &s->drawing;
     const double tall = 0.6 * s->font;
@@ -233,8 +234,8 @@ static bool do_cross(const double a[2], const double b[2], const double p[2], co
     return side_of(a, b, p) * side_of(a, b, q) < 0 && side_of(p, q, a) * side_of(p, q, b) < 0;
 }
 
-/// How doubtful it is that a value at `xy` belongs to its arrow: 1 where another arrow is nearer,
-/// and 1 where the mechanism lies between.
+/// Returns how doubtful it is that a value at `xy` belongs to its arrow: 1 where another arrow is
+/// nearer, and 1 where the mechanism lies between.
 static int doubt_of(const hn_sheet *s, const hn_drawing *d, const double *points, const arrows *all,
                     int own, const double xy[2]) {
     const double half = all->at[own].half, tall = 1.1 * s->font;
@@ -256,7 +257,7 @@ static int doubt_of(const hn_sheet *s, const hn_drawing *d, const double *points
     return taken + crossed;
 }
 
-/// Of places behind the tail, and on both sides of the arrow, the nearest with room enough and no
+/// Takes, behind the tail or on either side of the arrow, the nearest place with room enough and no
 /// doubt whose value it is; the best where none is.
 static void place_value(const hn_sheet *s, const hn_drawing *d, const double *points,
                         const arrows *all, int own, const hn_label_places *placed, double out[2]) {
@@ -379,7 +380,7 @@ static void draw_loads(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 
 // ---- names ----
 
-/// Of sixteen places around a point, near it and farther away, the nearest with room enough; the
+/// Takes the nearest of sixteen places around a point with room enough; the
 /// one with the most room where none has.
 static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
                         const hn_label_places *placed, double half, double out[2]) {

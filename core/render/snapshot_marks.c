@@ -120,7 +120,8 @@ typedef struct dimension {
     double line[2][2];
 } dimension;
 
-/// How much of a dimension line lies on texts and lines that were placed before, as a share.
+/// Returns how much of a dimension line lies on texts and lines that were placed before, as a
+/// share.
 static double share_covered(const hn_sheet *s, double line[2][2], const hn_label_places *placed) {
     enum { SAMPLES = 9 };
     double covered = 0;

@@ -17,7 +17,7 @@ static const double FARTHEST = 0.45;    // of its colour that the farthest shape
 enum { COILS = 7, MAX_POLYGON = 1000 }; // the scene format allows no larger one
 enum { TRACE_PIECE = 256 };
 
-/// How one pose is drawn: colours of outline and fill, and whether it is a mere line.
+/// Describes how one pose is drawn: colours of outline and fill, and whether it is a mere line.
 typedef struct pen {
     hn_canvas *c;
     const hn_sheet *s;
@@ -252,7 +252,7 @@ static void draw_ground(const pen *p, const hn_shape *shape) {
     hn_canvas_hatch(p->c, a[0], foot, 2.6 * size, 0, &p->outline);
 }
 
-/// How far the view reaches from a along u (both signs), so that a guide spans it.
+/// Returns how far the view reaches from a along u (both signs), so that a guide spans it.
 static double reach(const hn_sheet *s, const double a[2], const double u[2]) {
     double most = 0;
     for (int i = 0; i < 4; i++) {
@@ -321,7 +321,7 @@ static const shape_row *row_of(hn_shape_kind kind, int order, int ground) {
     return NULL;
 }
 
-/// How far a shape's middle lies towards the viewer.
+/// Returns how far a shape's middle lies towards the viewer.
 static double middle_depth(const pen *p, const hn_shape *shape) {
     const int ends[2] = {shape->p,
                          shape->kind == HN_SHAPE_POLYGON || shape->q < 0 ? shape->p : shape->q};

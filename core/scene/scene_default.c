@@ -41,7 +41,7 @@ static void add_place(int p[PLACES], int *n, int place) {
     }
 }
 
-/// Where joints and constraints hold a body, in their order. A free joint holds nothing.
+/// Returns where joints and constraints hold a body, in their order. A free joint holds nothing.
 static int collect_places(hn_reader *r, int body, int p[PLACES]) {
     const hn_scene *s = r->scene;
     int n = 0;
@@ -168,7 +168,7 @@ static void draw_rider(hn_reader *r, const hn_joint *j, int parent) {
     }
 }
 
-/// How each type is drawn; NULL: not at all, for nothing moves there, or nothing holds.
+/// Drawing function of each type; NULL: not drawn, for nothing moves there, or nothing holds.
 static void (*const DRAW_JOINT[HN_JOINT_TYPE_COUNT])(hn_reader *, const hn_joint *, int parent) = {
     [HN_JOINT_REVOLUTE] = draw_pin,      [HN_JOINT_PRISMATIC] = draw_slide,
     [HN_JOINT_CYLINDRICAL] = draw_slide, [HN_JOINT_UNIVERSAL] = draw_pin,

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/// How each shape is written: on a body ("draw": [{"bar": [..]}]) and in the scene's "draw" block,
-/// and its points.
+/// Spelling of a shape: on a body ("draw": [{"bar": [..]}]) and in the scene's
+/// "draw" block, and its points.
 typedef struct shape_row {
     const char *one, *many;
     int min, max; ///< number of points

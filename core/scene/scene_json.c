@@ -186,7 +186,7 @@ static void strip_words(cJSON *node) {
     }
 }
 
-/// Of what moves, normalised, and the present values of the parameters: not of words, drawing, what
+/// Hash of what moves, normalised, and of the present parameters: not of words, drawing, what
 /// is compared by default, or bounds of parameters.
 static bool calc_hash(hn_reader *r, const cJSON *root) {
     static const char *const shown[] = {"id",      "name",     "look_for", "exhibit",

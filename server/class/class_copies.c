@@ -86,7 +86,7 @@ typedef struct pair {
 } pair;
 
 /// Takes a pair into a list that falls with the share; of equal ones the earlier stays in front.
-/// Where `most` are there the last one goes.
+/// If `most` are there the last one goes.
 static void take_pair(pair *list, int *n, int most, pair new) {
     if (*n == most && list[most - 1].share >= new.share) {
         return;

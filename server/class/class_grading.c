@@ -67,7 +67,7 @@ static uint64_t seed_of(const grading *g, const hn_roster_entry *e) {
                                       : 0;
 }
 
-/// How many submissions carry the name of submission i; the roster is sorted by name.
+/// Returns how many submissions carry the name of submission i; the roster is sorted by name.
 static int count_name(const hn_roster *r, int i) {
     int n = 1;
     for (int k = i; k > 0 && strcmp(r->entry[k - 1].student, r->entry[i].student) == 0; k--) {
@@ -87,8 +87,8 @@ static uint64_t hash_rules(const grading *g, uint64_t hash) {
     return hn_hash_bytes(hash, &rubric, sizeof rubric);
 }
 
-/// What the line of a submission depends on: its text or why there is none, the exercise, the seed,
-/// others of its name, and this build.
+/// Returns what the line of a submission depends on: its text or why there is none, the exercise,
+/// the seed, others of its name, and this build.
 static uint64_t calc_key(const grading *g, const hn_roster_entry *e) {
     hn_strbuf text;
     char file[HN_ROSTER_PATH];
@@ -139,7 +139,7 @@ static void put_zero(const grading *g, hn_strbuf *b, const char *reason) {
     hn_json_put_string(b, "reason", reason);
 }
 
-/// What a submission says, and its shape, by which copies are found.
+/// Writes what a submission says, and its shape, by which copies are found.
 static void put_likeness(const grading *g, hn_strbuf *b, const char *text, const char *file) {
     const bool is_program = g->opts->programs != NULL;
     cJSON *submission = is_program ? NULL : cJSON_Parse(text);

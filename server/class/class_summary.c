@@ -10,7 +10,7 @@
 
 enum { BINS = 10, BAR = 40, MOST_NAMED = 10, MOST_ALIKE = 5, WORD = 96 };
 
-/// How often a word was seen, and who is behind it.
+/// Describes how often a word was seen, and who is behind it.
 typedef struct count {
     char word[WORD];
     int n;
@@ -81,7 +81,7 @@ typedef struct tally {
     counts mistakes, equal, like, alike, names;
 } tally;
 
-/// Who has the same shape: a group counts once two of its texts differ.
+/// Writes who has the same shape: a group counts once two of its texts differ.
 static void add_like(counts *c, const cJSON *o, const char *student) {
     const char *shape = text_of(o, "shape"), *texts = text_of(o, "texts");
     const int before = c->n;

@@ -41,7 +41,7 @@ static const struct fault {
 
 /// The faults of a term stand behind those of the whole.
 enum { N_FAULTS = sizeof FAULTS / sizeof *FAULTS, OF_TERM = 7, MOST_SAID = 3, MOST_CHANGES = 200 };
-/// What a factor that nobody knows leaves, and what another name does.
+/// Credit left by an unknown factor, and tolerance for another name.
 static const double SHARE_OF_FACTOR = 0.25;
 static const double EQUAL_FACTORS = 1e-8; // relative
 
@@ -209,7 +209,7 @@ static void find_factor(const hn_entry_values *entry, hn_entry_faults *out) {
 
 // ---- a symbol in place of another ----
 
-/// What a change makes of an entry.
+/// Result of a change of an entry.
 typedef struct changed {
     hn_exam_change change;
     double whole[HN_EXPORT_EXAM_STATES];
@@ -319,7 +319,7 @@ hn_entry_faults hn_entry_faults_find(const hn_entry_values *entry) {
 
 // ---- several explanations ----
 
-/// How many of the entries a fault explains.
+/// Returns how many of the entries a fault explains.
 static int count_entries(const hn_entry_faults *all, int n, uint64_t key) {
     int count = 0;
     for (int i = 0; i < n; i++) {

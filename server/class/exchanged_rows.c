@@ -63,7 +63,7 @@ static bool find_lines(const hn_two_matrices *m, bool rows, int first, char out[
     return wrong > 1;
 }
 
-/// Where i goes when a and b are exchanged.
+/// Returns where i goes when a and b are exchanged.
 static int exchange(int i, int a, int b) {
     return i == a ? b : i == b ? a : i;
 }

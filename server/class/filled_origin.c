@@ -53,7 +53,8 @@ static bool find_definition(const char *text, const char *name, double *value) {
     return false;
 }
 
-/// Where the first lines name the scene, behind the command that wrote the program; NULL: nowhere.
+/// Returns where the first lines name the scene, behind the command that wrote the program; NULL:
+/// nowhere.
 static const char *find_scene_name(const char *text) {
     static const char command[] = "holonom export ";
     const char *at = strstr(text, command);

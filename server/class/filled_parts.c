@@ -48,8 +48,8 @@ bool hn_filled_part_is_asked(const hn_export_exam *exam, hn_export_part part) {
     return false; // all zero, rounding aside: nothing is to be filled in
 }
 
-/// What a difference in a part is measured by: its largest entry, whatever its unit; where its
-/// terms cancel, what they round to.
+/// Returns what a difference in a part is measured by: its largest entry, whatever its unit; where
+/// its terms cancel, what they round to.
 static double size_of(const hn_export_exam *exam, int part) {
     double size = 0;
     for (int i = 0; i < exam->size[part]; i++) {
@@ -251,7 +251,7 @@ static hn_entry_faults find_faults(const part_view *p, int i, bool thorough) {
     return hn_entry_faults_find(&entry);
 }
 
-/// What the entries of a part are worth together.
+/// Credit of the entries of a part together.
 typedef struct part_credit {
     int asked, right;        ///< entries that are not 0 everywhere; those that are right
     double share;            ///< of the points

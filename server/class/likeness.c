@@ -116,7 +116,7 @@ uint64_t hn_likeness_program_texts(const char *text, hn_source_style style) {
 
 // ---- the shape of a program ----
 
-/// What a name was given: `right` is what stood behind its '='.
+/// Definition of a name: `right` is the text behind its '='.
 typedef struct definition {
     uint64_t name, right, value;
     int level; ///< of the block, outside of which it means nothing
@@ -141,7 +141,8 @@ static void put(statements *s, const void *bytes, size_t n) {
     s->right = hn_hash_bytes(s->right, bytes, n);
 }
 
-/// What a name stands for: the value it was given last, else its number among those without one.
+/// Returns what a name stands for: the value it was given last, else its number among those without
+/// one.
 static uint64_t value_of(statements *s, uint64_t name) {
     for (int i = s->n - 1; i >= 0; i--) {
         if (s->given[i].name == name) {

@@ -47,7 +47,7 @@ static const char *skip_line(const char *at) {
     return at + strcspn(at, "\n");
 }
 
-/// What ends with the two letters of `end`, or with the text.
+/// Skips what ends with the two letters of `end`, or with the text.
 static const char *skip_block(const char *at, const char *end) {
     const char *found = strstr(at + 2, end);
     return found ? found + 2 : at + strlen(at);

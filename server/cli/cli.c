@@ -115,8 +115,8 @@ static bool describe_words(hn_strbuf *b, const char *word) {
     return !word[0] || best > HN_TERM_OTHER;
 }
 
-/// What `holonom` alone says: the first things to do, each beginning with `program`, the name by
-/// which it was called.
+/// Writes what `holonom` alone says: the first things to do, each beginning with `program`, the
+/// name by which it was called.
 static void add_first_steps(hn_strbuf *b, const char *program) {
     static const char *const steps[][2] = {{"serve", "the workbench as a page in a browser"},
                                            {"tui four-bar", "the same workbench in this terminal"},

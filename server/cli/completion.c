@@ -16,7 +16,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/// What is being completed: candidates are written behind `head`, where they begin with `typed`.
+/// Describes what is being completed: candidates are written behind `head`, where they begin with
+/// `typed`.
 typedef struct completing {
     hn_strbuf *b;
     const char *head, *typed;
@@ -108,7 +109,8 @@ static void offer_extreme_cases(const completing *c, const hn_library *lib) {
     hn_extreme_free(x);
 }
 
-/// Where coordinates and rates start, those of joints that close a loop left out: "start.th1=".
+/// Offers where coordinates and rates start, those of joints that close a loop left out:
+/// "start.th1=".
 static void offer_starts(const completing *c, const hn_model *model) {
     const hn_system *sys = hn_model_system(model);
     for (int i = 0; i < hn_system_get_info(sys).n_user; i++) {
@@ -272,7 +274,7 @@ bool hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
 // ---- what a shell needs ----
 
 // bash takes : = and @ for ends of words where it may complete: the line is split at blanks here,
-// and what stands up to the last of them is not typed again; @ itself is. Where bash lists several
+// and what stands up to the last of them is not typed again; @ itself is. If bash lists several
 // candidates (COMP_TYPE: the code of ? ! or @), what each is about stands beside it
 static const char BASH[] =
     "_holonom() {\n"

@@ -214,7 +214,7 @@ static void read_parts(reader *r, cJSON *root) {
     hn_contents_read(&p->contents, root);
 }
 
-/// What a person reads.
+/// Reads the texts for people.
 static void read_titles(reader *r, const cJSON *root) {
     hn_exercise *p = r->p;
     p->id = read_text(r, root, "id", "/id");

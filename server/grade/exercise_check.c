@@ -48,7 +48,7 @@ static void complain_of_file(trial *t, int i, const hn_diag *diag) {
              hn_exercise_line(e, i, diag->pointer));
 }
 
-/// What a line of the list says behind its seed.
+/// Returns what a line of the list says behind its seed.
 static const char *behind_seed(const char *line) {
     return line + strcspn(line, ",:");
 }

@@ -37,7 +37,7 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
     return hn_diags_add(diags, HN_ERR_INPUT, "/problem", hint, "there is no problem '%.80s'", id);
 }
 
-/// Where it belongs, short: "1, sections 2 and 6" of lesson 01-closed-loops.
+/// Writes where it belongs, short: "1, sections 2 and 6" of lesson 01-closed-loops.
 static void put_place(hn_strbuf *b, const hn_exercise *problem) {
     char place[120];
     snprintf(place, sizeof place, "%d, %.100s", atoi(problem->lesson), problem->section);

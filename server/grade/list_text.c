@@ -192,7 +192,7 @@ static bool is_several(const cJSON *list) {
 
 // ---- LaTeX ----
 
-/// What stands in the matrix of LaTeX that is the whole of `s`; false: there is none.
+/// Finds what stands in the matrix of LaTeX that is the whole of `s`; false: there is none.
 static bool find_latex(span s, span *inside) {
     static const char BEGIN[] = "\\begin{", END[] = "\\end{";
     const char *open = (size_t)(s.end - s.at) > strlen(BEGIN) ? strstr(s.at, BEGIN) : NULL;

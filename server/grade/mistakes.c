@@ -14,7 +14,8 @@
 
 enum { MAX_VARIANTS = 64 };
 
-/// What a wrong entry might be: formulas, and for each what it refers to ("J21", "th2 for th1").
+/// Variants of a wrong entry: formulas, and for each what it refers to ("J21", "th2 for
+/// th1").
 typedef struct variants {
     int n;
     hn_ex e[MAX_VARIANTS];
@@ -280,7 +281,8 @@ static bool has_numbers_for_lengths(const place *at) {
     return names_parameter(at, at->reference) && !names_parameter(at, at->given);
 }
 
-/// What no row explains. Numbers in place of the lengths are right for one mechanism alone.
+/// Returns the mistake that no row explains. Numbers in place of the lengths are right for one
+/// mechanism alone.
 static hn_grade_mistake find_nothing(const place *at) {
     const bool numbers = has_numbers_for_lengths(at);
     return (hn_grade_mistake){
@@ -292,7 +294,7 @@ static hn_grade_mistake find_nothing(const place *at) {
                       "more, term by term"};
 }
 
-/// Two mistakes at once: one of the rows, and a second on top of it. Where no length is named, a
+/// Two mistakes at once: one of the rows, and a second on top of it. If no length is named, a
 /// factor may be a length that was written as a number.
 static hn_grade_mistake find_pair(const place *at, const double *value) {
     static const char TWO[] = "a factor of 2 is wrong as well; if it is a length, write its name";

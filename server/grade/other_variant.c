@@ -54,7 +54,8 @@ static int list_wrong(const hn_variant *x, const hn_verdict *v, wrong_number lis
     return n;
 }
 
-/// Which of the wrong numbers are right in the variant of this seed; false: it cannot be drawn.
+/// Finds which of the wrong numbers are right in the variant of this seed; false: it cannot be
+/// drawn.
 static bool try_variant(const hn_exercise *exercise, uint64_t seed, const cJSON *submission,
                         const wrong_number *list, int n, bool right[MAX_WRONG]) {
     hn_variant other;
@@ -95,7 +96,7 @@ static double find_chance(const hn_exercise *exercise, const cJSON *submission,
     return chance;
 }
 
-/// How many of the wrong numbers are those of this seed; 0 where too few are, or by chance.
+/// Returns how many of the wrong numbers are those of this seed; 0 where too few are, or by chance.
 static int count_fits(const hn_exercise *exercise, uint64_t seed, const cJSON *submission,
                       const wrong_number *list, int n) {
     bool right[MAX_WRONG];
@@ -122,7 +123,8 @@ static void respell(const char *name, int way, char out[LONGEST_NAME]) {
     out[n] = 0;
 }
 
-/// Who submitted: the name in the file, else the one whose variant this is; "": nobody is named.
+/// Returns who submitted: the name in the file, else the one whose variant this is; "": nobody is
+/// named.
 static const char *student_of(const hn_variant *x, const hn_verdict *v) {
     const char *name = v->student;
     for (int i = 0; i < x->exercise->n_owners && !name[0]; i++) {
@@ -132,8 +134,8 @@ static const char *student_of(const hn_variant *x, const hn_verdict *v) {
     return name;
 }
 
-/// Whose numbers they may be: the owner i of the exercise, then the student with other capitals
-/// (written to `spelt`), then a few small seeds.
+/// Returns whose numbers they may be: the owner i of the exercise, then the student with other
+/// capitals (written to `spelt`), then a few small seeds.
 static hn_variant_owner candidate_at(const hn_variant *x, const char *student, int i,
                                      char spelt[LONGEST_NAME]) {
     const hn_exercise *e = x->exercise;

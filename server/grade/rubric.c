@@ -211,8 +211,9 @@ static hn_status check_tolerance_shapes(hn_rubric *r, hn_diags *diags) {
     return status;
 }
 
-/// What the other checks rely on: objects with a member for each part or mistake, lists of costs.
-/// A field of another shape is left out after its fault is added, so that the rest is checked too.
+/// Checks the shapes that the other checks rely on: objects with a member for each part or mistake,
+/// lists of costs. A field of another shape is left out after its fault is added, so that the rest
+/// is checked too.
 static hn_status check_shapes(hn_rubric *r, hn_diags *diags) {
     static const struct {
         const char *field, *says, *json, *toml;

@@ -115,7 +115,7 @@ static void put_question(hn_strbuf *b, hn_variant *x, const hn_part *p) {
     }
 }
 
-/// What `put` writes, as paragraphs for a reader of any width.
+/// Writes what `put` writes, as paragraphs for a reader of any width.
 static void put_joined(hn_strbuf *b, hn_variant *x, const hn_part *p,
                        void (*put)(hn_strbuf *b, hn_variant *x, const hn_part *p)) {
     hn_strbuf text;
@@ -511,7 +511,7 @@ static void charge_hints(const hn_variant *x, const cJSON *submission, hn_verdic
     }
 }
 
-/// What a picture shows: the first wrong answer that describes a scene.
+/// Draws what a picture shows: the first wrong answer that describes a scene.
 static void show_answer(const hn_variant *x, const cJSON *submission, hn_verdict *v) {
     for (int k = 0; k < v->n_entries && v->shown_entry < 0; k++) {
         const hn_entry_verdict *e = &v->entry[k];

@@ -176,7 +176,7 @@ static void put_shown(hn_strbuf *b, const hn_verdict *v) {
     hn_json_end_object(b);
 }
 
-/// What reproduces the verdict, and the state of the picture.
+/// Writes what reproduces the verdict, and the state of the picture.
 static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     char hash[17], seed[32];
     hn_hash_hex(v->problem->hash, hash);

@@ -19,7 +19,7 @@ static double share_of(const hn_verdict *v) {
     return v->max_score > 0 ? v->score / v->max_score : 0;
 }
 
-/// What is to be said on the whole: the summary and the note, or the reason and the hint.
+/// Writes what is to be said on the whole: the summary and the note, or the reason and the hint.
 static void put_message(hn_strbuf *b, const hn_verdict *v, const char *key) {
     hn_strbuf text;
     hn_strbuf_init(&text);

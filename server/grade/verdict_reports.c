@@ -86,7 +86,7 @@ void hn_verdict_junit(hn_strbuf *b, const hn_verdict *v, const char *submission)
     hn_strbuf_add(b, "  </testsuite>\n");
 }
 
-/// What is to be read off the page at once: colours of both themes, and tables that fold on a
+/// Style of the page: colours of both themes, and tables that fold on a
 /// narrow screen.
 static const char STYLE[] =
     ":root{color-scheme:light dark;--ink:#1a1d21;--muted:#5c626a;--paper:#fcfcfa;--line:#d5d8d4;"
@@ -176,7 +176,7 @@ static void put_outcome(hn_strbuf *b, const hn_verdict *v, bool graded) {
     put_remark(b, v->note);
 }
 
-/// Which variant was graded, or which program with which parameters, and whose it is.
+/// Writes which variant was graded, or which program with which parameters, and whose it is.
 static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     const hn_graded_program *program = v->program;
     hn_strbuf_add(b, program ? "program " : "exercise ");

@@ -400,7 +400,7 @@ static void put_blocks(hn_strbuf *b, const cJSON *nodes, int indent, int width) 
     put_rest(b, nodes ? nodes->child : NULL, indent, width);
 }
 
-/// What was seen in each prediction, below the lesson.
+/// Writes what was seen in each prediction, below the lesson.
 static void put_answers(hn_strbuf *b, const cJSON *blocks, int width) {
     const cJSON *node;
     int n = 0;

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// What a character is: a name keeps apart from its neighbours, an accent joins the letter before
-/// it, digits of one script follow one sign.
+/// Kind of a character: a name keeps apart from its neighbours, an accent joins the
+/// letter before it, digits of one script follow one sign.
 typedef enum kind { SIGN, NAME, ACCENT, RAISED, LOWERED } kind;
 
 // clang-format off

@@ -57,7 +57,7 @@ typedef struct reader {
 
 static void read_until(reader *r, char stop);
 
-/// What follows as one argument: a group in braces, a command, or one character.
+/// Reads what follows as one argument: a group in braces, a command, or one character.
 static void read_argument(reader *r, hn_strbuf *into);
 
 static void read_name(reader *r, char name[MAX_NAME]) {
@@ -147,7 +147,7 @@ static bool read_environment(reader *r) {
     return strstr(name, "matrix") != NULL;
 }
 
-/// What stands between \begin and its \end.
+/// Reads what stands between \begin and its \end.
 static void read_block(reader *r) {
     const bool outer = r->matrix;
     r->matrix = read_environment(r);

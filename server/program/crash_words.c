@@ -33,7 +33,7 @@ static const char *last_line(const char *errors) {
     return found;
 }
 
-/// Of Python: the first line behind the calls, which begins in the first column; of the last
+/// For Python: the first line behind the calls, which begins in the first column; of the last
 /// exception where one followed from another.
 static const char *end_of_traceback(const char *errors) {
     static const char begin[] = "Traceback (most recent call last)";
@@ -91,7 +91,7 @@ static long find_place(const char *errors, const char *name, const char *message
     return found;
 }
 
-/// What is allowed of what ran out; "" where nothing did.
+/// Writes the limit of the resource that ran out; "" where none did.
 static void name_limit(const char *message, const hn_program_limits *limits, char out[80]) {
     static const struct {
         const char *word;

@@ -52,7 +52,7 @@ static const char *const BUBBLEWRAP[] = {
     "--ro-bind-try", "/etc/ld.so.cache", "/etc/ld.so.cache", "--ro-bind-try",
     "/etc/java-17-openjdk", "/etc/java-17-openjdk", "--ro-bind-try", "/etc/java-21-openjdk",
     "/etc/java-21-openjdk", "--proc", "/proc", "--dev", "/dev", NULL};
-/// What the program cannot write to is not only protected, it is read-only.
+/// Places that the program cannot write to are not only protected, they are read-only.
 static const char *const CLOSED[] = {"--size", "1048576",      "--tmpfs", "/dev/shm",     "--chdir",
                                      "/tmp",   "--remount-ro", "/dev",    "--remount-ro", "/",
                                      NULL};

@@ -233,7 +233,7 @@ static bool is_wide(const hn_map_plot *p, int columns) {
     return LABEL_COLUMNS + 2 * p->x.n <= columns;
 }
 
-/// Where a legend beside the map stands; no columns: it has no room there and goes below.
+/// Returns where a legend beside the map stands; no columns: it has no room there and goes below.
 static hn_area beside_map(const hn_map_plot *p, hn_area area) {
     const int x = LABEL_COLUMNS + p->x.n * (is_wide(p, area.columns) ? 2 : 1) + 1;
     const int room = area.columns - x;

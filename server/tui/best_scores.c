@@ -26,7 +26,7 @@ static bool make_folders(char *path) {
     return true;
 }
 
-/// Where the file is, whether it exists or not; false: the user has no folder for state.
+/// Finds where the file is, whether it exists or not; false: the user has no folder for state.
 static bool find_path(char out[MOST_PATH]) {
     const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
     const bool own = state && state[0] == '/';

@@ -67,7 +67,7 @@ void hn_drag_begin(hn_workbench *w, hn_area area, int x, int y) {
 
 // ---- the way ----
 
-/// Where the held point should be: it moves in the plane of the view.
+/// Finds where the held point should be: it moves in the plane of the view.
 static void target_of(const hn_workbench *w, const double at[2], double out[3]) {
     const hn_view *look = &w->envelope.look;
     const double *from = points_now(w) + 3 * w->drag.point;
@@ -104,7 +104,8 @@ static void take_points(hn_tui_drag *d, const cJSON *points) {
     }
 }
 
-/// What holds the point back counts from a few cells on: nobody hits a circle within one.
+/// Takes the answer: a point is held back only from a few cells on: nobody hits a circle within
+/// one.
 static void take_answer(hn_workbench *w, hn_area area, const char *text) {
     const hn_placing p = hn_mechanism_place(w, area);
     cJSON *answer = cJSON_Parse(text);

@@ -285,7 +285,7 @@ static void add_without(hn_strbuf *b, const char *text, const char *word) {
     hn_strbuf_add(b, text);
 }
 
-/// How an answer is typed: quotes belong to files of answers.
+/// Writes how an answer is typed: quotes belong to files of answers.
 static void add_form(hn_strbuf *b, const field *f) {
     const char *form = text_of(f->part, "answer_form");
     hn_strbuf_add(b, "  answer: ");
@@ -370,7 +370,7 @@ static void add_hints(hn_strbuf *b, const hn_tui_exercise *x) {
     hn_variant_reset(&variant);
 }
 
-/// What each answer is worth, where they differ: "2 of 5 answers" are not 2 points then.
+/// Writes what each answer is worth, where they differ: "2 of 5 answers" are not 2 points then.
 static void add_worth(hn_strbuf *b, const hn_verdict *v) {
     if (v->max_score == v->n_entries || v->score >= v->max_score) {
         return;

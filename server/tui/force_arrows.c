@@ -18,7 +18,7 @@ static double round_up(double value) {
     return below >= value ? below : hn_round_125(2.5 * below);
 }
 
-/// What the longest arrow stands for: as before while that suits.
+/// Returns what the longest arrow stands for: as before while that suits.
 static double choose_scale(double largest, double before) {
     const bool suits = largest <= before && largest >= SHORTEST * before;
     return suits ? before : round_up(largest);

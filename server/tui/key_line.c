@@ -77,7 +77,7 @@ static const char *whole_line(const hn_workbench *w, bool more, int columns) {
     }
 }
 
-/// Where the end begins that is never left out: "? menu  q", or the last key.
+/// Returns where the end begins that is never left out: "? menu  q", or the last key.
 static const char *end_of(const char *line) {
     const char *last = strstr(line, "? menu");
     for (const char *at = line; !last && (at = strstr(at, GAP)) != NULL; at += strlen(GAP)) {

@@ -19,7 +19,7 @@ static const double SHARE = 1.0 / 15; // of a processor, for painting; the rest 
 enum { MOST_SIXELS = 1000, MOST_PIXELS = 300000 };
 enum { GUESSED_WIDTH = 8, GUESSED_HEIGHT = 16 }; // [px] of a cell, for kitty, where it is not known
 
-/// What is to be drawn.
+/// Describes what is to be drawn.
 typedef struct subject {
     hn_drawing drawing;
     const hn_envelope *envelope;

@@ -106,7 +106,7 @@ static void add_value(hn_workbench *w, const char *name, double value, const cha
     }
 }
 
-/// Where coordinates and rates start, under the names that settings give them.
+/// Writes where coordinates and rates start, under the names that settings give them.
 static void list_starts(hn_workbench *w) {
     const hn_system *sys = hn_model_system(w->model);
     const hn_scene *scene = hn_model_scene(w->model);
@@ -275,7 +275,7 @@ static void open_lesson(hn_workbench *w, const hn_item *item) {
 
 // ---- keys of panels ----
 
-/// To the list that a panel was opened from; to the workbench where there is none.
+/// Returns to the list that a panel was opened from; to the workbench where there is none.
 static void go_back(hn_workbench *w) {
     const bool reads = w->panel == HN_PANEL_TEXT || w->panel == HN_PANEL_EXERCISE;
     const int lesson = w->lesson;

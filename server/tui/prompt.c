@@ -193,7 +193,7 @@ static void cut_input(hn_workbench *w, int n) {
     w->input[n] = '\0';
 }
 
-/// Where the last word of the line begins.
+/// Returns where the last word of the line begins.
 static int last_word(const hn_workbench *w) {
     int n = w->n_input;
     while (n > 0 && w->input[n - 1] == ' ') {

@@ -7,7 +7,7 @@
 
 enum { NAME_COLUMNS = 15, MOST_NAME = 30, NUMBER_COLUMNS = 9, PAGE = 6, COLUMNS = 6 };
 
-/// What is below this share of the largest force is rounding, and shown as 0.
+/// A force below this share of the largest one is rounding, and shown as 0.
 static const double NOTHING = 1e-10;
 
 void hn_reactions_toggle(hn_workbench *w) {
@@ -66,7 +66,7 @@ static int name_columns(const page *p, int n) {
     return left < NAME_COLUMNS ? NAME_COLUMNS : left > MOST_NAME ? MOST_NAME : left;
 }
 
-/// How many numbers there is room for behind a name.
+/// Returns how many numbers there is room for behind a name.
 static int number_room(const page *p, int n) {
     const int room = (p->area.columns - name_columns(p, n)) / NUMBER_COLUMNS;
     return n < room ? n : room;

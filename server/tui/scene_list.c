@@ -78,8 +78,8 @@ static void list_scene(hn_workbench *w, const cJSON *scene) {
     }
 }
 
-/// How well a scene fits the search, 0 best: its name is what was typed; its name begins so; every
-/// word is in its name or title; every word is somewhere. RANKS: it does not fit.
+/// Returns how well a scene fits the search, 0 best: its name is what was typed; its name begins
+/// so; every word is in its name or title; every word is somewhere. RANKS: it does not fit.
 static int rank(const cJSON *scene, const char *search) {
     const char *id = text_of(scene, TEXTS[0]);
     const bool begins = strncmp(id, search, strlen(search)) == 0;

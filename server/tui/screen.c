@@ -22,7 +22,7 @@
 
 enum { MOST_EVENTS = 16, SUSPEND = 26 /* Ctrl-Z */ };
 
-/// What a terminal answers to the question whether it is well, and the key that stands for it.
+/// Question whether the terminal is well, its answer, and the key that stands for it.
 static const char QUESTION[] = "\033[5n", ANSWER[] = "\033[0n";
 /// Beginnings of answers about pictures, and keys that stand for them.
 static const char NAME[] = "\033[?", PIXELS[] = "\033[4;", GRAPHICS[] = "\033_G";
@@ -79,8 +79,9 @@ static void swallow_answer(void) {
     }
 }
 
-/// What undoes the modes that ncurses sets: keys, colours, the cursor, the other screen with the
-/// title of the window. Made beforehand, as a handler of signals may not ask for it.
+/// Prepares the sequences that undo the modes set by ncurses: keys, colours, the cursor, the other
+/// screen with the title of the window. Made beforehand, as a handler of signals may not ask for
+/// it.
 static void prepare_restoring(void) {
     static const char *const names[] = {"rmkx", "sgr0", "op", "cnorm", "rmcup"};
     size_t n = 0;

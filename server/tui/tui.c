@@ -20,7 +20,7 @@
 
 static const double LATE = 1.5; // [s] until a picture of pixels has arrived
 
-/// What is on the screen.
+/// Content of the screen.
 typedef struct view {
     hn_cells cells;
     hn_mechanism_picture picture;

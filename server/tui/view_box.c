@@ -6,10 +6,10 @@
 #include <string.h>
 
 static const double FOLLOWED = 0.5; // of the envelope's larger side, beyond it
-/// Of the same, on each side: widening takes so much more, so that the view does not change with
-/// every frame.
+/// Share of the same, on each side: widening takes so much more, so that the view does not change
+/// with every frame.
 static const double STEP = 0.05;
-/// Of the same: less than that beyond the view is within the margin of its drawing.
+/// Share of the same: less than that beyond the view is within the margin of its drawing.
 static const double MARGIN = 0.005;
 
 void hn_view_box_begin(hn_workbench *w) {

@@ -210,7 +210,7 @@ static void say_the_rest(hn_cells *c, hn_area line, const hn_workbench *w) {
     hn_cells_put(c, line, line.columns - hn_text_columns(words), 0, HN_CELL_ALARM, 0, words);
 }
 
-/// What was said; else the incident that is news.
+/// Draws the last notice; else the newest incident.
 static void draw_notice(hn_cells *c, const hn_workbench *w) {
     const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
     if (w->message[0]) {
@@ -252,7 +252,7 @@ static const number_column NUMBERS[] = {{"now: gap", "m", gap_of},
                                         {"ops/step", "", step_ops_of}};
 enum { N_NUMBERS = sizeof NUMBERS / sizeof *NUMBERS };
 
-/// Where the columns of the table are, in columns of its inside.
+/// Places of the columns of the table, in columns of its inside.
 typedef struct table_columns {
     int name, numbers, number, verdict; ///< number: width of one
     int name_width;
@@ -274,7 +274,7 @@ static bool differs(const hn_method_spec *spec, const hn_method_spec *than, int 
 }
 
 /// Adds the options of the formulation that differ from their defaults, or from those of another
-/// method (NULL: none): " 20/20" of Baumgarte, " unit-length". Of two numbers both are said, of
+/// method (NULL: none): " 20/20" of Baumgarte, " unit-length". Both of two numbers are shown, of
 /// more those that differ, with their keys.
 static void add_options(const hn_method_spec *spec, const hn_method_spec *than, char *out,
                         size_t size) {
@@ -388,7 +388,7 @@ static table_columns lay_out(const hn_workbench *w, int width) {
     return (table_columns){3, numbers, number, 3 + longest + numbers * number + 1, longest};
 }
 
-/// Where number i ends.
+/// Returns where number i ends.
 static int number_end(table_columns at, int i) {
     return at.verdict - 1 - (at.numbers - 1 - i) * at.number;
 }

@@ -12,7 +12,7 @@
 
 enum { MOST_INCIDENTS = 512 };
 
-/// How the result of a trial begins that was not made, or not to its end.
+/// First words for a trial that was not made, or not to its end.
 static const char NOT_TRIED[] = "not tried";
 
 /// Writes remedy k of an incident: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)"
@@ -55,7 +55,7 @@ static bool is_again(const hn_incident *list, const int *whose, int i) {
     return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
 }
 
-/// What an incident is to its method, in the order of the card.
+/// Weight of an incident for its method, in the order of the card.
 typedef enum standing { ENDING, ERROR, WARNING, STANDINGS } standing;
 
 static standing standing_of(const hn_workbench *w, const hn_incident *incident) {
@@ -125,7 +125,7 @@ static bool tells_count(const hn_incident *list, const int *entry, int e) {
     return is_first && list[entry[e]].times > HN_INCIDENT_MOST_OF_ONE_KIND;
 }
 
-/// What entry e says of its incident.
+/// Writes what entry e says of its incident.
 static void put_message(page *p, const hn_incident *list, const int *entry, int e) {
     const hn_incident *incident = &list[entry[e]];
     char line[640], message[480];
@@ -138,7 +138,7 @@ static void put_message(page *p, const hn_incident *list, const int *entry, int 
     put(p, 0, HN_CELL_ALARM, line);
 }
 
-/// What to try against entry e that is not said above: what runs already comes last.
+/// Writes what to try against entry e that is not said above: what runs already comes last.
 static void put_remedies(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
                          int e) {
     const hn_incident *incident = &list[entry[e]];
@@ -168,8 +168,8 @@ static void put_step(page *p, const hn_workbench *w) {
     }
 }
 
-/// What became of the method: the entry that ended it (`ending`: it is the first one), why it ended
-/// where no entry says so, or the worst of it and whether its step is the cause.
+/// Writes what became of the method: the entry that ended it (`ending`: it is the first one), why
+/// it ended where no entry says so, or the worst of it and whether its step is the cause.
 static void put_head(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
                      bool ending) {
     const hn_track_end end = hn_recording_end(w->recording, w->selected);

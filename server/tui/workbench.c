@@ -172,7 +172,8 @@ void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags) {
                      diags->n > 0 && d->hint[0] ? "; " : "", diags->n > 0 ? d->hint : "");
 }
 
-/// What outlives a change of the scene: how it is shown, the panel, what can be undone.
+/// Carries over what outlives a change of the scene: how it is shown, the panel, what can be
+/// undone.
 static void carry_over(hn_workbench *to, hn_workbench *from) {
     to->form = from->form;
     to->pictures = from->pictures;
@@ -229,7 +230,7 @@ int hn_workbench_frame(const hn_workbench *w) {
     return now < 0 ? 0 : now > ready ? (ready < 0 ? 0 : ready) : now;
 }
 
-/// Where the joint forces cannot be computed, their view closes and the fault is said.
+/// Opens the joint forces; if they cannot be computed, closes their view and reports the fault.
 static void open_forces(hn_workbench *w) {
     const hn_model_source source = hn_workbench_source(w);
     hn_diags diags = {0};

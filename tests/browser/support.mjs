@@ -68,7 +68,7 @@ export async function startServer(options = []) {
     child.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${text}`)));
   });
   let stopped = false;
-  /** How it ended although nobody asked it to; "" while it serves. */
+  /** Returns how it ended although nobody asked it to; "" while it serves. */
   const ended = () => {
     const how = child.signalCode ?? child.exitCode;
     return stopped || how === null ? "" : `the server ended with ${how}: ${text.slice(-2000)}`;
@@ -102,7 +102,7 @@ export async function startBrowser(more = []) {
   return chromium.launch({ executablePath: CHROMIUM, args: [...FLAGS, ...more] });
 }
 
-/** What the page must not do, noted while it lives. @returns {string[]} */
+/** Returns what the page must not do, noted while it lives. @returns {string[]} */
 function watch(page, host) {
   const faults = [];
   page.on("console", (message) => {
@@ -333,7 +333,7 @@ export async function soon(check, timeout = PATIENCE) {
 }
 
 /**
- * Where an element is on the screen: one that is drawn anew has no place for a moment.
+ * Returns where an element is on the screen: one that is drawn anew has no place for a moment.
  * @param {import("playwright-core").Locator} locator
  */
 export async function screenBox(locator) {
@@ -358,7 +358,7 @@ export function drawn(page) {
   );
 }
 
-/** Where a joint is on the screen: the pin nearest to its name. */
+/** Returns where a joint is on the screen: the pin nearest to its name. */
 export async function jointAt(page, name) {
   await drawn(page);
   return page.evaluate((wanted) => {

@@ -101,7 +101,7 @@ function watchLinks() {
 async function openLinks({ links, limit }) {
   const faults = [];
   const nextFrame = () => new Promise((done) => requestAnimationFrame(done));
-  /** What is not yet as it should be, or "". @param {string[]} wanted */
+  /** Returns what is not yet as it should be, or "". @param {string[]} wanted */
   const missing = (wanted) => {
     const now = globalThis.whole();
     const n = now.methods.length;

@@ -18,7 +18,7 @@ const { open } = createBench();
 const SCHEMA = JSON.parse(readFileSync(join(ROOT, "core/scene/scene.schema.json"), "utf8"));
 const FOUR_BAR = readFileSync(join(ROOT, "lessons/01-closed-loops/scenes/four-bar.json"), "utf8");
 
-/** What is offered where a bar stands in the text. */
+/** Returns what is offered where a bar stands in the text. */
 function offered(text) {
   const at = text.indexOf("|");
   const whole = text.replace("|", "");

@@ -77,7 +77,7 @@ test("the recording becomes one file that plays without a server", async (t) => 
   assert.deepEqual(faults, []);
 });
 
-/** How many pixels of the film's first and last pictures are not those of a picture. */
+/** Returns how many pixels of the film's first and last pictures are not those of a picture. */
 const otherPixels = (page, film, picture) =>
   page.evaluate(
     async ([webm, png]) => {

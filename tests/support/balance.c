@@ -234,7 +234,7 @@ static void differentiate(const hn_scene *scene, pose *const poses[TIMES], int b
     }
 }
 
-/// What a formula of a load may name, by value.
+/// Describes what a formula of a load may name, by value.
 typedef struct names {
     const hn_system *sys;
     double t;

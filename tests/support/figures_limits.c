@@ -52,7 +52,7 @@ static double limit_of(const hn_stepper *s, double (*radius)(const hn_stepper *,
     return low;
 }
 
-/// Where the radius is least, between 0 and the limit.
+/// Returns where the radius is least, between 0 and the limit.
 static double fastest(const hn_stepper *s, double limit, double *radius) {
     double best = 0;
     *radius = 1;

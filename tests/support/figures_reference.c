@@ -58,7 +58,7 @@ static const struct {
      "the printed digits were cut where their energy was off by 2e-11 J"},
 };
 
-/// How far a pose of the four-bar is open [m].
+/// Returns how far a pose of the four-bar is open [m].
 static double opening(const hn_model *m, const double *q) {
     hn_eval *phi = NULL;
     assert_int_equal(hn_eval_create(m->sys, HN_TERM_PHI, m->arena, &phi), HN_OK);

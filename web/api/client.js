@@ -31,7 +31,7 @@ export class Problem extends Error {
   }
 }
 
-/** What to tell of whatever was thrown. @param {unknown} error */
+/** Returns what to tell of whatever was thrown. @param {unknown} error */
 export function sentenceOf(error) {
   return error instanceof Problem
     ? error.sentence

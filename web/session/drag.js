@@ -39,8 +39,8 @@ export function createDragActions(store, exchange, notice) {
   const parametersOf = (settings) => settingsWithStart(settings, null);
 
   /**
-   * What a wish makes: of a start the configuration nearest to it, of a length the very start that
-   * the run will have with it.
+   * Returns what a wish makes: of a start the configuration nearest to it, of a length the very
+   * start that the run will have with it.
    * @param {Drag} drag @param {any} wish
    * @returns {Promise<Drag>}
    */

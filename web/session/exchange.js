@@ -125,7 +125,7 @@ export function createExchange(store, notice) {
     }
   }
 
-  /** What makes the present comparison again. */
+  /** Returns what makes the present comparison again. */
   const presentBody = () => ({
     scene: sourceOf(data),
     parameters: data.settings,

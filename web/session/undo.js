@@ -13,7 +13,8 @@ const TOGETHER = 1000; // [ms] between changes of one value, as by a slider: the
 const MOST_NAMED = 3; // values that a tip names
 
 /**
- * What differs between two snapshots. Each choice of a shipped scene is a difference of its own.
+ * Returns what differs between two snapshots. Each choice of a shipped scene is a difference of its
+ * own.
  * @param {string} a @param {string} b
  */
 function differenceOf(a, b) {
@@ -31,7 +32,7 @@ function differenceOf(a, b) {
   ].join();
 }
 
-/** Which values changed, in words; "" where none did. */
+/** Returns which values changed, in words; "" where none did. */
 function settingWords(one, other) {
   const names = [...new Set([...Object.keys(one), ...Object.keys(other)])];
   const changed = names.filter((name) => one[name] !== other[name]);
@@ -47,7 +48,7 @@ function settingWords(one, other) {
 }
 
 /**
- * What was changed between two snapshots, in words.
+ * Returns what was changed between two snapshots, in words.
  * @param {any} one @param {any} other
  */
 export function changeWords(one, other) {

@@ -24,8 +24,8 @@ export function readChoice(form) {
 }
 
 /**
- * How an answer is written in a field: quotes belong to files of answers. What follows of a choice
- * are its options.
+ * Returns how an answer is written in a field: quotes belong to files of answers. What follows of a
+ * choice are its options.
  * @param {Part} part
  */
 export const formOf = ({ kind, answer_form: form }) =>
@@ -63,7 +63,7 @@ export function matrixOf(submission) {
 }
 
 /**
- * How many answers are right, and why there can be more of them than parts.
+ * Returns how many answers are right, and why there can be more of them than parts.
  * @param {{summary: string, entries: {name: string}[]}} verdict
  */
 export const summaryOf = ({ summary, entries }) =>

@@ -147,8 +147,8 @@ export const triesOfIncident = ({ remedies, tried }) =>
   remedies.map((text, i) => ({ ...tryOfRemedy(text), said: tried?.[i] ?? "" }));
 
 /**
- * What a step costs: operations, exactly, and the computing time of the latest frames with the
- * range of its middle half.
+ * Returns what a step costs: operations, exactly, and the computing time of the latest frames with
+ * the range of its middle half.
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
  */
 export function costWords(data, m, shown) {
@@ -184,7 +184,7 @@ export function estimateWords(data, m) {
   return `Largest error until ${seconds(Number(t), data.duration)}, estimated by a pilot run at tight tolerance: ${listed(sizes.filter(Boolean))}.${ended}`;
 }
 
-/** What happened to a method until the frame shown, with numbers. */
+/** Returns what happened to a method until the frame shown, with numbers. */
 function happenedWords(data, m, shown) {
   const { history, latest } = data;
   const trend = trendOf(history, m, shown);

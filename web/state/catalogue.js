@@ -33,7 +33,7 @@ export function readIndex(index) {
   };
 }
 
-/** What the server allows. @returns {{methods: number}} */
+/** Returns what the server allows. @returns {{methods: number}} */
 export const limits = () => known;
 
 /**
@@ -58,7 +58,7 @@ export function presets() {
 export const partsOfBudget = (of) => studyOf("budget")?.parts?.[of] ?? [];
 
 /**
- * How many methods a study takes at most.
+ * Returns how many methods a study takes at most.
  * @param {string} kind
  */
 export const mostMethods = (kind) =>

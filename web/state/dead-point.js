@@ -90,7 +90,9 @@ export function deadPointsOf({ history, scene }, m, shown) {
   return found.filter(({ frame }) => frame <= shown);
 }
 
-/** What is true at every dead point. @param {string} name of the coordinate that turns back */
+/**
+ * Returns what is true at every dead point. @param {string} name of the coordinate that turns back
+ */
 const atDeadPoint = (name) =>
   `A force along ${name} moves nothing then, and ${name} does not determine the configuration`;
 
@@ -126,7 +128,8 @@ function longestSound(data, shown) {
 }
 
 /**
- * What became of the methods where none is right: how many stopped, how many run on and are wrong.
+ * Returns what became of the methods where none is right: how many stopped, how many run on and are
+ * wrong.
  * @param {import("./store.js").Data} data @param {number} shown a frame where none is right
  */
 function fatesWords({ history, methods }, shown) {
@@ -199,7 +202,7 @@ export function noDeadPointWords(data, shown) {
     : `${none} None is listed after that: ${fatesWords(data, shown)} since. A smaller step lists more.`;
 }
 
-/** How a method fares at a dead point of a coordinate. */
+/** Returns how a method fares at a dead point of a coordinate. */
 function fateWords({ formulation, label }) {
   if (formulation === "partitioning") {
     return `${label} takes another coordinate before it comes there.`;
@@ -210,9 +213,9 @@ function fateWords({ formulation, label }) {
 }
 
 /**
- * What happens at dead points, and which coordinate loses its grip; null where there was none.
- * `isNear`: it was passed a moment ago. `tries`: a method that integrates the very coordinate that
- * turned back, and stops there.
+ * Returns what happens at dead points, and which coordinate loses its grip; null where there was
+ * none. `isNear`: it was passed a moment ago. `tries`: a method that integrates the very coordinate
+ * that turned back, and stops there.
  * @param {import("./store.js").Data} data @param {number} m @param {number} shown
  * @returns {{
  *   title: string, words: string, isNear: boolean, tries: import("./cards.js").Try[],

@@ -62,7 +62,7 @@ function productOf({ sign, text }, { times, read }) {
   return { sign, text, angles, rest: rest.join(times) };
 }
 
-/** What a pair of products is together, or "". */
+/** Returns what a pair of products is together, or "". */
 function pairOf(a, b, writing) {
   if (a.angles.length !== 2 || b.angles.length !== 2 || a.rest !== b.rest) {
     return "";

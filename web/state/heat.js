@@ -98,7 +98,8 @@ export function heatSentences(map, method, length, valueOf) {
 const spaced = (axis, value) => (axis.scale === "log" ? Math.log(value) : value);
 
 /**
- * Where a value stands on an axis, in cells from its lower end; beyond it where the axis ends.
+ * Returns where a value stands on an axis, in cells from its lower end; beyond it where the axis
+ * ends.
  * @param {any} axis @param {number} value
  */
 export function placeOnAxis(axis, value) {
@@ -135,7 +136,8 @@ export function axesWith({ x, y }, present) {
 const isOfBaumgarte = ({ x, y }) => x?.name === "alpha" && y?.name === "beta";
 
 /**
- * Where a map over α and β has critical damping (α = β), in cells from the lower left corner.
+ * Returns where a map over α and β has critical damping (α = β), in cells from the lower left
+ * corner.
  * @param {any} map document
  * @returns {[number, number][] | null} two ends, or null
  */

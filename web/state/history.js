@@ -103,7 +103,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
   }
 
   /**
-   * What came, or what was there before; NaN where nothing ever came.
+   * Returns what came, or what was there before; NaN where nothing ever came.
    * @param {Float64Array} rows
    * @param {number} width
    * @param {number[] | undefined} values

@@ -85,7 +85,7 @@ function walk(text, end) {
   return { places, open, string, path: pathOf() };
 }
 
-/** Where each value begins, by its pointer. @param {string} text */
+/** Returns where each value begins, by its pointer. @param {string} text */
 export const placesOf = (text) => walk(text, text.length).places;
 
 /** @param {string} text @param {number} caret @returns {Caret} */

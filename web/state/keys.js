@@ -107,7 +107,7 @@ export function keyName(key) {
   return key.shown ?? key.key;
 }
 
-/** What tells two bindings apart. @param {Key} key */
+/** Returns what tells two bindings apart. @param {Key} key */
 export function bindingOf(key) {
   return `${key.context} ${key.shift ? "shift+" : ""}${key.key}`;
 }

@@ -144,7 +144,7 @@ export function createKinematics(scene) {
 }
 
 /**
- * Where a joint is and along which axes, seen from one of its bodies.
+ * Returns where a joint is and along which axes, seen from one of its bodies.
  * @param {Joint} joint
  * @param {(Frame | null)[]} frames
  * @param {boolean} ofChild

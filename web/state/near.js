@@ -4,7 +4,9 @@
 
 const MOST = 3;
 
-/** How many signs must be put in, taken out or changed. @param {string} a @param {string} b */
+/**
+ * Returns how many signs must be put in, taken out or changed. @param {string} a @param {string} b
+ */
 function distance(a, b) {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j);
   for (let i = 1; i <= a.length; i++) {

@@ -6,7 +6,8 @@ import { settingOf } from "./spelling.js";
 import { listed } from "./verdict.js";
 
 /**
- * Which methods run at other steps than the one that the scene's texts tell of; "" where none does.
+ * Returns which methods run at other steps than the one that the scene's texts tell of; "" where
+ * none does.
  * @param {Pick<import("./store.js").Data, "scene" | "methods" | "catalogue">} data
  */
 export function otherSteps({ scene, methods, catalogue }) {

@@ -74,7 +74,7 @@ export function misfitsOf(catalogue, formulation) {
 }
 
 /**
- * What a formulation hands over, in words.
+ * Returns what a formulation hands over, in words.
  * @param {Catalogue} catalogue
  * @param {string} formulation
  */
@@ -103,7 +103,7 @@ export function choosePartner(catalogue, formulation, before, shared) {
 }
 
 /**
- * What is wrong with a value written for a setting; "" when nothing.
+ * Returns what is wrong with a value written for a setting; "" when nothing.
  * @param {any} setting of a card
  * @param {string} text
  */

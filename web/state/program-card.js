@@ -29,8 +29,8 @@ const servesAny = ({ forms }) => forms.includes("ode");
 const PROVIDES = /^the program provides (accelerations|step|solve)$/;
 
 /**
- * What a program provides, as the server says it where a method does not fit; "" where a refusal
- * is about something else.
+ * Returns what a program provides, as the server says it where a method does not fit; "" where a
+ * refusal is about something else.
  * @param {{detail: string}[]} errors of a problem document
  */
 export const providedBy = (errors) => PROVIDES.exec(errors[0]?.detail ?? "")?.[1] ?? "";

@@ -17,7 +17,8 @@ export function pickFrames(count, most) {
 }
 
 /**
- * Where words change: [index, words] of the first and of every one that differs from that before.
+ * Returns where words change: [index, words] of the first and of every one that differs from that
+ * before.
  * @param {string[]} words @returns {[number, string][]}
  */
 export const changesOf = (words) =>

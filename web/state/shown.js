@@ -14,7 +14,7 @@ import { anglesOf, lookFrom } from "./look.js";
  * }} SpaceView camera: half the height that is seen and the middle of it [m], or empty: as it fits
  */
 
-/** What the plots show at first. @returns {Record<string, Plot>} */
+/** Returns what the plots show at first. @returns {Record<string, Plot>} */
 export const firstPlots = () => ({
   upper: { of: "off", turned: false, table: false, coordinate: "" },
   lower: { of: "gap", turned: false, table: false, coordinate: "" },
@@ -74,8 +74,8 @@ const plotOf = ([of, ...rest]) => ({
 const hasCoordinate = (scene, name) => scene?.coordinates?.some((one) => one.name === name);
 
 /**
- * What was asked for of the error budget of the scene that is open: the coordinate, or "", the end
- * and the step [s], or 0.
+ * Returns what was asked for of the error budget of the scene that is open: the coordinate, or "",
+ * the end and the step [s], or 0.
  * @param {import("./store.js").Data["view"]} view
  * @param {import("./types.js").Scene} scene
  */

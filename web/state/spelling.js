@@ -55,7 +55,7 @@ export function formatSpelling(spelling) {
 }
 
 /**
- * What is known of a formulation or an integrator; a program of one's own has a card too.
+ * Returns what is known of a formulation or an integrator; a program of one's own has a card too.
  * @param {{formulations: any[], integrators: any[]}} catalogue
  * @param {"formulation" | "integrator"} kind
  * @param {string} name
@@ -73,8 +73,8 @@ export function cardOf(catalogue, kind, name) {
 }
 
 /**
- * What the catalogue says of a setting that this method has; undefined when it has none of that
- * key.
+ * Returns what the catalogue says of a setting that this method has; undefined when it has none of
+ * that key.
  */
 export function settingOf(catalogue, spelling, key) {
   const parsed = parseSpelling(spelling);

@@ -33,7 +33,7 @@ export const snapped = (place, grid) =>
   place.map((x) => Number((Math.round(x / grid) * grid).toPrecision(12)));
 
 /**
- * What holds a dragged mechanism back, or where the dragged point is.
+ * Returns what holds a dragged mechanism back, or where the dragged point is.
  * @param {{reached: boolean, reason: string | null}} answer
  */
 export const isHeld = ({ reached, reason }) => !reached && Boolean(reason);

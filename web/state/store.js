@@ -42,7 +42,7 @@ export const EVENTS = [
   "theme",
 ];
 
-/** What is shown, and how. */
+/** Returns what is shown, and how. */
 function initialView() {
   return {
     selected: 0,
@@ -182,10 +182,10 @@ export function createStore() {
   };
 }
 
-/** What requests call the scene by: its id, or the whole of it. @param {Data} data */
+/** Returns what requests call the scene by: its id, or the whole of it. @param {Data} data */
 export const sourceOf = (data) => data.document ?? data.scene?.id ?? "";
 
-/** What makes the present runs again, but for their speed. @param {Data} data */
+/** Returns what makes the present runs again, but for their speed. @param {Data} data */
 export const madeOf = (data) => ({
   scene: sourceOf(data),
   settings: data.settings,

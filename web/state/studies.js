@@ -80,7 +80,7 @@ function widerAxes(catalogue, spelling, keys) {
 }
 
 /**
- * What the server is asked.
+ * Returns what the server is asked.
  * @param {string} kind
  * @param {{
  *   scene: {id: string}, document?: object | null,
@@ -129,7 +129,7 @@ export function orderOf(
 }
 
 /**
- * What tells studies apart: the request without what the study chooses itself.
+ * Returns what tells studies apart: the request without what the study chooses itself.
  * @param {{kind: string, methods: string[], preset?: string, over?: string}} order
  */
 export function signatureOf(order) {

@@ -86,7 +86,9 @@ export const NOT_RUN = ["pending", "skipped", "left out"];
  *   the two halves of the samples are, as a ratio; both only where the cost is a time
  */
 
-/** What a point that failed would have cost: as its neighbour, by the ratio of the sizes. */
+/**
+ * Returns what a point that failed would have cost: as its neighbour, by the ratio of the sizes.
+ */
 function costOfFailed(points, k, costOf) {
   const done = points.filter((p) => p.state === "done" && costOf(p) > 0);
   const near = done.sort(
@@ -151,7 +153,7 @@ const sizeWords = (name, size) =>
   name === "h" ? `h = ${quantity(size, "s")}` : `rtol = ${Number(size.toPrecision(2))}`;
 
 /**
- * Which points were left out, and why; "" where all were run.
+ * Returns which points were left out, and why; "" where all were run.
  * @param {any} study
  * @param {(m: number) => string} labelOf
  */
@@ -190,7 +192,7 @@ export function labelsIn(document, methods) {
 }
 
 /**
- * What is missing in a document of whatever kind, in a few words; "" where nothing is.
+ * Returns what is missing in a document of whatever kind, in a few words; "" where nothing is.
  * @param {any} document
  * @param {(m: number) => string} labelOf
  */
@@ -211,7 +213,10 @@ export function missingIn(document, labelOf) {
 export const floorOf = (study, error) =>
   study.wanted.above_reference * (study.reference.error[error] ?? 0);
 
-/** How the points of a study are read for a wanted accuracy. @returns {import("./wanted.js").Rule} */
+/**
+ * Returns how the points of a study are read for a wanted accuracy.
+ * @returns {import("./wanted.js").Rule}
+ */
 export const ruleOf = (study, error) => ({
   margin: study.wanted.margin,
   floor: floorOf(study, error),
@@ -248,7 +253,8 @@ export function sentencesOf(study, error, cost, labelOf = (m) => study.methods[m
 }
 
 /**
- * What an error of a position means on this mechanism; "" for other errors, which say it themselves.
+ * Returns what an error of a position means on this mechanism; "" for other errors, which say it
+ * themselves.
  * @param {string} error @param {number} length [m] of the scene
  */
 export const meaningOf = (error, length) =>
@@ -290,8 +296,8 @@ export function frameOf(dots, floor) {
 }
 
 /**
- * Where the parts of a sum stand on a line: negative ones to the left of 0, positive ones to the
- * right, in shares of the longer side.
+ * Returns where the parts of a sum stand on a line: negative ones to the left of 0, positive ones
+ * to the right, in shares of the longer side.
  * @param {Record<string, number | null>} parts
  * @param {{name: string}[]} order
  * @returns {{name: string, value: number, from: number, to: number}[]} -1 .. 1
@@ -328,7 +334,7 @@ export const CLASSES = {
 };
 
 /**
- * Where the predicted boundary runs, in cells from the lower left corner: lines of points.
+ * Returns where the predicted boundary runs, in cells from the lower left corner: lines of points.
  * @param {any} map document @param {any} method of it
  * @returns {[number, number][][]}
  */

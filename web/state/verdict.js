@@ -37,7 +37,7 @@ function hasJumped(history, m, shown) {
 }
 
 /**
- * How the loop gap develops until the frame shown.
+ * Returns how the loop gap develops until the frame shown.
  * @typedef {{word: string, arrow: string, tone: "calm" | "warn" | "bad"}} Trend
  * @param {import("./history.js").History} history
  * @param {number} m
@@ -135,7 +135,7 @@ function rightDigits({ offShare, energyShare }, reference) {
   return { digits: Math.min(most, own), more: most < own };
 }
 
-/** What is said of an error without a reference. @param {any} data @param {number} m */
+/** Returns what is said of an error without a reference. @param {any} data @param {number} m */
 const unknownWords = (data, m) =>
   Number.isFinite(data.latest?.methods[m]?.error_estimate?.q)
     ? "error only estimated"

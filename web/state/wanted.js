@@ -59,7 +59,8 @@ export function wantedError(text, error, length) {
 const between = (a, b, share) => (share > 0 ? a * (b / a) ** share : a);
 
 /**
- * Where one method reaches an accuracy at the least cost, as the engine finds it (hn_wp_reach).
+ * Returns where one method reaches an accuracy at the least cost, as the engine finds it
+ * (hn_wp_reach).
  * @param {Dot[]} dots of one method, the coarsest first
  * @param {number} wanted
  * @param {(dot: Dot) => number} claimed
@@ -125,7 +126,7 @@ export function sizeToRun({ size, measured }) {
 }
 
 /**
- * Who reaches an accuracy, the cheapest first.
+ * Returns who reaches an accuracy, the cheapest first.
  * @param {Dot[][]} dots by method
  * @param {number} wanted
  * @param {Rule} rule
@@ -134,8 +135,8 @@ export const cheapestFor = (dots, wanted, rule) =>
   dots.flatMap((list) => reachOf(list, wanted, rule)).sort((a, b) => a.cost - b.cost);
 
 /**
- * How steady the time of a point was measured, as the engine's own ranking reads it: quartiles and
- * medians of the halves count.
+ * Returns how steady the time of a point was measured, as the engine's own ranking reads it:
+ * quartiles and medians of the halves count.
  * @param {{median: number, low: number, high: number, halves: number[]}} cpu
  */
 export const steadinessOf = ({ median, low, high, halves }) => ({

@@ -24,8 +24,9 @@ const justPassed = ({ incidents, view }, now) =>
   );
 
 /**
- * How the runs came through the singular configuration that was passed: "two branches of motion
- * cross there; index-1 and reduced stayed on the smooth path"; "" where the engine does not say.
+ * Returns how the runs came through the singular configuration that was passed: "two branches of
+ * motion cross there; index-1 and reduced stayed on the smooth path"; "" where the engine does not
+ * say.
  * @param {import("./store.js").Store["data"]} data
  * @param {import("./store.js").Incident[]} passed
  */
@@ -70,8 +71,8 @@ export function passedAt(data, shown) {
 }
 
 /**
- * What the engine predicts at the time shown: "singular configuration in 0.31 s: J loses rank
- * (index-1 and projection)", or "".
+ * Returns what the engine predicts at the time shown: "singular configuration in 0.31 s: J loses
+ * rank (index-1 and projection)", or "".
  * @param {import("./store.js").Store["data"]} data
  * @param {number} shown
  */

@@ -38,7 +38,9 @@ export function createExportDialog(el, store, actions, mechanism) {
       caption: caption(),
     });
 
-  /** What the picture shows: scene, time, and each method that is drawn with its verdict. */
+  /**
+   * Returns what the picture shows: scene, time, and each method that is drawn with its verdict.
+   */
   function caption() {
     const { scene, history, methods, view, look, theme, reference } = data;
     const now = shownIndex(data);

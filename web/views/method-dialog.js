@@ -212,7 +212,7 @@ export function createMethodDialog(el, store, actions) {
     return names.length ? `, here ${names.slice(0, MOST_NAMED).join(", ")}${more}` : "";
   }
 
-  /** What may be written, and what it means: "0 to 1, 0.2 if left out: ...". */
+  /** Returns what may be written, and what it means: "0 to 1, 0.2 if left out: ...". */
   function hintOf(setting) {
     const range = setting.choices?.length
       ? ""

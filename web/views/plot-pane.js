@@ -166,7 +166,7 @@ export function createPlotPane(data, actions, { id, onHover, onZoom }) {
     phase.draw(orbits, shownIndex(data), { x: coordinate.name, y: coordinate.rate });
   }
 
-  /** How a method is drawn. */
+  /** Returns how a method is drawn. */
   const styleOf = (method, m) => ({
     label: method.label,
     colour: data.look.slots[method.slot][data.theme],

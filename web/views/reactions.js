@@ -136,7 +136,10 @@ export function createReactions(el, store, actions) {
       : "";
   }
 
-  /** What to know of a force before it is used. @param {import("../state/reactions.js").Reaction} item */
+  /**
+   * Returns what to know of a force before it is used.
+   * @param {import("../state/reactions.js").Reaction} item
+   */
   function remarkOf(item) {
     const gap = tornBy(item);
     const torn = `this loop is open by ${quantity(gap, "m")}: the force belongs to a mechanism that has come apart, not to this joint`;

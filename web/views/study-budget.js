@@ -125,7 +125,7 @@ export function createStudyBudget(store, actions) {
   const study = () => data.studies.budget.document;
   const labelOf = (m) => data.methods[m]?.label ?? study().methods[m].method;
 
-  /** What is accounted for: the total, its unit and its parts; or why there is nothing. */
+  /** Returns what is accounted for: the total, its unit and its parts; or why there is nothing. */
   function budgetOf(method) {
     const budget = method[shown.name];
     return budget

@@ -26,7 +26,7 @@ export const SWEET_SPOT =
   "between, and it is another one for the gap, the motion and the energy.";
 const GREEK = { alpha: "α", beta: "β" };
 
-/** What an axis is called. @param {{name: string, unit: string}} axis */
+/** Returns what an axis is called. @param {{name: string, unit: string}} axis */
 export const titleOf = (axis) =>
   `${GREEK[axis.name] ?? axis.name}${axis.unit ? `, ${prettyUnit(axis.unit)}` : ""}`;
 /** A value on it. @param {{name: string, unit: string}} axis @param {number} value */

@@ -104,7 +104,7 @@ export function createStudyMap(store, actions) {
     return `${labelOf(method)}, ${where}: ${outcome}${figures}${margin}`;
   }
 
-  /** What values on the axes set. @param {any} method @param {number} atX @param {number} atY */
+  /** Values on the axes as settings. @param {any} method @param {number} atX @param {number} atY */
   function changeTo(method, atX, atY) {
     const m = placeOf(method.method);
     const { x, y } = map();
@@ -126,7 +126,7 @@ export function createStudyMap(store, actions) {
     return { m, spelling, parameters, words: `${labelOf(method)}: ${words}` };
   }
 
-  /** What a click on a cell sets. */
+  /** Returns what a click on a cell sets. */
   function changeOf(method, i, j) {
     const { x, y } = map();
     const rounded = (axis, at) => Number(axis?.values[at].toPrecision(4));

@@ -122,7 +122,7 @@ export function createTransport(el, store, actions) {
     play.focus();
   }
 
-  /** What a press of Play does now. */
+  /** Returns what a press of Play does now. */
   function playWord() {
     if (data.state === "running" || data.view.replaying) {
       return "Pause";

@@ -15,7 +15,9 @@ const EDGE = 8; // [px] between the card and the edges of what it lies in
 const LEAST = 200; // [px] of a card that is scrolled
 const MOST_GROUPS = 4;
 
-/** What a part that opens is called; times in it may have changed. @param {HTMLElement} fold */
+/**
+ * Returns what a part that opens is called; times in it may have changed. @param {HTMLElement} fold
+ */
 const titleOf = (fold) => fold.querySelector("summary")?.textContent?.replace(/ at .*/, "") ?? "";
 
 /**

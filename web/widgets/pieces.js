@@ -128,7 +128,8 @@ export function createPen(scene, camera, size) {
   }
 
   /**
-   * How far along d from p something may be: the picture, and in space no farther than the motion.
+   * Returns how far along d from p something may be: the picture, and in space no farther than the
+   * motion.
    */
   function reachOf(p, d) {
     const within = (component, low, high, from) =>

@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// What is left of a row below this part of it is rounding: rows are known to about 1e-14, a
+/// The rest of a row below this part of it is rounding: rows are known to about 1e-14, a
 /// combination of tens of them to 1e-12.
 static const double FOLLOWS = 1e-9;
 /// A row is part of a combination when it brings more than this of its length; also well above

@@ -210,7 +210,8 @@ static void scale_entries(const hn_assembler *s, const double *d, bool unit_rows
     }
 }
 
-/// Of a large mechanism whose rows stand well apart, entry by entry. *found = 0: they may not.
+/// Solves entry by entry for a large mechanism whose rows stand well apart. *found = 0: they may
+/// not.
 static hn_status find_sigma_sparse(const hn_assembler *s, const double *d, hn_assembly *report,
                                    int *found) {
     const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_J, &row, &col);

@@ -63,7 +63,8 @@ static bool row_moves_with(const finder *f, int row, int user) {
     return !hn_is_zero(row_times(f, row, user));
 }
 
-/// How willingly a coordinate is taken as independent: a motor first, then what the user holds.
+/// Returns how willingly a coordinate is taken as independent: a motor first, then what the user
+/// holds.
 static int willingness(const hn_coordinate *c) {
     return 4 * (c->actuated != 0) + 2 * (c->q0_pinned != 0) + (c->v0_pinned != 0);
 }
@@ -101,9 +102,9 @@ static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts 
     }
 }
 
-/// Where the joint of a coordinate stands on the way round a loop: out along the bodies that carry
-/// the cut joint's parent (from the ground on), then along those that carry its child. The order of
-/// scene formulas is kept.
+/// Returns where the joint of a coordinate stands on the way round a loop: out along the bodies
+/// that carry the cut joint's parent (from the ground on), then along those that carry its child.
+/// The order of scene formulas is kept.
 static int place_in_ring(const hn_system *sys, int loop, int user) {
     const hn_scene *scene = hn_system_scene(sys);
     int coordinate = hn_system_user_coordinate(sys, user);

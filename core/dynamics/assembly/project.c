@@ -114,7 +114,7 @@ static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     return p->saddle && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
-/// How much a velocity of 1 can change a row, at most. Where all rows are lengths, an angular
+/// Finds how much a velocity of 1 can change a row, at most. If all rows are lengths, an angular
 /// velocity counts by the length, so that nothing depends on the size of the mechanism. Rows of a
 /// scene of formulas have no unit; the length of such a scene is the arm by which angles move them,
 /// so the same holds there.

@@ -229,7 +229,7 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
     return HN_OK;
 }
 
-/// How the rates turn the body of a point, in world axes.
+/// Finds how the rates turn the body of a point, in world axes.
 static hn_status spin_of_body(void *self, int p, hn_span *out) {
     hn_mech *m = self;
     hn_relative rel;

@@ -273,7 +273,7 @@ static hn_mat3 frame_of_group(const walk *w, int link) {
     return hn_mat3_mul(m->g, &constant, &m->at[link].turned);
 }
 
-/// What turned so far goes on as the base of the next; of its own group's last angle nothing does.
+/// The levers turned so far become the base of the next group; none remain at a group's last angle.
 static void close_levers(walk *w, const hn_link *l) {
     for (int k = 0; k < w->n_levers; k++) {
         w->levers[k].is_own = false;

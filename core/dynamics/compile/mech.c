@@ -177,7 +177,7 @@ static hn_mat3 transposed(const hn_mat3 *a) {
     return out;
 }
 
-/// Where a ball's frame stands in its parent's, and the axes of its velocities. A joint whose
+/// Finds where a ball's frame stands in its parent's, and the axes of its velocities. A joint whose
 /// parent is the link itself turns back: its child's axes, in which the velocities are, are then
 /// those on the link's parent, and its child turns the other way.
 static void trace_ball(hn_mech *m, int link) {

@@ -91,7 +91,8 @@ void hn_pull_log_set_stop(hn_pull_log *log, double t) {
     log->stop = t;
 }
 
-/// How many entries have begun by t. Runs are near the end of the log: the search begins there.
+/// Returns how many entries have begun by t. Runs are near the end of the log: the search begins
+/// there.
 static int count_begun(const hn_pull_log *log, double t) {
     int n = log->n;
     while (n > 0 && log->entries[n - 1].t > t) {

@@ -147,7 +147,7 @@ static bool is_aligned(const double arm[2], double turned) {
     return fmin(x, y) < ALIGNED * fmax(x, y);
 }
 
-/// Where the link's angle counts from. theta = theta(ref) + sigma q + offset, C = Rz(delta -
+/// Finds where the link's angle counts from. theta = theta(ref) + sigma q + offset, C = Rz(delta -
 /// offset) D.
 static void choose_offset(const hn_scene *scene, hn_link *link, int body, double delta,
                           double D[3][3], bool align) {

@@ -37,7 +37,7 @@ enum { MAX_UPDATES = 50000 };
 /// A coordinate that touches as many rows as a spatial loop has at most, where there are loops to
 /// spare, is shared by legs (a platform's). Rows need not wait for it: what each leg has of its own
 /// gives them pivots, and the platform comes last. Otherwise every leg's rows would be coupled with
-/// every other's (a hexapod: 3 times the entries of L). Where a leg loses a direction, the guard
+/// every other's (a hexapod: 3 times the entries of L). If a leg loses a direction, the guard
 /// sees it. A row to which its leg gives no pivot at all, as one along a leg of given length, waits
 /// for the whole platform: what one of its coordinates gives serves one such row, and not the next.
 enum { SHARED_ROWS = 6 };
@@ -241,8 +241,8 @@ static void reduce(work *w, const int pair[2], int first_row, int n, int counts)
     }
 }
 
-/// What the shared coordinates that are still to come would have added to a multiplier's sum: a
-/// pivot is small or not against all of it.
+/// Adds what the shared coordinates that are still to come would have given to a multiplier's
+/// sum: a pivot is small or not against all of it.
 static void add_shared(work *w, int i, int n) {
     for (int k = 0; k < n && i >= w->out->nv; k++) {
         const int j = w->live[k];

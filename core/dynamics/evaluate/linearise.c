@@ -285,7 +285,7 @@ static hn_status allocate(builder *b, unsigned terms, int *n_entries) {
     return hn_arena_failed(b->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-/// Where entry i of a term is kept.
+/// Returns where entry i of a term is kept.
 static double *place_of(const hn_linear *l, int term, int i) {
     const term_values *of = &l->terms[term];
     return of->listed ? &of->values[i]

@@ -52,7 +52,7 @@ void hn_solve_rows_turn(const hn_system *sys, const hn_solve_rows *rows, hn_ex *
 
 // ---- the rows of the legs ----
 
-/// Which rows of the system are replaced: marked (nc).
+/// Marks which rows of the system are replaced: marked (nc).
 static void mark_legs(const hn_system *sys, char *marked) {
     for (int k = 0; k < sys->n_legs; k++) {
         memset(marked + sys->legs[k].row, 1, 3);

@@ -3,7 +3,7 @@
 #include "formulations/ground/formulation.h"
 
 // The lesson's section 3 prints N' M N u' + N' (C v + g) = N' S' tau: the term N' M (dN/dt) u is
-// missing, although its Problem 2 introduces the rate of N. What is left converges, to the wrong
+// missing, although its Problem 2 introduces the rate of N. The rest converges, to the wrong
 // motion, and to a different one for each basis: the closed loop proves nothing. Kept as an exhibit
 // of model error against discretisation error.
 

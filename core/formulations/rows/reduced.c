@@ -7,7 +7,7 @@
 //     M_r q_r'' + B' (M B' q_r' + h) = B' Q,   M_r = B' M B,   B' q_r' = [0; -J_d^-1 gamma]   (1)
 //
 // (the primes on B mark its rate on the left of q_r', its transpose elsewhere). f exists as far as
-// the next fold, det J_d = 0; there the method stops and says so. Where the loops fall apart into
+// the next fold, det J_d = 0; there the method stops and says so. If the loops fall apart into
 // dyads f can be written down (dynamics/analyse/dyads.h) and nothing is iterated; else it is found
 // by Newton's method. Neither is always cheaper: a parallelogram moves along its tangent, where
 // Newton's method has nothing to do.

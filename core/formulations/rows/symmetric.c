@@ -240,7 +240,7 @@ static hn_status correct_simply(symmetric *s, double h, double *z) {
     return HN_OK;
 }
 
-// The next correction of (mu, nu): that by S0, with what the *n steps before it have taught. Where
+// The next correction of (mu, nu): that by S0, with what the *n steps before it have taught. If
 // as many are kept as there is room for, the next begins anew.
 static hn_status correct(symmetric *s, double h, int *n) {
     const int nc = s->ode.base.nc, size = 2 * nc;

@@ -17,11 +17,11 @@
 // The pseudo-inverse by complete orthogonal decomposition: L^-1 J' P = Q [R; 0] with pivoting, rows
 // of J scaled to unit length in that metric, then R' z = P' b in least squares where rows were
 // dropped, and x = Q z. Rows that depend on others need no care; contradicting ones are met in the
-// least-squares sense. Where the loops stand open, rows that depend on others on the closed set
+// least-squares sense. If the loops stand open, rows that depend on others on the closed set
 // part by about the gap: the tolerance that decides the rank grows with it
 // (dynamics/evaluate/pivot_noise.h).
 //
-// Where M is singular there is no a_u; then, with J^+ J the projector on the rows of J (Udwadia &
+// If M is singular there is no a_u; then, with J^+ J the projector on the rows of J (Udwadia &
 // Phohomsiri 2006),
 //
 //     [(I - J^+ J) M; J] a = [(I - J^+ J) f; -gamma]   in least squares                       (2)

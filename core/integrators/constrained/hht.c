@@ -12,7 +12,7 @@
 //     1 / (1 + alpha) M(q1) a1 - F1 + alpha / (1 + alpha) F0 = 0                              (1)
 //     gamma = (1 - 2 alpha) / 2,  beta = (1 - alpha)^2 / 4                                    (2)
 //
-// (1) weighs forces of two times against an acceleration that M of ONE time multiplies. Where M
+// (1) weighs forces of two times against an acceleration that M of ONE time multiplies. If M
 // depends on q that is an error of the order h in each step: order 2 for constant M, little more
 // than 1 in angles. Source: Negrut et al. 2007; Jay & Negrut 2007.
 

@@ -8,7 +8,7 @@
 // (1) v1 = v' + h/2 a(t + h, q1, v' + h/2 a(t, q, v))
 //
 // With qdot = v and accelerations that do not depend on speed this is velocity Verlet: the midpoint
-// in the middle line is v' itself, and the predicted speed in the last line is not looked at. Where
+// in the middle line is v' itself, and the predicted speed in the last line is not looked at. If
 // positions turn with their rates (tangent coordinates) or forces depend on speed (every mechanism
 // in angles), the two keep the order at 2, but the map is then not symplectic. The acceleration is
 // taken anew at the start of each step, at the state that was kept. Source: Swope et al. 1982;

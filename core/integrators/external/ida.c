@@ -22,7 +22,7 @@
 // BDF of order 1 to 5 by SUNDIALS IDA under the library's own order and step control. IDA is made
 // for index 1. With the constraints on speeds or positions its error test and the end test of its
 // Newton iteration ask more of the multipliers than they can give, because their errors are divided
-// by h. What works then (measured, see the tests):
+// by h. Forms that work then (measured, see the tests):
 //
 //     suppress=multipliers   the error test looks at q and v alone, and at index 3 (speeds) at q:
 //                            errors of v are divided by h there, those of lambda by h^2

@@ -122,7 +122,7 @@ static void add_along_speed(const hn_ida_jacobian *j, int row, int speed, double
     }
 }
 
-/// Where a term goes: its first row and column, and what its rows and columns are.
+/// Describes where a term goes: its first row and column, and what its rows and columns are.
 typedef struct target {
     int row, col;
     int by_row;     ///< 1: rows are constraints, those that are kept count

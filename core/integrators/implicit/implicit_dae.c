@@ -425,7 +425,7 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     put_error(s, t, h, err);
 }
 
-// The estimate is a motion that the loops allow. Where they are moved from outside it sees nothing
+// The estimate is a motion that the loops allow. If they are moved from outside it sees nothing
 // of how fast: what shows that is how far the polynomial through the stages leaves them between the
 // stages: what it takes to close them there counts as well.
 static void add_gap_between(implicit_dae *s, double t, double h, double *err) {

@@ -418,8 +418,8 @@ static void tell_loads_changed(hn_comparison *c, double t) {
     hn_accuracy_loads_changed(c->accuracy, t);
 }
 
-/// What the hand does at the present frame. While it holds on, all stop at the next one, so that no
-/// method runs far ahead of it.
+/// Applies what the hand does at the present frame. While it holds on, all stop at the next one, so
+/// that no method runs far ahead of it.
 static void do_pulls(hn_comparison *c) {
     hn_pull_log *log = hn_system_pulls(hn_model_system(c->model));
     if (!log) {

@@ -45,7 +45,7 @@ static const hn_incident *find_wrong(const hn_run *run, double t_run) {
     return first;
 }
 
-/// `wrong`: what find_wrong() returns. Where the estimate ends before it, the incident decides.
+/// `wrong`: what find_wrong() returns. If the estimate ends before it, the incident decides.
 /// `lost`: the run ended as its motion was no longer the mechanism's.
 static const char *verdict_of(const hn_estimate *e, double t_run, const hn_incident *wrong,
                               bool lost) {

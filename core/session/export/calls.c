@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-/// Of a library of mathematics, by their names there.
+/// Functions of a library of mathematics, by their names there.
 static const hn_op FUNCTIONS[] = {HN_OP_ACOS, HN_OP_ASIN, HN_OP_ATAN, HN_OP_ATAN2, HN_OP_COS,
                                   HN_OP_COSH, HN_OP_EXP,  HN_OP_LOG,  HN_OP_SIN,   HN_OP_SINH,
                                   HN_OP_SQRT, HN_OP_TAN,  HN_OP_TANH};

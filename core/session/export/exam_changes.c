@@ -138,7 +138,7 @@ static void change_symbols(const hn_export_exam *exam, const hn_exam_change *c, 
     }
 }
 
-/// What a change multiplies a term by at the values x.
+/// Returns what a change multiplies a term by at the values x.
 static double factor_of(const hn_exam_change *c, const double *x) {
     return c->kind == HN_CHANGE_ONE     ? x[c->to] / x[c->from]
            : c->kind == HN_CHANGE_POWER ? 1 / x[c->from]

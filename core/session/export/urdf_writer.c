@@ -56,7 +56,7 @@ static const char *name_of(const urdf *u, int body) {
     return body == HN_GROUND ? GROUND_LINK : u->scene->bodies[body].name;
 }
 
-/// Where a joint sits in a body, in the axes of the body's link.
+/// Returns where a joint sits in a body, in the axes of the body's link.
 static hn_im_frame side_in_link(const urdf *u, const hn_joint *j, int side) {
     const hn_im_frame link = link_of(u, side ? j->child : j->parent);
     const hn_im_frame back = hn_im_frame_inverse(&link), at = hn_joint_side(j, side);

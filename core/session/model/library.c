@@ -27,7 +27,8 @@ typedef struct shelf {
     const char *paths[MAX_ENTRIES];
 } shelf;
 
-/// What is read when it is first asked for, by whichever thread: few commands need both shelves.
+/// Shelves that are read when a thread first asks for them: few commands need both
+/// shelves.
 typedef struct late {
     pthread_mutex_t lock;
     hn_arena *arena;

@@ -429,8 +429,8 @@ const char *hn_map_telling(const hn_map *map) {
     return loops && hn_map_is_stiff(map) == HN_MAP_NOT_STIFF ? "baumgarte" : NULL;
 }
 
-/// Of one column without stiffness: the error of steps ends it, and no prediction of stability
-/// applies.
+/// Reason for a column without stiffness: the error of steps ends it, and no prediction of
+/// stability applies.
 static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_column *c) {
     hn_strbuf_printf(b,
                      "not stiff: accuracy limits the step, not stability; at the predicted limit, "
@@ -455,7 +455,7 @@ static void put_no_stiffness(hn_strbuf *b, const hn_map *map, const hn_map_colum
     }
 }
 
-/// Of one column whose limit was not found where it was predicted.
+/// Reason for a column whose limit was not found where it was predicted.
 static void put_disagreement(hn_strbuf *b, const hn_map *map, int m, const hn_map_agreement *a) {
     const double predicted = hn_map_column_at(map, m, 0)->predicted[0];
     if (a->unseen) {

@@ -14,8 +14,8 @@ enum { MOST_TRIALS = 10000 };
     1e-5 // of the time asked for: shorter ones are for a pose where the motion breaks off
 #define LANDED 1e-12 // of the time asked for
 // A shorter trial whose error has hardly shrunk, where order 8 would have made it 2^-8 at half the
-// size, shows rounding of the right-hand side: no step is better. Of one that is hardly shorter the
-// error may have been left as large as the square of that.
+// size, shows rounding of the right-hand side: no step is better. A step that is hardly shorter
+// gives the error may have been left as large as the square of that.
 #define NO_BETTER 0.25
 
 struct hn_flow {

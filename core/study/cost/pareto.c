@@ -244,7 +244,7 @@ static double error_at(const hn_wp *wp, const hn_class *classes, hn_error_kind e
     return before ? smallest : (double)NAN;
 }
 
-/// To two digits.
+/// Rounds to two digits.
 static double round_2(double x) {
     const double unit = pow(10, floor(log10(x)) - 1);
     return round(x / unit) * unit;

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/// Of the largest sigma_min: a configuration this close counts as the one that was announced.
+/// Share of the largest sigma_min: a configuration this close counts as the one that was announced.
 static const double REACHED = 0.02;
 /// And one that is reached, not only passed.
 static const double LOST = 2e-3;

@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-/// Of the largest sigma_min so far: a singular configuration has been passed.
+/// Share of the largest sigma_min so far: a singular configuration has been passed.
 static const double RANGE = 0.35;
 
 // ---- the assembly mode ----

@@ -37,7 +37,7 @@ static double sigma_at(hn_watch *w, double x) {
     return hn_singularity_probe(r->monitor, s->before.t + x * h, r->inside_q);
 }
 
-/// Of the ends and n probes between them, evenly apart: the share of the step with the lowest
+/// Returns, of the ends and n probes evenly between them, the share of the step with the lowest
 /// sigma_min.
 static double find_lowest(hn_watch *w, int n, double *lowest, double *ends) {
     const double start = w->singular.info.sigma_min, end = sigma_at(w, 1);

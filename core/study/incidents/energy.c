@@ -114,8 +114,8 @@ static void check_jump(hn_watch *w) {
                     digits, e->change, digits, limit, e->last - e->start);
 }
 
-/// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed
-/// by more is another motion.
+/// Share of the largest kinetic energy and the range of the potential: a motion whose energy has
+/// changed by more is another motion.
 static const double ANOTHER = 0.2;
 
 void hn_energy_explain(const hn_watch *w, char why[256]) {

@@ -6,8 +6,8 @@
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
-/// Whose iteration did not converge: where the integrator gives the reason it was its own, else the
-/// formulation's projection.
+/// Returns whose iteration did not converge: where the integrator gives the reason it was its own,
+/// else the formulation's projection.
 static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
     const hn_method_spec *spec = &w->run->spec;
     const bool is_ode = hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;

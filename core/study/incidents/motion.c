@@ -43,9 +43,11 @@ bool hn_motion_is_unexplained(const hn_watch *w, double share) {
 
 /// Steps of a pilot run: in one of the run, in half a turn of the fastest coordinate, in all.
 enum { PILOT_FINER = 8, PILOT_HALF_TURN = 48, PILOT_MOST = 400 };
-/// Of the length: where the loops are open by more a pilot run would follow links that drift apart.
+/// Share of the length: where the loops are open by more a pilot run would follow links that drift
+/// apart.
 static const double CLOSED = 1e-6;
-/// Of the way between two states: a pilot run that ends this near to the second arrives there.
+/// Share of the way between two states: a pilot run that ends this near to the second arrives
+/// there.
 static const double ARRIVES = 0.25;
 
 const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t, double *lowest) {
@@ -102,7 +104,7 @@ double hn_motion_way(const hn_watch *w, const double *from, double *step) {
     return most;
 }
 
-// Where all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured
+// If all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured
 // against its own row, do not see that.
 double hn_motion_shortest_row(const hn_watch *w) {
     double least = 1;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Of the largest sigma_min: the reason of a failure names the configuration from here on.
+/// Share of the largest sigma_min: the reason of a failure names the configuration from here on.
 static const double SINGULAR = 0.02;
 
 static const char *body_name(const hn_watch *w, int body) {

@@ -54,7 +54,7 @@ static void check_rank(hn_watch *w) {
     }
 }
 
-/// Of the largest sigma_min so far; of sigma_max.
+/// Shares of the largest sigma_min so far, and of sigma_max.
 static const double FALLEN = 0.15, TINY = 1e-3;
 
 /// Links of very different masses give J M^-1 J' pivots of very different sizes everywhere: near a

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Of the largest sigma_min so far.
+/// Share of the largest sigma_min so far.
 static const double CLOSE = 0.1;
 /// [s]: goes through the singular configurations of the ladder of four-bars for every step up to
 /// twice this.
@@ -156,7 +156,8 @@ bool hn_remedy_singular_mass(const hn_watch *w, double factor, hn_remedy out) {
 
 // ---- feedback against the step ----
 
-// Of s^2 + 2 damping s + rate^2 the larger root, or its size alone when the pair is complex.
+// Returns the larger root of s^2 + 2 damping s + rate^2, or its size alone when the pair is
+// complex.
 double hn_pulling_rate(const hn_method_spec *spec) {
     const unsigned traits = spec->formulation->traits;
     double damping = hn_method_option(spec, "alpha", 0);

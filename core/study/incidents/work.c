@@ -192,7 +192,7 @@ static hn_work_node *next_node(hn_work_record *w) {
     return &w->node[2];
 }
 
-/// What lies before a corner says nothing about what follows: the motion begins anew there.
+/// Begins anew at a corner: the motion before it says nothing about the motion after it.
 static void begin_after_corner(hn_work_record *w) {
     w->at_corner = false;
     w->n = 0;

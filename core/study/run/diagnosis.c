@@ -25,7 +25,7 @@ enum {
     MOST_SPEEDS = 60
 };
 
-/// How the results of remedies begin.
+/// First words of the results of remedies.
 #define TRIED "tried "
 #define IN_VAIN "; tried in vain"
 
@@ -283,18 +283,18 @@ typedef struct trial {
     hn_remedy said;
 } trial;
 
-/// Where the pilot runs of report k begin. A state shortly before the event may hold its error
-/// already, so the start of the run is taken where it is not many steps away, and in any case where
-/// the equations of the run are wrong: a state on its way belongs to another motion.
+/// Returns where the pilot runs of report k begin. A state shortly before the event may hold its
+/// error already, so the start of the run is taken where it is not many steps away, and in any case
+/// where the equations of the run are wrong: a state on its way belongs to another motion.
 static const hn_state_at *pilot_start(const hn_watch *w, int k) {
     const bool near = w->before_at[k] <= PILOT_STEPS / FINER;
     const bool wrong = w->run->spec.formulation->traits & HN_TRAIT_COUNTER_EXAMPLE;
     return near || wrong || !(w->before[k].t < w->log.list[k].t) ? &w->run->start : &w->before[k];
 }
 
-/// How long a pilot run is: past the event, as far as *most steps reach where they are fixed. Large
-/// mechanisms get fewer steps. Not beyond the end of the run, unless the event is so near it that
-/// what comes after tells whether the remedy removes it.
+/// Returns how long a pilot run is: past the event, as far as *most steps reach where they are
+/// fixed. Large mechanisms get fewer steps. Not beyond the end of the run, unless the event is so
+/// near it that what comes after tells whether the remedy removes it.
 static double pilot_end(const hn_watch *w, const hn_method_spec *spec, double from, double event,
                         long long *most) {
     const hn_stepping *s = w->run;
@@ -309,7 +309,7 @@ static double pilot_end(const hn_watch *w, const hn_method_spec *spec, double fr
     return reached > event + h && reached < wanted ? reached : wanted;
 }
 
-/// Runs a pilot to `end`. Where it chooses its steps, samples are taken on the way, as the output
+/// Runs a pilot to `end`. If it chooses its steps, samples are taken on the way, as the output
 /// of a run has them: what lies inside long steps counts in its largest gap and energy too.
 static hn_status run_pilot(hn_run *pilot, double from, double end) {
     const int looks = hn_method_is_adaptive(hn_run_spec(pilot)) ? PILOT_LOOKS : 0;
@@ -322,7 +322,7 @@ static hn_status run_pilot(hn_run *pilot, double from, double end) {
     return hn_run_advance(pilot, end);
 }
 
-/// What a pilot run showed.
+/// Result of a pilot run.
 typedef struct shown {
     hn_status status;   ///< HN_ERR_STOPPED: its steps did not suffice
     hn_run_summary sum; ///< of the pilot run

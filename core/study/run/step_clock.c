@@ -6,7 +6,8 @@
 #include <math.h>
 
 enum { BLOCK = 64, SPARSE = 7 }; // intervals read in a block; a prime keeps no step with anything
-// Of a pair of readings: where intervals are shorter on average, the pairs would be 2 % of them.
+// Time of a pair of readings: where intervals are shorter on average, the pairs would be 2 % of
+// them.
 static const double SHORT = 50;
 // A longer time between two intervals is the caller's: it may have slept.
 static const double LONG_BREAK = 1e-4; // [s]

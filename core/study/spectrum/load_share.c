@@ -9,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-/// Of the rate of a mode: what the largest load must make of it. Six like drives share a mode.
+/// Share of the rate of a mode that the largest load must make. Six like drives share a mode.
 static const double GOOD_PART = 0.1;
-/// Of the size of a displacement or velocity, for central differences.
+/// Share of the size of a displacement or velocity, for central differences.
 static const double PROBE = 1e-4;
 enum { MOST_LOADS = 16 };
 

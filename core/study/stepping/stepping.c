@@ -10,7 +10,7 @@
 // A trial that failed outright adds FAILED_TRIAL, a good step takes 1 away: steps that keep running
 // into the end of a chart shrink for ever without reaching it, and stop at TROUBLE_LIMIT.
 enum { FAILED_TRIAL = 8, TROUBLE_LIMIT = 200 };
-// Where Newton's method fails at every other step the step grows back slowly, lest it runs into the
+// If Newton's method fails at every other step the step grows back slowly, lest it runs into the
 // same wall each time.
 enum { TROUBLE_SEEN = 2 * FAILED_TRIAL };
 #define GROWTH_IN_TROUBLE 1.02

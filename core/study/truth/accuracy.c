@@ -131,7 +131,7 @@ static hn_state_seen seen_of(const hn_sample *s) {
     return (hn_state_seen){s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
 }
 
-/// What errors are divided by in the end: the largest rate and reaction of the motion so far.
+/// Raises the scales that divide errors in the end: largest rate and reaction of the motion so far.
 static void raise_scales(hn_accuracy *a, const hn_sample *s) {
     const hn_state_seen at = seen_of(s);
     a->scales.rate = fmax(a->scales.rate, hn_errors_rate(a->errors, at.v));

@@ -10,9 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-/// Of a step, relative to an angle of 1, the scene's length, and their rates. Accelerations near a
-/// pose without full rank carry rounding over the square of what is left of it; where no step gets
-/// past that, the whole is done again with the next.
+/// Error of a step, relative to an angle of 1, the scene's length, and their rates. Accelerations
+/// near a pose without full rank carry rounding over the square of what is left of it; where no
+/// step gets past that, the whole is done again with the next.
 static const hn_real TOLERANCES[] = {1e-17L, 1e-15L, 1e-13L};
 enum { N_TOLERANCES = sizeof TOLERANCES / sizeof *TOLERANCES };
 #define LEAST_STEP 1e-15L // of T: below it nothing is gained
@@ -158,7 +158,7 @@ static hn_status step(precise *p, hn_real t, hn_real least) {
     return p->solver->close(p->solving, p->t, p->y, p->y + nq);
 }
 
-/// To `t`, and no step across a corner.
+/// Steps to `t`, and no step across a corner.
 static hn_walk_end walk_to(precise *p, double t, hn_real least, hn_status *status) {
     while (p->t < (hn_real)t) {
         const double corner = hn_system_next_corner(p->model->sys, (double)p->t);

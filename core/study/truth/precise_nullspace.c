@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The null space of J: J' P = Q [R; 0] by reflections, rows of J at unit length; N is the rest of
-// Q. Which rows count, and in which order, is found by column pivoting at the start of a step and
+// Q. Column pivoting finds which rows count, and in which order, at the start of a step and
 // stays for the step: where rows depend on one another they agree only as far as the numbers in the
 // scene do, and another choice amid a step would be a kink. Source: Golub & Van Loan 2013, sec.
 // 5.4.2.

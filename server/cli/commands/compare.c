@@ -192,8 +192,8 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary, const cJSON *m, in
     }
 }
 
-/// What is to be told of each method: of its spelling, its motion and its incidents. Why it ended
-/// is said after the table.
+/// Writes the remarks on each method: on its spelling, its motion and its incidents. Why it
+/// ended is said after the table.
 static void put_remarks(hn_strbuf *b, const cJSON *summary) {
     const cJSON *m;
     int i = 0;

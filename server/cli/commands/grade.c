@@ -195,7 +195,7 @@ static hn_exit grade_all(task t, const hn_verdict_names *names) {
     return ended > worst ? ended : worst;
 }
 
-/// What ID names, owned.
+/// Subject that ID names, owned.
 typedef struct owned_subject {
     bool is_scene; ///< ID is a scene, not an exercise
     hn_exercise *exercise;
@@ -216,7 +216,7 @@ static bool is_program_of_a_scene(const char *path) {
     return found;
 }
 
-/// What ID says it names.
+/// Kind of subject that ID states.
 typedef enum id_kind { ID_ALONE, ID_SCENE, ID_EXERCISE } id_kind;
 
 /// Takes "scene:" or "exercise:" off ID.
@@ -394,7 +394,7 @@ static hn_exit write_failure(const task *t, const hn_exercise *exercise, const h
     return HN_EXIT_PROGRAM;
 }
 
-/// Reports a fault of the teacher. Where a file or the form of a platform was asked for, each
+/// Reports a fault of the teacher. If a file or the form of a platform was asked for, each
 /// submission gets it as its verdict, so that no platform takes the fault for a missing result.
 static hn_exit fail_all(task t, const owned_subject *own, hn_status status, const hn_diags *diags) {
     const hn_args *args = t.args;

@@ -73,7 +73,7 @@ static void put_field(hn_strbuf *b, const char *text) {
     hn_strbuf_add(b, "\"");
 }
 
-/// What a line remarks, and who handed in the same.
+/// Writes what a line remarks, and who handed in the same.
 static void put_remark(hn_strbuf *b, const char *remark, const hn_class_copies *copies, int i) {
     hn_strbuf all;
     hn_strbuf_init(&all);

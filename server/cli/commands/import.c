@@ -93,8 +93,8 @@ static hn_status read_source(const hn_args *args, hn_import **out, hn_diags *dia
     return status;
 }
 
-/// Where the scene stands when its loops are closed; told, not demanded: what assembly misses is a
-/// fact about the model.
+/// Finds the configuration of the scene with its loops closed; reported, not demanded: what
+/// assembly misses is a fact about the model.
 static hn_status assemble(const hn_library *lib, const hn_import *im, hn_model **out,
                           hn_diags *diags) {
     hn_model_source source = {.allow_open = 1};

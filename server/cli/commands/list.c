@@ -22,7 +22,7 @@ static void methods_json(hn_strbuf *b, const hn_library *lib) {
 
 enum { MAX_TABLES = 2, MAX_COLUMNS = 7, MAX_NAMES = 96 };
 
-/// What a card says below its title: the word in front, and the member it is read from.
+/// Lines of a card below its title: the word in front, and the member it is read from.
 static const struct {
     const char *head, *key;
 } CARD[] = {

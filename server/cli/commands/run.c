@@ -44,7 +44,7 @@ static void take_row(void *user, const hn_strbuf *names, const double *values, i
     hn_run_rows_put(rows, values, n);
 }
 
-/// What a mark says of multipliers, as the end of a sentence.
+/// Meaning of a mark of multipliers, as the end of a sentence.
 static const char *const marked[HN_N_MULTIPLIER_MARKS] = {
     [HN_MULTIPLIERS_ONE_OF_MANY] = "are one of many possible sets",
     [HN_MULTIPLIERS_LOST] = "have no correct digit",
@@ -143,7 +143,8 @@ static int tell_progress(void *user, double share) {
     return 1;
 }
 
-/// What the scene's own methods are meant to show going wrong, where the run is by one of them.
+/// Takes the exhibit of the scene's own methods: what is meant to go wrong, in a run by one of
+/// them.
 static void take_exhibit(const hn_model *model, const char *method, hn_strbuf *exhibit) {
     int n = 0;
     const char *const *own = hn_model_methods(model, &n);

@@ -182,7 +182,7 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
     }
 }
 
-/// What acts along coordinates, and at no place.
+/// Writes what acts along coordinates, and at no place.
 static void put_efforts(hn_strbuf *b, const cJSON *list) {
     const cJSON *item;
     if (cJSON_GetArraySize(list) > 0) {
@@ -246,7 +246,7 @@ static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
     }
 }
 
-/// What the multipliers are worth, where that is not all their digits.
+/// Writes what the multipliers are worth, where that is not all their digits.
 static void put_mark(hn_strbuf *b, const cJSON *d) {
     const char *mark = hn_document_text(d, "lambda_mark");
     if (mark[0] && strcmp(mark, "determined") != 0) {

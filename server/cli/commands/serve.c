@@ -216,7 +216,7 @@ static void open_browser(const char *address) {
     }
 }
 
-/// How long the server may take to end; sanitised programs are some five times slower.
+/// Time that the server may take to end; sanitised programs are some five times slower.
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 static const struct timespec PATIENCE = {.tv_sec = 13};
 #else

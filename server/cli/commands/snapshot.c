@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Where it goes, and as what: by the ending.
+/// Chooses the form of the picture by the ending of its file.
 static hn_status choose_form(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
     if (!args->out) {
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
@@ -115,7 +115,7 @@ static void choose_methods(const hn_args *args, const hn_scene *scene,
     request->time = isnan(args->time) ? 0 : args->time;
 }
 
-/// What a word names: a scene, or an exercise with the numbers of a variant.
+/// Subject that a word names: a scene, or an exercise with the numbers of a variant.
 typedef struct subject {
     hn_model *model;
     hn_exercise *exercise;

@@ -31,8 +31,8 @@ static hn_status see_setting(void *user, const char *name, double value) {
     return HN_OK;
 }
 
-/// What is to be opened, from words and options, or from a link of the page; `methods` are those
-/// of the options in place of those of the link.
+/// Finds what is to be opened, from words and options, or from a link of the page; `methods` are
+/// those of the options in place of those of the link.
 static hn_status read_opening(const hn_args *args, hn_tui_link *o, const char **methods,
                               hn_diags *diags) {
     const char *word = args->words.n > 0 ? args->words.word[0] : "four-bar";

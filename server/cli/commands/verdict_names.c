@@ -14,7 +14,7 @@
 
 enum { MOST_FOLDERS = 64 };
 
-/// How much of a submission's path its verdict's name keeps.
+/// Describes how much of a submission's path its verdict's name keeps.
 typedef struct kept {
     int folders; ///< the last ones
     bool ending;
@@ -32,7 +32,8 @@ static const char *full_path(const char *path, char buffer[PATH_MAX]) {
     return realpath(path, buffer) ? buffer : path;
 }
 
-/// Where the last `folders` folders of a path begin; a path with fewer begins behind its root.
+/// Returns where the last `folders` folders of a path begin; a path with fewer begins behind its
+/// root.
 static const char *begin_folders(const char *path, int folders) {
     const char *from = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     while (folders-- > 0 && from > path + 1) {

@@ -176,7 +176,8 @@ static const option OPTIONS[] = {
 };
 enum { N_OPTIONS = sizeof OPTIONS / sizeof *OPTIONS };
 
-/// What follows `name` in a list of options: "=csv|json ...", or " ..."; NULL: it is not in it.
+/// Returns what follows `name` in a list of options: "=csv|json ...", or " ..."; NULL: it is not in
+/// it.
 static const char *find_listed(const char *list, const char *name) {
     const size_t n = strlen(name);
     for (const char *p = list; *p;) {

@@ -133,7 +133,7 @@ static int find_column(const hn_list_column *columns, int n, const char *key) {
 
 enum { MAX_PATH = 100, STEP = 2 };
 
-/// Where an outline has come to.
+/// Describes where an outline has come to.
 typedef struct outline {
     hn_strbuf *b;
     const hn_outline_word *words;
@@ -141,7 +141,7 @@ typedef struct outline {
     int indent;
 } outline;
 
-/// How a member of the object at hand is named for people.
+/// Returns how a member of the object at hand is named for people.
 static const char *words_of(const outline *o, const char *key) {
     char path[2 * MAX_PATH];
     snprintf(path, sizeof path, "%s%.90s", o->path, key);

@@ -17,7 +17,7 @@ static void put_left(double seconds) {
     }
 }
 
-/// What is done, and how long the rest will take if it goes on like this.
+/// Writes what is done, and how long the rest will take if it goes on like this.
 static void put_bar(const char *what, double share, double risen, double elapsed) {
     enum { WIDTH = 24 };
     const int done = (int)(WIDTH * (share < 0 ? 0 : share > 1 ? 1 : share));

@@ -162,7 +162,7 @@ static bool fill_by_cause(hn_strbuf *b, const sheet *s, int from, int to) {
     return whole;
 }
 
-/// How many methods have room side by side: blocks of nearly the same size.
+/// Returns how many methods have room side by side: blocks of nearly the same size.
 static int block_size(const sheet *s) {
     int n_blocks = 1, size = s->n;
     for (bool whole = false; !whole && size > 1; n_blocks++) {
@@ -231,7 +231,7 @@ static void put_reasons(hn_strbuf *b, const hn_budgets *a) {
     }
 }
 
-/// What the mark at a sum means: below the table of errors, to which it belongs.
+/// Writes what the mark at a sum means: below the table of errors, to which it belongs.
 static void put_notes(hn_strbuf *b, const hn_budgets *a) {
     for (int m = 0; m < hn_budgets_n(a); m++) {
         const hn_budget_row *row = hn_budgets_at(a, m);

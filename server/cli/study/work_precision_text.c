@@ -266,7 +266,7 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
     }
 }
 
-/// How well the two reference solutions agree, and what cannot be measured for it.
+/// Writes how well the two reference solutions agree, and what cannot be measured for it.
 static void put_reference(hn_strbuf *b, const hn_wp *wp) {
     const hn_ref *ref = wp->ref;
     const double digits = hn_ref_digits(ref);

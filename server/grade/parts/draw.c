@@ -155,7 +155,7 @@ hn_status hn_draw_value(hn_draw *d, const char *text, double *out, hn_diag *diag
 
 // ---- drawing ----
 
-/// How one name gets its value.
+/// Source of the value of one name.
 typedef struct source {
     double low, high, value;
     const cJSON *choose;
@@ -314,7 +314,7 @@ int hn_draw_is_angle(const hn_draw *d, int name) {
 
 // ---- text ----
 
-/// What stands between the braces; 0 when it is neither a name nor a formula.
+/// Returns what stands between the braces; 0 when it is neither a name nor a formula.
 static int put_value(hn_strbuf *b, hn_draw *d, const char *word) {
     const int i = find_name(d, word);
     double x;

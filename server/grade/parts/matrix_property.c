@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/// What rounding leaves of a sum or a product of sixteen entries at most, relative to its terms.
+/// Rounding left by a sum or a product of sixteen entries at most, relative to its terms.
 static const double ROUNDING = 1e-12;
 
 typedef struct entry_place {

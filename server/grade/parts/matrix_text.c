@@ -34,8 +34,8 @@ static void note(parser *p, const char *read) {
     }
 }
 
-/// How many characters `sign` takes at `at`, with blanks behind the mark of a power (^ 2, ** 2); 0
-/// when it does not stand there.
+/// Returns how many characters `sign` takes at `at`, with blanks behind the mark of a power (^ 2,
+/// ** 2); 0 when it does not stand there.
 static size_t match(const char *at, const char *sign) {
     const char *start = at;
     for (; *sign; sign++) {
@@ -48,8 +48,8 @@ static size_t match(const char *at, const char *sign) {
     return (size_t)(at - start);
 }
 
-/// How many characters `sign` takes at `at`, as a whole: \cdot is not the start of \cdots, nor ^2
-/// that of ^25 or ^2.5, nor .T that of a product with tau; 0 when it does not stand there.
+/// Returns how many characters `sign` takes at `at`, as a whole: \cdot is not the start of \cdots,
+/// nor ^2 that of ^25 or ^2.5, nor .T that of a product with tau; 0 when it does not stand there.
 static size_t stands(const char *at, const char *sign) {
     const size_t n = match(at, sign);
     if (n == 0) {
@@ -355,7 +355,7 @@ static hn_status read_signed(parser *p, hn_matrix *out) {
     return HN_OK;
 }
 
-/// What stands between two factors.
+/// Kinds of joints between two factors.
 typedef enum joint { END, PRODUCT, BESIDE, ENTRIES, QUOTIENT, SOLVE, UNCLEAR } joint;
 
 /// The text has what only LaTeX has, so that a backslash belongs to a command.
@@ -373,7 +373,7 @@ static bool is_latex(const parser *p) {
     return false;
 }
 
-/// A backslash behind a factor: MATLAB's left division, or a command or space of LaTeX. Where it
+/// A backslash behind a factor: MATLAB's left division, or a command or space of LaTeX. If it
 /// can be either, it is neither.
 static joint read_backslash(parser *p) {
     const char *next = p->at + 1;

@@ -30,7 +30,7 @@ static const struct {
 } CURVES[N_CURVES] = {
     {"gap", "m", gap_of}, {"velocity gap", "m/s", velocity_gap_of}, {"energy", "J", energy_of}};
 
-/// Which curve a part names: a row of CURVES, or a coordinate, or the rate of one.
+/// Curve that a part names: a row of CURVES, or a coordinate, or the rate of one.
 typedef struct chosen {
     int row, coordinate; ///< -1: not this
     bool rate;

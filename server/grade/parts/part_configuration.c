@@ -55,7 +55,8 @@ static bool is_angle(const sheet *s, int i) {
     return hn_part_coordinate(s->model, i)->kind == HN_ANGLE;
 }
 
-/// How far two values of a coordinate are apart, in units of its reach; full turns do not count.
+/// Returns how far two values of a coordinate are apart, in units of its reach; full turns do not
+/// count.
 static double apart(const sheet *s, int i, double a, double b) {
     return fabs(is_angle(s, i) ? remainder(a - b, 2 * PI) : a - b) /
            hn_pose_solver_reach(s->solver, i);
@@ -330,7 +331,7 @@ static bool read_entries(const sheet *s, const cJSON *given, double *x, hn_part_
     return all;
 }
 
-/// How far the loops are open with the whole answer [m], which stays in the solver.
+/// Returns how far the loops are open with the whole answer [m], which stays in the solver.
 static double open_by(const sheet *s, const double *given) {
     double x[MAX];
     memcpy(x, s->expected, sizeof x);
@@ -341,7 +342,8 @@ static double open_by(const sheet *s, const double *given) {
     return hn_pose_solver_open(s->solver);
 }
 
-/// How far the loops are open with the whole answer, as a sentence behind another; "" where closed.
+/// Writes how far the loops are open with the whole answer, as a sentence behind another; "" where
+/// closed.
 static void say_open(const sheet *s, const double *given, char *text, size_t size) {
     const double gap = open_by(s, given);
     text[0] = 0;
@@ -350,8 +352,8 @@ static void say_open(const sheet *s, const double *given, char *text, size_t siz
     }
 }
 
-/// How well the loops close with an answer of the other branch: the picture shows what rounded
-/// numbers leave open. "" where it is rounding.
+/// Writes how well the loops close with an answer of the other branch: the picture shows what
+/// rounded numbers leave open. "" where it is rounding.
 static void say_closed(const sheet *s, const double *given, char *text, size_t size) {
     char gap[HN_SI_TEXT];
     const double open = open_by(s, given);

@@ -15,7 +15,7 @@
 
 enum { MAX_COORDINATES = 64, MAX_STEPS = 200000 };
 
-/// What a run to the end gave.
+/// Result of a run to the end.
 typedef struct outcome {
     hn_status status;
     char reason[300];
@@ -74,7 +74,8 @@ static double distance(const outcome *a, const outcome *b) {
     return worst;
 }
 
-/// What is measured: the error against the reference, the loop gap, or the change of energy.
+/// Returns the measured quantity: the error against the reference, the loop gap, or the change of
+/// energy.
 static double measure(const hn_part *p, const outcome *found, const outcome *reference) {
     const char *what = hn_part_text(p->node, "measure");
     return strcmp(what, "gap") == 0      ? found->gap

@@ -72,7 +72,7 @@ static bool read_parameter(const hn_part *p, const char *name, const cJSON *give
     return true;
 }
 
-/// How long an answer may compute.
+/// Time for which an answer may compute.
 typedef struct time_limit {
     double end; ///< [s] of the thread's computing
     const hn_interrupt *interrupt;

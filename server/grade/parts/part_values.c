@@ -102,8 +102,8 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
     return HN_OK;
 }
 
-/// What to write where the number of entries is wrong: one text or object that stands for several
-/// is not read.
+/// Returns what to write where the number of entries is wrong: one text or object that stands for
+/// several is not read.
 static const char *shape_advice(const cJSON *given) {
     const bool one = cJSON_IsObject(given) || cJSON_IsString(given);
     return one ? ": write a list, [..., ...]" : "";

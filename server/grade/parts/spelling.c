@@ -116,7 +116,7 @@ static const char *const FRACTIONS[] = {"frac", "dfrac", "tfrac", NULL};
 
 // ---- rewriting ----
 
-/// What stands side by side.
+/// Kinds of operands that stand side by side.
 typedef enum operand { NOTHING, A_NAME, A_NUMBER, A_FUNCTION, A_BARE_ARGUMENT } operand;
 
 typedef struct rewriter {
@@ -207,7 +207,7 @@ static void write_number(rewriter *w) {
     end_operand(w, A_NUMBER);
 }
 
-/// What stands between this bracket and its partner, in round brackets.
+/// Writes what stands between this bracket and its partner, in round brackets.
 static void write_group(rewriter *w) {
     const char close = *w->at == '(' ? ')' : *w->at == '[' ? ']' : '}';
     begin_operand(w, A_NAME);
@@ -226,7 +226,7 @@ static void write_group(rewriter *w) {
 static void write_word(rewriter *w);
 
 /// Numerator or denominator: a group, or as LaTeX reads it the one digit, letter or command that
-/// follows, as in \frac12. What is nothing of that is left to the parser to report.
+/// follows, as in \frac12. The parser reports anything else.
 static void write_fraction_part(rewriter *w) {
     skip_spaces(w);
     if (*w->at == '{') {

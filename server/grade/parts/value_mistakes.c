@@ -37,7 +37,7 @@ static const struct factor_row {
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
 
-/// How well a formula with numbers of three digits agrees, relative to its size: what numbers
+/// Tolerance for a formula with numbers of three digits, relative to its size: what numbers
 /// themselves are allowed.
 static const double ROUNDED = 5e-3;
 /// From here on a count is rarely one slip's by chance: a slip or two of a formula give a number of
@@ -227,7 +227,8 @@ static void try_angles(hn_value_search *f) {
     }
 }
 
-/// What may have become of one name: left out as a factor, its terms left out, or turned round.
+/// Tries what may have become of one name: left out as a factor, its terms left out, or turned
+/// round.
 static void try_name(hn_value_search *f, int name) {
     char says[80];
     const char *word = f->sheet->draw->name[name];

@@ -10,7 +10,7 @@
 
 enum { SHAKES = 4 };
 
-/// What changed numbers say about a candidate.
+/// Evidence of changed numbers for or against a candidate.
 typedef enum evidence { EVIDENCE_AGAINST, EVIDENCE_NONE, EVIDENCE_FOR } evidence;
 
 void hn_value_search_begin(hn_value_search *f, hn_value_sheet *sheet, int k, const double *given,
@@ -80,8 +80,8 @@ static int is_same(const hn_value_search *f, hn_ex a, double a_factor, hn_ex b, 
     return n == 0 ? -1 : worst <= f->sheet->allowed[f->entry] + 1e-5 * size;
 }
 
-/// What the changed numbers say. A number says nothing: it is the same whatever they are. So does a
-/// candidate with a number of the variant that the answer does not name.
+/// Returns what the changed numbers say. A number says nothing: it is the same whatever they are.
+/// So does a candidate with a number of the variant that the answer does not name.
 static evidence weigh(const hn_value_search *f, hn_ex e, double factor) {
     const hn_draw *d = f->sheet->draw;
     bool open = !f->sheet->symbolic, derived = false;

@@ -15,7 +15,7 @@ enum {
     MAX_PLACES = 8 ///< of one node in an expression
 };
 
-/// What may happen at one place. Marked `numbers`: looked for in numbers too.
+/// Slips that may happen at one place. Marked `numbers`: looked for in numbers too.
 typedef enum kind {
     TERM_MISSING,
     TERM_SIGN,

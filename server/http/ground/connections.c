@@ -20,7 +20,7 @@ static const double QUIET = 0.9;
 /// [s] An answer has been on its way for this long at least, where its reader's pace is taken.
 static const double SHORTEST = 1e-3;
 
-/// What a connection does; one whose place is needed is looked for in this order.
+/// Activity of a connection; one whose place is needed is sought in this order.
 typedef enum connection_state {
     STATE_IDLE,  ///< nothing, or its request comes in
     STATE_SENDS, ///< its answer goes out
@@ -65,7 +65,7 @@ static void end(hn_connections *all, hn_connection_watch *w) {
     }
 }
 
-/// Tells a client that its request comes too slowly. What it is sent fits into what the system
+/// Tells a client that its request comes too slowly. Its answer fits into what the system
 /// keeps for a socket; a client that has gone needs none. With the lock held.
 static void tell_late(hn_connections *all, const hn_connection_watch *w) {
     const ssize_t sent = all->late.failed ? 0
@@ -270,8 +270,8 @@ void hn_connections_remove(hn_connections *all, hn_connection_watch *w) {
     free(w);
 }
 
-/// What the connection does from now on, and for how long it may [s]. Returns false where it has
-/// been ended.
+/// Finds what the connection does from now on, and for how long it may [s]. Returns false where it
+/// has been ended.
 static bool set_state(hn_connections *all, hn_connection_watch *w, connection_state state,
                       double seconds) {
     bool goes_on = true;

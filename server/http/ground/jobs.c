@@ -74,7 +74,8 @@ static int count_waiting(const hn_jobs *jobs, hn_client client) {
     return n;
 }
 
-/// Who would be taken up: a job that waits or one that is aside; fewest first, then oldest.
+/// Candidate to be taken up: a job that waits or one that is aside; fewest first, then
+/// oldest.
 typedef struct candidate {
     int job; ///< index of a job that waits, or -1
     hn_job_turn *turn;
@@ -272,9 +273,9 @@ int hn_jobs_push(hn_jobs *jobs, void *work_item, hn_client client) {
     return taken;
 }
 
-/// What a job that has worked for `used` still needs [s]: as much as the mean of those before
-/// leaves; one that went on for longer will go on for as long again, up to the longest that a job
-/// may.
+/// Returns what a job that has worked for `used` still needs [s]: as much as the mean of those
+/// before leaves; one that went on for longer will go on for as long again, up to the longest that
+/// a job may.
 static double needs_still(const hn_jobs *jobs, double used) {
     return used < jobs->mean ? jobs->mean - used : fmin(used, fmax(0, jobs->opts.longest - used));
 }

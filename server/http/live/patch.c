@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What PATCH can change. Everything that can fail is tried before anything is changed, so that a
-// request at fault leaves the comparison as it was.
+// Changes that PATCH can make. Everything that can fail is tried before anything is changed, so
+// that a request at fault leaves the comparison as it was.
 #include "http/live/patch.h"
 
 #include "base/clock.h"
@@ -85,7 +85,7 @@ static int choose_methods(const hn_session *session, const cJSON *asked, char (*
     return n;
 }
 
-/// What the hand does in what is built: as asked, or as it did so far.
+/// Finds what the hand does in what is built: as asked, or as it did so far.
 static hn_status choose_pulls(const hn_session *session, const change *c, hn_pull_list *pulls,
                               hn_diags *diags) {
     const hn_comparison *now = session->bench.comparison;
@@ -114,7 +114,7 @@ static hn_status build_model(hn_session *session, const change *c, const char *c
     return status;
 }
 
-/// What the change asks for; new methods run on the model that is there (then fresh->model is
+/// Finds what the change asks for; new methods run on the model that is there (then fresh->model is
 /// NULL), unless a hand has pulled it.
 static hn_status build(hn_session *session, const change *c, hn_subject *fresh, hn_diags *diags) {
     char kept[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];

@@ -96,7 +96,7 @@ static void put_event(hn_stream *s, const hn_event *e) {
     hn_strbuf_add(&s->text, "\n\n");
 }
 
-/// What has come since the last look, up to a chunk's size.
+/// Writes what has come since the last look, up to a chunk's size.
 static void put_new_events(hn_stream *s) {
     const hn_history *h = &s->session->history;
     uint64_t first = hn_history_first_id(h);
@@ -225,7 +225,7 @@ static long long read_last_id(const hn_request *r) {
     return n <= 18 && strspn(text, "0123456789") == n ? strtoll(text, NULL, 10) : -2;
 }
 
-/// Where to begin. With the lock held; 0 when the reply is made here.
+/// Chooses where to begin. With the lock held; 0 when the reply is made here.
 static bool choose_cursor(hn_stream *s, hn_request *r, long long last) {
     const hn_history *h = &s->session->history;
     if (last == -2 || (last >= 0 && (uint64_t)last > h->last_id)) {

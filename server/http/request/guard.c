@@ -62,10 +62,10 @@ static enum MHD_Result count_header(void *cls, enum MHD_ValueKind kind, const ch
     return MHD_YES;
 }
 
-/// Where the value before ends, and whether a zero byte was found. The library keeps a head in one
-/// buffer, with zeros in place of the ends of lines: between a value and the next name there are
-/// zeros alone, unless a zero byte in the value has cut it, or the value goes on in a second line,
-/// which RFC 9112, section 5.2, lets a server refuse.
+/// Describes where the value before ends, and whether a zero byte was found. The library keeps a
+/// head in one buffer, with zeros in place of the ends of lines: between a value and the next name
+/// there are zeros alone, unless a zero byte in the value has cut it, or the value goes on in a
+/// second line, which RFC 9112, section 5.2, lets a server refuse.
 typedef struct value_look {
     const char *end;
     bool found;
@@ -83,8 +83,8 @@ static enum MHD_Result look_for_cut(void *cls, enum MHD_ValueKind kind, const ch
     return MHD_YES;
 }
 
-/// Where the head of the request ends in the library's buffer; NULL where a library keeps its
-/// pieces elsewhere.
+/// Returns where the head of the request ends in the library's buffer; NULL where a library keeps
+/// its pieces elsewhere.
 static const char *find_end_of_head(const hn_request *r) {
     const union MHD_ConnectionInfo *info =
         MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_REQUEST_HEADER_SIZE);
@@ -253,7 +253,7 @@ int hn_guard_accept(hn_request *r) {
     return 0;
 }
 
-/// What a route knows of a query, while it is walked through.
+/// Describes what a route knows of a query, while it is walked through.
 typedef struct query_check {
     const hn_route *route;
     int takes_token;

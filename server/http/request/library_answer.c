@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// What the library refuses, by the status of its answer.
+/// Refusals of the library, by the status of its answer.
 static const struct {
     unsigned status;
     hn_http_problem kind;

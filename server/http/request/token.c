@@ -37,8 +37,8 @@ static bool is_token(const char *shown, const char *token) {
     return difference == 0;
 }
 
-/// What follows the scheme in an Authorization header, whatever the case of its letters (RFC 9110,
-/// section 11.1); NULL for another scheme.
+/// Returns what follows the scheme in an Authorization header, whatever the case of its letters
+/// (RFC 9110, section 11.1); NULL for another scheme.
 static const char *read_bearer(const char *header) {
     static const char scheme[] = "Bearer ";
     const size_t n = sizeof scheme - 1;

@@ -37,7 +37,7 @@ static void reply_verb(hn_request *r, const char *method, const char *allow) {
     hn_reply_header_add(r, "Allow", "%s", allow);
 }
 
-/// Where an address lies off the API: a redirect to its front door, a file of the page, or nothing.
+/// Replies to an address off the API: a redirect to its front door, a file of the page, or nothing.
 static void reply_off_routes(hn_request *r, const char *method, const hn_route_match *match) {
     // relative: a proxy may serve them below a prefix
     static const char *const front_doors[][2] = {

@@ -53,7 +53,7 @@ static void name_file(hn_request *r, const hn_model *model, const char *suffix) 
                         n ? name : "mechanism", suffix);
 }
 
-/// What a request asks for, as words of its body or its query; NULL: left out.
+/// Wishes of a request, as words of its body or its query; NULL: left out.
 typedef struct wanted {
     const char *language, *method, *style, *solver, *format;
     bool blanks;

@@ -110,7 +110,7 @@ static void put_reference(hn_strbuf *b, const char *schema) {
     hn_json_end_object(b);
 }
 
-/// What a status means where it says more than that all is well.
+/// Meanings of statuses that say more than that all is well.
 static const struct {
     const char *schema, *verb, *status, *about;
 } STATUSES[] = {

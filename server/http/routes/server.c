@@ -23,7 +23,7 @@
 
 /// Connections of one event loop; with its own descriptors fewer than the 128 events of one look.
 enum { LOOP_CONNECTIONS = 120 };
-/// Of an event loop itself, and of all that is not a connection: files, libraries, guests.
+/// Files of an event loop itself, and of all that is not a connection: files, libraries, guests.
 enum { LOOP_DESCRIPTORS = 4, OTHER_DESCRIPTORS = 128 };
 /// Texts of this size have pages of their own, which go back to the system with them; the C library
 /// otherwise raises the bound as such texts are freed, and keeps later ones [byte].
@@ -121,8 +121,8 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     return HN_OK;
 }
 
-/// How links name the server: by the address that it listens on, or by those of the machine where
-/// that is every one; a machine without a network has its loopback.
+/// Writes how links name the server: by the address that it listens on, or by those of the machine
+/// where that is every one; a machine without a network has its loopback.
 static void write_addresses(hn_server *s, const char *host) {
     char own[HN_OWN_ADDRESSES][HN_ADDRESS_TEXT];
     const bool is_six = host[0] == '[';

@@ -225,7 +225,7 @@ static void close_stream(void *cls) {
 
 // ---- opening ----
 
-/// What the query and the header ask for; false with a problem as reply.
+/// Finds what the query and the header ask for; false with a problem as reply.
 static bool read_request(hn_request *r, bool *live, double *last) {
     const char *mode = hn_request_query(r, "mode"), *text = hn_request_header(r, "Last-Event-ID");
     if (mode && strcmp(mode, "live") != 0 && strcmp(mode, "complete") != 0) {

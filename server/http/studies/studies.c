@@ -480,7 +480,7 @@ static const char *hindrance(const hn_study *s) {
 }
 
 /// Lets a stopped study go on, for the time limit of the body or else for all the computing time
-/// that its runs have left, and never for longer. What was left of the limit before does not count.
+/// that its runs have left, and never for longer. The rest of the earlier limit does not count.
 /// The document of what is done stays until there is a new one. With the lock held.
 static hn_status go_on(hn_study *s, const cJSON *body) {
     const cJSON *limit = cJSON_GetObjectItemCaseSensitive(body, "time_limit");

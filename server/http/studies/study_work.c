@@ -20,7 +20,7 @@ static int must_stop(void *user) {
 }
 
 /// Whether equations are no longer wanted: of the scene, and of its methods while the study
-/// computes. What is written afterwards needs none.
+/// computes. Members written afterwards need none.
 static bool must_end(void *user) {
     hn_study_work *w = user;
     w->out_of_time |= w->computes && hn_clock_wall() > w->wall_end;
@@ -104,8 +104,8 @@ static hn_status check_methods(const hn_job_request *r, hn_diags *diags) {
     return status;
 }
 
-/// Opens the job. What cannot be kept, because the same study runs already or the disk is full, is
-/// computed without being kept.
+/// Opens the job. A study that cannot be kept, because the same one runs already or the disk is
+/// full, is computed without being kept.
 static hn_status open_job(hn_study_work *w, hn_diags *diags) {
     hn_diags kept = *diags;
     hn_status status = hn_job_open(w->kind, &w->request, &w->job, diags);

@@ -104,7 +104,7 @@ static void a_number_reads_back_to_the_same_double(void **state) {
     }
 }
 
-/// What a function writes for a language, kept until the next call.
+/// Returns what a function writes for a language, kept until the next call.
 static const char *words_of(fixture *f, const char *language,
                             void (*put)(hn_strbuf *, const hn_language *, const char *),
                             const char *text) {

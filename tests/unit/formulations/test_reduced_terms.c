@@ -96,7 +96,7 @@ static int next_terms(probe *p) {
 
 typedef void (*scene_check)(probe *p);
 
-/// How many of the shipped scenes have these terms, each checked at so many states.
+/// Returns how many of the shipped scenes have these terms, each checked at so many states.
 static int for_shipped_scenes(scene_check check, int states) {
     glob_t found;
     int n = 0;

@@ -273,7 +273,7 @@ static void a_free_body_starts_where_the_file_places_it(void **state) {
     imported_close(&x);
 }
 
-/// What the file tells of geoms that can touch one another; NULL: nothing.
+/// Returns what the file tells of geoms that can touch one another; NULL: nothing.
 static const hn_import_note *contact_note(hn_imported *x, const char *bodies, const char *rest) {
     char text[1200];
     snprintf(text, sizeof text, "<mujoco>%s<worldbody>%s</worldbody></mujoco>", rest, bodies);

@@ -40,7 +40,7 @@ static hn_canvas *create(int width, int height) {
     return c;
 }
 
-/// How many pixels' worth of black lies on the paper, by the red channel.
+/// Returns how many pixels' worth of black lies on the paper, by the red channel.
 static double ink(const picture *p) {
     const double paper = hn_surface_get(HN_THEME_LIGHT)->paper >> 16;
     double sum = 0;

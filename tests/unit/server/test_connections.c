@@ -24,7 +24,7 @@ static client open_client(hn_connections *all) {
     return (client){fd[0], fd[1], hn_connections_add(all, fd[1], 0)};
 }
 
-/// What the client has been sent when its connection ends.
+/// Reads what the client has been sent when its connection ends.
 static void read_to_end(const client *c, char text[1000]) {
     size_t used = 0;
     text[0] = '\0';

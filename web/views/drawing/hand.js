@@ -110,7 +110,7 @@ export function createHand(layer, data, stage, actions) {
     button.hidden = list.length === 0;
   }
 
-  /** Where a point is now. @param {number} point */
+  /** Returns where a point is now. @param {number} point */
   function placeOf(point) {
     const all = data.history.pointsAt(data.view.selected, shownIndex(data));
     return [0, 1, 2].map((k) => all[3 * point + k]);

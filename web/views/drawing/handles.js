@@ -102,7 +102,7 @@ export function createHandles(svg, layer, data, stage, actions) {
   }
 
   /**
-   * Where the pointer is in the world: in the plane of the picture through the held point.
+   * Returns where the pointer is in the world: in the plane of the picture through the held point.
    * @param {{x: number, y: number, from: number[]}} held @param {number} x @param {number} y
    * @param {boolean} snap to the grid
    */

@@ -31,7 +31,7 @@ export function createMotion(store, draw) {
     time = Math.min(newest, Math.max(earliest, next));
   }
 
-  /** Where the picture is among the kept frames. */
+  /** Returns where the picture is among the kept frames. */
   function place() {
     const { history, view } = data;
     const now = shownIndex(data);

@@ -112,7 +112,7 @@ export function createEditorTools(data, { stage, frame, overlay }, { change, tel
     }
   }
 
-  /** Where a bar is held: ends and joints first, then whatever place of a bar. */
+  /** Returns where a bar is held: ends and joints first, then whatever place of a bar. */
   function placesAt(world) {
     const places = createPlaces(data.scene);
     return [

@@ -24,7 +24,10 @@ export function boxOf(scene) {
   return { low, high, radius, vertical, ground: low[vertical] - CLEARANCE * radius };
 }
 
-/** Where the posts of the supports meet the ground. @param {import("../../state/types.js").Scene} scene */
+/**
+ * Returns where the posts of the supports meet the ground.
+ * @param {import("../../state/types.js").Scene} scene
+ */
 export function feetOf(scene) {
   const { vertical, ground } = boxOf(scene);
   return baseOf(scene)

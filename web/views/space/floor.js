@@ -6,7 +6,9 @@ import { niceBelow } from "../../state/format.js";
 
 const SHADOW_PIXELS = 1024;
 
-/** What shows shadows alone, just above the grid: all of it is drawn, even where none falls. */
+/**
+ * Returns what shows shadows alone, just above the grid: all of it is drawn, even where none falls.
+ */
 function makeSheet(width, radius, dark) {
   const sheet = new THREE.Mesh(
     new THREE.PlaneGeometry(width, width),
