@@ -121,11 +121,38 @@ static hn_status find_guest(piece left, piece right, hn_method_spec *spec, hn_di
                : find_stepper(right, &spec->stepper, diag);
 }
 
+/// The options of a formulation or of an integrator, and the one beyond the '@'.
+typedef struct side_options {
+    const char *name;
+    const hn_option *table;
+    int n;
+    const struct side_options *other;
+} side_options;
+
+/// Reports an option that this side lacks: it may belong beyond the '@'.
+static hn_status unknown_option(hn_diag *diag, piece p, const char *key, const side_options *own) {
+    const char *keys[HN_MAX_OPTIONS];
+    for (int i = 0; i < own->n; i++) {
+        keys[i] = own->table[i].key;
+    }
+    const side_options *other = own->other;
+    for (int i = 0; i < other->n; i++) {
+        if (strcmp(other->table[i].key, key) == 0) {
+            char hint[HN_DIAG_HINT];
+            snprintf(hint, sizeof hint, "write it behind that name: %.40s:%s=VALUE", other->name,
+                     key);
+            hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "option '%s' belongs to %s, not to %s", key,
+                        other->name, own->name);
+            return at_column(diag, p, HN_ERR_INPUT);
+        }
+    }
+    return unknown_name(diag, p, "option", key, keys, own->n);
+}
+
 // One "key=value"; `given` has a bit per setting already seen.
-static hn_status parse_option(piece p, const hn_option *table, int n, double *set, unsigned *given,
+static hn_status parse_option(piece p, const side_options *own, double *set, unsigned *given,
                               hn_diag *diag) {
     char key[MAX_WORD], value[MAX_WORD];
-    const char *keys[HN_MAX_OPTIONS];
     const size_t equals = find_char(p, '=');
     const piece left = {p.text, p.from, equals};
     if (equals == p.to) {
@@ -140,11 +167,8 @@ static hn_status parse_option(piece p, const hn_option *table, int n, double *se
     // the option of this name, given once
     copy_word(left, key);
     copy_word(right, value);
-    for (int i = 0; i < n; i++) {
-        keys[i] = table[i].key;
-    }
-    for (int i = 0; i < n; i++) {
-        if (strcmp(keys[i], key) != 0) {
+    for (int i = 0; i < own->n; i++) {
+        if (strcmp(own->table[i].key, key) != 0) {
             continue;
         }
         if (*given & 1u << i) {
@@ -152,9 +176,9 @@ static hn_status parse_option(piece p, const hn_option *table, int n, double *se
             return at_column(diag, left, HN_ERR_INPUT);
         }
         *given |= 1u << i;
-        return at_column(diag, right, hn_option_parse(&table[i], value, &set[i], diag));
+        return at_column(diag, right, hn_option_parse(&own->table[i], value, &set[i], diag));
     }
-    return unknown_name(diag, left, "option", key, keys, n);
+    return unknown_option(diag, left, key, own);
 }
 
 // A comma followed by bare digits and no '=' is a decimal comma: "h=0,02" is one setting.
@@ -175,12 +199,11 @@ static size_t end_of_option(piece p) {
     return p.to;
 }
 
-static hn_status parse_options(piece p, const hn_option *table, int n, double *set, hn_diag *diag) {
+static hn_status parse_options(piece p, const side_options *own, double *set, hn_diag *diag) {
     unsigned given = 0;
     for (;;) {
         const size_t end = end_of_option(p);
-        const hn_status status =
-            parse_option((piece){p.text, p.from, end}, table, n, set, &given, diag);
+        const hn_status status = parse_option((piece){p.text, p.from, end}, own, set, &given, diag);
         if (status != HN_OK || end == p.to) {
             return status;
         }
@@ -199,19 +222,30 @@ static hn_status fill_defaults(piece p, const hn_option *table, int n, double *s
 }
 
 // name[:options] after the name was found; `colon` is where its options begin
-static hn_status parse_side(piece side, size_t colon, const hn_option *table, int n, double *set,
+static hn_status parse_side(piece side, size_t colon, const side_options *own, double *set,
                             hn_diag *diag) {
     for (int i = 0; i < HN_MAX_OPTIONS; i++) {
-        set[i] = i < n ? table[i].initial : 0;
+        set[i] = i < own->n ? own->table[i].initial : 0;
     }
     if (colon < side.to) {
         const piece options = {side.text, colon + 1, side.to};
-        const hn_status status = parse_options(options, table, n, set, diag);
+        const hn_status status = parse_options(options, own, set, diag);
         if (status != HN_OK) {
             return status;
         }
     }
-    return fill_defaults(side, table, n, set, diag);
+    return fill_defaults(side, own->table, own->n, set, diag);
+}
+
+static hn_status parse_sides(piece left, size_t left_colon, piece right, size_t right_colon,
+                             hn_method_spec *spec, hn_diag *diag) {
+    const hn_formulation *f = spec->formulation;
+    const hn_stepper *s = spec->stepper;
+    side_options of_formulation = {f->name, f->options, f->n_options, NULL};
+    side_options of_integrator = {s->name, s->options, s->n_options, &of_formulation};
+    of_formulation.other = &of_integrator;
+    HN_TRY(parse_side(left, left_colon, &of_formulation, spec->formulation_set, diag));
+    return parse_side(right, right_colon, &of_integrator, spec->stepper_set, diag);
 }
 
 static void warn_below_zero(const hn_option *table, int n, const double *set, hn_diag *diag) {
@@ -314,10 +348,7 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
         HN_TRY(find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag));
     }
     HN_TRY(check_pair(right, &spec, diag));
-    HN_TRY(parse_side(left, left_colon, spec.formulation->options, spec.formulation->n_options,
-                      spec.formulation_set, diag));
-    HN_TRY(parse_side(right, right_colon, spec.stepper->options, spec.stepper->n_options,
-                      spec.stepper_set, diag));
+    HN_TRY(parse_sides(left, left_colon, right, right_colon, &spec, diag));
 
     // no fault: the message may hold a warning
     if (diag) {

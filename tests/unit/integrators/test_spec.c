@@ -169,6 +169,20 @@ static void a_refused_pair_names_what_fits_on_either_side(void **state) {
     assert_null(strstr(d.hint, "index3,"));
 }
 
+static void an_option_on_the_wrong_side_names_the_side_that_has_it(void **state) {
+    (void)state;
+    hn_method_spec s;
+    hn_diag d;
+    assert_int_equal(parse("baumgarte@rk4:h=0.01,alpha=5", &s, &d), HN_ERR_INPUT);
+    assert_string_equal(d.message, "option 'alpha' belongs to baumgarte, not to rk4");
+    assert_string_equal(d.hint, "write it behind that name: baumgarte:alpha=VALUE");
+    assert_int_equal(d.column, 22);
+    assert_int_equal(parse("baumgarte:h=0.01@rk4", &s, &d), HN_ERR_INPUT);
+    assert_string_equal(d.message, "option 'h' belongs to rk4, not to baumgarte");
+    assert_int_equal(parse("baumgarte@rk4:omega=3", &s, &d), HN_ERR_INPUT);
+    assert_string_equal(d.message, "option 'omega' is not known; there are: h, sum");
+}
+
 static int n_words(const char *text) {
     int n = 0;
     for (; *text; n++) {
@@ -293,6 +307,7 @@ int main(void) {
         cmocka_unit_test(normal_spelling_reads_back_to_the_same_spec),
         cmocka_unit_test(a_pair_is_read_exactly_when_the_integrator_serves_the_formulation),
         cmocka_unit_test(a_refused_pair_names_what_fits_on_either_side),
+        cmocka_unit_test(an_option_on_the_wrong_side_names_the_side_that_has_it),
         cmocka_unit_test(cards_keep_to_their_space_and_choices_to_their_range),
         cmocka_unit_test(json_names_choices_and_never_holds_infinity),
         cmocka_unit_test(random_text_is_refused_or_reads_back),
