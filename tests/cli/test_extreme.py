@@ -81,7 +81,8 @@ class Extreme(unittest.TestCase):
         self.assertNotIn(" fail", table.splitlines()[-1])
 
     def test_an_unknown_case_and_a_wrong_file_name_are_told(self):
-        for words, says in ([["x99"], "no case 'x99'"], [["x3", "--out", "a.doc"], "does not choose a form"]):
+        cases = len(glob.glob(HERE + "/x*.json"))
+        for words, says in ([["x99"], "no case 'x99'"], [["x99"], f"the cases are x1 to x{cases}"], [["x3", "--out", "a.doc"], "does not choose a form"]):
             done = call(words)
             self.assertEqual(done.returncode, INPUT)
             self.assertIn(says, done.stderr)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
 
-#include "base/units.h"
 #include "formulations/list/formulation_list.h"
+#include "session/model/run_time.h"
 #include "study/run/diagnosis.h"
 
 #include "render/look.h"
@@ -139,12 +139,7 @@ static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_di
                             "leave frame_dt out: the program chooses it",
                             "frame_dt is %g s; it must be at least 1e-6 s", opts->frame_dt);
     }
-    if (!(opts->duration >= 0) || !(opts->duration <= 1e6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/duration", NULL,
-                            "the duration is %.*g s; 0 to 1e6 s are allowed",
-                            hn_digits_apart(opts->duration, 1e6, 6), opts->duration);
-    }
-    return HN_OK;
+    return hn_run_time_check(opts->duration, true, "duration", "/duration", diags);
 }
 
 hn_status hn_comparison_create(const hn_model *model, const char *const *methods, int n_methods,

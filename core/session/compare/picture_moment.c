@@ -6,6 +6,7 @@
 #include "session/compare/picture_angles.h"
 #include "session/model/envelope.h"
 #include "session/model/reactions_json.h"
+#include "session/model/run_time.h"
 #include "session/model/state.h"
 
 #include <math.h>
@@ -17,14 +18,6 @@ static const double FRAME = 0.05, TRACE_FRAME = 0.01; // [s] at most, without an
 static const double SMALLEST_FORCE = 1e-6;            // of the largest: a smaller one is no arrow
 static const double SAME_GAP = 0.01;                  // relative: two digits are shown
 static const double ROUNDING = 1e-12; // [m] a gap below it has other digits wherever it is computed
-
-static hn_status check_time(double time, hn_diags *diags) {
-    if (!(time >= 0) || !(time <= 1e6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the time is %g s; 0 to 1e6 s are allowed", time);
-    }
-    return HN_OK;
-}
 
 static double cpu_used(const hn_comparison *c) {
     double sum = 0;
@@ -115,7 +108,7 @@ static hn_status make_lines(hn_picture_moment *p, int frames, double **lines) {
 static hn_status run_methods(hn_picture_moment *p, hn_diags *diags) {
     const hn_picture_request *r = p->request;
     double *lines[HN_COMPARISON_MAX_METHODS] = {NULL};
-    HN_TRY(check_time(p->time, diags));
+    HN_TRY(hn_run_time_check(p->time, true, "time", "/time", diags));
 
     // frame length that divides the time asked for
     const double longest = p->n_traces ? TRACE_FRAME : FRAME;

@@ -6,6 +6,7 @@
 #include "session/compare/failure.h"
 #include "session/compare/incident_json.h"
 #include "session/compare/sample_table.h"
+#include "session/model/run_time.h"
 #include "session/store/cost_json.h"
 #include "study/run/diagnosis.h"
 #include "study/run/pace.h"
@@ -99,11 +100,7 @@ static hn_status check_at(const hn_run_request *r, hn_diags *diags) {
 }
 
 static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags) {
-    if (!(r->time > 0) || !(r->time <= 1e6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %.*g s; it must be above 0 and at most 1e6 s",
-                            hn_digits_apart(r->time, 1e6, 6), r->time);
-    }
+    HN_TRY(hn_run_time_check(r->time, false, "end time", "/time", diags));
     if (!(r->every >= 0) || !isfinite(r->every)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
                             "the output interval is %g s; it must be above 0", r->every);

@@ -80,6 +80,17 @@ static hn_status read_file(hn_extreme *x, const char *folder, const char *name, 
     return status;
 }
 
+/// Writes "the cases are x1 to x25", by the files that are there.
+static void name_cases(const hn_folder *cases, char hint[HN_DIAG_HINT]) {
+    int first = 0, last = 0;
+    for (int k = 0; k < cases->n; k++) {
+        const int number = number_of(cases->names[k]);
+        first = number > 0 && (first == 0 || number < first) ? number : first;
+        last = number > last ? number : last;
+    }
+    snprintf(hint, HN_DIAG_HINT, "the cases are x%d to x%d", first, last);
+}
+
 /// Reports an id for which there is no file.
 static hn_status check_ids(const hn_folder *cases, const char *const *ids, int n_ids,
                            hn_diags *diags) {
@@ -89,8 +100,10 @@ static hn_status check_ids(const hn_folder *cases, const char *const *ids, int n
             found |= number_of(cases->names[k]) > 0 && is_wanted(cases->names[k], &ids[i], 1);
         }
         if (!found) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/id", "the cases are x1 to x25",
-                                "there is no case '%.40s'", ids[i]);
+            char hint[HN_DIAG_HINT];
+            name_cases(cases, hint);
+            return hn_diags_add(diags, HN_ERR_INPUT, "/id", hint, "there is no case '%.40s'",
+                                ids[i]);
         }
     }
     return HN_OK;

@@ -5,12 +5,13 @@
 // within bounds.
 
 #include "session/extreme/extreme_internal.h"
+#include "session/model/run_time.h"
 
 #include <cjson/cJSON.h>
 #include <stdbool.h>
 
 enum { HN_XR_TEXT = 1200, HN_XR_SCENES = 16 }; ///< bytes of a text, own scenes of a case
-#define HN_XR_TIME 1e6                         ///< [s]
+#define HN_XR_TIME HN_RUN_TIME_MAX             ///< [s]
 #define HN_XR_NUMBER 1.7e308                   ///< of anything
 
 typedef struct hn_xr {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/job/job_request.h"
 
-#include "base/units.h"
+#include "session/model/run_time.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,10 +103,8 @@ const char *hn_job_text(const hn_job_request *r, const char *name) {
 
 static hn_status check_times(const hn_job_request *r, hn_diags *diags) {
     const double limit = r->limits.time_limit;
-    if (r->n_models == 1 && !(r->time > 0 && r->time <= 1e6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %.*g s; it must be above 0 and at most 1e6 s",
-                            hn_digits_apart(r->time, 1e6, 6), r->time);
+    if (r->n_models == 1) {
+        HN_TRY(hn_run_time_check(r->time, false, "end time", "/time", diags));
     }
     if (!(limit >= 0) || !isfinite(limit)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time_limit", NULL,

@@ -6,6 +6,7 @@
 // the server and, through the index of the API, the page read what they need from the row.
 
 #include "session/job/job_request.h"
+#include "session/model/run_time.h"
 
 enum { HN_JOB_FORMS = 6 };
 
@@ -106,10 +107,10 @@ void hn_job_kinds_json(hn_strbuf *b, const hn_field *time_limit);
         .name = "methods", .type = HN_FIELD_TEXTS, .min = 1, .max = (most),                        \
         .served_max = (served), .about = "spellings of methods; a choice of methods when left out" \
     }
-#define HN_JOB_TIME_FIELD                                                 \
-    {                                                                     \
-        .name = "time", .type = HN_FIELD_NUMBER, .min = 1e-9, .max = 1e6, \
-        .about = "end of the motion [s]; the scene's when left out"       \
+#define HN_JOB_TIME_FIELD                                                             \
+    {                                                                                 \
+        .name = "time", .type = HN_FIELD_NUMBER, .min = 1e-9, .max = HN_RUN_TIME_MAX, \
+        .about = "end of the motion [s]; the scene's when left out"                   \
     }
 #define HN_JOB_TIME_LIMIT_FIELD(default_words)                                                   \
     {                                                                                            \

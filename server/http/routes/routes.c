@@ -14,6 +14,7 @@
 #include "http/studies/study_fields.h"
 #include "render/canvas.h"
 #include "session/compare/comparison.h"
+#include "session/model/run_time.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -32,7 +33,6 @@
     }
 
 enum { MAX_TIMES = 100000 };
-static const double LONGEST_RUN = 1e6; // [s]
 
 static const char *const EQUATION_FORMATS[] = {"text", "latex", "json", NULL};
 static const char *const STATES[] = {"running", "paused", NULL};
@@ -164,7 +164,7 @@ static const hn_field RUN[] = {
      .type = HN_FIELD_NUMBER,
      .required = 1,
      .min = 1e-9,
-     .max = LONGEST_RUN,
+     .max = HN_RUN_TIME_MAX,
      .about = "end of the run [s]"},
     {.name = "at",
      .type = HN_FIELD_NUMBERS,
@@ -174,7 +174,7 @@ static const hn_field RUN[] = {
     {.name = "every",
      .type = HN_FIELD_NUMBER,
      .min = 1e-9,
-     .max = LONGEST_RUN,
+     .max = HN_RUN_TIME_MAX,
      .about = "output interval [s]; 200 samples when neither is given"},
     {.name = "reactions",
      .type = HN_FIELD_BOOL,
@@ -203,7 +203,7 @@ static const hn_field COMPARISON[] = {
     {.name = "duration",
      .type = HN_FIELD_NUMBER,
      .min = 1e-6,
-     .max = LONGEST_RUN,
+     .max = HN_RUN_TIME_MAX,
      .about = "end [s]; the scene's when left out"},
     {.name = "speed",
      .type = HN_FIELD_NUMBER,
@@ -229,7 +229,7 @@ static const hn_field SNAPSHOT[] = {
      .type = HN_FIELD_NUMBER,
      .required = 1,
      .min = 0,
-     .max = LONGEST_RUN,
+     .max = HN_RUN_TIME_MAX,
      .about = "time of the picture [s]"},
     {.name = "width",
      .type = HN_FIELD_INTEGER,
