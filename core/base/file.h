@@ -41,7 +41,7 @@ HN_MUST_CHECK hn_status hn_file_read_stdin(size_t most, hn_strbuf *text, hn_diag
 /// leads nowhere is refused. A device, a FIFO with a reader or a socket takes the bytes directly.
 /// Fails: HN_ERR_IO; `diag` (may be NULL) names the path and the reason.
 HN_MUST_CHECK hn_status hn_file_write(const char *path, const void *bytes, size_t n, hn_diag *diag);
-/// Writes a file that this program keeps for itself and can compute again. Whatever stands in its
+/// Writes a file that this program keeps for itself and can compute again. Anything in its
 /// place is replaced, a link itself and not what it leads to; nobody waits for the disk: a program
 /// that is killed loses nothing, a machine that loses its power may leave a file that is cut.
 HN_MUST_CHECK hn_status hn_file_keep(const char *path, const void *bytes, size_t n, hn_diag *diag);

@@ -16,7 +16,7 @@ typedef struct hn_code_entry {
     hn_ex value;
 } hn_code_entry;
 
-/// Which symbols are coordinates, velocities, and time.
+/// Symbols of coordinates, velocities, and time.
 typedef struct hn_code_symbols {
     const int *q, *v; ///< symbol numbers, nq and nv of them
     int nq, nv, t;

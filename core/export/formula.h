@@ -8,7 +8,7 @@
 #include "export/language.h"
 #include "expr/graph.h"
 
-/// What a piece depends on: by that its name begins, and formulas to read are grouped.
+/// Dependence of a piece: it decides the first letter of the name and the group of formulas.
 typedef enum hn_piece_kind {
     HN_PIECE_CONSTANT, ///< parameters alone
     HN_PIECE_POSITION, ///< coordinates or time; also where nobody says what symbols are

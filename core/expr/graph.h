@@ -51,9 +51,9 @@ void hn_graph_set_interrupt(hn_graph *g, hn_interrupt interrupt);
 bool hn_graph_is_interrupted(hn_graph *g);
 /// Returns whether it has been interrupted, without asking.
 bool hn_graph_was_interrupted(const hn_graph *g);
-/// Lets an interrupted graph grow again; one that is not stays as it is. What was being built was
-/// lost, and nothing wrong was kept: the same calls made again find the nodes that were there and
-/// add the rest, with the same numbers.
+/// Lets an interrupted graph grow again; one that is not stays as it is. The expression being built
+/// was lost, and nothing wrong was kept: the same calls made again find the nodes that were there
+/// and add the rest, with the same numbers.
 void hn_graph_go_on(hn_graph *g);
 int hn_graph_size(const hn_graph *g); ///< nodes so far
 

@@ -34,7 +34,7 @@ hn_native_opts hn_native_opts_default(const char *folder);
 
 /// Switches the service on for tapes compiled from now on. Call it once, before other threads
 /// exist. The first tape that is long in use makes the service look for the folder and the compiler
-/// and start its thread. Where one of these is missing, the interpreter goes on, and
+/// and start its thread. If one of these is missing, the interpreter goes on, and
 /// hn_native_reason() says why.
 void hn_native_start(const hn_native_opts *opts);
 /// In place of the start, where the service is wanted and cannot work: why.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_CHECK_H
 #define HN_EXPR_TAPE_CHECK_H
-// What makes the answer of a tape sure, in terms of its outputs, in this order:
+// Conditions that make the answer of a tape sure, in terms of its outputs, in this order:
 //
 //   n_answer  each is finite
 //   n_pairs   pairs: the first is larger in size than `pair` times the second
@@ -18,7 +18,7 @@ typedef struct hn_tape_check {
     double pair, row;
 } hn_tape_check;
 
-/// What is known of it after a run.
+/// Verdict on the answer of a tape after a run.
 typedef enum hn_tape_verdict { HN_TAPE_UNSURE, HN_TAPE_SURE, HN_TAPE_UNCHECKED } hn_tape_verdict;
 
 /// Whether it holds after a run: output k is work[slots[k]]. One of no outputs holds.

@@ -3,8 +3,8 @@
 #define HN_IMPORT_IMPORT_H
 // Mechanisms written for other programs, read into a scene of ours: MuJoCo's MJCF with the files it
 // includes, and URDF with a list of the joints that close its loops. The scene comes as JSON text
-// that the loader of scene/ has accepted. Whatever of the file is not in the scene is in the notes,
-// one for each element or attribute, with its line: nothing is dropped silently.
+// that the loader of scene/ has accepted. The notes list all parts of the file that are not in the
+// scene, one for each element or attribute, with its line: nothing is dropped silently.
 //
 // What closes a loop (an equality `connect` or `weld`, a joint of the loop file) becomes a joint
 // that is marked as cut, so that the file's own tree carries the coordinates. Coordinates are those

@@ -5,7 +5,7 @@
 //
 //     G = A A' + shift I                                                                     (1)
 //
-// for an A (rows x cols) whose entries change and whose places do not. What it costs grows with the
+// for an A (rows x cols) whose entries change and whose places do not. Its cost grows with the
 // products of entries that stand in one column: linearly for a chain of loops. Least-norm solutions
 // x = A' G^-1 b, damped ones, distances of rows from each other and singular values of A all come
 // from it. It squares the condition of A, so it serves rows that stand well apart.

@@ -7,7 +7,7 @@
 //
 // Each works on the equilibrated system (saddle.h says how) and ends with iterative refinement,
 // residuals in twice the working precision, which brings all of them to the same digits where they
-// apply at all. What each cannot serve it refuses.
+// apply at all. Each refuses the matrices that it cannot serve.
 //
 //   dense        Bunch-Kaufman of K; J of full row rank (the inertia of K tells)
 //   range space  M = L L', S = (L^-1 J')' (L^-1 J'), Cholesky of S; M definite, J of full row

@@ -33,7 +33,7 @@ void hn_newton_matrix_free(hn_newton_matrix *m); ///< NULL is legal
 
 /// Begins a matrix of size n, all zero.
 void hn_newton_matrix_begin(hn_newton_matrix *m, int n);
-/// Adds to entry (row, col). Of a real matrix only `re` counts.
+/// Adds to entry (row, col). A real matrix has `re` alone.
 void hn_newton_matrix_put(hn_newton_matrix *m, int row, int col, double re, double im);
 /// Copies the entries that were put (n x n, row-major), before the matrix is factored. For real
 /// matrices, for reports.

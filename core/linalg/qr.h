@@ -39,7 +39,7 @@ HN_MUST_CHECK bool hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max);
 /// |R_00| are dropped.
 void hn_qr_factor(hn_qr *qr, int m, int n, double rank_tol);
 /// The rows below k where Householder vector k is not zero, rising; *rows until the next call.
-/// Returns how many. Of the rows of a large mechanism a vector has few.
+/// Returns how many. A vector has few of the rows of a large mechanism.
 int hn_qr_reflector(const hn_qr *qr, int k, const int **rows);
 /// Whether it pays to go over such a list of n of the rows below k, in place of all of them.
 bool hn_qr_is_sparse(const hn_qr *qr, int k, int n);

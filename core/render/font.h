@@ -23,7 +23,7 @@ typedef struct hn_glyph {
 
 /// The outline of a character; of one that the font lacks, that of a box.
 void hn_font_glyph(uint32_t code, hn_glyph *out);
-/// How far the next character stands from this one, in units of the height of the type.
+/// Returns how far the next character stands from this one, in units of the height of the type.
 double hn_font_advance(uint32_t code);
 /// 1 if the font has the character itself, not the box.
 bool hn_font_has(uint32_t code);

@@ -7,7 +7,7 @@
 #include "render/snapshot_sheet.h"
 
 /// Draws each angle of opts.angles at its pivot: a dashed line where the bar would lie at angle 0,
-/// an arc with an arrow from there to the bar, and the name with the value. Where the value has no
+/// an arc with an arrow from there to the bar, and the name with the value. If the value has no
 /// room the name stands alone. The texts join those that later ones keep off.
 void hn_snapshot_angles(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose, const hn_snapshot_opts *opts,

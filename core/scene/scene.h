@@ -183,8 +183,8 @@ typedef struct hn_constraint {
     hn_quantity ratio, value;
 } hn_constraint;
 
-/// Formulas of a Lagrangian in coordinates, rates, t and parameters. Beside bodies the energies are
-/// added to theirs, and the constraints are among the scene's.
+/// Formulas of a Lagrangian in coordinates, rates, t and parameters. In a scene of bodies too, the
+/// energies are added to theirs, and the constraints are among the scene's.
 typedef struct hn_lagrangian {
     hn_quantity kinetic, potential;
     int n_constraints;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLASS_CLASS_COPIES_H
 #define HN_CLASS_CLASS_COPIES_H
-// Who of a class handed in the same as whom: the words of the summary, beside each submission.
+// Submissions of a class that are the same: the words of the summary, beside each submission.
 
 #include "class/class_grading.h"
 #include "class/fingerprint.h"
 
-/// What a graded submission is compared by.
+/// Features by which graded submissions are compared.
 typedef struct hn_class_copy {
     char student[128], texts[20], shape[20]; ///< texts "": it is compared with none
     hn_fingerprint own;                      ///< of a program
@@ -22,7 +22,8 @@ typedef struct hn_class_copies {
 /// programs are. hn_class_copies_reset() in any case.
 void hn_class_copies_find(hn_class_copies *c, const hn_class_result *r, bool programs);
 void hn_class_copies_reset(hn_class_copies *c);
-/// What near-copies share: "the same but for the names", of programs also comments and order.
+/// Returns the words for what near-copies share: "the same but for the names", of programs also
+/// comments and order.
 const char *hn_class_copies_near(bool programs);
 /// Adds "the same as Ann, Bob", hn_class_copies_near() with " as Eve" and "shares 92 % of its
 /// statements with Ned" for submission i, after "; " where the buffer is not empty; nothing where

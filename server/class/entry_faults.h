@@ -23,8 +23,8 @@ typedef struct hn_entry_values {
 
 enum { HN_ENTRY_FAULTS = 6, HN_ENTRY_FAULT_TEXT = 216 };
 
-/// What may be wrong with it. All explanations that fit are counted: where terms are alike there
-/// are several.
+/// Possible faults of an entry. All explanations that fit are counted: where terms are
+/// alike there are several.
 typedef struct hn_entry_faults {
     int terms;    ///< of the entry
     int n, found; ///< explanations that are kept, and all of them

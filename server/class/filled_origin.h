@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLASS_FILLED_ORIGIN_H
 #define HN_CLASS_FILLED_ORIGIN_H
-// Of which scene, and with which parameters, a program with blanks was written: its text says both.
+// Scene and parameters for which a program with blanks was written: its text says both.
 
 #include "base/diag.h"
 #include "scene/scene.h"

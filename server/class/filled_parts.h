@@ -9,7 +9,7 @@
 
 #define HN_FILLED_POINTS 2.0 ///< of a part
 
-/// What a program has answered: for each state all parts behind each other.
+/// Answers of a program: for each state all parts behind each other.
 typedef struct hn_filled_answers {
     int n; ///< numbers a state
     double *value;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLASS_SOURCE_TEXT_H
 #define HN_CLASS_SOURCE_TEXT_H
-// What is common to the source texts of all languages that a class hands in.
+// Functions common to the source texts of all languages that a class hands in.
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/// How a language writes what is no statement.
+/// Style of comments and blocks of a language.
 typedef enum hn_source_style {
     HN_SOURCE_C,      ///< C, C++, Java: // and /* */; a line that begins with # is a directive
     HN_SOURCE_PYTHON, ///< #; a line ends a statement

@@ -6,7 +6,7 @@
 
 #include "cli/shell/command.h"
 
-/// How many commands there are.
+/// Returns the number of commands.
 int hn_command_count(void);
 /// The row of command i, 0 <= i < hn_command_count().
 const hn_command *hn_command_at(int i);

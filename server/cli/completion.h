@@ -10,7 +10,7 @@
 /// `holonom completion bash|zsh|fish`: the few lines that a shell needs, on standard output.
 hn_exit hn_command_completion(const hn_library *lib, const hn_args *args);
 /// Adds a line for each candidate for the last of n words behind `holonom`: "candidate" or
-/// "candidate<TAB>what it is". Of a list after commas the last part is completed. Returns whether
+/// "candidate<TAB>what it is". The last part of a list after commas is completed. Returns whether
 /// a file may stand there too.
 bool hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *const *words, int n);
 #endif

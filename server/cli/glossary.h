@@ -11,8 +11,8 @@ typedef struct hn_term {
 
 /// Returns the terms, those of one subject beside each other; *n: how many.
 const hn_term *hn_glossary(int *n);
-/// How a term answers to a word, letter case aside, and where several terms do: those of the best
-/// kind are meant.
+/// Match of a term with a word, letter case aside, and where several terms do: those of
+/// the best kind are meant.
 typedef enum hn_term_match {
     HN_TERM_OTHER, ///< it does not
     HN_TERM_TELLS, ///< what it means holds the word, as "dead point"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_GRADE_CONTENTS_H
 #define HN_GRADE_CONTENTS_H
-// What an exercise consists of, as hashes: with them a later program can say what has changed in it
+// Contents of an exercise as hashes: with them a later program can say what has changed in it
 // since a verdict was written. A verdict holds them as
 //
 //     "contents": {"statement": "1f0c...", "numbers": "77ab...", "parts": {"a": "09d1...", ...}}

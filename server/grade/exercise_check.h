@@ -22,7 +22,7 @@ typedef struct hn_exercise_report {
     char first[2 * HN_GRADE_TEXT]; ///< the first fault found, "" if none: seed, part, what happened
     bool same;                     ///< every variant has the same fault
     /// for each bad variant, as long as there is room: its seed, part, and the first thing that
-    /// happened; one a line. Where `same`, one line for all of them.
+    /// happened; one a line. If `same`, one line for all of them.
     char list[2000];
 } hn_exercise_report;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_PROGRAM_CRASH_WORDS_H
 #define HN_PROGRAM_CRASH_WORDS_H
-// What a program that ended says about it on standard error: the message, and the line of its own
+// Last words of a program that ended, from its standard error: the message, and the line of its own
 // file where that is told.
 
 #include "program/limits.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TERMINAL_MAP_PLOT_H
 #define HN_TERMINAL_MAP_PLOT_H
-// A stability map in character cells: the outcome of every cell and the predicted limit. Where
+// A stability map in character cells: the outcome of every cell and the predicted limit. If
 // neither axis is the step, cells that came to their end are shaded by their worst loop gap.
 
 #include "session/stability/stability.h"

@@ -5,7 +5,7 @@
 
 #include "tui/workbench.h"
 
-/// The keys of what is shown, in so many columns. Where they are too many, those before the last
+/// The keys of what is shown, in so many columns. If they are too many, those before the last
 /// are left out: the way to the menu or back is always there.
 /// more: the card of incidents has more pages
 void hn_key_line(const hn_workbench *w, bool more, int columns, char out[HN_TUI_LINE]);

@@ -9,7 +9,7 @@
 void hn_list_begin(hn_workbench *w, hn_list_kind kind, const char *title);
 /// Adds an item at the end and returns it; NULL: the list is full. about: may be NULL.
 hn_item *hn_list_add(hn_workbench *w, const char *name, const char *about);
-/// How far a key moves in a list or a text; 0: it does not.
+/// Returns how far a key moves in a list or a text; 0: it does not.
 int hn_list_step(int key);
 enum { HN_TUI_PAGE = 15 }; ///< lines of a page
 #endif

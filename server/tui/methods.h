@@ -18,7 +18,7 @@ bool hn_methods_put(hn_workbench *w, int at, const char *spelling);
 int hn_methods_find(const hn_workbench *w, const char *spelling);
 /// Adds a method, or finds it where it is already compared, and selects it.
 void hn_methods_add(hn_workbench *w, const char *spelling);
-/// Sets an option of the selected method: "h". What it was before is said.
+/// Sets an option of the selected method: "h". The earlier value is reported.
 void hn_methods_set_one(hn_workbench *w, const char *key, double value);
 /// The last one stays.
 void hn_methods_remove(hn_workbench *w, int at);

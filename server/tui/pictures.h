@@ -39,7 +39,7 @@ hn_pictures hn_pictures_start(hn_pixels wanted, int theme);
 bool hn_pixels_parse(const char *word, hn_pixels *out);
 /// The first question; NULL: none, since no pictures are wanted.
 const char *hn_pictures_question(const hn_pictures *p);
-/// Takes an answer; returns a further question, or NULL. What is no answer changes nothing.
+/// Takes an answer; returns a further question, or NULL. Other bytes change nothing.
 const char *hn_pictures_answer(hn_pictures *p, const char *answer);
 /// The size of the window, in cells and in pixels (0: not known). Returns the question after its
 /// pixels where they are needed and not known, else NULL.

@@ -31,7 +31,7 @@ typedef struct hn_track {
     const double *step_ops; ///< operations of a step on average; NaN: not counted, or no step yet
 } hn_track;
 
-/// How a method ended, as far as it is known now.
+/// Ending of a method, as far as it is known now.
 typedef struct hn_track_end {
     bool failed;
     double t;                       ///< [s] reached

@@ -39,7 +39,7 @@ bool hn_screen_ready(void);
 /// Shows the cells; then sends `picture` (NULL or empty: nothing), a sequence that leaves the
 /// cursor where it is.
 void hn_screen_show(const hn_cells *c, bool ascii, const hn_strbuf *picture);
-/// How long the last picture with a sequence was on its way [s]; 0: that is not known.
+/// Returns how long the last picture with a sequence was on its way [s]; 0: that is not known.
 double hn_screen_delay(void);
 /// Cells of these rows are written again with the next picture, whatever was over them.
 void hn_screen_rewrite(int first, int rows);

@@ -12,7 +12,7 @@
 
 typedef struct hn_step_trial hn_step_trial;
 
-/// What is known by now.
+/// Result of the trial so far.
 typedef enum hn_step_finding {
     HN_STEP_RUNNING, ///< not known yet
     HN_STEP_LONG,    ///< a shorter step would do

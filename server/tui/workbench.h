@@ -82,7 +82,7 @@ typedef struct hn_placing {
     double x, y;         ///< dot of the view's origin
 } hn_placing;
 
-/// What the view has been fitted to (view_box.h).
+/// Box that the view has been fitted to (view_box.h).
 typedef struct hn_view_box {
     double envelope[4]; ///< of the motion: minimum right and up, maximum right and up [m]
     int frames;         ///< of the recording that the view holds
@@ -213,7 +213,7 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
                          int n_settings, const char *const *methods, int n_methods);
 /// The same scene with other settings and the same methods.
 bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings);
-/// What the trial of shorter steps says of the selected method; false: there is none.
+/// Finds what the trial of shorter steps says of the selected method; false: there is none.
 bool hn_workbench_step_report(const hn_workbench *w, hn_step_report *out);
 /// Returns the source of the present model; borrowed.
 hn_model_source hn_workbench_source(const hn_workbench *w);

@@ -9,8 +9,9 @@
 
 enum { HN_HAND_LADDER_MOST = 1000 };
 
-/// What the sweep back needs of a loop: accelerations of the left vertical (1) and of the coupler
-/// (2) are z + x lx + y ly; the multipliers are l - m times the acceleration of the right vertical.
+/// Describes what the sweep back needs of a loop: accelerations of the left vertical (1) and of the
+/// coupler (2) are z + x lx + y ly; the multipliers are l - m times the acceleration of the right
+/// vertical.
 typedef struct hn_hand_loop {
     double x1, x2, y1, y2, z1, z2, lx, ly, mx, my;
 } hn_hand_loop;
@@ -49,7 +50,8 @@ static inline void hn_hand_loop_eliminate(const hn_hand_vertical *a, double angl
     *out = (hn_hand_loop){x1, x2, y1, y2, z1, z2, lx, ly, mx, my};
 }
 
-/// q, v, a: absolute angles of the verticals 0 .. n, then of the couplers 1 .. n; lambda: two a loop.
+/// q, v, a: absolute angles of the verticals 0 .. n, then of the couplers 1 .. n; lambda: two a
+/// loop.
 __attribute__((noinline)) static void hn_hand_ladder(int n, const double *q, const double *v,
                                                      double *a, double *lambda) {
     static hn_hand_loop loops[HN_HAND_LADDER_MOST];

@@ -17,7 +17,7 @@ typedef enum hn_figure_cost {
     HN_FIGURE_TABLE  ///< in the table alone: minutes, or tested elsewhere already
 } hn_figure_cost;
 
-/// What was printed, and what may differ.
+/// Describes what was printed, and what may differ.
 typedef struct hn_figure {
     const char *what, *how; ///< the quantity; scene, method and time
     /// a number, "<1e-14" or ">1" (a bound), or words that have to be the same
@@ -54,7 +54,7 @@ void hn_figure_put(hn_figures *f, const char *what, const char *how, const char 
 void hn_figure_put_words(hn_figures *f, const char *what, const char *how, const char *printed,
                          const char *found);
 
-/// What a run is asked for.
+/// Describes what a run is asked for.
 typedef enum hn_figure_quantity {
     HN_FIGURE_ERROR,        ///< largest error of a coordinate at the end
     HN_FIGURE_ROW,          ///< largest |phi_i| at any step

@@ -22,10 +22,10 @@ void hn_ladder_motion_fill(hn_ladder_motion *motion, int n_loops, double duratio
 /// b at 0 <= t <= duration [rad].
 double hn_ladder_motion_angle(const hn_ladder_motion *motion, double t);
 
-/// What became of one run: survived is within 1e-2 m of the exact motion throughout, off is not as
-/// near but with parallel verticals. Runs `method` ("projection@rk4:h=0.01") over the whole motion.
-/// *worst (may be NULL): the largest distance of a tip from its exact place at a hundred times and
-/// more [m], until the run stopped.
+/// Returns what became of one run: survived is within 1e-2 m of the exact motion throughout, off is
+/// not as near but with parallel verticals. Runs `method` ("projection@rk4:h=0.01") over the whole
+/// motion. *worst (may be NULL): the largest distance of a tip from its exact place at a hundred
+/// times and more [m], until the run stopped.
 hn_survival_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
                               double *worst);
 /// Whether `method` costs the same operations for each loop over `time` [s] with 10 loops and with

@@ -7,7 +7,7 @@
 
 /// Returns owned (hn_scene_free).
 hn_scene *hn_test_scene(const char *text);
-/// How many shapes of a kind the scene draws.
+/// Returns how many shapes of a kind the scene draws.
 int hn_test_count_shapes(const hn_scene *scene, hn_shape_kind kind);
 
 #endif

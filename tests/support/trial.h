@@ -32,7 +32,7 @@ hn_run *hn_trial_run(const hn_trial *trial, const char *spelling);
 /// Index in a sample of a user coordinate, by its name or that of its rate.
 int hn_trial_coordinate(const hn_trial *trial, const char *name);
 
-/// What books say of a scene's start.
+/// Describes what books say of a scene's start.
 typedef struct hn_trial_count {
     const char *scene; ///< a path
     int freedoms, rank, rows;

@@ -13,8 +13,8 @@
 //
 // (all given here but x and y are functions of what is known by then). They are recognised from the
 // expressions of phi, whatever coordinates the scene is written in: the coefficients are read off
-// by differentiation, and phi made from them has to be phi at random poses. Of two ways to assemble
-// a dyad the one of the present pose is kept, as the sign of a square root.
+// by differentiation, and phi made from them has to be phi at random poses. With two ways to
+// assemble a dyad the one of the present pose is kept, as the sign of a square root.
 //
 // Source: Assur groups of the second class, e.g. Manolescu 1979, "A unitary method for construction
 // of the kinematic plane chains"; block triangular form: Duff & Reid 1978, Davis 2006 (SuiteSparse

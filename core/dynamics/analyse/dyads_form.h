@@ -13,7 +13,7 @@ typedef struct hn_pair {
 } hn_pair;
 
 /// phi = A cos x + B sin x + y (U cos x + V sin x + W) + C cos y + D sin y + E, or with A x for an
-/// unknown that slides. What the kind has not is zero.
+/// unknown that slides. Members that the kind lacks are zero.
 typedef struct hn_dyad_form {
     hn_pair A, B, C, D, U, V, W, E;
 } hn_dyad_form;

@@ -10,7 +10,7 @@
 // A row that vanishes makes sigma_min small, and so do two rows that become parallel. The ratio
 // sigma_min / sigma_max has no unit. sigma_min comes from inverse iteration with the sparse factor
 // of [D^-2 J'; J 0], started from the last answer: a check costs as much as J and the factor have
-// entries. Where the factor has lost a pivot, a dense rank-revealing QR answers.
+// entries. If the factor has lost a pivot, a dense rank-revealing QR answers.
 //
 // Prediction. When sigma_min has fallen by a tenth, a pilot run (pilot.h) goes ahead by half a
 // turn of the fastest coordinate; a configuration is announced only if that run reaches it.

@@ -38,7 +38,7 @@ typedef struct hn_assembly {
 ///
 /// q (nq), v (nv), a (nv), lambda (nc) are in system coordinates. `a`, `lambda`, `report` and
 /// `diags` may be NULL. Pinned coordinates and rates (q0_pinned, v0_pinned) keep their values; free
-/// rates change as little as possible, weighted by mass. Where the guess leads to another assembly
+/// rates change as little as possible, weighted by mass. If the guess leads to another assembly
 /// mode than the scene asks for, the loops in the wrong mode are closed again from other starting
 /// points, with the pins held. Loops for which the scene gives no mode may have either.
 ///

@@ -2,7 +2,7 @@
 #ifndef HN_DYNAMICS_ASSEMBLE_ROWS_H
 #define HN_DYNAMICS_ASSEMBLE_ROWS_H
 // The closure rows of a large mechanism in the user's rates, entry by entry, and steps that close
-// them. What they cost grows with the entries, linearly for a chain of loops, where the dense ways
+// them. Their cost grows with the entries, linearly for a chain of loops, where the dense ways
 // of assemble_position.c are cubic.
 //
 //     least norm  dz = -J' (J J')^-1 r        damped  dz = -J' (J J' + mu I)^-1 r            (1)

@@ -42,8 +42,8 @@ bool hn_assemble_evaluate(hn_assembler *s);
 /// Moves x by `delta` (n, user rates times time): a sum, and for orientations a turn about the
 /// child's axes.
 void hn_assemble_move(const hn_assembler *s, double *x, const double *delta);
-/// How far user coordinate i is from its guess; of an orientation, the angle of the turn between
-/// them.
+/// Returns how far user coordinate i is from its guess; of an orientation, the angle of the turn
+/// between them.
 double hn_assemble_moved(const hn_assembler *s, int i);
 /// M or J (n columns) where s->eval was last run.
 const double *hn_assemble_dense(const hn_assembler *s, hn_term term);

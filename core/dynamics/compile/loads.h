@@ -22,7 +22,7 @@ typedef struct hn_span {
     hn_vec3 *coefficient; ///< d delta / dt = sum coefficient u (without what t alone moves)
 } hn_span;
 
-/// How a kind of scene gives spans.
+/// Functions by which a kind of scene gives spans.
 typedef struct hn_geometry {
     void *self;
     /// p minus q in any one frame (loads take only lengths and powers from it), or, with q < 0, p

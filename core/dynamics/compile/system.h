@@ -76,8 +76,8 @@ bool hn_system_joint_is_cut(const hn_system *sys, int joint);
 
 /// The entry of q whose rate entry i of v is; -1 for the angular velocity of a ball.
 int hn_system_position_of(const hn_system *sys, int i);
-/// Which entries of q (nq) are angles; borrowed. An angle plus a whole turn stands for the same
-/// position of its body.
+/// Returns flags (nq) of the entries of q that are angles; borrowed. An angle plus a whole turn
+/// stands for the same position of its body.
 const bool *hn_system_angles(const hn_system *sys);
 /// Returns the log of the forces with which a user pulls at the mechanism while it runs; NULL where
 /// the scene has no such load.

@@ -33,7 +33,7 @@
 
 #include <stdbool.h>
 
-/// How a link's rotation hangs on its parent's.
+/// Dependence of a link's rotation on its parent's.
 typedef enum hn_carry {
     /// revolute, in its parent's group: an absolute angle, so the parent's rotation does not carry
     /// it

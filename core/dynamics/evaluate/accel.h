@@ -11,7 +11,7 @@
 //
 // The system is solved by a tape (accel_tape.h) that contains a sparse LDL' factorisation of K
 // whose order of elimination is chosen when the system is compiled. Its pivots are checked at every
-// evaluation. Where a pivot is lost, or a value is not finite, the dense least-norm solver of
+// evaluation. If a pivot is lost, or a value is not finite, the dense least-norm solver of
 // linalg/kkt.h, which finds the rank, is used instead, and hn_accel_info.fallback is set.
 
 #include "base/arena.h"
@@ -23,8 +23,8 @@
 
 /// The solvers of K.
 ///
-/// "auto" evaluates the tape. Where a pivot is below HN_PIVOT_DOUBT, iterative refinement with the
-/// sparse factor corrects the answer. Where a pivot is below HN_PIVOT_GUARD, or a row of J has
+/// "auto" evaluates the tape. If a pivot is below HN_PIVOT_DOUBT, iterative refinement with the
+/// sparse factor corrects the answer. If a pivot is below HN_PIVOT_GUARD, or a row of J has
 /// nearly vanished, the dense least-norm solver replaces it.
 /// Each of the other solvers works alone and
 /// fails on a matrix that it cannot solve (linalg/kkt.h).
@@ -104,7 +104,7 @@ typedef enum hn_multiplier_mark {
 } hn_multiplier_mark;
 /// "determined", "one of many", ...
 extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
-/// The mark of the multipliers that hn_accel_eval() found at this state with `info`. Where the tape
+/// The mark of the multipliers that hn_accel_eval() found at this state with `info`. If the tape
 /// answered without a pivot in doubt or a vanishing row, K is far from singular; else its condition
 /// is estimated, at the cost of a dense solve. Never HN_MULTIPLIERS_OPEN, which is for callers who
 /// know the gap. Allocates nothing.
@@ -112,7 +112,7 @@ hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const d
                                  const hn_accel_info *info);
 struct hn_accel_tape;
 struct hn_inputs;
-/// How the outputs of the tape are laid out, and in *in the tape with its workspace, for a
+/// Returns the layout of the tape's outputs, and in *in the tape with its workspace, for a
 /// workspace in lanes; NULL: there is no tape. Borrowed.
 const struct hn_accel_tape *hn_accel_get_tape(const hn_accel *s, const struct hn_inputs **in);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);

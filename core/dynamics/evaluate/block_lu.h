@@ -8,7 +8,7 @@
 // The order is chosen once, from the structure and from values at one configuration, and serves
 // every matrix of the same structure. Pivots that cannot vanish come first: numbers, then entries
 // that stand alone in their row or column, then pairs of rows that share their two columns (the two
-// equations of a plane loop), whose pivot is their determinant. Where there is none of these, the
+// equations of a plane loop), whose pivot is their determinant. If there is none of these, the
 // sparsest entry of a tenth of its column's largest or more is the pivot (Markowitz 1957).
 
 #include "expr/graph.h"

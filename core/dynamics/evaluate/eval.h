@@ -42,7 +42,7 @@ const double *hn_eval_list(const hn_eval *e, hn_term term);
 /// triangles.
 void hn_eval_spread(const hn_eval *e, hn_term term, double *dense);
 /// The entries of a term that are not identically zero: returns their number, and their rows and
-/// columns (borrowed). Of M the lower triangle; of vectors, column 0. For large scenes, where a
+/// columns (borrowed). The lower triangle of M; column 0 of vectors. For large scenes, where a
 /// walk through dense arrays would cost more than the evaluation.
 int hn_eval_pattern(const hn_eval *e, hn_term term, const int **rows, const int **cols);
 hn_tape_info hn_eval_info(const hn_eval *e);

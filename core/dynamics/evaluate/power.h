@@ -8,7 +8,7 @@
 //     (T + V)' = v . f + D(T + V) + lambda . (J v)                                             (1)
 //     P = v . f + D(T + V) - lambda . phi_t                                                    (2)
 //
-// J v = -phi_t where the velocities fit the constraints, so P is then the whole of (1). Where they
+// J v = -phi_t where the velocities fit the constraints, so P is then the whole of (1). If they
 // do not fit, lambda . (J v + phi_t) is work that the method adds by mistake: (2) leaves it out.
 // Source: the energy theorem, by Lagrange's equations; (2) needs no list of the loads.
 

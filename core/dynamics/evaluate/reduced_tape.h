@@ -12,7 +12,7 @@
 //
 // A correction of a closed configuration would add nothing but rounding, which near a singular
 // configuration is not small. The order of elimination is chosen once (block_lu.h), so every pivot
-// is compared with its value where the tape was made. Where one has become small, the caller solves
+// is compared with its value where the tape was made. If one has become small, the caller solves
 // by other means.
 
 #include "base/arena.h"

@@ -3,7 +3,7 @@
 #define HN_DYNAMICS_ROW_GROUPS_H
 // The length of the shortest row of J against the longest of its loop and unit.
 //
-// Where all links of a loop are collinear a whole row of J vanishes, which a pivot measured against
+// If all links of a loop are collinear a whole row of J vanishes, which a pivot measured against
 // its own row does not show. There, rounding errors of q dominate velocities and accelerations: a
 // gap of eps changes a row of length s by eps / s, which is eps / s^2 of the row.
 
@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /// At and below this ratio of squared lengths (a row of 3e-5 of the longest) a projection leaves
-/// the gap of the row open. To close it would turn eps into velocity errors of 1e-7 and more,
+/// the gap of the row open. Closing it would turn eps into velocity errors of 1e-7 and more,
 /// against the 1e-9 of the step itself.
 #define HN_ROW_GUARD 1e-9
 /// At and below this ratio (1e-7 of the longest) accelerations leave the row out: it would

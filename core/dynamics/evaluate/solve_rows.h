@@ -21,9 +21,9 @@ typedef struct hn_solve_rows {
 /// Finds the rows of a system, chosen when they are first asked for; borrowed, live as long as the
 /// system. Adds nodes to its graph. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_solve_rows_get(const hn_system *sys, const hn_solve_rows **out);
-/// What the rows of the legs save: operations of accelerations and multipliers with the system's
-/// own rows less those with these, both compiled to be counted; 0 where the own are taken. Fails:
-/// HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// Finds what the rows of the legs save: operations of accelerations and multipliers with the
+/// system's own rows less those with these, both compiled to be counted; 0 where the own are taken.
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_solve_rows_saved(const hn_system *sys, int *ops);
 /// Right-hand sides of all unknowns: f, then -(gamma + 2 alpha (J v + phi_t) + beta^2 phi), where
 /// `baumgarte` is false -gamma. `rhs` has nv + nc entries.

@@ -18,8 +18,8 @@
 //
 // Poses, velocities and accelerations of the bodies come from a tape; each body's balance (Newton
 // and Euler) then gives the wrench of its tree joint, leaves first, once loads and the closing
-// joints' multipliers are taken off. What a joint's own actuator or spring gives along its freedom
-// is part of the wrench.
+// joints' multipliers are taken off. The effort of a joint's own actuator or spring along its
+// freedom is part of the wrench.
 //
 // Energies given as formulas beside the bodies say what they do along coordinates and nothing about
 // where. They are taken to act in the joints, between the two bodies of the joint whose coordinate

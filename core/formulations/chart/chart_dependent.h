@@ -19,8 +19,8 @@ double hn_chart_smallest_pivot(const hn_chart *chart, const hn_chart_point *poin
 double hn_chart_log_volume(const hn_chart *chart, const hn_chart_point *point);
 /// Sets the entries of J_d for a choice in dep and ind.
 void hn_chart_set_columns(hn_chart *chart);
-/// How |det J_d| would change if dependent column k (of dep) and independent column j (of ind)
-/// changed places [-].
+/// Returns how |det J_d| would change if dependent column k (of dep) and independent column j (of
+/// ind) changed places [-].
 double hn_chart_exchange(const hn_chart *chart, const hn_chart_point *point, int k, int j);
 /// |det J_d| at `here`, relative to where the chart was chosen.
 double hn_chart_volume(const hn_chart *chart);

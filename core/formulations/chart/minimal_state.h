@@ -12,7 +12,7 @@
 #include "formulations/chart/chart_jacobian.h"
 #include "formulations/chart/minimal_tape.h"
 
-/// How loops are closed once the independent coordinates are known.
+/// Ways to close loops once the independent coordinates are known.
 typedef enum hn_position {
     /// by Newton's method at first; in closed form once Newton's method has cost more
     HN_POSITION_AUTO,

@@ -71,8 +71,8 @@ HN_MUST_CHECK hn_status hn_tspace_init(hn_tspace *ts, const hn_system *sys, hn_a
                                        hn_diag *diag);
 void hn_tspace_destroy(hn_tspace *ts);
 
-/// How the new base gets its N0: by QR, signs and order as they come, or from N at the same place,
-/// made orthonormal again (only where (t, q) was the last place located).
+/// Describes how the new base gets its N0: by QR, signs and order as they come, or from N at the
+/// same place, made orthonormal again (only where (t, q) was the last place located).
 typedef enum hn_tspace_basis { HN_TSPACE_FRESH, HN_TSPACE_CARRIED } hn_tspace_basis;
 /// Makes (t, q) the base. HN_ERR_CHART when the rank of J is not what it was, HN_ERR_DIVERGED when
 /// q is not finite; the base is then the old one.

@@ -111,7 +111,7 @@ typedef struct hn_formulation {
     int (*state_is_local)(const void *self);
     /// Changes an option while running (sliders). NULL: not possible.
     hn_status (*set)(void *self, int option, double value);
-    /// Where y = (q, v), v' are the accelerations of the system and nothing is kept from one step
+    /// If y = (q, v), v' are the accelerations of the system and nothing is kept from one step
     /// to the next, so that many runs can step side by side: the options of the solver, and alpha
     /// and beta [1/s]. NULL, or false: not so.
     bool (*lanes)(const double *options, struct hn_accel_opts *accel, double *alpha, double *beta);

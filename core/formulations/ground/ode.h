@@ -39,8 +39,8 @@ typedef struct hn_ode {
     /// Units of the absolute tolerance of each entry (n_pos + n_vel), see
     /// hn_tolerance_units() in integrators/step/control.h; NULL: all 1.
     const double *unit;
-    /// Which positions (n_pos) are angles: relative to a whole turn, see hn_tolerance_size() there;
-    /// NULL: none.
+    /// Flags (n_pos) of the positions that are angles: relative to a whole turn, see
+    /// hn_tolerance_size() there; NULL: none.
     const bool *is_angle;
     /// Reserves the memory that jacobian and newton need from the formulation's arena; otherwise
     /// their first call does so. NULL: they need none.

@@ -12,7 +12,7 @@
 // a is an auxiliary that approximates accelerations; each method has its own e, past and carry. D
 // is taken along the velocities (hn_system_move), so that ball joints turn about their own axes.
 // Newton's unknowns are D, eta and beta h^2 lambda: with (3) times beta h^2 the matrix stays well
-// conditioned for every h. Of a large mechanism M0^-1 J0' eta is an unknown of its own. Source:
+// conditioned for every h. In a large mechanism M0^-1 J0' eta is an unknown of its own. Source:
 // Arnold, Bruls & Cardona 2015; Bottasso, Dopico & Trainelli 2008 (scaling).
 
 #include "dynamics/evaluate/linearise.h"

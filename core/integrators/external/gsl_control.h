@@ -2,7 +2,7 @@
 #ifndef HN_INTEGRATORS_GSL_CONTROL_H
 #define HN_INTEGRATORS_GSL_CONTROL_H
 // The step control of the GNU Scientific Library with the tolerances of control.h: units of atol,
-// and angles that count from the nearest whole turn. Where neither matters its steps are the
+// and angles that count from the nearest whole turn. If neither matters its steps are the
 // library's own, bit for bit.
 
 #include "integrators/step/control.h"

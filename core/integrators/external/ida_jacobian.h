@@ -14,7 +14,7 @@
 //            J                                                             INDEX3, GGL        (4)
 //
 // With mu the first block leaves out (M (q' - v) - J' mu)_q: both factors vanish with the error.
-// Where a joint has more coordinates than speeds, derivatives along the speeds are spread over the
+// If a joint has more coordinates than speeds, derivatives along the speeds are spread over the
 // coordinates by the pseudo-inverse of G, and the direction that changes the length of a quaternion
 // is left out; the iteration converges as before, because no correction goes there.
 

@@ -3,7 +3,7 @@
 #define HN_INTEGRATORS_GUEST_H
 // Methods that are in no list: a student's own program, spelled program:FILE[@INTEGRATOR].
 //
-// The core starts no programs. Whoever does registers a finder, which makes a formulation (and an
+// The core starts no programs. Their owner registers a finder, which makes a formulation (and an
 // integrator of its own, "own") for a file; without a finder such a spelling is refused.
 
 #include "base/diag.h"

@@ -82,7 +82,7 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method);
 /// *out is then its last good state.
 bool hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
-// What writers of documents need besides (session/compare/comparison_doc.h).
+// Further access for writers of documents (session/compare/comparison_doc.h).
 const hn_model *hn_comparison_model(const hn_comparison *c);           ///< borrowed
 const char *hn_comparison_warning(const hn_comparison *c, int method); ///< of the spelling, or ""
 bool hn_comparison_is_live(const hn_comparison *c, int method); ///< neither failed nor stopped

@@ -40,7 +40,7 @@ HN_MUST_CHECK hn_status hn_hand_add(hn_hand *hand, long long frame, hn_pull *pul
 void hn_hand_rewind(hn_hand *hand); ///< the run is back at frame 0; the events stay
 /// Whether an event is due at the frame.
 bool hn_hand_is_due(const hn_hand *hand, long long frame);
-/// Does the events that are due at the frame: they are felt from time t on [s]. Where memory is out
+/// Does the events that are due at the frame: they are felt from time t on [s]. If memory is out
 /// they stay due.
 void hn_hand_do(hn_hand *hand, long long frame, double t);
 /// Writes the pull that holds at time t: {"point","to","stiffness","damping"}, or null.

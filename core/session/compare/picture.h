@@ -54,7 +54,7 @@ typedef struct hn_picture_request {
 /// Appends the bytes of a PNG or SVG file to `file`. `description` (may be NULL) receives the
 /// contents of the picture as JSON: {"scene","width","height","renderer","words","time",
 /// "methods":{...},"picture":{...},"before":[...]}, with the summary of the comparison under
-/// "methods". Of several moments the last is "picture", the others are "before", latest first.
+/// "methods". The last of several moments is "picture", the others are "before", latest first.
 /// A method that ended early is drawn at its last good state, with the reason in the legend; *ended
 /// (may be NULL) is then its status.
 /// Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_UNSUPPORTED (OSMesa gives no context), HN_ERR_MEMORY.

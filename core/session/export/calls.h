@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXPORT_CALLS_H
 #define HN_SESSION_EXPORT_CALLS_H
-// Which functions the equations of a scene call: a program defines and imports no others.
+// Functions that the equations of a scene call: a program defines and imports no others.
 
 #include "session/export/places.h"
 

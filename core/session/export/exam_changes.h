@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXPORT_EXAM_CHANGES_H
 #define HN_SESSION_EXPORT_EXAM_CHANGES_H
-// What becomes of an entry of an exam, and of its terms, where one symbol is mistaken for another:
+// Changes of an entry of an exam, and of its terms, where one symbol is mistaken for another:
 // faults that depend on the state and are no constant factor.
 
 #include "session/export/exam.h"

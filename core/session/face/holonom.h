@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-/// How a call ended; the numbers are the exit statuses of the program.
+/// Outcome of a call; the numbers are the exit statuses of the program.
 typedef enum holonom_status {
     HOLONOM_OK = 0,
     HOLONOM_INPUT = 2,   ///< the scene, the method or an argument is at fault; `fault` says where
@@ -65,7 +65,7 @@ holonom_status holonom_set(holonom_mechanism *m, const char *parameter, double v
                            holonom_fault *fault);
 void holonom_free(holonom_mechanism *m);
 
-/// How many numbers its arrays have.
+/// Returns the lengths of the arrays.
 holonom_sizes holonom_get_sizes(const holonom_mechanism *m);
 /// Name of coordinate i ("th1"), or of its rate ("w1"); NULL when there is no such coordinate.
 const char *holonom_coordinate_name(const holonom_mechanism *m, int i);
@@ -133,7 +133,7 @@ void holonom_run_free(holonom_run *run);
 holonom_status holonom_compare(const holonom_mechanism *m, const char *const *methods, int n,
                                double time, holonom_result *results, holonom_fault *fault);
 
-/// How one of many runs ended.
+/// Outcome of one of many runs.
 typedef struct holonom_ending {
     holonom_status status; ///< HOLONOM_INPUT: the start is not finite; HOLONOM_ENDED: ended early
     double t;              ///< reached [s]

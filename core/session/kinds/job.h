@@ -21,7 +21,7 @@ typedef struct hn_job_form {
         writer(b, (const type *)work);                       \
     }
 
-/// How the run of a job ended; all false: complete.
+/// Outcome of the run of a job; all false: complete.
 typedef struct hn_job_end {
     bool stopped;     ///< on request
     bool out_of_time; ///< the time limit left something out
@@ -84,7 +84,7 @@ typedef struct hn_job hn_job;
 HN_MUST_CHECK hn_status hn_job_open(const hn_job_kind *kind, const hn_job_request *request,
                                     hn_job **out, hn_diags *diags);
 int hn_job_resumed(const hn_job *job);
-/// Computes what is left. Where the kind has set_time_limit() it may be called again after an end
+/// Computes what is left. If the kind has set_time_limit() it may be called again after an end
 /// that left something out: then it goes on, with the whole time limit. Fails: as the kind's run().
 HN_MUST_CHECK hn_status hn_job_run(hn_job *job, hn_job_end *end, hn_diags *diags);
 /// Sets the wall time of each later run [s]. The kind must have set_time_limit().

@@ -2,7 +2,7 @@
 #ifndef HN_SESSION_PRECISION_STUDY_MERGE_H
 #define HN_SESSION_PRECISION_STUDY_MERGE_H
 // Merges the parts of a study. Two parts that hold the same point must agree in every bit, except
-// for CPU times. Of two records the one with more CPU samples counts; of equals the first in
+// for CPU times. The one of two records with more CPU samples counts; the first of equals in
 // alphabetical order. So neither order nor repetition of the parts matters.
 
 #include "session/precision/study.h"

@@ -3,7 +3,7 @@
 #define HN_SESSION_STABILITY_H
 // A map of stability: a grid over two of {a scene's parameters, a method's options, the step size}.
 // Each cell is a trial with its class (study/stability/stability.h). The map shows the observed
-// boundary and the boundary that the spectrum of the constrained motion predicts. Where the
+// boundary and the boundary that the spectrum of the constrained motion predicts. If the
 // vertical axis is the step h, the observed boundary of every column is found to 2 %, so that
 // prediction and observation can be compared as numbers. Cells are tried in rounds from coarse to
 // fine; finished ones are kept in a folder, so that the same request goes on where it was
@@ -95,7 +95,7 @@ HN_MUST_CHECK hn_status hn_map_open(const hn_job_request *request, hn_map **out,
 void hn_map_free(hn_map *map); ///< NULL is legal
 /// Runs the cells that have no outcome. Returns whether finished; false: stopped, or out of time.
 ///
-/// A request that names neither a preset nor axes gets the map of steps, HN_MAP_FIRST. Where that
+/// A request that names neither a preset nor axes gets the map of steps, HN_MAP_FIRST. If that
 /// finds a mechanism with loops that is not stiff, the map becomes the one of the preset that is
 /// telling for it, hn_map_telling(), and the map of steps stays in hn_map_steps(). Methods that the
 /// request names are taken where they have the options of that preset; where none has them, the map

@@ -22,7 +22,7 @@ typedef struct hn_map_class_look {
     int slot;          ///< of the table of colours; -1: tear, -2: muted, -3: hairline
     double opacity;
 } hn_map_class_look;
-/// How a cell of this class is drawn, and its colour 0xRRGGBB.
+/// Returns how a cell of this class is drawn, and its colour 0xRRGGBB.
 const hn_map_class_look *hn_map_class_look_get(hn_stability_class kind);
 uint32_t hn_map_class_colour(hn_stability_class kind, hn_theme theme);
 

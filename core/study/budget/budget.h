@@ -32,8 +32,8 @@
 
 #include <stdbool.h>
 
-/// What a part of a budget is called: name in documents, letter on its bar, word over its column,
-/// and what it is.
+/// Names of a part of a budget: name in documents, letter on its bar, word over its
+/// column, and what it is.
 typedef struct hn_budget_part_words {
     const char *name;
     const char *letter;

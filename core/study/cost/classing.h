@@ -3,8 +3,8 @@
 #define HN_STUDY_CLASSING_H
 // Classes a method by its ladder of steps or tolerances: model error or discretisation error.
 //
-// Two distances of its finest points tell: that from the reference, and that from each other. Where
-// only the second falls, the method converges, but not to the motion of the scene. Where neither
+// Two distances of its finest points tell: that from the reference, and that from each other. If
+// only the second falls, the method converges, but not to the motion of the scene. If neither
 // falls, rounding or an inner tolerance is the floor.
 
 #include "study/cost/workprecision.h"

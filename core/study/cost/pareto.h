@@ -9,7 +9,7 @@
 // halves of the samples of both methods agree, and the methods differ by more than 10 % and by more
 // than the spread of either. Otherwise the sentence says why, and ranks by operations.
 //
-// Where neighbouring motions part exponentially and the study ends beyond the horizon (chaos.h), no
+// If neighbouring motions part exponentially and the study ends beyond the horizon (chaos.h), no
 // error along the motion is ranked: only gaps and energy, which every motion nearby keeps too,
 // still say something of a method.
 
@@ -38,7 +38,7 @@ typedef struct hn_place {
     X(HN_RANKING_CLEAR, "ranked")            \
     X(HN_RANKING_CLOSE, "too close to rank") \
     X(HN_RANKING_UNSTEADY, "the halves of the timing disagree")
-/// How reliable the ranking of a band's times is.
+/// Reliability of the ranking of a band's times.
 typedef enum hn_ranking {
 #define HN_RANKING_ENUM(code, name) code,
     HN_RANKING_LIST(HN_RANKING_ENUM)

@@ -6,8 +6,8 @@
 //
 // The dearest point first, each to the part that has least to do so far (longest processing time
 // first, R. L. Graham, SIAM J. Appl. Math. 17 (1969) 416: the longest part is at most 4/3 of the
-// shortest possible). What a point costs is an estimate from its steps and stages; a poor one makes
-// parts unequal, never wrong.
+// shortest possible). The cost of a point is an estimate from its steps and stages; a poor one
+// makes parts unequal, never wrong.
 
 #include "study/cost/workprecision.h"
 

@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-/// How a run ended beside the exact motion.
+/// Outcome of a run compared with the exact motion.
 typedef enum hn_survival_end {
     HN_SURVIVAL_SURVIVED, ///< it stayed with the exact motion throughout
     HN_SURVIVAL_OFF,      ///< it left the exact motion, and no loop was seen folded over

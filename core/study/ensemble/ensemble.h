@@ -6,7 +6,7 @@
 // (integrators/explicit/rk_lanes.h); a lane whose run has ended takes up the next one.
 //
 // A run's state is bit for bit that of a single run without a watch (study/run/run.h), whatever the
-// number of threads, the instruction set and the runs beside it. Where a pivot of a lane is so
+// number of threads, the instruction set and the runs beside it. If a pivot of a lane is so
 // small that its rank is in doubt, the ordinary stepping makes the step. Serves explicit
 // Runge-Kutta methods with a fixed step and a plain sum on index-1 and Baumgarte with given alpha
 // and beta.
@@ -31,7 +31,7 @@ typedef struct hn_ensemble_start {
     double alpha, beta;  ///< [1/s]; used by Baumgarte only
 } hn_ensemble_start;
 
-/// How one run ended.
+/// Outcome of one run.
 typedef struct hn_ensemble_end {
     /// HN_OK: it reached the end; else as hn_run_advance(), at the last good state
     hn_status status;

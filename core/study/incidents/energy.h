@@ -14,7 +14,7 @@ void hn_energy_start(hn_watch *w);
 void hn_energy_record_state(hn_watch *w);
 /// Appends to the reason of a failed iteration that the energy has long been wrong, where it is.
 void hn_energy_explain(const hn_watch *w, char why[256]);
-/// How that reason ends.
+/// End of the sentence of that reason.
 #define HN_ENERGY_ANOTHER "so this is no longer the motion that began"
 
 #endif

@@ -12,7 +12,7 @@ HN_MUST_CHECK hn_status hn_heading_create(hn_watch *w);
 void hn_heading_start(hn_watch *w);
 /// Compares the direction of motion with its smooth continuation, past a singular configuration or
 /// where the step looks like a jump. Returns the angle between the two [rad] where they were
-/// compared, else a negative number; HUGE_VAL where the steps are too long for it. Where the angle
+/// compared, else a negative number; HUGE_VAL where the steps are too long for it. If the angle
 /// is to be reported, w->heading.explained says whether the motion itself turns there: a pilot run
 /// from the last direction that was taken arrives at the present one.
 double hn_heading_check(hn_watch *w);

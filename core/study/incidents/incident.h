@@ -63,7 +63,8 @@ enum { HN_RUN_MAX_INCIDENTS = 64 };
 
 typedef struct hn_watch hn_watch;
 
-/// How one remedy is written: false where it does not apply to the run. `factor` is the row's.
+/// Writes one remedy; write() returns false where it does not apply to the run. `factor` is the
+/// row's.
 typedef struct hn_remedy_rule {
     bool (*write)(const hn_watch *w, double factor, hn_remedy out);
     double factor;

@@ -30,7 +30,7 @@ bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code);
 /// Records that the condition no longer holds: it is reported again when it next begins.
 void hn_incident_over(hn_incident_log *log, hn_incident_code code);
 /// Counts a condition that begins to hold, unless it holds already. Returns whether a report of it
-/// would be kept: it is new, and there is room. To be asked before a text is made, once.
+/// would be kept: it is new, and there is room. Ask it before a text is made, once.
 bool hn_incident_begins(hn_incident_log *log, hn_incident_code code);
 /// Adds a report without remedies of a condition that has begun. Returns NULL where no room is
 /// left.

@@ -5,16 +5,17 @@
 
 #include "study/incidents/watch.h"
 
-/// How much of the last step's motion its velocities do not explain, over that motion, or `least`
-/// where it was less: 0 for smooth motion, about 1 or more for a jump.
+/// Returns how much of the last step's motion its velocities do not explain, over that motion, or
+/// `least` where it was less: 0 for smooth motion, about 1 or more for a jump.
 double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
                                      const hn_state_at *to, double least);
 /// The same of the last step.
 double hn_motion_unexplained(const hn_watch *w, double least);
 /// Whether that is more than `share`, without a division: it is asked after every step.
 bool hn_motion_is_unexplained(const hn_watch *w, double share);
-/// How far the motion from `from` (nq) to now would have opened a loop with one of its coordinates
-/// alone, over the length: with J of the state measured last. `step` (nv) gets the motion.
+/// Returns how far the motion from `from` (nq) to now would have opened a loop with one of its
+/// coordinates alone, over the length: with J of the state measured last. `step` (nv) gets the
+/// motion.
 double hn_motion_way(const hn_watch *w, const double *from, double *step);
 /// Shortest row of J against the largest that row has been, at the state measured last.
 double hn_motion_shortest_row(const hn_watch *w);

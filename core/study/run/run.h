@@ -55,7 +55,7 @@ HN_MUST_CHECK hn_status hn_run_create(const hn_system *sys, const hn_method_spec
                                       hn_run **out, hn_diag *diag);
 void hn_run_free(hn_run *run);
 /// Steps until t >= t_end: a fixed-step run lands on its own grid (t0 + n h); an adaptive run steps
-/// past, and samples are interpolated. Where a load given as a table has a corner a step ends and
+/// past, and samples are interpolated. If a load given as a table has a corner a step ends and
 /// the integrator starts anew; a fixed-step run then goes on with a shorter step to its next grid
 /// point.
 /// Returns HN_OK or the failure, which is also kept in the summary; calling again returns the same
@@ -72,7 +72,7 @@ hn_run_state hn_run_get_state(const hn_run *run);
 /// Operations so far, as in the summary, without its reading of a clock.
 double hn_run_ops(const hn_run *run);
 /// Computes the sample at time t: the present time, a time within the last step, or, with fixed
-/// steps, less than one step ahead. Within a step it uses the integrator's dense output. Where
+/// steps, less than one step ahead. Within a step it uses the integrator's dense output. If
 /// there is none, ahead of the present time, and for raw multipliers it makes a step of the same
 /// integrator aside, which leaves the run as it was.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);

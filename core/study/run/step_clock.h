@@ -4,7 +4,7 @@
 // CPU time of the steps alone, of a run that also checks and samples between its steps. The CPU
 // clock of a thread is a call into the kernel and takes as long as a small mechanism's step, so it
 // is read once for a block of intervals. The processor's counter, which needs no such call, says
-// which share of the block the steps took. Where intervals are so short that reading the counter
+// which share of the block the steps took. If intervals are so short that reading the counter
 // twice in each would show, it is read in one interval of SPARSE.
 
 #include <stdbool.h>

@@ -44,7 +44,7 @@ const char *hn_stability_class_name(hn_stability_class kind);
 /// 1: it came to its end without growth (accurate or not).
 bool hn_stability_is_stable(hn_stability_class kind);
 
-/// How one trial ended.
+/// Outcome of one trial.
 typedef struct hn_stability_trial {
     hn_stability_class kind;
     hn_status status;

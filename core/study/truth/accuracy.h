@@ -13,7 +13,7 @@
 // Scales are the largest values at the steps of the pilot, short where the motion is fast.
 //
 // Cost: at most HN_ACCURACY_SHARE of the operations of the runs watched, and HN_ACCURACY_FREE
-// operations (some milliseconds) in any case. Where that is not enough the estimate ends, and says
+// operations (some milliseconds) in any case. If that is not enough the estimate ends, and says
 // at which time. One pilot serves all methods of a comparison. The runs themselves are read only:
 // their motion is the same to the last bit.
 
@@ -34,7 +34,7 @@ enum {
     /// Times of a run at which it is compared, evenly spaced: those of the output of a run that
     /// names none. The forces of a four-bar peak for a hundredth of its period.
     HN_ACCURACY_LOOKS = 200,
-    /// Of a comparison whose frames lie inside steps: a sample there counts in gap and energy too.
+    /// For a comparison whose frames lie inside steps: a sample there counts in gap and energy too.
     HN_ACCURACY_LOOKS_INSIDE = 64,
     HN_ACCURACY_NODES = 6000, ///< of the system's graph: compiling two runs takes 50 ms there
 };

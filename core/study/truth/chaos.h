@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CHAOS_H
 #define HN_STUDY_CHAOS_H
-// Measures how fast neighbouring motions of a mechanism part. Where they part exponentially, no
+// Measures how fast neighbouring motions of a mechanism part. If they part exponentially, no
 // method can follow the motion for long, and errors after a horizon say nothing about methods.
 //
 // Two motions, d0 apart, are followed for a window; the twin is then brought back to d0 from the

@@ -3,7 +3,7 @@
 #define HN_STUDY_REFINED_H
 // A reference solution between its stored times. Each interval is integrated anew from the stored
 // state at its start, and ends at the next stored state: how far it is away from that one is its
-// own error. Where no method comes to the end of an interval, only its ends are known. What is
+// own error. If no method comes to the end of an interval, only its ends are known. What is
 // known does not depend on the speed of the machine: the work is limited in operations, and a
 // computation that a limit of time cuts off has no result.
 
@@ -35,7 +35,7 @@ HN_MUST_CHECK hn_status hn_refined_create(const hn_system *sys, const hn_ref *re
                                           hn_refined **out);
 /// The state at time number k, 0..ref->n x parts (borrowed).
 hn_state_seen hn_refined_at(const hn_refined *r, int k);
-/// How far the state at time number k may itself be off: HN_ERROR_COUNT entries, NaN where it is
-/// not known. NULL at a stored time: the reference says it.
+/// Returns how far the state at time number k may itself be off: HN_ERROR_COUNT entries, NaN where
+/// it is not known. NULL at a stored time: the reference says it.
 const double *hn_refined_error(const hn_refined *r, int k);
 #endif

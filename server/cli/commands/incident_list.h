@@ -37,7 +37,7 @@ void hn_incident_line(const cJSON *incident, char *out, size_t size);
 /// in no list.
 void hn_incident_more(hn_strbuf *b, const hn_incident_list *list, int told);
 
-/// Writes " at t = 1.43 s: REASON", or ": REASON" where the reason says that time itself. Where an
+/// Writes " at t = 1.43 s: REASON", or ": REASON" where the reason says that time itself. If an
 /// incident ended the run its message is the reason, with what was tried against it.
 void hn_incident_ending(const hn_incident_list *list, double t, const char *reason, char *out,
                         size_t size);

@@ -23,7 +23,7 @@ typedef struct hn_list_column {
 } hn_list_column;
 /// A table with one row for each object of the array.
 void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *columns, int n);
-/// How a member is named for people; its path is "start.dof", of a column "loops.why".
+/// Words for a member for people; its path is "start.dof", of a column "loops.why".
 typedef struct hn_outline_word {
     const char *path, *words;
 } hn_outline_word;

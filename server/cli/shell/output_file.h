@@ -12,7 +12,7 @@
 /// Writes and frees the buffer's text: into a file, which is replaced as a whole or left as it was,
 /// or to standard output ("-" or NULL). Every result of --out goes this way: a file that is there
 /// and differs from `bytes` is kept under the first free name FILE.1, FILE.2, ..., and a note says
-/// so; --force replaces it. Where the result cannot be written, nothing is left beside it. Returns
+/// so; --force replaces it. If the result cannot be written, nothing is left beside it. Returns
 /// HN_EXIT_PROGRAM when it cannot be written, or the old file cannot be kept.
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 /// The same without keeping what was there: for a file that is this program's own.

@@ -7,7 +7,7 @@
 #include "base/strbuf.h"
 
 /// 1 when the locale names a character set that is not UTF-8: the first of LC_ALL, LC_CTYPE and
-/// LANG that says anything. Where none does, as in a container, nothing is known of the terminal
+/// LANG that says anything. If none does, as in a container, nothing is known of the terminal
 /// and 0 is returned. Each may be NULL.
 int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang);
 /// Turns each power of ten, "×10⁻¹⁰", into "e-10", in place.

@@ -34,7 +34,7 @@ typedef struct hn_table {
 /// An empty table as wide as standard output (hn_terminal_limit()).
 void hn_table_init(hn_table *t);
 void hn_table_reset(hn_table *t);
-/// Adds a column. Where there is no room, columns are left out from the right, numbers first, up to
+/// Adds a column. If there is no room, columns are left out from the right, numbers first, up to
 /// the third, unless hn_table_spare() gives another order.
 void hn_table_column(hn_table *t, const char *head, int to_right);
 /// The column added last is left out before those of a larger order; 0: never.

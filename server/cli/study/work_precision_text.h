@@ -8,6 +8,6 @@
 
 /// The study for people: table, orders, plot.
 void hn_study_text(hn_strbuf *b, const hn_study *study);
-/// Who is cheapest in words, then the plot with a legend.
+/// Writes the cheapest method in words, then the plot with a legend.
 void hn_study_plot_text(hn_strbuf *b, const hn_study *study);
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_GRADE_FORMULA_FRAME_H
 #define HN_GRADE_FORMULA_FRAME_H
-// What students write around a formula: the name of the result before it, its unit behind it.
+// Text that students write around a formula: the name of the result before it, its unit behind it.
 
 #include "base/strbuf.h"
 

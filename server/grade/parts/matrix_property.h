@@ -2,7 +2,7 @@
 #ifndef HN_GRADE_MATRIX_PROPERTY_H
 #define HN_GRADE_MATRIX_PROPERTY_H
 // Properties of a small matrix whose numbers a student chose: symmetric, definite, singular, zero.
-// What is nearly singular or nearly zero is neither: only rounding counts as nothing.
+// A nearly singular or nearly zero matrix is neither: only rounding counts as nothing.
 
 #include "grade/parts/matrix.h"
 

@@ -37,7 +37,7 @@ typedef struct hn_part {
     uint64_t letters;      ///< the seed of the order of options and of reasons
     hn_draw *draw;         ///< the numbers of the variant
     const hn_library *lib; ///< shipped scenes; NULL: kinds that run mechanisms cannot grade
-    /// What takes long asks it, and ends with any result: the caller asks again, and drops that.
+    /// Long work asks it, and then ends with any result: the caller asks again, and drops that.
     hn_interrupt interrupt;
 } hn_part;
 

@@ -15,6 +15,6 @@ typedef struct hn_unit {
 int hn_unit_parse(const char *text, hn_unit *out);
 /// 1 when both measure the same thing; rad counts as a pure number here, as N m and J do as one.
 int hn_unit_fits(const hn_unit *a, const hn_unit *b);
-/// How many of `b` one of `a` is: 2 pi for Hz in rad/s, 1 for Hz in 1/s. They must fit.
+/// Returns how many of `b` one of `a` is: 2 pi for Hz in rad/s, 1 for Hz in 1/s. They must fit.
 double hn_unit_ratio(const hn_unit *a, const hn_unit *b);
 #endif

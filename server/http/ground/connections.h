@@ -4,7 +4,7 @@
 // Deadlines and places of connections. The HTTP library counts the seconds since the last byte, so
 // that a client which sends a byte now and then keeps its place for ever; here a head and a body
 // have a time in all. And the connections of each client are counted: it may have its share of
-// them. Where all places are taken, a new connection takes that of the oldest one that is idle, or
+// them. If all places are taken, a new connection takes that of the oldest one that is idle, or
 // else of the oldest one that has not read its answer: of the same client where its share is used
 // up, otherwise of the client with the most.
 

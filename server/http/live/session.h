@@ -3,7 +3,7 @@
 #define HN_HTTP_SESSION_H
 // One comparison as a resource. A thread of its own owns the model and the runs, paces the frames
 // and carries out changes in the order they come; everybody else reads what it has published, under
-// the lock. Whoever holds a pointer holds a reference.
+// the lock. Every holder of a pointer holds a reference.
 
 #include "http/ground/http_opts.h"
 #include "http/ground/shares.h"

@@ -3,7 +3,7 @@
 #define HN_HTTP_CLIENT_H
 // Tells the clients of the server apart. A client is an address, of IPv6 a network of 64 bits. A
 // proxy names the address that it speaks for in X-Forwarded-For: one on this machine, and those
-// that the server was told of. Of a list the last entry counts that is no proxy itself; what stands
+// that the server was told of. The last entry of a list that is no proxy itself counts; what stands
 // before it anybody may have written. All requests of this machine without that header are one
 // client, which may take every place. In the queues the programs of this machine are told apart by
 // their User-Agent, so that a script that fills its share of a queue leaves the rest to a browser.

@@ -17,7 +17,7 @@ typedef struct hn_place_queue {
     int n;
 } hn_place_queue;
 
-/// How places are given.
+/// Rules by which places are given.
 typedef struct hn_place_rules {
     bool (*take)(void *user, hn_client client); ///< whether there was a place, which is then taken
     void (*give)(void *user, hn_client client); ///< a place was taken for nothing

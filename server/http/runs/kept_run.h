@@ -20,7 +20,7 @@ typedef enum hn_run_phase {
     HN_RUN_REFUSED
 } hn_run_phase;
 
-/// One run. What follows `phase` belongs to the thread that computes until the phase is DONE or
+/// One run. Members after `phase` belong to the thread that computes until the phase is DONE or
 /// REFUSED, and never changes afterwards.
 typedef struct hn_kept_run {
     char id[HN_RUN_ID];

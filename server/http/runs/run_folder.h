@@ -2,7 +2,7 @@
 #ifndef HN_HTTP_RUN_FOLDER_H
 #define HN_HTTP_RUN_FOLDER_H
 // Finished runs in a folder, one file for each: {"request":...,"documents":[...]}, behind a line
-// with its hash. A file is believed only when it is whole. Where `folder` is NULL nothing is kept.
+// with its hash. A file is believed only when it is whole. If `folder` is NULL nothing is kept.
 
 #include "http/runs/kept_run.h"
 
@@ -12,7 +12,7 @@
 void hn_run_folder_keep(const char *folder, const hn_kept_run *run);
 /// Reads the run of an id, with one reference; NULL when there is no whole file of it.
 hn_kept_run *hn_run_folder_read(const char *folder, const char *id);
-/// How a file is: another stamp, another content.
+/// Stamp of a file: another stamp, another content.
 typedef struct hn_run_stamp {
     long long size, seconds, ns; ///< [byte]; of its last change
     unsigned long long inode;

@@ -41,7 +41,7 @@ struct hn_studies {
 /// Returns the seconds to go, by what was done in `elapsed` seconds and never beyond the time
 /// limit; all that the limit leaves when too little is known.
 double hn_study_time_left(const hn_study *s, double share, double elapsed);
-/// What became of a request for a place.
+/// Outcome of a request for a place.
 typedef enum hn_study_place {
     HN_STUDY_PLACED, ///< the place of one more thread is the request's
     HN_STUDY_WAITS,  ///< it is another thread's now, and comes again with its place, or is refused

@@ -40,7 +40,7 @@ typedef struct hn_study_work {
     atomic_int stop;
 } hn_study_work;
 
-/// How a study ended.
+/// Outcome of a study.
 typedef struct hn_study_result {
     hn_study_state state;
     hn_strbuf document; ///< JSON
