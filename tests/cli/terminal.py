@@ -31,6 +31,12 @@ def once(*words, **environment):
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
+def notice(frame):
+    """The incident above the keys, whose lines are one again; "" where there is none."""
+    found = re.search(r"(?m)^ (! .*(?:\n .*)*)\n .*$\Z", frame.rstrip("\n"))
+    return " ".join(found.group(1).split()) if found else ""
+
+
 class Terminal:
     """The program in a pseudo-terminal of its own; `seen` is all that it has written."""
 
