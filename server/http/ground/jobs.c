@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,11 +23,12 @@ struct hn_job_turn {
     turn_state state; ///< under the lock, as are `work`, `client` and `place`
     void *work;
     hn_client client;
-    long long place; ///< in the order of those that wait, while it is aside
-    double taken_up; ///< under the lock too [s, wall clock]
-    double look;     ///< it asks the pool then; of its own thread [s, wall clock]
-    double begun;    ///< of its present slice; of its own thread [s, wall clock]
-    double used;     ///< by its slices before; of its own thread [s]
+    long long place;      ///< in the order of those that wait, while it is aside
+    double taken_up;      ///< under the lock too [s, wall clock]
+    double look;          ///< it asks the pool then; of its own thread [s, wall clock]
+    double begun;         ///< of its present slice; of its own thread [s, wall clock]
+    double used;          ///< by its slices before; of its own thread [s]
+    _Atomic double share; ///< of its present job that is done, 0 to 1; 0: it says nothing
 };
 
 typedef struct waiting_job {
@@ -180,6 +182,7 @@ static void begin_slice(hn_job_turn *t) {
 static void do_job(hn_jobs *jobs, hn_job_turn *t) {
     pthread_mutex_unlock(&jobs->lock);
     t->used = 0;
+    atomic_store(&t->share, 0);
     begin_slice(t);
     jobs->run(t->work, t);
     const double took = t->used + hn_clock_wall() - t->begun;
@@ -203,6 +206,12 @@ static void *work(void *arg) {
     }
     pthread_mutex_unlock(&jobs->lock);
     return NULL;
+}
+
+void hn_job_report(hn_job_turn *t, double share) {
+    if (t) {
+        atomic_store_explicit(&t->share, share, memory_order_relaxed);
+    }
 }
 
 void hn_job_make_way(hn_job_turn *t) {
@@ -273,11 +282,16 @@ int hn_jobs_push(hn_jobs *jobs, void *work_item, hn_client client) {
     return taken;
 }
 
-/// Returns what a job that has worked for `used` still needs [s]: as much as the mean of those
-/// before leaves; one that went on for longer will go on for as long again, up to the longest that
-/// a job may.
-static double needs_still(const hn_jobs *jobs, double used) {
-    return used < jobs->mean ? jobs->mean - used : fmin(used, fmax(0, jobs->opts.longest - used));
+/// Returns the time [s] that a job still needs after it has worked for `used`: by the share of it
+/// that is done, where the job reports one. Otherwise what the mean of the jobs before leaves; a
+/// job that went on for longer will go on for as long again. At most the longest that a job may.
+static double needs_still(const hn_jobs *jobs, const hn_job_turn *t, double used) {
+    const double share = atomic_load_explicit(&t->share, memory_order_relaxed);
+    const double most = fmax(0, jobs->opts.longest - used);
+    if (share > 0) {
+        return fmin(used * fmax(0, 1 - share) / share, most);
+    }
+    return used < jobs->mean ? jobs->mean - used : fmin(used, most);
 }
 
 /// When the first of the jobs that are begun ends, which share the threads evenly [s]. With the
@@ -290,7 +304,7 @@ static double time_to_end(const hn_jobs *jobs) {
     for (int i = 0; i < jobs->n_threads; i++) {
         const hn_job_turn *t = &jobs->turns[i];
         if (t->state != TURN_IDLE) {
-            first = fmin(first, needs_still(jobs, (now - t->taken_up) * share) / share);
+            first = fmin(first, needs_still(jobs, t, (now - t->taken_up) * share) / share);
         }
     }
     return n > 0 ? first : 0;

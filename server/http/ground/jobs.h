@@ -37,4 +37,7 @@ void hn_jobs_free(hn_jobs *jobs); ///< stops first; NULL is legal
 /// Lets other jobs work first. A job calls it often; it returns at once, unless others wait and the
 /// job has worked for a slice of time. NULL is legal. The caller holds no lock that jobs need.
 void hn_job_make_way(hn_job_turn *turn);
+/// Says that a share (0 to 1) of the job is done: hn_jobs_wait() reckons with it. Costs a store.
+/// NULL is legal.
+void hn_job_report(hn_job_turn *turn, double share);
 #endif

@@ -252,8 +252,10 @@ typedef struct allowance {
 
 static int may_go_on(void *user, double share) {
     const allowance *a = user;
+    const double done = (a->method + share) / a->run->question.n_methods;
+    atomic_store(&a->run->share, done);
+    hn_job_report(a->turn, done);
     hn_job_make_way(a->turn);
-    atomic_store(&a->run->share, (a->method + share) / a->run->question.n_methods);
     return !atomic_load(&a->run->stop) && hn_clock_thread() < a->cpu_end;
 }
 

@@ -10,11 +10,12 @@
 
 static const double LONGEST = 0.3; // [s]
 static atomic_int ends;
+static _Atomic double done; ///< the share that a job reports, 0: none
 
 /// Works until it is told to end.
 static void run(void *job, hn_job_turn *turn) {
     (void)job;
-    (void)turn;
+    hn_job_report(turn, atomic_load(&done));
     while (!atomic_load(&ends)) {
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
     }
@@ -61,10 +62,31 @@ static void who_is_refused_beside_a_long_job_waits_as_long_again(void **state) {
     hn_jobs_free(jobs);
 }
 
+static void a_job_that_reports_its_share_says_when_it_ends(void **state) {
+    (void)state;
+    const hn_jobs_opts opts = {.at_once = 1, .n_waiting = 1, .n_waiting_of_one = 1, .longest = 1e6};
+    hn_jobs *jobs = hn_jobs_create(&opts, run);
+    assert_non_null(jobs);
+    atomic_store(&ends, 0);
+    atomic_store(&done, 0.1);
+    const double begun = hn_clock_wall();
+    assert_true(hn_jobs_push(jobs, jobs, 1));
+
+    // a tenth took at least half a second, so that the rest takes nine times as long; one that
+    // reports nothing is said to go on for as long as it has worked
+    wait_until(begun + 0.6);
+    while (hn_jobs_wait(jobs) < 5 && hn_clock_wall() < begun + 4) {}
+    assert_true(hn_jobs_wait(jobs) >= 5);
+    atomic_store(&ends, 1);
+    atomic_store(&done, 0);
+    hn_jobs_free(jobs);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_place_is_free_when_the_first_job_ends),
         cmocka_unit_test(who_is_refused_beside_a_long_job_waits_as_long_again),
+        cmocka_unit_test(a_job_that_reports_its_share_says_when_it_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
