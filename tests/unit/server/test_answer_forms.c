@@ -228,7 +228,7 @@ static void a_formula_with_a_rounded_number_gets_half_and_is_told(void **state) 
         {"0.33333333*l*sin(th1)", "", 2},
         {"0.333*l*sin(th1)", "rounded", 1},
         {"0.3345*l*sin(th1)", "rounded", 1},
-        {"0.34*l*sin(th1)", "other", 0},
+        {"0.34*l*sin(th1)", "wrong-factor", 0.5},
         {"l*sin(th1)", "third", 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -153,7 +153,7 @@ static void a_mistake_that_chance_explains_is_called_likely(void **state) {
     const hn_exercise *e = *state;
 
     // a number that equals l by chance: the formula names l, so that l can be changed
-    expect(e, "b", with_number(e, "l", "\"-l*sin(th1)*w1/%.2f\""), "other");
+    expect(e, "b", with_number(e, "l", "\"-l*sin(th1)*w1/%.2f\""), "wrong-factor");
     expect(e, "b", "\"-sin(th1)*w1\"", "missing-name");
     assert_null(strstr(explain(e, "b", "\"-sin(th1)*w1\""), "looks like"));
     assert_null(strstr(explain(e, "b", "\"l*sin(th1)*w1\""), "looks like"));
