@@ -3,6 +3,7 @@
 
 #include "dynamics/analyse/lookout.h"
 #include "dynamics/analyse/round_trip.h"
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "linalg/dense.h"
