@@ -105,7 +105,7 @@ const openLessons = styled("lessons", async () => {
 });
 acceptFiles(document.body, openEditor);
 
-/** What is open over the page; once made, each follows the view by itself. */
+/** The panels that are open over the page; once made, each follows the view by itself. */
 let over = { study: "", panel: "", gallery: false };
 store.on("view", () => {
   const { study, panel, gallery } = store.data.view;

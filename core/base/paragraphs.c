@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// Whether the line at text is prose: neither empty nor indented.
+/// Returns whether the line at text is prose: neither empty nor indented.
 static bool is_prose(const char *text) {
     return *text && *text != '\n' && *text != ' ';
 }

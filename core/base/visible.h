@@ -11,7 +11,8 @@
 /// Returns the bytes of the control character that `text` begins with: 1 for U+0001 to U+001F and
 /// U+007F, 2 for U+0080 to U+009F in UTF-8; 0 where it begins with none.
 size_t hn_control_length(const char *text);
-/// Whether the text holds a control character; line breaks and tabs are none unless `of_one_line`.
+/// Returns whether the text holds a control character; line breaks and tabs are none unless
+/// `of_one_line`.
 bool hn_has_control(const char *text, bool of_one_line);
 /// Adds the text with '?' for each control character; line breaks and tabs stay unless
 /// `of_one_line`.

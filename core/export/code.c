@@ -208,8 +208,8 @@ static void begin_line(writer *w) {
     hn_strbuf_printf(w->b, "%*s", w->indent, "");
 }
 
-/// Whether a piece stands where it is used: where that is one place, or, in a formula to read,
-/// where its copies are short. Long pieces have a line of their own.
+/// Returns whether a piece stands where it is used: where that is one place, or, in a formula to
+/// read, where its copies are short. Long pieces have a line of their own.
 static bool is_written_out(const writer *w, int uses, const hn_strbuf *text) {
     if (!w->language->raised) {
         return uses < 2 && text->n <= LONGEST;

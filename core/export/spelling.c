@@ -76,7 +76,7 @@ void hn_code_given(hn_strbuf *b, const hn_language *language, double value) {
     hn_code_fill(b, language->power, (const char *[]){text, exponent});
 }
 
-/// Whether `word` is among the words of `list`.
+/// Returns whether `word` is among the words of `list`.
 static bool lists(const char *list, const char *word) {
     const size_t n = strlen(word);
     for (const char *at = list; (at = strstr(at, word)) != NULL; at += n) {

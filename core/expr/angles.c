@@ -98,7 +98,7 @@ static void take_common(const product *p, const product *q, product *common, pro
     }
 }
 
-/// Whether two nodes are sine and cosine, or cosine and sine, of one angle.
+/// Returns whether two nodes are sine and cosine, or cosine and sine, of one angle.
 static bool is_other_of(const hn_graph *g, int32_t x, int32_t y) {
     const hn_node_view a = hn_graph_node(g, x), b = hn_graph_node(g, y);
     const bool other =

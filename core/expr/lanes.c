@@ -103,7 +103,7 @@ void hn_lanes_run(const hn_tape *tape, hn_lanes_set set, double *work) {
 
 // ---- one bit for each lane ----
 
-/// Whether all lanes are good, as they mostly are.
+/// Returns whether all lanes are good, as they mostly are.
 static bool are_all_good(const hn_lane_half_bits *below, const hn_lane_half *zero) {
     hn_lane_half_bits negative = below[0];
     hn_lane_half sum = zero[0];

@@ -244,7 +244,7 @@ static double angle_of_check(uint64_t *x, int k) {
     return ((double)(*x >> 11) * 0x1p-52 - 1) * (k % SELDOM == 0 ? 1e300 : largest[k % SIZES]);
 }
 
-/// Whether a form gives the bits of the C library at all angles of the check.
+/// Returns whether a form gives the bits of the C library at all angles of the check.
 static bool agrees(hn_lanes_sincos form) {
     enum { BLOCK = 64 };
     _Alignas(64) double angle[BLOCK], sine[BLOCK], cosine[BLOCK], wanted[2][BLOCK];

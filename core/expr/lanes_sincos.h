@@ -34,7 +34,7 @@ typedef void (*hn_lanes_sincos)(int n, const double *angle, double *sine, double
 /// The function for a set that the processor has; compares with the C library as said above. Safe
 /// in several threads.
 hn_lanes_sincos hn_lanes_sincos_get(hn_lanes_set set);
-/// Whether that function is a vector form.
+/// Returns whether that function is a vector form.
 bool hn_lanes_sincos_is_vector(hn_lanes_set set);
 
 /// Sine and cosine of four angles [rad] of one state, to sine[4] and cosine[4]: in the time of one

@@ -10,8 +10,9 @@
 void hn_native_prepare(const hn_tape *tape, double *work);
 /// Inputs for check number k: 0, 1, then numbers of -4 .. 4 by a congruential generator.
 void hn_native_fill(double *inputs, int n, int k);
-/// Whether compiled code gives the interpreter's bits at several states: the tape's interpreter, or
-/// that of lanes. `calls` is the table that the code takes (HN_NATIVE_CALLS). false: memory is out.
+/// Returns whether compiled code gives the interpreter's bits at several states: the tape's
+/// interpreter, or that of lanes. `calls` is the table that the code takes (HN_NATIVE_CALLS).
+/// false: memory is out.
 bool hn_native_agrees(const hn_tape *tape, hn_native_form form, hn_native_code code,
                       const hn_native_call *calls);
 #endif

@@ -295,7 +295,7 @@ static void put_angles(const emitter *e) {
                      HN_NATIVE_SINCOS + (int)e->set, n);
 }
 
-/// Whether an instruction is a piece by itself: sine and cosine of whole blocks.
+/// Returns whether an instruction is a piece by itself: sine and cosine of whole blocks.
 static bool stands_alone(const emitter *e, int32_t k) {
     return e->width && e->tape->code[k].code == TAPE_SINCOS;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_H
 #define HN_EXPR_TAPE_H
-// A tape: straight-line code for chosen outputs of a graph. What no output needs is left out, sin
-// and cos of one argument share one instruction, and slots are reused. One instruction may hold two
-// operations (a b + c d, ...), each rounded by itself. Operations are counted exactly. Evaluation
-// allocates nothing and is the same to the last bit on every call. A tape is constant after
-// compilation and may be shared by threads; slots are per thread.
+// A tape: straight-line code for chosen outputs of a graph. Operations that no output needs are
+// left out, sin and cos of one argument share one instruction, and slots are reused. One
+// instruction may hold two operations (a b + c d, ...), each rounded by itself. Operations are
+// counted exactly. Evaluation allocates nothing and is the same to the last bit on every call. A
+// tape is constant after compilation and may be shared by threads; slots are per thread.
 
 #include "expr/graph.h"
 #include "expr/tape_check.h"

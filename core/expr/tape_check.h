@@ -21,7 +21,7 @@ typedef struct hn_tape_check {
 /// Verdict on the answer of a tape after a run.
 typedef enum hn_tape_verdict { HN_TAPE_UNSURE, HN_TAPE_SURE, HN_TAPE_UNCHECKED } hn_tape_verdict;
 
-/// Whether it holds after a run: output k is work[slots[k]]. One of no outputs holds.
+/// Returns whether it holds after a run: output k is work[slots[k]]. One of no outputs holds.
 bool hn_tape_check_holds(const hn_tape_check *check, const uint16_t *slots, const double *work);
 /// The same without the finite answer, for those who copy it and look at each number anyway.
 bool hn_tape_check_guards_hold(const hn_tape_check *check, const uint16_t *slots,

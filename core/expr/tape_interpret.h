@@ -27,7 +27,7 @@ void hn_tape_interpret(const hn_tape *tape, double *work);
 /// The same by one of the forms.
 void hn_tape_interpret_by(hn_tape_dispatch form, const hn_tape *tape, double *work);
 
-/// Whether the two forms have been compared, and which one serves now.
+/// Returns whether the two forms have been compared, and which one serves now.
 bool hn_tape_is_compared(hn_tape_dispatch *serves);
 
 #endif

@@ -120,7 +120,7 @@ static void look_at_bodies(touch *t) {
     read_excluded(t);
 }
 
-/// Whether a geom can touch one of the geoms of body k.
+/// Returns whether a geom can touch one of the geoms of body k.
 static bool can_touch(const touch *t, const hn_mj_geom_bits *x, int k) {
     const int i = index_of(t, x->body), a = t->part[i], c = t->part[k];
     const bool bits = (x->contype & t->conaffinity[k]) || (t->contype[k] & x->conaffinity);

@@ -28,7 +28,8 @@ HN_MUST_CHECK bool hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_m
 void hn_compressed_begin(hn_compressed *c, int n);
 void hn_compressed_put(hn_compressed *c, int row, int col, double re, double im);
 /// Sums what was put into `values` (`parts` for each of start[n] places: re, or re and im). Returns
-/// Whether the places are those of the last time; false when they are new. Allocates nothing.
+/// Returns whether the places are those of the last time; false when they are new. Allocates
+/// nothing.
 bool hn_compressed_end(hn_compressed *c, int parts, double *values);
 /// Copies the real parts of the entries put so far, as n x n row-major.
 void hn_compressed_copy(const hn_compressed *c, double *out);

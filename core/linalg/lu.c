@@ -44,9 +44,9 @@ static void swap_scale(double *scale, int i, int k) {
     scale[k] = keep;
 }
 
-/// Whether a pivot is what cancellation left over of the products that it is a sum of (square.c
-/// says why small pivots alone are no fault). Row k of A holds its factors, column k their
-/// partners.
+/// Returns whether a pivot is what cancellation left over of the products that it is a sum of
+/// (square.c says why small pivots alone are no fault). Row k of A holds its factors, column k
+/// their partners.
 static bool is_cancelled(int k, size_t w, const double *A, int row) {
     double size = 0;
     for (int j = 0; j < k; j++) {

@@ -20,7 +20,7 @@ typedef struct hn_newton_matrix hn_newton_matrix;
 
 /// From this size on a matrix with at most a quarter of its entries in use is sparse.
 enum { HN_NEWTON_SPARSE_FROM = 24 };
-/// Whether a matrix of size n with so many entries is factored sparsely.
+/// Returns whether a matrix of size n with so many entries is factored sparsely.
 bool hn_newton_matrix_wants_sparse(int n, long long n_entries);
 
 typedef enum hn_number_field { HN_REAL, HN_COMPLEX } hn_number_field;

@@ -41,7 +41,8 @@ void hn_qr_factor(hn_qr *qr, int m, int n, double rank_tol);
 /// The rows below k where Householder vector k is not zero, rising; *rows until the next call.
 /// Returns how many. A vector has few of the rows of a large mechanism.
 int hn_qr_reflector(const hn_qr *qr, int k, const int **rows);
-/// Whether it pays to go over such a list of n of the rows below k, in place of all of them.
+/// Returns whether it pays to go over such a list of n of the rows below k, in place of all of
+/// them.
 bool hn_qr_is_sparse(const hn_qr *qr, int k, int n);
 /// x <- Q' x and x <- Q x, x (m).
 void hn_qr_apply_qt(const hn_qr *qr, double *x);

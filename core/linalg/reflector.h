@@ -9,8 +9,8 @@
 /// v and p (nv) are scratch.
 void hn_reflect_both_sides(int nv, int k, double tau, const double *below, double *T,
                            double *restrict v, double *restrict p);
-/// The same where u has few entries that are not zero: 1 at k, and those at the n `rows`. What it
-/// leaves alone is not touched.
+/// The same where u has few entries that are not zero: 1 at k, and those at the n `rows`. Other
+/// rows are not touched.
 void hn_reflect_listed(int nv, int k, double tau, const double *below, int n, const int *rows,
                        double *T, double *v, double *p);
 #endif

@@ -19,8 +19,8 @@ typedef struct hn_row_check hn_row_check;
 /// rows are too few or meet too often for this to pay. Fails with HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int n_entries,
                                             const int *row, const int *col, hn_row_check **out);
-/// Whether every row of J (nc x nv, row-major) is that far from the others, column j in units of
-/// unit[j] (nv; NULL: 1). Allocates nothing.
+/// Returns whether every row of J (nc x nv, row-major) is that far from the others, column j in
+/// units of unit[j] (nv; NULL: 1). Allocates nothing.
 bool hn_row_check_run(hn_row_check *c, const double *J, const double *unit);
 /// The same with the n_entries values of J alone, in the sequence of their places.
 bool hn_row_check_run_list(hn_row_check *c, const double *list, const double *unit);

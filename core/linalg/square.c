@@ -90,9 +90,9 @@ static void eliminate(hn_square *s, int k) {
     }
 }
 
-/// Whether pivot k is what cancellation left over: small against the products that it is a sum of.
-/// A pivot that is small because all its terms are is as accurate as any other; where masses are
-/// small and lengths are not, the Newton matrix of a sound mechanism has such pivots.
+/// Returns whether pivot k is what cancellation left over: small against the products that it is a
+/// sum of. A pivot that is small because all its terms are is as accurate as any other; where
+/// masses are small and lengths are not, the Newton matrix of a sound mechanism has such pivots.
 static bool is_cancelled(const hn_square *s, int k) {
     const size_t n = (size_t)s->n;
     double size = 0;

@@ -170,7 +170,7 @@ static hn_status paint_with_context(const hn_osmesa *gl, const hn_canvas *c, uns
     return status;
 }
 
-/// Whether HOLONOM_RENDERER asks for the built-in renderer.
+/// Returns whether HOLONOM_RENDERER asks for the built-in renderer.
 static bool wants_builtin(void) {
     const char *wanted = getenv("HOLONOM_RENDERER");
     return wanted && strcmp(wanted, "built-in") == 0;

@@ -148,7 +148,8 @@ static void put_areas(hn_strbuf *b, const hn_canvas *c, const hn_canvas_shape *s
     hn_strbuf_add(b, "\"/>\n");
 }
 
-/// Whether the point q lies on the line from p to the point after q, as far as it can be seen.
+/// Returns whether the point q lies on the line from p to the point after q, as far as it can be
+/// seen.
 static bool is_between(const float *p, const float *q) {
     const double length = hypot((double)q[2] - (double)p[0], (double)q[3] - (double)p[1]);
     return fabs(twice_area(p, q, q + 2)) <= UNSEEN * length;
@@ -194,7 +195,7 @@ static void put_pens(hn_strbuf *b, const hn_canvas *c, const hn_canvas_shape *s,
     }
 }
 
-/// Whether a shape needs one path alone.
+/// Returns whether a shape needs one path alone.
 static bool is_one_path(const hn_canvas *c, const hn_canvas_shape *s) {
     bool same = s->n_pens == 0 || count_areas(c, s) == 0;
     for (int i = 1; i < s->n_pens; i++) {

@@ -121,7 +121,8 @@ static bounds bounds_of(const float *xy, int n) {
     return out;
 }
 
-/// Whether a box lies beside the tile, further than a pixel away: what is in it takes no sample.
+/// Returns whether a box lies beside the tile, further than a pixel away: what is in it takes no
+/// sample.
 static bool is_beside(const tile *t, bounds box) {
     return box.high[0] < (float)(t->x0 - 1) || box.low[0] > (float)(t->x0 + TILE + 1) ||
            box.high[1] < (float)(t->y0 - 1) || box.low[1] > (float)(t->y0 + TILE + 1);

@@ -212,7 +212,8 @@ static bool is_set(const hn_reader *r, const hn_param *p) {
     return false;
 }
 
-/// Whether the sign of a value is none of those in the range: a mass that is 0, a length below 0.
+/// Returns whether the sign of a value is none of those in the range: a mass that is 0, a length
+/// below 0.
 static bool has_other_sign(const hn_param *p) {
     const bool below = (p->min > 0 && p->value <= 0) || (p->min == 0 && p->value < 0);
     const bool above = (p->max < 0 && p->value >= 0) || (p->max == 0 && p->value > 0);
@@ -226,8 +227,8 @@ static const char *needed_sign(const hn_param *p) {
                          : "0 or less";
 }
 
-/// Whether a value outside the range is of the same kind as those inside: of their sign, and no
-/// count. Ranges are those of sliders, not limits of mechanics.
+/// Returns whether a value outside the range is of the same kind as those inside: of their sign,
+/// and no count. Ranges are those of sliders, not limits of mechanics.
 static bool is_possible(const hn_param *p) {
     return !p->integer && !p->structural && !has_other_sign(p);
 }

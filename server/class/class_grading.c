@@ -50,7 +50,7 @@ typedef struct grading {
 
 // ---- one line ----
 
-/// Whether a submission belongs to this shard.
+/// Returns whether a submission belongs to this shard.
 static bool is_mine(const grading *g, int i) {
     const hn_class_shard *shard = &g->opts->shard;
     return shard->n == 0 || i % shard->n == shard->i - 1;
@@ -450,7 +450,8 @@ static int find_key(const grading *g, const char *student, const char *hex) {
     return -1;
 }
 
-/// Whether a line has the place that submission i has now: a run of the whole class gives it none.
+/// Returns whether a line has the place that submission i has now: a run of the whole class gives
+/// it none.
 static bool is_in_place(const grading *g, const cJSON *line, int i) {
     const cJSON *place = cJSON_GetObjectItem(line, "place"), *of = cJSON_GetObjectItem(line, "of");
     return g->opts->shard.n > 0 ? cJSON_IsNumber(place) && place->valueint == i &&

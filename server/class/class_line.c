@@ -40,7 +40,7 @@ bool hn_class_line_is_unchanged(const char *line, const cJSON *o) {
     return strcmp(said, hex) == 0;
 }
 
-/// Whether two entries are of one matrix or of one part.
+/// Returns whether two entries are of one matrix or of one part.
 static bool are_of_one(const hn_entry_verdict *a, const hn_entry_verdict *b) {
     return a->n_whole == b->n_whole && strncmp(a->name, b->name, (size_t)a->n_whole) == 0;
 }

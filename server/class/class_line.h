@@ -13,6 +13,6 @@
 void hn_class_line_put_mistakes(hn_strbuf *b, const hn_verdict *v);
 /// Writes the last field of a line: the hash of what it says.
 void hn_class_line_put_check(hn_strbuf *b);
-/// Whether a line, read as `o`, is as it was written.
+/// Returns whether a line, read as `o`, is as it was written.
 bool hn_class_line_is_unchanged(const char *line, const cJSON *o);
 #endif

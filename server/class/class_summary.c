@@ -180,7 +180,8 @@ static void put_programs_alike(hn_strbuf *b, const hn_class_result *r, bool prog
     }
 }
 
-/// Whether equal wrong answers to a part are worth a look: a known mistake that many make is none.
+/// Returns whether equal wrong answers to a part are worth a look: a known mistake that many make
+/// is none.
 static bool is_alike(const count *c) {
     return c->n > 1 && (c->n <= MOST_ALIKE || strstr(c->word, ": other "));
 }

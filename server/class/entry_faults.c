@@ -73,7 +73,7 @@ static bool is_possible(const hn_entry_values *entry, int f, const hn_entry_faul
     return !is_named && (!FAULTS[f].of_mass || entry->part == HN_EXPORT_MASS);
 }
 
-/// Whether the entry with `change` added at each state is what was given.
+/// Returns whether the entry with `change` added at each state is what was given.
 static bool is_given(const hn_entry_values *entry, const double *change) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         if (!(fabs(entry->given[k] - entry->right[k] - change[k]) <= entry->allowed)) {
@@ -83,7 +83,7 @@ static bool is_given(const hn_entry_values *entry, const double *change) {
     return true;
 }
 
-/// Whether no term moves: two faults in two of them then explain a wrong number by chance.
+/// Returns whether no term moves: two faults in two of them then explain a wrong number by chance.
 static bool is_constant(const hn_entry_values *entry) {
     for (int m = 0; m < entry->sum->n; m++) {
         for (int k = 1; k < HN_EXPORT_EXAM_STATES; k++) {
@@ -126,7 +126,7 @@ static void find_one(const hn_entry_values *entry, hn_entry_faults *out) {
     }
 }
 
-/// Whether faults a and b at two different terms explain the entry.
+/// Returns whether faults a and b at two different terms explain the entry.
 static bool are_both(const hn_entry_values *entry, int a, int b) {
     for (int m = 0; m < entry->sum->n; m++) {
         for (int i = 0; i < entry->sum->n; i++) {
@@ -216,7 +216,7 @@ typedef struct changed {
     hn_export_sum terms;
 } changed;
 
-/// Whether the whole entry, times the sign, is what the change makes of it.
+/// Returns whether the whole entry, times the sign, is what the change makes of it.
 static bool is_whole(const hn_entry_values *entry, const changed *c, double sign) {
     double change[HN_EXPORT_EXAM_STATES];
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
@@ -225,7 +225,7 @@ static bool is_whole(const hn_entry_values *entry, const changed *c, double sign
     return is_given(entry, change);
 }
 
-/// Whether one term of several, times the sign, is what the change makes of it.
+/// Returns whether one term of several, times the sign, is what the change makes of it.
 static bool is_term(const hn_entry_values *entry, const changed *c, double sign) {
     for (int m = 0; m < entry->sum->n && entry->sum->n > 1; m++) {
         double change[HN_EXPORT_EXAM_STATES];

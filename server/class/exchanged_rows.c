@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/// Whether entry (i, j) that was given is the right entry (r, c), at every state.
+/// Returns whether entry (i, j) that was given is the right entry (r, c), at every state.
 static bool is_entry(const hn_two_matrices *m, int i, int j, int r, int c) {
     const int size = m->rows * m->columns;
     for (int k = 0; k < m->states; k++) {
@@ -17,7 +17,7 @@ static bool is_entry(const hn_two_matrices *m, int i, int j, int r, int c) {
     return true;
 }
 
-/// Whether line i that was given, a row or a column, is the right line k.
+/// Returns whether line i that was given, a row or a column, is the right line k.
 static bool is_line(const hn_two_matrices *m, bool rows, int i, int k) {
     const int n = rows ? m->columns : m->rows;
     for (int j = 0; j < n; j++) {
@@ -28,7 +28,7 @@ static bool is_line(const hn_two_matrices *m, bool rows, int i, int k) {
     return true;
 }
 
-/// Whether another wrong line is the right line i.
+/// Returns whether another wrong line is the right line i.
 static bool is_given_elsewhere(const hn_two_matrices *m, bool rows, int n, int i, int *where) {
     for (int k = 0; k < n; k++) {
         if (k != i && is_line(m, rows, k, i) && !is_line(m, rows, k, k)) {

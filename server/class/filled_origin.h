@@ -8,8 +8,8 @@
 
 #include <stdbool.h>
 
-/// Whether the text is a program that `holonom export` wrote for a scene, of any name: its first
-/// lines say so.
+/// Returns whether the text is a program that `holonom export` wrote for a scene, of any name: its
+/// first lines say so.
 bool hn_filled_origin_is_known(const char *text);
 /// Compares what the text says with the scene that it is graded against. A parameter that the text
 /// does not define by a plain number is not compared. Fails: HN_ERR_INPUT where they differ, with

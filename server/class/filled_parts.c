@@ -110,7 +110,8 @@ static double transposed_at(const part_view *p, int k, int i) {
     return expected_at(p, k, i % rows * columns + i / rows);
 }
 
-/// Whether every given entry is what `like` says; the largest difference is at *state, *entry.
+/// Returns whether every given entry is what `like` says; the largest difference is at *state,
+/// *entry.
 static bool is_like(const part_view *p, double (*like)(const part_view *, int, int), int *state,
                     int *entry) {
     double worst = -1;
@@ -226,7 +227,7 @@ static void show_entry(const part_view *p, const hn_language *language, int stat
     }
 }
 
-/// Whether entry i is right at every state.
+/// Returns whether entry i is right at every state.
 static bool is_right(const part_view *p, int i) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         if (!(fabs(given_at(p, k, i) - expected_at(p, k, i)) <= ALLOWED * p->size)) {
@@ -261,7 +262,7 @@ typedef struct part_credit {
     int *same;               ///< n, the first that is wrong for the same reason; owned
 } part_credit;
 
-/// Whether `value` is 0 in entry i at every state, rounding aside.
+/// Returns whether `value` is 0 in entry i at every state, rounding aside.
 static bool is_zero_entry(const part_view *p, int i, double (*value)(const part_view *, int, int)) {
     for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
         if (!(fabs(value(p, k, i)) <= ALLOWED * p->size)) {
@@ -439,7 +440,7 @@ static hn_status compare_part(const part_view *p, const hn_language *language,
     return status;
 }
 
-/// Whether an entry that is asked has the symbol.
+/// Returns whether an entry that is asked has the symbol.
 static bool is_in_parts(const hn_export_exam *exam, int symbol) {
     const hn_graph *g = hn_system_graph(exam->e.sys);
     for (int part = 0; part < HN_EXPORT_PARTS; part++) {

@@ -15,7 +15,7 @@ typedef struct hn_filled_answers {
     double *value;
 } hn_filled_answers;
 
-/// Whether a part is not zero everywhere: else nothing is to be filled in.
+/// Returns whether a part is not zero everywhere: else nothing is to be filled in.
 bool hn_filled_part_is_asked(const hn_export_exam *exam, hn_export_part part);
 /// Fills the entries of a verdict, its score and its summary. Entries are named as the language
 /// counts. Fails: HN_ERR_MEMORY.

@@ -29,7 +29,7 @@ HN_MUST_CHECK hn_status hn_filled_program_grade(const hn_filled_exam *f, const c
 /// meanwhile. Fails: as above.
 HN_MUST_CHECK hn_status hn_filled_program_grade_text(const hn_filled_exam *f, const char *name,
                                                      const char *text, size_t n, hn_verdict *v);
-/// Whether a file has the ending of a program that can be graded.
+/// Returns whether a file has the ending of a program that can be graded.
 bool hn_filled_program_is(const char *path);
 
 #endif

@@ -16,13 +16,13 @@ typedef enum hn_source_style {
 
 /// Returns the style of a file by the ending of its name; that of C for an unknown ending.
 hn_source_style hn_source_style_of(const char *file);
-/// Whether the end of a line ends a statement; else a semicolon alone does.
+/// Returns whether the end of a line ends a statement; else a semicolon alone does.
 bool hn_source_is_by_lines(hn_source_style style);
-/// Whether a name begins with this letter.
+/// Returns whether a name begins with this letter.
 bool hn_source_begins_name(char c);
-/// Whether a name goes on with this letter or digit.
+/// Returns whether a name goes on with this letter or digit.
 bool hn_source_continues_name(char c);
-/// Whether these n letters name a function of mathematics, which nobody renames.
+/// Returns whether these n letters name a function of mathematics, which nobody renames.
 bool hn_source_is_function(const char *name, size_t n);
 /// Returns where a comment that begins at `at` ends; NULL: none begins there. A directive of C
 /// counts as one.

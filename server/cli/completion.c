@@ -217,7 +217,7 @@ static const char *option_before(const hn_command *command, const char *const *w
     return "";
 }
 
-/// Whether a name of words or of an argument is that of a file: "FILE", "PART...", "SCENE".
+/// Returns whether a name of words or of an argument is that of a file: "FILE", "PART...", "SCENE".
 static bool names_file(const char *text) {
     static const char *const files[] = {"FILE", "DIR",        "FOLDER", "SCENE",
                                         "PART", "SUBMISSION", "VERDICT"};
@@ -229,7 +229,7 @@ static bool names_file(const char *text) {
     return false;
 }
 
-/// Whether the value of an option, or without one a word of the command, may be a file.
+/// Returns whether the value of an option, or without one a word of the command, may be a file.
 static bool takes_file(const hn_command *command, const char *option) {
     hn_option_row o;
     for (int i = 0; option[0] && hn_args_option(command, i, &o); i++) {

@@ -62,8 +62,9 @@ static const hn_term TERMS[] = {
 
     // errors
     {"error estimate, motion error, reaction error",
-     "Largest difference of a run from its pilot run so far. Of the motion: angles in rad, lengths "
-     "divided by the mechanism's length. Of the reactions: divided by their largest value."},
+     "Largest difference of a run from its pilot run so far. The motion error takes angles in rad "
+     "and lengths divided by the mechanism's length; the reaction error is divided by the largest "
+     "reaction."},
     {"right, inaccurate, WRONG",
      "The verdict of 'run' and 'compare', by the error estimate. right: motion error and reaction "
      "error are at most 0.01. inaccurate: one of them is larger. WRONG: the motion error is 1 or "
@@ -111,7 +112,7 @@ const hn_term *hn_glossary(int *n) {
     return TERMS;
 }
 
-/// Whether `text` holds the word, not as a part of a longer one.
+/// Returns whether `text` holds the word, not as a part of a longer one.
 static bool holds_word(const char *text, const char *word) {
     const size_t n = strlen(word);
     for (const char *at = text; n > 0 && *at; at++) {

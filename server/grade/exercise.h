@@ -95,7 +95,7 @@ const char *hn_exercise_title(const hn_exercise *problem);
 /// Returns the id of the scene that draws a state of it, "" if there is none.
 const char *hn_exercise_scene(const hn_exercise *problem);
 double hn_exercise_points(const hn_exercise *problem);
-/// Whether a drawn number is marked "hidden": true, because it would give an answer away; it is
-/// then not among the numbers of a variant.
+/// Returns whether a drawn number is marked "hidden": true, because it would give an answer away;
+/// it is then not among the numbers of a variant.
 bool hn_exercise_is_hidden(const hn_exercise *problem, const char *name);
 #endif

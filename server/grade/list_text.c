@@ -89,12 +89,12 @@ static span strip_call(span s) {
 
 // ---- entries of a row ----
 
-/// Whether a sign that makes an operator, so that blanks about it part nothing.
+/// Returns whether a sign that makes an operator, so that blanks about it part nothing.
 static bool is_operator(char c) {
     return c != '\0' && strchr("+-*/^=@", c) != NULL;
 }
 
-/// Whether blanks part two entries: "a -b" does, "a - b" and "a * b" do not.
+/// Returns whether blanks part two entries: "a -b" does, "a - b" and "a * b" do not.
 static bool blanks_part(const char *before, const char *after, span s) {
     if (before <= s.at || after >= s.end || is_operator(before[-1])) {
         return false;
@@ -185,7 +185,7 @@ static cJSON *read_list(span s, int depth) {
     return out;
 }
 
-/// Whether a list has more than one entry, or rows: "[a + b]" is a formula in brackets.
+/// Returns whether a list has more than one entry, or rows: "[a + b]" is a formula in brackets.
 static bool is_several(const cJSON *list) {
     return cJSON_GetArraySize(list) > 1 || cJSON_IsArray(list ? list->child : NULL);
 }

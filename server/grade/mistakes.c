@@ -267,7 +267,7 @@ static bool agrees_turned(const place *at, hn_ex e, const double *value,
     return worst <= hn_exam_allowed(at->exam, size);
 }
 
-/// Whether a formula names a parameter (a length), rather than coordinates alone.
+/// Returns whether a formula names a parameter (a length), rather than coordinates alone.
 static bool names_parameter(const place *at, hn_ex e) {
     for (int i = 0; i < at->exam->problem->n_params; i++) {
         if (hn_depends_on(at->exam->graph, e, at->exam->symbol[i])) {
@@ -322,7 +322,8 @@ static hn_grade_mistake find_pair(const place *at, const double *value) {
     return find_nothing(at);
 }
 
-/// Whether the values differ from the right ones by no more than a rounded number makes them.
+/// Returns whether the values differ from the right ones by no more than a rounded number makes
+/// them.
 static bool is_nearly_right(const place *at, const double *value) {
     const int index = at->row * at->exam->problem->n_columns + at->column;
     for (int s = 0; s < at->exam->n_states; s++) {

@@ -16,6 +16,6 @@ typedef struct hn_grade_mistake {
 } hn_grade_mistake;
 hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
                                        const double *value);
-/// Whether the mistake's id is one that verdicts can hold.
+/// Returns whether the mistake's id is one that verdicts can hold.
 bool hn_grade_is_mistake(const char *id);
 #endif

@@ -27,7 +27,7 @@ typedef struct wrong_number {
     int part, result; ///< of the exercise; among the results of the part
 } wrong_number;
 
-/// Whether the answers of a part are numbers, which differ from variant to variant.
+/// Returns whether the answers of a part are numbers, which differ from variant to variant.
 static bool has_numbers(const hn_part *p) {
     const char *kind = hn_part_text(p->node, "kind");
     return strcmp(kind, "number") == 0 || strcmp(kind, "vector") == 0;

@@ -15,7 +15,7 @@ int hn_repeated_member_count(const cJSON *node);
 /// Removes members that repeat another one's name and value, at every level. Returns how many. Call
 /// it for objects of up to HN_REPEATED_MEMBER_MOST members.
 int hn_repeated_member_drop(cJSON *node);
-/// Whether `object` itself has two members of this name.
+/// Returns whether `object` itself has two members of this name.
 bool hn_repeated_member_is(const cJSON *object, const char *name);
 /// The first name that an object at or below `node` has twice, borrowed; NULL: none has.
 const char *hn_repeated_member_find(const cJSON *node);

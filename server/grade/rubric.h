@@ -28,7 +28,7 @@ typedef struct hn_rubric hn_rubric;
 /// exercise).
 /// Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_rubric_load_file(const char *path, hn_rubric **out, hn_diags *diags);
-/// Whether a file's name says that it holds TOML.
+/// Returns whether a file's name says that it holds TOML.
 bool hn_rubric_is_toml(const char *path);
 void hn_rubric_free(hn_rubric *rubric);             ///< NULL is legal
 const char *hn_rubric_exercise(const hn_rubric *r); ///< id of the exercise that it is for

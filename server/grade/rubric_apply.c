@@ -298,8 +298,8 @@ static void put_tolerance(hn_strbuf *b, const char *name, double relative, doubl
                      name, relative, absolute);
 }
 
-/// Whether every mistake of this id earns the same share in all parts. One of the general ids has
-/// shares that depend on the kind of the answer.
+/// Returns whether every mistake of this id earns the same share in all parts. One of the general
+/// ids has shares that depend on the kind of the answer.
 static bool has_one_share(const hn_exercise *e, const char *id, double share) {
     bool one = !is_listed(GENERAL, N_GENERAL, id);
     for (int i = 0; i < e->n_parts; i++) {

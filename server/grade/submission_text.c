@@ -78,8 +78,8 @@ static const char *const COMMANDS[] = {
     "bar", "begin", "beta", "big",   "bigl",  "bigr", "bm",  "boldsymbol", "frac", "right",
     "tan", "tanh",  "text", "tfrac", "times", "top",  "rho", "nu",         NULL};
 
-/// Whether the backslash at `at` begins a command of LaTeX where JSON would read an escape, or
-/// nothing that it knows. `end` is that of the text, which is no string of C.
+/// Returns whether the backslash at `at` begins a command of LaTeX where JSON would read an escape,
+/// or nothing that it knows. `end` is that of the text, which is no string of C.
 static bool is_latex(const char *at, const char *end) {
     char word[16] = "";
     for (size_t i = 0; i + 1 < sizeof word && at + 1 + i < end && isalpha((unsigned char)at[1 + i]);

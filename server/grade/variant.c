@@ -398,7 +398,7 @@ static int check_hints(const hn_variant *x, const cJSON *submission, hn_verdict 
     return 0;
 }
 
-/// Whether a member of an answer is read as a name of a list in the exercise's part.
+/// Returns whether a member of an answer is read as a name of a list in the exercise's part.
 static bool is_read(const hn_part *p, const char *list, const cJSON *answer, const cJSON *member) {
     const cJSON *m;
     cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, list)) {

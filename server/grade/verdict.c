@@ -25,7 +25,7 @@ static void add_number(hn_strbuf *b, double x) {
     }
 }
 
-/// Whether an answer is a number as it stands, and no formula that has a value.
+/// Returns whether an answer is a number as it stands, and no formula that has a value.
 static bool is_number(const char *given) {
     char *end;
     strtod(given, &end);

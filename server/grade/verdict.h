@@ -76,7 +76,8 @@ void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_t
 /// Writes what was handed in for an entry, with its value where that is no number as it stands:
 /// "force[0] = 6.475".
 void hn_verdict_given(hn_strbuf *b, const hn_entry_verdict *e);
-/// Whether what is expected stands beside an entry: a wrong one, for a teacher who asked for it.
+/// Returns whether what is expected stands beside an entry: a wrong one, for a teacher who asked
+/// for it.
 bool hn_verdict_shows_expected(const hn_verdict *v, const hn_entry_verdict *e);
 /// Writes what is expected of a wrong entry: the reference formula, or the value at its state.
 void hn_verdict_expected(hn_strbuf *b, const hn_entry_verdict *e);

@@ -60,9 +60,9 @@ typedef struct hn_conversation {
 HN_MUST_CHECK hn_status hn_conversation_begin(hn_conversation *c, const hn_system *sys,
                                               char *const *argv, const char *file,
                                               const hn_program_limits *limits, hn_arena *arena);
-/// Whether the program provides what is asked of it: its own steps (`own`), or accelerations for an
-/// integrator. Fails: HN_ERR_INPUT, with the other spelling in diag. A program that did not greet
-/// passes.
+/// Returns whether the program provides what is asked of it: its own steps (`own`), or
+/// accelerations for an integrator. Fails: HN_ERR_INPUT, with the other spelling in diag. A program
+/// that did not greet passes.
 HN_MUST_CHECK hn_status hn_conversation_check(const hn_conversation *c, bool own, hn_diag *diag);
 /// Asks for the accelerations a (nv, system coordinates) at (t, q, v). Now and then an earlier
 /// question is asked again; a program whose answer differs by more than rounding has failed. After

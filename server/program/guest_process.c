@@ -131,8 +131,8 @@ typedef struct use {
     long seen[MOST_PROCESSES]; ///< their numbers
 } use;
 
-/// Whether a process is looked at for the first time. One whose parent ends during the look is
-/// found twice: below its parent, and below the first process, which takes it over.
+/// Returns whether a process is looked at for the first time. One whose parent ends during the look
+/// is found twice: below its parent, and below the first process, which takes it over.
 static bool note(use *sum, long pid) {
     for (int i = 0; i < sum->processes; i++) {
         if (sum->seen[i] == pid) {

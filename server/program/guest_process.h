@@ -34,7 +34,7 @@ HN_MUST_CHECK hn_status hn_guest_process_start(hn_guest_process *p, char *const 
 /// did in diag: HN_ERR_LIMIT (a limit), HN_ERR_IO (it ended).
 HN_MUST_CHECK hn_status hn_guest_process_ask(hn_guest_process *p, const char *text, size_t n,
                                              double seconds, hn_strbuf *line, hn_diag *diag);
-/// Whether it has written more than it was asked for.
+/// Returns whether it has written more than it was asked for.
 bool hn_guest_process_has_more(hn_guest_process *p);
 /// Waits for its end: its exit status, 128 + signal, or -1 when the time is over.
 int hn_guest_process_wait(hn_guest_process *p, double seconds);

@@ -88,7 +88,7 @@ static void keep_talk(shared_talk *talk) {
     pthread_mutex_unlock(&lock);
 }
 
-/// Whether the last instance has left; the process is then no longer found.
+/// Returns whether the last instance has left; the process is then no longer found.
 static bool leave_talk(shared_talk *talk) {
     pthread_mutex_lock(&lock);
     const bool is_last = --talk->users == 0;
@@ -257,8 +257,8 @@ static void hide_folder(hn_diag *diag) {
     }
 }
 
-/// Whether a file is in the folder or below it once links are followed. One that is not there is
-/// refused later, with its reason.
+/// Returns whether a file is in the folder or below it once links are followed. One that is not
+/// there is refused later, with its reason.
 static bool is_inside(const char *file, const char *folder) {
     char *target = realpath(file, NULL), *home = realpath(folder, NULL);
     const size_t n = home ? strlen(home) : 0;

@@ -21,8 +21,8 @@ typedef struct hn_repeated_question {
 /// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_repeated_question_init(hn_repeated_question *r, int nq, int nv, int nu,
                                                   hn_arena *arena);
-/// Whether the kept question is to be asked again behind question `id`: after few questions often,
-/// later behind every 64th, which costs less than 2 % of the questions.
+/// Returns whether the kept question is to be asked again behind question `id`: after few questions
+/// often, later behind every 64th, which costs less than 2 % of the questions.
 bool hn_repeated_question_is_due(long long id);
 /// Keeps a question and its answer in place of the one before.
 void hn_repeated_question_keep(hn_repeated_question *r, long long id, double t, const double *q,

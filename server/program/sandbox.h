@@ -34,7 +34,7 @@ HN_MUST_CHECK hn_status hn_sandbox_build(hn_sandbox_command *c, const char *file
                                          const char *argument, bool trusted,
                                          const hn_program_limits *limits, hn_diag *diag);
 
-/// Whether a file can be started: it is one, and has an interpreter or may be executed.
+/// Returns whether a file can be started: it is one, and has an interpreter or may be executed.
 bool hn_sandbox_can_start(const char *file, bool trusted);
 
 #endif

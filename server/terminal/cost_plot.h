@@ -14,7 +14,7 @@ typedef struct hn_cost_plot {
     int done[HN_WP_METHODS], failed[HN_WP_METHODS], levels;
 } hn_cost_plot;
 
-/// Whether CPU time was measured.
+/// Returns whether CPU time was measured.
 bool hn_cost_plot_has_times(const hn_wp *wp);
 /// Copies what is done so far, over CPU time or over operations.
 void hn_cost_plot_take(hn_cost_plot *p, const hn_wp *wp, bool by_time);

@@ -4,7 +4,7 @@
 #include <ctype.h>
 #include <string.h>
 
-/// Whether text begins with a unit, with a prefix or without, that no letter follows.
+/// Returns whether text begins with a unit, with a prefix or without, that no letter follows.
 static bool begins_with_unit(const char *text) {
     static const char *const prefixes[] = {"", "n", "µ", "m", "k", "M", "G"};
     static const char *const units[] = {"m", "s", "J", "N", "W", "rad", "Hz", "kg", "%", "1/s"};

@@ -23,8 +23,8 @@ static double near_row(const hn_map_axis *y, double value) {
                      : (value - low) / (high - low) * (y->n - 1);
 }
 
-/// Whether the predicted boundary passes in this cell: of a step by the column's limits, otherwise
-/// where the margin passes 1 to the right or above.
+/// Returns whether the predicted boundary passes in this cell: of a step by the column's limits,
+/// otherwise where the margin passes 1 to the right or above.
 static bool is_limit(const hn_map *map, int m, int column, int row) {
     const hn_map_axis *x = hn_map_x(map), *y = hn_map_y(map);
     const hn_map_column *c = hn_map_get_column(map, m, column);

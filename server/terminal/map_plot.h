@@ -31,7 +31,7 @@ typedef struct hn_map_place {
 void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m);
 /// The cell whose values are nearest; values beyond the map have a cell at its edge. None for NaN.
 hn_map_place hn_map_plot_place(const hn_map_plot *p, double x, double y);
-/// Whether the values lie beyond the map.
+/// Returns whether the values lie beyond the map.
 bool hn_map_plot_is_beyond(const hn_map_plot *p, double x, double y);
 /// Rows that the map takes in `columns`, with its axis and its legend, which stands
 /// beside it where there is room.

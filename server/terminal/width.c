@@ -53,7 +53,7 @@ int hn_terminal_error_limit(void) {
     return limit_of(STDERR_FILENO);
 }
 
-/// Whether the terminal is known, and its description says that it has colours.
+/// Returns whether the terminal is known, and its description says that it has colours.
 static bool has_colours(const char *term) {
     int known = 0;
     bool has = false;

@@ -185,7 +185,7 @@ static cJSON *read_choice(const char *text) {
     return both;
 }
 
-/// Whether a number of the value is beyond the largest one: written again it would be null.
+/// Returns whether a number of the value is beyond the largest one: written again it would be null.
 static bool has_infinite(const cJSON *value) {
     bool has = cJSON_IsNumber(value) && !isfinite(value->valuedouble);
     const cJSON *child;
@@ -302,7 +302,7 @@ static void add_form(hn_strbuf *b, const field *f) {
     hn_strbuf_printf(b, "%s%s", figure[0] ? "\n" : "", figure);
 }
 
-/// Whether an entry of the verdict belongs to a field: "b", "b.2".
+/// Returns whether an entry of the verdict belongs to a field: "b", "b.2".
 static bool is_of(const hn_entry_verdict *e, const field *f) {
     const size_t n = strlen(f->name);
     return strncmp(e->name, f->name, n) == 0 && (e->name[n] == '\0' || e->name[n] == '.');

@@ -8,10 +8,10 @@
 /// Stops this job, as the system stops one that reads, until the shell has it in the foreground.
 /// false: it is in the background and nothing stops it, since no shell would let it go on.
 bool hn_foreground_wait(void);
-/// To be called once the library of the screen has its own handler of SIGTSTP: from then on that
+/// Call it once the library of the screen has its own handler of SIGTSTP: from then on that
 /// signal, from Ctrl-Z or from another program, waits until the line to the terminal is quiet.
 void hn_foreground_watch(void);
-/// Whether SIGTSTP has come since the last stop.
+/// Returns whether SIGTSTP has come since the last stop.
 bool hn_foreground_must_stop(void);
 /// Stops this job and leaves the terminal to the shell; returns when it is in the foreground again.
 /// A job that is let go on in the background, by the shell or by SIGCONT, stops once more.

@@ -203,7 +203,7 @@ static void draw_forces(hn_area area, const placing *p, const hn_force_arrows *a
     }
 }
 
-/// Whether nothing stands in n cells, nor in the one before and the one behind.
+/// Returns whether nothing stands in n cells, nor in the one before and the one behind.
 static bool is_free(const hn_cells *c, hn_area area, int x, int y, int n) {
     if (x < 0 || y < 0 || y >= area.rows || x + n > area.columns) {
         return false;

@@ -19,8 +19,8 @@ static void keep(kept *before, const hn_workbench *w) {
     before->n = w->n_methods;
 }
 
-/// Whether a method can come to the end of the motion in as many fixed steps as a run may take; a
-/// spelling that is none is refused elsewhere.
+/// Returns whether a method can come to the end of the motion in as many fixed steps as a run may
+/// take; a spelling that is none is refused elsewhere.
 static hn_status check_steps(const hn_workbench *w, int m, hn_diags *diags) {
     const double end = hn_model_scene(w->model)->duration;
     const double allowed = (double)hn_run_opts_default().max_steps;

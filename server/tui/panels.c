@@ -370,7 +370,7 @@ static void nudge(hn_workbench *w, int by) {
     w->cursor = cursor < w->n_items ? cursor : 0;
 }
 
-/// Whether the typed letters stand at the start of the text, or anywhere in it (`inside`).
+/// Returns whether the typed letters stand at the start of the text, or anywhere in it (`inside`).
 static bool has_letters(const char *text, const char *letters, bool inside) {
     const size_t n = strlen(letters);
     for (bool more = true; more && *text; text++) {

@@ -206,7 +206,8 @@ static bool wait_for_work(hn_recording *r) {
     return !atomic_load(&r->stop);
 }
 
-/// Whether a frame is to be left unfinished: the thread ends, or its computing time is used up.
+/// Returns whether a frame is to be left unfinished: the thread ends, or its computing time is used
+/// up.
 static int must_break(void *user) {
     hn_recording *r = user;
     return atomic_load(&r->stop) || (r->limit > 0 && hn_clock_thread() >= r->limit);

@@ -66,7 +66,7 @@ hn_track_end hn_recording_end(const hn_recording *r, int i);
 /// Takes the errors of the frames recorded since the last call, all of them when the reference has
 /// come. For the thread that reads; tracks show errors up to here.
 void hn_recording_update(hn_recording *r);
-/// Whether no reference is stored for these parameters, and none is being computed.
+/// Returns whether no reference is stored for these parameters, and none is being computed.
 bool hn_recording_needs_reference(const hn_recording *r);
 /// Starts computing the reference on a thread of its own; `model` is the same model once more, and
 /// is taken. false: the system gives no thread.

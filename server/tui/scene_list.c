@@ -15,7 +15,7 @@ static const char *text_of(const cJSON *object, const char *name) {
     return cJSON_IsString(item) ? item->valuestring : "";
 }
 
-/// Whether `word` (n characters, small letters) is part of the text, in any case.
+/// Returns whether `word` (n characters, small letters) is part of the text, in any case.
 static bool has_word(const char *text, const char *word, size_t n) {
     for (; *text; text++) {
         size_t k = 0;
@@ -33,7 +33,7 @@ static bool has_word(const char *text, const char *word, size_t n) {
 static const char *const TEXTS[] = {"id", "title", "about", "look_for", "kind", "caption"};
 enum { N_TEXTS = sizeof TEXTS / sizeof *TEXTS, N_NAMES = 2, RANKS = 4 };
 
-/// Whether every word of the search is in one of the first n texts of the scene.
+/// Returns whether every word of the search is in one of the first n texts of the scene.
 static bool fits(const cJSON *scene, const char *search, int n_texts) {
     bool all = true;
     for (const char *word = search; *word && all;) {

@@ -194,7 +194,8 @@ static void read_answer(const char *begin, bool string) {
     }
 }
 
-/// Whether the key is the second byte of an answer whose Escape came alone, which is then read.
+/// Returns whether the key is the second byte of an answer whose Escape came alone, which is then
+/// read.
 static bool take_parted_answer(int key) {
     if (key == ERR) {
         return false; // its rest is still under way
@@ -215,7 +216,7 @@ static bool take_parted_answer(int key) {
     return true;
 }
 
-/// Whether the key begins an answer about pictures, which is then read.
+/// Returns whether the key begins an answer about pictures, which is then read.
 static bool take_picture_answer(int key) {
     if (key == KEY_NAME) {
         read_answer(NAME, false);

@@ -32,9 +32,9 @@ bool hn_screen_gone(void);
 void hn_screen_size(int *columns, int *rows);
 /// The same in pixels, as the line of the terminal has it; 0: it does not.
 void hn_screen_pixels(int *width, int *height);
-/// Whether the terminal has read the picture before: until then the next one is left out, so that a
-/// slow line shows fewer pictures and none of them late. The terminal is asked after each picture;
-/// where it never answers, this is always true after a few seconds.
+/// Returns whether the terminal has read the picture before: until then the next one is left out,
+/// so that a slow line shows fewer pictures and none of them late. The terminal is asked after each
+/// picture; where it never answers, this is always true after a few seconds.
 bool hn_screen_ready(void);
 /// Shows the cells; then sends `picture` (NULL or empty: nothing), a sequence that leaves the
 /// cursor where it is.

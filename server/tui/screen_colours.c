@@ -30,8 +30,8 @@ static int of_few(int colour, int theme) {
 #define TRUE_COLOURS
 #endif
 
-/// Whether the terminal's description says that the number of a colour is its red, green and blue,
-/// as that of xterm-direct does.
+/// Returns whether the terminal's description says that the number of a colour is its red, green
+/// and blue, as that of xterm-direct does.
 static bool is_direct(void) {
 #ifdef TRUE_COLOURS
     const char *bits = tigetstr("RGB");

@@ -30,10 +30,11 @@ HN_MUST_CHECK hn_status hn_tui_study_start(const hn_tui_study_request *request, 
 void hn_tui_study_free(hn_tui_study *s);
 /// Asks it to stop; what is done stays to be seen.
 void hn_tui_study_stop(hn_tui_study *s);
-/// Whether it was asked to stop.
+/// Returns whether it was asked to stop.
 bool hn_tui_study_stopping(const hn_tui_study *s);
 bool hn_tui_study_running(const hn_tui_study *s);
-/// Whether it has come to its end with nothing left out: it was not stopped, and no limit cut it.
+/// Returns whether it has come to its end with nothing left out: it was not stopped, and no limit
+/// cut it.
 bool hn_tui_study_is_whole(const hn_tui_study *s);
 double hn_tui_study_share(const hn_tui_study *s); ///< of the whole that is done, 0 to 1
 hn_tui_study_kind hn_tui_study_get_kind(const hn_tui_study *s);

@@ -123,8 +123,8 @@ static bool find_cheapest(const hn_workbench *w, const hn_tui_study *study, hn_t
 
 // ---- the whole motion, behind a short study ----
 
-/// Whether the whole motion is to be measured too: nobody typed a time, and the short study has its
-/// answer, which another length may turn round.
+/// Returns whether the whole motion is to be measured too: nobody typed a time, and the short study
+/// has its answer, which another length may turn round.
 static bool wants_longer(const hn_workbench *w) {
     return w->study && !w->longer && !w->longer_failed && w->study_time[HN_TUI_COST] == 0 &&
            hn_tui_study_is_whole(w->study) &&

@@ -14,7 +14,7 @@ void hn_study_panel_close(hn_workbench *w);
 /// whole motion behind it, and shows that in its place when it has ended too. To be called again
 /// and again.
 void hn_study_panel_follow(hn_workbench *w);
-/// Whether a study is computed, or is about to be.
+/// Returns whether a study is computed, or is about to be.
 bool hn_study_panel_is_busy(const hn_workbench *w);
 /// Starts the study that is open again over another time of motion, as it was typed. false: it was
 /// refused, and the fault is said.

@@ -24,7 +24,7 @@ struct hn_versions {
 
 hn_versions *hn_versions_create(void); ///< NULL: no memory
 void hn_versions_free(hn_versions *v); ///< NULL is legal
-/// Keeps what is open now as the newest version; those that were undone are forgotten. What equals
+/// Keeps what is open now as the newest version; those that were undone are forgotten. A copy of
 /// the present version is not kept again.
 void hn_versions_keep(hn_workbench *w);
 /// Writes what is otherwise in version `to` than in version `from`: "l1 = 2.5".

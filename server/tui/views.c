@@ -118,7 +118,7 @@ static void draw_header(hn_cells *c, const hn_workbench *w) {
     }
 }
 
-/// Whether what was said does not fit one line; a line that is typed keeps its place.
+/// Returns whether what was said does not fit one line; a line that is typed keeps its place.
 static bool needs_two_lines(const hn_cells *c, const hn_workbench *w) {
     return w->prompt == HN_PROMPT_NONE && hn_text_columns(w->message) > c->columns - 2;
 }
@@ -162,8 +162,8 @@ static void draw_lines(hn_cells *c, hn_area area, int last, int most, int colour
     hn_cells_fold_fitted(c, lines, colour, text);
 }
 
-/// Whether an incident is worth the line: it has just happened, or its method is the selected one,
-/// which is still not well (`ill`).
+/// Returns whether an incident is worth the line: it has just happened, or its method is the
+/// selected one, which is still not well (`ill`).
 static bool is_news(const hn_workbench *w, const hn_incident *incident, int method, bool ill) {
     const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     const bool late = t - incident->t > NEWS * hn_recording_duration(w->recording);

@@ -21,7 +21,7 @@ enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24, HN_TUI_LEAST_COLUMNS = 20, HN_TUI_
 void hn_views_update(hn_workbench *w);
 /// The least size of a screen for what is open.
 void hn_views_least_size(const hn_workbench *w, int *columns, int *rows);
-/// Whether a screen of this size is smaller: it then says the least size alone.
+/// Returns whether a screen of this size is smaller: it then says the least size alone.
 bool hn_views_too_small(const hn_workbench *w, int columns, int rows);
 /// Draws the whole screen.
 void hn_views_draw(hn_cells *c, const hn_workbench *w);

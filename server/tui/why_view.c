@@ -50,7 +50,7 @@ bool hn_why_has_remedy(const hn_workbench *w) {
     return false;
 }
 
-/// Whether incident i is one more of the cause of the one before it.
+/// Returns whether incident i is one more of the cause of the one before it.
 static bool is_again(const hn_incident *list, const int *whose, int i) {
     return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
 }
@@ -101,7 +101,7 @@ static void put(page *p, int indent, int colour, const char *text) {
     p->line += hn_text_rows(text, in.columns);
 }
 
-/// Whether remedy k of an entry stands below an entry before, and gave the same there.
+/// Returns whether remedy k of an entry stands below an entry before, and gave the same there.
 static bool is_said(const hn_incident *list, const int *entry, int e, int k) {
     const hn_incident *own = &list[entry[e]];
     for (int j = 0; j < e; j++) {
@@ -116,7 +116,7 @@ static bool is_said(const hn_incident *list, const int *entry, int e, int k) {
     return false;
 }
 
-/// Whether entry e is the first of its kind, and not all of that kind are listed.
+/// Returns whether entry e is the first of its kind, and not all of that kind are listed.
 static bool tells_count(const hn_incident *list, const int *entry, int e) {
     bool is_first = true;
     for (int k = 0; k < e; k++) {

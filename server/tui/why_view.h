@@ -8,9 +8,9 @@
 
 enum { HN_WHY_WORDS = 480 };
 
-/// Whether an incident of the selected method has a remedy.
+/// Returns whether an incident of the selected method has a remedy.
 bool hn_why_has_remedy(const hn_workbench *w);
-/// Whether the card of the selected method is longer than this area.
+/// Returns whether the card of the selected method is longer than this area.
 bool hn_why_has_more(hn_area area, const hn_workbench *w);
 /// Goes to the next page of the card in this area (by > 0), or to the one before.
 void hn_why_scroll(hn_workbench *w, hn_area area, int by);

@@ -254,7 +254,7 @@ static void compute_reference(hn_workbench *w) {
     }
 }
 
-/// Whether the trial is that of the selected method.
+/// Returns whether the trial is that of the selected method.
 static bool is_tried(const hn_workbench *w) {
     return w->step_trial &&
            strcmp(hn_step_trial_spelling(w->step_trial), w->methods[w->selected]) == 0;
@@ -268,8 +268,8 @@ bool hn_workbench_step_report(const hn_workbench *w, hn_step_report *out) {
     return out->finding != HN_STEP_UNKNOWN;
 }
 
-/// Whether nothing but the drift of an open loop explains the method's errors: the rule of the card
-/// says so, and incidents offer what closes the loop.
+/// Returns whether nothing but the drift of an open loop explains the method's errors: the rule of
+/// the card says so, and incidents offer what closes the loop.
 static bool only_drifts(const hn_workbench *w, const char *spelling) {
     static const unsigned cares =
         HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_PULLS_GAP;

@@ -43,7 +43,7 @@ def many_members(known, n_unknown=70000, n_known=20000):
 
 
 def is_closed(s):
-    """Whether the server has closed a socket that does not block; what it sent before is dropped."""
+    """Returns whether the server has closed a socket that does not block; what it sent before is dropped."""
     try:
         while s.recv(65536):
             pass

@@ -20,7 +20,7 @@ TRIES = 3  # a time that is measured on a busy machine is the best of so many
 
 
 def until(holds, seconds=20, every=0.05):
-    """Waits until it holds, at most so long; whether it does. What it waits for must never come by itself."""
+    """Waits until it holds, at most so long; whether it does. The condition must never come true by itself."""
     end = time.monotonic() + seconds * SLOW
     while not holds():
         if time.monotonic() > end:
@@ -144,7 +144,7 @@ class Server:
         return answer.json()
 
     def stop(self, how=signal.SIGTERM):
-        """Ends it; its exit status. What a sanitiser said is in `errors`."""
+        """Ends it; its exit status. The words of a sanitiser are in `errors`."""
         self.process.send_signal(how)
         status = self.process.wait(timeout=30 * SLOW)
         self.reader.join(timeout=5)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each loop of the ladder costs as loops are added, N = 10 to 1,000: reading and compiling the
+// Cost of each loop of the ladder as loops are added, N = 10 to 1,000: reading and compiling the
 // scene, assembling it, beginning a run, a step of it, and memory. Every size is a process of its
 // own, interpreted. Prints CSV; `per_loop_to_first` is the figure for each loop against that of the
 // first size.

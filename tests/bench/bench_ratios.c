@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run costs beside hand-written C, all in one process: evaluation and Runge-Kutta step of
+// Cost of a run beside hand-written C, all in one process: evaluation and Runge-Kutta step of
 // the reference four-bar FB0, interpreted and native, without and with the watch that every run
 // has, whole runs of the course's four-bar, and the ladder of 40, 200 and 1,000 loops beside a
 // sweep along its loops by hand. Prints CSV: medians of batches that take turns, their quartiles,

@@ -18,7 +18,7 @@ ANSWERS = {"seed": 3, "a": "0.2 mm", "b": "278 ms", "c": 0.01, "d": {"choice": "
 
 
 def cpu_milliseconds(words, home):
-    """Of one process and its children, once it has ended as it should."""
+    """Measures one process and its children, once it has ended as it should."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(words, capture_output=True, env={**os.environ, "HOME": home, "XDG_CACHE_HOME": os.path.join(home, "cache")})
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What axe finds on a page.
+// Runs axe on a page and returns its findings.
 import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 

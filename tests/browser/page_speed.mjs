@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast the page is, measured by the browser's own trace in software rendering: frames a second
+// Speed of the page, measured by the browser's own trace in software rendering: frames a second
 // while methods run, first paint, bytes before the first interaction. Prints a table; ends with
 // status 1 where a figure is beyond its bound. The machine should do nothing else.
 import { readFileSync, readdirSync } from "node:fs";

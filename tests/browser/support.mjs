@@ -128,8 +128,8 @@ function watch(page, host) {
 }
 
 /**
- * What something promises, or an error where it does not come: a page that computes without end
- * answers nothing, and would stop all tests of its file.
+ * Returns the value of a promise, or an error where it does not come: a page that computes without
+ * end answers nothing, and would stop all tests of its file.
  * @template T @param {Promise<T>} promise @param {string} what @returns {Promise<T>}
  */
 async function within(promise, what) {
@@ -145,10 +145,10 @@ async function within(promise, what) {
 }
 
 /**
- * What a file of tests drives: a server and a browser, from before its first test until after its
- * last. Where a test is the end of one of them, that test fails and the next one gets another. A
- * page, and a line, live as long as the test that opened them; pages with the same options share
- * what the browser keeps of the files it loaded, unless they ask to be `fresh`.
+ * The things that a file of tests drives: a server and a browser, from before its first test until
+ * after its last. Where a test is the end of one of them, that test fails and the next one gets
+ * another. A page, and a line, live as long as the test that opened them; pages with the same
+ * options share what the browser keeps of the files it loaded, unless they ask to be `fresh`.
  */
 export function createBench() {
   let server;
@@ -438,7 +438,7 @@ export async function screenshot(page, name, { seen = false } = {}) {
   await page.screenshot({ path: join(folder, `${name}.png`), fullPage: !seen });
 }
 
-/** What asks for the events of a comparison. */
+/** A request for the events of a comparison. */
 const ASKS_EVENTS = /^GET \S+\/events[? ]/m;
 
 /**

@@ -22,7 +22,7 @@ const tables = async (page) => {
 };
 const press = (name) => (page) => page.getByRole("button", { name }).click();
 
-/** What is opened before axe looks, by a name, and how it is closed again. */
+/** The views that are opened before axe looks, by name, and how each is closed again. */
 const VIEWS = {
   "the first screen": [async () => {}, async () => {}],
   "the drawer": [

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is damaged on its way to the page: links with bad entries, scenes with every kind of error,
+// Damage on the way to the page: links with bad entries, scenes with every kind of error,
 // two tabs and another client on one comparison. Nothing may be lost, stale, or on the console.
 // DAMAGED_LINKS is how many links are opened; EVERY_SCENE=1 takes all bad scenes, not every sixth.
 import assert from "node:assert/strict";

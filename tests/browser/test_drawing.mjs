@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page draws, without a browser: camera, outlines, order in depth, names, arrows.
+// The drawing of the page, without a browser: camera, outlines, order in depth, names, arrows.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { coincide } from "../../web/state/between.js";

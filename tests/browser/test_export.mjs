@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is saved beside data and pictures: a file that plays by itself, a film, programs.
+// Exports beside data and pictures: a file that plays by itself, a film, programs.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page is like to look at and to use without a mouse: layout, names, contrast, keys,
+// The page, looked at and used without a mouse: layout, names, contrast, keys,
 // tables, no script.
 import assert from "node:assert/strict";
 import { test } from "node:test";

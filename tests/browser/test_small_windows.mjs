@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What small windows and long content must not do: hide buttons below an edge, cut off names, lay
+// Small windows and long content must not do this: hide buttons below an edge, cut off names, lay
 // words over a scale or a panel over the mechanism.
 import assert from "node:assert/strict";
 import { test } from "node:test";

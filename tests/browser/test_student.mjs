@@ -26,7 +26,7 @@ const worst = (data) =>
 const hasEnded = (kind) =>
   `({ studies }) => ["finished", "stopped"].includes(studies["${kind}"].state)`;
 
-/** Of the first method, the gap at a time [m]. */
+/** Returns the gap of the first method at a time [m]. */
 const gapAt = (page, t) =>
   read(page, `(data) => data.history.columns[0].gap[data.history.indexAt(${t})]`);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page reads from the documents of studies, and what it asks for.
+// The page reads the documents of studies, and asks for them.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { read } from "./support.mjs";

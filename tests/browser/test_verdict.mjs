@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is said of a run, without a browser: its history, the verdict, incidents, cards.
+// The words about a run, without a browser: its history, the verdict, incidents, cards.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";

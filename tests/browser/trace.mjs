@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the browser's own trace tells of a page.
+// Reads the browser's own trace of a page.
 
 /**
  * Computing time of the main thread of the page in a trace [ms]: other programs on the machine do

@@ -65,7 +65,7 @@ def interrupt(words, folder, kind, how=signal.SIGINT):
 
 def kill_often(words, folder, kind, seed, times=10):
     """Starts the command so many times and kills it: in turn at a random moment of its start, and a random moment after its journal has grown
-    by a piece, so that the work goes on from kill to kill whatever the machine's speed. How often the command had not come to its end."""
+    by a piece, so that the work goes on from kill to kill whatever the machine's speed. Returns how often the command had not come to its end."""
     argv, env = command(words, folder)
     chance = random.Random(seed)
     killed = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""holonom export --format mjcf and urdf: the mechanism itself. What import reads back moves as the scene does.
+"""holonom export --format mjcf and urdf: the mechanism itself. The file that import reads back moves as the scene does.
 
 Every shipped scene is exported. LEFT_OUT lists what MJCF does not hold, scene by scene; the others are read back and run
 beside the original, and coordinates of the same name, spins of balls and the energy agree along the way.

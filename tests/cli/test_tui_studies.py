@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the terminal workbench says of studies, and the causes that its cards name.
+# The words of the terminal workbench about studies, and the causes that its cards name.
 import os
 import re
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the terminal workbench says: of whom a key changes the step, which remedy runs already, what was written, scores that are kept.
+# The words of the terminal workbench: whose step a key changes, which remedy runs already, what was written, scores that are kept.
 import json
 import os
 import re

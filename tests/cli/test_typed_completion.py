@@ -82,7 +82,7 @@ class Completion(Tmux):
         self.fail(f"the line was not dropped\n{self.screen()}")
 
     def stands(self, line):
-        """Whether the line of the cursor is this one, the cursor behind it."""
+        """Returns whether the line of the cursor is this one, the cursor behind it."""
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
             screen = self.screen().split("\n")

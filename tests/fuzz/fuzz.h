@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FUZZ_H
 #define HN_FUZZ_H
-// What the harnesses share. A harness calls what a person, a file or a request reaches, and ends
-// the process where the program breaks a promise; sanitisers watch the rest.
+// The parts that the harnesses share. A harness calls what a person, a file or a request reaches,
+// and ends the process where the program breaks a promise; sanitisers watch the rest.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-/// What libFuzzer calls.
+/// The entry that libFuzzer calls.
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /// Says what is wrong and ends the process.

@@ -114,7 +114,7 @@ static void prepare(void) {
          comparison_id);
 }
 
-/// Whether the work is a page of something that is there: no body, no computing, no change.
+/// Returns whether the work is a page of something that is there: no body, no computing, no change.
 static bool is_wanted(const hn_request *r) {
     const hn_route *route = r->route;
     return route && strcmp(route->method, "GET") == 0 &&

@@ -132,8 +132,8 @@ static void apply(hn_session *session, const char *text, size_t n) {
     check_reply(r);
 }
 
-/// Whether one of the changes passes the checks of its body. The others reach nothing of the
-/// comparison, which costs most of the time of an input.
+/// Returns whether one of the changes passes the checks of its body. The others reach nothing of
+/// the comparison, which costs most of the time of an input.
 static bool has_sound_change(const char *text, const char *end) {
     bool found = false;
     for (const char *at = text; at < end && !found; at += strlen(at) + 1) {

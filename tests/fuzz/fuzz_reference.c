@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A kept reference: the object in its file. What is taken is whole and finite, and
+// A kept reference: the object in its file. Every object that is taken is whole and finite, and
 // is written again.
 #include "fuzz/fuzz.h"
 

@@ -85,7 +85,7 @@ static void drag(const hn_model *model, unsigned choice) {
     hn_strbuf_reset(&b);
 }
 
-/// What is done with a model that was loaded; the last two need one that is closed.
+/// The uses of a model that was loaded; the last two need one that is closed.
 static void (*const USES[])(const hn_model *model, unsigned choice) = {describe, inspect,
                                                                        write_terms, drag, compare};
 enum { N_USES = sizeof USES / sizeof *USES, N_OPEN_USES = 3 };

@@ -141,7 +141,7 @@ def goal(exact, k):
 
 
 def slope(points):
-    """Of the least-squares line through the logarithms of [(h, error)]."""
+    """Returns the slope of the least-squares line through the logarithms of [(h, error)]."""
     x = [math.log(h) for h, _ in points]
     y = [math.log(e) for _, e in points]
     mx, my = sum(x) / len(x), sum(y) / len(y)

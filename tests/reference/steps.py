@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: steps.py PROGRAM
-# What adaptive integrators take for the same accuracy: accepted steps, rejected ones and evaluations of the equations of
+# The work of adaptive integrators for the same accuracy: accepted steps, rejected ones and evaluations of the equations of
 # motion, ours beside the libraries' (GSL, SUNDIALS IDA), on three problems whose end state is trusted.
 #
 # Error: largest error of a position at the end, each divided by the largest value that it takes in the list of trusted

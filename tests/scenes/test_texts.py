@@ -65,7 +65,7 @@ def pick(value, path):
 
 
 def holds(doc, check):
-    """Whether the check holds, and the value that was found."""
+    """Returns whether the check holds, and the value that was found."""
     found = pick(doc, check["at"])
     if "minus" in check:
         found -= pick(doc, check["minus"])

@@ -152,9 +152,9 @@ static double condition(const bench *b, int n, const double *A) {
     return hn_condition_of(n, sigma);
 }
 
-/// Of implicit Euler's equations q1 - q0 - h v1, M (v1 - v0) - h (f + J' lambda), and phi or J v.
-/// In (q, v, lambda) as they stand (s = 1), or with the unknowns (q, h v, h^2 lambda) and the
-/// second row times h (s = h).
+/// Residuals of implicit Euler's equations q1 - q0 - h v1, M (v1 - v0) - h (f + J' lambda), and phi
+/// or J v. In (q, v, lambda) as they stand (s = 1), or with the unknowns (q, h v, h^2 lambda) and
+/// the second row times h (s = h).
 static double condition_of(const bench *b, double h, double s, int index) {
     const int nv = b->nv, nc = b->nc, n = 2 * nv + nc;
     double A[MAX_N * MAX_N] = {0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_FIGURES_SETS_H
 #define HN_SUPPORT_FIGURES_SETS_H
-// What measures each topic, for the list in figures_topics.c, and scenes that several of them
+// The measurements of each topic, for the list in figures_topics.c, and scenes that several of them
 // share.
 
 #include "support/figures.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which methods survive the flat poses of the ladder of N four-bars, as counts out of so many step
+// Survival of methods at the flat poses of the ladder of N four-bars: counts out of so many step
 // sizes. Prints the table that is kept in results.txt; arguments choose: survival [METHOD-PREFIX [N
 // [STEPS]]]. See README.md.
 #include "support/ladder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How honest the accuracy watch is: its estimate against the error, by the reference solution, of
+// Honesty of the accuracy watch: its estimate against the error, by the reference solution, of
 // every scene of the library by the methods that it suggests and some coarser ones.
 
 #include "study/truth/accuracy.h"

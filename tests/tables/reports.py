@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which reports are right: every shipped scene, and random mechanisms of ten of them.
+"""Counts the reports that are right: every shipped scene, and random mechanisms of ten of them.
 
 usage: reports.py PROGRAM [N]    N random mechanisms (200); prints the table that tests/tables/reports.txt keeps
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The five skeletons of the usual lesson (section 7 to 11) beside the programs of `holonom export`: each slip, what it does to the
 answer, and what is written instead. The four-bar and Bennett's linkage as exported supply the matrices; the slips are made on them.
-Fails where a slip no longer does what its row says. What needs Java or Mathematica is done on the same matrices with numpy.
+Fails where a slip no longer does what its row says. Slips of Java and Mathematica are done on the same matrices with numpy.
 
 usage: skeletons.py PROGRAM
 """

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tolerance is worth: the error of the motion over rtol, by every integrator that chooses
+// The worth of a tolerance: the error of the motion over rtol, by every integrator that chooses
 // its own steps, of every scene that has a reference solution.
 
 #include "session/model/model.h"

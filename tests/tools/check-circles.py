@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which source uses a symbol of which: finds circles inside layers, and arrows that lead upwards.
+"""Finds which source uses a symbol of which, and with it circles inside layers, and arrows that lead upwards.
 
 usage: check-circles.py --layers 'a: b:a ...' --rooms 'b.low: b.high:low ...' --natural FILE --out FOLDER OBJECT...
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which unit tests call which source directly, read from the objects.
+"""Lists which unit tests call which source directly, read from the objects.
 
 usage: test-map.py --out FOLDER [--source PART] OBJECT...
 

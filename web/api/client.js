@@ -8,7 +8,7 @@ export const BASE = new URL("v1", import.meta.url).pathname;
 /** An address that the server names, below the same prefix. @param {string} path /api/v1/... */
 export const addressOf = (path) => path.replace(/^\/api\/v1(?=\/)/, BASE);
 
-/** What the server refused, with the fields at fault. */
+/** A refusal of the server, with the fields at fault. */
 export class Problem extends Error {
   /**
    * @param {number} status HTTP status, 0 when the server did not answer
@@ -115,7 +115,7 @@ export const api = {
   comparison: (id) => request("GET", `${BASE}/comparisons/${id}`),
   /** @param {string} id @param {object} change */
   changeComparison: (id, change) => request("PATCH", `${BASE}/comparisons/${id}`, change),
-  /** What a hand has pulled so far. @param {string} id */
+  /** Returns the pulls of a hand so far. @param {string} id */
   pulls: (id) => request("GET", `${BASE}/comparisons/${id}/pulls`),
   /** @param {string} id */
   deleteComparison: (id) => request("DELETE", `${BASE}/comparisons/${id}`),
@@ -128,7 +128,7 @@ export const api = {
   study: (id) => request("GET", `${BASE}/studies/${id}`),
   /** @param {string} id */
   stopStudy: (id) => request("PATCH", `${BASE}/studies/${id}`, { state: "stopped" }),
-  /** What is left of it is computed, with a time limit of its own. @param {string} id */
+  /** Computes the rest of it, with a time limit of its own. @param {string} id */
   resumeStudy: (id) => request("PATCH", `${BASE}/studies/${id}`, { state: "running" }),
   /** Nobody waits for it any more. @param {string} id */
   abandonStudy: (id) =>

@@ -15,7 +15,7 @@ import { shownIndex, sourceOf } from "../state/store.js";
  *   from: the drawn points where it began, null: it is set by number
  */
 
-/** Of the scene's length: who moves every drawn point by less has moved nothing that can be seen. */
+/** Share of the scene's length: if every drawn point moves by less, the change cannot be seen. */
 const UNSEEN = 1e-3;
 
 /**

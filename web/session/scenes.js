@@ -248,7 +248,7 @@ export function createSceneActions(store, exchange, notice) {
       store.emit("view");
     },
     /**
-     * Opens a link. What it says wrongly is named in the status line and stays as the scene has it.
+     * Opens a link. Its bad entries are named in the status line and stay as the scene has them.
      * @param {string} fragment
      */
     async openLink(fragment) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What the page can do. Every action asks the server and puts its answer into the store; a change
-// that the server refuses changes nothing here either, and rejects with a Problem for the field
-// that asked.
+// The actions of the page. Every action asks the server and puts its answer into the store; a
+// change that the server refuses changes nothing here either, and rejects with a Problem for the
+// field that asked.
 import { createReactionFeed } from "../state/reaction-feed.js";
 import { createReferenceFeed } from "../state/reference.js";
 import { sourceOf } from "../state/store.js";
@@ -42,7 +42,7 @@ export function createSession(store) {
   /** each shows what runs in place of what was refused, and returns whether something was
    * @type {Set<() => boolean>} */
   const entries = new Set();
-  /** What was refused changed nothing: it goes first, alone. */
+  /** Undoes the changes that the server refused: they go first, alone. */
   function undoRefused() {
     const some = [...entries].filter((takeBack) => takeBack()).length > 0;
     if (some) {

@@ -9,7 +9,7 @@ import { lessonOf } from "../state/shown.js";
 import { listen, sourceOf } from "../state/store.js";
 
 /**
- * What lies over the page. `lesson`: the one that is read, or "".
+ * The panels that lie over the page. `lesson`: the one that is read, or "".
  * @typedef {{study: string, panel: string, gallery: boolean, lesson: string}} Over
  * @typedef {{scene: number, over: Over}} Place scene: a number of its own for each that was opened
  */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What an exercise asks for, and what is handed in.
+// The questions of an exercise, and the answers that are handed in.
 
 /**
  * @typedef {{letter: string, text: string}} Option

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What of the mechanism an entry of the equations belongs to: bodies, cut joints, curves.
+// Finds the bodies, cut joints and curves that an entry of the equations belongs to.
 
 /** Curves that show a term, by its name. */
 const CURVES = { phi: ["gap"], gamma: ["velocity_gap"], J: ["sigma_min"], lambda: ["lambda_max"] };

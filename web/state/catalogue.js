@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What the server's index tells of itself: limits, incidents and kinds of studies. This is the only
+// The contents of the server's index: limits, incidents and kinds of studies. This is the only
 // module that knows them; everything else asks here.
 
 /**
- * `chooses`: options that the study varies itself; `stabilised`: for methods that have those options;
- * `units`: the scene needs a parameter in one of them, where there are any.
+ * `chooses`: options that the study varies itself; `stabilised`: for methods that have those
+ * options; `units`: the scene needs a parameter in one of them, where there are any.
  * @typedef {{
  *   name: string, about: string, chooses: string[], stabilised: boolean, units: string[],
  * }} Preset

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What may stand at the caret of a scene document: names and values of the schema, and names that
+// Completions at the caret of a scene document: names and values of the schema, and names that
 // the document itself gives.
 
 /**

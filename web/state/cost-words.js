@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What a run costs, in words.
+// The cost of a run, in words.
 import { plain, quantity } from "./format.js";
 import { COSTS, byName } from "./study-documents.js";
 
@@ -10,7 +10,10 @@ const COUNTS = /** @type {const} */ ([
   [1e3, " thousand"],
 ]);
 
-/** "8.2 million operations", "1.2 ms", "32 evaluations" @param {string} kind @param {number} value */
+/**
+ * "8.2 million operations", "1.2 ms", "32 evaluations"
+ * @param {string} kind @param {number} value
+ */
 export function costText(kind, value) {
   if (kind === "evaluations") {
     return `${Math.round(value)} evaluations`;

@@ -7,7 +7,7 @@ import { cardOf } from "./spelling.js";
 import { listed, verdictAt } from "./verdict.js";
 import { sentenceCase } from "./words.js";
 
-/** Of its own greatest velocity so far: a coordinate that is slower does not move on. */
+/** Share of its own greatest velocity so far: a coordinate that is slower does not move on. */
 const MOVES_ON = 0.05;
 /** A coordinate that never was faster [rad/s or m/s] does not move at all. */
 const MOVES = 1e-6;
@@ -41,14 +41,17 @@ function turning(before, v, greatest) {
 }
 
 /**
- * How far each recording was walked through, and what was found: frames that come later are looked
- * at once, until the recording keeps every second frame only.
+ * The place up to which each recording was searched, and what was found: frames that come later are
+ * looked at once, until the recording keeps every second frame only.
  * @type {WeakMap<object, {stride: number, of: {next: number, greatest: number[],
  *   found: DeadPoint[]}[]}>}
  */
 const walked = new WeakMap();
 
-/** @param {import("./history.js").History} history @param {number} m @param {number} n coordinates */
+/**
+ * @param {import("./history.js").History} history
+ * @param {number} m @param {number} n coordinates
+ */
 function walkOf(history, m, n) {
   const { stride } = history;
   const known = walked.get(history);
@@ -180,8 +183,8 @@ export function deadPointLines(data, shown) {
 }
 
 /**
- * Why the record lists no dead point until the frame shown; "" where a mechanism has no loop, and so
- * none.
+ * Why the record lists no dead point until the frame shown; "" where a mechanism has no loop, and
+ * so none.
  * @param {import("./store.js").Data} data @param {number} shown
  */
 export function noDeadPointWords(data, shown) {

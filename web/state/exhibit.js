@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What the page can do with an exhibit of a lesson: run its comparison, open its scene, its study.
+// The actions of an exhibit of a lesson: run its comparison, open its scene, its study.
 // Where an exhibit gives a command alone, the command says which.
 
 /**
- * `act`: what its button does, "" where there is none; `study`: the kind that is opened; `time` [s],
- * 0: as the scene suggests.
+ * `act`: what its button does, "" where there is none; `study`: the kind that is opened; `time`
+ * [s], 0: as the scene suggests.
  * @typedef {{
  *   scene: string, methods: string[], settings: Record<string, number>, time: number,
  *   act: "" | "run" | "scene" | "study", study: string,

@@ -3,7 +3,7 @@
 // Folds products of sines and cosines in printed formulas: sin a sin b + cos a cos b is cos(a - b).
 
 /**
- * How a formula is written: what joins factors, and sine and cosine of a name.
+ * The notation of a formula: what joins factors, and sine and cosine of a name.
  * @typedef {{times: string, sine: (name: string) => string, cosine: (name: string) => string,
  *   read: RegExp, of: (fn: string, a: string, sign: string, b: string) => string}} Writing
  */

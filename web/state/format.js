@@ -74,7 +74,7 @@ export function scientific(value, digits = 2) {
   return `${mantissa.replace("-", "−")}×${powerOfTen(Number(exponent))}`;
 }
 
-/** What is read at a glance without a power of ten. */
+/** The range that is read at a glance without a power of ten. */
 const BARE = [1e-3, 1e5];
 
 /** A number without a unit. @param {number} value @param {number} rounded @param {number} digits */
@@ -173,8 +173,8 @@ const TYPED = {
 };
 
 /**
- * Reads "0.02", "0,02", "2e-2 s", "20 ms", "45 cm", "30 deg", "5 lb in". The unit may be left out; a unit of
- * another quantity is refused.
+ * Reads "0.02", "0,02", "2e-2 s", "20 ms", "45 cm", "30 deg", "5 lb in". The unit may be left out;
+ * a unit of another quantity is refused.
  * @param {string} text
  * @param {string} unit
  * @returns {number} NaN when it is no number in this unit

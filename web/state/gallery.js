@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Which scenes of the gallery fit a search and its filters. A scene is known by what the list of
-// scenes says, and better once its own document is here.
+// Finds the scenes of the gallery that fit a search and its filters. A scene is known by what the
+// list of scenes says, and better once its own document is here.
 
 /**
  * @typedef {{id: string, title: string, about?: string, look_for?: string}} Entry

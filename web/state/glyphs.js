@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What the thin parts of joints in space stand for, in words.
+// The meaning of the thin parts of joints in space, in words.
 
 /** Joints that are drawn with their axis. */
 const WITH_AXIS = ["revolute", "prismatic", "cylindrical", "universal", "planar"];

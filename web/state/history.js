@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What was received, in columns, bounded. When the columns are full every second frame is dropped:
+// The received frames, in columns, bounded. When the columns are full every second frame is
+// dropped:
 // the whole span stays, at half the resolution. A failed method has its last good values at its
 // end, NaN in its curves from then on, and keeps its last good points.
 
@@ -179,7 +180,10 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     },
     /** The hand in the i-th kept frame; null: none. @param {number} i */
     pullAt: (i) => pulls[Math.floor(i)] ?? null,
-    /** Which frame of the clock the i-th kept one is, or a place between two. @param {number} i */
+    /**
+     * Returns the frame of the clock that the i-th kept one is, or a place between two.
+     * @param {number} i
+     */
     frameAt(i) {
       const low = Math.floor(i);
       return i === low ? frames[i] : frames[low] + (i - low) * (frames[low + 1] - frames[low]);

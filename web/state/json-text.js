@@ -10,7 +10,7 @@
  */
 
 /**
- * Reads text up to an end. What is found is kept even when the text is broken.
+ * Reads text up to an end. It keeps what it has found even when the text is broken.
  * @param {string} text
  * @param {number} end
  */

@@ -61,7 +61,7 @@ function axesOf(axis, ref) {
 }
 
 const NONE = [0, 0, 0];
-/** How far the child is moved and turned in the axes of the joint, by type. */
+/** Shift and turn of the child in the axes of the joint, by type. */
 const MOTIONS = {
   revolute: ([a]) => ({ shift: NONE, turn: turnBy([0, 0, a]) }),
   prismatic: ([d]) => ({ shift: [0, 0, d], turn: UNIT }),

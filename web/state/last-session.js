@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What the page showed last, kept in this browser alone: the fragment of its link.
+// The last state of the page, kept in this browser alone: the fragment of its link.
 
 const KEY = "holonom.last";
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Which parameter is the length of which bar: found by changing each a little and measuring.
+// Finds which parameter is the length of which bar, by changing each a little and measuring.
 
 const MOST = 8; // parameters that are tried
 const SMALL = 1e-3; // change, in shares of the value

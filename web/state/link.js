@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What a link to the page holds, in its fragment (which never reaches a server's log): scene,
+// The contents of a link to the page, in its fragment (which never reaches a server's log): scene,
 // parameters, methods, the frame of the clock, and what is shown. A bare fragment is the id of a
 // scene.
 import { presets, studyKinds } from "./catalogue.js";
@@ -89,7 +89,7 @@ function readPulls(text) {
   return pulls;
 }
 
-/** What is left out where it is as the page has it by itself, and how it is written. */
+/** Entries that are left out where the page has them by itself, and how each is written. */
 const OPTIONAL = /** @type {const} */ ([
   "look",
   "camera",

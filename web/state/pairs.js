@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Which formulation and integrator fit, from their cards, and why others do not.
+// Finds formulations and integrators that fit, from their cards, and why others do not.
 import { parseQuantity, plain, prettyUnit } from "./format.js";
 import { ownSteps } from "./program-card.js";
 import { cardOf } from "./spelling.js";
 
-/** What each form asks an integrator for, as the end of a sentence. */
+/** The problem that each form gives an integrator, as the end of a sentence. */
 const FORMS = {
   ode: "an ordinary differential equation",
   index1: "the equations of index 1, multipliers among the unknowns",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What was read, predicted and solved; kept in this browser alone.
+// The lessons, predictions and exercises done; kept in this browser alone.
 
 const KEY = "holonom-lessons";
 

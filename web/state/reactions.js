@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What joints carry: the forces and moments that the server works out from a state, and what of
+// Forces in joints: the forces and moments that the server works out from a state, and what of
 // them is drawn.
 import { niceBelow } from "./format.js";
 
@@ -29,7 +29,7 @@ const NEAR = 1e-6; // of the scene's length: a drawn point at a joint
  */
 
 /**
- * What a mark of the server says of multipliers, as a sentence; one that is not here says nothing
+ * The meaning of the server's mark of multipliers, as a sentence; one that is not here says nothing
  * against them.
  * @type {Record<string, string>}
  */

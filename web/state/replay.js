@@ -220,7 +220,7 @@ export function toReplay(data, { size, point, radius, fixed, verdictAt }) {
 <svg class="drawing" viewBox="0 0 ${size.width} ${size.height}" role="img" aria-label="${escaped(scene.title).replaceAll('"', "&quot;")}"><g class="fixed">${fixed.map((d) => `<path d="${d}"/>`).join("")}</g></svg>
 <div class="row"><button type="button" autofocus>Play</button><input type="range" min="0" value="0" aria-label="Time"><output></output></div>
 <ul>${rows.join("")}</ul>
-<p>Loop gap over time, m. Beside each method: its state at the time shown.</p>
+<p>Loop gap over time, m. The state at the time shown stands beside each method.</p>
 <svg class="gap" viewBox="0 0 640 180" role="img" aria-label="Loop gap over time, logarithmic"></svg>
 <p><small>Recorded by holonom ${escaped(data.build)}${every}. This file needs no server.</small></p>
 <script>const film = ${script};${PLAYER}</script></body></html>

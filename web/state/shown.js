@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What is shown of a comparison, as a link holds it: buttons that are pressed, plots, zoom, camera,
+// The view of a comparison, as a link holds it: buttons that are pressed, plots, zoom, camera,
 // the panels that are open.
 import { anglesOf, lookFrom } from "./look.js";
 
@@ -48,7 +48,7 @@ const FLAT = "flat";
 export const SHOWN = [...SWITCHES, ...SPACE, FLAT];
 /** Panels that a link may open. */
 export const PANELS = ["lessons", "editor"];
-/** What an error budget shows, the first by itself. */
+/** The views of an error budget, the first by itself. */
 export const BUDGETS = ["error", "energy"];
 
 /** A number of a camera: more digits than can be seen. @param {number} x */

@@ -281,7 +281,7 @@ export function createStudyFeed(store) {
         put(kind, { reason, ...(gone ? { id: "" } : {}) });
       }
     },
-    /** What was done is kept. @param {string} kind */
+    /** Stops a study; its results stay. @param {string} kind */
     stop: (kind) => {
       const now = running.get(kind);
       return now ? api.stopStudy(now.id).catch((error) => fail(kind, error)) : Promise.resolve();

@@ -8,7 +8,10 @@ import { steadinessOf } from "./wanted.js";
 /** @typedef {{length: number, coordinates: {kind: string}[]}} Measured of a scene */
 const shareOfLength = ({ length }) => `share of ${quantity(length, "m")}`;
 
-/** Coordinates are compared in rad, and lengths as shares of the scene's. @param {Measured} scene */
+/**
+ * Coordinates are compared in rad, and lengths as shares of the scene's.
+ * @param {Measured} scene
+ */
 function unitOfPosition(scene) {
   const angles = scene.coordinates.filter(({ kind }) => kind === "angle").length;
   if (angles === scene.coordinates.length) {
@@ -322,7 +325,7 @@ export function barsOf(parts, order) {
   });
 }
 
-/** How the outcome of a trial is shown: a letter as well as a colour. */
+/** The mark of each outcome of a trial: a letter as well as a colour. */
 export const CLASSES = {
   stable: { letter: "s", word: "stable, error below 1 %" },
   inaccurate: { letter: "i", word: "stable, inaccurate" },

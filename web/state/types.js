@@ -11,7 +11,7 @@
  */
 
 /**
- * What is drawn: `p`, `q` are indices of points, `n` a number of corners, `body` an index or -1.
+ * A drawn shape: `p`, `q` are indices of points, `n` a number of corners, `body` an index or -1.
  * @typedef {{kind: string, p: number, q: number, n: number, width: number, body: number}} Shape
  * @typedef {{p: number, q: number, name: string}} Tear the two halves of a cut joint
  * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: Tear[]}} Drawing

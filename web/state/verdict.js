@@ -21,8 +21,8 @@ const CLOSED = 1e-12; // of the scene's length: rounding
 const MOST_DIGITS = 15;
 
 /**
- * Whether the gap is large by one rise at the end of the motion: stabilised methods fall from it.
- * A gap that grows exponentially rises by the same factor in each quarter.
+ * Returns whether the gap is large by one rise at the end of the motion: stabilised methods fall
+ * from it. A gap that grows exponentially rises by the same factor in each quarter.
  * @param {import("./history.js").History} history
  * @param {number} m
  * @param {number} shown index of the frame shown

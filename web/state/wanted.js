@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Which method reaches a wanted accuracy for the least: between the measured points of a study, by
-// straight lines in decades, with the margin that the study names. The engine's
+// Finds the method that reaches a wanted accuracy for the least: between the measured points of a
+// study, by straight lines in decades, with the margin that the study names. The engine's
 // session/precision/wanted.c answers in the terminal by the same rule.
 import { parseQuantity, quantity, scientific } from "./format.js";
 
@@ -43,7 +43,7 @@ export function wantedError(text, error, length) {
 }
 
 /**
- * What a study says of reading its points: `margin`: the size is read off for this share of the
+ * The rule by which a study's points are read: `margin`: the size is read off for this share of the
  * error that is wanted; `floor`: errors below it are no more than bounds, and count as it.
  * @typedef {{margin: number, floor: number}} Rule
  * @typedef {import("./study-documents.js").Dot} Dot
@@ -144,7 +144,7 @@ export const steadinessOf = ({ median, low, high, halves }) => ({
   halves: Math.max(...halves) / Math.min(...halves),
 });
 
-/** Whether costs of this kind are ranked at all: times of hurried runs are not. */
+/** Returns whether costs of this kind are ranked at all: times of hurried runs are not. */
 export const isRanked = (study, error, cost) =>
   cost !== "time" ||
   (study.pareto.find((one) => one.error === error && one.cost === cost)?.ranked ?? true);

@@ -284,7 +284,7 @@ export function createMethodDialog(el, store, actions) {
   }
 
   /**
-   * What a program provides is known once the server has started it: a method that does not fit is
+   * The kind of a program is known once the server has started it: a method that does not fit is
    * spelled as the program takes it, and the status line says so.
    * @param {unknown} problem @param {string} wrong
    * @returns {string} "" where this is not what was wrong

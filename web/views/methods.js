@@ -12,7 +12,7 @@ import { h, icon, s, say, set } from "../widgets/dom.js";
 import { paintNoMore, paintSoon } from "../widgets/pace.js";
 import { term } from "../widgets/term.js";
 
-/** What sets the accuracy of a method, and how a row says it. */
+/** The options that set the accuracy of a method, and how a row shows them. */
 const SIZES = [
   { key: "h", word: "dt", unit: " s" },
   { key: "rtol", word: "tolerance", unit: "" },

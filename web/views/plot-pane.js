@@ -18,7 +18,7 @@ const cellWords = (value, unit) => quantity(value, unit, Math.abs(value) < ROUND
 const PHASE_ABOUT =
   "the velocity of one coordinate against the coordinate itself: a motion that repeats is a closed curve";
 const KEPT_DASH = [1, 4];
-/** Of the table [px]. */
+/** Widths of the table [px]. */
 const NAME_WIDTH = 92;
 const CELL_WIDTH = 74;
 const LEAST_TABLE = 320;

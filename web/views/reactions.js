@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What every joint carries in the selected method at the time shown: a table that is asked for
+// Forces in every joint by the selected method at the time shown: a table that is asked for
 // while it is open, and the choice to draw the forces as arrows.
 import { quantity, seconds } from "../state/format.js";
 import { markWords, sizeOf, zeroOf } from "../state/reactions.js";
@@ -149,7 +149,7 @@ export function createReactions(el, store, actions) {
   }
 
   /**
-   * What acts along coordinates and at no place: formulas, gears.
+   * Shows the efforts that act along coordinates and at no place: formulas, gears.
    * @param {import("../state/reactions.js").Effort[]} efforts
    */
   function showEfforts(efforts) {

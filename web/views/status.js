@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What the page has to say of itself: notices in a note over the transport, the state of the stream
+// Words of the page about itself: notices in a note over the transport, the state of the stream
 // beside it when it is not live, the rest in the last line of the page.
 import { listen } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
@@ -13,7 +13,7 @@ const STREAM = {
   ended: "stream: the run is complete",
 };
 const LOST =
-  "The server does not answer. What was received stays here; " +
+  "The server does not answer. The data received so far stays here; " +
   "the page goes on by itself when the server is back.";
 const LOST_AFTER = 700; // [ms] that a short drop is not worth a word
 const SHOWN_FOR = 9000; // [ms]

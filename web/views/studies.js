@@ -257,7 +257,7 @@ export function createStudies(el, store, actions) {
     show();
   }
 
-  /** What is to come, while a study that has nothing to show yet runs. */
+  /** Text that stands while a study runs that has nothing to show yet. */
   const COMING = {
     "work-precision":
       "Every method runs with a row of steps. The picture comes when all have run; Stop shows those that have.",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What accuracy costs: error against cost, both by decades; a point can be pointed at, and clicked
+// The cost of accuracy: error against cost, both by decades; a point can be pointed at, and clicked
 // to give its method this step.
 import { costText } from "../state/cost-words.js";
 import { plain, powerOfTen, quantity, scientific } from "../state/format.js";

@@ -20,7 +20,7 @@ const EXPONENT = 22; // [px] of one that holds the exponent
  * theme, are the easier to read: either has at least 4.5 to 1 there. */
 const LETTERS = { dark: 61, light: 75 };
 
-/** What a map over Baumgarte's constants shows. */
+/** The sentence about a map over Baumgarte's constants. */
 export const SWEET_SPOT =
   "Small α and β let the gap grow; near the boundary every step overshoots. The best place lies " +
   "between, and it is another one for the gap, the motion and the energy.";

@@ -161,7 +161,7 @@ export function createStudyMap(store, actions) {
     );
   }
 
-  /** What the map of steps has told, by which the server chose this one. */
+  /** Shows the findings of the map of steps, by which the server chose this one. */
   function showSteps() {
     const list = map()?.steps ?? [];
     steps.hidden = list.length === 0;

@@ -119,7 +119,10 @@ export function createTear(el, store, stage) {
     paintSoon(paintWords);
   }
 
-  /** What stands beside the glass: on the beat of the table, so that both have the same numbers. */
+  /**
+   * Writes the words beside the glass: on the beat of the table, so that both have the same
+   * numbers.
+   */
   function paintWords() {
     const { history } = data;
     const m = data.view.selected;

@@ -72,7 +72,7 @@ export function createVerdictBar(el, store) {
     document.documentElement.style.removeProperty("--verdict-room");
   }
 
-  /** What a change has changed: of the selected method in a line, of the others under it. */
+  /** Shows the effect of a change: of the selected method in a line, of the others under it. */
   function paintChanges() {
     const { methods, view } = data;
     const all = beforeAndAfter(data, shownIndex(data));

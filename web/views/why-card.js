@@ -150,7 +150,7 @@ export function createWhyCard(el, store, actions) {
     }
   }
 
-  /** What stands speaks of the frame that is shown; while it moves, nobody could read along. */
+  /** Fits the card to the frame that is shown; while it moves, nobody could read along. */
   function follow() {
     const isOpen = cardOf >= 0 && data.methods[cardOf] && shownIndex(data) >= 0;
     const isUsed = holder.querySelector("button:focus-visible, summary:focus-visible") !== null;

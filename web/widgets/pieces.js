@@ -204,7 +204,10 @@ export function createPen(scene, camera, size) {
   const depthAt = (points, i) =>
     [0, 1, 2].reduce((sum, k) => sum + camera.toward[k] * points[3 * i + k], 0);
 
-  /** Of the middle of a shape. @param {Shape} shape @param {ArrayLike<number>} points */
+  /**
+   * Returns the depth of the middle of a shape.
+   * @param {Shape} shape @param {ArrayLike<number>} points
+   */
   function middleDepth(shape, points) {
     const all = pointsOf(shape);
     return all.reduce((sum, i) => sum + depthAt(points, i), 0) / all.length;

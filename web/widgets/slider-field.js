@@ -43,7 +43,8 @@ function linearScale(min, max, step) {
 }
 
 /**
- * `read` gives NaN for a text that is no number; `meaning` stands under the label, `tip` defines it.
+ * `read` gives NaN for a text that is no number; `meaning` stands under the label, `tip` defines
+ * it.
  * @param {{
  *   id: string, label: string, unit: string, hint: string, meaning?: string,
  *   tip?: string, scale?: "log" | "linear",
@@ -187,7 +188,7 @@ export function createSliderField(options) {
 
   return {
     el,
-    /** What the server holds. @param {number} held */
+    /** Takes over the value that the server holds. @param {number} held */
     update(held) {
       if (!pending && held !== value) {
         value = held;

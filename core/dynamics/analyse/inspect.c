@@ -187,7 +187,8 @@ static void put_limits(hn_strbuf *b, const hn_system *sys) {
     hn_json_end_array(b);
 }
 
-/// Whether something beside motors drives the scene: a follower, a table, or a formula of time.
+/// Returns whether something beside motors drives the scene: a follower, a table, or a formula of
+/// time.
 static bool is_driven(const hn_system *sys) {
     bool driven = sys->info.has_time;
     for (int k = 0; k < sys->scene->n_loads; k++) {

@@ -116,8 +116,8 @@ static double smallest_inside(hn_lookout *l, const hn_lookout_aim *aim, double *
     return fmin(sigma[0], sigma[1]);
 }
 
-/// Whether the pilot's last step, at whose end sigma_min is `sigma`, meets what is looked for;
-/// *share: where in it.
+/// Returns whether the pilot's last step, at whose end sigma_min is `sigma`, meets what is looked
+/// for; *share: where in it.
 static bool is_met(hn_lookout *l, const hn_lookout_aim *aim, double sigma, double *share,
                    double *lowest) {
     const double steepest = fmax(l->slope, fabs(sigma - l->before));
@@ -193,8 +193,8 @@ static double walk_from(hn_lookout *l, double t, const double *q, const double *
 
 // ---- going on from the last one ----
 
-/// Whether the motion has come where the last pilot run said that it would be, between two of its
-/// marks.
+/// Returns whether the motion has come where the last pilot run said that it would be, between two
+/// of its marks.
 static bool is_followed(hn_lookout *l, double t, const double *q) {
     int k = 0;
     while (k + 1 < l->n && l->marks[k + 1].t < t) {

@@ -107,7 +107,8 @@ static void put_follower(hn_strbuf *b, const hn_system *sys, basis *s, int row) 
     hn_json_end_object(b);
 }
 
-/// Whether every row of a large mechanism stands well apart from the others, so that none follows.
+/// Returns whether every row of a large mechanism stands well apart from the others, so that none
+/// follows.
 static hn_status rows_stand_apart(const hn_system *sys, const hn_eval *eval, const double *d,
                                   hn_arena *arena, bool *yes) {
     const int *row, *col, n = hn_eval_pattern(eval, HN_TERM_J, &row, &col);

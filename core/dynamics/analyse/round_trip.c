@@ -126,7 +126,7 @@ static void find_there(hn_round_trip *r, int i, double t, const double *q, const
     }
 }
 
-/// Whether all coordinates are back at the start, angles by full turns.
+/// Returns whether all coordinates are back at the start, angles by full turns.
 static bool is_back(const hn_round_trip *r) {
     for (int i = 0; i < r->n; i++) {
         double apart = r->there[i] - r->start.q[i];

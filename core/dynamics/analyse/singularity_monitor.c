@@ -434,7 +434,7 @@ static void kernel_column(hn_singularity *r, int k, double *v) {
 /// A way from a pose [rad, or of the length], and the pivot there of rows that are lost at the pose
 /// itself: of the order of the way, and of its square where the rows always depend on each other.
 static const double BESIDE = 1e-4, PARTS = 1e-6;
-/// Of the longest row: a shorter one is rounding.
+/// Share of the longest row's length below which a row is rounding.
 static const double NOTHING = 1e-12;
 
 /// Moves r->beside from q a little along all velocities that J allows at q, none favoured or

@@ -70,9 +70,9 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
 /// sigma_min at a pose; the record of the checks stays as it is. HUGE_VAL before the first check,
 /// and where a check costs so much that not every state gets one. Allocates nothing.
 double hn_singularity_probe(hn_singularity *r, double t, const double *q);
-/// Whether rows that depend on others at a pose do so only there: beside it, along velocities that
-/// J allows, more of them are independent, by the first order of the way. Dense, for poses that are
-/// reported; after the first check. Allocates nothing.
+/// Returns whether rows that depend on others at a pose do so only there: beside it, along
+/// velocities that J allows, more of them are independent, by the first order of the way. Dense,
+/// for poses that are reported; after the first check. Allocates nothing.
 bool hn_singularity_is_local(hn_singularity *r, double t, const double *q);
 /// D of the last check (nv): velocities divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_singularity_scale(const hn_singularity *r);

@@ -22,7 +22,7 @@ struct hn_assemble_least {
     hn_newton_matrix *matrix;
 };
 
-/// Whether M is definite as it stands: then it is so on whatever J and P leave free.
+/// Returns whether M is definite as it stands: then it is so on whatever J and P leave free.
 static bool mass_is_definite(const hn_assembler *s, hn_arena *arena) {
     const int *row, *col, n = hn_eval_pattern(s->eval, HN_TERM_M, &row, &col);
     const double *M = hn_eval_list(s->eval, HN_TERM_M);

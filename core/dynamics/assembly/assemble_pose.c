@@ -152,7 +152,7 @@ static void world_direction(const hn_assembler *s, int body, const double v[3], 
     hn_num3_apply(at.R, v, out);
 }
 
-/// Whether directions of the two halves that should agree are opposed.
+/// Returns whether directions of the two halves that should agree are opposed.
 static bool is_opposed(const hn_assembler *s, const hn_joint *joint) {
     const hn_joint_ties ties = hn_joint_ties_of(joint->type);
     double a[3], b[3];

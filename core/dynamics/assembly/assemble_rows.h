@@ -24,7 +24,8 @@ HN_MUST_CHECK hn_status hn_assemble_rows_create(const hn_assembler *s, int n_kep
 /// Takes J where s->eval was last run, rows times row_unit (nc; NULL: brought to length 1), columns
 /// times the reach of their coordinate.
 void hn_assemble_rows_fill(hn_assemble_rows *r, const double *row_unit);
-/// Whether every row stands well apart from the others, after filling with rows of length 1.
+/// Returns whether every row stands well apart from the others, after filling with rows of length
+/// 1.
 bool hn_assemble_rows_stand_apart(hn_assemble_rows *r);
 /// y (n_kept) = J' x, and y (nc) = J x.
 void hn_assemble_rows_gradient(const hn_assemble_rows *r, const double *x, double *y);

@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-/// Whether the constraint acts between two points (gears and formulas act on coordinates).
+/// Returns whether the constraint acts between two points (gears and formulas act on coordinates).
 bool hn_constraint_has_points(const hn_constraint *k);
 /// Names the loops of constraints, which follow those of the cut joints.
 void hn_constraints_name_loops(hn_system *sys);

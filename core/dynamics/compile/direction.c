@@ -3,7 +3,7 @@
 
 #include "expr/construct.h"
 
-// Of a ball, the quaternion (w, u) turns with (w, u)' = 1/2 (-u . e, w e + u x e), e the axis of
+// The quaternion (w, u) of a ball turns with (w, u)' = 1/2 (-u . e, w e + u x e), e the axis of
 // the velocity.
 int hn_direction_of_speed(const hn_system *sys, int j, int symbols[HN_DIRECTION_MOST],
                           hn_ex seed[HN_DIRECTION_MOST]) {

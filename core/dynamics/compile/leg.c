@@ -73,7 +73,7 @@ static int count_shared(const hn_closure *c, int end) {
     return n;
 }
 
-/// Whether an angle on the way to an end counts from the base of the ancestor's own group.
+/// Returns whether an angle on the way to an end counts from the base of the ancestor's own group.
 static bool has_common_angle(const hn_closure *c, int end) {
     const hn_tree *tree = c->m->tree;
     int first = -1;

@@ -67,7 +67,7 @@ typedef struct hn_mech {
     int *passed;    ///< per link: closures whose loop it is part of
 } hn_mech;
 
-/// Whether the link's work frame is F.
+/// Returns whether the link's work frame is F.
 bool hn_mech_is_planar(const hn_mech *m, int link);
 hn_vec3 hn_mech_E_to_work(const hn_mech *m, int link, hn_vec3 v);
 hn_vec3 hn_mech_work_to_E(const hn_mech *m, int link, hn_vec3 v);

@@ -71,7 +71,7 @@ double hn_system_length(const hn_system *sys);
 
 /// The joint by which a body hangs in the spanning tree; -1 in a scene of formulas.
 int hn_system_tree_joint(const hn_system *sys, int body);
-/// Whether the joint was cut to close a loop.
+/// Returns whether the joint was cut to close a loop.
 bool hn_system_joint_is_cut(const hn_system *sys, int joint);
 
 /// The entry of q whose rate entry i of v is; -1 for the angular velocity of a ball.

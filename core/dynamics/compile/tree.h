@@ -103,7 +103,7 @@ typedef struct hn_tree {
 int hn_tree_common(const hn_tree *tree, int a, int b);
 /// Link of a scene body (HN_GROUND: the ground).
 int hn_tree_link(const hn_tree *tree, int body);
-/// Whether the link never rotates against the ground.
+/// Returns whether the link never rotates against the ground.
 bool hn_tree_is_still(const hn_tree *tree, int link);
 /// The number of bodies between a body and the ground along the tree, itself included.
 int hn_tree_depth(const hn_tree *tree, int body);

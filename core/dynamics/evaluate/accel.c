@@ -214,9 +214,9 @@ static void find_rest(hn_accel *s, const double *a, const double *lambda) {
     }
 }
 
-/// Whether the multipliers lie in a direction in which J is weaker than what open loops change, as
-/// rows are that depend on each other while the loops are closed: |J' lambda| against |lambda|
-/// times the longest row, in units of sqrt(M_jj).
+/// Returns whether the multipliers lie in a direction in which J is weaker than what open loops
+/// change, as rows are that depend on each other while the loops are closed: |J' lambda| against
+/// |lambda| times the longest row, in units of sqrt(M_jj).
 static bool rests_on_noise(hn_accel *s, const double *lambda, double rank_tol) {
     const double *J = hn_eval_list(s->terms, HN_TERM_J);
     double *force = s->rest, *length = s->step, forces = 0, longest = 0, size = 0;

@@ -47,7 +47,7 @@ static int count_col(const plan *p, int j) {
     return n;
 }
 
-/// Whether entry (i, j) is large enough for a pivot.
+/// Returns whether entry (i, j) is large enough for a pivot.
 static bool is_large(const plan *p, int i, int j) {
     double most = 0;
     for (int k = 0; k < p->n; k++) {
@@ -84,7 +84,8 @@ static int find_single(const plan *p, int *row, int *col) {
     return best;
 }
 
-/// Whether the open entries of two rows lie in the same two columns; `turned`: rows for columns.
+/// Returns whether the open entries of two rows lie in the same two columns; `turned`: rows for
+/// columns.
 static bool are_pair(const plan *p, int a, int b, bool turned, int out[2]) {
     int n = 0;
     for (int k = 0; k < p->n; k++) {

@@ -126,7 +126,8 @@ hn_factor_info hn_factor_get_info(const hn_factor *f) {
     return f->info;
 }
 
-/// Whether every pivot is so far above its guard that roundings of the comparison do not matter.
+/// Returns whether every pivot is so far above its guard that roundings of the comparison do not
+/// matter.
 static bool is_sure(const hn_factor *f) {
     const double *x = f->in.x, sure = 2 * HN_PIVOT_GUARD;
     const uint16_t *slots = f->in.slots;

@@ -64,7 +64,7 @@ int hn_linear_entries(const hn_linear *l, hn_linear_term term); ///< their numbe
 void hn_linear_apply(const hn_linear *l, hn_linear_term term, const double *x, double *out);
 void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const double *x,
                                 double *out);
-/// Whether all entries of a term as last evaluated are finite.
+/// Returns whether all entries of a term as last evaluated are finite.
 bool hn_linear_is_finite(const hn_linear *l, hn_linear_term term);
 double hn_linear_ops(const hn_linear *l); ///< arithmetic operations of one run
 long long hn_linear_count(const hn_linear *l);

@@ -20,7 +20,7 @@ typedef struct hn_power hn_power;
 /// HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_power_create(const hn_system *sys, hn_arena *arena, hn_power **out);
 void hn_power_free(hn_power *p); ///< NULL is legal
-/// Whether a constraint moves with time: then the power needs multipliers.
+/// Returns whether a constraint moves with time: then the power needs multipliers.
 bool hn_power_needs_lambda(const hn_power *p);
 /// P of (2) at a state [W]; lambda (nc) may be NULL where it is not needed. Allocates nothing.
 double hn_power_run(hn_power *p, double t, const double *q, const double *v, const double *lambda);

@@ -39,7 +39,7 @@ typedef struct hn_reduced_split {
 HN_MUST_CHECK hn_status hn_reduced_tape_create(const hn_system *sys, const hn_reduced_split *split,
                                                hn_arena *arena, hn_reduced_tape **out);
 void hn_reduced_tape_free(hn_reduced_tape *tape); ///< NULL is legal
-/// Whether the tape was made for these dependent velocities (rank).
+/// Returns whether the tape was made for these dependent velocities (rank).
 bool hn_reduced_tape_is_for(const hn_reduced_tape *tape, const int *dep, int rank);
 
 /// Runs the tape at (t, q, u): q (nq) with the dependent entries predicted, u (r) the independent
@@ -50,7 +50,8 @@ void hn_reduced_tape_run(hn_reduced_tape *tape, double t, const double *q, const
 
 /// Takes the pivots of the last run for the measure of those of later runs.
 void hn_reduced_tape_take_measure(hn_reduced_tape *tape);
-/// Whether every pivot is well above zero, compared with those of hn_reduced_tape_take_measure().
+/// Returns whether every pivot is well above zero, compared with those of
+/// hn_reduced_tape_take_measure().
 bool hn_reduced_tape_is_sure(const hn_reduced_tape *tape);
 /// Returns ||phi|| at the corrected configuration [the units of the rows].
 double hn_reduced_tape_gap(const hn_reduced_tape *tape);

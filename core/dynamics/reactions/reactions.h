@@ -69,7 +69,7 @@ HN_MUST_CHECK hn_status hn_reactions_eval(hn_reactions *r, double t, const doubl
 /// Efforts of the last eval: constraints in the order of their rows, then the energies.
 int hn_reactions_effort_count(const hn_reactions *r);
 hn_effort hn_reactions_effort(const hn_reactions *r, int k);
-/// Whether a constraint beside the joints acts between points; if not, it has efforts only.
+/// Returns whether a constraint beside the joints acts between points; if not, it has efforts only.
 bool hn_reactions_has_place(const hn_reactions *r, int constraint);
 /// After an eval: largest residual of m a = sum of forces and of the moments about the centre of
 /// mass over all bodies, relative to the largest force [-] and moment. The tree joints are found

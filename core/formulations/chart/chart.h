@@ -43,15 +43,15 @@ void hn_chart_destroy(hn_chart *chart);
 /// closed configuration was found, or det J_d vanished on the way).
 HN_MUST_CHECK hn_status hn_chart_close(hn_chart *chart, hn_chart_point *point, double t, double *q,
                                        double tol);
-/// Whether a configuration with this gap counts as closed to `tol`; `last` is the gap before the
-/// last step of Newton's method.
+/// Returns whether a configuration with this gap counts as closed to `tol`; `last` is the gap
+/// before the last step of Newton's method.
 bool hn_chart_is_closed(const hn_chart *chart, double gap, double last, double tol);
 /// Accepts the state in chart->here. Fails: HN_ERR_CHART (det J_d has changed its sign since the
 /// last accepted state: the loop went over to its other assembly mode).
 HN_MUST_CHECK hn_status hn_chart_settle(hn_chart *chart);
 /// Checks the sign of det J_d as hn_chart_settle() does, and accepts nothing. Fails: HN_ERR_CHART.
 HN_MUST_CHECK hn_status hn_chart_check_mode(hn_chart *chart);
-/// Whether `point` is at (t, q) already: q (nq).
+/// Returns whether `point` is at (t, q) already: q (nq).
 bool hn_chart_is_at(const hn_chart *chart, const hn_chart_point *point, double t, const double *q);
 
 /// Fills the point at q, closed or not: J, N, s and the factor.

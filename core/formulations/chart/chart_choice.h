@@ -27,17 +27,16 @@ HN_MUST_CHECK hn_status hn_chart_choose_other(hn_chart *chart);
 /// ball could have taken over since `base` (plain_only), HN_ERR_UNSUPPORTED and the ball's name,
 /// because a shorter step changes nothing about that.
 hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const char *what);
-/// Whether changing one dependent column for an independent one would make |det J_d| at `here`
-/// larger by more than 1 / tau, and at least double it, or when the chart nears its end and another
-/// is better. With one freedom this compares with the best choice there is.
-/// h    size of the last step [s]
-/// tau  0: never
+/// Returns whether changing one dependent column for an independent one would make |det J_d| at
+/// `here` larger by more than 1 / tau, and at least double it, or when the chart nears its end and
+/// another is better. With one freedom this compares with the best choice there is. h    size of
+/// the last step [s] tau  0: never
 bool hn_chart_is_poor(hn_chart *chart, double h, double tau);
 /// Says whether det J_d, which falls as it did in the last step, vanishes within two more steps of
 /// size h [s].
 bool hn_chart_nears_end(const hn_chart *chart, double h);
-/// Whether all of J has full row rank nearby; for telling a dead point of the chart from a singular
-/// pose.
+/// Returns whether all of J has full row rank nearby; for telling a dead point of the chart from a
+/// singular pose.
 bool hn_chart_has_full_rank(hn_chart *chart, double t, const double *q);
 
 #endif

@@ -13,8 +13,8 @@
 HN_MUST_CHECK hn_status hn_chart_follow(hn_chart *chart, hn_chart_point *point,
                                         hn_chart_point *spare, double t, const double *q_ind,
                                         double *q, double tol);
-/// Whether a closed configuration q is so near to its prediction (nq each) that the branch and the
-/// turns of the angles are in no doubt.
+/// Returns whether a closed configuration q is so near to its prediction (nq each) that the branch
+/// and the turns of the angles are in no doubt.
 bool hn_chart_is_near(const hn_chart *chart, const double *predicted, const double *q);
 
 #endif

@@ -59,7 +59,7 @@ static void count_run(const hn_minimal_tape *w, hn_chart *chart) {
     cost->ops += hn_reduced_tape_info(w->tape).ops;
 }
 
-/// Whether the last run led to a regular configuration in the same assembly mode.
+/// Returns whether the last run led to a regular configuration in the same assembly mode.
 static bool is_regular(const hn_minimal_tape *w, const hn_chart *chart) {
     return hn_reduced_tape_is_sure(w->tape) &&
            chart->base.sign * hn_reduced_tape_determinant(w->tape) > 0;

@@ -78,7 +78,7 @@ typedef enum hn_tspace_basis { HN_TSPACE_FRESH, HN_TSPACE_CARRIED } hn_tspace_ba
 /// q is not finite; the base is then the old one.
 HN_MUST_CHECK hn_status hn_tspace_set_base(hn_tspace *ts, double t, const double *q,
                                            hn_tspace_basis basis);
-/// Whether the base is at (t, q).
+/// Returns whether the base is at (t, q).
 bool hn_tspace_base_is_at(const hn_tspace *ts, double t, const double *q);
 
 /// N and s at (t, q), closed or not; nothing is done when they are there already. HN_ERR_CHART when

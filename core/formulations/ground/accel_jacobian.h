@@ -12,7 +12,7 @@
 //     [M  -J'  ] [da     ]     [K    C  ] [dx]      B_q = gamma_q + (J a)_q + 2 alpha V + beta^2 J
 //     [J   give] [dlambda] = - [B_q  B_v] [dv],     B_v = gamma_v + 2 alpha J               (2)
 //
-// with K, C, V of dynamics/evaluate/linearise.h. What an implicit integrator has to solve for y =
+// with K, C, V of dynamics/evaluate/linearise.h. An implicit integrator solves, for y =
 // (q, v), (s - dF/dy) y' = (r1, r2), needs no dF/dy, which is full: with dx = P dv + g from the
 // kinematics (P = 1/s, a 3 x 3 block for a ball) it is
 //

@@ -49,9 +49,9 @@ void hn_ida_jacobian_free(hn_ida_jacobian *j);
 /// Fills A (n x n, column by column).
 void hn_ida_jacobian_fill(hn_ida_jacobian *j, double t, double c, const double *y,
                           const double *ydot, double *A);
-/// Whether the matrix is large and has few entries: it is then filled in compressed columns with at
-/// most so many entries. Their places are the same from one filling to the next as long as the rows
-/// that are kept are.
+/// Returns whether the matrix is large and has few entries: it is then filled in compressed columns
+/// with at most so many entries. Their places are the same from one filling to the next as long as
+/// the rows that are kept are.
 bool hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j);
 int hn_ida_jacobian_puts(const hn_ida_jacobian *j);
 /// The places, and the values of their entries (borrowed).

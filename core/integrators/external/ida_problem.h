@@ -15,7 +15,7 @@
 //
 // Weighting the kinematics of (1) by M makes the correction M^-1 J' mu, the smallest one in the
 // sense of kinetic energy, without inverting M. Rows of J that depend on others are left out: their
-// multipliers are 0, and the matrix of Newton's method stays regular. Which ones is chosen at the
+// multipliers are 0, and the matrix of Newton's method stays regular. They are chosen at the
 // start, and anew where those that are kept come to depend on each other. Source: Gear, Leimkuhler
 // & Gupta 1985; Brenan, Campbell & Petzold 1996, ch. 6.
 
@@ -50,9 +50,9 @@ HN_MUST_CHECK hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *
                                             hn_dae_form form, const double *form_options,
                                             hn_arena *arena, hn_diag *diag);
 void hn_ida_problem_free(hn_ida_problem *p);
-/// Whether the kept rows are still about as independent of each other as the best ones at (q, v).
-/// Rows that are not let the constraints open that were left out, or another branch of the motion
-/// in.
+/// Returns whether the kept rows are still about as independent of each other as the best ones at
+/// (q, v). Rows that are not let the constraints open that were left out, or another branch of the
+/// motion in.
 bool hn_ida_problem_rows_hold(hn_ida_problem *p, double t, const double *state);
 /// The largest n that any choice of rows leads to.
 int hn_ida_problem_room(const hn_ida_problem *p);

@@ -172,7 +172,7 @@ static void fill_rows(hn_implicit_linear *l) {
     }
 }
 
-/// Whether the quick check finds that all rows count.
+/// Returns whether the quick check finds that all rows count.
 static bool all_count(hn_implicit_linear *l) {
     if (!l->check) {
         return false;

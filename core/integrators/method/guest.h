@@ -34,7 +34,7 @@ void hn_guest_serve(hn_guest_finder finder, hn_guest_lister lister);
 void hn_guest_list(hn_strbuf *b);
 /// Fails as the finder does; HN_ERR_INPUT where there is none.
 HN_MUST_CHECK hn_status hn_guest_find(const char *name, hn_guest *out, hn_diag *diag);
-/// Whether a method's spelling names a guest.
+/// Returns whether a method's spelling names a guest.
 bool hn_guest_is_named(const char *spelling);
 
 #endif

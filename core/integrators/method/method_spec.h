@@ -40,7 +40,8 @@ double hn_method_option(const hn_method_spec *spec, const char *key, double othe
 hn_dae_form hn_method_form(const hn_formulation *formulation, const hn_stepper *stepper);
 /// 1 if the integrator serves what the formulation hands over.
 int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper);
-/// Whether the step is chosen from tolerances: the integrator is adaptive and no h > 0 fixes it.
+/// Returns whether the step is chosen from tolerances: the integrator is adaptive and no h > 0
+/// fixes it.
 bool hn_method_is_adaptive(const hn_method_spec *spec);
 /// Checks one value against its table entry: HN_OK or HN_ERR_INPUT with the reason in diag (no
 /// column).

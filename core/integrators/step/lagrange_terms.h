@@ -25,9 +25,10 @@ typedef struct hn_lagrange hn_lagrange;
 HN_MUST_CHECK hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena,
                                            hn_lagrange **out);
 void hn_lagrange_free(hn_lagrange *l); ///< NULL is legal
-/// Whether no entry of M depends on q or t.
+/// Returns whether no entry of M depends on q or t.
 bool hn_lagrange_mass_is_constant(const hn_lagrange *l);
-/// Whether Q_v differs from zero at some of a few states with coordinates and speeds of order one:
+/// Returns whether Q_v differs from zero at some of a few states with coordinates and speeds of
+/// order one:
 /// more than rounding makes it.
 bool hn_lagrange_has_dissipation(hn_lagrange *l);
 

@@ -71,7 +71,7 @@ typedef struct hn_stepper {
     const char *(*why)(const void *self); ///< reason of its own last failure, or NULL
 } hn_stepper;
 
-/// Whether the integrator serves formulations of this form.
+/// Returns whether the integrator serves formulations of this form.
 bool hn_stepper_serves(const hn_stepper *stepper, hn_dae_form form);
 
 #endif

@@ -7,7 +7,8 @@
 
 #include <stdbool.h>
 
-/// Whether one of the rows has an error at the end (energy = 0), an energy budget (1) to draw.
+/// Returns whether one of the rows has an error at the end (energy = 0), an energy budget (1) to
+/// draw.
 bool hn_budgets_can_plot(const hn_budget_row *rows, int n, int energy);
 /// One <svg> element: where the errors come from (energy = 0) or who put energy in (1), a bar a
 /// row; colours as in study_plot.h.

@@ -337,7 +337,7 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method) {
     return cost;
 }
 
-/// Whether t is at the end of a step of a method with fixed steps.
+/// Returns whether t is at the end of a step of a method with fixed steps.
 static bool is_on_grid(const entry *e, double t) {
     return e->h > 0 && fabs(t - round(t / e->h) * e->h) <= 1e-9 * e->h;
 }

@@ -38,7 +38,7 @@ void hn_hand_free(hn_hand *hand); ///< frees what it owns
 /// a load, a place that is not finite), HN_ERR_LIMIT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_hand_add(hn_hand *hand, long long frame, hn_pull *pull, hn_diag *diag);
 void hn_hand_rewind(hn_hand *hand); ///< the run is back at frame 0; the events stay
-/// Whether an event is due at the frame.
+/// Returns whether an event is due at the frame.
 bool hn_hand_is_due(const hn_hand *hand, long long frame);
 /// Does the events that are due at the frame: they are felt from time t on [s]. If memory is out
 /// they stay due.

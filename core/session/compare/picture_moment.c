@@ -138,7 +138,8 @@ static hn_status run_methods(hn_picture_moment *p, hn_diags *diags) {
     return status;
 }
 
-/// Whether the gap, a norm over all constraints, is not the one that the drawing shows at a joint.
+/// Returns whether the gap, a norm over all constraints, is not the one that the drawing shows at a
+/// joint.
 static bool is_over_all(const hn_picture_moment *p, const hn_sample *sample) {
     const hn_drawing d = hn_system_drawing(hn_model_system(p->model));
     double widest = 0;

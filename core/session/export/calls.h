@@ -8,7 +8,7 @@
 /// Finds the operators of all terms: bit op of the result for each. Returns every bit where memory
 /// is out.
 unsigned hn_export_calls(const hn_exporter *e);
-/// Whether there are any that hn_export_put_functions() writes.
+/// Returns whether there are any that hn_export_put_functions() writes.
 bool hn_export_has_functions(unsigned calls);
 /// Writes the names of the functions among them that languages take from a library of mathematics,
 /// "cos, sin"; nothing where there are none.

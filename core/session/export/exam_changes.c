@@ -36,7 +36,8 @@ static void add(list *l, hn_exam_change_kind kind, int from, int to) {
     }
 }
 
-/// Whether coordinates are numbers of their own; orientations have four entries of q for three.
+/// Returns whether coordinates are numbers of their own; orientations have four entries of q for
+/// three.
 static bool are_plain(const hn_export_exam *exam) {
     return exam->nq == exam->nv && exam->e.info.n_user == exam->nq;
 }

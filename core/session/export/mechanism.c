@@ -91,7 +91,7 @@ static const double *find_hinge(const hn_mjcf *m) {
     return NULL;
 }
 
-/// Whether everything moves across one direction: hinges along it, slides across it.
+/// Returns whether everything moves across one direction: hinges along it, slides across it.
 static bool is_planar(const hn_mjcf *m) {
     const double *normal = find_hinge(m);
     for (int i = 0; i < m->scene->n_bodies && normal; i++) {
@@ -111,7 +111,7 @@ static bool is_planar(const hn_mjcf *m) {
 
 // ---- what acts along coordinates ----
 
-/// Whether a coordinate is a hinge or slide of its own in the model.
+/// Returns whether a coordinate is a hinge or slide of its own in the model.
 static bool is_single(const hn_mjcf *m, int coordinate) {
     const int joint = m->scene->coordinates[coordinate].joint;
     const hn_joint_type type = joint < 0 ? HN_JOINT_FREE : m->scene->joints[joint].type;

@@ -8,7 +8,7 @@
 #include "integrators/method/method_spec.h"
 #include "session/export/places.h"
 
-/// Finds whether the program can take the method's steps: e->steps. Of those it can take, runs the
+/// Finds whether the program can take the method's steps: e->steps. If it can, runs the
 /// method for the scene's duration, or the first 2000 steps, and keeps the largest gap at the end
 /// of a step. Otherwise e->steps.why says why not. After hn_export_states_find().
 /// Fails: HN_ERR_MEMORY, HN_ERR_STOPPED (the limits).

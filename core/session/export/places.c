@@ -33,7 +33,8 @@ static void put_constant(hn_strbuf *b, const hn_exporter *e, int indent, const c
     hn_strbuf_reset(&kept);
 }
 
-/// Whether any of the terms depends on the symbol: a variable that nobody reads is a warning in C.
+/// Returns whether any of the terms depends on the symbol: a variable that nobody reads is a
+/// warning in C.
 static bool is_read(const hn_exporter *e, int symbol) {
     const hn_graph *g = hn_system_graph(e->sys);
     const int nv = e->info.nv, nc = e->info.nc;
@@ -455,7 +456,7 @@ static hn_status fill_line(hn_strbuf *b, const hn_exporter *e, const char *line,
     return HN_OK;
 }
 
-/// Whether the lines behind @IF CONDITION@ are to be written.
+/// Returns whether the lines behind @IF CONDITION@ are to be written.
 static bool holds(const hn_exporter *e, const char *condition) {
     if (strcmp(condition, "BLANKS") == 0) {
         return e->blanks;
@@ -493,7 +494,7 @@ static bool read_condition(const char *line, size_t n, char out[LONGEST_PLACE]) 
     return true;
 }
 
-/// Whether a line of n characters is this one, spaces before it aside.
+/// Returns whether a line of n characters is this one, spaces before it aside.
 static bool is_line(const char *line, size_t n, const char *word) {
     const size_t indent = strspn(line, " ");
     return indent < n && n - indent == strlen(word) &&

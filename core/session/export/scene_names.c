@@ -25,7 +25,7 @@ static void put_symbol(hn_strbuf *b, const hn_exporter *e, int symbol) {
     hn_code_name(b, e->language, hn_graph_symbol_name(hn_system_graph(e->sys), symbol));
 }
 
-/// How much the rate of coordinate i of the scene has of rate j of the system.
+/// Returns the share of rate j of the system in the rate of coordinate i of the scene.
 static double share_of(const scene_names *s, int i, int j) {
     memset(s->unit, 0, (size_t)s->e->info.nv * sizeof *s->unit);
     s->unit[j] = 1;
@@ -77,7 +77,7 @@ static int same_as(const scene_names *s, int i) {
     return found;
 }
 
-/// Whether the scene's name of coordinate i means something else to the program.
+/// Returns whether the scene's name of coordinate i means something else to the program.
 static bool is_other(const scene_names *s, int i, const char *name) {
     const int j = same_as(s, i);
     const int at = j < 0 ? -1 : hn_system_position_of(s->e->sys, j);

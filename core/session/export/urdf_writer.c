@@ -153,7 +153,7 @@ static const hn_constraint *find_gear(const urdf *u, int coordinate) {
     return NULL;
 }
 
-/// Whether a coordinate is a joint of its own in the tree.
+/// Returns whether a coordinate is a joint of its own in the tree.
 static bool is_single(const urdf *u, int coordinate) {
     const int joint = u->scene->coordinates[coordinate].joint;
     return joint >= 0 && u->scene->joints[joint].type != HN_JOINT_FREE &&

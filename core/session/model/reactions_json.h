@@ -34,8 +34,8 @@ void hn_reaction_writer_rows(const hn_reaction_writer *w, double *force, double 
 /// name.
 const char *hn_reaction_writer_force(const hn_reaction_writer *w, int i, double force[3],
                                      double place[3]);
-/// Whether this force is the only possible one; false: redundant constraints share the load in many
-/// ways, and the force is that of the least-norm multipliers.
+/// Returns whether this force is the only possible one; false: redundant constraints share the load
+/// in many ways, and the force is that of the least-norm multipliers.
 bool hn_reaction_writer_is_determined(const hn_reaction_writer *w, int i);
 /// The name of the body on which this force acts; "ground" for the ground.
 const char *hn_reaction_writer_body(const hn_reaction_writer *w, int i);

@@ -168,7 +168,7 @@ static void put_condition(hn_strbuf *b, const terms *w) {
     }
 }
 
-/// Whether the loops of the state stand open by more than a run reports.
+/// Returns whether the loops of the state stand open by more than a run reports.
 static bool is_open(const terms *w) {
     const double gap = hn_norm2(w->info.nc, hn_eval_get(w->eval, HN_TERM_PHI));
     return gap > HN_RUN_WARN_GAP * hn_system_length(hn_model_system(w->model));

@@ -67,7 +67,8 @@ static bool add_member(hn_map_team *team) {
     return true;
 }
 
-/// Whether the cells can be shared out: by scenes of one kind, and to methods of this program.
+/// Returns whether the cells can be shared out: by scenes of one kind, and to methods of this
+/// program.
 static bool can_share(const hn_map *map) {
     bool own = true;
     for (int m = 0; m < map->n_methods; m++) {

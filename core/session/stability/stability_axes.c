@@ -34,8 +34,8 @@ static void fill_axis(hn_map_axis *a, double low, double high, int n) {
     }
 }
 
-/// Whether an axis of this name is the step: "step" always is, "h" where no parameter of the scene
-/// has that name.
+/// Returns whether an axis of this name is the step: "step" always is, "h" where no parameter of
+/// the scene has that name.
 static bool names_step(const hn_map *map, const char *name) {
     return strcmp(name, STEP) == 0 ||
            (strcmp(name, "h") == 0 && hn_scene_find_param(hn_model_scene(map->model), name) < 0);
@@ -192,7 +192,7 @@ static hn_status rate_with(hn_map *map, const char *name, double value, double *
     return HN_OK;
 }
 
-/// Whether a parameter has one of these units and can go over a range above 0.
+/// Returns whether a parameter has one of these units and can go over a range above 0.
 static bool has_unit(const hn_param *p, const char *units) {
     char unit[UNIT_SIZE];
     while (hn_word_next(&units, unit, sizeof unit)) {
@@ -429,7 +429,7 @@ static hn_status take_values(hn_map *map, hn_diags *diags) {
     return HN_OK;
 }
 
-/// Whether a method has every option of a list, separated by blanks.
+/// Returns whether a method has every option of a list, separated by blanks.
 static bool has_options(const hn_method_spec *spec, const char *names) {
     hn_method_spec copy = *spec;
     char name[32];

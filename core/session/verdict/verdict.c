@@ -35,8 +35,8 @@ static double worst(const double *column, int from, int to) {
     return most;
 }
 
-/// Whether the gap is large by one rise at the end of the motion: stabilised methods fall from
-/// there.
+/// Returns whether the gap is large by one rise at the end of the motion: stabilised methods fall
+/// from there.
 static bool has_jumped(const hn_motion_history *h) {
     const int half = h->shown / 2, later = h->shown * 3 / 4;
     const double second = worst(h->gap, h->shown / 4, half), third = worst(h->gap, half, later);

@@ -104,7 +104,7 @@ HN_MUST_CHECK hn_status hn_wp_create(const hn_system *sys, const double *q, cons
                                      const hn_ref *ref, const hn_method_spec *specs, int n,
                                      const hn_wp_opts *opts, hn_wp **out, hn_diag *diag);
 void hn_wp_free(hn_wp *wp); ///< NULL is legal
-/// Whether the point is run here: of the whole, or of this part.
+/// Returns whether the point is run here: of the whole, or of this part.
 bool hn_wp_is_mine(const hn_wp *wp, int m, int k);
 /// Frees the run of a point, or all of them and the yardstick's: they are made anew when needed.
 void hn_wp_drop_run(hn_wp *wp, int m, int k);
@@ -121,7 +121,7 @@ void hn_wp_compare_ends(hn_wp *wp);
 hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size);
 /// The spelling of one point, with its size.
 void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]);
-/// Whether the study ends where errors along the motion say nothing.
+/// Returns whether the study ends where errors along the motion say nothing.
 bool hn_wp_is_beyond_horizon(const hn_wp *wp);
 /// 1 if the error is one: finite, and above HN_WP_ABOVE_REFERENCE times the reference's own;
 /// otherwise it is a bound.

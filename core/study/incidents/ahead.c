@@ -12,8 +12,8 @@ static const double REACHED = 0.02;
 /// And one that is reached, not only passed.
 static const double LOST = 2e-3;
 
-/// Whether the run has come to the configuration of a prediction: close to it at the end of a step,
-/// or across it within one, which is reported.
+/// Returns whether the run has come to the configuration of a prediction: close to it at the end of
+/// a step, or across it within one, which is reported.
 static bool has_come_true(const hn_watch *w, const hn_incident *i) {
     const hn_singular_record *s = &w->singular;
     if (s->lowest < REACHED * s->largest) {

@@ -22,7 +22,7 @@ bool hn_energy_is_conservative(const hn_system *sys) {
     return !hn_system_get_info(sys).has_time;
 }
 
-/// What a tolerance leaves of these sums, of it: steps whose errors it accepts change them by less.
+/// Share of the tolerance: steps whose errors it accepts change these sums by less.
 static const double TOLERATED = 0.1;
 
 /// Energies are sums of terms as large as weights times lengths, whatever their sum is: rounding

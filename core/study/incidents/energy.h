@@ -6,7 +6,7 @@
 #include "study/incidents/watch.h"
 
 extern const hn_incident_kind hn_incident_energy_drift, hn_incident_energy_jump;
-/// Whether no load does work that the energy of the scene does not contain.
+/// Returns whether no load does work that the energy of the scene does not contain.
 bool hn_energy_is_conservative(const hn_system *sys);
 /// Begins the record with the state measured last.
 void hn_energy_start(hn_watch *w);

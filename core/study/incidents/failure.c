@@ -15,7 +15,7 @@ static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
                                                                   : &hn_incident_newton_failed;
 }
 
-/// Whether the method is a program of its own and that failed, not the motion.
+/// Returns whether the method is a program of its own and that failed, not the motion.
 static bool is_of_program(const hn_watch *w, hn_status status) {
     return hn_guest_is_named(w->run->spec.formulation->name) &&
            (status == HN_ERR_IO || status == HN_ERR_INPUT || status == HN_ERR_LIMIT);

@@ -100,8 +100,8 @@ static double way_of_step(const hn_watch *w) {
     return w->swiftest * (w->run->now.t - w->run->before.t);
 }
 
-/// Whether the heading is to be compared: past a singular configuration, or when the step itself
-/// looks like a jump.
+/// Returns whether the heading is to be compared: past a singular configuration, or when the step
+/// itself looks like a jump.
 static bool is_suspect(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     return s->passing || s->info.sigma_min < RANGE * s->largest ||

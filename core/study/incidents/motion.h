@@ -11,7 +11,7 @@ double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
                                      const hn_state_at *to, double least);
 /// The same of the last step.
 double hn_motion_unexplained(const hn_watch *w, double least);
-/// Whether that is more than `share`, without a division: it is asked after every step.
+/// Returns whether that is more than `share`, without a division: it is asked after every step.
 bool hn_motion_is_unexplained(const hn_watch *w, double share);
 /// Returns how far the motion from `from` (nq) to now would have opened a loop with one of its
 /// coordinates alone, over the length: with J of the state measured last. `step` (nv) gets the

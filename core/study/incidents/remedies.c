@@ -40,8 +40,8 @@ static double tolerance(const hn_watch *w) {
     return hn_method_option(&w->run->spec, "rtol", 1e-6);
 }
 
-/// Whether an integrator serves a formulation that is in the list; a program's own steps serve it
-/// alone.
+/// Returns whether an integrator serves a formulation that is in the list; a program's own steps
+/// serve it alone.
 static bool fits(const hn_formulation *f, const hn_stepper *stepper) {
     return strcmp(stepper->name, HN_GUEST_STEPPER) != 0 && hn_method_fits(f, stepper);
 }

@@ -163,13 +163,14 @@ static const double PIVOT_MARGIN = 1e2; // times the pivot ratio that is reporte
 static const double NEAR_DUE = 10;      // steps before a predicted time: near it
 static const double UNEXPLAINED = 0.1;  // of a step's motion
 
-/// Whether a prediction is open and its time near or past; before that it needs no full checks.
+/// Returns whether a prediction is open and its time near or past; before that it needs no full
+/// checks.
 static bool is_prediction_due(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     return s->announced && w->run->now.t > s->due - NEAR_DUE * w->run->h;
 }
 
-/// Whether the full check that has just been made is far from everything that is reported.
+/// Returns whether the full check that has just been made is far from everything that is reported.
 static bool is_calm(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     const double row = w->shortest_row;
@@ -179,8 +180,9 @@ static bool is_calm(const hn_watch *w) {
            row * row * w->accel_info.pivot_ratio > PIVOT_MARGIN * HN_RUN_WARN_PIVOT;
 }
 
-/// Whether the run has gone further than STRIDE since the last full check. In motion without jumps
-/// a way grows with the square of time at most: it is not measured before it can be that long.
+/// Returns whether the run has gone further than STRIDE since the last full check. In motion
+/// without jumps a way grows with the square of time at most: it is not measured before it can be
+/// that long.
 static bool is_far(hn_watch *w) {
     enum { MOST = 4 }; // a short way says little of one that is longer by more
     const double t = w->run->now.t;

@@ -163,7 +163,7 @@ void hn_watch_free(hn_watch *w);
 void hn_watch_start(hn_watch *w);
 /// Counts an accepted step; measures nothing.
 void hn_watch_step(hn_watch *w);
-/// Whether every accepted step is measured: hn_watch_measure_step().
+/// Returns whether every accepted step is measured: hn_watch_measure_step().
 bool hn_watch_measures_steps(const hn_watch *w);
 /// Adds the work done in the last step, which has to be summed over every step.
 void hn_watch_measure_step(hn_watch *w);

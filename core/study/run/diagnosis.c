@@ -67,7 +67,7 @@ static const hn_load *find_load(const hn_stepping *s, hn_spectrum *spectrum, hn_
     return hn_load_share_find(s->sys, &mode, is_decay(value) ? size : size * size);
 }
 
-/// Whether the mechanism at rest in this configuration has a part as fast as `rate` [1/s].
+/// Returns whether the mechanism at rest in this configuration has a part as fast as `rate` [1/s].
 static bool is_fast_at_rest(const hn_stepping *s, hn_spectrum *spectrum, hn_arena *arena,
                             const hn_state_at *at, double rate) {
     const double *rest = hn_arena_doubles(arena, (size_t)s->info.nv); // zeros
@@ -477,7 +477,8 @@ static void try_remedies(hn_run *run, hn_incident *i) {
     }
 }
 
-/// Whether a report tells of an error: its kind does, or it is the reason why the run ended.
+/// Returns whether a report tells of an error: its kind does, or it is the reason why the run
+/// ended.
 static bool tells_error(const hn_watch *w, const hn_incident *i) {
     const bool ended = w->failure != HN_OK && w->failure != HN_ERR_STOPPED;
     return hn_incident_kinds()[i->code]->is_wrong || (ended && i == &w->log.list[w->log.n - 1]);

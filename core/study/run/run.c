@@ -49,8 +49,8 @@ static void mark_cost(hn_run *run) {
     run->clock.mark = hn_engine_cost(&run->stepping.engine);
 }
 
-/// Whether the next check could see a difference in what the engine has done: a fallback, or
-/// another chart.
+/// Returns whether the next check could see a difference in what the engine has done: a fallback,
+/// or another chart.
 static bool is_cost_due(const hn_run *run) {
     const long long now = hn_engine_fallbacks(&run->stepping.engine);
     return now < 0 || now != run->clock.mark.fallbacks;
@@ -78,8 +78,8 @@ static void take_cost(hn_run *run) {
 
 // ---- stepping ----
 
-/// Whether the accelerations at the last good state are not numbers, or those of the start cannot
-/// be had.
+/// Returns whether the accelerations at the last good state are not numbers, or those of the start
+/// cannot be had.
 static bool is_undefined(hn_run *run) {
     hn_stepping *s = &run->stepping;
     double sum = 0, *a = run->watch.a;

@@ -81,7 +81,7 @@ hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
 hn_multiplier_mark hn_run_sample_mark(hn_run *run);
 /// Why the last sample that failed could not be taken, in words. Borrowed, until the run goes on.
 const char *hn_run_sample_why(const hn_run *run, hn_status status);
-/// Whether the integrator finds multipliers of its own (hn_sample.raw_lambda).
+/// Returns whether the integrator finds multipliers of its own (hn_sample.raw_lambda).
 bool hn_run_has_raw_lambda(const hn_run *run);
 hn_run_summary hn_run_get_summary(const hn_run *run);
 int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; borrowed

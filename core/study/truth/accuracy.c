@@ -196,7 +196,7 @@ static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
     return true;
 }
 
-/// Whether the pilot cannot serve any more; one that is only late can catch up.
+/// Returns whether the pilot cannot serve any more; one that is only late can catch up.
 static bool has_ended(const hn_accuracy *a) {
     return a->lost || hn_run_get_state(a->run[PILOT]) == HN_RUN_FAILED ||
            hn_run_get_state(a->run[ROUGH]) == HN_RUN_FAILED;

@@ -68,8 +68,8 @@ void hn_accuracy_reset(hn_accuracy *a);
 /// The time that the pilot and the rough run have reached [s].
 double hn_accuracy_time(const hn_accuracy *a);
 void hn_accuracy_loads_changed(hn_accuracy *a, double t); ///< see hn_run_loads_changed()
-/// Whether a comparison is due at t: the times depend on t_end alone, so that a run has the same
-/// estimate whoever makes it.
+/// Returns whether a comparison is due at t: the times depend on t_end alone, so that a run has the
+/// same estimate whoever makes it.
 bool hn_accuracy_is_due(const hn_accuracy *a, double t);
 /// The time of the next comparison [s], HUGE_VAL: there is none.
 double hn_accuracy_next(const hn_accuracy *a);

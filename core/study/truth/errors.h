@@ -63,7 +63,7 @@ void hn_errors_calc(hn_errors *e, const hn_state_seen *state, const hn_state_see
 /// of.
 double hn_errors_rate(const hn_errors *e, const double *user_v);
 double hn_errors_reaction(hn_errors *e, const hn_state_seen *at, const double *lambda);
-/// What reactions are divided by at least [N m]: a thousandth of the weights times L, and 1e-7 of
+/// Returns the least divisor of reactions [N m]: a thousandth of the weights times L, and 1e-7 of
 /// what bodies at the largest rate of the motion, `rate`, would need. Loops that close without a
 /// force have reactions of rounding, and these say nothing. 0 without bodies or rows.
 double hn_errors_least_reaction(const hn_errors *e, double rate);

@@ -52,14 +52,14 @@ static void keep(hn_refined *r, int k, const hn_sample *s) {
     r->energy[row] = s->energy;
 }
 
-/// Whether the limits let the whole go on; keeps what they said.
+/// Returns whether the limits let the whole go on; keeps what they said.
 static bool may_go_on(refining *g) {
     g->end = hn_walk_ask(g->limits, g->started);
     return g->end == HN_WALK_DONE;
 }
 
-/// Whether operations are left, a run counted that is under way (NULL: none). A count that is not
-/// known uses them up.
+/// Returns whether operations are left, a run counted that is under way (NULL: none). A count that
+/// is not known uses them up.
 static bool has_ops(refining *g, const hn_run *run) {
     const double ops = g->ops + (run ? hn_run_get_summary(run).cost.ops : 0);
     const bool enough = ops < g->most_ops;

@@ -88,8 +88,8 @@ static bool has_failed(const cJSON *method) {
     return strcmp(hn_document_text(method, "state"), "failed") == 0;
 }
 
-/// Whether the coordinates are so far from the true motion that they say nothing of it, or an
-/// incident calls the motion wrong after the end of the estimate.
+/// Returns whether the coordinates are so far from the true motion that they say nothing of it, or
+/// an incident calls the motion wrong after the end of the estimate.
 static bool is_wrong(const cJSON *method) {
     return strcmp(hn_document_text(hn_document_get(method, "verdict"), "is"), "wrong") == 0;
 }
@@ -221,7 +221,7 @@ static void put_head(hn_strbuf *b, const hn_scene *scene, const cJSON *summary, 
                      scene->title ? scene->title : scene->id, duration);
 }
 
-/// Whether the status finds fault with a motion that came to its end.
+/// Returns whether the status finds fault with a motion that came to its end.
 static bool is_at_fault(const cJSON *summary) {
     const cJSON *m;
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {

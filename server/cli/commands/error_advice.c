@@ -7,12 +7,13 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// Whether a remedy is the same method with another step or tolerance: "h=0.005", "rtol=1e-08".
+/// Returns whether a remedy is the same method with another step or tolerance: "h=0.005",
+/// "rtol=1e-08".
 static bool is_finer(const char *remedy) {
     return strncmp(remedy, "h=", 2) == 0 || strncmp(remedy, "rtol=", 5) == 0;
 }
 
-/// Whether a finer step was tried against the incident and removed it.
+/// Returns whether a finer step was tried against the incident and removed it.
 static bool removed_by_finer(const cJSON *incident) {
     const cJSON *tried = hn_document_get(incident, "tried")->child, *remedy;
     cJSON_ArrayForEach(remedy, hn_document_get(incident, "remedies")) {
@@ -25,7 +26,7 @@ static bool removed_by_finer(const cJSON *incident) {
     return false;
 }
 
-/// Whether a finer step was tried against the incident and did not remove it.
+/// Returns whether a finer step was tried against the incident and did not remove it.
 static bool kept_by_finer(const cJSON *incident) {
     const char *vain = strstr(hn_document_text(incident, "message"), "tried in vain");
     return vain && (strstr(vain, " h=") || strstr(vain, " rtol="));

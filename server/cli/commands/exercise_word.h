@@ -13,8 +13,8 @@
 /// Returns owned in *out. Fails: as hn_shelf_exercise_load(), HN_ERR_IO.
 HN_MUST_CHECK hn_status hn_cli_load_exercise(const hn_library *lib, const char *word,
                                              hn_exercise **out, hn_diags *diags);
-/// Whether the word names a file that is there, or a shipped exercise: what is wrong is then wrong
-/// in the exercise, not on the command line.
+/// Returns whether the word names a file that is there, or a shipped exercise: what is wrong is
+/// then wrong in the exercise, not on the command line.
 bool hn_cli_is_exercise(const hn_library *lib, const char *word);
 /// Refuses a --student without a name: HN_ERR_INPUT.
 HN_MUST_CHECK hn_status hn_cli_check_student(const hn_args *args, hn_diags *diags);

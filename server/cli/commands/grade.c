@@ -126,7 +126,7 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
     return written != HN_EXIT_DONE ? written : drawn;
 }
 
-/// Whether a file begins as zip files do.
+/// Returns whether a file begins as zip files do.
 static bool is_zip(const char *path) {
     char begin[4];
     return hn_file_begin(path, begin, sizeof begin) == sizeof begin &&
@@ -205,7 +205,7 @@ typedef struct owned_subject {
     hn_blank_programs blanks; ///< of a class of programs
 } owned_subject;
 
-/// Whether a submission is the program of a scene, by its ending and its first lines.
+/// Returns whether a submission is the program of a scene, by its ending and its first lines.
 static bool is_program_of_a_scene(const char *path) {
     hn_strbuf text;
     hn_strbuf_init(&text);
@@ -232,8 +232,9 @@ static id_kind take_kind(hn_args *args) {
     return ID_ALONE;
 }
 
-/// Whether ID is a scene: it says so, there is no exercise of this name, or there is one too and
-/// the submissions are files with programs; a class goes to the exercise, with a note. Fails:
+/// Returns whether ID is a scene: it says so, there is no exercise of this name, or there is one
+/// too and the submissions are files with programs; a class goes to the exercise, with a note.
+/// Fails:
 /// HN_ERR_INPUT, some files are programs and some are not.
 static hn_status choose_scene(const hn_library *lib, const hn_args *args, id_kind kind, bool class,
                               bool *is_scene, hn_diags *diags) {

@@ -215,7 +215,7 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
     return exit;
 }
 
-/// Whether a file would lie in the folder or in one below it; links are followed.
+/// Returns whether a file would lie in the folder or in one below it; links are followed.
 static bool lies_in(const char *file, const char *folder) {
     char parent[PATH_MAX], inside[PATH_MAX], outside[PATH_MAX];
     const char *slash = strrchr(file, '/');
@@ -303,7 +303,7 @@ static char *without_place(const char *line, size_t n, const char *marking) {
     return own;
 }
 
-/// Whether a line has its place in a class of the size that the lines before it have.
+/// Returns whether a line has its place in a class of the size that the lines before it have.
 static bool has_place(const merging *m, const cJSON *o) {
     const cJSON *place = cJSON_GetObjectItem(o, "place"), *of = cJSON_GetObjectItem(o, "of");
     const int n = m->result.n;

@@ -21,8 +21,8 @@ static bool is_wrong(const cJSON *incident) {
     return false;
 }
 
-/// Whether an incident stands behind another: what is wrong comes before a warning, then the
-/// earlier before the later.
+/// Returns whether an incident stands behind another: what is wrong comes before a warning, then
+/// the earlier before the later.
 static bool is_behind(const cJSON *one, const cJSON *other) {
     const bool wrong = is_wrong(one);
     return wrong == is_wrong(other) ? hn_document_number(one, "t") > hn_document_number(other, "t")
@@ -59,7 +59,7 @@ void hn_incident_list_take(hn_incident_list *list, const cJSON *incidents, int m
     sort(list);
 }
 
-/// Whether item k is the last of its kind that a run lists.
+/// Returns whether item k is the last of its kind that a run lists.
 static bool is_last_listed(const hn_incident_list *list, int k) {
     const char *code = hn_document_text(list->item[k], "code");
     int n = 0;
@@ -91,7 +91,7 @@ static bool begins_with_time(const char *sentence) {
     return strncmp(sentence, "at t = ", 7) == 0 || strncmp(sentence, "after t = ", 10) == 0;
 }
 
-/// Whether a sentence says "t = 0.9 s" with the digits of this time.
+/// Returns whether a sentence says "t = 0.9 s" with the digits of this time.
 static bool says_time(const char *sentence, double t) {
     char word[48];
     snprintf(word, sizeof word, "t = %.6g s", t);

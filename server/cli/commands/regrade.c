@@ -205,8 +205,8 @@ static void put_scores(hn_strbuf *b, const cJSON *old, const hn_verdict *v, bool
     }
 }
 
-/// Whether both were graded, or neither, and with the same score of the same maximum, up to the
-/// rounding of their text.
+/// Returns whether both were graded, or neither, and with the same score of the same maximum, up to
+/// the rounding of their text.
 static bool is_same(const cJSON *old, const hn_verdict *v) {
     const bool graded = strcmp(text_of(old, "status"), "graded") == 0;
     const double score = hn_part_number(old, "score", (double)NAN);

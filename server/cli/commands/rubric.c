@@ -47,7 +47,8 @@ static hn_exit check(const hn_library *lib, const hn_args *args, const char *pat
     return hn_cli_print_text(&b);
 }
 
-/// Whether --out is a file with other bytes than these, which may be a teacher's own rubric.
+/// Returns whether --out is a file with other bytes than these, which may be a teacher's own
+/// rubric.
 static bool is_someones(const hn_args *args, const hn_strbuf *bytes) {
     const bool file = args->out && strcmp(args->out, "-") != 0;
     return file && !args->force && access(args->out, F_OK) == 0 &&

@@ -79,7 +79,8 @@ static void tell_remedy(const cJSON *incident) {
     }
 }
 
-/// Whether the remedy of item k is told later too: of another of the first n, or of the end.
+/// Returns whether the remedy of item k is told later too: of another of the first n, or of the
+/// end.
 static bool is_repeated(const hn_incident_list *list, int n, int k) {
     const char *own = hn_incident_remedy(list->item[k]);
     for (int j = k + 1; own && j <= n; j++) {

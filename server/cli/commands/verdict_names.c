@@ -142,8 +142,8 @@ static hn_status check_overwriting(const hn_verdict_names *names, const char *co
     return HN_OK;
 }
 
-/// Whether --out names the file of one verdict itself, as results.json: its ending is the form's,
-/// and no folder has this name.
+/// Returns whether --out names the file of one verdict itself, as results.json: its ending is the
+/// form's, and no folder has this name.
 static bool is_file_name(const char *out, const char *ending) {
     struct stat info;
     const size_t n = strlen(out), m = strlen(ending);

@@ -195,8 +195,8 @@ static bool is_offered(const hn_command *command, const option *o) {
            strcmp(o->name, "--no-native") == 0 || find_listed(command->options, o->name);
 }
 
-/// Whether help, the manual and completion name an option: all that are offered, but --json where
-/// a command draws and refuses it with a hint.
+/// Returns whether help, the manual and completion name an option: all that are offered, but --json
+/// where a command draws and refuses it with a hint.
 static bool is_listed(const hn_command *command, const option *o) {
     const bool drawn = strcmp(command->name, "tui") == 0 && strcmp(o->name, "--json") == 0;
     return is_offered(command, o) && !drawn;
@@ -380,7 +380,7 @@ static hn_status read_numbers(hn_numbers *numbers, const option *o, const char *
     }
 }
 
-/// Whether an option that takes one value has it already.
+/// Returns whether an option that takes one value has it already.
 static bool is_given(const hn_args *args, const option *o, const hn_field *field) {
     const void *place = (const char *)args + o->place;
     if (field) {

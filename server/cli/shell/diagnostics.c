@@ -23,7 +23,7 @@ static hn_exit exit_of(hn_status status, const hn_diags *diags) {
 
 // ---- places ----
 
-/// Whether a list of words as typed has NAME=VALUE.
+/// Returns whether a list of words as typed has NAME=VALUE.
 static bool sets(const hn_words *typed, const char *name) {
     const size_t n = strlen(name);
     for (int i = 0; i < typed->n; i++) {
@@ -34,7 +34,7 @@ static bool sets(const hn_words *typed, const char *name) {
     return false;
 }
 
-/// Whether the option of this name, without the hyphens, was typed.
+/// Returns whether the option of this name, without the hyphens, was typed.
 static bool was_typed(const hn_args *args, const char *name) {
     hn_option_row o;
     bool is_option = false, typed = false;
@@ -47,7 +47,7 @@ static bool was_typed(const hn_args *args, const char *name) {
     return is_option && typed;
 }
 
-/// Whether a message is of a file that was named: "wheel.json: ...".
+/// Returns whether a message is of a file that was named: "wheel.json: ...".
 static bool is_of_file(const hn_args *args, const char *message) {
     for (int i = 0; args && i < args->words.n; i++) {
         const size_t n = strlen(args->words.word[i]);

@@ -113,8 +113,8 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
     return result;
 }
 
-/// Whether the file begins as a picture of this program does: a PNG of 8 bits with the chunk sRGB
-/// first, or acTL of an animation, or an SVG with the attributes of its plots.
+/// Returns whether the file begins as a picture of this program does: a PNG of 8 bits with the
+/// chunk sRGB first, or acTL of an animation, or an SVG with the attributes of its plots.
 static bool is_own_picture(const char *path) {
     static const char png[] = "\x89PNG\r\n\x1a\n",
                       svg[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
@@ -169,7 +169,7 @@ hn_status hn_cli_check_file(const char *path, hn_diags *diags) {
                         "cannot write '%.200s': it is a folder", path);
 }
 
-/// Whether the file holds this text, to the byte.
+/// Returns whether the file holds this text, to the byte.
 static bool holds(const char *path, const hn_strbuf *text) {
     hn_strbuf there;
     hn_strbuf_init(&there);

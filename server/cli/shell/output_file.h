@@ -17,7 +17,7 @@
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 /// The same without keeping what was there: for a file that is this program's own.
 hn_exit hn_cli_replace_file(const hn_args *args, const char *path, hn_strbuf *bytes);
-/// Whether the file holds these bytes.
+/// Returns whether the file holds these bytes.
 bool hn_cli_is_content(const char *path, const hn_strbuf *bytes);
 /// Writes a picture as hn_cli_write_file() does, but one that this program drew is replaced: it
 /// can be drawn again.

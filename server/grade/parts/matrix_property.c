@@ -101,7 +101,7 @@ static void eliminate(double *a, int n, int k, const bool *done) {
     }
 }
 
-/// Whether anything but rounding is left in the rows that are not done.
+/// Returns whether anything but rounding is left in the rows that are not done.
 static bool is_left(const double *a, int n, const bool *done) {
     bool left = false;
     for (int k = 0; k < n * n; k++) {

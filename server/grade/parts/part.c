@@ -61,7 +61,7 @@ void hn_part_qualify(hn_part_result *results, int n) {
     }
 }
 
-/// Whether a member's name is another spelling of `name`.
+/// Returns whether a member's name is another spelling of `name`.
 static bool is_spelt(const char *spelt, const char *name) {
     char joined[64], other[64];
     hn_strbuf plain;

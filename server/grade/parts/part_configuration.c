@@ -209,7 +209,7 @@ static bool assemble_from(const sheet *s, const double *given, double *out) {
     return closed;
 }
 
-/// Whether the whole answer is another configuration in which the loops close.
+/// Returns whether the whole answer is another configuration in which the loops close.
 static bool is_other_branch(const sheet *s, const double *given) {
     double other[MAX], moved = 0, differs = 0;
     if (!assemble_from(s, given, other)) {

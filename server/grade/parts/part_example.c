@@ -22,8 +22,8 @@
 
 // ---- reading ----
 
-/// Whether the matrix that was read last has the shape that is asked for; else the result says so.
-/// A list without rows is a column, or the one row that is asked for.
+/// Returns whether the matrix that was read last has the shape that is asked for; else the result
+/// says so. A list without rows is a column, or the one row that is asked for.
 static int has_shape(const hn_part *p, hn_world *w, bool list, hn_part_result *r) {
     hn_matrix *m = &w->matrix[w->n - 1];
     const char *name = w->name[w->n - 1];

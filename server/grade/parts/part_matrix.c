@@ -43,7 +43,8 @@ static const char *fault_answer(const cJSON *fault) {
     return hn_part_text(fault, "answer");
 }
 
-/// Whether two mistakes are in one term: in every world they change the reference in proportion.
+/// Returns whether two mistakes are in one term: in every world they change the reference in
+/// proportion.
 static bool is_one_term(const hn_part *p, hn_world *worlds, const cJSON *first,
                         const cJSON *second) {
     char text[1200];

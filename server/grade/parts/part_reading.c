@@ -141,8 +141,8 @@ static bool get_slip(const sheet *s, int i, slip *out) {
     return true;
 }
 
-/// Whether a value is that of a slip: as near as a reading is, and of its size. A number beside 0
-/// is no reading of a curve that is 0 there: it is another mistake, as a wrong unit.
+/// Returns whether a value is that of a slip: as near as a reading is, and of its size. A number
+/// beside 0 is no reading of a curve that is 0 there: it is another mistake, as a wrong unit.
 static bool is_slip(const slip *x, double value) {
     const double apart = fabs(value - x->value);
     return apart <= x->near && (value == 0 || apart <= OF_SIZE * fabs(x->value));

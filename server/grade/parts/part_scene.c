@@ -36,7 +36,7 @@ static const cJSON *field(const hn_part *p, const char *name) {
     return cJSON_GetObjectItemCaseSensitive(p->node, name);
 }
 
-/// Whether the answer is a whole scene.
+/// Returns whether the answer is a whole scene.
 static bool is_scene(const cJSON *given) {
     return cJSON_GetObjectItemCaseSensitive(given, "holonom") != NULL;
 }

@@ -44,7 +44,7 @@ static void write_expected(const hn_value_sheet *s, int k, hn_part_result *r) {
     }
 }
 
-/// Whether a number is the right one after whole periods, as an angle after whole turns.
+/// Returns whether a number is the right one after whole periods, as an angle after whole turns.
 static bool is_right_turned(const hn_value_sheet *s, int k, const double *x) {
     const double period = hn_part_number(s->p->node, "period", 0);
     if (s->symbolic || !(period > 0)) {
@@ -266,7 +266,7 @@ static void put_tolerance(hn_strbuf *b, const hn_part *p) {
     }
 }
 
-/// Whether a given rate is read as the part's own rate of that index (draw.h): w1 as u1.
+/// Returns whether a given rate is read as the part's own rate of that index (draw.h): w1 as u1.
 static bool is_read_as_own(const hn_part *p, int i, const cJSON *states) {
     char other[64];
     if (strcmp(p->draw->unit[i], "rad/s") != 0) {

@@ -36,8 +36,8 @@ static const struct {
 // clang-format on
 enum { N_CHARACTERS = sizeof CHARACTERS / sizeof *CHARACTERS };
 
-/// Whether a fraction would stand behind a digit: 2½ is a sum, not the product that 2(1/2) is. It
-/// is left to the parser to refuse.
+/// Returns whether a fraction would stand behind a digit: 2½ is a sum, not the product that 2(1/2)
+/// is. It is left to the parser to refuse.
 static bool is_mixed(const hn_strbuf *out, const char *ascii) {
     return ascii[0] == '(' && ascii[1] && out->n > 0 &&
            isdigit((unsigned char)out->text[out->n - 1]);
@@ -168,7 +168,7 @@ static void end_operand(rewriter *w, operand written) {
     w->below = w->below ? 2 : 0;
 }
 
-/// Whether a name of LaTeX ends before this letter: in m_2l_1 two names stand side by side.
+/// Returns whether a name of LaTeX ends before this letter: in m_2l_1 two names stand side by side.
 static bool ends_at_letter(const rewriter *w, const char *name, size_t n) {
     return w->latex && n > 0 && isdigit((unsigned char)name[n - 1]) && memchr(name, '_', n) &&
            isalpha((unsigned char)*w->at) && strncmp(w->at, "dot", 3) != 0;
@@ -377,7 +377,7 @@ static void plain_letter(char name[MAX_NAME]) {
     }
 }
 
-/// Whether a command of LaTeX is one that is read here; `name` may have an index behind it.
+/// Returns whether a command of LaTeX is one that is read here; `name` may have an index behind it.
 static bool is_known(const char *name) {
     char lower[MAX_NAME];
     snprintf(lower, sizeof lower, "%.*s", (int)strcspn(name, "_0123456789"), name);
@@ -422,7 +422,8 @@ static void read_word(rewriter *w, char name[MAX_NAME], bool *command) {
     }
 }
 
-/// Whether the name before a bracket is a function that only the parser knows, as max(a, b).
+/// Returns whether the name before a bracket is a function that only the parser knows, as max(a,
+/// b).
 static bool calls(const rewriter *w) {
     return *w->at == '(' && !w->latex;
 }

@@ -15,8 +15,8 @@
 
 enum { MAX_CHARS = 2000 };
 
-/// Whether a unit may begin at text[i]: behind a number, a bracket or a blank, never inside a
-/// number (the unit "1/s" begins with a digit, and so does the end of "0.11/s").
+/// Returns whether a unit may begin at text[i]: behind a number, a bracket or a blank, never inside
+/// a number (the unit "1/s" begins with a digit, and so does the end of "0.11/s").
 static bool may_begin_unit(const char *text, size_t i) {
     const bool inside = strchr("0123456789.", text[i - 1]) && strchr("0123456789.", text[i]);
     return !inside && (strchr("0123456789.) ", text[i - 1]) || strncmp(text + i, "°", 2) == 0);
@@ -102,7 +102,7 @@ static void refuse_formula(const hn_value_sheet *s, const char *text, const hn_d
     hn_strbuf_reset(&hint);
 }
 
-/// Whether the text begins with a number in digits that no double holds.
+/// Returns whether the text begins with a number in digits that no double holds.
 static bool is_beyond_largest(const char *text) {
     const char *digits = text + strspn(text, " +-.");
     return *digits >= '0' && *digits <= '9' && isinf(strtod(text, NULL));
@@ -131,8 +131,8 @@ static void refuse_number(const hn_value_sheet *s, const char *text, hn_part_res
     }
 }
 
-/// Whether two signs stand in a row, or one sign for a number with its uncertainty. Arithmetic with
-/// them would be a guess at what is meant.
+/// Returns whether two signs stand in a row, or one sign for a number with its uncertainty.
+/// Arithmetic with them would be a guess at what is meant.
 static bool has_two_signs(const char *text) {
     static const char *const SIGNS[] = {"+", "-", "−", "–"};
     static const char *const UNCERTAIN[] = {"±", "\\pm", "+/-", "+/−"};

@@ -189,8 +189,8 @@ static void try_signed(hn_value_search *f, hn_ex e, const char *id, double share
     }
 }
 
-/// Whether a number cannot tell two candidates apart: at all states they are as near as an answer
-/// may be.
+/// Returns whether a number cannot tell two candidates apart: at all states they are as near as an
+/// answer may be.
 static bool is_alike(const hn_value_search *f, hn_ex a, hn_ex b) {
     const hn_value_sheet *s = f->sheet;
     for (int i = 0; i < s->draw->n_states; i++) {

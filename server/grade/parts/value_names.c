@@ -58,7 +58,7 @@ static hn_ex formula_with(const hn_value_search *f, hn_ex e, const change *c) {
     return out;
 }
 
-/// Whether two values may be those of one formula: hn_value_search_try() decides.
+/// Returns whether two values may be those of one formula: hn_value_search_try() decides.
 static bool is_near(const hn_value_search *f, double a, double b) {
     const double allowed = f->sheet->allowed[f->entry];
     return fabs(a - b) <= allowed + 1e-4 * fmax(fabs(a), fabs(b));
@@ -116,7 +116,7 @@ static int name_before(const hn_draw *d, int name) {
     return -1;
 }
 
-/// Whether the name is that of a rate, as u2 and w2 are.
+/// Returns whether the name is that of a rate, as u2 and w2 are.
 static bool is_rate(const char *name, size_t stem) {
     return stem == 1 && (name[0] == 'u' || name[0] == 'w');
 }
@@ -248,7 +248,7 @@ static bool find_factors(const hn_value_search *f, term *t) {
     return true;
 }
 
-/// Whether a factor is the same at all states.
+/// Returns whether a factor is the same at all states.
 static bool is_constant(const double *factor, int n) {
     double low = factor[0], high = factor[0];
     for (int i = 1; i < n; i++) {
@@ -289,7 +289,7 @@ static void try_factor_of(hn_value_search *f, term *t, hn_ex argument) {
     }
 }
 
-/// What each_other_name() needs of a term.
+/// The data that each_other_name() needs of a term.
 typedef struct term_visit {
     term *t;
     hn_ex argument;

@@ -19,13 +19,13 @@ void hn_value_search_begin(hn_value_search *f, hn_value_sheet *sheet, int k, con
         .sheet = sheet, .entry = k, .given = given, .formula = formula, .result = r};
 }
 
-/// Whether further candidates cannot change the result: one is certain, or two agree as closely as
-/// is told apart.
+/// Returns whether further candidates cannot change the result: one is certain, or two agree as
+/// closely as is told apart.
 static bool is_done(const hn_value_search *f) {
     return (f->n_found == 2 && f->close == 2) || (f->n_found == 1 && !f->result->likely);
 }
 
-/// Whether the values agree at all states, and how closely: as in hn_value_search.
+/// Returns whether the values agree at all states, and how closely: as in hn_value_search.
 static bool agrees(const hn_value_search *f, hn_ex e, double factor, int *close) {
     const hn_value_sheet *s = f->sheet;
     double worst = 0, size = 0;
@@ -59,8 +59,8 @@ static void shake(const hn_value_search *f, int i, const hn_ex *by, double x[HN_
     }
 }
 
-/// Whether two formulas have the same values at changed numbers; 0 and 1, or -1 when neither has a
-/// finite value anywhere.
+/// Returns whether two formulas have the same values at changed numbers; 0 and 1, or -1 when
+/// neither has a finite value anywhere.
 static int is_same(const hn_value_search *f, hn_ex a, double a_factor, hn_ex b, double b_factor,
                    const hn_ex *by) {
     hn_graph *g = f->sheet->draw->graph;
@@ -133,7 +133,7 @@ const char *hn_value_search_stray_name(hn_value_sheet *sheet, int k, hn_ex formu
     return NULL;
 }
 
-/// Whether a candidate is the right answer itself, which explains nothing.
+/// Returns whether a candidate is the right answer itself, which explains nothing.
 static bool is_reference(const hn_value_search *f, hn_ex e, double factor) {
     double x[HN_DRAW_STATES];
     for (int i = 0; i < f->sheet->draw->n_states; i++) {

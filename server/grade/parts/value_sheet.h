@@ -47,8 +47,8 @@ int hn_value_flatten(const cJSON *node, const cJSON *list[HN_VALUE_ENTRIES], int
 /// Fails: HN_ERR_INPUT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_value_read(hn_value_sheet *s, const cJSON *node, const hn_values *base,
                                       hn_values *out);
-/// Whether counts are asked for: numbers without a unit that are whole in this variant. False where
-/// the sheet has no reference.
+/// Returns whether counts are asked for: numbers without a unit that are whole in this variant.
+/// False where the sheet has no reference.
 bool hn_value_is_count(const hn_value_sheet *s);
 /// 1 when the values are those of entry k, within its tolerance, at all states.
 int hn_value_is_right(const hn_value_sheet *s, int k, const double *given);

@@ -64,8 +64,8 @@ typedef struct slip {
     int place; ///< of the places where the node stands, from 1; 0: at all of them
 } slip;
 
-/// Whether a product has the factor already: all products have two, of which the first may be
-/// another product.
+/// Returns whether a product has the factor already: all products have two, of which the first may
+/// be another product.
 static bool has_factor(const hn_graph *g, int32_t product, int32_t factor) {
     for (int depth = 0; depth < HN_VALUE_DEPTH; depth++) {
         const hn_node_view view = hn_graph_node(g, product);
@@ -80,7 +80,7 @@ static bool has_factor(const hn_graph *g, int32_t product, int32_t factor) {
     return false;
 }
 
-/// Whether the slip can happen there.
+/// Returns whether the slip can happen there.
 static bool can_happen(const hn_graph *g, const slip *s) {
     const hn_node_view view = hn_graph_node(g, s->node);
     switch (s->kind) {

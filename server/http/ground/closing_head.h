@@ -11,6 +11,6 @@
 /// Writes the status line and the headers that every such answer has. The caller adds its own
 /// headers, each with CR LF, then an empty line and n_body bytes.
 void hn_closing_head_put(hn_strbuf *b, unsigned status, const char *media_type, size_t n_body);
-/// Whether that head has a header of this name already.
+/// Returns whether that head has a header of this name already.
 bool hn_closing_head_has(const char *name);
 #endif

@@ -173,7 +173,7 @@ static double bytes_read(int fd) {
                                                                  : 0;
 }
 
-/// Whether `a` is to give up its place rather than `b`.
+/// Returns whether `a` is to give up its place rather than `b`.
 static bool goes_before(const hn_connection_watch *a, const hn_connection_watch *b) {
     return a->state != b->state ? a->state < b->state : a->since < b->since;
 }

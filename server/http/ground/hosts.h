@@ -12,6 +12,6 @@ typedef struct hn_hosts {
     bool any_address;         ///< bound to every interface, so any literal address is ours
 } hn_hosts;
 
-/// Whether `host` (a Host header: name[:port]) is one that is served.
+/// Returns whether `host` (a Host header: name[:port]) is one that is served.
 bool hn_host_is_ours(const hn_hosts *hosts, const char *host);
 #endif

@@ -93,7 +93,7 @@ static void consider(candidate *best, const candidate *other) {
     }
 }
 
-/// Whether a job that waits may be begun while `self` (NULL: nobody) is set aside for it.
+/// Returns whether a job that waits may be begun while `self` (NULL: nobody) is set aside for it.
 static bool may_begin(const hn_jobs *jobs, const waiting_job *job, const hn_job_turn *self) {
     if (!self) {
         return true;

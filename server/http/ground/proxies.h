@@ -31,10 +31,10 @@ typedef struct hn_proxies {
 bool hn_address_read(const char *text, size_t n, hn_address *out);
 hn_address hn_address_of(const struct sockaddr *address);
 bool hn_address_is_ip4(const hn_address *address);
-/// Whether it is 127.0.0.1 or ::1.
+/// Returns whether it is 127.0.0.1 or ::1.
 bool hn_address_is_loopback(const hn_address *address);
 /// Reads an address, or a network as "10.0.0.0/8". Returns false where it is neither.
 bool hn_network_read(const char *text, hn_network *out);
-/// Whether an address is a proxy's: those of this machine are, and those of the networks.
+/// Returns whether an address is a proxy's: those of this machine are, and those of the networks.
 bool hn_proxies_have(const hn_proxies *proxies, const hn_address *address);
 #endif

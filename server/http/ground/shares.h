@@ -16,9 +16,9 @@ hn_shares *hn_shares_create(int in_all, int per_client);
 void hn_shares_free(hn_shares *shares); ///< NULL is legal
 /// Takes a place. Returns 1, or 0 when there is none left, in all or for this client.
 int hn_shares_take(hn_shares *shares, hn_client client);
-/// Whether a place could be taken now.
+/// Returns whether a place could be taken now.
 bool hn_shares_has_place(hn_shares *shares, hn_client client);
-/// Whether the client holds as many places as one client may.
+/// Returns whether the client holds as many places as one client may.
 bool hn_shares_has_share(hn_shares *shares, hn_client client);
 /// Returns the client that holds the most places; 0 when nobody holds any.
 hn_client hn_shares_greediest(hn_shares *shares);

@@ -43,7 +43,7 @@ static change read_change(const cJSON *body) {
     };
 }
 
-/// Whether the clock goes back to 0.
+/// Returns whether the clock goes back to 0.
 static bool starts_anew(const change *c) {
     return c->methods || c->settings || c->reset || c->pulls;
 }

@@ -32,7 +32,8 @@ static void wait_until(hn_session *session, double time) {
     pthread_cond_timedwait(&session->wake, &session->lock, &ts);
 }
 
-/// Whether the readers have all left: the comparison then waits for one, and computes for nobody.
+/// Returns whether the readers have all left: the comparison then waits for one, and computes for
+/// nobody.
 static bool is_left(const hn_session *session) {
     return session->had_streams && session->n_streams == 0 &&
            hn_clock_wall() - session->touched > LEFT_ALONE;

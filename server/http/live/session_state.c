@@ -41,7 +41,7 @@ void hn_session_limit_equations(hn_session *session, bool limited) {
     session->interrupted = false;
 }
 
-/// Whether equations are no longer wanted, or take too long.
+/// Returns whether equations are no longer wanted, or take too long.
 static bool must_end(void *user) {
     hn_session *session = user;
     session->interrupted |= (session->maker && hn_request_is_unwanted(session->maker)) ||

@@ -91,8 +91,8 @@ static const char *find_end_of_head(const hn_request *r) {
     return info && r->head ? r->head + info->header_size : NULL;
 }
 
-/// Whether the library ended the head at a line that begins with a zero byte. Behind the last value
-/// there are two ends of lines, which are zeros now, and nothing else.
+/// Returns whether the library ended the head at a line that begins with a zero byte. Behind the
+/// last value there are two ends of lines, which are zeros now, and nothing else.
 static bool has_cut_head(const hn_request *r, const char *value_end) {
     const char *end = find_end_of_head(r);
     const ptrdiff_t apart = end && value_end ? end - value_end : 0;
@@ -106,7 +106,7 @@ static bool has_cut_head(const hn_request *r, const char *value_end) {
     return found;
 }
 
-/// Whether a zero byte cut the value of a header, or the head.
+/// Returns whether a zero byte cut the value of a header, or the head.
 static bool has_zero_byte(const hn_request *r) {
     value_look look = {0};
     MHD_get_connection_values(r->connection, MHD_HEADER_KIND, look_for_cut, &look);
@@ -314,7 +314,7 @@ int hn_guard_query(hn_request *r) {
     return 0;
 }
 
-/// Whether the parameters of a media type leave the text in UTF-8, which JSON always has.
+/// Returns whether the parameters of a media type leave the text in UTF-8, which JSON always has.
 static bool is_utf8(const char *parameters) {
     for (const char *at = parameters; (at = strchr(at, ';')) != NULL;) {
         at += 1 + strspn(at + 1, " \t");

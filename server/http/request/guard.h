@@ -18,8 +18,8 @@ bool hn_is_json_type(const char *content_type);
 /// at a header. Returns false with a problem as reply.
 bool hn_guard_headers(hn_request *r);
 
-/// Whether two authorities, of n_a and n_b bytes, are one host and port: a port that a scheme
-/// implies (80, 443) may be left out.
+/// Returns whether two authorities, of n_a and n_b bytes, are one host and port: a port that a
+/// scheme implies (80, 443) may be left out.
 bool hn_guard_is_same_host(const char *a, size_t n_a, const char *b, size_t n_b);
 /// Each returns 1 when all is well; otherwise the reply is a problem.
 int hn_guard_host(hn_request *r, const hn_hosts *hosts);

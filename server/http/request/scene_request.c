@@ -125,7 +125,8 @@ hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *fr
     return HN_OK;
 }
 
-/// Whether a place is a member of the request, not of the scene in it: both have "parameters".
+/// Returns whether a place is a member of the request, not of the scene in it: both have
+/// "parameters".
 static bool is_of_request(const hn_scene_request *order, const char *pointer) {
     static const char parameters[] = "/parameters/";
     if (strncmp(pointer, "/scene", 6) == 0 || strncmp(pointer, "/pull", 5) == 0) {

@@ -121,8 +121,8 @@ static bool is_refused(const hn_request *r) {
     return r->status >= MHD_HTTP_BAD_REQUEST;
 }
 
-/// Whether the rest of the body is not worth reading: it is long, or it is that of a refused
-/// request and comes in chunks, so that nobody knows its end.
+/// Returns whether the rest of the body is not worth reading: it is long, or it is that of a
+/// refused request and comes in chunks, so that nobody knows its end.
 static bool is_too_long_to_drain(const hn_request *r) {
     long long length = 0;
     if (is_refused(r) && hn_request_header(r, "Transfer-Encoding")) {
@@ -336,9 +336,9 @@ void *hn_dispatch_address(void *cls, const char *uri, struct MHD_Connection *con
     return r;
 }
 
-/// Whether something stands between the end of the address, as a text of C, and the version: a zero
-/// byte has cut the address. Both lie in the library's buffer of the head, one byte apart; a
-/// library that keeps the version elsewhere is believed.
+/// Returns whether something stands between the end of the address, as a text of C, and the
+/// version: a zero byte has cut the address. Both lie in the library's buffer of the head, one byte
+/// apart; a library that keeps the version elsewhere is believed.
 static bool is_cut(const char *address_end, const char *version) {
     const ptrdiff_t apart = address_end && version ? version - address_end : 0;
     return apart > 1 && apart <= HN_HEAD_BYTES;

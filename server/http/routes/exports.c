@@ -59,7 +59,8 @@ typedef struct wanted {
     bool blanks;
 } wanted;
 
-/// Whether a program can hold its loops as the method does; a reader is told its name in any case.
+/// Returns whether a program can hold its loops as the method does; a reader is told its name in
+/// any case.
 static bool is_held_by_programs(const char *spelling) {
     static const char *const names[] = {"index1@", "baumgarte@", "baumgarte:"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

@@ -155,7 +155,7 @@ static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) 
     hn_json_end_object(b);
 }
 
-/// Whether this route starts a study, or changes one.
+/// Returns whether this route starts a study, or changes one.
 static bool takes_study(const hn_route *route) {
     static const char STUDIES[] = "/api/v1/studies";
     return strncmp(route->path, STUDIES, sizeof STUDIES - 1) == 0 && route->fields;

@@ -20,7 +20,7 @@ const char *hn_static_files_policy(const hn_static_files *files);
 /// Answers with the file of that address ("/" is index.html): 200, 304, or 0 when there is none (no
 /// reply is made then).
 int hn_static_files_reply(hn_static_files *files, hn_request *r, const char *address);
-/// Whether there is a file of that address.
+/// Returns whether there is a file of that address.
 bool hn_static_files_has(hn_static_files *files, const char *address);
 /// An address of the list near to this one, or NULL.
 const char *hn_static_files_nearest(const hn_static_files *files, const char *address);

@@ -293,7 +293,8 @@ static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model
     return status;
 }
 
-/// Whether the equations, of the scene and of the methods, take too long or are no longer wanted.
+/// Returns whether the equations, of the scene and of the methods, take too long or are no longer
+/// wanted.
 static bool must_end(void *user) {
     allowance *a = user;
     hn_job_make_way(a->turn);

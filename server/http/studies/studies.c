@@ -460,7 +460,7 @@ static bool is_listed(const hn_study *s) {
     return false;
 }
 
-/// Whether a study runs, or is finished: going on changes nothing. With the lock held.
+/// Returns whether a study runs, or is finished: going on changes nothing. With the lock held.
 static bool has_no_need(const hn_study *s) {
     return s->done ? s->result.state == HN_STUDY_FINISHED : !atomic_load(&s->work.stop);
 }

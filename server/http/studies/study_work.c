@@ -19,7 +19,7 @@ static int must_stop(void *user) {
     return w->cpu_used_up || atomic_load(&w->stop);
 }
 
-/// Whether equations are no longer wanted: of the scene, and of its methods while the study
+/// Returns whether equations are no longer wanted: of the scene, and of its methods while the study
 /// computes. Members written afterwards need none.
 static bool must_end(void *user) {
     hn_study_work *w = user;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the multipliers of a state are worth: told from the rank and the condition of K.
+// The worth of the multipliers of a state, told from the rank and the condition of K.
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is told of joints with several freedoms, of limits and of motors.
+// Reports on joints with several degrees of freedom, on limits and on motors.
 #include "support/near.h"
 
 #include "dynamics/analyse/inspect.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What large mechanisms use in place of dense matrices: M and J by their entries, rates by a tree.
+// Large mechanisms use lists in place of dense matrices: M and J by their entries, rates by a tree.
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/rate_tree.h"

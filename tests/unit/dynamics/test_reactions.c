@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What joints carry: balance of every body from poses alone, cases worked out by hand, and
+// Forces in joints: balance of every body from poses alone, cases worked out by hand, and
 // independence of the cut.
 #include "support/near.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What formulas do to joints: efforts along coordinates against closed forms, the same springs
+// Forces of formulas on joints: efforts along coordinates against closed forms, the same springs
 // written both ways, and the balance of every body from differences of its poses.
 #include "support/near.h"
 

@@ -21,7 +21,8 @@ static void open_ring(hn_model *m, const ring *r, int cut) {
     }
 }
 
-/// What does not depend on the coordinates chosen: the crank's acceleration and the energy.
+/// Finds the two values that do not depend on the coordinates: the crank's acceleration and the
+/// energy.
 static void observe(const hn_model *m, double out[2]) {
     double user_a[32];
     assert_true(m->info.n_user <= 32);

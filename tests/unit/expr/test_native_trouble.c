@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of compiled tapes, and what becomes of a run when files or the compiler fail.
+// Kept files of compiled tapes, and runs while files or the compiler fail.
 #include "support/native_tapes.h"
 #include "support/near.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the loader makes of sound scenes: the shipped ones, and small ones for each rule of the
+// Sound scenes as the loader reads them: the shipped ones, and small ones for each rule of the
 // format.
 #include "expr/construct.h"
 #include "expr/parse.h"

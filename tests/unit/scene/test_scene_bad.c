@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Whether the file is refused as expected; otherwise prints what was found.
+/// Returns whether the file is refused as expected; otherwise prints what was found.
 static bool is_told(const char *file, const char *pointer, const char *word) {
     char path[256];
     hn_scene *scene = (hn_scene *)&path;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the loader makes of joints with several coordinates, of constraints beside joints, and of
+// The loader's reading of joints with several coordinates, of constraints beside joints, and of
 // actuators.
 #include "scene/scene.h"
 

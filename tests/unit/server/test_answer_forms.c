@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a submission may look like beside the form that is asked for: members that are there twice,
+// Forms of a submission other than the one that is asked for: members that are there twice,
 // other ways to write a choice with its reason, fields that nobody reads, rounded numbers.
 #include "grade/grade.h"
 #include "grade/variant.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which addresses are one client.
+// Addresses that count as one client.
 #include "http/request/client.h"
 
 #include "support/near.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long a program of one's own may take.
+// Time limits of a program of one's own.
 #include "program/limits.h"
 #include "support/near.h"
 

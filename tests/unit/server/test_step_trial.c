@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the trial of shorter steps says: the step that would do, or only what was tried. The step is
+// The trial of shorter steps says which step would do, or only what was tried. The step is
 // denied to be the cause where the error does not fall with it, and nowhere else.
 #include "tui/step_trial.h"
 

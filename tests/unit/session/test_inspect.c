@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the compiler kept and left out, told of scenes for which it can be counted by hand.
+// The parts that the compiler kept and left out, of scenes for which it can be counted by hand.
 #include "session/model/inspect_json.h"
 #include "session/model/lists.h"
 #include "session/model/model.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of studies: taken up where it was cut, never trusted halfway.
+// Kept studies: taken up where they were cut, never trusted halfway.
 #include "support/near.h"
 
 #include "session/precision/study.h"
@@ -125,7 +125,7 @@ static void a_study_goes_on_where_it_was_cut(void **state) {
     close_place(&p);
 }
 
-/// What a study says of its times, with these in the first point.
+/// Returns what a study says of its times, with these in the first point.
 static void assert_says(const hn_study *study, int times, bool too_long, const char *said) {
     hn_wp_point *p = &hn_study_wp(study)->methods[0].point[0];
     const hn_wp_point was = *p;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What students are told about the methods, run and measured: gap and energy of the four-bar over
-// 10 s, the null-space form as printed, the sweet spot of Baumgarte's alpha, and the laws by which
-// gaps drift. The figures come from an independent program.
+// Statements that students read about the methods, run and measured: gap and energy of the four-bar
+// over 10 s, the null-space form as printed, the sweet spot of Baumgarte's alpha, and the laws by
+// which gaps drift. The figures come from an independent program.
 
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"

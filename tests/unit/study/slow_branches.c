@@ -32,7 +32,8 @@ static const char *const adaptive[] = {"projection@dopri5", "index1@dopri5",
                                        "baumgarte:alpha=10,beta=10@dopri5", "index2@radau5",
                                        "index2@ida"};
 
-/// How far a state is from the branch of the motion that the mechanism was started on [rad or m].
+/// Returns how far a state is from the branch of the motion that the mechanism was started on [rad
+/// or m].
 typedef double (*distance)(const hn_model *m, const hn_sample *s);
 
 static double angle(const hn_model *m, const hn_sample *s, const char *name) {

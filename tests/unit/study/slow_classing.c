@@ -51,7 +51,7 @@ static hn_wp *ladders_of(const hn_trial *trial, const char *path, double T, hn_r
     return wp;
 }
 
-/// What was found, in words, for whoever reads a failure.
+/// The finding in words, for whoever reads a failure.
 static void print_all(const hn_wp *wp, const char *path) {
     print_message("%s: reference to %.1f digits\n", path, hn_ref_digits(wp->ref));
     for (int m = 0; m < wp->n_methods; m++) {

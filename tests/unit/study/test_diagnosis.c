@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is found out after something went wrong: the cause by name, and remedies that were tried.
+// The findings after something went wrong: the cause by name, and remedies that were tried.
 #include "study/run/diagnosis.h"
 #include "support/model.h"
 #include "support/motion.h"

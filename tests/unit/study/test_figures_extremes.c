@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must hold whatever the speed of a mechanism, and how explicit Euler gains energy: closed
+// Facts that hold whatever the speed of a mechanism, and how explicit Euler gains energy: closed
 // forms.
 
 #include "support/motion.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who solves for the accelerations is a choice: the same motion by each, a reason from each that
+// The solver of the accelerations is a choice: the same motion by each, a reason from each that
 // cannot serve; and what is told at singular poses leads through them.
 
 #include "dynamics/evaluate/accel.h"

@@ -67,7 +67,7 @@ static void a_damper_takes_what_the_closed_form_says(void **state) {
     hn_model_close(&m);
 }
 
-/// What is left of the damped pendulum's energy after 2 s.
+/// Returns the rest of the damped pendulum's energy after 2 s.
 static double left(const hn_model *m, const char *integrator, double h) {
     char method[64];
     snprintf(method, sizeof method, "index1@%s:h=%g", integrator, h);

@@ -97,7 +97,7 @@ static void a_budget_that_is_too_small_leaves_points_out_and_says_so(void **stat
     hn_trial_close(&trial);
 }
 
-/// What a study finds must not depend on how much of its time limit was left for it.
+/// The findings of a study must not depend on how much of its time limit was left.
 static void errors_are_taken_at_all_times_or_the_point_is_left_out(void **state) {
     (void)state;
     hn_trial trial;

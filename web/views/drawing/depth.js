@@ -5,7 +5,7 @@
 import { sentenceOf } from "../../api/client.js";
 import { loadStyle } from "../../widgets/dom.js";
 
-/** Whether this browser draws with WebGL 2. */
+/** Returns whether this browser draws with WebGL 2. */
 const drawsSolids = () => Boolean(document.createElement("canvas").getContext("webgl2"));
 
 /**

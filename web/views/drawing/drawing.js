@@ -31,7 +31,7 @@ const LAYERS = /** @type {const} */ ([
   "labels",
   "scale",
 ]);
-/** What can be drawn or left out, and the word on its button. */
+/** The parts that can be drawn or left out, and the word on each button. */
 const TOGGLES = { labels: "labels", traces: "paths", reference: "reference" };
 
 /**

@@ -48,7 +48,10 @@ export function createGhosts(layers, data, stage) {
     return { group, pieces, sorted: how === "alone" };
   }
 
-  /** What lies farther away comes first. @param {Ghost} ghost @param {ArrayLike<number>} points */
+  /**
+   * Sorts pieces: those farther away come first.
+   * @param {Ghost} ghost @param {ArrayLike<number>} points
+   */
   function sortPieces(ghost, points) {
     const depths = new Map(ghost.pieces.map((piece) => [piece, stage.pen.depth(piece, points)]));
     const order = [...ghost.pieces].sort((a, b) => Number(depths.get(a)) - Number(depths.get(b)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What of the drawing can be taken hold of: joints, links, and the ends of lengths. The dragged
+// The parts of the drawing that can be dragged: joints, links, and the ends of lengths. The dragged
 // mechanism is drawn over the others until it is let go.
 import { quantity } from "../../state/format.js";
 import { snapped } from "../../state/start.js";

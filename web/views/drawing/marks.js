@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What is drawn over the mechanism: open cut joints, arrows of forces, names of points, paths.
+// Marks over the mechanism: open cut joints, arrows of forces, names of points, paths.
 import { quantity } from "../../state/format.js";
 import { arrowScale, sizeOf, zeroOf } from "../../state/reactions.js";
 import { s, say, set } from "../../widgets/dom.js";

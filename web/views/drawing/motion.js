@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The clock of the picture. Frames come as the server sends them; while the mechanism moves, the
-// picture goes on evenly between them, so that it moves in slow motion too. What stands is always a
-// frame.
+// picture goes on evenly between them, so that it moves in slow motion too. The picture at rest is
+// always a frame.
 import { listen, shownIndex } from "../../state/store.js";
 
 const BEHIND = 2; // frames at most that the picture follows the newest one by

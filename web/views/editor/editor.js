@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The scene as a document beside the drawing. What is typed runs as soon as it is a scene; until
+// The scene as a document beside the drawing. Typed text runs as soon as it is a scene; until
 // then the last good one goes on, and every fault is named at its line.
 import { Problem, sentenceOf } from "../../api/client.js";
 import { documents } from "../../api/documents.js";

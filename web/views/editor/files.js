@@ -5,7 +5,7 @@ import { h } from "../../widgets/dom.js";
 
 const MODELS = /\.(xml|urdf|mjcf)$/i;
 
-/** Whether a text is a model of another program. @param {string} text */
+/** Returns whether a text is a model of another program. @param {string} text */
 export const isModel = (text) => text.trimStart().startsWith("<");
 
 /** A hidden field that chooses files. @param {(files: File[]) => void} open */

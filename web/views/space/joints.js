@@ -32,7 +32,7 @@ const hoop = (radius, thick, faces, material, arc = 2 * Math.PI) =>
   );
 
 /**
- * Of each type, by r of a bar [m] and n faces round it.
+ * The shape of each type, by r of a bar [m] and n faces round it.
  * @type {Record<string, (r: number, n: number, of: {pin: any, axis: any}) => any[]>}
  */
 const GLYPHS = {

@@ -73,7 +73,7 @@ function makeBodies(scene, { material, shadow, coarse, slim = 1 }) {
 }
 
 /**
- * What stands on the ground: solids, guides, posts.
+ * Makes the parts that stand on the ground: solids, guides, posts.
  * @param {any} floor @param {string} colour @param {boolean} coarse
  */
 export function makeBase(scene, floor, colour, coarse) {

@@ -288,7 +288,7 @@ export function createSpace(frame, store, actions, drawing) {
   return {
     make,
     rig,
-    /** What is drawn is here, and the SVG leaves it out. */
+    /** Whether the scene is drawn here, and the SVG leaves it out. */
     get shows() {
       return made !== null && !lost && Boolean(data.scene?.view?.spatial);
     },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// How a person moves through space: wheel and pinch zoom, the right button, Shift or two fingers
+// Moving through space: wheel and pinch zoom, the right button, Shift or two fingers
 // move, keys do all of it; buttons for perspective, frames and following. Turning by dragging is
 // the drawing's own.
 import { anglesOf, lookFrom, lookOf } from "../../state/look.js";
