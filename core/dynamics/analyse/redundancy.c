@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/redundancy.h"
 
+#include "dynamics/analyse/singularity_monitor.h"
 #include "dynamics/compile/system_impl.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/mass_scales.h"
@@ -121,9 +122,9 @@ static hn_status rows_stand_apart(const hn_system *sys, const hn_eval *eval, con
     return HN_OK;
 }
 
-/// Row by row: what is left of it beside the rows kept before.
+/// Row by row: what is left of it beside the rows kept before. Sets *n_follow to their number.
 static hn_status split_rows(hn_strbuf *b, const hn_system *sys, const hn_eval *eval,
-                            const double *d, hn_arena *arena) {
+                            const double *d, hn_arena *arena, int *n_follow) {
     basis s;
     const double *J = hn_eval_list(eval, HN_TERM_J);
     const int *row, *col, n = hn_eval_pattern(eval, HN_TERM_J, &row, &col);
@@ -148,13 +149,14 @@ static hn_status split_rows(hn_strbuf *b, const hn_system *sys, const hn_eval *e
             keep(&s, i, left);
         } else {
             put_follower(b, sys, &s, i);
+            ++*n_follow;
         }
     }
     return HN_OK;
 }
 
 static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, const double *q,
-                               hn_arena *arena) {
+                               hn_arena *arena, int *n_follow) {
     hn_eval *eval = NULL;
     bool apart;
     double *d = hn_arena_doubles(arena, (size_t)sys->nv);
@@ -168,13 +170,31 @@ static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, con
     hn_mass_scales(sys, eval, d);
     hn_status status = rows_stand_apart(sys, eval, d, arena, &apart);
     if (status == HN_OK && !apart) {
-        status = split_rows(b, sys, eval, d, arena);
+        status = split_rows(b, sys, eval, d, arena, n_follow);
     }
     hn_eval_free(eval);
     return status;
 }
 
+/// Finds whether rows that follow from others at q do so only there: *only.
+static hn_status follow_only_here(const hn_system *sys, double t, const double *q, hn_arena *arena,
+                                  bool *only) {
+    hn_singularity *monitor = NULL;
+    hn_singularity_info info;
+    const double *rest = hn_arena_doubles(arena, (size_t)sys->nv);
+    if (!rest) {
+        return HN_ERR_MEMORY;
+    }
+    HN_TRY(hn_singularity_create(sys, arena, &monitor));
+    hn_singularity_check(monitor, t, q, rest, &info);
+    *only = hn_singularity_is_local(monitor, t, q);
+    hn_singularity_free(monitor);
+    return HN_OK;
+}
+
 hn_status hn_system_redundancy_put(hn_strbuf *b, const hn_system *sys, double t, const double *q) {
+    int n_follow = 0;
+    bool only = false;
     hn_arena *arena = hn_arena_create(0);
     hn_json_key(b, "redundant_rows");
     hn_json_object(b);
@@ -188,9 +208,13 @@ hn_status hn_system_redundancy_put(hn_strbuf *b, const hn_system *sys, double t,
     hn_json_array(b);
     hn_status status = arena ? HN_OK : HN_ERR_MEMORY;
     if (status == HN_OK && sys->nc > 0) {
-        status = put_followers(b, sys, t, q, arena);
+        status = put_followers(b, sys, t, q, arena, &n_follow);
     }
     hn_json_end_array(b);
+    if (status == HN_OK && n_follow > 0 && sys->nv < LARGE) {
+        status = follow_only_here(sys, t, q, arena, &only);
+        hn_json_put_bool(b, "singular", only);
+    }
     hn_json_end_object(b);
     hn_arena_free(arena);
     return status == HN_OK && b->failed ? HN_ERR_MEMORY : status;

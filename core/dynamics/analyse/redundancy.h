@@ -7,8 +7,10 @@
 #include "base/strbuf.h"
 #include "dynamics/compile/system.h"
 
-/// Writes "redundant_rows" {"vanish": [names], "follow": [{"row", "from": [names]}]} into the JSON
-/// object that is open in `b`, for the pose q (nq) at time t.
+/// Writes "redundant_rows" {"vanish": [names], "follow": [{"row", "from": [names]}], "singular"?}
+/// into the JSON object that is open in `b`, for the pose q (nq) at time t. "singular", where rows
+/// follow from others and there are fewer than 100 velocities: some of them do so only at this
+/// pose, which is then a singular configuration.
 ///
 /// Rows are taken in their order. A row follows from the rows kept before when the part of it
 /// outside their span is below 1e-9 of its length; lengths are measured by diag(M)^-1/2, so that

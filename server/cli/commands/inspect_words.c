@@ -19,6 +19,7 @@ const hn_outline_word hn_inspect_words[] = {
     {"redundant_rows.vanish", "zero in every configuration"},
     {"redundant_rows.follow", "that follow from others at the start"},
     {"redundant_rows.follow.from", "follows from"},
+    {"redundant_rows.singular", "some only there: the start is a singular configuration"},
 
     {"actuation", "drives"},
     {"actuation.actuated", "driven coordinates"},

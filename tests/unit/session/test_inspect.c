@@ -148,6 +148,20 @@ static void dependent_rows_of_shaft_and_bennett_are_named(void **state) {
     cJSON_Delete(d);
 }
 
+// a flat parallelogram has a row less than the same one a little further on; the row that Bennett's
+// linkage can spare is redundant all the way round
+static void rows_that_follow_only_at_the_start_are_called_singular(void **state) {
+    (void)state;
+    static const hn_setting flat = {.name = "th_0", .value = 0};
+    cJSON *there = inspect_with("parallelogram", &flat), *all_round = inspect("bennett");
+    const cJSON *rows = cJSON_GetObjectItemCaseSensitive(there, "redundant_rows");
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(rows, "singular")));
+    rows = cJSON_GetObjectItemCaseSensitive(all_round, "redundant_rows");
+    assert_true(cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(rows, "singular")));
+    cJSON_Delete(all_round);
+    cJSON_Delete(there);
+}
+
 // elimination in the order of the rows and pivoted QR count alike, in every scene
 static void as_many_rows_follow_as_assembly_counts(void **state) {
     (void)state;
@@ -223,6 +237,7 @@ int main(void) {
         cmocka_unit_test(rows_that_a_plane_leaves_out_are_named),
         cmocka_unit_test(the_teeth_of_further_planets_follow_from_the_first),
         cmocka_unit_test(dependent_rows_of_shaft_and_bennett_are_named),
+        cmocka_unit_test(rows_that_follow_only_at_the_start_are_called_singular),
         cmocka_unit_test(as_many_rows_follow_as_assembly_counts),
         cmocka_unit_test(who_factors_newton_matrices_is_told),
         cmocka_unit_test(sharing_and_leaving_out_never_cost),
