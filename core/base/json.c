@@ -118,8 +118,8 @@ void hn_json_number(hn_strbuf *b, double value) {
 
     // the fewest digits that read back to the same double
     char text[HN_SHORTEST_TEXT];
-    hn_shortest_write(value, text);
-    hn_strbuf_add(b, text);
+    const int n = hn_shortest_write(value, text);
+    hn_strbuf_add_n(b, text, (size_t)n);
 }
 
 void hn_json_int(hn_strbuf *b, long long value) {

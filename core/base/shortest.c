@@ -90,11 +90,16 @@ static bool multiply(uint64_t m, int e, int exponent, scaled *y) {
 }
 
 static bool scale(double size, scaled *y) {
-    int two;
-    const uint64_t m = (uint64_t)ldexp(frexp(size, &two), 53);
-    const int least = (int)floor((two - 1) * 0.30102999566398120); // log10 of 2; or one too small
-    if (!multiply(m, two - 53, least, y) ||
-        (y->whole >= 10 * TEN_TO_16 && !multiply(m, two - 53, least + 1, y))) {
+    uint64_t bits;
+    memcpy(&bits, &size, sizeof bits);
+    const int field = (int)(bits >> 52), two = field - 1023; // size = m 2^(two - 52)
+    const uint64_t m = (bits & ((1ull << 52) - 1)) | 1ull << 52;
+    if (field == 0) {
+        return false; // below every product
+    }
+    const int least = (two * 315653) >> 20; // floor of log10 of 2^two: the exponent, or one less
+    if (!multiply(m, two - 52, least, y) ||
+        (y->whole >= 10 * TEN_TO_16 && !multiply(m, two - 52, least + 1, y))) {
         return false;
     }
     y->is_even = m % 2 == 0;
@@ -102,15 +107,14 @@ static bool scale(double size, scaled *y) {
     return y->whole >= TEN_TO_16 && y->whole < 10 * TEN_TO_16;
 }
 
-/// Rounds y to its first 17 - dropped digits, halves to even; returns whether they read back to the
-/// same double.
-static bool round_to(const scaled *y, int dropped, uint64_t *digits) {
-    static const uint64_t unit[] = {1, 10, 100};
-    const uint64_t u = unit[dropped], left = y->whole % u;
+/// Rounds y to its first digits, up to those of value `u`, halves to even; returns whether they
+/// read back to the same double. Inline, because a division by a known `u` is a product.
+static inline bool round_to(const scaled *y, uint64_t u, uint64_t *digits) {
+    const uint64_t left = y->whole % u;
     const wide one = (wide)1 << y->shift;
 
     // twice what is left against a whole unit
-    const wide twice = 2 * (left * one + y->rest), all = u * one;
+    const wide twice = 2 * (((wide)left << y->shift) + y->rest), all = u * one;
     *digits = y->whole / u;
     const bool up = twice > all || (twice == all && *digits % 2 == 1);
     *digits += up;
@@ -121,100 +125,128 @@ static bool round_to(const scaled *y, int dropped, uint64_t *digits) {
     return 2 * off < half || (2 * off == half && y->is_even);
 }
 
-/// As %g with this precision: `n` digits are left of it once the zeros at the end are gone.
-static void layout(const char *digits, int n, int precision, int exponent, char *text) {
-    char *out = text;
+/// The fewest digits from 15 on that read back; returns how many. The last, 17, always do.
+static int fewest(const scaled *y, uint64_t *digits) {
+    if (round_to(y, 100, digits)) {
+        return MOST_DIGITS - 2;
+    }
+    if (round_to(y, 10, digits)) {
+        return MOST_DIGITS - 1;
+    }
+    (void)round_to(y, 1, digits);
+    return MOST_DIGITS;
+}
+
+/// Writes an exponent of at least two digits, as %g does; returns the end.
+static char *put_exponent(int exponent, char *out) {
+    const int size = abs(exponent);
+    *out++ = 'e';
+    *out++ = exponent < 0 ? '-' : '+';
+    *out++ = (char)('0' + size / 10);
+    *out++ = (char)('0' + size % 10);
+    return out;
+}
+
+/// As %g with this precision: `n` digits are left of it once the zeros at the end are gone; returns
+/// the end. All MOST_DIGITS are copied at a time, which takes no call: the text has room for them.
+static char *layout(const char *digits, int n, int precision, int exponent, char *out) {
     if (exponent < -4 || exponent >= precision) {
-        *out++ = digits[0];
-        if (n > 1) {
-            *out++ = '.';
-            memcpy(out, digits + 1, (size_t)n - 1);
-            out += n - 1;
-        }
-        const int size = abs(exponent);
-        *out++ = 'e';
-        *out++ = exponent < 0 ? '-' : '+';
-        *out++ = (char)('0' + size / 10);
-        *out++ = (char)('0' + size % 10);
-        *out = '\0';
-        return;
+        memcpy(out + 1, digits, MOST_DIGITS);
+        out[0] = digits[0];
+        out[1] = '.';
+        return put_exponent(exponent, n > 1 ? out + n + 1 : out + 1);
     }
 
-    // zeros before the first digit, the digits with a point among them, zeros up to the point
+    // zeros before the first digit
     if (exponent < 0) {
-        memcpy(out, "0.000", (size_t)(1 - exponent));
-        out += 1 - exponent;
+        memcpy(out, "0.000", 5);
+        memcpy(out + 1 - exponent, digits, MOST_DIGITS);
+        return out + 1 - exponent + n;
     }
-    const int before = exponent < 0 ? 0 : exponent + 1 < n ? exponent + 1 : n;
-    memcpy(out, digits, (size_t)before);
-    out += before;
-    for (int i = before; i <= exponent; i++) {
-        *out++ = '0';
-    }
+
+    // the digits with a point among them
+    const int before = exponent + 1;
     if (before < n) {
-        if (exponent >= 0) {
-            *out++ = '.';
+        memcpy(out + 1, digits, MOST_DIGITS);
+        for (int i = 0; i < before; i++) {
+            out[i] = digits[i];
         }
-        memcpy(out, digits + before, (size_t)(n - before));
-        out += n - before;
+        out[before] = '.';
+        return out + n + 1;
     }
-    *out = '\0';
+
+    // zeros up to where the point would be
+    memcpy(out, digits, MOST_DIGITS);
+    for (int i = n; i < before; i++) {
+        out[i] = '0';
+    }
+    return out + before;
 }
 
-/// The first `n` digits of a number that has no more; returns how many are left without the zeros
-/// at the end.
-static int list_digits(uint64_t number, int n, char digits[MOST_DIGITS]) {
-    // halves of at most nine digits: their divisions do not wait for each other, and are short
-    const int low = n - 8;
-    uint32_t first = (uint32_t)(number / 100000000u), last = (uint32_t)(number % 100000000u);
-    for (int i = n - 1; i >= low; i--) {
-        digits[i] = (char)('0' + last % 10);
-        last /= 10;
-    }
-    for (int i = low - 1; i >= 0; i--) {
-        digits[i] = (char)('0' + first % 10);
-        first /= 10;
-    }
-    while (n > 1 && digits[n - 1] == '0') {
-        n--;
-    }
-    return n;
+/// Writes a number below 100 with two digits.
+static void put_pair(uint32_t pair, char *out) {
+    static const char pairs[] = "00010203040506070809101112131415161718192021222324"
+                                "25262728293031323334353637383940414243444546474849"
+                                "50515253545556575859606162636465666768697071727374"
+                                "75767778798081828384858687888990919293949596979899";
+    memcpy(out, pairs + 2 * pair, 2);
 }
 
-/// False where the number is too large, too small, or rounded up to one digit more.
-static bool write_by_product(double value, char *text) {
+/// Writes a number below 10^8 with eight digits.
+static void put_eight(uint32_t number, char *out) {
+    const uint32_t high = number / 10000, low = number % 10000;
+    put_pair(high / 100, out);
+    put_pair(high % 100, out + 2);
+    put_pair(low / 100, out + 4);
+    put_pair(low % 100, out + 6);
+}
+
+/// All MOST_DIGITS digits of a number, the first of them zeros where it has fewer.
+static void list_digits(uint64_t number, char digits[MOST_DIGITS]) {
+    const uint32_t first = (uint32_t)(number / 100000000u), last = (uint32_t)(number % 100000000u);
+    digits[0] = (char)('0' + first / 100000000u);
+    put_eight(first % 100000000u, digits + 1);
+    put_eight(last, digits + 9);
+}
+
+/// Returns the end of the text; NULL where the number is too large, too small, or rounded up to one
+/// digit more.
+static char *write_by_product(double value, char *text) {
     static const uint64_t most[] = {10 * TEN_TO_16, TEN_TO_16, TEN_TO_16 / 10};
     scaled y;
     if (!scale(fabs(value), &y)) {
-        return false;
+        return NULL;
     }
-
-    // 15, 16 or 17 digits: the last always read back
     uint64_t number = 0;
-    int dropped = 2;
-    while (!round_to(&y, dropped, &number) && dropped > 0) {
-        dropped--;
-    }
-    const int precision = MOST_DIGITS - dropped;
-    if (number >= most[dropped]) {
-        return false;
+    const int precision = fewest(&y, &number), zeros = MOST_DIGITS - precision;
+    if (number >= most[zeros]) {
+        return NULL;
     }
 
+    // as many bytes behind the digits as layout() copies beyond them
+    char all[2 * MOST_DIGITS] = {0};
+    const char *digits = all + zeros;
+    list_digits(number, all);
+    int n = precision;
+    while (n > 1 && digits[n - 1] == '0') {
+        n--;
+    }
     if (signbit(value)) {
         *text++ = '-';
     }
-    char digits[MOST_DIGITS];
-    const int n = list_digits(number, precision, digits);
-    layout(digits, n, precision, y.exponent, text);
-    return true;
+    return layout(digits, n, precision, y.exponent, text);
 }
 
-void hn_shortest_write(double value, char text[HN_SHORTEST_TEXT]) {
+int hn_shortest_write(double value, char text[HN_SHORTEST_TEXT]) {
     if (value == 0) {
         strcpy(text, signbit(value) ? "-0" : "0");
-        return;
+        return signbit(value) ? 2 : 1;
     }
-    if (!write_by_product(value, text)) {
+    char *end = write_by_product(value, text);
+    if (!end) {
         write_by_trial(value, text);
+        return (int)strlen(text);
     }
+    *end = '\0';
+    return (int)(end - text);
 }

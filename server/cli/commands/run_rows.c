@@ -250,9 +250,30 @@ void hn_run_rows_begin(hn_run_rows *rows, const cJSON *run) {
     free(columns);
 }
 
+/// Adds finite numbers as text, others as `none`; a block of the line at a time.
+static void put_numbers(hn_strbuf *text, const double *values, int n, const char *none) {
+    enum { BLOCK = 1024, ROOM = 1 + HN_SHORTEST_TEXT };
+    char block[BLOCK];
+    int used = 0;
+    for (int c = 0; c < n; c++) {
+        if (used > BLOCK - ROOM) {
+            hn_strbuf_add_n(text, block, (size_t)used);
+            used = 0;
+        }
+        if (c > 0) {
+            block[used++] = ',';
+        }
+        if (isfinite(values[c])) {
+            used += hn_shortest_write(values[c], block + used);
+        } else {
+            used += (int)strlen(strcpy(block + used, none));
+        }
+    }
+    hn_strbuf_add_n(text, block, (size_t)used);
+}
+
 void hn_run_rows_put(hn_run_rows *rows, const double *values, int n) {
     hn_strbuf text;
-    char number[1 + HN_SHORTEST_TEXT] = ","; // with the comma before it
     hn_strbuf_init(&text);
     if (rows->width > 0) {
         put_table_row(&text, rows, values);
@@ -260,15 +281,7 @@ void hn_run_rows_put(hn_run_rows *rows, const double *values, int n) {
         return;
     }
     hn_strbuf_add(&text, rows->ndjson ? "[" : "");
-    for (int c = 0; c < n && c < rows->n; c++) {
-        if (isfinite(values[c])) {
-            hn_shortest_write(values[c], number + 1);
-            hn_strbuf_add(&text, c ? number : number + 1);
-        } else {
-            hn_strbuf_add(&text, c ? "," : "");
-            hn_strbuf_add(&text, rows->ndjson ? "null" : "");
-        }
-    }
+    put_numbers(&text, values, n < rows->n ? n : rows->n, rows->ndjson ? "null" : "");
     hn_strbuf_add(&text, rows->ndjson ? "]\n" : "\n");
     print(rows, &text);
 }

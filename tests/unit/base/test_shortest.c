@@ -24,7 +24,8 @@ static void by_trial(double value, char text[40]) {
 static void check(double value) {
     for (int side = 0; side < 2; side++, value = -value) {
         char text[HN_SHORTEST_TEXT], expected[40];
-        hn_shortest_write(value, text);
+        const int length = hn_shortest_write(value, text);
+        assert_int_equal(length, (int)strlen(text));
         by_trial(value, expected);
         assert_string_equal(text, expected);
         assert_true(strtod(text, NULL) == value);
