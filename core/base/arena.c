@@ -8,6 +8,10 @@
 #include <string.h>
 
 enum { ALIGNMENT = 64, DEFAULT_BLOCK = 4096, LARGEST_DOUBLED = 16 << 20 };
+// A smaller block is zeroed piece by piece: what is never given out is never touched, and a page
+// that is touched costs a short run more than most of its arithmetic. Larger ones come as zeros
+// from the system.
+enum { ZEROED_AT_ONCE = 1 << 17 };
 
 // Blocks form a list, newest first; only the newest is filled. `bytes` is aligned by hand because
 // malloc promises 16.
@@ -15,6 +19,7 @@ typedef struct block {
     struct block *older;
     char *bytes;
     size_t size, used;
+    bool is_zero; ///< what is still free in it
 } block;
 
 struct hn_arena {
@@ -27,12 +32,16 @@ static block *block_create(size_t size, block *older) {
     if (size > SIZE_MAX - sizeof(block) - ALIGNMENT) {
         return NULL;
     }
-    block *b = calloc(1, sizeof(block) + size + ALIGNMENT);
+    const bool is_zero = size >= ZEROED_AT_ONCE;
+    const size_t all = sizeof(block) + size + ALIGNMENT;
+    block *b = is_zero ? calloc(1, all) : malloc(all);
     if (b != NULL) {
         const uintptr_t start = (uintptr_t)(b + 1);
         b->older = older;
         b->bytes = (char *)(b + 1) + (ALIGNMENT - start % ALIGNMENT) % ALIGNMENT;
         b->size = size;
+        b->used = 0;
+        b->is_zero = is_zero;
     }
     return b;
 }
@@ -95,7 +104,7 @@ void *hn_arena_get(hn_arena *arena, size_t size) {
     void *piece = arena->newest->bytes + arena->newest->used;
     arena->newest->used += rounded;
     arena->used += rounded;
-    return piece;
+    return arena->newest->is_zero ? piece : memset(piece, 0, rounded);
 }
 
 static void *get_items(hn_arena *arena, size_t n, size_t size) {

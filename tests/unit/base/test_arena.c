@@ -31,6 +31,25 @@ static void pieces_are_zeroed_aligned_and_do_not_overlap(void **state) {
     hn_arena_free(arena);
 }
 
+// memory that was used before and given back is what the next arena may get
+static void pieces_are_zeroed_in_blocks_of_every_size(void **state) {
+    (void)state;
+    for (size_t block = 64; block <= 1 << 20; block *= 4) {
+        for (int turn = 0; turn < 3; turn++) {
+            hn_arena *arena = hn_arena_create(block);
+            for (size_t taken = 0; taken < 3 * block; taken += block / 4 + 8) {
+                unsigned char *piece = hn_arena_get(arena, block / 4 + 8);
+                assert_non_null(piece);
+                for (size_t k = 0; k < block / 4 + 8; k++) {
+                    assert_int_equal(piece[k], 0);
+                }
+                memset(piece, 0xa5, block / 4 + 8);
+            }
+            hn_arena_free(arena);
+        }
+    }
+}
+
 static void a_request_inside_the_first_block_does_not_allocate(void **state) {
     (void)state;
     hn_arena *arena = hn_arena_create(64 * 10);
@@ -111,6 +130,7 @@ static void every_failing_allocation_is_reported_and_nothing_leaks(void **state)
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pieces_are_zeroed_aligned_and_do_not_overlap),
+        cmocka_unit_test(pieces_are_zeroed_in_blocks_of_every_size),
         cmocka_unit_test(a_request_inside_the_first_block_does_not_allocate),
         cmocka_unit_test(requests_that_overflow_fail_and_the_flag_stays),
         cmocka_unit_test(size_zero_has_an_address_of_its_own),
