@@ -139,7 +139,17 @@ static void release_loaded(hn_native_loaded *l) {
     }
 }
 
+static bool knows_any(void) {
+    pthread_mutex_lock(&known.lock);
+    const bool any = known.n > 0;
+    pthread_mutex_unlock(&known.lock);
+    return any;
+}
+
 static hn_native_loaded *find_loaded(const hn_tape *tape, hn_native_form form) {
+    if (!knows_any()) {
+        return NULL; // as in every short run: no hash is needed
+    }
     const uint64_t hash = hash_of(tape);
     hn_native_loaded *found = NULL;
     pthread_mutex_lock(&known.lock);
