@@ -6,13 +6,14 @@
 #include "expr/native_build.h"
 #include "expr/native_emit.h"
 
-/// Constants in their places, everything else zero, in a workspace of single states.
+/// Fills a workspace of single states: constants in their places, everything else zero.
 void hn_native_prepare(const hn_tape *tape, double *work);
-/// Inputs for check number k: 0, 1, then numbers of -4 .. 4 by a congruential generator.
+/// Fills the inputs of check number k. k = 0: all are 0; k = 1: all are 1; else numbers of -4 .. 4
+/// by a congruential generator.
 void hn_native_fill(double *inputs, int n, int k);
 /// Returns whether compiled code gives the interpreter's bits at several states: the tape's
 /// interpreter, or that of lanes. `calls` is the table that the code takes (HN_NATIVE_CALLS).
-/// false: memory is out.
+/// false: they differ, or memory is out.
 bool hn_native_agrees(const hn_tape *tape, hn_native_form form, hn_native_code code,
                       const hn_native_call *calls);
 #endif

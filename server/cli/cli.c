@@ -151,7 +151,8 @@ static hn_diag unknown_command(const char *name) {
         names[i] = hn_command_at(i)->name;
     }
     char hint[HN_DIAG_HINT];
-    hn_suggest(hint, name, names, n, "'holonom help' lists the commands");
+    hn_suggest(hint, name, names, n,
+               "'holonom help' lists the commands, 'holonom help words' the terms");
     hn_diag diag;
     hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "there is no command '%.60s'", name);
     return diag;
@@ -192,6 +193,8 @@ static hn_exit print_terms(const hn_library *lib, const hn_args *args) {
         result = hn_command_find("list")->run(lib, &card);
     } else {
         hn_diag diag = unknown_command(hn_strbuf_text(&word));
+        snprintf(diag.message, sizeof diag.message, "'%.60s' is neither a command nor a term",
+                 hn_strbuf_text(&word));
         result = hn_report_diag(args, &diag);
     }
     hn_strbuf_reset(&word);

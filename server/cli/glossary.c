@@ -26,6 +26,16 @@ static const hn_term TERMS[] = {
      "more slowly in the end, as exp(-(alpha - sqrt(alpha^2 - beta^2)) t)."},
     {"degrees of freedom", "Number of velocities minus number of independent constraints: nv - "
                            "rank J."},
+    {"lambda_mark",
+     "The mark that every set of multipliers comes with. 0: they are unique; 1: rows depend on "
+     "each other, and these are one choice of many; 2: they have no correct digit; 3: they do not "
+     "exist; 4: they are those of open loops."},
+    {"load",
+     "A force or moment of a damper, a drive, or one that is applied from outside. Gravity and "
+     "springs without damping are none: they are part of the energy."},
+    {"mechanism's length, characteristic length",
+     "One length for the size of a mechanism, computed from its bodies and joints. Gaps and errors "
+     "are compared with it, so that a small mechanism is judged as a large one."},
     {"consistent start",
      "Start values of coordinates and velocities that satisfy phi = 0 and J v + phi_t = 0. "
      "Assembly computes them from the values that the scene gives."},
@@ -46,8 +56,8 @@ static const hn_term TERMS[] = {
      "The smallest singular value of J: how close the constraints are to dependent. It is 0 in a "
      "singular configuration, and is compared with the largest one, sigma_max."},
     {"pivot ratio",
-     "Smallest pivot met in solving for the multipliers, relative to the size of the terms that it "
-     "is the sum of: another measure of how close the constraints are to dependent. 1 is far, 0 is "
+     "Smallest pivot met in solving for the multipliers, divided by the sum of the absolute values "
+     "of its terms: another measure of how close the constraints are to dependent. 1 is far, 0 is "
      "singular."},
     {"condition number",
      "By how much the equations can magnify a relative error: with 1e6, six of sixteen digits of "

@@ -240,7 +240,7 @@ class Run(Command):
             told = [i["message"] for i in listed if i["code"] == code]
             self.assertEqual([("; later incidents of this kind are counted, not listed" in m) for m in told], [False] * 4 + [True])
         self.assertEqual({i["times"] for i in listed if i["code"] == "near-singular"}, {12})
-        said = r"and \d+ more incidents \(--json lists them, the first 5 of a kind: rank-ahead came \d+ times, near-singular came 12 times\)"
+        said = r"and \d+ more incidents \(--json lists the first 5 of each kind: rank-ahead came \d+ times, near-singular came 12 times\)"
         run = call("run", *words, "--method", "projection@rk4:h=1e-3", "--at", "5").stderr.decode()
         self.assertRegex(run, said)
         self.assertRegex(call("compare", *words, "--methods", "projection@rk4:h=1e-3").stdout.decode(), said)

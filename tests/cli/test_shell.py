@@ -161,7 +161,7 @@ class Help(unittest.TestCase):
         terms = set(re.findall(r"\((?:an? )?([a-zA-Z_ ]+)\)", told)) - set(re.findall(r"\((between [^)]*)\)", told))
         self.assertGreaterEqual(terms, {"J loses rank", "pivot ratio"})
         self.assertIn("a pilot run", told)
-        self.assertIn("smallest singular value of J, sigma_min,", told)
+        self.assertIn("smallest singular value of the scaled J, sigma_min,", told)
         for term in terms | {"pilot run", "sigma_min", "right", "inaccurate", "WRONG", "error estimate"}:
             self.assertIn(term, heads)
 

@@ -12,8 +12,9 @@
 // of [D^-2 J'; J 0], started from the last answer: a check costs as much as J and the factor have
 // entries. If the factor has lost a pivot, a dense rank-revealing QR answers.
 //
-// Prediction. When sigma_min has fallen by a tenth, a pilot run (pilot.h) goes ahead by half a
-// turn of the fastest coordinate; a configuration is announced only if that run reaches it.
+// Prediction. When sigma_min falls and is below 97 % of its largest value so far, a pilot run
+// (pilot.h) goes ahead by half a turn of the fastest coordinate; a configuration is announced only
+// if that run reaches it.
 // Extrapolation would warn falsely: sigma_min of a crank-rocker falls almost linearly to 0.27 and
 // then rises again.
 //
@@ -70,9 +71,9 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
 /// sigma_min at a pose; the record of the checks stays as it is. HUGE_VAL before the first check,
 /// and where a check costs so much that not every state gets one. Allocates nothing.
 double hn_singularity_probe(hn_singularity *r, double t, const double *q);
-/// Returns whether rows that depend on others at a pose do so only there: beside it, along
-/// velocities that J allows, more of them are independent, by the first order of the way. Dense,
-/// for poses that are reported; after the first check. Allocates nothing.
+/// Returns whether some of the rows that are dependent at this pose become independent after a
+/// small displacement along velocities that J allows. Dense, for poses that are reported; after
+/// the first check. Allocates nothing.
 bool hn_singularity_is_local(hn_singularity *r, double t, const double *q);
 /// D of the last check (nv): velocities divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_singularity_scale(const hn_singularity *r);

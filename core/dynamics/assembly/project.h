@@ -8,16 +8,17 @@
 //     position   q <- q - W^-1 J' S^-1 phi(q),   S = J W^-1 J'                                (1)
 //     velocity   v <- v - W^-1 J' S^-1 (J v + phi_t)                                          (2)
 //
-// Positions move along velocities (hn_system_move), so that quaternions stay unit. W and J of (1)
-// are frozen where the factor was made; it is made again when the gap shrinks by less than 1e4 per
-// step. (2) uses the factor at hand while it contracts. The factor is the sparse one of
+// W is M (mass-weighted) or the identity (Euclidean). Positions move along velocities
+// (hn_system_move), so that quaternions stay unit. W and J of (1) are kept from the last
+// factorisation. If one iteration reduces the gap by a factor below 1e4, they are evaluated and
+// factorised again. (2) uses the factor at hand while it contracts. The factor is the sparse one of
 // dynamics/evaluate/factor.h; where its pivots fail, the dense rank-revealing solve answers.
 
 #include "base/arena.h"
 #include "base/status.h"
 #include "dynamics/compile/system.h"
 
-/// Mass: independent of units, removes kinetic energy only. Euclidean: least change of the system
+/// Mass: independent of units; the velocity part never adds kinetic energy. Euclidean: least change of the system
 /// coordinates as numbers, metres and radians alike; offered for comparison.
 typedef enum hn_weight { HN_WEIGHT_MASS, HN_WEIGHT_EUCLIDEAN } hn_weight;
 
@@ -48,11 +49,12 @@ HN_MUST_CHECK hn_status hn_project_position(hn_projector *p, double t, double *q
 /// likewise; v is then untouched.
 HN_MUST_CHECK hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double *v,
                                             hn_project_info *info);
-/// Evaluations of phi, of J v + phi_t, and factorisations so far.
+/// Returns the evaluations so far, those of phi and of J v + phi_t together.
 long long hn_projector_evals(const hn_projector *p);
 /// Arithmetic operations so far (tape and linear algebra, counted).
 double hn_projector_ops(const hn_projector *p);
-/// Factorisations so far, of which by the dense solve, and solves.
+/// Returns the factorisations so far.
 long long hn_projector_factorisations(const hn_projector *p);
+/// Returns how many of them were dense.
 long long hn_projector_fallbacks(const hn_projector *p);
 #endif

@@ -5,9 +5,9 @@
 //
 //     K [a; -lambda] = [f; -(gamma + 2 alpha (J v + phi_t) + beta^2 phi)],   K = [M J'; J 0]  (1)
 //
-// M a = f + J' lambda are the equations of motion. phi are the constraints, J their derivative by
-// the coordinates, phi_t the one by time; gamma is what the second derivative of phi has beside
-// J a, so J a + gamma = 0 closes the loops. alpha and beta are Baumgarte's.
+// M a = f + J' lambda are the equations of motion. phi are the constraints. J maps velocities
+// to their rates, d(phi)/dt = J v + phi_t with phi_t the derivative by time; the second derivative
+// is J a + gamma, so J a + gamma = 0 keeps the loops closed. alpha and beta are Baumgarte's.
 //
 // The system is solved by a tape (accel_tape.h) that contains a sparse LDL' factorisation of K
 // whose order of elimination is chosen when the system is compiled. Its pivots are checked at every
@@ -57,13 +57,13 @@ typedef struct hn_accel_info {
     hn_solver solver; ///< the solver that answered; the tape counts as ldl
     int refinements;  ///< corrections of the answer that were kept
     int massless;     ///< the velocity without mass where the range space refused; else -1
-    int rank; ///< rank of J: nc where the tape answered, the numerical rank from the dense solver
-    /// smallest pivot relative to its reference, the size of the terms that it is the sum of [-];
-    /// below HN_PIVOT_GUARD the dense least-norm solver answers
+    int rank; ///< rank of J: nc where the tape answered, the numerical rank from the least-norm one
+    /// smallest pivot, each divided by the sum of the absolute values of its terms [-]; below
+    /// HN_PIVOT_GUARD the dense least-norm solver answers
     double pivot_ratio;
     /// shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
     double row_ratio;
-    double residual; ///< dense solver only: max |J a + gamma|
+    double residual; ///< least-norm solver only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
 /// An answer with a smaller pivot is refined. With larger pivots the answer is right to 1e-13
@@ -112,8 +112,8 @@ hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const d
                                  const hn_accel_info *info);
 struct hn_accel_tape;
 struct hn_inputs;
-/// Returns the layout of the tape's outputs, and in *in the tape with its workspace, for a
-/// workspace in lanes; NULL: there is no tape. Borrowed.
+/// Returns the layout of the tape's outputs, or NULL where the solver has no tape. Sets *in to the
+/// tape and its workspace, for callers that evaluate several states at once. Both are borrowed.
 const struct hn_accel_tape *hn_accel_get_tape(const hn_accel *s, const struct hn_inputs **in);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
 /// Compiles the tape of the sparse solve natively, waits for it and measures (expr/native.h).

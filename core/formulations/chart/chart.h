@@ -8,8 +8,8 @@
 //  a = N udot + c,                 c = [0; -J_d^-1 gamma]                                  (2)
 //  (N^T M N) udot = N^T (f - M c)                                                          (3)
 //
-// where u are the independent velocities. The rate of the basis needs no differentiation: with this
-// N, Ndot u + sdot is exactly c. A chart ends where J_d loses rank (a dead point of the chosen
+// where u are the independent velocities. N is never differentiated: with this N, Ndot u + sdot is
+// exactly c. A chart ends where J_d loses rank (a dead point of the chosen
 // coordinates); the motion may go on in another chart.
 //
 // A square J_d (no redundant rows) is factored sparse, in an order chosen where the chart was
@@ -31,7 +31,7 @@
 
 #include <stdbool.h>
 
-/// Makes a chart: compiles its terms, with the rate of its basis where `with_rate` is set. Its
+/// Makes a chart: compiles its terms, with gamma, which c needs, where `with_rate` is set. Its
 /// memory is in the arena; hn_chart_destroy() frees the rest. Fails: HN_ERR_MEMORY, reported in
 /// diag.
 HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate,
@@ -63,15 +63,16 @@ void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q)
 /// The same along the tangent at another point.
 void hn_chart_predict_from(const hn_chart *chart, const hn_chart_point *from, double t,
                            const double *q_ind, double *q);
-/// Fails with HN_ERR_CHART: a step went through the configuration where the two assembly modes of
-/// step `step` of chart.dyads meet. chart->here is no longer valid.
+/// Fails with HN_ERR_CHART: a step of the integrator crossed the configuration in which the two
+/// assembly modes of dyad number `step` meet. chart->here is no longer valid.
 hn_status hn_chart_fail_dyad(hn_chart *chart, int step);
 /// Computes v = N u + s at the point.
 void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *point, const double *u,
                      double *v);
 /// Computes u' of equation (3) at chart->here with velocities v.
 HN_MUST_CHECK hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot);
-/// x <- A^-1 x with the r x r matrix of (3) left in chart->A (lower triangle, spoiled).
+/// Computes x <- A^-1 x with the r x r matrix of (3), whose lower triangle is in chart->A.
+/// Overwrites chart->A.
 HN_MUST_CHECK hn_status hn_chart_solve_reduced(hn_chart *chart, double t, double *x);
 /// Adds counters and tape operations.
 void hn_chart_add_cost(const hn_chart *chart, hn_cost *cost);

@@ -92,6 +92,30 @@ static hn_status find_formulation(piece p, const hn_formulation **out, hn_diag *
     return *out ? HN_OK : unknown_name(diag, p, "formulation", word, names, n);
 }
 
+/// A text without '@': the formulation that is nearest to it, with an integrator, or an example.
+static hn_status no_integrator(hn_diag *diag, piece all) {
+    enum { SHOWN = 64 };
+    const char *names[MAX_NAMES];
+    char word[MAX_WORD], hint[HN_DIAG_HINT];
+    const int n = hn_formulation_count() < MAX_NAMES ? hn_formulation_count() : MAX_NAMES;
+    for (int i = 0; i < n; i++) {
+        names[i] = hn_formulation_at(i)->name;
+    }
+    copy_word((piece){all.text, 0, find_char(all, ':')}, word);
+    const char *meant = hn_formulation_find(word) ? word : hn_nearest_name(word, names, n);
+
+    snprintf(hint, sizeof hint,
+             "write for example %.*s@rk4:h=1e-3; 'holonom list methods' names them all", SHOWN,
+             meant ? meant : "projection");
+    hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
+                "'%.60s' names no method: a formulation, '@' and an integrator are needed",
+                all.text);
+    if (diag) {
+        diag->column = (int)all.to + 1;
+    }
+    return HN_ERR_INPUT;
+}
+
 static hn_status find_stepper(piece p, const hn_stepper **out, hn_diag *diag) {
     const char *names[MAX_NAMES];
     char word[MAX_WORD];
@@ -326,14 +350,7 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     const bool guest = hn_guest_is_named(text);
     const size_t at = find_char(all, '@');
     if (at == n && !guest) {
-        hn_diag_set(
-            diag, HN_ERR_INPUT, NULL,
-            "write for example projection@rk4:h=1e-3; 'holonom list methods' names them all",
-            "'%.60s' names no method: a formulation, '@' and an integrator are needed", text);
-        if (diag) {
-            diag->column = (int)n + 1;
-        }
-        return HN_ERR_INPUT;
+        return no_integrator(diag, all);
     }
     const piece left = {text, 0, at}, right = {text, at < n ? at + 1 : n, n};
     const size_t right_colon = find_char(right, ':');

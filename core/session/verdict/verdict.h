@@ -13,7 +13,7 @@ typedef enum hn_tone { HN_TONE_CALM, HN_TONE_WARN, HN_TONE_BAD } hn_tone;
 
 enum { HN_MOTION_VERDICT_TEXT = 160, HN_MOTION_EARLIEST = 6 };
 
-/// Frames 0 .. shown of one method at equal distances of time, and what they are compared with.
+/// Frames 0 to `shown` of one method, equally spaced in time, and the scales of the comparison.
 typedef struct hn_motion_history {
     const double *gap; ///< constraint violation [m]; NaN: the method had ended
     const double *off; ///< largest distance of a drawn point from the reference [m]; NaN: unknown
@@ -24,7 +24,7 @@ typedef struct hn_motion_history {
     const char *cause;    ///< what ended it, in a few words; NULL: not known
     double length;        ///< characteristic length of the scene [m]
     double energy_scale;  ///< swing of the energies of the reference [J]; 0: no reference
-    double digits;        ///< of the reference that are right
+    double digits;        ///< number of correct digits of the reference
     bool loops;           ///< the scene has closure equations
     bool asked;           ///< the reference is being fetched
 } hn_motion_history;

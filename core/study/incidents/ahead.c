@@ -69,12 +69,11 @@ static void check(hn_watch *w) {
         w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
         s->info.lowest < LOST * s->largest
             ? "a singular configuration (J loses rank) lies %.3g s ahead, at t = %.4g s, as a "
-              "pilot "
-              "run shows; the smallest singular value of J, sigma_min, is %.2g now, the largest "
-              "%.2g"
+              "pilot run shows; now the smallest singular value of the scaled J, sigma_min, is "
+              "%.2g, and the largest %.2g"
             : "an almost singular configuration (J almost loses rank) lies %.3g s ahead, at "
-              "t = %.4g s, as a pilot run shows; the smallest singular value of J, sigma_min, is "
-              "%.2g now, the largest %.2g",
+              "t = %.4g s, as a pilot run shows; now the smallest singular value of the scaled J, "
+              "sigma_min, is %.2g, and the largest %.2g",
         s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
     if (i || !s->announced) { // without a place in the list it is counted, and over likewise
         s->announced = i ? 1 + (int)(i - w->log.list) : HN_RUN_MAX_INCIDENTS + 1;
@@ -87,8 +86,9 @@ const hn_incident_kind hn_incident_rank_ahead = {
     .code = HN_INCIDENT_RANK_AHEAD,
     .spelling = "rank-ahead",
     .name = "a singular configuration lies ahead",
-    .rule = "The smallest singular value of J falls towards zero. Where it is zero, constraint "
-            "equations are dependent, and the motion may branch (a change point) or lock.",
+    .rule = "The smallest singular value of J falls towards zero on the way. Where it is zero, "
+            "constraint equations are dependent, and the motion may branch (a change point) or "
+            "lock.",
     .check = check,
     .remedies = {{hn_remedy_robust, 0}},
 };

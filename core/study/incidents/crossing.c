@@ -82,8 +82,7 @@ static void report(hn_watch *w, double x, double sigma) {
     hn_incident *i = hn_incident_report(
         w, &hn_incident_near_singular, "sigma_min", sigma, SINGULAR * r->largest,
         "one step of %.3g s went across an almost singular configuration (J almost loses rank): "
-        "the "
-        "smallest singular value of J, sigma_min, is %.2g there, the largest %.2g",
+        "the smallest singular value of J, sigma_min, is %.2g there, the largest %.2g",
         h, sigma, r->info.sigma_max);
     if (i) {
         i->t = t;

@@ -137,8 +137,10 @@ const hn_incident_kind hn_incident_energy_drift = {
     .is_wrong = true,
     .spelling = "energy-drift",
     .name = "the energy drifted",
-    .rule = "A mechanism without loads that do work keeps its energy. A slow gain or loss is the "
-            "error of the method, and the motion becomes faster or slower with it.",
+    .rule = "A mechanism keeps its energy where no load (damper, drive, applied force) does work; "
+            "gravity and springs are part of the energy. A slow gain or loss is the error of the "
+            "method, and the motion becomes faster or slower with it. The limit is a share of the "
+            "largest kinetic energy plus the range of the potential energy.",
     .check = check_drift,
     .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}, {hn_remedy_stiff_closed, 0}},
 };
@@ -149,8 +151,9 @@ const hn_incident_kind hn_incident_energy_jump = {
     .is_wrong = true,
     .spelling = "energy-jump",
     .name = "the energy jumped",
-    .rule = "A mechanism without loads that do work keeps its energy. A jump within one step means "
-            "that the step is wrong, even where the loops stay closed.",
+    .rule = "A mechanism keeps its energy where no load (damper, drive, applied force) does work; "
+            "gravity and springs are part of the energy. A jump within one step means that the "
+            "step is wrong, even where the loops stay closed.",
     .check = check_jump,
     .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}, {hn_remedy_stiff_closed, 0}},
 };

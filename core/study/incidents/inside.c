@@ -40,11 +40,12 @@ static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m
     if (e->conservative && limit > 0 && fabs(change) > fmax(limit, e->noise) &&
         fabs(since_start) > limit) {
         const int digits = hn_digits_apart(fabs(change), limit, 3);
-        set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
-                                    "inside a step the energy is %.*g J away from its value at the "
-                                    "step before, more than %.*g J, and no load does work",
-                                    digits, change, digits, limit),
-                 at->t);
+        set_time(
+            hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
+                               "inside a step the energy differs by %.*g J from its value at the "
+                               "start of the step, more than %.*g J, and no load does work",
+                               digits, change, digits, limit),
+            at->t);
     }
 }
 

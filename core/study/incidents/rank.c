@@ -11,8 +11,8 @@ static void report_redundant(hn_watch *w) {
     if (hn_singularity_is_local(w->singular.monitor, w->run->now.t, w->run->now.q)) {
         hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
                            "the start is a singular configuration: %d of %d constraint equations "
-                           "say nothing new there, but do beside it; several motions may lead out "
-                           "of it, and the run follows one",
+                           "depend on the others there, and are independent in configurations "
+                           "next to it; the motion may branch, and the run follows one branch",
                            nc - rank, nc);
         return;
     }
@@ -87,8 +87,8 @@ static void check_near(hn_watch *w) {
     }
     hn_incident *i = hn_incident_report(
         w, &hn_incident_near_singular, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
-        "the constraint equations are almost dependent, with a smallest pivot of %.2g of its "
-        "terms (pivot ratio), less than %.0e",
+        "the constraint equations are almost dependent: pivot ratio %.2g, limit %.0e (1 is far "
+        "from a singular configuration, 0 is one)",
         pivot, HN_RUN_WARN_PIVOT);
     if (i) {
         hn_pose_describe(w, i, s->now.t, s->now.q, w->singular.info.sigma_min);
@@ -99,8 +99,9 @@ const hn_incident_kind hn_incident_rank_loss = {
     .code = HN_INCIDENT_RANK_LOSS,
     .spelling = "rank-loss",
     .name = "constraint equations are dependent",
-    .rule = "Where rows of J depend on each other only the sum of their forces is determined. The "
-            "motion is unique; the least-norm multipliers are shown.",
+    .rule = "Where rows of J depend on each other, only the sum of their forces is determined; the "
+            "least-norm multipliers are shown. If the rows depend on each other in all "
+            "configurations, the motion is still unique. If only in this one, it may branch.",
     .check = check_rank,
     .remedies = {{hn_remedy_plain, 0}, {hn_remedy_robust, 0}, {hn_remedy_finer, 0.5}},
 };

@@ -25,16 +25,15 @@
 #define HN_RUN_WARN_DRIFT 1e-2
 /// Condition number of the equilibrated K: half the digits of the multipliers are lost.
 #define HN_RUN_WARN_CONDITION 1e8
-/// Growth of the multipliers against the largest seen away from singular configurations, beyond
-/// that of the kinetic energy.
+/// Growth of |lambda| over its largest value away from singular configurations, divided by the
+/// growth of the kinetic energy over its own.
 #define HN_RUN_WARN_MULTIPLIERS 1e3
 /// [rad] between the direction of motion and its smooth continuation.
 #define HN_RUN_WARN_TURN 0.5
 /// Share of the displacement of a step that velocity times time does not account for.
 #define HN_RUN_WARN_JUMP 0.5
-/// A reversal of the velocities within one step is reported where the new direction is opposite to
-/// the old one to within this, and the accelerations account for less than this share of the
-/// change.
+/// A reversal of the velocities within one step is reported if |v + v_before| is below this share
+/// of the velocity, and the accelerations explain less than this share of the change.
 #define HN_RUN_WARN_BACK 0.3
 /// Least change of the assembly-mode value that counts as a jump to the other branch.
 #define HN_RUN_WARN_MODE 0.1
@@ -59,7 +58,8 @@ typedef struct hn_energy_record {
 /// The direction of motion, in velocities scaled by the masses and of unit length.
 typedef struct hn_heading {
     double t;
-    /// nv, and time where the mechanism is driven and has no degree of freedom of its own, else 0
+    /// nv + 1: the velocities, then the part of time: 0 unless the mechanism is driven and has no
+    /// degree of freedom of its own
     double *e;
 } hn_heading;
 
@@ -118,7 +118,7 @@ struct hn_watch {
     // of the state checked in full last
     double *checked_q;   ///< nq
     double checked_t;    ///< its time [s]
-    double near_until;   ///< before this time the run is near it [s]
+    double near_until;   ///< before this time the run is too near it for another check [s]
     double shortest_row; ///< hn_motion_shortest_row() there
     const hn_incident_kind *each_step[HN_INCIDENT_COUNT]; ///< those checked after every step
     int n_each_step;
@@ -167,8 +167,8 @@ void hn_watch_step(hn_watch *w);
 bool hn_watch_measures_steps(const hn_watch *w);
 /// Adds the work done in the last step, which has to be summed over every step.
 void hn_watch_measure_step(hn_watch *w);
-/// The change of energy since the start less the work done since, of a state within the last step
-/// or less than a step ahead, and that work [J]. NaN where the work is not known.
+/// Returns the change of energy since the start less the work done since [J], and writes that work
+/// to *work. `at` lies in the last step or less than a step ahead. NaN where the work is not known.
 double hn_watch_energy_change(hn_watch *w, const hn_state_at *at, const hn_measure *m,
                               double *work);
 /// Checks the present state of the run against the table of incidents. Fails with HN_ERR_DIVERGED

@@ -2,8 +2,8 @@
 #ifndef HN_STUDY_REFINED_H
 #define HN_STUDY_REFINED_H
 // A reference solution between its stored times. Each interval is integrated anew from the stored
-// state at its start, and ends at the next stored state: how far it is away from that one is its
-// own error. If no method comes to the end of an interval, only its ends are known. What is
+// state at its start to the time of the next stored state. The distance between the computed end
+// and that state is the error estimate of the interval. If no method comes to the end of an interval, only its ends are known. What is
 // known does not depend on the speed of the machine: the work is limited in operations, and a
 // computation that a limit of time cuts off has no result.
 
@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-/// parts of an interval, a power of two: times of the whole are those of the reference to the bit
+/// Parts of an interval: a power of two, so that every stored time is met bit for bit.
 enum { HN_REFINED_PARTS = 32 };
 
 typedef struct hn_refined {

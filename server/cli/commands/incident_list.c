@@ -79,7 +79,7 @@ void hn_incident_more(hn_strbuf *b, const hn_incident_list *list, int told) {
             continue;
         }
         if (full++ == 0) {
-            hn_strbuf_printf(b, "them, the first %d of a kind: ", HN_INCIDENT_MOST_OF_ONE_KIND);
+            hn_strbuf_printf(b, "the first %d of each kind: ", HN_INCIDENT_MOST_OF_ONE_KIND);
         }
         hn_strbuf_printf(b, "%s%s came %d times", full > 1 ? ", " : "",
                          hn_document_text(list->item[k], "code"), times);

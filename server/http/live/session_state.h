@@ -45,8 +45,8 @@ struct hn_session {
     hn_subject bench;
     const hn_model *published; ///< whose description scene_json is
     double asked_frame_dt, asked_duration;
-    double undisturbed;         ///< until then no request interrupts [s, wall clock]
-    double load_end;            ///< until then equations must be there [s, thread's own clock]
+    double undisturbed;         ///< before this time no request interrupts [s, wall clock]
+    double load_end;            ///< equations must be ready by then [s, thread's own clock]
     bool interrupted;           ///< they were given up
     hn_slow_frame slow;         ///< the frame in progress
     hn_request *maker;          ///< the request that makes the session; NULL on its own thread
@@ -87,8 +87,8 @@ HN_MUST_CHECK hn_status hn_subject_compare(const hn_session *session, const hn_m
 void hn_subject_reset(hn_subject *bench);
 
 // for the thread; none may be called with the lock held
-/// From here on the thread has run_cpu_s for equations (1), or they have no limit (0). The end of
-/// the session, or of the server, ends them in any case.
+/// Limits the time for compiling equations from here on: `limited`: to run_cpu_s of the thread;
+/// else it has no limit. The end of the session, or of the server, ends them in any case.
 void hn_session_limit_equations(hn_session *session, bool limited);
 /// Writes out what does not change from frame to frame. HN_ERR_MEMORY leaves the old texts.
 HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *session);

@@ -62,6 +62,8 @@ static void each_fault_has_its_column_and_its_hint(void **state) {
     } faults[] = {
         {"", 1, "'@'", "projection@rk4"},
         {"index1", 7, "'@'", "list methods"},
+        {"index1", 7, "'@'", "index1@rk4"},
+        {"baumgart", 9, "'@'", "baumgarte@rk4"},
         {"projecton@rk4", 1, "'projecton'", "'projection'"},
         {"index1@rk5:h=1", 8, "'rk5'", "'rk4'"},
         {"baumgarte:alpa=1@rk4", 11, "'alpa'", "'alpha'"},
