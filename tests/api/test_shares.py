@@ -391,6 +391,30 @@ class FairShares(Timed):
         self.assertGreater(int(refused[-1].headers["retry-after"]), 3)
         self.assertEqual(server.stop(), 0)
 
+    def test_who_waits_as_told_beside_long_runs_is_let_in(self):
+        """Of thirty long runs asked for at once, those that found no place heard 1 s, again and again until there was one."""
+        server = driver.Server("--run-cpu", "0.5")
+        refusals = []
+
+        def ask(i):
+            run, times = {**self.LONG, "time": 1000 + i}, 0
+            while (answer := server.ask("POST", "/api/v1/runs?wait=0", run)).status == 429:
+                times += 1
+                time.sleep(int(answer.headers["retry-after"]))
+            refusals.append((answer.status, times))
+
+        threads = [threading.Thread(target=ask, args=(i,)) for i in range(30)]
+        for t in threads:
+            t.start()
+        for t in threads:
+            t.join()
+        self.assertEqual({status for status, _ in refusals}, {202})
+        first, again = sum(n > 0 for _, n in refusals), sum(n - 1 for _, n in refusals if n > 0)
+        # a machine that becomes busier meanwhile makes an estimate too short now and then
+        self.assertGreater(first, 3)
+        self.assertLessEqual(again, first // 2, refusals)
+        self.assertEqual(server.stop(), 0)
+
     def test_a_run_that_was_set_aside_has_the_same_samples(self):
         question = {**RING, "methods": ["projection@rk4:h=1e-3", "ggl@radau5:rtol=1e-6"], "time": 0.5}
         alone = driver.Server()

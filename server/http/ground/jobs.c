@@ -2,6 +2,7 @@
 #include "http/ground/jobs.h"
 
 #include "base/clock.h"
+#include "http/ground/promises.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -9,11 +10,16 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /// Weight of the latest job in the mean duration.
 static const double LATEST = 0.2;
 /// A job works for so long before it makes way [s].
 static const double SLICE = 0.2;
+/// A job that goes on for so many times the mean is none of the usual ones.
+static const double UNUSUAL = 4;
+/// What is told to who is refused, over what is expected.
+static const double MARGIN = 1.1;
 
 typedef enum turn_state { TURN_IDLE, TURN_AT_WORK, TURN_ASIDE } turn_state;
 
@@ -24,11 +30,12 @@ struct hn_job_turn {
     void *work;
     hn_client client;
     long long place;      ///< in the order of those that wait, while it is aside
-    double taken_up;      ///< under the lock too [s, wall clock]
     double look;          ///< it asks the pool then; of its own thread [s, wall clock]
-    double begun;         ///< of its present slice; of its own thread [s, wall clock]
-    double used;          ///< by its slices before; of its own thread [s]
+    double begun;         ///< of its present slice; written under the lock [s, wall clock]
+    double used;          ///< by its slices before; likewise [s]
+    double cpu_before;    ///< of its thread when the job was begun; likewise [s]
     _Atomic double share; ///< of its present job that is done, 0 to 1; 0: it says nothing
+    _Atomic double first_share, worked_before; ///< at its first report; and time worked [s]
 };
 
 typedef struct waiting_job {
@@ -48,6 +55,8 @@ struct hn_jobs {
     int n_threads;
     long long places; ///< given so far
     double mean;      ///< working time of a job [s]
+    double *ends;     ///< for an estimate: when each job that is begun ends [s]
+    hn_promises promises;
 };
 
 // ---- who is next; with the lock held ----
@@ -131,6 +140,16 @@ static candidate find_next(const hn_jobs *jobs, const hn_job_turn *self) {
 
 // ---- threads ----
 
+/// Returns the computing time of a thread of the pool [s].
+static double thread_time(const hn_job_turn *t) {
+    clockid_t clock;
+    struct timespec now = {0};
+    if (pthread_getcpuclockid(t->thread, &clock) == 0) {
+        clock_gettime(clock, &now);
+    }
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /// A thread that does nothing; there is one whenever a job may be begun. With the lock held.
 static hn_job_turn *find_idle(const hn_jobs *jobs) {
     int i = 0;
@@ -147,7 +166,10 @@ static void begin(hn_jobs *jobs, int index) {
     t->work = jobs->waiting[index].work;
     t->client = jobs->waiting[index].client;
     t->state = TURN_AT_WORK;
-    t->taken_up = hn_clock_wall();
+    t->used = 0;
+    t->begun = hn_clock_wall();
+    t->cpu_before = thread_time(t);
+    atomic_store(&t->share, 0);
     jobs->n--;
     memmove(&jobs->waiting[index], &jobs->waiting[index + 1],
             (size_t)(jobs->n - index) * sizeof *jobs->waiting);
@@ -180,10 +202,8 @@ static void begin_slice(hn_job_turn *t) {
 
 /// Does the job that a thread was given. With the lock held, which is given up meanwhile.
 static void do_job(hn_jobs *jobs, hn_job_turn *t) {
-    pthread_mutex_unlock(&jobs->lock);
-    t->used = 0;
-    atomic_store(&t->share, 0);
     begin_slice(t);
+    pthread_mutex_unlock(&jobs->lock);
     jobs->run(t->work, t);
     const double took = t->used + hn_clock_wall() - t->begun;
 
@@ -209,9 +229,14 @@ static void *work(void *arg) {
 }
 
 void hn_job_report(hn_job_turn *t, double share) {
-    if (t) {
-        atomic_store_explicit(&t->share, share, memory_order_relaxed);
+    if (!t) {
+        return;
     }
+    if (share > 0 && atomic_load_explicit(&t->share, memory_order_relaxed) <= 0) {
+        atomic_store(&t->first_share, share);
+        atomic_store(&t->worked_before, t->used + hn_clock_wall() - t->begun);
+    }
+    atomic_store_explicit(&t->share, share, memory_order_release);
 }
 
 void hn_job_make_way(hn_job_turn *t) {
@@ -257,10 +282,12 @@ hn_jobs *hn_jobs_create(const hn_jobs_opts *opts, void (*run)(void *job, hn_job_
     const int n = opts->at_once + opts->n_aside;
     jobs->waiting = calloc((size_t)opts->n_waiting, sizeof *jobs->waiting);
     jobs->turns = calloc((size_t)n, sizeof *jobs->turns);
+    jobs->ends = calloc((size_t)n, sizeof *jobs->ends);
 
     // a thread looks at nothing here before it has the lock
     pthread_mutex_lock(&jobs->lock);
-    while (jobs->waiting && jobs->turns && jobs->n_threads < n && start_thread(jobs)) {}
+    const bool has_memory = jobs->waiting && jobs->turns && jobs->ends;
+    while (has_memory && jobs->n_threads < n && start_thread(jobs)) {}
     pthread_mutex_unlock(&jobs->lock);
     if (jobs->n_threads < n) {
         hn_jobs_free(jobs);
@@ -269,52 +296,135 @@ hn_jobs *hn_jobs_create(const hn_jobs_opts *opts, void (*run)(void *job, hn_job_
     return jobs;
 }
 
-int hn_jobs_push(hn_jobs *jobs, void *work_item, hn_client client) {
+int hn_jobs_push(hn_jobs *jobs, void *work_item, hn_client client, uint64_t key) {
     pthread_mutex_lock(&jobs->lock);
     const int taken = !jobs->stopping && jobs->n < jobs->opts.n_waiting &&
                       (client == 0 || count_waiting(jobs, client) < jobs->opts.n_waiting_of_one);
     if (taken) {
         jobs->waiting[jobs->n++] =
             (waiting_job){.work = work_item, .client = client, .place = ++jobs->places};
+        hn_promises_end(&jobs->promises, key);
         take_up(jobs);
     }
     pthread_mutex_unlock(&jobs->lock);
     return taken;
 }
 
-/// Returns the time [s] that a job still needs after it has worked for `used`: by the share of it
-/// that is done, where the job reports one. Otherwise what the mean of the jobs before leaves; a
-/// job that went on for longer will go on for as long again. At most the longest that a job may.
-static double needs_still(const hn_jobs *jobs, const hn_job_turn *t, double used) {
-    const double share = atomic_load_explicit(&t->share, memory_order_relaxed);
-    const double most = fmax(0, jobs->opts.longest - used);
-    if (share > 0) {
-        return fmin(used * fmax(0, 1 - share) / share, most);
-    }
-    return used < jobs->mean ? jobs->mean - used : fmin(used, most);
+// ---- when there will be a place; with the lock held ----
+
+/// Returns how long a job has worked, without the time that it was aside [s].
+static double worked(const hn_job_turn *t, double now) {
+    return t->used + (t->state == TURN_AT_WORK ? now - t->begun : 0);
 }
 
-/// When the first of the jobs that are begun ends, which share the threads evenly [s]. With the
-/// lock held.
-static double time_to_end(const hn_jobs *jobs) {
-    const double now = hn_clock_wall();
-    const int n = jobs->n_threads - count_turns(jobs, TURN_IDLE);
-    const double share = fmin(1, (double)jobs->opts.at_once / (n > 0 ? n : 1));
-    double first = HUGE_VAL;
+/// Returns the computing time that a second of work is, over all jobs that are begun: less than 1
+/// where the processors have other work too.
+static double computing_rate(const hn_jobs *jobs, double now) {
+    static const double enough = 0.05, least = 0.02;
+    double time = 0, cpu = 0;
     for (int i = 0; i < jobs->n_threads; i++) {
         const hn_job_turn *t = &jobs->turns[i];
         if (t->state != TURN_IDLE) {
-            first = fmin(first, needs_still(jobs, t, (now - t->taken_up) * share) / share);
+            time += worked(t, now);
+            cpu += thread_time(t) - t->cpu_before;
         }
     }
-    return n > 0 ? first : 0;
+    return time > enough ? fmin(1, fmax(least, cpu / time)) : 1;
 }
 
-int hn_jobs_wait(hn_jobs *jobs) {
+/// Returns the work that a job still needs [s]: by the share of it that is done, where the job
+/// reports one. Otherwise what the mean of the jobs before leaves; a job that went on for longer
+/// will go on for as long again, or for as long as it may where it should have reported by now.
+static double needs_still(const hn_jobs *jobs, const hn_job_turn *t, double now, double rate) {
+    const double share = atomic_load_explicit(&t->share, memory_order_acquire);
+    const double first = atomic_load(&t->first_share), time = worked(t, now);
+    const double counted = share > 0            ? fmax(0, time - atomic_load(&t->worked_before))
+                           : jobs->opts.reports ? 0
+                                                : time;
+    const double most = fmax(0, jobs->opts.longest / rate - counted);
+    if (share > 0 && share > first) {
+        return fmin(counted * fmax(0, 1 - share) / (share - first), most);
+    }
+    if (time < jobs->mean) {
+        return fmin(jobs->mean - time, most);
+    }
+    return jobs->opts.reports && time >= UNUSUAL * jobs->mean ? most : fmin(time, most);
+}
+
+/// Returns how many jobs may yet be set aside: one that waits is then begun, and leaves its place.
+static int room_aside(const hn_jobs *jobs, hn_client client) {
+    const int in_all = jobs->opts.n_aside - count_turns(jobs, TURN_ASIDE);
+    const int own = jobs->opts.n_aside_of_one - count_of(jobs, TURN_ASIDE, client);
+    const bool is_alone = count_of(jobs, TURN_AT_WORK, client) == count_turns(jobs, TURN_AT_WORK);
+    const int room = is_alone && own < in_all ? own : in_all;
+    return room > 0 ? room : 0;
+}
+
+/// Returns when `ahead` + 1 jobs that wait have left their places [s]. Those that are begun share
+/// the threads evenly; whatever is begun later lasts as long as they do on average.
+static double time_to_place(const hn_jobs *jobs, int ahead, int room) {
+    const double now = hn_clock_wall(), rate = computing_rate(jobs, now);
+    const int begun = jobs->n_threads - count_turns(jobs, TURN_IDLE), n = begun + room;
+    if (begun == 0 || ahead < room) {
+        return begun == 0 ? 0 : SLICE * (1 + ahead / jobs->opts.at_once);
+    }
+    const double share = fmin(1, (double)jobs->opts.at_once / n);
+    double whole = 0;
+    int k = 0;
+    for (int i = 0; i < jobs->n_threads; i++) {
+        const hn_job_turn *t = &jobs->turns[i];
+        if (t->state != TURN_IDLE) {
+            const double need = needs_still(jobs, t, now, rate);
+            whole += (worked(t, now) + need) / begun;
+            jobs->ends[k++] = need / share;
+        }
+    }
+    for (; k < n; k++) {
+        jobs->ends[k] = SLICE + whole / share;
+    }
+
+    // the one that ends first gives its thread to the next, again and again
+    for (int left = ahead - room;; left--) {
+        int first = 0;
+        for (int i = 1; i < n; i++) {
+            first = jobs->ends[i] < jobs->ends[first] ? i : first;
+        }
+        if (left == 0) {
+            return jobs->ends[first];
+        }
+        jobs->ends[first] += whole / share;
+    }
+}
+
+/// Returns how many clients have jobs that wait.
+static int count_clients(const hn_jobs *jobs) {
+    int n = 0;
+    for (int i = 0; i < jobs->n; i++) {
+        int k = 0;
+        while (jobs->waiting[k].client != jobs->waiting[i].client) {
+            k++;
+        }
+        n += k == i;
+    }
+    return n;
+}
+
+int hn_jobs_wait(hn_jobs *jobs, hn_client client, uint64_t key) {
+    static const double longest = 3600;
     pthread_mutex_lock(&jobs->lock);
-    const double seconds = time_to_end(jobs); // then one that waits is begun, and leaves its place
+    const double now = hn_clock_wall();
+    const bool is_full = jobs->n >= jobs->opts.n_waiting;
+    int ahead = hn_promises_ahead(&jobs->promises, is_full ? NULL : &client, key, now);
+    if (!is_full) { // its own jobs must leave their places, and those of others take their turns
+        const int clients = count_clients(jobs);
+        ahead = (ahead + 1) * (clients > 0 ? clients : 1) - 1;
+    }
+    const int room = room_aside(jobs, client);
+    const double seconds = time_to_place(jobs, ahead, room);
+    const double told = fmin(longest, fmax(1, ceil(MARGIN * seconds)));
+    hn_promises_make(&jobs->promises, client, key, now + told);
     pthread_mutex_unlock(&jobs->lock);
-    return (int)fmin(60, fmax(1, ceil(seconds)));
+    return (int)told;
 }
 
 void hn_jobs_stop(hn_jobs *jobs) {
@@ -343,6 +453,7 @@ void hn_jobs_free(hn_jobs *jobs) {
         pthread_mutex_destroy(&jobs->lock);
         free(jobs->waiting);
         free(jobs->turns);
+        free(jobs->ends);
         free(jobs);
     }
 }

@@ -40,7 +40,7 @@ void hn_place_queue_serve(hn_place_queue *queue, const hn_place_rules *rules, bo
         if (ends) {
             rules->refuse(rules->user, r, n_before);
             hn_request_finish(r);
-        } else if (!hn_jobs_push(rules->jobs, r, r->queues_as)) {
+        } else if (!hn_jobs_push(rules->jobs, r, r->queues_as, 0)) {
             rules->give(rules->user, r->client);
             hn_reply_queue_full(r, rules->jobs);
             hn_request_finish(r);

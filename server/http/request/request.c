@@ -245,10 +245,9 @@ void hn_reply_queue_full(hn_request *r, hn_jobs *jobs) {
     hn_reply_problem(
         r, HN_PROBLEM_BUSY, NULL,
         "%d requests of this kind are waiting already, or your client has its share of them; "
-        "Retry-After estimates when the first that is computed ends, and one of them leaves its "
-        "place",
+        "Retry-After estimates when there is a place for this one",
         jobs == r->context->quick ? opts->quick_queue : opts->queue);
-    hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
+    hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs, r->queues_as, 0));
 }
 
 static void reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint) {

@@ -209,7 +209,7 @@ static void push(hn_request *r, hn_jobs *jobs) {
     hn_request_suspend(r);
     if (!hn_request_may_answer(r, 0)) {
         hn_request_finish(r);
-    } else if (!hn_jobs_push(jobs, r, r->queues_as)) {
+    } else if (!hn_jobs_push(jobs, r, r->queues_as, 0)) {
         hn_reply_queue_full(r, jobs);
         hn_request_finish(r);
     }

@@ -375,7 +375,8 @@ hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib, hn_run_
     all->opts = opts;
     all->lib = lib;
     all->answer = answer;
-    const hn_jobs_opts pool = hn_http_opts_pool(opts);
+    hn_jobs_opts pool = hn_http_opts_pool(opts);
+    pool.reports = true;
     all->jobs = hn_jobs_create(&pool, compute);
     all->has_thread = all->jobs && pthread_create(&all->thread, NULL, look, all) == 0;
     if (!all->has_thread) {
@@ -478,6 +479,13 @@ hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
     return run;
 }
 
+/// The first letters of an id, a hash, as a number.
+static uint64_t key_of(const char *id) {
+    uint64_t key = 0;
+    memcpy(&key, id, sizeof key);
+    return key;
+}
+
 /// Puts a new run into the table and the queue. With the lock held.
 static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client client,
                            hn_kept_run **out) {
@@ -496,7 +504,7 @@ static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client cl
     run->question = *question;
     run->question.store = all;
     run->refs = 3; // the table, the thread, the caller
-    if (!hn_jobs_push(all->jobs, run, client)) {
+    if (!hn_jobs_push(all->jobs, run, client, key_of(run->id))) {
         free(run->request);
         free(run);
         return HN_ERR_LIMIT;
@@ -547,8 +555,8 @@ hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run) {
     return phase;
 }
 
-int hn_runs_wait(hn_runs *all) {
-    return hn_jobs_wait(all->jobs);
+int hn_runs_wait(hn_runs *all, hn_client client, const char *id) {
+    return hn_jobs_wait(all->jobs, client, key_of(id));
 }
 
 void hn_runs_list(hn_runs *all, void (*see)(void *user, const char *id), void *user) {

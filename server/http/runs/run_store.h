@@ -58,8 +58,8 @@ void hn_runs_remove_reader(hn_runs *all, hn_run_reader *reader);
 /// Suspends a reader's connection for at most so many seconds. Returns false where the run, or the
 /// server, has ended.
 bool hn_runs_suspend_reader(hn_runs *all, hn_run_reader *reader, double seconds);
-/// Seconds after which a refused question may be asked again.
-int hn_runs_wait(hn_runs *all);
+/// Returns the seconds after which a client's question that was refused may be asked again.
+int hn_runs_wait(hn_runs *all, hn_client client, const char *id);
 /// Calls `see` with the id of each run in memory, which somebody then knows: it goes on unwatched.
 /// With the lock of the store held.
 void hn_runs_list(hn_runs *all, void (*see)(void *user, const char *id), void *user);

@@ -165,6 +165,8 @@ void hn_handle_runs_create(hn_request *r) {
     }
     hn_status status = hn_run_question_read(&question, r->json, r->context->lib, &diags);
     HN_THEN(status, hn_runs_begin(all, &question, r->queues_as, &run, &r->is_new));
+    char id[HN_RUN_ID];
+    snprintf(id, sizeof id, "%s", question.id);
     hn_run_question_reset(&question);
 
     // answered when the run has ended, or after the wait
@@ -176,10 +178,9 @@ void hn_handle_runs_create(hn_request *r) {
     if (status == HN_ERR_LIMIT && diags.n == 0) {
         hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
                          "%d runs are waiting already, or your client has its share of them; "
-                         "Retry-After estimates when the first that is computed ends, and one of "
-                         "them leaves its place",
+                         "Retry-After estimates when there is a place for this one",
                          r->context->opts.queue);
-        hn_reply_header_add(r, "Retry-After", "%d", hn_runs_wait(all));
+        hn_reply_header_add(r, "Retry-After", "%d", hn_runs_wait(all, r->queues_as, id));
     } else {
         hn_reply_diags(r, status, &diags);
     }
