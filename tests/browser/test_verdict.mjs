@@ -246,7 +246,7 @@ test("verdicts are those of the terminal, by the cases that both tests read", ()
 
 test("a closed loop is no praise: without a reference the error is unknown", () => {
   assert.equal(verdictOf({ gap: rounding, known: false }), "closed, error unknown");
-  assert.equal(verdictOf({ gap: () => 2e-6, known: false }), "closed to 2 µm, error unknown");
+  assert.equal(verdictOf({ gap: () => 2e-6, known: false }), "closed to 2.0 µm, error unknown");
   assert.equal(verdictOf({ gap: rounding, known: false, loops: 0 }), "error unknown");
 
   // an estimate stands beside it: it is not said that nothing is known

@@ -4,7 +4,7 @@
 // and its energy. Table, sentence, drawing and live region all use these words, and so does the
 // terminal (core/session/verdict): tests/support/verdicts.json holds cases that both tests read.
 import { incidentOf } from "./catalogue.js";
-import { ROUNDING, quantity, seconds } from "./format.js";
+import { ROUNDING, gapWords, quantity, seconds } from "./format.js";
 import { errorsOf } from "./errors.js";
 
 /** A gap grows whose worst of the second half of the motion is so many times that of the first. */
@@ -99,7 +99,7 @@ function closedWords({ loops, gap, gapShare }) {
   if (gapShare > VISIBLE) {
     return `open by ${quantity(gap, "m")}`;
   }
-  return gapShare <= CLOSED ? "closed" : `closed to ${quantity(gap, "m", 1)}`;
+  return gapShare <= CLOSED ? "closed" : `closed to ${gapWords(gap)}`;
 }
 
 /** A closed loop does not make a motion right, and an open one is one fault more. */

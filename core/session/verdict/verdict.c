@@ -112,7 +112,7 @@ static void put(hn_motion_verdict *v, hn_tone tone, const char *first, const cha
              second);
 }
 
-/// "closed", "closed to 4 µm", "open by 2.1 mm", or nothing for a mechanism without loops.
+/// "closed", "closed to 4.1 µm", "open by 2.1 mm", or nothing for a mechanism without loops.
 static void closed_words(const sizes *s, char *out, size_t size) {
     char gap[HN_SI_TEXT];
     if (!s->loops) {
@@ -123,7 +123,8 @@ static void closed_words(const sizes *s, char *out, size_t size) {
     } else if (s->gap <= CLOSED * s->length) {
         snprintf(out, size, "closed");
     } else {
-        quantity(s->gap, "m", 1, gap);
+        // as the gap of now is written beside it: near rounding a second digit means nothing
+        quantity(s->gap, "m", s->gap < HN_SI_SMALLEST ? 1 : 2, gap);
         snprintf(out, size, "closed to %s", gap);
     }
 }
