@@ -150,7 +150,7 @@ test("the card says what happens at a dead point, and a method that stops there 
   await page.getByText(/x turns back there while th1 moves on at \d+ rad\/s/).waitFor();
   await page.getByRole("button", { name: "reduced with x: it stops there" }).click();
   await until(page, (data) => data.methods.some((m) => /^reduced:coordinate=3@/.test(m.spelling)));
-  await playTo(page, 1);
+  await until(page, (data) => data.latest?.t > 0.95); // what is tried plays by itself
   await soon(async () =>
     assert.match(await page.textContent(".live"), /stopped at .*independent coordinates/),
   );
@@ -163,7 +163,7 @@ test("S6 trying Baumgarte with 20 closes the gap a hundredfold, and the energy h
   await page.getByRole("button", { name: "Why? index-1" }).click();
   await page.getByRole("button", { name: "Baumgarte with α = β = 20" }).click();
   await until(page, (data) => data.methods.some((m) => /alpha=20,beta=20/.test(m.spelling)));
-  await playTo(page, 9.9);
+  await until(page, (data) => data.latest?.t > 9.9); // what is tried plays by itself
   await soon(async () =>
     assert.match(
       await page.textContent(".live"),
@@ -176,6 +176,25 @@ test("S6 trying Baumgarte with 20 closes the gap a hundredfold, and the energy h
   const after = (await read(page, worst))[m];
   assert.ok(after.gap < before.gap / 100, `${after.gap} m after ${before.gap} m`);
   assert.ok(after.energy > before.energy / 10, "a closed gap is no accuracy");
+});
+
+test("a remedy that is tried shows its effect: it plays, or is computed to where the methods stood", async (t) => {
+  for (const reducedMotion of /** @type {const} */ (["no-preference", "reduce"])) {
+    const page = await open(t, { reducedMotion });
+    await playTo(page, 3.5);
+    const stood = await read(page, (data) => data.latest.frame);
+    await page.getByRole("button", { name: "Why? index-1" }).click();
+    await page.getByRole("button", { name: "Baumgarte with α = β = 20" }).click();
+    await until(page, (data) => data.methods.some((m) => /alpha=20,beta=20/.test(m.spelling)));
+    await until(page, `(data) => data.latest?.frame >= ${stood}`);
+    if (reducedMotion === "reduce") {
+      const { state, frame } = await read(page, (data) => ({
+        state: data.state,
+        frame: data.latest.frame,
+      }));
+      assert.deepEqual({ state, frame }, { state: "paused", frame: stood });
+    }
+  }
 });
 
 test("S7 the map of α and β holds the present point and the limit of h β; a cell runs again", async (t) => {

@@ -248,6 +248,12 @@ export function createExchange(store, notice) {
       inTurn(() =>
         data.state !== "paused" && !data.view.stepped ? { ...wanted, state: "running" } : wanted,
       ),
+    /** Computes frames of the clock, to the end of the run at most. @param {number} frames */
+    async compute(frames) {
+      for (let left = frames; left > 0 && data.state !== "finished"; left -= FRAMES_AT_ONCE) {
+        await change({ step: Math.min(left, FRAMES_AT_ONCE) });
+      }
+    },
     /** A change whose failure has no field of its own. @param {object} wanted */
     changeOrReport: (wanted) => change(wanted).catch((error) => keepForLater(wanted, error)),
     dispose() {

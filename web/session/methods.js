@@ -20,10 +20,37 @@ export function createMethodActions(store, exchange, notice) {
   const data = store.data;
   const spellings = () => data.methods.map(({ spelling }) => spelling);
 
+  /** Changes one option of every method that has it. @returns {string[]} the spellings then */
+  function withOption(key, value, and) {
+    const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));
+    const changeBoth = (spelling) =>
+      and ? withSetting(data.catalogue, change(spelling), and, String(value)) : change(spelling);
+    return spellings().map(changeBoth);
+  }
+
+  /**
+   * Runs other methods, which move even where the old ones stood still. Where nothing moves by
+   * itself, they are computed to the frame at which the old ones stood.
+   * @param {string[]} methods
+   */
+  async function showAttempt(methods) {
+    const frame = data.latest?.frame ?? 0;
+    if (!data.view.stepped) {
+      await exchange.change({ methods, state: "running" });
+      return;
+    }
+    await exchange.change({ methods });
+    await exchange.compute(frame);
+  }
+
   const actions = {
     /** @param {string[]} wanted */
     async setMethods(wanted) {
       await exchange.restart({ methods: wanted });
+      actions.forgetRefused();
+    },
+    /** Those that run now were not refused. */
+    forgetRefused() {
       const there = spellings();
       actions.setRefused(data.refused.filter(({ spelling }) => !there.includes(spelling)));
     },
@@ -32,18 +59,8 @@ export function createMethodActions(store, exchange, notice) {
       data.refused = refused;
       store.emit("view");
     },
-    /**
-     * Changes one option of every method that has it.
-     * @param {string} key
-     * @param {number} value
-     * @param {string} [and] another key that gets the same value
-     */
-    setSetting(key, value, and) {
-      const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));
-      const changeBoth = (spelling) =>
-        and ? withSetting(data.catalogue, change(spelling), and, String(value)) : change(spelling);
-      return actions.setMethods(spellings().map(changeBoth));
-    },
+    /** Changes one option of every method that has it. @param {string} key @param {number} value */
+    setSetting: (key, value) => actions.setMethods(withOption(key, value)),
     /** @param {string} name @param {number} value */
     setParameter: (name, value) =>
       exchange.restart({ parameters: { ...data.settings, [name]: value } }),
@@ -53,20 +70,20 @@ export function createMethodActions(store, exchange, notice) {
      * @param {import("../state/cards.js").Try} item
      */
     async attempt(item) {
-      if (item.key) {
-        await actions
-          .setSetting(item.key, Number(item.value), item.and)
-          .catch((error) => notice(sentenceOf(error)));
-        return;
-      }
+      const list = spellings();
+      let place = -1;
       if (item.method) {
         const wanted = parseSpelling(item.method).formulation.name;
-        const list = spellings();
         const same = data.methods.findIndex(({ formulation }) => formulation === wanted);
-        const place = same >= 0 ? same : Math.min(list.length, limits().methods - 1);
+        place = same >= 0 ? same : Math.min(list.length, limits().methods - 1);
         list[place] = item.method;
-        await actions.setMethods(list).catch((error) => notice(sentenceOf(error)));
-        actions.select(place);
+      }
+      try {
+        await showAttempt(item.key ? withOption(item.key, Number(item.value), item.and) : list);
+        actions.forgetRefused();
+        actions.select(place >= 0 ? place : data.view.selected);
+      } catch (error) {
+        notice(sentenceOf(error));
       }
     },
     /** Runs the methods without stabilisation, at a step where the loop visibly opens. */

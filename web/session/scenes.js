@@ -16,7 +16,6 @@ import { isStart } from "../state/start.js";
 import { createKeeper } from "./keeper.js";
 import { SHORT, firstSpeed } from "./speeds.js";
 
-const FRAMES_AT_ONCE = 600; // of a link, in one request
 const FIRST_SCENE = "four-bar";
 const FIRST_METHODS = [
   "index1@rk4:h=0.02",
@@ -128,12 +127,7 @@ export function createSceneActions(store, exchange, notice) {
 
   /** @param {import("../state/link.js").Linked} link */
   async function runLinked({ frame, selected, hidden }) {
-    for (let left = frame; left > 0; left -= FRAMES_AT_ONCE) {
-      await exchange.change({ step: Math.min(left, FRAMES_AT_ONCE) });
-      if (data.state === "finished") {
-        break;
-      }
-    }
+    await exchange.compute(frame);
     const n = data.methods.length;
     data.view.hidden = new Set(hidden.filter((m) => m < n));
     data.view.selected = Math.min(selected, n - 1);
