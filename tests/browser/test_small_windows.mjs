@@ -298,3 +298,26 @@ test("where no joint is cut the words stand at the edge, clear of the mechanism"
     );
   });
 });
+
+test("six methods have room at 1366x768: their list does not scroll", async (t) => {
+  const asked = ["index1", "baumgarte", "projection", "nullspace", "reduced", "partitioning"]
+    .map((name) => `&method=${name}@rk4:h=0.02`)
+    .join("");
+  const page = await open(t, {
+    hash: `#scene=four-bar${asked}`,
+    viewport: LAPTOP,
+  });
+  await playTo(page, 3.6);
+  await soon(async () => {
+    const { list, last } = await page.evaluate(() => {
+      const scroll = document.querySelector(".method-scroll");
+      const row = document.querySelector("tbody tr:nth-child(6)").getBoundingClientRect();
+      return {
+        list: scroll.scrollHeight - scroll.clientHeight,
+        last: scroll.getBoundingClientRect().bottom - row.bottom,
+      };
+    });
+    assert.equal(list, 0, "nothing of the list is out of sight");
+    assert.ok(last >= 0, `the sixth row ends ${-last} px below the list`);
+  });
+});
