@@ -141,6 +141,14 @@ test("a card that is opened out leaves the buttons over the list free", async (t
 test("a notice covers no verdict, no button, no scale bar and no curve of the widest layout", async (t) => {
   const page = await open(t, { hash: "#scene=four-bar&zzz=1" });
   await page.locator(".note:not([hidden]) .notice").waitFor();
+  let links = 1;
+  /** A notice goes by itself after some seconds: another bad link brings another one. */
+  const notify = () =>
+    page.evaluate((n) => {
+      if (document.querySelector(".note").hidden) {
+        location.hash = `#scene=four-bar&zzz=${n}`;
+      }
+    }, ++links);
   for (const [width, height] of [
     [1366, 768],
     [1024, 768],
@@ -149,6 +157,8 @@ test("a notice covers no verdict, no button, no scale bar and no curve of the wi
   ]) {
     await page.setViewportSize({ width, height });
     await soon(async () => {
+      await notify();
+      await page.locator(".note:not([hidden]) .notice").waitFor();
       const { note, ...boxes } = await boxesOf(page, {
         note: ".note:not([hidden])",
         verdict: "#verdict",
