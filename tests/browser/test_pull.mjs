@@ -216,6 +216,33 @@ test("a recording that plays is not pulled, and the page says why", async (t) =>
   assert.equal(await read(page, (data) => data.hand), null);
 });
 
+test("with pull on, a drag on methods that stand says so and changes nothing; with it off, it sets the start", async (t) => {
+  const page = await bench.open(t);
+  await playTo(page, 1);
+  const pull = page.getByRole("button", { name: "pull", exact: true });
+  await pull.click();
+  const drag = async () => {
+    const { x, y } = await jointAt(page, "A");
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x - 30, y - 20, { steps: 4 });
+  };
+  const before = await read(page, ({ run, settings, latest }) => ({ run, settings, t: latest.t }));
+  await drag();
+  await until(page, (data) => /^the methods stand: press Play, then pull/.test(data.notice));
+  await page.mouse.up();
+  assert.equal(await read(page, (data) => data.drag), null);
+  assert.deepEqual(
+    await read(page, ({ run, settings, latest }) => ({ run, settings, t: latest.t })),
+    before,
+  );
+  await pull.click();
+  await drag();
+  await until(page, (data) => data.drag?.moved);
+  await page.mouse.up();
+  await until(page, (data) => "start.th1" in data.settings);
+});
+
 test("a drag over empty places of the drawing marks no text", async (t) => {
   const page = await bench.open(t);
   await drawn(page);

@@ -86,8 +86,12 @@ export function createPullActions(store, exchange, notice) {
       }
       return lettingGo;
     },
-    /** A recording plays: says why nothing is pulled, and what to do. */
+    /** The methods stand, or a recording plays: says why nothing is pulled, and what to do. */
     refusePull() {
+      if (data.state !== "finished" && !data.view.replaying) {
+        notice("the methods stand: press Play, then pull. With pull off, a drag sets the start");
+        return;
+      }
       const end = seconds(data.history.t[data.history.count - 1], data.duration);
       notice(
         data.state === "finished"

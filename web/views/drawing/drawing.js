@@ -54,8 +54,8 @@ export function createDrawing(el, store, actions) {
   const ghosts = createGhosts(layers, data, stage);
   const marks = createMarks(layers, data, stage);
   const notices = createNotices(data);
-  const handles = createHandles(svg, layers.drag, data, stage, actions);
   const hand = createHand(layers.hand, data, stage, actions);
+  const handles = createHandles(svg, layers.drag, data, stage, actions, hand);
   const lengths = createLengths(layers.lengths, data, stage, actions);
 
   const toggles = Object.fromEntries(

@@ -152,6 +152,8 @@ export function createHand(layer, data, stage, actions) {
 
   return {
     tools: [button, panel, forget, legend],
+    /** Whether whoever drags wants to pull, and not to set the start. */
+    isOpen: () => !panel.hidden,
     /** @param {number} now index of the frame shown */
     draw(now) {
       listPoints();

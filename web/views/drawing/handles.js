@@ -20,8 +20,9 @@ const MOST_SNAPS = 1e4; // farther away a grid means nothing
  * @param {import("../../state/store.js").Data} data
  * @param {import("./stage.js").Stage} stage
  * @param {import("../../session/session.js").Session} actions
+ * @param {{isOpen: () => boolean}} hand
  */
-export function createHandles(svg, layer, data, stage, actions) {
+export function createHandles(svg, layer, data, stage, actions, hand) {
   const note = h("p", { class: "drag-note", role: "status", hidden: true });
   /** pulls: the methods run, and a hand pulls them; otherwise the start is dragged
    * @type {{point: number, x: number, y: number, from: number[], target: number[],
@@ -89,7 +90,8 @@ export function createHandles(svg, layer, data, stage, actions) {
     }
     event.stopPropagation(); // it would turn the view
     event.preventDefault();
-    if (data.view.replaying) {
+    const stands = data.state !== "running" || data.view.shown >= 0;
+    if (data.view.replaying || (hand.isOpen() && stands && data.state !== "finished")) {
       actions.refusePull();
       return;
     }
