@@ -349,22 +349,34 @@ static double value_of(hn_node node, const int *at, const double *value, const d
     return hn_op_get_info((hn_op)node.op)->value(arg);
 }
 
-double hn_graph_eval(hn_graph *g, hn_ex e, const double *x) {
+/// The value of the last node of a sweep; `value` has a place for each node.
+static double eval_at(const hn_graph *g, const sweep_values *s, const double *x, double *value) {
+    const int *at = s->argument_at;
+    for (int32_t i = 0; i < s->n; i++) {
+        const hn_node node = g->nodes[s->id[i]];
+        value[i] = value_of(node, at, value, x);
+        at += node.n_args;
+    }
+    return value[s->n - 1];
+}
+
+void hn_graph_eval_all(hn_graph *g, hn_ex e, const double *x, int n, int stride, double *out) {
     sweep_values s;
-    double result = (double)NAN;
     double *value = NULL;
-    if (sweep_values_init(g, &s, &e, 1, ~0ull) &&
-        (value = malloc((size_t)s.n * sizeof *value + 1)) != NULL) {
-        const int *at = s.argument_at;
-        for (int32_t i = 0; i < s.n; i++) {
-            const hn_node node = g->nodes[s.id[i]];
-            value[i] = value_of(node, at, value, x);
-            at += node.n_args;
-        }
-        result = e.c * value[s.n - 1];
+    if (sweep_values_init(g, &s, &e, 1, ~0ull)) {
+        value = malloc((size_t)s.n * sizeof *value + 1);
+    }
+    for (int i = 0; i < n; i++) {
+        out[i] = value ? e.c * eval_at(g, &s, x ? x + (size_t)i * (size_t)stride : NULL, value)
+                       : (double)NAN;
     }
     g->failed |= value == NULL;
     free(value);
     sweep_values_reset(&s);
-    return result;
+}
+
+double hn_graph_eval(hn_graph *g, hn_ex e, const double *x) {
+    double value;
+    hn_graph_eval_all(g, e, x, 1, 0, &value);
+    return value;
 }

@@ -20,5 +20,7 @@ void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const
 /// Value at x[symbol] (array by symbol number), straight from the graph: slow, for checks and
 /// constants.
 double hn_graph_eval(hn_graph *g, hn_ex e, const double *x);
+/// The same at n points, of which point i begins at x[i * stride]: out[i]. NaN where memory fails.
+void hn_graph_eval_all(hn_graph *g, hn_ex e, const double *x, int n, int stride, double *out);
 
 #endif

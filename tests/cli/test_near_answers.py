@@ -270,6 +270,8 @@ def names_in_formulas(folder):
             ("loops", "e", "-l1*w1^2*cos(th1)-l2*w3^2*cos(th2)+l3*w2^2*cos(th3)", "exchanged-names", "w2 and w3 are exchanged"),
             ("closure", "a", "-l1*sin(th1)*u1-l2*sin(th1+th2)*(u1+u2)", "relative-angle", "angle 2 is taken from link 1; the angles of the question are absolute"),
             ("fourbar", "b", "m2*l1*l2*cos(th2)/2", "relative-angle", "angle 2 is taken from link 1; the angles of the question are absolute"),
+            ("fourbar", "c", bias.format("m2", "th1+th2"), "relative-angle", "angle 2 is taken from link 1 in one term; the angles of the question are absolute"),
+            ("code", "d", "m2/2*(l1^2*w1^2+l2^2*w2^2/3+l1*l2*w1*w2)", "no-sine", "a sine or cosine is missing"),
             ("closure", "a", "-l1*sin(th1)*u1-l2*sin(th2)*u2*u1", "other", "wrong; the cause is none of the known mistakes")):  # fmt: skip
         for name, number in json.loads(run("problem", exercise, "--seed", "2", "--json").stdout)["numbers"].items():
             answer = answer.replace("{" + name + "}", str(number))
@@ -277,6 +279,31 @@ def names_in_formulas(folder):
         expect(f"{exercise} {part} = {answer} is {mistake}", (found["mistake"], found["explanation"]) == (mistake, said), str(found))
     found = entry(folder, "closure", "a", "(" * 101 + "th1" + ")" * 101)
     expect("a formula that is nested too deep is to be written shorter", found["explanation"].endswith("nested more than 100 deep; write it shorter"), found["explanation"])
+
+
+def two_in_a_formula(folder):
+    """Two mistakes at once, in different terms or in one, are both named; a third leaves nothing to name."""
+    kinetic, potential = "m2/2*(l1^2*w1^2+l2^2*w2^2/12+l1*l2*{}w1*w2)", "{}(m1*l1/2*sin(th1)+m2*{}+m3*l3/2*sin(th3))"
+    coupler = "(l1*sin(th1)+l2/2*sin(th2))"
+    for exercise, part, answer, mistake, first, second in (
+            ("closure", "a", "-l1*cos(th1)*u1-l2*sin(th2)*u1", "sine", "sine and cosine are exchanged at one place", "u1 stands where u2 belongs"),
+            ("closure", "a", "l1*sin(th1)*u1-l1*sin(th2)*u2", "crank-sign", "the crank's term has the wrong sign: differentiate l1 cos th1", "l1 stands where l2 belongs"),
+            ("loops", "e", "-l1*w1*cos(th1)-l2*w2^2*sin(th2)+l3*w3^2*cos(th3)", "not-squared", "a square is missing", "sine and cosine are exchanged at one place"),
+            ("fourbar", "e", "l1*l3*sin(th3-th2)", "sign", "the sign is wrong", "l1 stands where l2 belongs"),
+            ("code", "d", kinetic.format(""), "no-sine", "a sine or cosine is missing", "one term is 1/4 times as large as it must be"),
+            ("code", "d", kinetic.format("sin(th1-th2)*"), "sine", "sine and cosine are exchanged at one place", "one term is 1/4 times as large as it must be"),
+            ("fourbar", "c", "-0.5*m2*l1*l2*sin(th1-th2)*u1^2+m2*l2/2*cos(th1+th2)", "gravity", "the acceleration of gravity is missing",
+             "angle 2 is taken from link 1; the angles of the question are absolute"),
+            ("closure", "a", "-l1*sin(th1)*u1-2*l2*sin(th1+th2)*(u1+u2)", "double", "twice the right value: a factor 1/2 is missing",
+             "angle 2 is taken from link 1; the angles of the question are absolute")):  # fmt: skip
+        found = entry(folder, exercise, part, answer, "--seed", "2")
+        both = re.fullmatch(r"(?:this looks like: )?two mistakes (?:at once|in one term): (.*); and (.*)", found["explanation"])
+        expect(f"{exercise} {part} = {answer} has two mistakes", found["mistake"] == mistake and bool(both) and both.groups() == (first, second), str(found))
+        expect("they earn less than one", 0 < found["points"] <= found["max_points"] / 4, str(found))
+    found = entry(folder, "code", "c", potential.format("", coupler))
+    expect("gravity that is left out is told", (found["mistake"], found["explanation"]) == ("gravity", "the acceleration of gravity is missing"), str(found))
+    found = entry(folder, "closure", "a", "-l2*cos(th1)*u2-l1*cos(th2)*u1*u2")
+    expect("many mistakes are not named by chance", found["mistake"] == "other", str(found))
 
 
 def pasted(folder):
@@ -407,4 +434,4 @@ def proofs(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, names_in_formulas, pasted, shown, branches, plots, quaternions, two_at_once, frames, proofs]))
+    sys.exit(speak_tap([examples, formulas, told_truly, spellings, names, slips_by_name, one_slip, names_in_formulas, two_in_a_formula, pasted, shown, branches, plots, quaternions, two_at_once, frames, proofs]))

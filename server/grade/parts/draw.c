@@ -146,6 +146,10 @@ double hn_draw_eval(hn_draw *d, hn_ex e, int state) {
     return hn_graph_eval(d->graph, e, d->value[state]);
 }
 
+void hn_draw_eval_all(hn_draw *d, hn_ex e, double out[HN_DRAW_STATES]) {
+    hn_graph_eval_all(d->graph, e, d->value[0], d->n_states, HN_DRAW_NAMES, out);
+}
+
 hn_status hn_draw_value(hn_draw *d, const char *text, double *out, hn_diag *diag) {
     hn_ex e;
     HN_TRY(hn_draw_parse(d, text, &e, diag));

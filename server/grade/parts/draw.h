@@ -55,6 +55,8 @@ HN_MUST_CHECK hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex
 /// The name that a name of an answer stands for, borrowed; NULL: none, or more than one.
 const char *hn_draw_answer_name(hn_draw *d, const char *name);
 double hn_draw_eval(hn_draw *d, hn_ex e, int state);
+/// The values at all states.
+void hn_draw_eval_all(hn_draw *d, hn_ex e, double out[HN_DRAW_STATES]);
 /// The value of a formula in the first state.
 HN_MUST_CHECK hn_status hn_draw_value(hn_draw *d, const char *text, double *out, hn_diag *diag);
 /// Copies text with {name} replaced by the drawn number and {=formula} by its value with four

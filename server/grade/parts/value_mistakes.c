@@ -4,6 +4,7 @@
 #include "expr/construct.h"
 #include "expr/diff.h"
 #include "grade/parts/value_names.h"
+#include "grade/parts/value_pairs.h"
 #include "grade/parts/value_search.h"
 #include "grade/parts/value_slips.h"
 
@@ -33,7 +34,7 @@ static const struct factor_row {
     {"kilo", "a factor of 1/1000: check the unit", "a factor of 1/1000 as well: check the unit",
      0.001, 0.5, 1, UNITS},
     {"gravity", "the acceleration of gravity is missing",
-     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 1, UNITS},
+     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 0, UNITS},
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
 
@@ -240,6 +241,23 @@ static void try_name(hn_value_search *f, int name) {
                         "the terms with %s have the wrong sign", word);
 }
 
+/// Two factors left out at once. An angle is rarely a factor: it stands in a sine.
+static void try_two_names(hn_value_search *f, const int *used, int n) {
+    const hn_draw *d = f->sheet->draw;
+    for (int i = 0; i < n && f->n_found == 0; i++) {
+        for (int j = 0; j < i; j++) {
+            char says[120];
+            const int both[2] = {used[j], used[i]};
+            if (hn_draw_is_angle(d, both[0]) || hn_draw_is_angle(d, both[1])) {
+                continue;
+            }
+            snprintf(says, sizeof says, "the factors %.40s and %.40s are missing", d->name[both[0]],
+                     d->name[both[1]]);
+            try_signed(f, replace_names(f, both, 2, 1, 0), "missing-name", 0.1, says);
+        }
+    }
+}
+
 /// One name, or two factors at once: formulas alone, for a number tells too little.
 static void try_names(hn_value_search *f) {
     const hn_value_sheet *s = f->sheet;
@@ -252,14 +270,8 @@ static void try_names(hn_value_search *f) {
     for (int i = 0; i < n; i++) {
         try_name(f, used[i]);
     }
-    for (int i = 0; i < n && f->n_found == 0; i++) {
-        for (int j = 0; j < i; j++) {
-            char says[120];
-            const int both[2] = {used[j], used[i]};
-            snprintf(says, sizeof says, "the factors %.40s and %.40s are missing",
-                     s->draw->name[both[0]], s->draw->name[both[1]]);
-            try_signed(f, replace_names(f, both, 2, 1, 0), "missing-name", 0.1, says);
-        }
+    if (!f->note) {
+        try_two_names(f, used, n);
     }
 }
 
@@ -353,6 +365,32 @@ static bool find_rounded_number(const hn_value_sheet *s, int k, const double *gi
     return false;
 }
 
+/// The mistakes of which a formula, or one of its terms, may have two at once.
+static hn_status try_singles(hn_value_search *f, bool term) {
+    if (!term) {
+        HN_TRY(try_listed(f));
+    }
+    try_factors(f);
+    try_angles(f);
+    hn_value_names_try_relative(f);
+    try_names(f);
+    hn_value_slips_try(f);
+    hn_value_names_try(f);
+    return HN_OK;
+}
+
+/// Two mistakes at once; those that need the fewest words first.
+static hn_status try_pairs(hn_value_search *f) {
+    try_signed_factors(f);
+    if (f->n_found == 0) {
+        HN_TRY(try_listed_pairs(f));
+    }
+    if (f->n_found == 0) {
+        HN_TRY(try_two_listed(f));
+    }
+    return f->n_found == 0 ? hn_value_pairs_try(f, try_singles) : HN_OK;
+}
+
 hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex formula,
                            hn_part_result *r) {
     hn_value_search f;
@@ -393,13 +431,7 @@ hn_status hn_value_explain(hn_value_sheet *s, int k, const double *given, hn_ex 
         hn_value_names_try(&f);
     }
     if (f.n_found == 0 && !count) {
-        try_signed_factors(&f);
-    }
-    if (f.n_found == 0 && !count) {
-        HN_TRY(try_listed_pairs(&f));
-    }
-    if (f.n_found == 0 && !count) {
-        HN_TRY(try_two_listed(&f));
+        HN_TRY(try_pairs(&f));
     }
     if (f.n_found == 0) {
         hn_part_wrong(r, "other", 0, "wrong; the cause is none of the known mistakes");

@@ -3,6 +3,7 @@
 
 #include "expr/construct.h"
 #include "expr/diff.h"
+#include "grade/parts/value_factor.h"
 #include "grade/parts/value_places.h"
 
 #include <math.h>
@@ -13,8 +14,7 @@
 
 enum {
     MAX_CHANGED = 8, ///< names at once
-    PROBES = 3,      ///< states that a candidate must agree at before it is written as a formula
-    LARGEST_DIVISOR = 24 ///< of a factor that is told as a fraction
+    PROBES = 3       ///< states that a candidate must agree at before it is written as a formula
 };
 
 /// Names in place of which others stand, all at once: each with the one or two whose sum does.
@@ -72,7 +72,7 @@ static int count_probes(const hn_value_search *f) {
 /// The whole reference with the change.
 static void try_change(hn_value_search *f, const change *c, const char *id, const char *says) {
     const hn_ex reference = f->sheet->reference.e[f->entry];
-    for (int i = 0; i < count_probes(f); i++) {
+    for (int i = 0; i < count_probes(f) && !f->note; i++) {
         if (!is_near(f, f->given[i], value_with(f, reference, c, i))) {
             return;
         }
@@ -136,10 +136,14 @@ static change make_relative(const hn_draw *d, const int *used, int n, int index,
     return c;
 }
 
-void hn_value_names_try_relative(hn_value_search *f) {
+/// Does something with a change; `says` is its sentence.
+typedef void change_visit(hn_value_search *f, const change *c, const char *id, const char *says,
+                          const void *user);
+
+/// Calls `visit` for each angle that may be taken from the link before.
+static void each_relative(hn_value_search *f, const int *used, int n, const char *where,
+                          const void *user, change_visit *visit) {
     const hn_draw *d = f->sheet->draw;
-    int used[HN_DRAW_NAMES];
-    const int n = f->sheet->symbolic ? list_used(f, used) : 0;
     for (int i = 0; i < n; i++) {
         size_t stem;
         const int index = index_of(d->name[used[i]], &stem);
@@ -147,13 +151,25 @@ void hn_value_names_try_relative(hn_value_search *f) {
             const change c = make_relative(d, used, n, index, rates);
             char says[160];
             snprintf(says, sizeof says,
-                     "angle %d is taken from link %d; the angles of the question are absolute",
-                     index, index - 1);
+                     "angle %d is taken from link %d%s; the angles of the question are absolute",
+                     index, index - 1, where);
             if (c.n > 0) {
-                try_change(f, &c, "relative-angle", says);
+                visit(f, &c, "relative-angle", says, user);
             }
         }
     }
+}
+
+static void try_everywhere(hn_value_search *f, const change *c, const char *id, const char *says,
+                           const void *user) {
+    (void)user;
+    try_change(f, c, id, says);
+}
+
+void hn_value_names_try_relative(hn_value_search *f) {
+    int used[HN_DRAW_NAMES];
+    const int n = f->sheet->symbolic ? list_used(f, used) : 0;
+    each_relative(f, used, n, "", NULL, try_everywhere);
 }
 
 // ---- one name in place of another ----
@@ -185,28 +201,21 @@ static void try_exchanged(hn_value_search *f, const int *used, int n) {
 }
 
 /// Calls `visit` for each name that may stand where a used one belongs.
-static void each_other_name(hn_value_search *f, const int *used, int n, const void *user,
-                            void (*visit)(hn_value_search *, const change *, const char *says,
-                                          const void *user)) {
+static void each_other_name(hn_value_search *f, const int *used, int n, const char *where,
+                            const void *user, change_visit *visit) {
     const hn_draw *d = f->sheet->draw;
     for (int i = 0; i < n; i++) {
         for (int put = 0; put < d->n_names; put++) {
             char says[120];
             change c = {0};
             add_change(&c, used[i], put, -1);
-            snprintf(says, sizeof says, "%.40s stands where %.40s belongs", d->name[put],
-                     d->name[used[i]]);
+            snprintf(says, sizeof says, "%.40s stands where %.40s belongs%s", d->name[put],
+                     d->name[used[i]], where);
             if (may_replace(d, put, used[i])) {
-                visit(f, &c, says, user);
+                visit(f, &c, "other-name", says, user);
             }
         }
     }
-}
-
-static void try_everywhere(hn_value_search *f, const change *c, const char *says,
-                           const void *user) {
-    (void)user;
-    try_change(f, c, "other-name", says);
 }
 
 // ---- one term of a sum ----
@@ -237,10 +246,10 @@ static bool find_factors(const hn_value_search *f, term *t) {
     const hn_value_sheet *s = f->sheet;
     const double *reference = s->reference.x[f->entry];
     t->put = hn_num(0);
-    const hn_ex without = formula_of(f, t);
+    double rest[HN_DRAW_STATES];
+    hn_draw_eval_all(s->draw, formula_of(f, t), rest);
     for (int i = 0; i < s->draw->n_states; i++) {
-        const double rest = hn_draw_eval(s->draw, without, i);
-        t->factor[i] = (f->given[i] - rest) / (reference[i] - rest);
+        t->factor[i] = (f->given[i] - rest[i]) / (reference[i] - rest[i]);
         if (!isfinite(t->factor[i])) {
             return false;
         }
@@ -248,56 +257,26 @@ static bool find_factors(const hn_value_search *f, term *t) {
     return true;
 }
 
-/// Returns whether a factor is the same at all states.
-static bool is_constant(const double *factor, int n) {
-    double low = factor[0], high = factor[0];
-    for (int i = 1; i < n; i++) {
-        low = fmin(low, factor[i]);
-        high = fmax(high, factor[i]);
-    }
-    return high - low <= 1e-4 * fmax(fabs(low), fabs(high));
-}
-
-static double mean_of(const double *x, int n) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        sum += x[i] / n;
-    }
-    return sum;
-}
-
-/// A factor for people, as 1/4, and exactly; other than these it has three digits.
-static double name_factor(double factor, char *text, size_t size) {
-    for (int divisor = 1; divisor <= LARGEST_DIVISOR; divisor++) {
-        const double above = round(factor * divisor);
-        if (above != 0 && fabs(factor * divisor - above) <= 1e-5 * fabs(above)) {
-            snprintf(text, size, divisor == 1 ? "%g" : "%g/%d", above, divisor);
-            return above / divisor;
-        }
-    }
-    snprintf(text, size, "%.3g", factor);
-    return factor;
-}
-
 static void try_factor_of(hn_value_search *f, term *t, hn_ex argument) {
     char text[40];
     const int n = f->sheet->draw->n_states;
-    if (is_constant(t->factor, n)) {
-        t->put = hn_scale(name_factor(mean_of(t->factor, n), text, sizeof text), argument);
+    if (hn_value_factor_is_constant(t->factor, n)) {
+        t->put = hn_scale(hn_value_factor_name(t->factor, n, text, sizeof text, NULL), argument);
         hn_value_search_try(f, formula_of(f, t), 1, "wrong-factor", 0.25,
                             "one term is %s times as large as it must be", text);
     }
 }
 
-/// The data that each_other_name() needs of a term.
+/// A term in which names are changed.
 typedef struct term_visit {
     term *t;
     hn_ex argument;
 } term_visit;
 
-static void try_in_term(hn_value_search *f, const change *c, const char *says, const void *user) {
+static void try_in_term(hn_value_search *f, const change *c, const char *id, const char *says,
+                        const void *user) {
     const term_visit *v = user;
-    for (int i = 0; i < count_probes(f); i++) {
+    for (int i = 0; i < count_probes(f) && !f->note; i++) {
         const double right = hn_draw_eval(f->sheet->draw, v->argument, i);
         const double wrong = value_with(f, v->argument, c, i);
         if (!is_near(f, right * v->t->factor[i], wrong)) {
@@ -305,7 +284,7 @@ static void try_in_term(hn_value_search *f, const change *c, const char *says, c
         }
     }
     v->t->put = formula_with(f, v->argument, c);
-    hn_value_search_try(f, formula_of(f, v->t), 1, "other-name", 0.25, "%s in one term", says);
+    hn_value_search_try(f, formula_of(f, v->t), 1, id, 0.25, "%s", says);
 }
 
 static void try_terms(hn_value_search *f, const int *used, int n) {
@@ -320,7 +299,8 @@ static void try_terms(hn_value_search *f, const int *used, int n) {
             const term_visit v = {&t, hn_graph_node(g, list.node[i]).args[k]};
             if (find_factors(f, &t)) {
                 try_factor_of(f, &t, v.argument);
-                each_other_name(f, used, n, &v, try_in_term);
+                each_relative(f, used, n, " in one term", &v, try_in_term);
+                each_other_name(f, used, n, " in one term", &v, try_in_term);
             }
         }
     }
@@ -337,9 +317,9 @@ static void try_whole_factor(hn_value_search *f) {
             return;
         }
     }
-    if (is_constant(factor, n)) {
+    if (hn_value_factor_is_constant(factor, n)) {
         char text[40];
-        const double named = name_factor(mean_of(factor, n), text, sizeof text);
+        const double named = hn_value_factor_name(factor, n, text, sizeof text, NULL);
         hn_value_search_try(f, s->reference.e[f->entry], named, "wrong-factor", 0.25,
                             "this is %s times the right formula: a number in it is wrong", text);
     }
@@ -352,7 +332,7 @@ void hn_value_names_try(hn_value_search *f) {
     }
     const int n = list_used(f, used);
     try_exchanged(f, used, n);
-    each_other_name(f, used, n, NULL, try_everywhere);
+    each_other_name(f, used, n, "", NULL, try_everywhere);
     if (f->n_found == 0) {
         try_whole_factor(f);
     }

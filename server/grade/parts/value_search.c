@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/value_search.h"
 
+#include "expr/construct.h"
 #include "expr/diff.h"
 
 #include <math.h>
@@ -28,9 +29,10 @@ static bool is_done(const hn_value_search *f) {
 /// Returns whether the values agree at all states, and how closely: as in hn_value_search.
 static bool agrees(const hn_value_search *f, hn_ex e, double factor, int *close) {
     const hn_value_sheet *s = f->sheet;
-    double worst = 0, size = 0;
+    double worst = 0, size = 0, value[HN_DRAW_STATES];
+    hn_draw_eval_all(s->draw, e, value);
     for (int i = 0; i < s->draw->n_states; i++) {
-        const double x = factor * hn_draw_eval(s->draw, e, i);
+        const double x = factor * value[i];
         worst = fmax(worst, fabs(f->given[i] - x));
         size = fmax(size, fabs(x));
         if (!isfinite(f->given[i] - x)) {
@@ -136,8 +138,9 @@ const char *hn_value_search_stray_name(hn_value_sheet *sheet, int k, hn_ex formu
 /// Returns whether a candidate is the right answer itself, which explains nothing.
 static bool is_reference(const hn_value_search *f, hn_ex e, double factor) {
     double x[HN_DRAW_STATES];
+    hn_draw_eval_all(f->sheet->draw, e, x);
     for (int i = 0; i < f->sheet->draw->n_states; i++) {
-        x[i] = factor * hn_draw_eval(f->sheet->draw, e, i);
+        x[i] *= factor;
     }
     return hn_value_is_right(f->sheet, f->entry, x);
 }
@@ -145,6 +148,17 @@ static bool is_reference(const hn_value_search *f, hn_ex e, double factor) {
 bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char *id, double share,
                          const char *format, ...) {
     int close;
+    char text[HN_PART_TEXT];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (f->note) {
+        if (f->alone == 0) { // else it is a second mistake beside another
+            f->note(f->notes, hn_scale(factor, e), id, share, text);
+        }
+        return false;
+    }
     if (is_done(f) || !agrees(f, e, factor, &close) || is_reference(f, e, factor)) {
         return false;
     }
@@ -155,11 +169,6 @@ bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char 
     if (found == EVIDENCE_AGAINST) {
         return false;
     }
-    char text[HN_PART_TEXT];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
 
     // the better of two, or both where they are equally good
     const bool better = close > f->close, proven = found == EVIDENCE_FOR && f->result->likely;

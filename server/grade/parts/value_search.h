@@ -8,6 +8,9 @@
 
 #include "grade/parts/value_sheet.h"
 
+/// Notes a candidate: its formula, and what the mistake is called, earns and says.
+typedef void hn_value_note(void *user, hn_ex e, const char *id, double share, const char *says);
+
 /// The search for one entry. Set by hn_value_search_begin().
 typedef struct hn_value_search {
     hn_value_sheet *sheet; ///< borrowed
@@ -25,6 +28,8 @@ typedef struct hn_value_search {
     /// how closely, as `close` counts, a number must agree with the candidates tried next: the more
     /// there are, the closer
     int closeness;
+    hn_value_note *note; ///< takes single mistakes, which are not compared then; NULL: they are
+    void *notes;
 } hn_value_search;
 
 /// Begins the search for the mistake in entry k, whose values `given` are wrong.
@@ -32,7 +37,8 @@ void hn_value_search_begin(hn_value_search *f, hn_value_sheet *sheet, int k, con
                            hn_ex formula, hn_part_result *r);
 /// Compares the answer with `factor` times the formula `e`. The first candidate that agrees is
 /// written to the result; a second one that is another function is added to its sentence.
-/// Returns true when the values agree and the changed numbers do not speak against it.
+/// Returns true when the values agree and the changed numbers do not speak against it; false where
+/// candidates are only noted.
 bool hn_value_search_try(hn_value_search *f, hn_ex e, double factor, const char *id, double share,
                          const char *format, ...) HN_PRINTF(6, 7);
 /// The name in a formula with the right values that makes it wrong once its number is another one,

@@ -25,6 +25,7 @@ typedef enum kind {
     ROOT,
     SQUARE,
     FACTOR,
+    NO_SINE,
     // rarer ones
     SINE_TURNED, ///< with the sign that the graph has drawn out of an odd function
     POWER,
@@ -48,6 +49,7 @@ static const struct slip_row {
     [ROOT] = {"no-root", "a square root is missing", 0.25, true},
     [SQUARE] = {"not-squared", "a square is missing", 0.25, true},
     [FACTOR] = {"missing-name", "a factor is missing at one place", 0.25, false},
+    [NO_SINE] = {"no-sine", "a sine or cosine is missing", 0.25, false},
     [SINE_TURNED] = {"sine", "sine and cosine are exchanged at one place", 0.25, true},
     [POWER] = {"no-power", "an exponent is missing", 0.25, true},
     [DIVISOR] = {"no-divisor", "a divisor is missing", 0.25, true},
@@ -98,6 +100,7 @@ static bool can_happen(const hn_graph *g, const slip *s) {
     case WHOLE_DIVISOR:
         return view.op == HN_OP_MUL && hn_graph_node(g, view.args[s->arg].n).op == HN_OP_RECIP;
     case SINE:
+    case NO_SINE:
     case SINE_TURNED:
         return s->arg == 0 && (view.op == HN_OP_SIN || view.op == HN_OP_COS);
     case ROOT:
@@ -135,6 +138,7 @@ static hn_ex write_slip(hn_graph *g, hn_op op, hn_ex *a, int n, double *c, const
     case POWER:
         return a[0];
     case DIVISOR:
+    case NO_SINE:
         return hn_num(1);
     case WHOLE_DIVISOR:
         *c = copysign(1, *c);

@@ -336,6 +336,25 @@ static void an_interrupt_ends_building_and_compiling(void **state) {
     hn_graph_free(g);
 }
 
+/// The values at many points are those at each of them, bit by bit.
+static void values_at_many_points_are_those_at_each(void **state) {
+    (void)state;
+    enum { POINTS = 5, STRIDE = 3 };
+    double x[POINTS][STRIDE], all[POINTS];
+    hn_graph *g = hn_graph_create();
+    const hn_ex a = hn_symbol(g, "a", NULL);
+    const hn_ex b = hn_symbol(g, "b", NULL);
+    const hn_ex e = hn_scale(-0.3, hn_add(g, hn_mul(g, a, hn_sin(g, b)), hn_div(g, b, a)));
+    for (int i = 0; i < POINTS * STRIDE; i++) {
+        x[i / STRIDE][i % STRIDE] = 0.7 + 0.31 * i;
+    }
+    hn_graph_eval_all(g, e, x[0], POINTS, STRIDE, all);
+    for (int i = 0; i < POINTS; i++) {
+        assert_true(all[i] == hn_graph_eval(g, e, x[i]));
+    }
+    hn_graph_free(g);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(equal_structure_is_one_node),
@@ -347,6 +366,7 @@ int main(void) {
         cmocka_unit_test(forward_reverse_and_directional_derivatives_agree),
         cmocka_unit_test(a_gradient_costs_a_few_times_the_function),
         cmocka_unit_test(substitution_happens_all_at_once),
+        cmocka_unit_test(values_at_many_points_are_those_at_each),
         cmocka_unit_test(a_deep_graph_does_not_need_a_deep_stack),
         cmocka_unit_test(out_of_memory_marks_the_graph),
         cmocka_unit_test(an_interrupt_ends_building_and_compiling),
