@@ -262,6 +262,16 @@ static void keep_change(const hn_entry_values *entry, const changed *c, bool who
     case HN_CHANGE_POWER:
         keep(out, "power", share, key, "%s lacks a factor %.30s", where, from);
         break;
+    case HN_CHANGE_SUM:
+        keep(out, "angle-origin", share, key,
+             "%s has %.30s + %.30s in place of %.30s, as if that were counted from %.30s", where,
+             to, from, from, to);
+        break;
+    case HN_CHANGE_DIFFERENCE:
+        keep(out, "angle-origin", share, key,
+             "%s has %.30s - %.30s in place of %.30s, as if that included %.30s", where, from, to,
+             from, to);
+        break;
     case HN_CHANGE_QUARTER:
         keep(out, "sine-cosine", share, key, "%s has sine and cosine exchanged", where);
         break;

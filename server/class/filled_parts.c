@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "class/filled_parts.h"
 
+#include "class/counted_angles.h"
 #include "class/entry_faults.h"
 #include "class/exchanged_rows.h"
 
@@ -374,6 +375,29 @@ static void name_entry_faults(const part_view *p, const hn_language *language, c
     hn_strbuf_reset(&one);
 }
 
+/// Names angles that are counted otherwise than the scene counts them, where no other mistake of the
+/// whole part is known.
+static hn_status name_angles(const part_view *p, hn_entry_verdict *e) {
+    const int size = p->exam->size[p->part];
+    double *values = calloc(HN_EXPORT_EXAM_STATES * (size_t)size + 1, sizeof *values);
+    hn_status status = values ? HN_OK : HN_ERR_MEMORY;
+    for (int i = 0; i < HN_EXPORT_EXAM_STATES * size && status == HN_OK; i++) {
+        values[i] = given_at(p, i / size, i % size);
+    }
+    const hn_given_part part = {p->exam, (hn_export_part)p->part, values, ALLOWED * p->size};
+    char says[HN_COUNTED_ANGLES_TEXT];
+    bool found = false;
+    if (status == HN_OK && !e->mistake[0]) {
+        status = hn_counted_angles_find(&part, &found, says);
+    }
+    if (status == HN_OK && found) {
+        e->mistake = "angle-origin";
+        snprintf(e->explanation, sizeof e->explanation, "%s", says);
+    }
+    free(values);
+    return status;
+}
+
 /// Names rows or columns in another order, where no other mistake of the whole part is known.
 static hn_status name_exchange(const part_view *p, const hn_language *language,
                                hn_entry_verdict *e) {
@@ -426,8 +450,10 @@ static hn_status compare_part(const part_view *p, const hn_language *language,
     e->points = round(100 * HN_FILLED_POINTS * credit.share) / 100;
     name_mistake(p, e);
     HN_THEN(status, name_exchange(p, language, e));
-    if (strcmp(e->mistake, "exchanged") == 0) {
-        // an entry at another place keeps a quarter, as one with a wrong factor does
+    HN_THEN(status, name_angles(p, e));
+    if (strcmp(e->mistake, "exchanged") == 0 || strcmp(e->mistake, "angle-origin") == 0) {
+        // an entry at another place keeps a quarter, as one with a wrong factor does, and one of
+        // other angles
         const double share = (credit.right + 0.25 * (credit.asked - credit.right)) / credit.asked;
         e->points = round(100 * HN_FILLED_POINTS * share) / 100;
     }

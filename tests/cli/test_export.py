@@ -13,10 +13,8 @@ NODE_MODULES, the whole of each Julia program is parsed by tree-sitter's grammar
 
 import concurrent.futures
 import contextlib
-import functools
 import io
 import json
-import math
 import os
 import queue
 import re
@@ -27,7 +25,8 @@ import sys
 import tempfile
 import threading
 
-from latex_formulas import closing, formula
+from latex_formulas import closing
+from program_equations import RESPELLED, equations_faults, formulas_faults, unmatched
 
 PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
 # with another solver: dependent constraints and a spinning body are among them
@@ -37,7 +36,6 @@ EJML = ["/usr/share/java/ejml-core.jar", "/usr/share/java/ejml-ddense.jar"]
 SLOW = {("octave", "delta-robot"), ("octave ode15s", "delta-robot")}  # minutes in an interpreter that solves by singular values
 # scenes that another solver does not hold to 1e-6, and why: the table of all languages says so
 NOT_HELD = {("python petsc", "stiff-four-bar"): "rounding of a spring of 1e9 N/m is in the residual, and PETSc's Newton stops at 3e-6"}
-RESPELLED = ("wolfram", "modelica", "julia")
 FACTS = 5  # lines of a self-check
 CPU = 600  # [s] of computing for one program: the slowest takes 60 alone, and a machine that does other things too takes none of it
 WALL = 3600  # [s] for one that waits and computes nothing
@@ -159,112 +157,6 @@ def faults_of(folder, scene, name, language, out_name=None):
     return [] if good == FACTS else [f"{good} of {FACTS} lines of the self-check are ok"]
 
 
-# ---- equations of languages that are not run, statement by statement ----
-TERMS = {"mass", "force", "jacobian", "bias", "closure", "closure_rate", "energy"}
-FUNCTIONS = {"Sin": math.sin, "Cos": math.cos, "Tan": math.tan, "ArcSin": math.asin, "ArcCos": math.acos, "Sqrt": math.sqrt, "Exp": math.exp, "Log": math.log,
-             "Sinh": math.sinh, "Cosh": math.cosh, "Tanh": math.tanh, "Abs": abs, "Max": max, "Min": min, "UnitStep": lambda x: float(x >= 0),
-             "ArcTan": lambda *x: math.atan2(x[1], x[0]) if len(x) == 2 else math.atan(x[0]), "Sign": lambda x: (x > 0) - (x < 0), "Float64": float,
-             "sign": lambda x: (x > 0) - (x < 0), "step": lambda x: float(x >= 0), **{n: getattr(math, n) for n in dir(math) if n[0] != "_"}, "abs": abs, "min": min, "max": max,
-             "atan": lambda *x: math.atan2(*x) if len(x) == 2 else math.atan(x[0])}  # fmt: skip
-
-
-def respell(language, line):
-    """A statement as Python writes it."""
-    line = re.sub(r"\(\*.*?\*\)|//.*|#.*", "", line).strip().rstrip(";")
-    if language == "wolfram":
-        line = re.sub(r"\[\[([^\]]*)\]\]", r"<\1>", line.replace("*^", "e").replace("$", "_"))
-        line = re.sub(r"<([0-9, ]+)>", r"[\1]", line.replace("[", "(").replace("]", ")"))
-    if language == "modelica":
-        line = re.sub(r"\(if (.*?) then 1\.0 else 0\.0\)", r"float(\1)", line.replace(":=", "="))
-    return line.replace("^", "**")
-
-
-def evaluate(language, text):
-    """(term, row, column): value at the start, by the statements of a program."""
-    first = 0 if language == "python" else 1
-    names = {**FUNCTIONS, "t": 0.0, **{term: {} for term in TERMS}}
-    for array, word in (("q", "START_Q"), ("v", "START_V")):
-        word = {"wolfram": f"start{array.upper()}"}.get(language, word)
-        if language == "julia":
-            lists = re.search(r"const START_Q, START_V, CHECK_T = (.*)", text).group(1)
-            numbers = re.findall(r"\[(.*?)\]", lists)["qv".index(array)]
-        else:
-            numbers = re.search(rf"{word}(?:\[\w+\])? = (?:np\.array\()?[\[{{](.*?)[\]}}]", text).group(1)
-        names[array] = {k + first: float(x.replace("*^", "e")) for k, x in enumerate(numbers.split(","))}
-    wanted = re.compile(r"[A-Za-z_]\w*(\[[0-9, ]+\])? = .+")
-    begins, ends = {"python": (r"def terms", r"\n    return "), "wolfram": (r"terms\[t_", r"\n\];"), "modelica": (r"  algorithm", r"end terms"),
-                    "julia": (r"function terms", r"\n    return")}[language]  # fmt: skip
-    head, _, rest = text.partition(re.search(begins, text).group(0))
-    block = re.split(ends, rest)[0]
-    for line in (head + "\n" + block if language in ("python", "wolfram") else block).splitlines():
-        line = respell(language, line)
-        is_setting = wanted.fullmatch(line) and not re.search(r"zeros|Array|range|import|np\.", line) and line.split(" ")[0] not in ("NQ", "ALPHA")
-        is_setting = is_setting and not re.match(r"(energy|closure\w*|bias) = ", line)
-        if is_setting:
-            exec(line, names)  # noqa: S102 (the program's own statements)
-    index = lambda key: tuple(k - first for k in key) if isinstance(key, tuple) else (key - first,)
-    return {(term, *index(key)): value for term in TERMS for key, value in names[term].items()}
-
-
-def unmatched(language, text):
-    """The first bracket that has no partner, outside comments and texts."""
-    text = re.sub({"wolfram": r"\(\*.*?\*\)", "modelica": r"//[^\n]*", "julia": r"#[^\n]*"}[language], "", text, flags=re.S)
-    stack = []
-    for c in re.sub(r'"[^"]*"' if language != "julia" else r'"[^"\n]*"', "", text.replace("jacobian'", "jacobian").replace("y'", "y")):
-        if c in "([{":
-            stack.append(c)
-        elif c in ")]}" and (not stack or "([{".index(stack.pop()) != ")]}".index(c)):
-            return f"a {c} without its partner"
-    return f"{stack[-1]} is never closed" if stack else ""
-
-
-@functools.lru_cache
-def equations_in_python(scene):
-    return evaluate("python", call([PROGRAM, "export", scene, "--language", "python"]).stdout)
-
-
-def equations_faults(scene, language):
-    """Where the equations of a language differ from those of the program in Python."""
-    text = call([PROGRAM, "export", scene, "--language", language]).stdout
-    ours, theirs = equations_in_python(scene), evaluate(language, text)
-    faults = [unmatched(language, text)] if unmatched(language, text) else []
-    faults += [f"entries that differ: {sorted(ours.keys() ^ theirs.keys())[:5]}"] if ours.keys() != theirs.keys() or not ours else []
-    # the same operations on the same numbers, but for the order in which a library rounds
-    return faults + [f"{key}: {theirs[key]!r} is not {value!r}" for key, value in ours.items() if key in theirs and not abs(theirs[key] - value) <= 1e-13 * max(1.0, abs(value))][:5]
-
-
-def formulas_faults(scene):
-    """Where the formulas of the sheet differ from the program in Python. Symbols get the program's numbers, which have all digits."""
-    text, program = (call([PROGRAM, "export", scene, "--language", name]).stdout for name in ("latex", "python"))
-    numbers = [float(x) for x in re.findall(r"^\w+ = (\S+) # ", program.partition("def ")[0], re.M)]
-    for word in ("START_Q", "START_V"):
-        numbers += [float(x) for x in re.search(rf"{word} = np\.array\(\[(.*?)\]", program).group(1).split(",")]
-    lines = []
-    for line in (line for line in text.splitlines() if line.startswith(r"\eq{")):
-        end = closing(line, 3)
-        lines.append((line[4:end], line[end + 2:closing(line, end + 1)]))
-    first = next(i for i, (left, _) in enumerate(lines) if left == "q_{1}")
-    symbols = [left for left, _ in lines[:first]] + [right for left, right in lines[first:] if re.fullmatch(r"[qv]_\{\d+\}", left)]
-    if len(symbols) != len(numbers):
-        return [f"{len(symbols)} symbols, {len(numbers)} numbers"]
-    values, got = {**dict(zip(symbols, numbers)), "t": 0.0}, {}
-    for left, right in lines[len(symbols):]:
-        if left.startswith(r"\term{rate}"):
-            continue
-        spelled = sorted(values, key=len, reverse=True)
-        known = {name: i for i, name in enumerate(spelled)}
-        value = eval(formula(right, known), {**FUNCTIONS, "N": [values[name] for name in spelled]})  # noqa: S307 (the sheet's own formulas)
-        term = re.fullmatch(r"\\term\{(\w+)\}_\{([\d,]+)\}", left)
-        if term:
-            got[(term.group(1), *(int(k) - 1 for k in term.group(2).split(",")))] = value
-        else:
-            values[left] = value
-    wanted = {key: value for key, value in equations_in_python(scene).items() if key[0] != "mass" or key[1] <= key[2]}
-    faults = [f"entries that differ: {sorted(got.keys() ^ wanted.keys())[:5]}"] if got.keys() != wanted.keys() or not got else []
-    # the same terms in another order: each entry is rounded a few dozen times at the size of its largest term
-    return faults + [f"{key}: {got[key]!r} is not {value!r}" for key, value in wanted.items() if key in got and not abs(got[key] - value) <= 1e-11 * max(1.0, abs(value))][:5]
-
-
 def hostile_words(folder):
     """A title that would end the comment it stands in: every program stays the program it is."""
     scene = json.loads(call([PROGRAM, "inspect", "pendulum", "--json"]).stdout)
@@ -336,6 +228,16 @@ def joined():
         seen |= {left} if re.fullmatch(r"[cku]_\{\d+\}", left) else set()
     faults += [] if any(k[0] == "k" for k in seen) and any(k[0] == "u" for k in seen) else [f"pieces: {sorted(seen)[:5]}"]
     return faults + ([] if r"\remark{of $L_{1}$}" in sheet else ["no piece says that it is of one coordinate"])
+
+
+def named():
+    """What the head of a program calls its terms, the program calls them too."""
+    faults = []
+    for name in ("python", "c", "cpp", "java", "octave", *RESPELLED):
+        text = call([PROGRAM, "export", "four-bar", "--language", name]).stdout
+        head = re.search(r"(\S+) is M, (\S+) is f, (\S+) is J, (\S+) is gamma, (\S+) is phi, (\S+) its partial derivative", text)
+        faults += [f"{name}: no {word}" for word in head.groups() if text.count(word) < 3] if head else [f"{name}: its head names no terms"]
+    return faults
 
 
 def limits():
@@ -596,6 +498,7 @@ def main():
         results.append(("a skeleton is the program without its self-check", skeleton()))
         results.append(("a program without its libraries says so in its first line", without_numpy()))
         results.append(("a skeleton in a compiled language prints the motion", tables(folder)))
+        results.append(("the terms have the names that the head of a program gives them", named()))
         results.append(("a program has the helpers that its scene calls, and no others", helpers(folder)))
         results.append(("the sheet joins angles, and names its pieces by what they depend on", joined()))
         results.append(("words of a scene stay words in every language", hostile_words(folder)))

@@ -70,14 +70,32 @@ def spin(answer, first):
     return [math.hypot(*row[first:first + 3]) for row in answer["samples"]["v"]]
 
 
+def rotation(r):
+    """The matrix of a rotation vector."""
+    angle = math.hypot(*r)
+    x, y, z = (c / angle for c in r) if angle > 0 else (0, 0, 1)
+    c, s = math.cos(angle), math.sin(angle)
+    return [[c + x * x * (1 - c), x * y * (1 - c) - z * s, x * z * (1 - c) + y * s],
+            [y * x * (1 - c) + z * s, c + y * y * (1 - c), y * z * (1 - c) - x * s],
+            [z * x * (1 - c) - y * s, z * y * (1 - c) + x * s, c + z * z * (1 - c)]]  # fmt: skip
+
+
+def turn(answer, first):
+    """How a ball has turned since the start, nine columns: a model counts its rotation vector from the start, a scene from its own zero."""
+    turns = [rotation(row[first:first + 3]) for row in answer["samples"]["q"]]
+    at_start = turns[0]
+    return [[sum(at_start[k][i] * now[k][j] for k in range(3)) for now in turns] for i in range(3) for j in range(3)]
+
+
 def worst(a, b):
-    """The largest difference of what both have: coordinates by name, spins of balls, energy; relative to its largest value."""
+    """The largest difference of what both have: coordinates by name, turns and spins of balls, energy; relative to its largest value."""
     pairs = [(a["samples"]["energy"], b["samples"]["energy"])]
     for name in set(a["coordinates"]) & set(b["coordinates"]):
         pairs.append((column(a, "q", name), column(b, "q", name)))
     for i, name in enumerate(b["coordinates"]):
         if name.endswith("_rx"):
             pairs.append((spin(a, i), spin(b, i)))
+            pairs += zip(turn(a, i), turn(b, i))
     return len(pairs), max(abs(x - y) / (1 + max(map(abs, p))) for p, r in pairs for x, y in zip(p, r))
 
 

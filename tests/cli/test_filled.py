@@ -203,6 +203,44 @@ class Filled(unittest.TestCase):
             self.assertEqual((entry["mistake"], entry["explanation"].rsplit("; ", 1)[0]), (mistake, says), name)
             self.assertAlmostEqual(entry["points"], round(2 * share, 2), 9, name)
 
+    def test_angles_that_are_counted_from_others_are_named(self):
+        """A student derives everything for a relative angle, by the chain rule or by putting the sum in; each takes away what it spoils."""
+        whole = {"mass": (0.55, """
+    mass[0][0] = m1*l1*l1/3 + m2*l1*l1 + m2*l2*l2/3 + m2*l1*l2*cos(theta_coupler);
+    mass[0][1] = mass[1][0] = m2*l2*l2/3 + m2*l1*l2/2*cos(theta_coupler);
+    mass[1][1] = m2*l2*l2/3;
+    mass[2][2] = m3*l3*l3/3;
+"""), "force": (0.5, """
+    force[1] = -m2*l1*l2/2*sin(theta_coupler)*w1*w1 - m2*g*l2/2*cos(A);
+    force[0] = force[1] + m2*l1*l2/2*sin(theta_coupler)*W*W - (m1/2 + m2)*g*l1*cos(th1);
+    force[2] = -m3*g*l3/2*cos(th3);
+"""), "jacobian": (0.5, """
+    jacobian[0][0] = -l1*sin(th1) - l2*sin(A);
+    jacobian[0][1] = -l2*sin(A);
+    jacobian[0][2] = l3*sin(th3);
+    jacobian[1][0] = l1*cos(th1) + l2*cos(A);
+    jacobian[1][1] = l2*cos(A);
+    jacobian[1][2] = -l3*cos(th3);
+"""), "bias": (0.25, """
+    bias[0] = -l1*cos(th1)*w1*w1 - l2*cos(A)*W*W + l3*cos(th3)*w3*w3;
+    bias[1] = -l1*sin(th1)*w1*w1 - l2*sin(A)*W*W + l3*sin(th3)*w3*w3;
+""")}  # fmt: skip
+        blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
+        relative = "    const double A = th1 + theta_coupler, W = w1 + omega_coupler;\n" + "".join(text for _, text in whole.values())
+        right, entry = honest_programs.FOUR_BAR["direct"], "jacobian[0][1] = -l2*sin(theta_coupler)"
+        self.assertIn(entry, right)
+        put_in = right.replace(entry, "jacobian[0][1] = -l2*sin(th1 + theta_coupler)")
+        jobs = [("four-bar", self.put(f"{i}.c", honest_programs.fill(blank, text))) for i, text in enumerate((relative, put_in))]
+        (_, (_, all_of_them)), (_, (_, one)) = self.two_at_a_time(self.grade, jobs)
+        for e in all_of_them["entries"]:
+            self.assertEqual((e["mistake"], e["explanation"].rsplit("; ", 1)[0]),
+                             ("angle-origin", "it takes theta_coupler for an angle against th1: th1 + theta_coupler stands in its place"), e["name"])  # fmt: skip
+            self.assertAlmostEqual(e["points"], round(2 * whole[e["name"]][0], 2), 9, e["name"])
+        e = {e["name"]: e for e in one["entries"]}["jacobian"]
+        said = "jacobian[0, 1]: it has th1 + theta_coupler in place of theta_coupler, as if that were counted from th1"
+        self.assertEqual((e["mistake"], e["explanation"].rsplit("; ", 1)[0], e["points"]), ("angle-origin", said, 1.75))
+        self.assertEqual(one["score"], POINTS - 0.25)
+
     def test_an_explanation_ends_where_a_sentence_does(self):
         # each entry of the mass matrix has another fault with long words
         blank = call("export", "four-bar", "--language", "c", "--blanks").stdout

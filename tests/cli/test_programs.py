@@ -76,6 +76,23 @@ class StartingPoints(unittest.TestCase):
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             list(pool.map(self.compare_with_baumgarte, there))
 
+    def test_the_starting_point_in_c_says_that_a_scene_is_too_large(self):
+        greeting = json.dumps({"holonom": 1}) + "\n"
+        with tempfile.TemporaryDirectory() as folder:
+            text = call("program", "c", "-o", "mine.c", cwd=folder)
+            self.assertEqual(text.returncode, DONE)
+            subprocess.run([*BUILDS["c"], "-fsanitize=address", "-o", "mine", "mine.c", "-lm"], check=True, cwd=folder)
+            # more velocities, more constraints, and more of both together than there is room for
+            for n, m in ((61, 0), (0, 61), (31, 30), (30, 30), (200, 200)):
+                numbers = {"f": [1.0] * n, "v": [0.0] * n, "gamma": [0.0] * m, "phi": [0.0] * m, "phi_t": [0.0] * m}
+                matrix = [[float(i == j) for j in range(n)] for i in range(n)]
+                question = json.dumps({"id": 1, **numbers, "M": matrix, "J": matrix[:m] or [[] for _ in range(m)]}, separators=(",", ":"))
+                done = subprocess.run(["./mine"], input=greeting + question + "\n", capture_output=True, text=True, timeout=600, cwd=folder)
+                if n + m <= 60:
+                    self.assertEqual((done.returncode, done.stderr, len(done.stdout.splitlines())), (0, "", 2))
+                else:
+                    self.assertEqual((done.returncode, done.stderr), (1, "this scene is too large for MOST = 60 in mine.c\n"), (n, m))
+
     def test_the_starting_point_in_julia_has_what_the_conversation_needs(self):
         """Debian 12 has no Julia: the text is read here, and run by the test above where there is one."""
         text = call("program", "julia").stdout

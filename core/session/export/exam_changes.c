@@ -36,15 +36,17 @@ static void add(list *l, hn_exam_change_kind kind, int from, int to) {
     }
 }
 
-/// Returns whether coordinates are numbers of their own; orientations have four entries of q for
-/// three.
-static bool are_plain(const hn_export_exam *exam) {
+bool hn_exam_is_plain(const hn_export_exam *exam) {
     return exam->nq == exam->nv && exam->e.info.n_user == exam->nq;
 }
 
 static hn_unit_kind kind_of(const hn_export_exam *exam, int i) {
     const int at = hn_system_user_coordinate(exam->e.sys, i);
     return hn_model_scene(exam->e.model)->coordinates[at].kind;
+}
+
+bool hn_exam_is_angle(const hn_export_exam *exam, int i) {
+    return kind_of(exam, i) == HN_ANGLE;
 }
 
 /// One coordinate or velocity in place of another of its kind.
@@ -82,6 +84,20 @@ static void add_angles(list *l) {
     }
 }
 
+/// An angle counted from another one, or with another one in it.
+static void add_origins(list *l) {
+    const int *q = l->exam->e.x.q_symbols, *v = l->exam->e.x.v_symbols;
+    for (int a = 0; a < l->exam->nq; a++) {
+        const bool counts = hn_exam_is_angle(l->exam, a) && (has(l, q[a]) || has(l, v[a]));
+        for (int b = 0; b < l->exam->nq && counts; b++) {
+            if (b != a && hn_exam_is_angle(l->exam, b)) {
+                add(l, HN_CHANGE_SUM, q[a], q[b]);
+                add(l, HN_CHANGE_DIFFERENCE, q[a], q[b]);
+            }
+        }
+    }
+}
+
 /// Parameters of forces alone, as g, a stiffness or a torque.
 static void add_missing(list *l) {
     const hn_scene *scene = hn_model_scene(l->exam->e.model);
@@ -105,12 +121,25 @@ int hn_exam_changes_list(const hn_export_exam *exam, hn_export_part part, int i,
                          hn_exam_change *out, int most) {
     list l = {exam, part, i, out, 0, most};
     add_missing(&l);
-    if (are_plain(exam)) {
+    if (hn_exam_is_plain(exam)) {
         add_angles(&l);
         add_names(&l, exam->e.x.q_symbols, false);
         add_names(&l, exam->e.x.v_symbols, true);
+        add_origins(&l);
     }
     return l.n;
+}
+
+/// Adds `sign` times another angle to an angle, and its rate to the rate.
+static void add_angle(const hn_export_exam *exam, const hn_exam_change *c, double sign, double *x) {
+    const int *q = exam->e.x.q_symbols, *v = exam->e.x.v_symbols;
+    int a = 0, b = 0;
+    for (int i = 0; i < exam->nq; i++) {
+        a = q[i] == c->from ? i : a;
+        b = q[i] == c->to ? i : b;
+    }
+    x[q[a]] += sign * x[q[b]];
+    x[v[a]] += sign * x[v[b]];
 }
 
 /// Changes the values of the symbols at a state.
@@ -118,6 +147,10 @@ static void change_symbols(const hn_export_exam *exam, const hn_exam_change *c, 
     switch (c->kind) {
     case HN_CHANGE_NAME:
         x[c->from] = x[c->to];
+        break;
+    case HN_CHANGE_SUM:
+    case HN_CHANGE_DIFFERENCE:
+        add_angle(exam, c, c->kind == HN_CHANGE_SUM ? 1 : -1, x);
         break;
     case HN_CHANGE_QUARTER:
         x[c->from] += 90 * DEGREE;

@@ -7,13 +7,15 @@
 #include "session/export/exam.h"
 
 typedef enum hn_exam_change_kind {
-    HN_CHANGE_NAME,    ///< symbol `to` stands where `from` belongs
-    HN_CHANGE_ONE,     ///< one factor `to` stands where a factor `from` belongs
-    HN_CHANGE_POWER,   ///< a factor `from` too few
-    HN_CHANGE_QUARTER, ///< `from` is a quarter turn further: sine and cosine are exchanged
-    HN_CHANGE_WITHOUT, ///< parameter `from` is 0: its terms are missing
-    HN_CHANGE_DEGREES, ///< all angles count in degrees
-    HN_CHANGE_RADIANS  ///< all angles were converted to radians, which they are already
+    HN_CHANGE_NAME,  ///< symbol `to` stands where `from` belongs
+    HN_CHANGE_ONE,   ///< one factor `to` stands where a factor `from` belongs
+    HN_CHANGE_POWER, ///< a factor `from` too few
+    HN_CHANGE_SUM,   ///< angle `from` is counted from `to`: the sum of both, and of their rates
+    HN_CHANGE_DIFFERENCE, ///< angle `from` includes `to`: their difference, and that of the rates
+    HN_CHANGE_QUARTER,    ///< `from` is a quarter turn further: sine and cosine are exchanged
+    HN_CHANGE_WITHOUT,    ///< parameter `from` is 0: its terms are missing
+    HN_CHANGE_DEGREES,    ///< all angles count in degrees
+    HN_CHANGE_RADIANS     ///< all angles were converted to radians, which they are already
 } hn_exam_change_kind;
 
 typedef struct hn_exam_change {
@@ -32,6 +34,11 @@ HN_MUST_CHECK hn_status hn_exam_change_apply(const hn_export_exam *exam, hn_expo
                                              const hn_exam_change *change,
                                              double whole[HN_EXPORT_EXAM_STATES],
                                              hn_export_sum *terms);
+/// Returns whether coordinates are numbers of their own; orientations have four entries of q for
+/// three.
+bool hn_exam_is_plain(const hn_export_exam *exam);
+/// Returns whether coordinate i of a plain exam is an angle.
+bool hn_exam_is_angle(const hn_export_exam *exam, int i);
 /// Returns the name of a symbol as the exported programs spell it.
 const char *hn_exam_symbol_name(const hn_export_exam *exam, int symbol);
 
