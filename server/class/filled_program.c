@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define _GNU_SOURCE // mkstemps
+#define _GNU_SOURCE // mkdtemp
 #include "class/filled_program.h"
 
 #include "base/file.h"
@@ -11,6 +11,7 @@
 #include "program/guest_process.h"
 #include "program/sandbox.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -149,17 +150,22 @@ static void keep_program(hn_graded_program *kept, const char *path, const hn_str
 hn_status hn_filled_program_grade_text(const hn_filled_exam *f, const char *name, const char *text,
                                        size_t n, hn_verdict *v) {
     const char *dot = hn_filled_program_is(name) ? strrchr(name, '.') : "";
-    const char *folder = getenv("TMPDIR");
-    char path[1024];
-    snprintf(path, sizeof path, "%.900s/holonom-XXXXXX%.8s", folder ? folder : "/tmp", dot);
-    const int fd = mkstemps(path, (int)strlen(dot));
-    if (fd < 0) {
+    const char *parent = getenv("TMPDIR");
+    char folder[1024], path[1100];
+    snprintf(folder, sizeof folder, "%.900s/holonom-XXXXXX", parent ? parent : "/tmp");
+    if (!mkdtemp(folder)) {
         return HN_ERR_IO;
     }
-    const bool written = write(fd, text, n) == (ssize_t)n;
-    close(fd);
+    // a compiler prints the name of the file: it is the same every time
+    snprintf(path, sizeof path, "%s/program%.8s", folder, dot);
+    const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL, 0600);
+    const bool written = fd >= 0 && write(fd, text, n) == (ssize_t)n;
+    if (fd >= 0) {
+        close(fd);
+    }
     const hn_status status = written ? hn_filled_program_grade(f, path, NULL, v) : HN_ERR_IO;
     unlink(path);
+    rmdir(folder);
     return status;
 }
 

@@ -437,7 +437,7 @@ class Filled(unittest.TestCase):
         self.assertEqual((status, "does not end in" in verdict["reason"]), (2, True))
 
     def make_class(self):
-        """18 students: right ones, near-copies, wrong ones, hostile ones; the folder."""
+        """17 students: right ones, near-copies, wrong ones, hostile ones; the folder."""
         _, filled = blank_and_filled("four-bar", "c")
         blank = call("export", "four-bar", "--language", "c", "--blanks").stdout
         for k, statements in enumerate(list(honest_programs.FOUR_BAR.values())[:9]):
@@ -451,6 +451,7 @@ class Filled(unittest.TestCase):
         self.put("class/wrong.c", filled.replace("m1*l1*l1", "m1*l1*l4"))
         self.put("class/floods.py", "import os\nwhile True: os.write(1, b'x' * 65536)\n")
         self.put("class/dies.py", "import os\nos.kill(os.getpid(), 9)\n")
+        self.put("class/junk.c", "@ no program\n")
         self.put("class/text.txt", "later")
         return os.path.join(self.temporary.name, "class")
 
@@ -538,10 +539,11 @@ class Filled(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(out, encoding="utf-8") as f:
             lines = {line["student"]: line for line in map(json.loads, f)}
-        self.assertEqual(len(lines), 16)
+        self.assertEqual(len(lines), 17)
         self.assertEqual({name: line["score"] for name, line in lines.items() if name.startswith("student")}, {f"student{k}": POINTS for k in range(9)})
         self.assertEqual((lines["wrong"]["score"] < POINTS, lines["floods"]["status"], lines["dies"]["status"], lines["text"]["status"]), (True, *["ungradable"] * 3))
         self.assertIn("without an end of line", lines["floods"]["reason"])
+        self.assertIn("/program/program.c:1:1: error", lines["junk"]["reason"])
         self.assertRegex(done.stdout, rf"near-copies: {NEAR}\n +ann, bob, cid\n")
         self.assertNotIn("student1, student2", done.stdout)
         with open(out, "rb") as f:
@@ -568,7 +570,7 @@ class Filled(unittest.TestCase):
             self.assertEqual(f.read(), calm)
         done = call("grade", "four-bar", "--merge", *parts[:2], "--out", merged)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("5 of 16 submissions are in none of these parts", done.stderr)
+        self.assertIn("5 of 17 submissions are in none of these parts", done.stderr)
         done = call("grade", "four-bar", folder, "--shard", "4/3")
         self.assertEqual((done.returncode, "is no part of a class" in done.stderr), (2, True))
 
