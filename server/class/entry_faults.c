@@ -176,11 +176,11 @@ static void name_factor(const hn_scene *scene, double factor, char instead[112])
 }
 
 /// The factor of the one term that explains the entry, in an entry that moves: in a constant one
-/// any term would do.
+/// any term would do. An entry of one term is that term.
 static void find_factor(const hn_entry_values *entry, hn_entry_faults *out) {
     int found = 0;
     double factor = 0;
-    for (int m = 0; m < out->terms && out->terms > 1; m++) {
+    for (int m = 0; m < out->terms; m++) {
         double above = 0, below = 0, least = HUGE_VAL, most = -HUGE_VAL;
         for (int k = 0; k < HN_EXPORT_EXAM_STATES; k++) {
             const double term = entry->sum->t[m][k];
@@ -199,11 +199,14 @@ static void find_factor(const hn_entry_values *entry, hn_entry_faults *out) {
         }
     }
     if (found == 1) {
-        char instead[112] = "";
+        char instead[112] = "", where[40] = "it";
+        if (out->terms > 1) {
+            snprintf(where, sizeof where, "one of its %d terms", out->terms);
+        }
         name_factor(entry->scene, factor, instead);
         keep(out, instead[0] ? "other-name" : "factor-term", SHARE_OF_FACTOR,
              hn_hash_text(hn_hash_double(HN_HASH_START, factor), instead),
-             "one of its %d terms is %.4g times the right one%s", out->terms, factor, instead);
+             "%s is %.4g times the right one%s", where, factor, instead);
     }
 }
 

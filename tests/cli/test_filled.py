@@ -230,8 +230,12 @@ class Filled(unittest.TestCase):
         right, entry = honest_programs.FOUR_BAR["direct"], "jacobian[0][1] = -l2*sin(theta_coupler)"
         self.assertIn(entry, right)
         put_in = right.replace(entry, "jacobian[0][1] = -l2*sin(th1 + theta_coupler)")
-        jobs = [("four-bar", self.put(f"{i}.c", honest_programs.fill(blank, text))) for i, text in enumerate((relative, put_in))]
-        (_, (_, all_of_them)), (_, (_, one)) = self.two_at_a_time(self.grade, jobs)
+        # the angle alone is taken so, its rate is not
+        alone = right.replace("theta_coupler)", "(th1 + theta_coupler))")
+        # and an entry of one term with another length
+        length = right.replace(entry, "jacobian[0][1] = -l1*sin(theta_coupler)")
+        jobs = [("four-bar", self.put(f"{i}.c", honest_programs.fill(blank, text))) for i, text in enumerate((relative, put_in, alone, length))]
+        (_, (_, all_of_them)), (_, (_, one)), (_, (_, angles)), (_, (_, other)) = self.two_at_a_time(self.grade, jobs)
         for e in all_of_them["entries"]:
             self.assertEqual((e["mistake"], e["explanation"].rsplit("; ", 1)[0]),
                              ("angle-origin", "it takes theta_coupler for an angle against th1: th1 + theta_coupler stands in its place"), e["name"])  # fmt: skip
@@ -240,6 +244,10 @@ class Filled(unittest.TestCase):
         said = "jacobian[0, 1]: it has th1 + theta_coupler in place of theta_coupler, as if that were counted from th1"
         self.assertEqual((e["mistake"], e["explanation"].rsplit("; ", 1)[0], e["points"]), ("angle-origin", said, 1.75))
         self.assertEqual(one["score"], POINTS - 0.25)
+        for e in angles["entries"]:
+            self.assertEqual((e["mistake"], said.partition(" has ")[2] in e["explanation"]), ("angle-origin", True), e)
+        e = {e["name"]: e for e in other["entries"]}["jacobian"]
+        self.assertEqual((e["mistake"], e["explanation"].rsplit("; ", 1)[0]), ("other-name", "jacobian[0, 1]: it is 0.4167 times the right one, as l1 in place of l2"))
 
     def test_an_explanation_ends_where_a_sentence_does(self):
         # each entry of the mass matrix has another fault with long words

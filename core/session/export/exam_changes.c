@@ -32,7 +32,7 @@ static bool has(const list *l, int symbol) {
 
 static void add(list *l, hn_exam_change_kind kind, int from, int to) {
     if (l->n < l->most) {
-        l->out[l->n++] = (hn_exam_change){kind, from, to};
+        l->out[l->n++] = (hn_exam_change){.kind = kind, .from = from, .to = to};
     }
 }
 
@@ -84,15 +84,19 @@ static void add_angles(list *l) {
     }
 }
 
-/// An angle counted from another one, or with another one in it.
+/// An angle counted from another one, or with another one in it: with their rates, and alone.
 static void add_origins(list *l) {
+    static const hn_exam_change_kind kinds[] = {HN_CHANGE_SUM, HN_CHANGE_DIFFERENCE};
     const int *q = l->exam->e.x.q_symbols, *v = l->exam->e.x.v_symbols;
     for (int a = 0; a < l->exam->nq; a++) {
         const bool counts = hn_exam_is_angle(l->exam, a) && (has(l, q[a]) || has(l, v[a]));
         for (int b = 0; b < l->exam->nq && counts; b++) {
-            if (b != a && hn_exam_is_angle(l->exam, b)) {
-                add(l, HN_CHANGE_SUM, q[a], q[b]);
-                add(l, HN_CHANGE_DIFFERENCE, q[a], q[b]);
+            for (int k = 0; k < 4 && b != a && hn_exam_is_angle(l->exam, b); k++) {
+                const int n = l->n;
+                add(l, kinds[k % 2], q[a], q[b]);
+                if (l->n > n) {
+                    l->out[n].rates = k < 2;
+                }
             }
         }
     }
@@ -130,7 +134,7 @@ int hn_exam_changes_list(const hn_export_exam *exam, hn_export_part part, int i,
     return l.n;
 }
 
-/// Adds `sign` times another angle to an angle, and its rate to the rate.
+/// Adds `sign` times another angle to an angle, and its rate to the rate where both are changed.
 static void add_angle(const hn_export_exam *exam, const hn_exam_change *c, double sign, double *x) {
     const int *q = exam->e.x.q_symbols, *v = exam->e.x.v_symbols;
     int a = 0, b = 0;
@@ -139,7 +143,7 @@ static void add_angle(const hn_export_exam *exam, const hn_exam_change *c, doubl
         b = q[i] == c->to ? i : b;
     }
     x[q[a]] += sign * x[q[b]];
-    x[v[a]] += sign * x[v[b]];
+    x[v[a]] += c->rates ? sign * x[v[b]] : 0;
 }
 
 /// Changes the values of the symbols at a state.

@@ -7,11 +7,11 @@
 #include "session/export/exam.h"
 
 typedef enum hn_exam_change_kind {
-    HN_CHANGE_NAME,  ///< symbol `to` stands where `from` belongs
-    HN_CHANGE_ONE,   ///< one factor `to` stands where a factor `from` belongs
-    HN_CHANGE_POWER, ///< a factor `from` too few
-    HN_CHANGE_SUM,   ///< angle `from` is counted from `to`: the sum of both, and of their rates
-    HN_CHANGE_DIFFERENCE, ///< angle `from` includes `to`: their difference, and that of the rates
+    HN_CHANGE_NAME,       ///< symbol `to` stands where `from` belongs
+    HN_CHANGE_ONE,        ///< one factor `to` stands where a factor `from` belongs
+    HN_CHANGE_POWER,      ///< a factor `from` too few
+    HN_CHANGE_SUM,        ///< angle `from` is counted from `to`: the sum of both
+    HN_CHANGE_DIFFERENCE, ///< angle `from` includes `to`: their difference
     HN_CHANGE_QUARTER,    ///< `from` is a quarter turn further: sine and cosine are exchanged
     HN_CHANGE_WITHOUT,    ///< parameter `from` is 0: its terms are missing
     HN_CHANGE_DEGREES,    ///< all angles count in degrees
@@ -21,6 +21,7 @@ typedef enum hn_exam_change_kind {
 typedef struct hn_exam_change {
     hn_exam_change_kind kind;
     int from, to; ///< symbols
+    bool rates;   ///< of two angles: their rates are changed alike
 } hn_exam_change;
 
 /// Lists the changes that are possible in entry i of a part. Angles are taken for angles, lengths
