@@ -13,6 +13,7 @@
 #include "session/model/model_json.h"
 
 #include <cjson/cJSON.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -124,6 +125,23 @@ static void offer_starts(const completing *c, const hn_model *model) {
     }
 }
 
+/// Offers values behind "l1=": the present one and the ends of the range.
+static void offer_values(const completing *c, const hn_param *p) {
+    const struct {
+        double value;
+        const char *about;
+    } values[] = {{p->value, "its value now"}, {p->min, "the smallest"}, {p->max, "the largest"}};
+    for (int i = 0; i < 3; i++) {
+        char name[128], about[96];
+        snprintf(name, sizeof name, "%.80s=%.9g", p->name, values[i].value);
+        snprintf(about, sizeof about, "%s%s%.32s", values[i].about,
+                 p->unit && p->unit[0] ? ", in " : "", p->unit ? p->unit : "");
+        if (isfinite(values[i].value)) {
+            offer(c, name, "", about);
+        }
+    }
+}
+
 static void offer_parameters(const completing *c, const hn_library *lib, const char *scene) {
     hn_model *model = NULL;
     hn_diags diags = {0};
@@ -138,7 +156,11 @@ static void offer_parameters(const completing *c, const hn_library *lib, const c
         snprintf(about, sizeof about, "%g to %g %s, now %g: %s", s->params[i].min, s->params[i].max,
                  s->params[i].unit ? s->params[i].unit : "", s->params[i].value,
                  s->params[i].about ? s->params[i].about : "");
-        offer(c, s->params[i].name, "=", about);
+        if (strchr(c->typed, '=')) {
+            offer_values(c, &s->params[i]);
+        } else {
+            offer(c, s->params[i].name, "=", about);
+        }
     }
     offer_starts(c, model);
     hn_model_free(model);

@@ -66,7 +66,7 @@ static void put_node(hn_strbuf *b, const cJSON *node) {
         // one of several in a paragraph: a line of its own
         hn_strbuf_add(b, PICTURE);
         put_line(b, children_of(node));
-        hn_strbuf_printf(b, " (%s)\n", text_of(node, "src"));
+        hn_strbuf_add(b, "\n");
     } else {
         put_line(b, children_of(node)); // emphasis has no sign of its own in plain text
     }
@@ -382,7 +382,6 @@ static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
         put_blocks(b, children_of(node), indent + INDENT, width);
     } else if (is_kind(node, "figure")) {
         put_inline(b, children_of(node), indent, width, PICTURE);
-        hn_strbuf_printf(b, "%*s%s\n", indent + INDENT, "", text_of(node, "src"));
     } else {
         put_inline(b, children_of(node), indent, width, "");
     }
@@ -465,7 +464,9 @@ void hn_lesson_text(hn_strbuf *b, const cJSON *lesson, int columns) {
     put_blocks(&all, blocks, 0, columns);
     put_answers(&all, blocks, columns);
     if (strstr(hn_strbuf_text(&all), PICTURE)) {
-        hn_strbuf_printf(&all, "\nThe pictures are files in the folder lessons/%s.\n",
+        hn_strbuf_printf(&all,
+                         "\nThe page shows the pictures: 'holonom serve', then Lessons. They are "
+                         "files in lessons/%s.\n",
                          text_of(lesson, "id"));
     }
     put_tidy(b, &all);

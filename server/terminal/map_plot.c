@@ -55,6 +55,8 @@ void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m) {
                 (hn_map_plot_cell){.kind = (unsigned char)cell->trial.kind,
                                    .limit = is_limit(map, m, column, row),
                                    .gap = cell->trial.gap * length,
+                                   .error = cell->trial.error,
+                                   .energy = cell->trial.energy,
                                    .margin = cell->margin};
         }
     }
@@ -88,6 +90,43 @@ static bool is_beyond(const hn_map_axis *a, double value) {
 
 bool hn_map_plot_is_beyond(const hn_map_plot *p, double x, double y) {
     return is_beyond(&p->x, x) || is_beyond(&p->y, y);
+}
+
+// ---- the best cells ----
+
+static const double LEAST = 1e-17; // smaller values are rounding
+static const double WRONG = 1e-2;  // error of the velocity from which on a small gap is no merit
+
+static const char SWEET_SPOT[] =
+    "Small alpha and beta let the gap grow; near the boundary every step overshoots. The best "
+    "place lies between, and it is another one for the gap, the motion and the energy.";
+
+static const struct {
+    const char *mark, *word;
+} QUANTITY[HN_MAP_QUANTITIES] = {[HN_MAP_GAP] = {"g", "worst loop gap"},
+                                 [HN_MAP_ERROR] = {"v", "error of velocity"},
+                                 [HN_MAP_ENERGY] = {"e", "energy gained"}};
+
+/// NaN: the cell did not come to its end.
+static double value_of(const hn_map_plot_cell *cell, hn_map_quantity quantity) {
+    const double values[HN_MAP_QUANTITIES] = {
+        [HN_MAP_GAP] = cell->gap, [HN_MAP_ERROR] = cell->error, [HN_MAP_ENERGY] = cell->energy};
+    const bool ran = hn_stability_is_stable((hn_stability_class)cell->kind);
+    const bool known = ran && isfinite(values[quantity]);
+    return known ? fmax(values[quantity], LEAST) : (double)NAN;
+}
+
+hn_map_place hn_map_plot_best(const hn_map_plot *p, hn_map_quantity quantity) {
+    hn_map_place best = {-1, -1};
+    double least = HUGE_VAL;
+    for (int i = 0; p->heat && i < p->x.n * p->y.n; i++) {
+        const double value = value_of(&p->cell[i], quantity);
+        if (value < least) {
+            least = value;
+            best = (hn_map_place){i % p->x.n, i / p->x.n};
+        }
+    }
+    return best;
 }
 
 // ---- shades ----
@@ -227,6 +266,9 @@ static void fill_legend(legend *l, const hn_map_plot *p, range r) {
     if (limit) {
         add_entry(l, "%s predicted limit", PREDICTED);
     }
+    if (hn_map_plot_best(p, HN_MAP_GAP).column >= 0) {
+        add_entry(l, "g v e best gap, velocity, energy");
+    }
 }
 
 static bool is_wide(const hn_map_plot *p, int columns) {
@@ -275,6 +317,24 @@ static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place a
     }
 }
 
+/// The best cells, each with its letter, in the first column of the cell; a second one that falls
+/// on the same cell stands in its second column, or is left to the sentences.
+static void mark_best(hn_cells *c, hn_area area, const hn_map_plot *p, bool wide) {
+    for (int k = HN_MAP_QUANTITIES - 1; k >= 0; k--) {
+        const hn_map_place at = hn_map_plot_best(p, (hn_map_quantity)k);
+        int before = 0;
+        for (int j = 0; j < k; j++) {
+            const hn_map_place other = hn_map_plot_best(p, (hn_map_quantity)j);
+            before += other.column == at.column && other.row == at.row;
+        }
+        if (at.column >= 0 && before <= wide) {
+            const int x = LABEL_COLUMNS + (wide ? 2 * at.column + before : at.column);
+            hn_cells_put(c, area, x, p->y.n - 1 - at.row, HN_CELL_INK, HN_CELL_BOLD,
+                         QUANTITY[k].mark);
+        }
+    }
+}
+
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
                       hn_map_place cursor) {
     const bool wide = is_wide(p, area.columns);
@@ -286,6 +346,7 @@ void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_pl
         }
     }
     draw_axes(c, area, p, wide ? 2 : 1);
+    mark_best(c, area, p, wide);
     mark(c, area, p, present, wide, HN_CELL_BOLD, "★");
     mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "⊕");
 
@@ -326,6 +387,44 @@ void hn_map_plot_words(hn_strbuf *b, const hn_map_plot *p, hn_map_place at) {
     }
     if (isfinite(cell->margin) && cell->margin > 0) {
         hn_strbuf_printf(b, "; the step is %.3g of the predicted limit", cell->margin);
+    }
+}
+
+/// "g smallest worst loop gap: 19 µm at alpha = 11.1, beta = 17.6"; a small gap or energy beside a
+/// wrong motion is said to be so.
+static void add_best(hn_strbuf *b, const hn_map_plot *p, hn_map_quantity quantity) {
+    const hn_map_place at = hn_map_plot_best(p, quantity);
+    if (at.column < 0) {
+        return;
+    }
+    const hn_map_plot_cell *cell = &p->cell[at.row * p->x.n + at.column];
+    const double value = value_of(cell, quantity);
+    char gap[HN_SI_TEXT];
+    hn_strbuf where;
+    hn_strbuf_init(&where);
+    add_value(&where, &p->x, at.column);
+    add_value(&where, &p->y, at.row);
+    hn_strbuf_printf(b, "%s smallest %s: ", QUANTITY[quantity].mark, QUANTITY[quantity].word);
+    if (quantity == HN_MAP_GAP) {
+        hn_si_format(value, "m", 2, gap);
+        hn_strbuf_add(b, gap);
+    } else {
+        hn_strbuf_printf(b, "%.2g %%", 100 * value);
+    }
+    hn_strbuf_printf(b, " at %s", hn_strbuf_text(&where));
+    if (quantity != HN_MAP_ERROR && cell->error > WRONG) {
+        hn_strbuf_printf(b, ", where the velocity is %.2g %% off", 100 * cell->error);
+    }
+    hn_strbuf_add(b, "\n");
+    hn_strbuf_reset(&where);
+}
+
+void hn_map_plot_best_words(hn_strbuf *b, const hn_map_plot *p) {
+    for (int k = 0; k < HN_MAP_QUANTITIES; k++) {
+        add_best(b, p, (hn_map_quantity)k);
+    }
+    if (strcmp(p->x.name, "alpha") == 0 && p->heat) {
+        hn_strbuf_printf(b, "%s\n", SWEET_SPOT);
     }
 }
 

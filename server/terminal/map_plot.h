@@ -2,7 +2,8 @@
 #ifndef HN_TERMINAL_MAP_PLOT_H
 #define HN_TERMINAL_MAP_PLOT_H
 // A stability map in character cells: the outcome of every cell and the predicted limit. If
-// neither axis is the step, cells that came to their end are shaded by their worst loop gap.
+// neither axis is the step, cells that came to their end are shaded by their worst loop gap, and
+// the best cell for the gap, the motion and the energy is marked.
 
 #include "session/stability/stability.h"
 #include "terminal/cells.h"
@@ -11,6 +12,8 @@ typedef struct hn_map_plot_cell {
     unsigned char kind; ///< hn_stability_class
     bool limit;         ///< the predicted limit passes here
     double gap;         ///< worst loop gap [m]
+    double error;       ///< largest error of the velocity, a share
+    double energy;      ///< largest energy gained, a share
     double margin;      ///< step over the predicted limit; NaN: nothing is predicted
 } hn_map_plot_cell;
 
@@ -27,12 +30,26 @@ typedef struct hn_map_place {
     int column, row;
 } hn_map_place;
 
+/// Quantities of a cell; for each a map has a best cell.
+typedef enum hn_map_quantity {
+    HN_MAP_GAP,
+    HN_MAP_ERROR,
+    HN_MAP_ENERGY,
+    HN_MAP_QUANTITIES
+} hn_map_quantity;
+
 /// Copies what is done so far of method m.
 void hn_map_plot_take(hn_map_plot *p, const hn_map *map, int m);
 /// The cell whose values are nearest; values beyond the map have a cell at its edge. None for NaN.
 hn_map_place hn_map_plot_place(const hn_map_plot *p, double x, double y);
 /// Returns whether the values lie beyond the map.
 bool hn_map_plot_is_beyond(const hn_map_plot *p, double x, double y);
+/// The cell that came to its end with the smallest value; none where no cell did, or where an axis
+/// is the step.
+hn_map_place hn_map_plot_best(const hn_map_plot *p, hn_map_quantity quantity);
+/// Adds a line for each best cell, with its mark, its value and where it is; of a map of alpha and
+/// beta also what the map shows. "g smallest worst loop gap: 19 µm at alpha = 11.1, beta = 17.6"
+void hn_map_plot_best_words(hn_strbuf *b, const hn_map_plot *p);
 /// Rows that the map takes in `columns`, with its axis and its legend, which stands
 /// beside it where there is room.
 int hn_map_plot_rows(const hn_map_plot *p, int columns);

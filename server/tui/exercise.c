@@ -370,9 +370,12 @@ static void add_hints(hn_strbuf *b, const hn_tui_exercise *x) {
     hn_variant_reset(&variant);
 }
 
-/// Writes what each answer is worth, where they differ: "2 of 5 answers" are not 2 points then.
-static void add_worth(hn_strbuf *b, const hn_verdict *v) {
-    if (v->max_score == v->n_entries || v->score >= v->max_score) {
+/// Writes what each answer is worth, where they differ, as "2 of 5 answers" are not 2 points then,
+/// or where a part has several of them.
+static void add_worth(hn_strbuf *b, const hn_tui_exercise *x) {
+    const hn_verdict *v = x->verdict;
+    const bool plain = v->max_score == v->n_entries && v->n_entries == x->n_fields;
+    if (plain || v->score >= v->max_score) {
         return;
     }
     hn_strbuf_printf(b, "%d answers are checked, worth", v->n_entries);
@@ -388,7 +391,7 @@ static void add_end(hn_strbuf *b, const hn_tui_exercise *x) {
     if (x->checked && v->kind == HN_VERDICT_GRADED) {
         hn_strbuf_printf(b, "%g of %g points: %s\n%s%s", v->score, v->max_score, v->summary,
                          v->note, v->note[0] ? "\n" : "");
-        add_worth(b, v);
+        add_worth(b, x);
     } else if (x->checked) {
         hn_strbuf_printf(b, "not graded: %s%s%s\n", v->reason, v->hint[0] ? "; " : "", v->hint);
     } else {

@@ -130,6 +130,10 @@ bool hn_methods_set_step(hn_workbench *w, const char *text) {
         hn_workbench_say(w, "dt = %g s for %s%s", h,
                          n == w->n_methods ? "every method" : "the methods of fixed step",
                          n == w->n_methods ? "" : "; the others choose it by a tolerance");
+    } else if (strncmp(w->message, "h = ", 4) == 0) { // the name of what was typed
+        char rest[HN_TUI_MESSAGE];
+        snprintf(rest, sizeof rest, "%s", w->message + 1);
+        hn_workbench_say(w, "dt%s", rest);
     }
     return taken;
 }

@@ -305,6 +305,22 @@ static hn_tui_action action_of_row(const hn_workbench *w) {
     return HN_TUI_NONE;
 }
 
+/// Opens another scene with its own methods; where those that ran were others than the scene's
+/// they were chosen by hand, and it is said how they come back.
+static void open_scene(hn_workbench *w, const char *name) {
+    char before[sizeof w->scene];
+    const hn_scene *scene = hn_model_scene(w->model);
+    bool chosen = scene->n_methods != w->n_methods;
+    for (int i = 0; i < w->n_methods && !chosen; i++) {
+        chosen = strcmp(scene->methods[i], w->methods[i]) != 0;
+    }
+    snprintf(before, sizeof before, "%s", w->scene);
+    if (hn_workbench_reopen(w, name, NULL, 0, NULL, 0) && chosen) {
+        hn_workbench_say(w, "%s has its own methods; z: back to %s with yours, at t = 0", name,
+                         before);
+    }
+}
+
 static void choose(hn_workbench *w) {
     const hn_item *item = &w->items[w->cursor];
     char text[HN_TUI_LINE];
@@ -312,7 +328,7 @@ static void choose(hn_workbench *w) {
     // another scene: the name is copied, since the list goes with the old one
     case HN_LIST_SCENES:
         snprintf(text, sizeof text, "%s", item->name);
-        hn_workbench_reopen(w, text, NULL, 0, NULL, 0);
+        open_scene(w, text);
         break;
 
     // a value to be typed, beginning with the present one

@@ -3,12 +3,11 @@
 
 #include "tui/list.h"
 #include "tui/methods.h"
+#include "tui/remedy_words.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MOST_INCIDENTS = 512 };
 
 static bool is_listed(const hn_workbench *w, const char *remedy) {
     for (int i = 0; i < w->n_items; i++) {
@@ -23,34 +22,44 @@ static bool is_recorded(const hn_workbench *w) {
     return hn_recording_frames(w->recording) > hn_recording_last(w->recording);
 }
 
-/// Each remedy once, with what it gave in a trial, or what it is a remedy of; `running`: those that
-/// run already, else the others.
-static void list_remedies(hn_workbench *w, const hn_incident *incident, bool running) {
+/// What is said beside a remedy: whether it runs already, what it gave in a trial, or what it is a
+/// remedy of.
+static void write_words(const hn_workbench *w, const hn_incident_list *list,
+                        const hn_incident *incident, const char *remedy, char *out, size_t size) {
+    const hn_remedy_rank rank = hn_remedy_rank_of(w, list, remedy);
+    const char *tried = hn_remedy_tried(w, list, remedy);
+    char first[80] = "", units[HN_TUI_LINE];
+    if (rank == HN_REMEDY_RUNS) {
+        snprintf(first, sizeof first, "runs already as method %d; ",
+                 hn_methods_find(w, remedy) + 1);
+    } else if (rank == HN_REMEDY_DELAYS) {
+        snprintf(first, sizeof first, "%s; ", HN_REMEDY_PUTS_OFF);
+    }
+    hn_short_units(tried[0] ? tried : incident->message, units, sizeof units);
+    if (tried[0]) {
+        snprintf(out, size, "%s%s", first, units);
+    } else {
+        snprintf(out, size, "%s%s, against: %s", first,
+                 is_recorded(w) ? "not tried" : "not tried yet", units);
+    }
+}
+
+/// Each remedy of this rank once.
+static void list_remedies(hn_workbench *w, const hn_incident_list *list,
+                          const hn_incident *incident, hn_remedy_rank rank) {
     for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
-        const char *tried = incident->tried[k];
-        const int runs = hn_methods_find(w, incident->remedy[k]);
-        if ((runs >= 0) != running || is_listed(w, incident->remedy[k])) {
-            continue;
+        const char *remedy = incident->remedy[k];
+        char words[2 * HN_TUI_LINE];
+        if (hn_remedy_rank_of(w, list, remedy) == rank && !is_listed(w, remedy)) {
+            write_words(w, list, incident, remedy, words, sizeof words);
+            hn_list_add(w, remedy, words);
         }
-        char words[2 * HN_TUI_LINE], already[48] = "";
-        if (running) {
-            snprintf(already, sizeof already, "runs already as method %d; ", runs + 1);
-        }
-        if (tried[0]) {
-            snprintf(words, sizeof words, "%s%s", already, tried);
-        } else {
-            snprintf(words, sizeof words, "%s%s, against: %.400s", already,
-                     is_recorded(w) ? "not tried" : "not tried yet", incident->message);
-        }
-        hn_list_add(w, incident->remedy[k], words);
     }
 }
 
 void hn_remedies_open(hn_workbench *w) {
-    static hn_incident list[MOST_INCIDENTS];
-    static int whose[MOST_INCIDENTS];
     const char *name = hn_recording_track(w->recording, w->selected)->name;
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    const hn_incident_list *list = hn_incident_list_get(w);
     char title[HN_TUI_LINE];
     snprintf(title, sizeof title, "what %.60s can try: Enter tries it, Esc goes back", name);
     hn_list_begin(w, HN_LIST_REMEDIES, title);
@@ -58,9 +67,11 @@ void hn_remedies_open(hn_workbench *w) {
     if (hn_workbench_step_report(w, &step) && step.remedy[0]) {
         hn_list_add(w, step.remedy, step.tried);
     }
-    for (int i = 0; i < 2 * n; i++) { // what runs already comes last
-        if (whose[i % n] == w->selected) {
-            list_remedies(w, &list[i % n], i >= n);
+    for (int rank = 0; rank < HN_REMEDY_RANKS; rank++) {
+        for (int i = 0; i < list->n; i++) {
+            if (list->whose[i] == w->selected) {
+                list_remedies(w, list, &list->at[i], (hn_remedy_rank)rank);
+            }
         }
     }
     if (w->n_items == 0) {

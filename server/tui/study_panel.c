@@ -18,13 +18,19 @@ enum {
     MAP_COLUMNS = 24,
     MOST_MAP_ROWS = 24,
     LEAST_MAP_ROWS = 6,
-    AROUND_MAP = 12,
+    AROUND_MAP = 15, // the frame, the axes, and six lines of sentences below
     SIDE_COLUMNS = 46
 };
 
 static const char FALLBACK[] = "baumgarte@rk4:h=0.01";
 
 // ---- opening ----
+
+/// Rows of a map, as many as the screen has room for.
+static int map_rows(const hn_workbench *w) {
+    const int room = w->rows - AROUND_MAP;
+    return room < LEAST_MAP_ROWS ? LEAST_MAP_ROWS : room > MOST_MAP_ROWS ? MOST_MAP_ROWS : room;
+}
 
 /// The method of a map: the selected one where it has alpha and beta, else the first that has them,
 /// else Baumgarte's at a usual step.
@@ -59,8 +65,6 @@ static hn_status start(hn_workbench *w, hn_tui_study_kind kind, double time, hn_
         methods[n++] = mapped_method(w, &w->present[0], &w->present[1]);
     }
 
-    // a map as high as the screen has room for
-    const int room = w->rows - AROUND_MAP;
     const hn_tui_study_request request = {.library = w->library,
                                           .source = &source,
                                           .kind = kind,
@@ -68,9 +72,7 @@ static hn_status start(hn_workbench *w, hn_tui_study_kind kind, double time, hn_
                                           .n_methods = n,
                                           .time = time,
                                           .columns = MAP_COLUMNS,
-                                          .rows = room < LEAST_MAP_ROWS  ? LEAST_MAP_ROWS
-                                                  : room > MOST_MAP_ROWS ? MOST_MAP_ROWS
-                                                                         : room};
+                                          .rows = map_rows(w)};
     return hn_tui_study_start(&request, out, diags);
 }
 
@@ -88,6 +90,7 @@ void hn_study_panel_open(hn_workbench *w, hn_tui_study_kind kind) {
         hn_workbench_say_fault(w, &diags);
         return;
     }
+    w->map_rows = map_rows(w);
     w->panel = HN_PANEL_STUDY;
     w->scroll = 0;
     w->at = (hn_map_place){-1, -1};
@@ -131,12 +134,35 @@ static bool wants_longer(const hn_workbench *w) {
            hn_tui_study_time(w->study) < hn_model_scene(w->model)->duration;
 }
 
+/// Whether the screen has room for another number of rows than the map was started with.
+static bool wants_other_rows(const hn_workbench *w) {
+    return w->study && w->map_rows != map_rows(w) &&
+           hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY;
+}
+
+/// Makes the map anew where its size does not fit the screen any more; one that runs is stopped
+/// first.
+static void follow_size(hn_workbench *w) {
+    if (!wants_other_rows(w)) {
+        return;
+    }
+    if (hn_tui_study_running(w->study)) {
+        hn_tui_study_stop(w->study);
+    } else {
+        const hn_panel panel = w->panel;
+        hn_study_panel_open(w, HN_TUI_STABILITY);
+        w->panel = w->study ? panel : HN_PANEL_MAIN;
+    }
+}
+
 bool hn_study_panel_is_busy(const hn_workbench *w) {
-    return w->study && (hn_tui_study_running(w->study) || w->longer || wants_longer(w));
+    return w->study &&
+           (hn_tui_study_running(w->study) || w->longer || wants_longer(w) || wants_other_rows(w));
 }
 
 void hn_study_panel_follow(hn_workbench *w) {
     hn_diags diags = {0};
+    follow_size(w);
     if (wants_longer(w)) {
         w->longer_failed =
             start(w, HN_TUI_COST, hn_model_scene(w->model)->duration, &w->longer, &diags) != HN_OK;
@@ -267,12 +293,28 @@ static void add_words(hn_strbuf *b, const hn_workbench *w) {
     hn_tui_study_words(w->study, b);
 }
 
+/// The same of a map: the cell under the cursor, the best cells, then the map as a whole.
+static void add_map_words(hn_strbuf *b, const hn_workbench *w, const hn_map_plot *map) {
+    if (map->x.n > 0 && w->at.column >= 0) {
+        hn_map_plot_words(b, map, w->at);
+        hn_strbuf_add(b, " (Enter takes these)\n");
+    }
+    hn_map_plot_best_words(b, map);
+    hn_tui_study_words(w->study, b);
+}
+
 /// The last lines stay in sight.
 static void scroll(hn_workbench *w, int by) {
     enum { STAY = 3 };
+    static hn_map_plot map;
     hn_strbuf b;
     hn_strbuf_init(&b);
-    add_words(&b, w);
+    if (hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY) {
+        hn_tui_study_map(w->study, &map);
+        add_map_words(&b, w, &map);
+    } else {
+        add_words(&b, w);
+    }
     int lines = 0;
     for (const char *at = hn_strbuf_text(&b); *at; at++) {
         lines += *at == '\n';
@@ -286,6 +328,7 @@ void hn_study_panel_key(hn_workbench *w, int key) {
     const bool map = hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY;
     const int down = (key == HN_KEY_DOWN) - (key == HN_KEY_UP);
     const int across = (key == HN_KEY_RIGHT) - (key == HN_KEY_LEFT);
+    const int page = (key == HN_KEY_PAGE_DOWN) - (key == HN_KEY_PAGE_UP);
     if (key == HN_KEY_ESCAPE && hn_tui_study_running(w->study)) {
         hn_tui_study_stop(w->study);
     } else if (key == HN_KEY_ESCAPE || key == 'q') {
@@ -302,22 +345,27 @@ void hn_study_panel_key(hn_workbench *w, int key) {
         hn_workbench_ask(w, HN_PROMPT_STUDY_TIME, text);
     } else if (map && (down || across)) {
         move_cursor(w, across, -down);
-    } else if (down) {
-        scroll(w, down);
+    } else if (down || page) {
+        scroll(w, down + page);
     }
 }
 
 // ---- drawing ----
 
-static void draw_words(hn_cells *c, hn_area area, const hn_workbench *w) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    add_words(&b, w);
-    const char *text = hn_strbuf_text(&b);
+/// Text from the line that is scrolled to. Returns whether there is more of it.
+static bool draw_text(hn_cells *c, hn_area area, const hn_workbench *w, const char *text) {
     for (int line = 0; line < w->scroll && strchr(text, '\n'); line++) {
         text = strchr(text, '\n') + 1;
     }
     hn_cells_fold(c, area, 0, HN_CELL_INK, text);
+    return hn_text_rows(text, area.columns) > area.rows;
+}
+
+static void draw_words(hn_cells *c, hn_area area, const hn_workbench *w) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    add_words(&b, w);
+    draw_text(c, area, w, hn_strbuf_text(&b));
     hn_strbuf_reset(&b);
 }
 
@@ -395,18 +443,18 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     }
     hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
 
-    // the cell under the cursor, or what the map says as a whole
+    // below it what it says, and in the frame that there is more of it
     const hn_area foot = {in.x + 1, in.y + 1 + rows, in.columns - 2, in.rows - rows - 1};
-    if (w->at.column >= 0) {
-        hn_strbuf b;
-        hn_strbuf_init(&b);
-        hn_map_plot_words(&b, &map, w->at);
-        hn_strbuf_add(&b, " (Enter takes these)");
-        hn_cells_fold(c, foot, 0, HN_CELL_INK, hn_strbuf_text(&b));
-        hn_strbuf_reset(&b);
-    } else {
-        draw_words(c, foot, w);
+    const hn_area edge = {in.x, in.y + in.rows, in.columns, 1};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    add_map_words(&b, w, &map);
+    if (draw_text(c, foot, w, hn_strbuf_text(&b))) {
+        hn_cells_put(c, edge, 1, 0, HN_CELL_MUTED, 0, " PageDown: more ");
+    } else if (w->scroll > 0) {
+        hn_cells_put(c, edge, 1, 0, HN_CELL_MUTED, 0, " PageUp: back ");
     }
+    hn_strbuf_reset(&b);
     if (hn_map_plot_is_beyond(&map, w->present[0], w->present[1])) {
         hn_cells_printf(c, foot, 0, foot.rows - 1, HN_CELL_INK, 0,
                         "★ at the edge: now alpha = %.4g, beta = %.4g, beyond the map",
@@ -418,14 +466,19 @@ void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     const bool cost = hn_tui_study_get_kind(w->study) == HN_TUI_COST;
     const bool running = hn_tui_study_running(w->study);
     const char *name = cost ? "what accuracy costs" : "stability over alpha and beta";
+    const int room = area.columns - 6; // between the corners
     const char *moves = cost ? "" : "arrows move, ★ is now, ";
     char title[HN_TUI_LINE];
     const double time = hn_tui_study_time(w->study);
     if (running && hn_tui_study_stopping(w->study)) {
         snprintf(title, sizeof title, "%s in %g s: stopping, what is done stays", name, time);
     } else if (running) {
-        snprintf(title, sizeof title, "%s in %g s: %.0f %% done, %sEsc stops", name, time,
-                 100 * hn_tui_study_share(w->study), moves);
+        const double done = 100 * hn_tui_study_share(w->study);
+        const char *format = "%s in %g s: %.0f %% done, %sEsc stops";
+        snprintf(title, sizeof title, format, name, time, done, moves);
+        if (hn_text_columns(title) > room) { // the line of the keys says how to move
+            snprintf(title, sizeof title, format, name, time, done, cost ? "" : "★ is now, ");
+        }
     } else {
         snprintf(title, sizeof title, "%s in %g s: %sEsc goes back", name, time, moves);
     }

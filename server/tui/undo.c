@@ -36,7 +36,8 @@ void hn_undo_go(hn_workbench *w, int by) {
         char change[HN_TUI_LINE];
         hn_versions_change(v, v->now, to, change, sizeof change);
         v->now = to;
-        hn_workbench_say(w, "%s: change %d of %d; now %s", by < 0 ? "undone" : "done again",
-                         by < 0 ? to + 1 : to, v->n - 1, change);
+        hn_workbench_say(w, "%s: change %d of %d; now %s%s", by < 0 ? "undone" : "done again",
+                         by < 0 ? to + 1 : to, v->n - 1, change,
+                         same_scene ? "" : ", with its methods of then, at t = 0");
     }
 }

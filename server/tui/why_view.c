@@ -1,49 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/why_view.h"
 
+#include "base/units.h"
 #include "cli/shell/plain.h"
 #include "study/incidents/kinds.h"
 #include "study/incidents/log.h"
 #include "study/incidents/wording.h"
 #include "tui/methods.h"
+#include "tui/remedy_words.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_INCIDENTS = 512 };
-
-/// First words for a trial that was not made, or not to its end.
-static const char NOT_TRIED[] = "not tried";
-
-/// Writes remedy k of an incident: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)"
-/// where a trial removed the incident, "not tried yet: ..." while the recording is under way, else
-/// "not tried: ...".
-static void put_remedy(const hn_workbench *w, const hn_incident *incident, int k,
+/// Writes a remedy: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)" where a trial
+/// removed the incident, "not tried yet: ..." while the recording is under way, else "not tried:
+/// ...".
+static void put_remedy(const hn_workbench *w, const hn_incident_list *list, const char *remedy,
                        char out[HN_WHY_WORDS]) {
-    const char *remedy = incident->remedy[k], *tried = incident->tried[k];
     const bool recorded = hn_recording_frames(w->recording) > hn_recording_last(w->recording);
-    const int runs = hn_methods_find(w, remedy);
-    if (runs >= 0) {
-        snprintf(out, HN_WHY_WORDS, "%s runs already: method %d", remedy, runs + 1);
-    } else if (tried[0] && strncmp(tried, NOT_TRIED, strlen(NOT_TRIED)) != 0) {
+    char tried[sizeof(hn_remedy) + HN_SI_TEXT];
+    hn_short_units(hn_remedy_tried(w, list, remedy), tried, sizeof tried);
+    switch (hn_remedy_rank_of(w, list, remedy)) {
+    case HN_REMEDY_RUNS:
+        snprintf(out, HN_WHY_WORDS, "%s runs already: method %d", remedy,
+                 hn_methods_find(w, remedy) + 1);
+        break;
+    case HN_REMEDY_DELAYS:
+        snprintf(out, HN_WHY_WORDS, "%s %s (%s)", remedy, HN_REMEDY_PUTS_OFF, tried);
+        break;
+    case HN_REMEDY_CURES:
         snprintf(out, HN_WHY_WORDS, "try %s (%s)", remedy, tried);
-    } else if (tried[0]) {
-        snprintf(out, HN_WHY_WORDS, "%s: %s", remedy, tried);
-    } else {
-        snprintf(out, HN_WHY_WORDS, "%s: %s", recorded ? NOT_TRIED : "not tried yet", remedy);
+        break;
+    default:
+        if (tried[0]) {
+            snprintf(out, HN_WHY_WORDS, "%s: %s", remedy, tried);
+        } else {
+            snprintf(out, HN_WHY_WORDS, "%s: %s", recorded ? "not tried" : "not tried yet", remedy);
+        }
     }
 }
 
 bool hn_why_has_remedy(const hn_workbench *w) {
-    static hn_incident list[MOST_INCIDENTS];
-    static int whose[MOST_INCIDENTS];
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    const hn_incident_list *list = hn_incident_list_get(w);
     hn_step_report step;
     if (hn_workbench_step_report(w, &step) && step.remedy[0]) {
         return true;
     }
-    for (int i = 0; i < n; i++) {
-        if (whose[i] == w->selected && list[i].remedy[0][0]) {
+    for (int i = 0; i < list->n; i++) {
+        if (list->whose[i] == w->selected && list->at[i].remedy[0][0]) {
             return true;
         }
     }
@@ -51,34 +55,75 @@ bool hn_why_has_remedy(const hn_workbench *w) {
 }
 
 /// Returns whether incident i is one more of the cause of the one before it.
-static bool is_again(const hn_incident *list, const int *whose, int i) {
-    return i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
+static bool is_again(const hn_incident_list *list, int i) {
+    return i > 0 && list->whose[i - 1] == list->whose[i] &&
+           list->at[i - 1].code == list->at[i].code;
 }
 
-/// Weight of an incident for its method, in the order of the card.
-typedef enum standing { ENDING, ERROR, WARNING, STANDINGS } standing;
+/// Weight of an incident for its method, in the order of the card: the end of the method; the place
+/// where branches of the motion meet or change, which decides what comes after; other errors;
+/// warnings.
+typedef enum standing { ENDING, BRANCHES, ERROR, WARNING, STANDINGS } standing;
 
-static standing standing_of(const hn_workbench *w, const hn_incident *incident) {
+/// Returns whether incident i is the first flat position of its method, or goes to another branch.
+static bool is_about_branches(const hn_incident_list *list, int i) {
+    const hn_incident_code code = list->at[i].code;
+    bool first = true;
+    for (int k = 0; k < i; k++) {
+        first = first && !(list->whose[k] == list->whose[i] && list->at[k].code == code);
+    }
+    return code == HN_INCIDENT_BRANCH_FLIP ||
+           (first && (code == HN_INCIDENT_NEAR_SINGULAR || code == HN_INCIDENT_RANK_LOSS));
+}
+
+static standing standing_of(const hn_workbench *w, const hn_incident_list *list, int i) {
+    const hn_incident *incident = &list->at[i];
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     const size_t n = strlen(end.reason);
-    const bool ending = end.failed && n > 0 && strncmp(incident->message, end.reason, n) == 0;
-    return ending ? ENDING : hn_incident_kinds()[incident->code]->is_wrong ? ERROR : WARNING;
+    if (end.failed && n > 0 && strncmp(incident->message, end.reason, n) == 0) {
+        return ENDING;
+    }
+    if (is_about_branches(list, i)) {
+        return BRANCHES;
+    }
+    return hn_incident_kinds()[incident->code]->is_wrong ? ERROR : WARNING;
 }
 
-/// The entries of the selected method: incidents of one cause are one entry. Those of one standing
-/// are in the order of time. Returns their number.
-static int list_entries(const hn_workbench *w, const hn_incident *list, const int *whose, int n,
-                        int entry[MOST_INCIDENTS]) {
-    int used = 0;
+/// The entries of the card of the selected method.
+typedef struct entries {
+    const hn_incident_list *list;
+    int n, first;              ///< first: the one whose remedies stand above all; -1: none
+    int at[HN_MOST_INCIDENTS]; ///< places in the list
+} entries;
+
+static const hn_incident *entry_at(const entries *all, int e) {
+    return &all->list->at[all->at[e]];
+}
+
+/// Lists the entries: incidents of one cause are one, those of one standing are in the order of
+/// time.
+static void list_entries(const hn_workbench *w, entries *all) {
+    all->n = 0;
     for (int s = ENDING; s < STANDINGS; s++) {
-        for (int i = 0; i < n; i++) {
-            const bool own = whose[i] == w->selected && !is_again(list, whose, i);
-            if (own && (int)standing_of(w, &list[i]) == s) {
-                entry[used++] = i;
+        for (int i = 0; i < all->list->n; i++) {
+            const bool own = all->list->whose[i] == w->selected && !is_again(all->list, i);
+            if (own && (int)standing_of(w, all->list, i) == s) {
+                all->at[all->n++] = i;
             }
         }
     }
-    return used;
+
+    // the first of those with the best remedy
+    int best = HN_REMEDY_RANKS;
+    all->first = -1;
+    for (int e = 0; e < all->n; e++) {
+        const hn_incident *one = entry_at(all, e);
+        for (int k = 0; k < HN_REMEDIES && one->remedy[k][0]; k++) {
+            const int rank = hn_remedy_rank_of(w, all->list, one->remedy[k]);
+            all->first = rank < best ? e : all->first;
+            best = rank < best ? rank : best;
+        }
+    }
 }
 
 static int first_shown(const hn_workbench *w) {
@@ -101,53 +146,62 @@ static void put(page *p, int indent, int colour, const char *text) {
     p->line += hn_text_rows(text, in.columns);
 }
 
-/// Returns whether remedy k of an entry stands below an entry before, and gave the same there.
-static bool is_said(const hn_incident *list, const int *entry, int e, int k) {
-    const hn_incident *own = &list[entry[e]];
-    for (int j = 0; j < e; j++) {
-        const hn_incident *other = &list[entry[j]];
-        for (int l = 0; l < HN_REMEDIES && other->remedy[l][0]; l++) {
-            if (strcmp(other->remedy[l], own->remedy[k]) == 0 &&
-                strcmp(other->tried[l], own->tried[k]) == 0) {
-                return true;
-            }
+static bool has_remedy(const hn_incident *incident, const char *remedy) {
+    for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
+        if (strcmp(incident->remedy[k], remedy) == 0) {
+            return true;
         }
     }
     return false;
 }
 
+/// Returns whether a remedy of entry e stands above it: below the step that was tried, below the
+/// verdict or below an entry before.
+static bool is_said(const hn_workbench *w, const entries *all, int e, const char *remedy) {
+    hn_step_report step;
+    if (hn_workbench_step_report(w, &step) && strcmp(step.remedy, remedy) == 0) {
+        return true;
+    }
+    bool said = e != all->first && has_remedy(entry_at(all, all->first), remedy);
+    for (int j = 0; j < e && e != all->first; j++) {
+        said = said || has_remedy(entry_at(all, j), remedy);
+    }
+    return said;
+}
+
 /// Returns whether entry e is the first of its kind, and not all of that kind are listed.
-static bool tells_count(const hn_incident *list, const int *entry, int e) {
+static bool tells_count(const entries *all, int e) {
     bool is_first = true;
     for (int k = 0; k < e; k++) {
-        is_first = is_first && list[entry[k]].code != list[entry[e]].code;
+        is_first = is_first && entry_at(all, k)->code != entry_at(all, e)->code;
     }
-    return is_first && list[entry[e]].times > HN_INCIDENT_MOST_OF_ONE_KIND;
+    return is_first && entry_at(all, e)->times > HN_INCIDENT_MOST_OF_ONE_KIND;
 }
 
 /// Writes what entry e says of its incident.
-static void put_message(page *p, const hn_incident *list, const int *entry, int e) {
-    const hn_incident *incident = &list[entry[e]];
-    char line[640], message[480];
+static void put_message(page *p, const entries *all, int e) {
+    const hn_incident *incident = entry_at(all, e);
+    char line[640], message[480], units[480];
     hn_wording_behind_time(incident->t, incident->message, message, sizeof message);
-    const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, message);
-    if (tells_count(list, entry, e) && n < (int)sizeof line) {
+    hn_short_units(message, units, sizeof units);
+    const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, units);
+    if (tells_count(all, e) && n < (int)sizeof line) {
         snprintf(line + n, sizeof line - (size_t)n, "; one of %d, the first %d are listed",
                  incident->times, HN_INCIDENT_MOST_OF_ONE_KIND);
     }
     put(p, 0, HN_CELL_ALARM, line);
 }
 
-/// Writes what to try against entry e that is not said above: what runs already comes last.
-static void put_remedies(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
-                         int e) {
-    const hn_incident *incident = &list[entry[e]];
+/// Writes what to try against entry e that is not said above, the best first.
+static void put_remedies(page *p, const hn_workbench *w, const entries *all, int e) {
+    const hn_incident *incident = entry_at(all, e);
     char words[HN_WHY_WORDS];
-    for (int runs = 0; runs <= 1; runs++) {
+    for (int rank = 0; rank < HN_REMEDY_RANKS; rank++) {
         for (int k = 0; k < HN_REMEDIES && incident->remedy[k][0]; k++) {
-            const bool is_running = hn_methods_find(w, incident->remedy[k]) >= 0;
-            if (is_running == (runs == 1) && !is_said(list, entry, e, k)) {
-                put_remedy(w, incident, k, words);
+            const char *remedy = incident->remedy[k];
+            if ((int)hn_remedy_rank_of(w, all->list, remedy) == rank &&
+                !is_said(w, all, e, remedy)) {
+                put_remedy(w, all->list, remedy, words);
                 put(p, 2, HN_CELL_INK, words);
             }
         }
@@ -170,14 +224,13 @@ static void put_step(page *p, const hn_workbench *w) {
 
 /// Writes what became of the method: the entry that ended it (`ending`: it is the first one), why
 /// it ended where no entry says so, or the worst of it and whether its step is the cause.
-static void put_head(page *p, const hn_workbench *w, const hn_incident *list, const int *entry,
-                     bool ending) {
+static void put_head(page *p, const hn_workbench *w, const entries *all, bool ending) {
     const hn_track_end end = hn_recording_end(w->recording, w->selected);
     const hn_motion_verdict v =
         hn_recording_verdict(w->recording, w->selected, hn_workbench_frame(w));
     char line[HN_MOTION_VERDICT_TEXT + 32];
     if (ending) {
-        put_message(p, list, entry, 0);
+        put_message(p, all, 0);
     } else if (end.failed) {
         char reason[sizeof end.reason + 48];
         hn_wording_behind_time(end.t, end.reason, reason, sizeof reason);
@@ -192,43 +245,31 @@ static void put_head(page *p, const hn_workbench *w, const hn_incident *list, co
     }
 }
 
-/// The first entry that has something to try; -1: none has.
-static int first_remedied(const hn_incident *list, const int *entry, int entries) {
-    for (int e = 0; e < entries; e++) {
-        if (list[entry[e]].remedy[0][0]) {
-            return e;
-        }
-    }
-    return -1;
-}
-
 /// Writes the card: what became of the method, what to try, the rule, then each incident. p->line
 /// is then the number of its lines.
 static void put_card(page *p, const hn_workbench *w) {
-    static hn_incident list[MOST_INCIDENTS];
-    static int whose[MOST_INCIDENTS], entry[MOST_INCIDENTS];
-    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
-    const int entries = list_entries(w, list, whose, n, entry);
-    const bool ending = entries > 0 && standing_of(w, &list[entry[0]]) == ENDING;
+    static entries all;
     const hn_track *track = hn_recording_track(w->recording, w->selected);
-    const int first = first_remedied(list, entry, entries);
-    put_head(p, w, list, entry, ending);
-    if (first >= 0) {
-        put_remedies(p, w, list, entry, first);
+    all.list = hn_incident_list_get(w);
+    list_entries(w, &all);
+    const bool ending = all.n > 0 && standing_of(w, all.list, all.at[0]) == ENDING;
+    put_head(p, w, &all, ending);
+    if (all.first >= 0) {
+        put_remedies(p, w, &all, all.first);
     }
     put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
-    for (int e = ending; e < entries; e++) {
+    for (int e = ending; e < all.n; e++) {
         p->line++;
-        put_message(p, list, entry, e);
-        if (e != first) {
-            put_remedies(p, w, list, entry, e);
+        put_message(p, &all, e);
+        if (e != all.first) {
+            put_remedies(p, w, &all, e);
         }
     }
 
     // those of one cause after the first
     int same = 0;
-    for (int i = 0; i < n; i++) {
-        same += whose[i] == w->selected && is_again(list, whose, i);
+    for (int i = 0; i < all.list->n; i++) {
+        same += all.list->whose[i] == w->selected && is_again(all.list, i);
     }
     if (same > 0) {
         char line[96];

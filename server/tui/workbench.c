@@ -268,9 +268,8 @@ bool hn_workbench_step_report(const hn_workbench *w, hn_step_report *out) {
     return out->finding != HN_STEP_UNKNOWN;
 }
 
-/// Returns whether nothing but the drift of an open loop explains the method's errors: the rule of
-/// the card says so, and incidents offer what closes the loop.
-static bool only_drifts(const hn_workbench *w, const char *spelling) {
+// the rule of the card says so, and incidents offer what closes the loop
+bool hn_workbench_only_drifts(const hn_workbench *w, const char *spelling) {
     static const unsigned cares =
         HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_PULLS_GAP;
     hn_method_spec spec;
@@ -302,7 +301,7 @@ static void try_steps(hn_workbench *w) {
         hn_recording_verdict(w->recording, w->selected, frame).tone != HN_TONE_BAD) {
         return;
     }
-    if (only_drifts(w, spelling)) {
+    if (hn_workbench_only_drifts(w, spelling)) {
         return;
     }
     const hn_model_source source = hn_workbench_source(w);

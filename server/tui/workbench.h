@@ -179,6 +179,7 @@ typedef struct hn_workbench {
     char wanted[32];                   ///< error that is wanted of a method, as it was typed
     double present[2];                 ///< alpha and beta of the method that a map is about
     hn_map_place at;                   ///< cursor of a map
+    int map_rows;                      ///< of a map, as it was started
 
     int chosen; ///< hn_tui_action chosen in the menu, to be done; 0: none
 
@@ -215,6 +216,9 @@ bool hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
 bool hn_workbench_set(hn_workbench *w, const hn_setting *settings, int n_settings);
 /// Finds what the trial of shorter steps says of the selected method; false: there is none.
 bool hn_workbench_step_report(const hn_workbench *w, hn_step_report *out);
+/// Whether nothing but the drift of an open loop explains the errors of a method: a shorter step
+/// only slows it.
+bool hn_workbench_only_drifts(const hn_workbench *w, const char *spelling);
 /// Returns the source of the present model; borrowed.
 hn_model_source hn_workbench_source(const hn_workbench *w);
 /// Begins a line to type, with `initial` in it (prompt.h).

@@ -79,6 +79,10 @@ class Completion(unittest.TestCase):
         text = call("complete", "--", "run", "four-bar", "--set", "l1").stdout
         self.assertRegex(text, r"^l1=\t0\.1 to 3 m, now 0\.5: length of the crank\n$")
 
+        # behind the sign: the present value and the ends of the range
+        values = call("complete", "--", "run", "four-bar", "--set", "l1=").stdout
+        self.assertEqual(values, "l1=0.5\tits value now, in m\nl1=0.1\tthe smallest, in m\nl1=3\tthe largest, in m\n")
+
     def test_exercises_come_with_their_titles(self):
         self.assertEqual(call("complete", "--", "problem", "p2").stdout, "p2\tNull-space projection\n")
         self.assertEqual(call("complete", "--", "grade", "p2").stdout, "p2\tNull-space projection\n")

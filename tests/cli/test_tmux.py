@@ -59,6 +59,21 @@ class Terminal(Tmux):
         self.keys("q")
         self.assert_restored()
 
+    def test_a_map_fills_the_window_and_its_title_fits(self):
+        self.start(80, 24, f"HOLONOM_CACHE=$(mktemp -d) {PROGRAM} tui four-bar")
+        self.wait_for("Baumgarte|baumgarte")
+        self.keys("b")
+        self.wait_for(r"stability over alpha and beta in 3 s: \d+ % done, ★ is now, Esc stops ─")
+        self.wait_for(r"stability over alpha and beta in 3 s: arrows move, ★ is now, Esc goes back ─")
+        self.tmux("resize-window", "-x", "100", "-y", "50")
+        self.wait_for(r"(│ +[\d.]+ │[^\n]+\n){24}(.|\n)*[^\n]*")
+        self.wait_for("Esc goes back")
+        self.assertEqual(len(re.findall(r"(?m)^│ +[\d.]+ │", self.screen())), 24)
+        self.keys("Escape")
+        self.wait_for("Space run")
+        self.keys("q")
+        self.assert_restored()
+
     def test_a_storm_of_resizes_and_a_tiny_window_do_not_end_it(self):
         self.start(80, 24, f"{PROGRAM} tui four-bar")
         self.wait_for("Baumgarte|baumgarte")

@@ -431,7 +431,7 @@ class Keys(unittest.TestCase):
             def study(keys):
                 return once("pendulum", "--once", "--t", "0.5", "--size", "150x40", *methods, "--keys", "wt2<Enter>" + keys, HOLONOM_CACHE=cache)[1]
             out = " ".join("".join(line[100:149] for line in study("").split("\n")[2:20]).split())
-            self.assertRegex(out, r"For 1 mm at the end of [\d.]+ m, an error of \S+ up to t = 2 s of the scene's 10 s: index1@rk4 with h = \S+ s is the cheapest, ((about|at most) )?\d\S*")
+            self.assertRegex(out, r"For an error of 1 mm at the end of a bar of [\d.]+ m \(\S+ of its length\) up to t = 2 s of the scene's 10 s: index1@rk4 with h = \S+ s is the cheapest, ((about|at most) )?\d\S*")
             self.assertIn("In this study errors are the largest at 1024 times", out)
             # the axes have names, and no unit where there is none
             out = study("")

@@ -9,7 +9,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
-from terminal import PROGRAM, notice, once  # noqa: E402
+from terminal import PROGRAM, ROOT, notice, once  # noqa: E402
 
 
 class Studies(unittest.TestCase):
@@ -72,6 +72,33 @@ class Studies(unittest.TestCase):
             out = once("four-bar", "--once", "--size", "80x24", "--methods", method, "--keys", "bt0.1<Enter>")[1]
             self.assertIn(law, out.split("\n")[2])
             self.assertNotRegex(out.split("\n")[2], r"alpha e' \+ (?!beta² e = 0 )")
+
+    def test_a_map_marks_its_best_cells_and_says_what_they_show(self):
+        with open(os.path.join(ROOT, "web", "views", "study-map-parts.js"), encoding="utf-8") as file:
+            page = "".join(re.findall(r'"([^"]*)"', file.read().split("export const SWEET_SPOT =")[1].split(";\n")[0]))
+        spot = page.replace("α", "alpha").replace("β", "beta")
+        out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
+        words = " ".join(out.replace("│", " ").split())
+        self.assertIn(spot, words)
+        grid = [row.split("│")[2][:48] for row in out.split("\n") if re.search(r"│ +[0-9.]+ │", row)]
+        lines = dict((mark, float(at)) for mark, at in re.findall(r"([gve]) smallest [a-z ]+: \S+ \S+ at alpha = [\d.]+ 1/s, beta = ([\d.]+) 1/s", words))
+        self.assertEqual(sorted(lines), ["e", "g", "v"])
+        rows = [row for row in out.split("\n") if re.search(r"│ +[0-9.]+ │", row)]
+        for mark, beta in lines.items():
+            marked = [float(row.split("│")[1]) for row, cells in zip(rows, grid) if mark in cells]
+            self.assertIn(beta, marked, out)
+        # as text too
+        done = subprocess.run([PROGRAM, "study", "four-bar", "stability", "--preset", "baumgarte", "--grid", "12x6", "--time", "0.2", "--plot",
+                               "--methods", "baumgarte@rk4:h=0.02"], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "100", "LC_ALL": "C.UTF-8"})
+        self.assertIn("g smallest worst loop gap: ", done.stdout)
+
+    def test_what_a_small_map_has_no_room_for_is_reached_by_a_key(self):
+        small = [once("four-bar", "--once", "--size", "80x24", "--methods", "baumgarte@rk4:h=0.02", "--keys", "bt0.2<Enter>" + pages * "<PageDown>")[1]
+                 for pages in range(5)]
+        self.assertIn("PageDown: more", small[0])
+        self.assertIn("g smallest worst loop gap: ", small[0])
+        self.assertTrue(any("prediction right in" in page for page in small), small[-1])
+        self.assertIn("PageUp: back", small[-1])
 
     def test_the_legend_of_a_map_stands_beside_it_or_below_unbroken(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")

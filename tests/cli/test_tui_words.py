@@ -322,6 +322,22 @@ class Messages(unittest.TestCase):
         _, out, _ = once("pendulum", "--once", "--keys", "sfour-bar<Enter>")
         self.assertRegex(out, r"^ holonom  four-bar  ")
 
+    def test_another_scene_says_how_methods_that_were_chosen_come_back(self):
+        chosen = ("--methods", "projection@rk4:h=0.01", "nullspace@rk4:h=0.01")
+        away = once("four-bar", "--once", "--keys", "sslider-crank<Enter>", *chosen)[1]
+        self.assertEqual(message(away), "slider-crank has its own methods; z: back to four-bar with yours, at t = 0")
+        back = once("four-bar", "--once", "--keys", "sslider-crank<Enter>z", *chosen)[1]
+        self.assertRegex(message(back), "now scene four-bar, with its methods of then, at t = 0$")
+        self.assertRegex(back, r"(?m)^│2■ null-space ")
+        self.assertEqual(message(once("four-bar", "--once", "--keys", "sslider-crank<Enter>")[1]), "")
+
+    def test_keys_and_size_without_once_are_refused_in_a_terminal(self):
+        for words in (("--keys", "g"), ("--size", "100x30")):
+            terminal = Terminal("four-bar", *words)
+            self.assertTrue(terminal.wait_for(words[0].encode() + rb" is about a frame as text, and this terminal shows the workbench"))
+            terminal.process.wait()
+            self.assertEqual(terminal.process.returncode, 2)
+
     def test_a_scene_without_a_loop_has_no_map_of_alpha_and_beta(self):
         _, out, _ = once("double-pendulum", "--once", "--t", "0.1", "--keys", "b")
         self.assertIn("double-pendulum has no loop: there is nothing to stabilise", out)
@@ -357,8 +373,28 @@ class Messages(unittest.TestCase):
             _, out, _ = once("four-bar", "--once", "--t", "3.5", "--size", size, "--keys", "i", *OPENS)
             column = out.split("\n")[1].index("why:") - 2
             card = " ".join("".join(line[column:-1] + " " for line in out.split("\n")[2:14]).split())
-            self.assertRegex(card, r"^worst so far: open by .* off try h=0\.01 \(tried until .*\) try baumgarte:alpha=20,beta=20@rk4:h=0\.02 \(tried until"
-                                   r" t = [\d.]+ s: largest gap 0\.000\d+ m, .*\) projection@rk4:h=0\.02 runs already: method 2", size)
+            self.assertRegex(card, r"^worst so far: open by .* off try baumgarte:alpha=20,beta=20@rk4:h=0\.02 \(tried until t = [\d.]+ s: largest gap \d+ µm, .*\)"
+                                   r" h=0\.01 only puts it off, as nothing closes the loop \(tried until t = [\d.]+ s: .*\) projection@rk4:h=0\.02 runs already: method 2", size)
+        # in the list too, where what cures it comes first
+        rows = re.findall(r"(?m)^│ (\S+@\S+|h=\S+) +(.*)", once("four-bar", "--once", "--t", "3.5", "--size", "120x40", "--keys", "i<Enter>", *OPENS)[1])
+        self.assertRegex(rows[0][0], "^baumgarte:alpha=20,beta=20@rk4")
+        self.assertTrue(all(words.startswith("only puts it off, as nothing closes the loop; tried until") for name, words in rows if name.startswith("h=")), rows)
+
+    def test_the_card_has_each_remedy_once_and_lengths_as_the_table(self):
+        for scene, words in (("parallelogram", ("--t", "5")), ("four-bar", OPENS)):
+            out = once(scene, "--once", "--size", "120x150", "--keys", "1i", *words)[1]
+            card = " ".join(" ".join(row.split("││")[1].rstrip("│ ") for row in out.split("\n") if "││" in row).split())
+            offered = re.findall(r"(?:try )?(h=[\d.]+|\S+@\S+)(?: \(tried|: not tried| only puts)", card)
+            self.assertEqual(len(offered), len(set(offered)), offered)
+            self.assertNotRegex(card, r" 0\.0\d* (m|J)\b|e-0\d (m|J)\b")
+
+    def test_the_flat_position_and_the_other_branch_stand_before_what_follows_from_them(self):
+        out = once("parallelogram", "--once", "--size", "120x150", "--t", "5", "--keys", "1i")[1]
+        card = " ".join(" ".join(row.split("││")[1].rstrip("│ ") for row in out.split("\n") if "││" in row).split())
+        times = [float(t) for t in re.findall(r"([\d.]+) s: (?:the|a) ", card)]
+        self.assertRegex(card, r"so the gap grows\. 0\.343 s: the constraint equations are almost dependent")
+        # errors and then warnings follow, each in the order of time
+        self.assertEqual(sum(later < earlier for earlier, later in zip(times, times[1:])), 1, times)
 
     def test_a_remedy_that_runs_already_is_said_and_selected(self):
         def frame(keys, *methods):

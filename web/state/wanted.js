@@ -35,7 +35,7 @@ export function wantedError(text, error, length) {
     const value = metres / length;
     return sound(
       value,
-      `${quantity(metres, "m")} at the end of a bar of ${quantity(length, "m")} (an error of ${scientific(value)})`,
+      `an error of ${quantity(metres, "m")} at the end of a bar of ${quantity(length, "m")} (${scientific(value)} of its length)`,
     );
   }
   const angle = error === "q" ? parseQuantity(text, "rad") : NaN;

@@ -54,8 +54,9 @@ bool hn_wanted_read(const char *text, double length, hn_wanted *out) {
     out->error = value * factor / (u->is_length ? length : 1);
     if (u->is_length) {
         hn_si_format(length, "m", 3, size);
-        snprintf(out->words, sizeof out->words, "%.20s at the end of %.30s, an error of %.3g", copy,
-                 size, out->error);
+        snprintf(out->words, sizeof out->words,
+                 "an error of %.20s at the end of a bar of %.30s (%.3g of its length)", copy, size,
+                 out->error);
     } else {
         snprintf(out->words, sizeof out->words, "an error of %.3g", out->error);
     }

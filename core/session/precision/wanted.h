@@ -13,7 +13,7 @@
 /// An accuracy as people type it.
 typedef struct hn_wanted {
     double error;    ///< relative, as the study ranks it (study/truth/errors.h)
-    char words[120]; ///< "1 mm at the end of 1.20 m, an error of 0.000833"
+    char words[144]; ///< "an error of 1 mm at the end of a bar of 1.20 m (0.000833 of its length)"
 } hn_wanted;
 
 /// Reads "1 mm" (as a share of `length`, the characteristic one [m]), "0.1 %", "1 mrad", "2 deg" or

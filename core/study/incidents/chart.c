@@ -8,9 +8,12 @@ void hn_chart_check(hn_watch *w, long long changes) {
         return;
     }
     hn_incident_over(&w->log, HN_INCIDENT_CHART_CHANGE);
-    hn_incident_report(
-        w, &hn_incident_chart_change, "chart changes", (double)changes, 0,
-        "the method chose other independent coordinates; the motion is not affected");
+    // without the missing term the result depends on them
+    const bool wrong = w->run->spec.formulation->traits & HN_TRAIT_COUNTER_EXAMPLE;
+    hn_incident_report(w, &hn_incident_chart_change, "chart changes", (double)changes, 0,
+                       "the method chose other independent coordinates; %s",
+                       wrong ? "its motion, wrong by the missing term, depends on them"
+                             : "that alone changes nothing of the motion");
 }
 
 const hn_incident_kind hn_incident_chart_change = {

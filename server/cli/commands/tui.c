@@ -138,6 +138,13 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
                     hn_diags *diags) {
     const bool terminal = isatty(STDOUT_FILENO) && isatty(STDIN_FILENO);
     opts->colours = hn_terminal_colours();
+    if (terminal && !args->once && (args->keys || args->size)) {
+        const char *name = args->keys ? "--keys" : "--size";
+        hn_diags_add(diags, HN_ERR_INPUT, args->keys ? "/keys" : "/size",
+                     "with --once the frame is printed as text",
+                     "%s is about a frame as text, and this terminal shows the workbench", name);
+        return hn_report_diags(args, HN_ERR_INPUT, diags);
+    }
     if (terminal && !args->once) {
         // a terminal that cannot place its cursor would show a heap of lines
         const char *name = getenv("TERM");

@@ -150,8 +150,7 @@ static const option OPTIONS[] = {
      "another host name that the server accepts; may be repeated"},
     {"--proxy", "ADDRESS", OPTION_WORD, AT(proxies),
      "address of a proxy that names its clients in X-Forwarded-For, or a network such as "
-     "10.0.0.0/8; "
-     "one on this machine is believed without it; may be repeated"},
+     "10.0.0.0/8; one on this machine is believed without it; may be repeated"},
     {"--open", NULL, OPTION_FLAG, AT(open), "open the page in a browser"},
     {"--history", "N", OPTION_COUNT, AT(history),
      "number of events that are kept for each comparison"},

@@ -16,6 +16,7 @@ static void put_map(hn_strbuf *b, hn_map_plot *plot, const hn_map *map, int m) {
     hn_map_plot_take(plot, map, m);
     hn_strbuf_add(b, "\n");
     hn_map_plot_text(b, plot, hn_terminal_columns(), hn_terminal_colours());
+    hn_map_plot_best_words(b, plot);
     hn_strbuf_add(b, "  ");
     hn_map_agreement_text(b, map, m);
     hn_strbuf_add(b, "\n");

@@ -323,7 +323,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     }
 
     // the unit, which may be left out
-    hn_strbuf_printf(b, unit[0] ? " in %s, or with its unit: \"1.2 %s\"" : "%s%s", unit,
+    hn_strbuf_printf(b, unit[0] ? " in %s, or with its unit: \"... %s\"" : "%s%s", unit,
                      unit[0] ? unit : "");
 
     if (!hn_value_is_symbolic(p)) {

@@ -133,7 +133,7 @@ static void pictures_of_one_paragraph_have_lines_of_their_own(void **state) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_lesson_text(&b, lesson, 80);
-    assert_non_null(strstr(hn_strbuf_text(&b), "\n[picture] One (a.png)\n[picture] Two (b.png)\n"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "\n[picture] One\n[picture] Two\n"));
     hn_strbuf_reset(&b);
     cJSON_Delete(lesson);
 }

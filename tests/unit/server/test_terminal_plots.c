@@ -59,9 +59,13 @@ static void fill_map(hn_map_plot *p) {
         (hn_map_axis){.name = "alpha", .unit = "1/s", .is_log = 1, .n = 3, .value = {1, 10, 100}};
     p->y = (hn_map_axis){.name = "beta", .unit = "1/s", .is_log = 1, .n = 2, .value = {1, 100}};
     for (int i = 0; i < 6; i++) {
-        p->cell[i] = (hn_map_plot_cell){.kind = HN_STABILITY_FINE, .gap = 1e-6, .margin = 0.5};
+        p->cell[i] = (hn_map_plot_cell){
+            .kind = HN_STABILITY_FINE, .gap = 1e-6, .error = 0.1, .energy = 0.1, .margin = 0.5};
     }
     p->cell[1].gap = 1e-3;
+    p->cell[2].error = 1e-3;
+    p->cell[3].gap = 9e-7;
+    p->cell[3].energy = 2e-3;
     p->cell[5] = (hn_map_plot_cell){.kind = HN_STABILITY_GREW, .margin = 2};
     p->cell[4].limit = true;
 }
@@ -79,6 +83,32 @@ static void a_map_shades_what_ran_by_its_gap_and_marks_what_grew(void **state) {
     assert_string_equal(glyph(&c, 16, 0), "!");
     assert_string_equal(glyph(&c, 15, 0), "━"); // the predicted limit passes there
     hn_cells_free(&c);
+}
+
+static void a_map_marks_the_best_cell_for_gap_velocity_and_energy(void **state) {
+    (void)state;
+    static hn_map_plot p;
+    hn_cells c = {0};
+    hn_strbuf b;
+    const hn_map_place none = {-1, -1};
+    fill_map(&p);
+    assert_true(hn_cells_resize(&c, 60, 12));
+    hn_map_plot_draw(&c, (hn_area){0, 0, 60, 12}, &p, none, none);
+    assert_string_equal(glyph(&c, 12, 0), "g"); // two of them share a cell
+    assert_string_equal(glyph(&c, 13, 0), "e");
+    assert_string_equal(glyph(&c, 16, 1), "v");
+    assert_string_equal(glyph(&c, 17, 1), "░");
+    hn_cells_free(&c);
+
+    // a small gap beside a wrong motion is no merit
+    hn_strbuf_init(&b);
+    hn_map_plot_best_words(&b, &p);
+    assert_non_null(strstr(hn_strbuf_text(&b),
+                           "g smallest worst loop gap: 900 nm at alpha = 1 1/s, beta = 100 1/s, "
+                           "where the velocity is 10 % off\n"
+                           "v smallest error of velocity: 0.1 % at alpha = 100 1/s, beta = 1 1/s\n"
+                           "e smallest energy gained: 0.2 % at "));
+    hn_strbuf_reset(&b);
 }
 
 static void marks_of_a_map_leave_the_outcome_of_their_cell(void **state) {
@@ -197,6 +227,7 @@ int main(void) {
         cmocka_unit_test(points_stand_in_their_decades_and_failures_on_the_upper_edge),
         cmocka_unit_test(one_point_spans_no_range_and_draws_nothing),
         cmocka_unit_test(a_map_shades_what_ran_by_its_gap_and_marks_what_grew),
+        cmocka_unit_test(a_map_marks_the_best_cell_for_gap_velocity_and_energy),
         cmocka_unit_test(marks_of_a_map_leave_the_outcome_of_their_cell),
         cmocka_unit_test(a_map_names_columns_below_a_tick_at_their_edge),
         cmocka_unit_test(a_line_is_not_broken_beside_a_unit_or_an_equals_sign),
