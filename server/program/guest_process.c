@@ -205,8 +205,7 @@ static hn_status check_use(hn_guest_process *p, hn_diag *diag) {
                            p->limits.cpu);
     }
     if (sum.bytes > p->limits.memory) {
-        return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL,
-                           "it holds %lld MB of memory; %lld MB are allowed", sum.bytes >> 20,
+        return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "it holds more than %lld MB of memory",
                            p->limits.memory >> 20);
     }
     // two processes are bubblewrap's
@@ -337,8 +336,8 @@ hn_status hn_guest_process_ask(hn_guest_process *p, const char *text, size_t n, 
         }
         if ((long long)p->pending.n > p->limits.line) {
             return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL,
-                               "it wrote %zu bytes without an end of line; %lld are allowed",
-                               p->pending.n, p->limits.line);
+                               "it wrote more than %lld bytes without an end of line",
+                               p->limits.line);
         }
 
         // limits, at most twenty times a second

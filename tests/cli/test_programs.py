@@ -399,7 +399,7 @@ HOSTILE = {
     "writes binary": ("greet('step')\nfor ask in questions(): os.write(1, bytes(range(256)) + b'\\n')", "answer 1"),
     "writes zero bytes": ("greet('step')\nfor ask in questions(): os.write(1, b'{\\0}\\n')", "zero byte"),
     "writes deep nests": ("greet('step')\nfor ask in questions(): os.write(1, b'[' * 100000 + b'\\n')", "is no JSON object"),
-    "floods without an end of line": ("greet('step')\nfor ask in questions():\n    while True: os.write(1, b'x' * 65536)", "without an end of line"),
+    "floods without an end of line": ("greet('step')\nfor ask in questions():\n    while True: os.write(1, b'x' * 65536)", "it wrote more than 4194304 bytes without an end of line"),
     "floods with lines": ("greet('step')\nfor ask in questions():\n    while True: os.write(1, b'{\"id\":1}\\n' * 9999)", "more than one line"),
     "floods its errors": (STEP.replace("    say(", "    os.write(2, b'e' * 300000)\n    say("), None),
     "hangs": ("greet('step')\nfor ask in questions(): time.sleep(99)", "did not answer within 0.5 s"),
@@ -408,7 +408,7 @@ HOSTILE = {
     "never reads": ("greet('step')\ntime.sleep(99)", "did not answer within 0.5 s"),
     "closes its output": ("greet('step')\nos.close(1); time.sleep(99)", "did not answer within 0.5 s|it closed its output"),
     "takes all memory": ("greet('step')\nx = []\nwhile True: x.append(bytearray(1 << 24))", "MemoryError|MB of memory"),
-    "shares all memory": ("import mmap\ngreet('step')\nx = []\nwhile True:\n    m = mmap.mmap(-1, 1 << 26); m.write(b'x' * (1 << 26)); x.append(m)", "MB of memory; 768 MB are allowed"),
+    "shares all memory": ("import mmap\ngreet('step')\nx = []\nwhile True:\n    m = mmap.mmap(-1, 1 << 26); m.write(b'x' * (1 << 26)); x.append(m)", "it holds more than 768 MB of memory"),
 }
 # what only the sandbox stops: (the program, what its line says)
 CONFINED = {
@@ -461,7 +461,7 @@ class Hostile(OneFile):
         """Line n of the program is line n of its file: the greeting of these tests stands before it."""
         begin = GREETING.count("\n") + 1
         crashes = {"greet('step')\ndef half(x):\n    raise ValueError('wrong sign')\nhalf(2)\n": rf"ValueError: wrong sign \(mine\.py, line {begin + 2}\)",
-                   "greet('step')\nx = []\nwhile True: x.append(bytearray(1 << 24))\n": rf"MemoryError \(mine\.py, line {begin + 2}\); 768 MB of memory are allowed|holds \d+ MB of memory; 768 MB are allowed"}
+                   "greet('step')\nx = []\nwhile True: x.append(bytearray(1 << 24))\n": rf"MemoryError \(mine\.py, line {begin + 2}\); 768 MB of memory are allowed|holds more than 768 MB of memory"}
         if not TROUBLE:
             crashes["greet('step')\nfor k in range(99):\n    open('/tmp/%d' % k, 'wb').write(b'x' * (1 << 23))\n"] = r"No space left on device \(mine\.py, line \d+\); 16 MB of files are allowed"
         for text, said in crashes.items():
