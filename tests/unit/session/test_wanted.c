@@ -24,7 +24,8 @@ static void lengths_are_shares_of_the_mechanism_and_angles_stay(void **state) {
     }
     hn_wanted wanted;
     assert_true(hn_wanted_read("1 mm", 1.2, &wanted));
-    assert_string_equal(wanted.words, "an error of 1 mm at the end of a bar of 1.20 m (0.000833 of its length)");
+    assert_string_equal(wanted.words,
+                        "an error of 1 mm at the end of a bar of 1.20 m (0.000833 of its length)");
 }
 
 static void what_is_no_error_is_refused(void **state) {
