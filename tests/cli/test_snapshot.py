@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import re
 import sys
 import tempfile
 import xml.etree.ElementTree
@@ -128,6 +129,21 @@ class Snapshot(Command):
                                 ("heavy-top", "no constraints; forces: foot on top"), ("bennett", "forces, one set of many: J1 on crank"), ("stewart-6-6", "each on the second body of its joint")):  # fmt: skip
                 done = call("snapshot", scene, "--time", "0.1", "--forces", "-o", path, "--describe")
                 self.assertIn(said, strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"], scene)
+
+    def test_the_legend_of_forces_is_whole_or_names_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open("lessons/01-closed-loops/scenes/four-bar.json", encoding="utf-8") as f:
+                text = f.read()
+            for length in (20, 31):
+                long, scene = text, os.path.join(folder, "long.json")
+                for name in ("crank", "coupler", "rocker", "O1", "O3", "A", "B"):
+                    long = long.replace(f'"{name}"', f'"{(name + "-" + 40 * "x")[:length]}"')
+                with open(scene, "w", encoding="utf-8") as f:
+                    f.write(long)
+                done = call("snapshot", scene, "--time", "0.1", "--forces", "-o", os.path.join(folder, "f.png"), "--describe")
+                note = strict(self.assert_exit(done, DONE))["picture"]["poses"][0]["note"]
+                named = re.fullmatch(rf"gap [^;]*; forces:(,? [^ ]{{{length}}} on [^ ]{{{length}}}){{4}}", note)
+                self.assertTrue(named or note.endswith("; arrows: forces, each on the second body of its joint"), note)
 
     def test_the_legend_names_the_forces_that_are_drawn_and_no_others(self):
         with tempfile.TemporaryDirectory() as folder:  # the shafts of this gear carry no force

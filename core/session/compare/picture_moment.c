@@ -291,16 +291,18 @@ static void note_forces(hn_picture_moment *p, const hn_reaction_writer *w, const
         determined = determined && hn_reaction_writer_is_determined(w, drawn[i]);
     }
     const char *mark = determined ? "" : ", one set of many";
-    if (p->n_loads > FORCES_NAMED) {
-        snprintf(note + used, HN_PICTURE_NOTE - used,
-                 "; arrows: forces%s, each on the second body of its joint", mark);
-        return;
-    }
+    const size_t gap = used;
     for (int i = 0; i < p->n_loads && used < HN_PICTURE_NOTE; i++) {
         const char *name = hn_reaction_writer_force(w, drawn[i], force, place);
-        used += (size_t)snprintf(note + used, HN_PICTURE_NOTE - used, "%s%s%s %.20s on %.20s",
+        used += (size_t)snprintf(note + used, HN_PICTURE_NOTE - used, "%s%s%s %s on %s",
                                  i ? "," : "; forces", i ? "" : mark, i ? "" : ":", name,
                                  hn_reaction_writer_body(w, drawn[i]));
+    }
+
+    // many arrows, or names too long for the legend
+    if (p->n_loads > FORCES_NAMED || used >= HN_PICTURE_NOTE) {
+        snprintf(note + gap, HN_PICTURE_NOTE - gap,
+                 "; arrows: forces%s, each on the second body of its joint", mark);
     }
 }
 
