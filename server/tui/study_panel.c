@@ -303,13 +303,14 @@ static void add_map_words(hn_strbuf *b, const hn_workbench *w, const hn_map_plot
     hn_tui_study_words(w->study, b);
 }
 
-/// The last lines stay in sight.
+/// The last lines stay in sight: of a map the last one, which is folded.
 static void scroll(hn_workbench *w, int by) {
-    enum { STAY = 3 };
     static hn_map_plot map;
+    const bool is_map = hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY;
+    const int stay = is_map ? 1 : 3;
     hn_strbuf b;
     hn_strbuf_init(&b);
-    if (hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY) {
+    if (is_map) {
         hn_tui_study_map(w->study, &map);
         add_map_words(&b, w, &map);
     } else {
@@ -320,7 +321,7 @@ static void scroll(hn_workbench *w, int by) {
         lines += *at == '\n';
     }
     hn_strbuf_reset(&b);
-    const int last = lines > STAY ? lines - STAY : 0, to = w->scroll + by;
+    const int last = lines > stay ? lines - stay : 0, to = w->scroll + by;
     w->scroll = to < 0 ? 0 : to > last ? last : to;
 }
 
@@ -480,7 +481,11 @@ void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
             snprintf(title, sizeof title, format, name, time, done, cost ? "" : "★ is now, ");
         }
     } else {
-        snprintf(title, sizeof title, "%s in %g s: %sEsc goes back", name, time, moves);
+        const char *format = "%s in %g s: %sEsc goes back";
+        snprintf(title, sizeof title, format, name, time, moves);
+        if (hn_text_columns(title) > room) {
+            snprintf(title, sizeof title, format, name, time, cost ? "" : "★ is now, ");
+        }
     }
     const hn_area in = hn_cells_frame(c, area, title);
     if (cost) {

@@ -99,6 +99,7 @@ class Studies(unittest.TestCase):
         self.assertIn("g smallest worst loop gap: ", small[0])
         self.assertTrue(any("prediction right in" in page for page in small), small[-1])
         self.assertIn("PageUp: back", small[-1])
+        self.assertIn(" ★ is now, Esc goes back ─", small[-1].split("\n")[1])
 
     def test_the_legend_of_a_map_stands_beside_it_or_below_unbroken(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")

@@ -328,7 +328,7 @@ class Messages(unittest.TestCase):
         self.assertEqual(message(away), "slider-crank has its own methods; z: back to four-bar with yours, at t = 0")
         back = once("four-bar", "--once", "--keys", "sslider-crank<Enter>z", *chosen)[1]
         self.assertRegex(message(back), "now scene four-bar, with its methods of then, at t = 0$")
-        self.assertRegex(back, r"(?m)^│2■ null-space ")
+        self.assertRegex(back, r"(?m)^│2\S null-space ")
         self.assertEqual(message(once("four-bar", "--once", "--keys", "sslider-crank<Enter>")[1]), "")
 
     def test_keys_and_size_without_once_are_refused_in_a_terminal(self):
