@@ -270,7 +270,7 @@ test("a server that ends and starts again: said plainly, every frame stays, the 
   await first.stop();
   await page.waitForSelector(".lost:not([hidden])");
   await soon(async () =>
-    assert.match(await page.textContent(".lost"), /does not answer.*What was received stays/),
+    assert.match(await page.textContent(".lost"), /does not answer.*data received so far stays/),
   );
   const seen = await read(page, (data) => ({
     id: data.id,

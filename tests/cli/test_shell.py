@@ -306,6 +306,12 @@ class Width(unittest.TestCase):
         self.assertEqual([line for line in narrow.splitlines() if line.startswith(" ")], [line for line in wide.splitlines() if line.startswith(" ")])
         self.assertEqual(narrow.split(), wide.split())
 
+    def test_a_frame_of_the_workbench_fits_the_terminal_that_it_is_printed_in(self):
+        for columns, widest in ((60, 60), (80, 80), (120, 80)):
+            _, shown, _ = in_terminal(columns, "tui", "four-bar", "--once", env={**os.environ, "TERM": "xterm", "LC_ALL": "C.UTF-8"})
+            lines = re.sub(r"\x1b\[[0-9;]*m", "", shown.decode()).splitlines()
+            self.assertEqual((max(map(len, lines)), len(lines)), (widest, 24))
+
     def test_a_terminal_gets_colours_unless_it_says_no(self):
         for more, coloured in (({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)):
             env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **more}

@@ -96,7 +96,7 @@ typedef struct hn_extreme_trial {
     hn_extreme_verdict verdict;
     int n_seen;
     hn_extreme_seen seen[HN_EXTREME_RUNS];
-    char observed[160];
+    char observed[320];
 } hn_extreme_trial;
 
 typedef struct hn_extreme_case {

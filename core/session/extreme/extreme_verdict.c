@@ -96,11 +96,11 @@ static void tell_words(hn_extreme_trial *t) {
         }
     }
     if (good == t->n_seen) {
-        snprintf(t->observed, sizeof t->observed, "%s%s%.120s", t->seen[0].word,
+        snprintf(t->observed, sizeof t->observed, "%s%s%.199s", t->seen[0].word,
                  t->seen[0].reason[0] && t->n_seen == 1 ? ": " : "",
                  t->n_seen == 1 ? t->seen[0].reason : "");
     } else {
-        snprintf(t->observed, sizeof t->observed, "%d of %d; %s %s%s%.80s", good, t->n_seen,
+        snprintf(t->observed, sizeof t->observed, "%d of %d; %s %s%s%.199s", good, t->n_seen,
                  first->method, first->word, first->reason[0] ? ": " : "", first->reason);
     }
 }
@@ -109,7 +109,7 @@ static void tell_numbers(hn_extreme_trial *t) {
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int i = 0; i < t->n_seen; i++) {
         if (isnan(t->seen[i].value)) {
-            snprintf(t->observed, sizeof t->observed, "%.140s", t->seen[i].reason);
+            snprintf(t->observed, sizeof t->observed, "%.199s", t->seen[i].reason);
             return;
         }
         low = fmin(low, t->seen[i].value);

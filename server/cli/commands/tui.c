@@ -133,6 +133,18 @@ static void add_frames(hn_strbuf *b, const hn_args *args, hn_workbench *w, hn_tu
     }
 }
 
+/// A frame without --size is no wider than the terminal in which it is printed.
+static void fit_frame(const hn_args *args, const hn_workbench *w, hn_tui_opts *opts) {
+    int least_columns, least_rows;
+    hn_views_least_size(w, &least_columns, &least_rows);
+    const int columns = hn_terminal_columns();
+    if (!args->size && isatty(STDOUT_FILENO) && columns >= least_columns &&
+        columns < HN_TUI_COLUMNS) {
+        opts->columns = columns;
+        opts->rows = HN_TUI_ROWS > least_rows ? HN_TUI_ROWS : least_rows;
+    }
+}
+
 /// `paused`: a link names the frame, which --t alone changes.
 static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, bool paused,
                     hn_diags *diags) {
@@ -165,6 +177,7 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts, boo
     }
 
     // no terminal, or one frame was asked for
+    fit_frame(args, w, opts);
     const hn_status status = check_size(args, w, opts, diags);
     if (status != HN_OK) {
         return hn_report_diags(args, status, diags);
