@@ -20,9 +20,9 @@
 // If rows depend on each other, one of the last two can be used. Measured on copied rows, a Bennett
 // linkage, and a parallelogram flat and 1e-6 and 1e-3 rad from it: accelerations and J' lambda of
 // both agree to 2e-16 of their size, in the same time (1 to 2.6 us). solver=auto uses least norm
-// because it says more: the rank; multipliers that are the shortest whatever the scales (the proximal ones are so in scaled rows: 3 % longer for
-// Bennett); and where rows contradict each other it says so, where the proximal iteration goes on
-// with multipliers 1000 times too long.
+// because it says more: the rank; multipliers that are the shortest whatever the scales (the
+// proximal ones are so in scaled rows: 3 % longer for Bennett); and where rows contradict each
+// other it says so, where the proximal iteration goes on with multipliers 1000 times too long.
 //
 // Source: Benzi, Golub & Liesen 2005; Carpentier, Budhiraja & Mansard 2021 (proximal); Higham 2002
 // (refinement, condition).

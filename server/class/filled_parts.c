@@ -375,8 +375,8 @@ static void name_entry_faults(const part_view *p, const hn_language *language, c
     hn_strbuf_reset(&one);
 }
 
-/// Names angles that are counted otherwise than the scene counts them, where no other mistake of the
-/// whole part is known.
+/// Names angles that are counted otherwise than the scene counts them, where no other mistake of
+/// the whole part is known.
 static hn_status name_angles(const part_view *p, hn_entry_verdict *e) {
     const int size = p->exam->size[p->part];
     double *values = calloc(HN_EXPORT_EXAM_STATES * (size_t)size + 1, sizeof *values);

@@ -3,9 +3,9 @@
 #define HN_STUDY_REFINED_H
 // A reference solution between its stored times. Each interval is integrated anew from the stored
 // state at its start to the time of the next stored state. The distance between the computed end
-// and that state is the error estimate of the interval. If no method comes to the end of an interval, only its ends are known. What is
-// known does not depend on the speed of the machine: the work is limited in operations, and a
-// computation that a limit of time cuts off has no result.
+// and that state is the error estimate of the interval. If no method comes to the end of an
+// interval, only its ends are known. What is known does not depend on the speed of the machine: the
+// work is limited in operations, and a computation that a limit of time cuts off has no result.
 
 #include "study/truth/reference.h"
 
