@@ -76,7 +76,7 @@ FLAGS_fuzz    := -O1 -g -fsanitize=fuzzer-no-link,address,undefined,float-cast-o
 
 CC       := $(CC_$(VARIANT))
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-prototypes \
-            -Wmissing-prototypes -Wconversion -Wno-sign-conversion
+            -Wmissing-prototypes -Wconversion -Wno-sign-conversion -Werror=implicit-function-declaration
 # no fast-math and no fused multiply-add: a build must give the same bits everywhere
 CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
 CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -isystem /usr/include/suitesparse -MMD -MP
