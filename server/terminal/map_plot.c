@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum { LABEL_COLUMNS = 12, AXIS_ROWS = 3, FOOT_ROWS = 5, SHADES = 4 };
+enum { LARGE_COLUMNS = 4, LARGE_ROWS = 2, SENTENCE_ROWS = 6 }; // of a cell; below a large map
 enum { LEGEND_COLUMNS = 17, LEGEND_ROWS = 11, MOST_ENTRIES = 12, ENTRY = 64 };
 
 static const char PREDICTED[] = "━";
@@ -168,63 +169,87 @@ static const char *glyph_of(const hn_map_plot *p, range r, const hn_map_plot_cel
 
 // ---- drawing ----
 
-/// A cell takes two columns where there is room: the outcome, then the predicted limit.
+/// Columns and rows that a cell takes on the screen: 1 and 1, 2 and 1, or 4 and 2.
+typedef struct extent {
+    int columns, rows;
+} extent;
+
+/// As large as there is room for, with the sentences below a large map.
+static extent cell_extent(const hn_map_plot *p, int columns, int rows) {
+    const int large = LABEL_COLUMNS + LARGE_COLUMNS * p->x.n + 1 + LEGEND_COLUMNS;
+    if (large <= columns && LARGE_ROWS * p->y.n + AXIS_ROWS + SENTENCE_ROWS <= rows) {
+        return (extent){LARGE_COLUMNS, LARGE_ROWS};
+    }
+    return (extent){LABEL_COLUMNS + 2 * p->x.n <= columns ? 2 : 1, 1};
+}
+
+/// Row of the screen on which the cells of a row of the map begin; the lowest y stands below.
+static int row_top(const hn_map_plot *p, extent e, int row) {
+    return (p->y.n - 1 - row) * e.rows;
+}
+
+/// The outcome, and in the last column of a cell the predicted limit; a cell of one column shows
+/// either.
 static void draw_cell(hn_cells *c, hn_area area, const hn_map_plot *p, range r, int column, int row,
-                      bool wide) {
+                      extent e) {
     const hn_map_plot_cell *cell = &p->cell[row * p->x.n + column];
-    const int x = LABEL_COLUMNS + column * (wide ? 2 : 1), y = p->y.n - 1 - row;
     const int colour = colour_of((hn_stability_class)cell->kind);
+    const bool shaded = p->heat && hn_stability_is_stable((hn_stability_class)cell->kind);
     const char *glyph = glyph_of(p, r, cell);
-    const bool limit_alone = !wide && cell->limit;
-    hn_cells_put(c, area, x, y, limit_alone ? HN_CELL_INK : colour, 0,
-                 limit_alone ? PREDICTED : glyph);
-    if (wide) {
-        const bool shaded = p->heat && hn_stability_is_stable((hn_stability_class)cell->kind);
-        hn_cells_put(c, area, x + 1, y, cell->limit ? HN_CELL_INK : colour, 0,
-                     cell->limit ? PREDICTED
-                     : shaded    ? glyph
-                                 : " ");
+    for (int i = 0; i < e.rows * e.columns; i++) {
+        const int dx = i % e.columns, dy = i / e.columns;
+        const bool limit = cell->limit && dx == e.columns - 1;
+        const bool sign = i == 0 || shaded; // a sign stands once in its cell
+        hn_cells_put(c, area, LABEL_COLUMNS + column * e.columns + dx, row_top(p, e, row) + dy,
+                     limit ? HN_CELL_INK : colour, 0,
+                     limit  ? PREDICTED
+                     : sign ? glyph
+                            : " ");
     }
 }
 
 /// The axis across: a tick below the left edge of a cell, and below it the cell's value, of the
 /// last cell too; a value that would run into the one before is left out.
-static void draw_ticks(hn_cells *c, hn_area area, const hn_map_plot *p, int cell) {
+static void draw_ticks(hn_cells *c, hn_area area, const hn_map_plot *p, extent e) {
+    const int foot = p->y.n * e.rows;
     int at[HN_MAP_SIDE], free = 0, n = hn_map_ticks(&p->x, at);
     at[n++] = p->x.n - 1;
-    for (int x = 0; x < p->x.n * cell; x++) {
-        hn_cells_put(c, area, LABEL_COLUMNS + x, p->y.n, HN_CELL_MUTED, 0, "─");
+    for (int x = 0; x < p->x.n * e.columns; x++) {
+        hn_cells_put(c, area, LABEL_COLUMNS + x, foot, HN_CELL_MUTED, 0, "─");
     }
     for (int i = 0; i < n; i++) {
         char label[32];
-        const int x = at[i] * cell, wide = p->x.n * cell;
+        const int x = at[i] * e.columns, wide = p->x.n * e.columns;
         const int used = snprintf(label, sizeof label, "%.3g", p->x.value[at[i]]);
         const int left = x + used > wide && wide > used ? wide - used : x;
         if (left >= free) {
-            hn_cells_put(c, area, LABEL_COLUMNS + x, p->y.n, HN_CELL_MUTED, 0, "┬");
-            hn_cells_put(c, area, LABEL_COLUMNS + left, p->y.n + 1, HN_CELL_MUTED, 0, label);
+            hn_cells_put(c, area, LABEL_COLUMNS + x, foot, HN_CELL_MUTED, 0, "┬");
+            hn_cells_put(c, area, LABEL_COLUMNS + left, foot + 1, HN_CELL_MUTED, 0, label);
             free = left + used + 1;
         }
     }
 }
 
-/// cell: columns that one takes.
-static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, int cell) {
+static void draw_axes(hn_cells *c, hn_area area, const hn_map_plot *p, extent e) {
+    const int foot = p->y.n * e.rows;
     char title[96], other[96];
+    for (int y = 0; y < foot; y++) {
+        hn_cells_put(c, area, LABEL_COLUMNS - 1, y, HN_CELL_MUTED, 0, "│");
+    }
     for (int row = 0; row < p->y.n; row++) {
-        hn_cells_printf(c, area, 0, p->y.n - 1 - row, HN_CELL_MUTED, 0, "%10.3g │",
+        hn_cells_printf(c, area, 0, row_top(p, e, row), HN_CELL_MUTED, 0, "%10.3g",
                         p->y.value[row]);
     }
     hn_map_axis_title(&p->y, title);
     hn_map_axis_title(&p->x, other);
-    hn_cells_put(c, area, LABEL_COLUMNS - 1, p->y.n, HN_CELL_MUTED, 0, "└");
+    hn_cells_put(c, area, LABEL_COLUMNS - 1, foot, HN_CELL_MUTED, 0, "└");
     if (!p->x.name[0]) {
-        hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n, HN_CELL_MUTED, 0, " vertical: %s", title);
+        hn_cells_printf(c, area, LABEL_COLUMNS, foot, HN_CELL_MUTED, 0, " vertical: %s", title);
         return;
     }
-    draw_ticks(c, area, p, cell);
-    hn_cells_printf(c, area, LABEL_COLUMNS, p->y.n + 2, HN_CELL_MUTED, 0, "across: %s, up: %s",
-                    other, title);
+    draw_ticks(c, area, p, e);
+    hn_cells_printf(c, area, LABEL_COLUMNS, foot + 2, HN_CELL_MUTED, 0, "across: %s, up: %s", other,
+                    title);
 }
 
 typedef struct legend {
@@ -271,13 +296,9 @@ static void fill_legend(legend *l, const hn_map_plot *p, range r) {
     }
 }
 
-static bool is_wide(const hn_map_plot *p, int columns) {
-    return LABEL_COLUMNS + 2 * p->x.n <= columns;
-}
-
 /// Returns where a legend beside the map stands; no columns: it has no room there and goes below.
-static hn_area beside_map(const hn_map_plot *p, hn_area area) {
-    const int x = LABEL_COLUMNS + p->x.n * (is_wide(p, area.columns) ? 2 : 1) + 1;
+static hn_area beside_map(const hn_map_plot *p, hn_area area, extent e) {
+    const int x = LABEL_COLUMNS + p->x.n * e.columns + 1;
     const int room = area.columns - x;
     return room >= LEGEND_COLUMNS ? (hn_area){area.x + x, area.y, room, area.rows} : (hn_area){0};
 }
@@ -309,17 +330,17 @@ static void draw_legend_below(hn_cells *c, hn_area area, int y, const legend *l)
 
 /// A mark stands in the second column of its cell where there is one: the outcome in the first one
 /// stays.
-static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place at, bool wide,
+static void mark(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place at, extent e,
                  int style, const char *glyph) {
     if (at.column >= 0) {
-        const int x = LABEL_COLUMNS + (wide ? 2 * at.column + 1 : at.column);
-        hn_cells_put(c, area, x, p->y.n - 1 - at.row, HN_CELL_INK, style, glyph);
+        const int x = LABEL_COLUMNS + e.columns * at.column + (e.columns > 1);
+        hn_cells_put(c, area, x, row_top(p, e, at.row), HN_CELL_INK, style, glyph);
     }
 }
 
 /// The best cells, each with its letter, in the first column of the cell; a second one that falls
 /// on the same cell stands in its second column, or is left to the sentences.
-static void mark_best(hn_cells *c, hn_area area, const hn_map_plot *p, bool wide) {
+static void mark_best(hn_cells *c, hn_area area, const hn_map_plot *p, extent e) {
     for (int k = HN_MAP_QUANTITIES - 1; k >= 0; k--) {
         const hn_map_place at = hn_map_plot_best(p, (hn_map_quantity)k);
         int before = 0;
@@ -327,43 +348,47 @@ static void mark_best(hn_cells *c, hn_area area, const hn_map_plot *p, bool wide
             const hn_map_place other = hn_map_plot_best(p, (hn_map_quantity)j);
             before += other.column == at.column && other.row == at.row;
         }
-        if (at.column >= 0 && before <= wide) {
-            const int x = LABEL_COLUMNS + (wide ? 2 * at.column + before : at.column);
-            hn_cells_put(c, area, x, p->y.n - 1 - at.row, HN_CELL_INK, HN_CELL_BOLD,
-                         QUANTITY[k].mark);
+        if (at.column >= 0 && before < e.columns) {
+            hn_cells_put(c, area, LABEL_COLUMNS + e.columns * at.column + before,
+                         row_top(p, e, at.row), HN_CELL_INK, HN_CELL_BOLD, QUANTITY[k].mark);
         }
+    }
+}
+
+static void draw(hn_cells *c, hn_area area, const hn_map_plot *p, extent e, hn_map_place present,
+                 hn_map_place cursor) {
+    const range r = find_range(p);
+    legend entries = {0};
+    for (int row = 0; row < p->y.n; row++) {
+        for (int column = 0; column < p->x.n; column++) {
+            draw_cell(c, area, p, r, column, row, e);
+        }
+    }
+    draw_axes(c, area, p, e);
+    mark_best(c, area, p, e);
+    mark(c, area, p, present, e, HN_CELL_BOLD, "★");
+    mark(c, area, p, cursor, e, HN_CELL_REVERSE, "⊕");
+
+    // the legend beside it where there is room
+    const hn_area beside = beside_map(p, area, e);
+    fill_legend(&entries, p, r);
+    if (beside.columns > 0) {
+        draw_legend_beside(c, beside, &entries);
+    } else {
+        draw_legend_below(c, area, p->y.n * e.rows + AXIS_ROWS, &entries);
     }
 }
 
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
                       hn_map_place cursor) {
-    const bool wide = is_wide(p, area.columns);
-    const range r = find_range(p);
-    legend entries = {0};
-    for (int row = 0; row < p->y.n; row++) {
-        for (int column = 0; column < p->x.n; column++) {
-            draw_cell(c, area, p, r, column, row, wide);
-        }
-    }
-    draw_axes(c, area, p, wide ? 2 : 1);
-    mark_best(c, area, p, wide);
-    mark(c, area, p, present, wide, HN_CELL_BOLD, "★");
-    mark(c, area, p, cursor, wide, HN_CELL_REVERSE, "⊕");
-
-    // the legend beside it where there is room
-    const hn_area beside = beside_map(p, area);
-    fill_legend(&entries, p, r);
-    if (beside.columns > 0) {
-        draw_legend_beside(c, beside, &entries);
-    } else {
-        draw_legend_below(c, area, p->y.n + AXIS_ROWS, &entries);
-    }
+    draw(c, area, p, cell_extent(p, area.columns, area.rows), present, cursor);
 }
 
-int hn_map_plot_rows(const hn_map_plot *p, int columns) {
-    const bool beside = beside_map(p, (hn_area){0, 0, columns, 1}).columns > 0;
-    const int rows = p->y.n + (beside ? AXIS_ROWS : FOOT_ROWS);
-    return beside && rows < LEGEND_ROWS ? LEGEND_ROWS : rows;
+int hn_map_plot_rows(const hn_map_plot *p, int columns, int rows) {
+    const extent e = cell_extent(p, columns, rows);
+    const bool beside = beside_map(p, (hn_area){0, 0, columns, 1}, e).columns > 0;
+    const int used = p->y.n * e.rows + (beside ? AXIS_ROWS : FOOT_ROWS);
+    return beside && used < LEGEND_ROWS ? LEGEND_ROWS : used;
 }
 
 // ---- words ----
@@ -436,7 +461,7 @@ void hn_map_plot_text(hn_strbuf *b, const hn_map_plot *p, int columns, bool colo
         hn_strbuf_add(b, "no memory for the map\n");
         return;
     }
-    hn_map_plot_draw(&cells, (hn_area){0, 0, columns, rows}, p, none, none);
+    draw(&cells, (hn_area){0, 0, columns, rows}, p, cell_extent(p, columns, 0), none, none);
     hn_strbuf_printf(b, "%s\n", p->name);
     hn_cells_text(b, &cells, colours);
     while (b->n > 1 && b->text[b->n - 1] == '\n' && b->text[b->n - 2] == '\n') {

@@ -50,10 +50,10 @@ hn_map_place hn_map_plot_best(const hn_map_plot *p, hn_map_quantity quantity);
 /// Adds a line for each best cell, with its mark, its value and where it is; of a map of alpha and
 /// beta also what the map shows. "g smallest worst loop gap: 19 µm at alpha = 11.1, beta = 17.6"
 void hn_map_plot_best_words(hn_strbuf *b, const hn_map_plot *p);
-/// Rows that the map takes in `columns`, with its axis and its legend, which stands
-/// beside it where there is room.
-int hn_map_plot_rows(const hn_map_plot *p, int columns);
-/// Draws the map, its axes and its legend at the top left of the area. present, cursor: cells to
+/// Rows that the map takes of an area of `columns` and `rows`, with its axis and its legend, which
+/// stands beside it where there is room.
+int hn_map_plot_rows(const hn_map_plot *p, int columns, int rows);
+/// Draws the map as large as there is room for, its axes and its legend at the top left of the area. present, cursor: cells to
 /// mark.
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
                       hn_map_place cursor);

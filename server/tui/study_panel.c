@@ -18,6 +18,7 @@ enum {
     MAP_COLUMNS = 24,
     MOST_MAP_ROWS = 24,
     LEAST_MAP_ROWS = 6,
+    LEAST_DOUBLED_ROWS = 18,
     AROUND_MAP = 15, // the frame, the axes, and six lines of sentences below
     SIDE_COLUMNS = 46
 };
@@ -26,9 +27,12 @@ static const char FALLBACK[] = "baumgarte@rk4:h=0.01";
 
 // ---- opening ----
 
-/// Rows of a map, as many as the screen has room for.
+/// Rows of a map, as many as the screen has room for; a tall screen draws each twice as high.
 static int map_rows(const hn_workbench *w) {
     const int room = w->rows - AROUND_MAP;
+    if (room / 2 >= LEAST_DOUBLED_ROWS && room / 2 <= MOST_MAP_ROWS) {
+        return room / 2;
+    }
     return room < LEAST_MAP_ROWS ? LEAST_MAP_ROWS : room > MOST_MAP_ROWS ? MOST_MAP_ROWS : room;
 }
 
@@ -429,7 +433,7 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
         return;
     }
     const hn_map_place here = hn_map_plot_place(&map, w->present[0], w->present[1]);
-    const int rows = hn_map_plot_rows(&map, in.columns);
+    const int rows = hn_map_plot_rows(&map, in.columns, in.rows - 1);
     char shown[HN_SPEC_MAX];
     hn_short_spelling(map.name, shown, sizeof shown);
     const int used = 1 + hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);

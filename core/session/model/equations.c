@@ -176,9 +176,30 @@ static int count_entries(const term *m) {
 }
 
 static const char *const SYSTEM_TEXT = "M a = f + J' lambda\nJ a + gamma = 0\nphi = 0\n";
+static const char *const OTHER_COORDINATES =
+    "\ncoordinates of the scene by those of the equations (the same where not listed):\n";
 static const char *const SYSTEM_LATEX =
     "\\[ M\\,a = f + J^{\\mathsf T}\\lambda, \\qquad J\\,a + \\gamma = 0, \\qquad "
     "\\varphi = 0 \\]\n";
+
+/// A line for each coordinate of the scene that the system does not have itself, below a title.
+static void put_other_coordinates(hn_strbuf *b, const hn_system *sys, double *unit, double *image) {
+    const hn_scene *scene = hn_system_scene(sys);
+    bool titled = false;
+    for (int i = 0; i < hn_system_get_info(sys).n_user; i++) {
+        const char *name = scene->coordinates[hn_system_user_coordinate(sys, i)].name;
+        hn_strbuf is;
+        hn_strbuf_init(&is);
+        put_coordinate(&is, sys, i, unit, image);
+        if (strcmp(hn_strbuf_text(&is), name) != 0) {
+            hn_strbuf_printf(b, "%s%s = %s\n", titled ? "" : OTHER_COORDINATES, name,
+                             hn_strbuf_text(&is));
+            titled = true;
+        }
+        b->failed |= is.failed;
+        hn_strbuf_reset(&is);
+    }
+}
 
 static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit,
                      double *image, const hn_position_form *position) {
@@ -194,12 +215,7 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
     }
     hn_strbuf_add(b, "\n");
 
-    // coordinates of the scene in those of the system
-    for (int i = 0; i < info.n_user; i++) {
-        hn_strbuf_printf(b, "%s = ", scene->coordinates[hn_system_user_coordinate(sys, i)].name);
-        put_coordinate(b, sys, i, unit, image);
-        hn_strbuf_add(b, "\n");
-    }
+    put_other_coordinates(b, sys, unit, image);
 
     // entries of every term, then the position form
     for (int k = 0; k < N_TERMS; k++) {
