@@ -77,6 +77,12 @@ void hn_canvas_arrow(hn_canvas *c, double x0, double y0, double x1, double y1, d
 /// clockwise from straight down), strokes slanting away on that side.
 void hn_canvas_hatch(hn_canvas *c, double x, double y, double length, double angle,
                      const hn_stroke *stroke);
+/// The same in a plane seen at a slant: `along` and `away` are a length of 1 px along the line and
+/// away from it, as they are seen.
+void hn_canvas_hatch_plane(hn_canvas *c, double x, double y, double length, const double along[2],
+                           const double away[2], const hn_stroke *stroke);
+/// How deep the hatching of a stroke of this width is [px].
+double hn_canvas_hatch_depth(double width);
 /// The marker of a method.
 void hn_canvas_marker(hn_canvas *c, hn_marker marker, double x, double y, double size,
                       hn_paint paint);

@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum { RING_POINTS = 96 };
+static const double HATCH_PITCH = 3.2; // widths of the stroke between two strokes of hatching
 static const double PI = 3.14159265358979324;
 static const double SHORTEST = 1e-9; // [px] segments below this have no direction
 static const double LONGEST_DASHED =
@@ -198,24 +199,32 @@ void hn_canvas_arrow(hn_canvas *c, double x0, double y0, double x1, double y1, d
     hn_record_end(c);
 }
 
-void hn_canvas_hatch(hn_canvas *c, double x, double y, double length, double angle,
-                     const hn_stroke *stroke) {
-    // along the line, and away from it
-    const double ux = cos(angle), uy = sin(angle), nx = -uy, ny = ux;
-    const double pitch = 3.2 * stroke->width, depth = 1.1 * pitch;
+double hn_canvas_hatch_depth(double width) {
+    return 1.1 * HATCH_PITCH * width;
+}
+
+void hn_canvas_hatch_plane(hn_canvas *c, double x, double y, double length, const double along[2],
+                           const double away[2], const hn_stroke *stroke) {
+    const double pitch = HATCH_PITCH * stroke->width, depth = hn_canvas_hatch_depth(stroke->width);
     const int n = length > pitch ? (int)(length / pitch) : 1;
-    const double line[4] = {x - length / 2 * ux, y - length / 2 * uy, x + length / 2 * ux,
-                            y + length / 2 * uy};
+    const double line[4] = {x - length / 2 * along[0], y - length / 2 * along[1],
+                            x + length / 2 * along[0], y + length / 2 * along[1]};
     hn_record_begin(c, stroke->paint);
     record_stroke(c, line, 2, 0, stroke->width);
     for (int i = 0; i < n; i++) {
         const double s = (i + 1 - 0.5 * n) * length / n;
-        const double px = x + s * ux, py = y + s * uy;
-        const double slant[4] = {px, py, px - depth * ux + depth * nx,
-                                 py - depth * uy + depth * ny};
+        const double px = x + s * along[0], py = y + s * along[1];
+        const double slant[4] = {px, py, px - depth * along[0] + depth * away[0],
+                                 py - depth * along[1] + depth * away[1]};
         record_stroke(c, slant, 2, 0, 0.75 * stroke->width);
     }
     hn_record_end(c);
+}
+
+void hn_canvas_hatch(hn_canvas *c, double x, double y, double length, double angle,
+                     const hn_stroke *stroke) {
+    const double along[2] = {cos(angle), sin(angle)}, away[2] = {-along[1], along[0]};
+    hn_canvas_hatch_plane(c, x, y, length, along, away, stroke);
 }
 
 static void lines_marker(hn_canvas *c, const double *offsets, double x, double y, double r,

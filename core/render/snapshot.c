@@ -6,6 +6,8 @@
 #include "base/units.h"
 #include "render/snapshot_angles.h"
 #include "render/snapshot_labels.h"
+#include "render/snapshot_legend.h"
+#include "render/snapshot_lengths.h"
 #include "render/snapshot_marks.h"
 #include "render/snapshot_shapes.h"
 #include "render/snapshot_sheet.h"
@@ -16,11 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double LEGEND_TEXT = 4.3;   // from the left of a legend's row to its words [letters]
-static const double NOTE_SIZE = 0.85;    // of the letters of a name
-static const double SMALLEST_LETTER = 2; // [px]
-static const double NOTE_PITCH = 1.25;   // from line to line of a note [its letters]
-enum { TEXT = 256, NOTE_LINES = 4 };
+static const double SMALL_LEGEND = 0.85; // letters of a legend beside the whole inset
+enum { TEXT = 256 };
 
 hn_snapshot_opts hn_snapshot_opts_default(void) {
     return (hn_snapshot_opts){.time = (double)NAN, .look = hn_view_front(), .labels = 1};
@@ -28,131 +27,24 @@ hn_snapshot_opts hn_snapshot_opts_default(void) {
 
 // ---- words ----
 
-/// The text, cut to the width with an ellipsis where it is longer.
-static void put_text(hn_canvas *c, double x, double y, double size, double width, uint32_t colour,
-                     const char *text) {
-    char cut[TEXT];
-    snprintf(cut, sizeof cut, "%s", text);
-    size_t n = strlen(cut);
-    while (n > 0 && hn_canvas_text_width(size, cut) > width) {
-        do {
-            n--;
-        } while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80);
-        snprintf(cut + n, sizeof cut - n, "\xe2\x80\xa6");
-    }
-    hn_canvas_text(c, x, y, size, HN_ALIGN_LEFT, hn_paint_solid(colour), cut);
-}
-
 static void draw_header(hn_canvas *c, const hn_sheet *s, const hn_snapshot_opts *opts) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
     const double left = s->drawing.x, right = s->width - left;
     double time_width = 0;
     if (isfinite(opts->time)) {
         char text[TEXT];
-        snprintf(text, sizeof text, "t = %.3f s", opts->time);
+        snprintf(text, sizeof text, "%st = %.3f s", opts->stopped ? "stopped at " : "", opts->time);
         hn_canvas_text(c, right, 2.2 * s->font, 1.1 * s->font, HN_ALIGN_RIGHT,
                        hn_paint_solid(surface->ink), text);
         time_width = hn_canvas_text_width(1.1 * s->font, text) + s->font;
     }
     if (opts->title != NULL) {
-        put_text(c, left, 2.2 * s->font, 1.3 * s->font, right - left - time_width, surface->ink,
-                 opts->title);
+        hn_legend_text(c, left, 2.2 * s->font, 1.3 * s->font, right - left - time_width,
+                       surface->ink, opts->title);
     }
     if (opts->caption != NULL) {
-        put_text(c, left, 3.7 * s->font, 0.9 * s->font, right - left, surface->muted,
-                 opts->caption);
-    }
-}
-
-/// The bytes of the text that a line of this width takes, up to a space where there is one.
-static size_t fit_line(double size, double width, const char *text) {
-    char line[TEXT];
-    size_t taken = 0;
-    for (size_t n = 0; text[n] && n + 1 < sizeof line;) {
-        n += 1 + strcspn(text + n + 1, " ");
-        snprintf(line, sizeof line, "%.*s", (int)n, text);
-        if (taken > 0 && hn_canvas_text_width(size, line) > width) {
-            break;
-        }
-        taken = n;
-    }
-    return taken;
-}
-
-/// In lines of that width, the last of NOTE_LINES cut with an ellipsis. Returns how many there are;
-/// c = NULL: counts only.
-static int put_note(hn_canvas *c, double x, double y, double size, double width, uint32_t colour,
-                    const char *text) {
-    int lines = 0;
-    while (*text && lines < NOTE_LINES) {
-        const int last = lines == NOTE_LINES - 1;
-        const size_t n = last ? strlen(text) : fit_line(size, width, text);
-        char line[TEXT];
-        snprintf(line, sizeof line, "%.*s", (int)n, text);
-        if (c) {
-            put_text(c, x, y + NOTE_PITCH * size * lines, size, width, colour, line);
-        }
-        lines++;
-        text += n;
-        text += strspn(text, " ");
-    }
-    return lines;
-}
-
-static const char *note_of(const hn_drawing *d, const hn_snapshot_pose *pose) {
-    return pose->note != NULL ? pose->note : hn_pose_is_drawable(d, pose) ? "" : "no pose to draw";
-}
-
-/// The room right of the sample of its line, for a size of letters.
-static double legend_room(const hn_sheet *s, double font) {
-    return s->legend.width - LEGEND_TEXT * font;
-}
-
-/// Returns how far the next row is below this one: a name and a note of a line or more.
-static double legend_pitch(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
-                           double font) {
-    const double size = NOTE_SIZE * font;
-    const int lines = put_note(NULL, 0, 0, size, legend_room(s, font), 0, note_of(d, pose));
-    return 2.7 * font + NOTE_PITCH * size * (lines > 1 ? lines - 1 : 0);
-}
-
-static double legend_height(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *poses,
-                            int n_poses, double font) {
-    double height = 0.4 * font;
-    for (int i = 0; i < n_poses; i++) {
-        height += poses[i].faint ? 0 : legend_pitch(s, d, &poses[i], font);
-    }
-    return height;
-}
-
-static void draw_legend_row(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                            const hn_snapshot_pose *pose, bool selected, double y, double font) {
-    const hn_theme theme = hn_canvas_theme(c);
-    const hn_surface *surface = hn_surface_get(theme);
-    const double sample = 3.6 * font, x = s->legend.x, text = x + LEGEND_TEXT * font;
-    const double room = legend_room(s, font), middle = y - 0.32 * font;
-    hn_stroke stroke = hn_slot_stroke(theme, pose->slot, s->line);
-    stroke.n_dash = selected ? 0 : stroke.n_dash; // as in the drawing
-    hn_canvas_segment(c, x, middle, x + sample, middle, &stroke);
-    hn_canvas_disc(c, x + sample / 2, middle, 0.55 * font, hn_paint_solid(surface->paper));
-    hn_canvas_marker(c, hn_look_get(pose->slot)->marker, x + sample / 2, middle, 0.75 * font,
-                     stroke.paint);
-    put_text(c, text, y, font, room, surface->ink, pose->name != NULL ? pose->name : "");
-    put_note(c, text, y + 1.15 * font, NOTE_SIZE * font, room, surface->muted, note_of(d, pose));
-}
-
-static void draw_legend(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *poses, int n_poses) {
-    double font = s->font, y = s->legend.y;
-    // smaller until they fit; narrower letters also need fewer lines
-    while (font > SMALLEST_LETTER && legend_height(s, d, poses, n_poses, font) > s->height - y) {
-        font *= 0.96;
-    }
-    for (int i = 0; i < n_poses; i++) {
-        if (!poses[i].faint) {
-            draw_legend_row(c, s, d, &poses[i], i == s->selected, y + font, font);
-            y += legend_pitch(s, d, &poses[i], font);
-        }
+        hn_legend_text(c, left, 3.7 * s->font, 0.9 * s->font, right - left, surface->muted,
+                       opts->caption);
     }
 }
 
@@ -165,7 +57,7 @@ static void draw_scale_bar(hn_canvas *c, const hn_sheet *s) {
     const hn_stroke stroke = hn_stroke_solid(surface->muted, 1.5);
     hn_canvas_line(c, xy, 4, &stroke);
     char text[HN_SI_TEXT];
-    hn_si_format(s->scale_bar, "m", 1, text);
+    hn_sheet_length(s, s->scale_bar, 1, text);
     hn_canvas_text(c, x + length / 2, y - 0.5 * s->font, 0.9 * s->font, HN_ALIGN_CENTRE,
                    hn_paint_solid(surface->muted), text);
 }
@@ -194,57 +86,83 @@ static void draw_triad(hn_canvas *c, const hn_sheet *s) {
 // ---- the two doors ----
 
 static void draw_poses(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                       const hn_snapshot_pose *poses, int n_poses) {
+                       const hn_snapshot_pose *poses, int n_poses, const hn_snapshot_opts *opts) {
     // the reference beneath all, then the ghosts, the selected one on top
     for (int pass = 0; pass < 3; pass++) {
         for (int i = 0; i < n_poses; i++) {
             const int wanted = i == s->selected ? 2 : poses[i].slot == HN_LOOK_REFERENCE ? 0 : 1;
             if (wanted == pass && hn_pose_is_drawable(d, &poses[i])) {
-                hn_snapshot_pose_draw(c, s, d, &poses[i], i == s->selected);
+                hn_snapshot_pose_draw(c, s, d, &poses[i], i == s->selected, opts->n_traces);
             }
         }
     }
+}
+
+/// Paints the sheet from the ground up: what lies on top comes last. The texts of the drawing are
+/// in `placed` afterwards.
+static void paint(hn_canvas *c, hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *poses,
+                  int n_poses, const hn_snapshot_opts *opts, hn_label_places *placed) {
+    const hn_snapshot_pose *selected = &poses[s->selected];
+    hn_snapshot_choose_unit(s, d, selected, opts);
+    hn_snapshot_ground(c, s, d, selected);
+    draw_poses(c, s, d, poses, n_poses, opts);
+    hn_snapshot_markers(c, s, d, poses, n_poses);
+
+    // texts, each off the earlier ones
+    hn_snapshot_hatching(s, d, selected, placed);
+    hn_label_keep_off_corners(s, placed);
+    hn_label_keep_off_loads(s, selected, opts, placed);
+    if (opts->dimensions) {
+        hn_snapshot_lengths(c, s, d, selected, placed);
+    }
+    hn_snapshot_angles(c, s, d, selected, opts, placed);
+    hn_snapshot_loads(c, s, d, selected, opts, placed);
+    if (opts->labels) {
+        hn_snapshot_names(c, s, d, poses, opts, placed);
+    }
+    hn_snapshot_times(c, s, d, poses, n_poses, placed);
+
+    // beside the drawing
+    if (!opts->bare) {
+        hn_sheet_make_room(s, SMALL_LEGEND * hn_legend_height(s, d, poses, n_poses, opts, placed));
+    }
+    hn_snapshot_tears(c, s, d, poses, n_poses);
+    draw_scale_bar(c, s);
+    draw_triad(c, s);
+    if (!opts->bare) {
+        draw_header(c, s, opts);
+        hn_snapshot_legend(c, s, d, poses, n_poses, opts, placed);
+    }
+}
+
+/// Makes the sheet and paints it.
+static hn_status draw_sheet(hn_canvas *c, const hn_drawing *drawing, const hn_snapshot_pose *poses,
+                            int n_poses, const hn_snapshot_opts *opts, hn_sheet *sheet,
+                            hn_label_places *placed, hn_diag *diag) {
+    HN_TRY(hn_sheet_make(sheet, hn_canvas_width(c), hn_canvas_height(c), drawing, poses, n_poses,
+                         opts, diag));
+
+    // scratch for the order of painting
+    const size_t n_shapes = (size_t)drawing->n_shapes + 1;
+    sheet->shapes = malloc(n_shapes * sizeof *sheet->shapes);
+    sheet->depth = malloc(n_shapes * sizeof *sheet->depth);
+    hn_status status = HN_OK;
+    if (sheet->shapes && sheet->depth) {
+        paint(c, sheet, drawing, poses, n_poses, opts, placed);
+    } else {
+        status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    free(sheet->shapes);
+    free(sheet->depth);
+    return status;
 }
 
 hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_snapshot_pose *poses,
                            int n_poses, const hn_snapshot_opts *opts, hn_diag *diag) {
     HN_ASSERT(c != NULL && drawing != NULL && (poses != NULL || n_poses == 0) && opts != NULL);
     hn_sheet sheet;
-    HN_TRY(hn_sheet_make(&sheet, hn_canvas_width(c), hn_canvas_height(c), drawing, poses, n_poses,
-                         opts, diag));
-
-    // scratch for the order of painting
-    const hn_snapshot_pose *selected = &poses[sheet.selected];
-    const size_t n_shapes = (size_t)drawing->n_shapes + 1;
-    sheet.shapes = malloc(n_shapes * sizeof *sheet.shapes);
-    sheet.depth = malloc(n_shapes * sizeof *sheet.depth);
-    if (!sheet.shapes || !sheet.depth) {
-        free(sheet.shapes);
-        free(sheet.depth);
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-
-    // from the ground up: what lies on top comes last
     hn_label_places placed = {0};
-    hn_snapshot_ground(c, &sheet, drawing, selected);
-    draw_poses(c, &sheet, drawing, poses, n_poses);
-    hn_snapshot_markers(c, &sheet, drawing, poses, n_poses);
-    hn_label_keep_off_loads(&sheet, selected, opts, &placed);
-    if (opts->dimensions) {
-        hn_snapshot_dimensions(c, &sheet, drawing, selected, &placed);
-    }
-    hn_snapshot_angles(c, &sheet, drawing, selected, opts, &placed);
-    hn_snapshot_labels(c, &sheet, drawing, selected, opts, &placed);
-    hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
-    draw_scale_bar(c, &sheet);
-    draw_triad(c, &sheet);
-    if (!opts->bare) {
-        draw_header(c, &sheet, opts);
-        draw_legend(c, &sheet, drawing, poses, n_poses);
-    }
-    free(sheet.shapes);
-    free(sheet.depth);
-    return HN_OK;
+    return draw_sheet(c, drawing, poses, n_poses, opts, &sheet, &placed, diag);
 }
 
 hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width, int height,
@@ -307,9 +225,13 @@ hn_status hn_snapshot_describe(hn_strbuf *b, int width, int height, const hn_dra
                                const hn_snapshot_pose *poses, int n_poses,
                                const hn_snapshot_opts *opts, hn_diag *diag) {
     HN_ASSERT(b != NULL && drawing != NULL && (poses != NULL || n_poses == 0) && opts != NULL);
+    // a scratch canvas: places of texts are found while they are drawn
     hn_sheet sheet;
-    const hn_status status =
-        hn_sheet_make(&sheet, width, height, drawing, poses, n_poses, opts, diag);
+    hn_label_places placed = {0};
+    hn_canvas *c = NULL;
+    HN_TRY(hn_canvas_create(width, height, HN_THEME_LIGHT, &c, diag));
+    const hn_status status = draw_sheet(c, drawing, poses, n_poses, opts, &sheet, &placed, diag);
+    hn_canvas_free(c);
     if (status != HN_OK) {
         return status;
     }
@@ -321,7 +243,12 @@ hn_status hn_snapshot_describe(hn_strbuf *b, int width, int height, const hn_dra
     describe_tears(b, drawing, poses, n_poses);
     describe_inset(b, &sheet, drawing);
     hn_json_put_number(b, "scale_bar", sheet.scale_bar);
+    hn_json_put_number(b, "time", opts->time);
+    hn_json_put_bool(b, "stopped", opts->stopped);
+    hn_json_put_number(b, "mechanism_pixels", hn_sheet_mechanism(&sheet));
     hn_snapshot_primitives(b, &sheet, drawing, poses, n_poses, opts);
+    hn_label_places_json(b, &sheet, &placed);
+    hn_legend_json(b, &sheet, poses, n_poses, opts, &placed);
     hn_json_end_object(b);
     return HN_OK;
 }

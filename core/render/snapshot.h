@@ -33,10 +33,11 @@ typedef struct hn_snapshot_pose {
     const char *note; ///< "gap 4.2 mm", "stopped at 1.2 s: diverged", or NULL
     int slot;         ///< hn_look slot; HN_LOOK_REFERENCE: the reference solution
     int selected;     ///< opaque and on top; where no pose is, the first one is
-    bool faint;       ///< an earlier pose of a method: pale, and not listed
+    bool faint;       ///< an earlier pose of a method: pale, with its time beside it
+    double time;      ///< [s] of a faint pose
     /// n_trace world points that were passed (3 each; NaN: a new line begins), or NULL
     const double *trace;
-    int n_trace;
+    int n_trace; ///< for opts.n_traces paths of equal numbers of points, one after another
 } hn_snapshot_pose;
 
 /// A force drawn at a point of the selected pose. Arrows of the drawing have neither size nor
@@ -46,6 +47,7 @@ typedef struct hn_snapshot_load {
     double place[3];  ///< [m], world
     double force[3];  ///< [unit]
     const char *unit; ///< "N"
+    const char *name; ///< of the joint; NULL: it is not written
 } hn_snapshot_load;
 
 /// The angle of a coordinate, drawn at a pivot of the selected pose: an arc in the world, seen as
@@ -61,6 +63,7 @@ typedef struct hn_snapshot_angle {
 typedef struct hn_snapshot_opts {
     const char *title, *caption; ///< may be NULL
     double time;                 ///< [s]; NaN: not shown
+    bool stopped;                ///< the motion has ended at that time, before the one asked for
     hn_view look;                ///< direction of view
     /// right0, right1, up0, up1 [m] to fit; right1 <= right0: fitted to the poses given
     double view[4];
@@ -71,7 +74,9 @@ typedef struct hn_snapshot_opts {
     bool dimensions;     ///< bars of the selected pose show their lengths
     int n_angles;
     const hn_snapshot_angle *angles;
-    bool bare; ///< the drawing and its scale bar alone: no words, legend or inset
+    int n_traces;
+    const char *const *traces; ///< the names of the points whose paths the poses carry
+    bool bare;                 ///< the drawing and its scale bar alone: no words, legend or inset
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);
@@ -95,9 +100,10 @@ HN_MUST_CHECK hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width
                                                const hn_snapshot_opts *opts, hn_diag *diag);
 
 /// Describes the content of the picture, for readers who cannot see it and for tests:
-/// {"view","metres_per_pixel","poses":[{"name",
-/// "slot","drawn","selected","note"}],"tears":[{"name","pose","gap"}],"inset":null or
-/// {"tear","pose","gap", "magnification"},"scale_bar"}. The same arguments as hn_snapshot_draw().
+/// {"view","metres_per_pixel","poses":[{"name","slot","drawn","selected","note"}],
+/// "tears":[{"name","pose","gap"}],"inset":null or {"tear","pose","gap","magnification"},
+/// "scale_bar","time","stopped","mechanism_pixels","labels","hatching","listed","legend",
+/// "force_scale", primitives and marks}. The same arguments as hn_snapshot_draw().
 HN_MUST_CHECK hn_status hn_snapshot_describe(hn_strbuf *b, int width, int height,
                                              const hn_drawing *drawing,
                                              const hn_snapshot_pose *poses, int n_poses,

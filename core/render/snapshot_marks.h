@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_SNAPSHOT_MARKS_H
 #define HN_RENDER_SNAPSHOT_MARKS_H
-// Explanations on a sheet: the marker of each method, dimension lines, and the list of everything
-// that is drawn. Inside render/ only.
+// The marker of each method on a sheet, and the list of everything that is drawn. Inside render/
+// only.
 
 #include "render/snapshot_labels.h"
 #include "render/snapshot_sheet.h"
@@ -11,10 +11,6 @@
 /// more than one method.
 void hn_snapshot_markers(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                          const hn_snapshot_pose *poses, int n_poses);
-/// Draws the length of each bar beside it, with arrows between two extension lines, and that of the
-/// ground between two supports. The values join the texts that later ones keep off.
-void hn_snapshot_dimensions(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                            const hn_snapshot_pose *pose, hn_label_places *placed);
 /// Writes "primitives": a list of {"kind","pose","points":[[x, y, z], ...],"pixels":[[x, y], ...],
 /// "labels"}, shape by shape of every pose that is drawn, [m] and [px], with "joint" where a symbol
 /// is drawn; "traces", "loads" and "angles".

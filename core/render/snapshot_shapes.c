@@ -16,6 +16,9 @@ static const double PIN_NEARER = 1e-3;  // [scale bars] than the nearest of its 
 static const double FARTHEST = 0.45;    // of its colour that the farthest shape in space keeps
 enum { COILS = 7, MAX_POLYGON = 1000 }; // the scene format allows no larger one
 enum { TRACE_PIECE = 256 };
+enum { ROUND = 12, ARC_STEPS = 8 };    // corners of a circle at least; pieces of each side
+static const double GROUND_LINE = 0.8; // lines of supports, of other outlines
+static const double RAIL = 0.7;        // lines of guides, of those
 
 /// Describes how one pose is drawn: colours of outline and fill, and whether it is a mere line.
 typedef struct pen {
@@ -163,17 +166,35 @@ static void draw_pivot(const pen *p, const hn_shape *shape) {
     hn_canvas_ring(p->c, a[0], a[1], r, &ring);
 }
 
+/// The direction across a line from a to b [m, world], to its right, as it is seen: level with the
+/// picture, or in the plane of a mechanism that is seen at a slant.
+static void find_across(const hn_sheet *s, const double *a, const double *b, double out[2]) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
+    double from[2], to[2], u[2];
+    hn_sheet_pixel(s, a, from);
+    hn_sheet_pixel(s, b, to);
+    direction(from, to, u);
+    out[0] = -u[1];
+    out[1] = u[0];
+    if (s->is_slanted && length > 0) {
+        for (int k = 0; k < 2; k++) {
+            out[k] = (dy * s->plane[0][k] - dx * s->plane[1][k]) / length;
+        }
+    }
+}
+
 static void draw_slider(const pen *p, const hn_shape *shape) {
-    double a[2], b[2], u[2], xy[8];
+    double a[2], b[2], u[2], v[2], xy[8];
     at(p, shape->p, a);
     at(p, shape->q, b);
     direction(a, b, u);
+    find_across(p->s, p->points + 3 * shape->p, p->points + 3 * shape->q, v);
     const double w = bar_width(p, shape), along = 1.3 * w, across = 0.85 * w;
     for (int i = 0; i < 4; i++) {
         const double i_along = (i == 0 || i == 3 ? -1 : 1) * along,
                      i_across = (i < 2 ? -1 : 1) * across;
-        xy[2 * i] = a[0] + i_along * u[0] - i_across * u[1];
-        xy[2 * i + 1] = a[1] + i_along * u[1] + i_across * u[0];
+        xy[2 * i] = a[0] + i_along * u[0] + i_across * v[0];
+        xy[2 * i + 1] = a[1] + i_along * u[1] + i_across * v[1];
     }
     draw_outlined(p, xy, 4);
 }
@@ -231,25 +252,86 @@ static void draw_damper(const pen *p, const hn_shape *shape) {
     draw_local(p, a, u, length, tail, 2);
 }
 
-static void draw_polygon(const pen *p, const hn_shape *shape) {
-    double xy[2 * MAX_POLYGON];
-    const int n = shape->n;
-    HN_ASSERT(n <= MAX_POLYGON);
-    for (int i = 0; i < n; i++) {
-        at(p, shape->p + i, xy + 2 * i);
+/// Returns whether the corners lie on a circle, as many as a scene takes in place of one; `centre`
+/// is its middle.
+static bool is_circle(const pen *p, const hn_shape *shape, double centre[3]) {
+    const double *corner = p->points + 3 * shape->p;
+    double least = HUGE_VAL, most = 0;
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0;
+        for (int i = 0; i < shape->n; i++) {
+            centre[k] += corner[3 * i + k] / shape->n;
+        }
     }
-    if (n >= 3) {
-        draw_outlined(p, xy, n);
+    for (int i = 0; i < shape->n; i++) {
+        const double *x = corner + 3 * i;
+        const double r = hypot(hypot(x[0] - centre[0], x[1] - centre[1]), x[2] - centre[2]);
+        least = fmin(least, r);
+        most = fmax(most, r);
+    }
+    return shape->n >= ROUND && shape->n * ARC_STEPS <= MAX_POLYGON && most - least < 0.01 * most;
+}
+
+/// The point of the circle at a share of the way from one corner to the next.
+static void circle_point(const double *a, const double *b, const double centre[3], double share,
+                         double out[3]) {
+    double from[3], to[3], radius = 0, length = 0;
+    for (int k = 0; k < 3; k++) {
+        from[k] = a[k] - centre[k];
+        to[k] = from[k] + share * (b[k] - a[k]);
+        radius = hypot(radius, from[k]);
+        length = hypot(length, to[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        out[k] = centre[k] + (length > 0 ? radius / length : 1) * to[k];
     }
 }
 
+static void draw_polygon(const pen *p, const hn_shape *shape) {
+    double xy[2 * MAX_POLYGON], centre[3], world[3];
+    const double *corner = p->points + 3 * shape->p;
+    HN_ASSERT(shape->n <= MAX_POLYGON);
+    const int steps = is_circle(p, shape, centre) ? ARC_STEPS : 1;
+    for (int i = 0; i < shape->n * steps; i++) {
+        const double *a = corner + 3 * (i / steps), *b = corner + 3 * ((i / steps + 1) % shape->n);
+        circle_point(a, b, centre, (double)(i % steps) / steps, world);
+        hn_sheet_pixel(p->s, steps > 1 ? world : a, xy + 2 * i);
+    }
+    if (shape->n >= 3) {
+        draw_outlined(p, xy, shape->n * steps);
+    }
+}
+
+/// The symbol of a support lies in the picture, or in the plane of a mechanism seen at a slant:
+/// `right` and `down` are a length of 1 px as they are seen.
+static void find_upright(const hn_sheet *s, double right[2], double down[2]) {
+    right[0] = down[1] = 1;
+    right[1] = down[0] = 0;
+    if (s->is_slanted) {
+        for (int k = 0; k < 2; k++) {
+            right[k] = s->plane[0][k];
+            down[k] = -s->plane[1][k];
+        }
+    }
+}
+
+static double support_size(const hn_sheet *s) {
+    return 1.25 * s->bar;
+}
+
 static void draw_ground(const pen *p, const hn_shape *shape) {
-    double a[2];
+    double a[2], right[2], down[2], triangle[6];
+    const double size = support_size(p->s);
     at(p, shape->p, a);
-    const double size = 1.25 * p->s->bar, foot = a[1] + size;
-    const double triangle[] = {a[0], a[1], a[0] + 0.75 * size, foot, a[0] - 0.75 * size, foot};
+    find_upright(p->s, right, down);
+    const double foot[2] = {a[0] + size * down[0], a[1] + size * down[1]};
+    for (int k = 0; k < 2; k++) {
+        triangle[k] = a[k];
+        triangle[2 + k] = foot[k] + 0.75 * size * right[k];
+        triangle[4 + k] = foot[k] - 0.75 * size * right[k];
+    }
     draw_outlined(p, triangle, 3);
-    hn_canvas_hatch(p->c, a[0], foot, 2.6 * size, 0, &p->outline);
+    hn_canvas_hatch_plane(p->c, foot[0], foot[1], 2.6 * size, right, down, &p->outline);
 }
 
 /// Returns how far the view reaches from a along u (both signs), so that a guide spans it.
@@ -264,23 +346,43 @@ static double reach(const hn_sheet *s, const double a[2], const double u[2]) {
     return most;
 }
 
+/// A guide on the sheet: from one end of its hatched rail to the other, and to the other rail.
+typedef struct guide {
+    double u[2], away[2]; ///< along, and from the slider to the hatching
+    double middle[2], length, off;
+} guide;
+
+static guide lay_guide(const hn_sheet *s, const double *p, const double *q, double width) {
+    guide g;
+    double a[2], b[2];
+    hn_sheet_pixel(s, p, a);
+    hn_sheet_pixel(s, q, b);
+    direction(a, b, g.u);
+    find_across(s, p, q, g.away);
+    const double back[2] = {-g.u[0], -g.u[1]};
+    const double ahead = reach(s, a, g.u) + 1.5 * width, behind = reach(s, a, back) + 1.5 * width;
+    g.off = 1.02 * width;
+    g.length = ahead + behind;
+    for (int k = 0; k < 2; k++) {
+        g.middle[k] = a[k] + (ahead - behind) / 2 * g.u[k];
+    }
+    return g;
+}
+
 static void draw_guide(const pen *p, const hn_shape *shape) {
-    double a[2], b[2], u[2];
-    at(p, shape->p, a);
-    at(p, shape->q, b);
-    direction(a, b, u);
-    const double back[2] = {-u[0], -u[1]}, w = bar_width(p, shape);
-    const double ahead = reach(p->s, a, u) + 1.5 * w, behind = reach(p->s, a, back) + 1.5 * w;
-    const double middle = (ahead - behind) / 2, off = 1.02 * w;
-    const double x = a[0] + middle * u[0], y = a[1] + middle * u[1];
+    const double *points = p->points;
+    const guide g =
+        lay_guide(p->s, points + 3 * shape->p, points + 3 * shape->q, bar_width(p, shape));
 
     // one rail is hatched as ground, the other a mere line
     hn_stroke rail = p->outline;
-    rail.width *= 0.7;
-    hn_canvas_hatch(p->c, x - off * u[1], y + off * u[0], ahead + behind, atan2(u[1], u[0]), &rail);
-    const double half = (ahead + behind) / 2, ox = x + off * u[1], oy = y - off * u[0];
-    hn_canvas_segment(p->c, ox - half * u[0], oy - half * u[1], ox + half * u[0], oy + half * u[1],
-                      &rail);
+    rail.width *= RAIL;
+    hn_canvas_hatch_plane(p->c, g.middle[0] + g.off * g.away[0], g.middle[1] + g.off * g.away[1],
+                          g.length, g.u, g.away, &rail);
+    const double x = g.middle[0] - g.off * g.away[0], y = g.middle[1] - g.off * g.away[1];
+    const double half = g.length / 2;
+    hn_canvas_segment(p->c, x - half * g.u[0], y - half * g.u[1], x + half * g.u[0],
+                      y + half * g.u[1], &rail);
 }
 
 /// The pins of a spring or damper: neither end hangs in the air.
@@ -421,31 +523,70 @@ void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                    .s = s,
                    .d = d,
                    .points = pose->points,
-                   .outline = hn_stroke_solid(surface->muted, 0.8 * s->line),
+                   .outline = hn_stroke_solid(surface->muted, GROUND_LINE * s->line),
                    .fill = hn_paint_solid(surface->raised),
                    .has_fill = 1};
     draw_shapes(&p, d, 1);
 }
 
-static void draw_trace(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
-                       const hn_stroke *stroke) {
-    double xy[2 * TRACE_PIECE];
-    hn_stroke thin = *stroke;
-    thin.width = 0.6 * s->line;
-    thin.n_dash = 0;
+/// A strip of hatching on one side of a line through `middle`.
+static void keep_off_hatching(hn_label_places *placed, const double middle[2], double half_length,
+                              const double along[2], const double away[2], double depth) {
+    double ends[2][2];
+    for (int k = 0; k < 2; k++) {
+        const double at = middle[k] + 0.5 * depth * away[k];
+        ends[0][k] = at - half_length * along[k];
+        ends[1][k] = at + half_length * along[k];
+    }
+    hn_label_keep_off_strip(placed, ends[0], ends[1], 0.5 * depth);
+}
 
-    // in pieces that share their ends; what is not finite is left out by the line
-    for (int from = 0; from + 1 < pose->n_trace; from += TRACE_PIECE - 1) {
-        const int left = pose->n_trace - from, n = left < TRACE_PIECE ? left : TRACE_PIECE;
-        for (int i = 0; i < n; i++) {
-            hn_sheet_pixel(s, pose->trace + 3 * (from + i), xy + 2 * i);
+void hn_snapshot_hatching(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
+                          hn_label_places *placed) {
+    const double depth = hn_canvas_hatch_depth(GROUND_LINE * s->line), size = support_size(s);
+    double a[2], right[2], down[2];
+    find_upright(s, right, down);
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *shape = &d->shapes[i];
+        const double *p = pose->points + 3 * shape->p;
+        if (shape->kind == HN_SHAPE_GROUND) {
+            hn_sheet_pixel(s, p, a);
+            const double foot[2] = {a[0] + size * down[0], a[1] + size * down[1]};
+            keep_off_hatching(placed, foot, 1.3 * size, right, down, depth);
+        } else if (shape->kind == HN_SHAPE_GUIDE) {
+            const double width = shape->width > 0 ? fmax(4, s->scale * shape->width) : s->bar;
+            const guide g = lay_guide(s, p, pose->points + 3 * shape->q, width);
+            const double rail[2] = {g.middle[0] + g.off * g.away[0],
+                                    g.middle[1] + g.off * g.away[1]};
+            keep_off_hatching(placed, rail, g.length / 2, g.u, g.away, RAIL * depth);
         }
-        hn_canvas_line(c, xy, n, &thin);
+    }
+}
+
+/// Draws the n points from `first` on; what is not finite is left out by the line.
+static void draw_path(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose, int first,
+                      int n_points, const hn_stroke *stroke) {
+    double xy[2 * TRACE_PIECE];
+    for (int from = 0; from + 1 < n_points; from += TRACE_PIECE - 1) { // pieces share their ends
+        const int left = n_points - from, n = left < TRACE_PIECE ? left : TRACE_PIECE;
+        for (int i = 0; i < n; i++) {
+            hn_sheet_pixel(s, pose->trace + 3 * (first + from + i), xy + 2 * i);
+        }
+        hn_canvas_line(c, xy, n, stroke);
+    }
+}
+
+static void draw_traces(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
+                        int n_traces) {
+    const int paths = n_traces > 0 ? n_traces : 1, n = pose->n_trace / paths;
+    for (int k = 0; k < paths; k++) {
+        const hn_stroke stroke = hn_trace_stroke(hn_canvas_theme(c), pose->slot, s->line, k);
+        draw_path(c, s, pose, k * n, n, &stroke);
     }
 }
 
 void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                           const hn_snapshot_pose *pose, bool is_selected) {
+                           const hn_snapshot_pose *pose, bool is_selected, int n_traces) {
     const hn_theme theme = hn_canvas_theme(c);
     pen p = {.c = c,
              .s = s,
@@ -463,7 +604,7 @@ void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     hn_canvas_begin_layer(c, pose->faint                     ? FAINT_OPACITY
                              : is_selected || p.is_reference ? 1
                                                              : GHOST_OPACITY);
-    draw_trace(c, s, pose, &p.outline);
+    draw_traces(c, s, pose, n_traces);
     draw_shapes(&p, d, 0);
     hn_canvas_end_layer(c);
 }

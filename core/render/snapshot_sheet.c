@@ -5,6 +5,7 @@
 #include "base/units.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // [px] from this width on inset and legend are beside the drawing
@@ -12,6 +13,9 @@ static const double WIDE_ENOUGH = 560;
 static const double CLOSED = 1e-12;       // of the view: a smaller tear is not magnified
 static const double TEAR_IN_INSET = 0.4;  // the tear's share of the inset
 static const double ROOM_AROUND = 0.10;   // of the view, on each side
+static const double LOWEST_GLASS = 5;     // [letters] of an inset that gives room to the legend
+static const double FLAT = 1e-9;          // [m] a mechanism that is no thicker lies in a plane
+static const double EDGE_ON = 0.2;        // a plane that is seen narrower has no symbols
 static const double SMALLEST_VIEW = 1e-6; // [m]
 
 // ---- what is there ----
@@ -126,10 +130,26 @@ static void place_view(hn_sheet *s) {
 static void choose_magnification(hn_sheet *s) {
     const double gap = s->widest.gap * s->scale; // [px]
     const double size = fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
-    const double side = fmin(s->inset.width, s->inset.height);
     s->is_closed = !(s->widest.gap > CLOSED * size);
-    s->magnification =
-        s->is_closed || gap >= TEAR_IN_INSET * side ? 1 : hn_round_125(TEAR_IN_INSET * side / gap);
+    s->magnification = s->is_closed || gap >= TEAR_IN_INSET * s->glass
+                           ? 1
+                           : hn_round_125(TEAR_IN_INSET * s->glass / gap);
+}
+
+/// Finds whether the mechanism lies in a plane of constant z that is seen at a slant, neither from
+/// the front nor edge on.
+static void find_plane(hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int i = 0; pose && i < d->n_points; i++) {
+        low = fmin(low, pose->points[3 * i + 2]);
+        high = fmax(high, pose->points[3 * i + 2]);
+    }
+    for (int k = 0; k < 2; k++) {
+        s->plane[k][0] = s->look.right[k];
+        s->plane[k][1] = -s->look.up[k];
+    }
+    const double open = fabs(s->look.toward[2]);
+    s->is_slanted = s->in_space && high - low <= FLAT && open > EDGE_ON;
 }
 
 hn_status hn_sheet_make(hn_sheet *s, int width, int height, const hn_drawing *d,
@@ -143,6 +163,7 @@ hn_status hn_sheet_make(hn_sheet *s, int width, int height, const hn_drawing *d,
     s->look = opts->look;
     s->in_space = s->look.toward[2] < 1 - 1e-12;
     s->selected = find_selected(d, poses, n_poses);
+    find_plane(s, d, s->selected < 0 ? NULL : &poses[s->selected]);
     if (s->selected < 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
                            "none of the %d poses has finite points to draw", n_poses);
@@ -159,6 +180,7 @@ hn_status hn_sheet_make(hn_sheet *s, int width, int height, const hn_drawing *d,
         place_boxes(s, n_poses, s->widest.pose >= 0);
     }
     place_view(s);
+    s->glass = fmin(s->inset.width, s->inset.height);
     choose_magnification(s);
     return HN_OK;
 }
@@ -174,6 +196,33 @@ void hn_sheet_pixel(const hn_sheet *s, const double *world, double out[2]) {
     hn_sheet_place(s, plane, out);
 }
 
+double hn_sheet_mechanism(const hn_sheet *s) {
+    return s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
+}
+
+void hn_sheet_length(const hn_sheet *s, double metres, int digits, char out[HN_SI_TEXT]) {
+    if (s->unit == HN_UNIT_ANY || !(metres > 0)) {
+        hn_si_format(metres, "m", digits, out);
+        return;
+    }
+    const double value = hn_round_digits(metres * (s->unit == HN_UNIT_MM ? 1000 : 1), digits);
+    const int whole = (int)floor(log10(value)) + 1; // digits before the point, below 1: zeros after
+    const int decimals = whole < digits ? digits - whole : 0;
+    snprintf(out, HN_SI_TEXT, "%.*f %s", decimals, value, s->unit == HN_UNIT_MM ? "mm" : "m");
+}
+
+void hn_sheet_make_room(hn_sheet *s, double wanted) {
+    const double there = s->height - s->legend.y;
+    if (s->width >= WIDE_ENOUGH && s->inset.height > 0 && there < wanted) {
+        const double lowest = (2 * HN_INSET_STRIP + LOWEST_GLASS) * s->font;
+        const double less = fmin(wanted - there, fmax(0, s->inset.height - lowest));
+        s->inset.height -= less;
+        s->legend.y -= less;
+        s->glass = fmin(s->glass, s->inset.height - 2 * HN_INSET_STRIP * s->font);
+        choose_magnification(s);
+    }
+}
+
 // ---- colours ----
 
 hn_stroke hn_slot_stroke(hn_theme theme, int slot, double width) {
@@ -182,6 +231,16 @@ hn_stroke hn_slot_stroke(hn_theme theme, int slot, double width) {
                        .width = width,
                        .n_dash = look->n_dash,
                        .dash = look->dash};
+}
+
+hn_stroke hn_trace_stroke(hn_theme theme, int slot, double width, int k) {
+    static const double dashes[][4] = {{0}, {7, 4}, {2, 4}, {9, 3, 2, 3}};
+    static const int lengths[] = {0, 2, 2, 4};
+    hn_stroke thin = hn_slot_stroke(theme, slot, 0.6 * width);
+    const int row = k % (int)(sizeof lengths / sizeof *lengths);
+    thin.dash = dashes[row];
+    thin.n_dash = lengths[row];
+    return thin;
 }
 
 uint32_t hn_tint(hn_theme theme, uint32_t colour, double share) {

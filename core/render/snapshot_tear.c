@@ -156,7 +156,7 @@ static void draw_inset(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                .pose = pose,
                .look = s->look,
                .scale = s->scale * s->magnification,
-               .side = fmin(box->width, box->height),
+               .side = s->glass,
                .line = s->line};
     g.centre[0] = box->x + box->width / 2;
     g.centre[1] = box->y + box->height / 2;
@@ -170,7 +170,7 @@ static void draw_inset(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 
     hn_canvas_polygon(c, frame, 4, hn_paint_solid(surface->raised));
     // words have strips of their own above and below the glass
-    const int strip = (int)(2 * s->font);
+    const int strip = (int)(HN_INSET_STRIP * s->font);
     hn_canvas_clip(c, (int)box->x, (int)box->y + strip, (int)box->width,
                    (int)fmax(1, box->height - 2 * strip));
     draw_bar_ends(&g, tear[0]);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Snapshots from the command line: formats, several moments, marks, the built-in renderer."""
 
+import glob
 import json
 import math
 import os
@@ -28,10 +29,10 @@ class Snapshot(Command):
             at += 12 + size
         return names
 
-    def picture(self, folder, name, *words, scene="four-bar", **env):
+    def picture(self, folder, name, *words, scene="four-bar", width="600", height="400", **env):
         """The bytes of a snapshot of the scene, and the document that describes it."""
         path = os.path.join(folder, name)
-        done = call("snapshot", scene, "--method", RK4, "--width", "600", "--height", "400", "-o", path, "--describe", *words, environment=env)
+        done = call("snapshot", scene, "--method", RK4, "--width", width, "--height", height, "-o", path, "--describe", *words, environment=env)
         document = strict(self.assert_exit(done, DONE))
         with open(path, "rb") as f:
             return f.read(), document, done.stderr
@@ -70,6 +71,109 @@ class Snapshot(Command):
                 path = os.path.join(folder, scene + ".png")
                 document = strict(self.assert_exit(call("snapshot", scene, "--time", "0", "-o", path, "--describe"), DONE))
                 self.assertEqual({shape["joint"] for shape in document["picture"]["primitives"] if "joint" in shape}, joints, scene)
+
+    @staticmethod
+    def lies_on(box, strip):
+        """Whether a box touches a strip of hatching (Liang and Barsky)."""
+        half, first, last = strip["half"], 0, 1
+        for k in (0, 1):
+            low, high = box[k] - half, box[k + 2] + half
+            start, way = strip["from"][k], strip["to"][k] - strip["from"][k]
+            if way == 0:
+                if not low < start < high:
+                    return False
+            else:
+                ends = sorted(((low - start) / way, (high - start) / way))
+                first, last = max(first, ends[0]), min(last, ends[1])
+        return first < last
+
+    def test_no_text_of_any_scene_lies_on_another_or_on_hatching(self):
+        sets = (["--dimensions", "--forces"], ["--dimensions", "--forces", "--width", "600", "--height", "400"], ["--forces", "--view", "space", "--at", "0,0.05,0.1", "--ghosts"])
+        texts = pictures = overlaps = hatched = 0
+        with tempfile.TemporaryDirectory() as folder:
+            for scene in sorted(glob.glob("lessons/*/scenes/*.json")):
+                for words in sets:
+                    times = [] if "--at" in words else ["--time", "0.1"]
+                    done = call("snapshot", scene, "--method", "projection@rk4:h=0.01", *times, *words, "-o", os.path.join(folder, "x.svg"), "--describe")
+                    self.assertIn(done.returncode, (DONE, 4), (scene, done.stderr))
+                    picture = strict(done.stdout)["picture"]
+                    boxes = [label["box"] for label in picture["labels"]]
+                    texts, pictures = texts + len(boxes), pictures + 1
+                    for i, a in enumerate(boxes):
+                        overlaps += sum(all(max(a[k], b[k]) < min(a[k + 2], b[k + 2]) for k in (0, 1)) for b in boxes[:i] if picture["labels"][i]["text"])
+                        hatched += any(self.lies_on(a, strip) for strip in picture["hatching"] if picture["labels"][i]["text"])
+        print(f"# {pictures} pictures, {texts} texts: {overlaps} overlap, {hatched} lie on hatching")
+        self.assertGreater(texts, 5 * pictures)
+        self.assertEqual((overlaps, hatched), (0, 0))
+
+    def test_forces_have_a_scale_and_short_arrows_are_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = self.picture(folder, "a.svg", "--time", "0.4", "--forces", scene="stewart-6-6")[1]["picture"]
+            scale = picture["force_scale"]
+            self.assertIn("50 N in the picture plane", picture["legend"])
+            self.assertIn("shorter than drawn", picture["legend"])
+            flat = self.picture(folder, "b.svg", "--time", "0.4", "--forces")[1]["picture"]
+            self.assertIn("5 N", flat["legend"])
+            self.assertNotIn("shorter than drawn", flat["legend"])
+        self.assertEqual(scale["force"], 50)
+        self.assertGreater(scale["pixels"], 20)
+
+    def test_forces_of_a_crowded_picture_are_numbered_and_listed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = self.picture(folder, "a.svg", "--time", "0.4", "--forces", "--dimensions", scene="stewart-6-6", width="1200", height="720")[1]["picture"]
+        numbers = [label["text"] for label in picture["labels"] if label["kind"] == "force"]
+        self.assertEqual(sorted(map(int, numbers)), list(range(1, 19)))
+        self.assertEqual(len([row for row in picture["listed"] if re.fullmatch(r"\d+ [UPS]\d [\d.]+ N", row)]), 18)
+        self.assertEqual([label["text"] for label in picture["labels"] if label["kind"] == "length"], ["12 \u00d7 463 mm"])
+        self.assertIn(picture["inset"]["tear"], [label["text"] for label in picture["labels"]])  # the inset's joint
+
+    def test_angles_have_values_all_or_none_and_turns_apart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for scene, time in (("watt-six-bar", "0.4"), ("bennett", "0.4"), ("3-rrr", "0.4"), ("slider-crank", "1"), ("seven-body-squeezer", "0.03")):
+                picture = self.picture(folder, "a.svg", "--time", time, "--dimensions", scene=scene)[1]["picture"]
+                drawn = [label["text"] for label in picture["labels"] if label["kind"] == "angle"]
+                self.assertIn(sum("=" in text for text in drawn), (0, len(drawn)), scene)
+                rows = drawn if any("=" in text for text in drawn) else picture["listed"]
+                values = {text.split(" = ")[0]: text.split(" = ")[1] for text in rows + picture["listed"] if " = " in text}
+                for angle in picture["angles"]:
+                    turns = math.trunc(angle["value"] / (2 * math.pi))
+                    more = f" {'-' if turns < 0 else '+'} {abs(turns)} turn{'s' if abs(turns) > 1 else ''}" if turns else ""
+                    self.assertEqual(values[angle["name"]], f"{math.fmod(angle['value'], 2 * math.pi):.2f} rad{more}", scene)
+
+    def test_earlier_poses_have_times_and_paths_have_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = self.picture(folder, "a.svg", "--at", "0,0.2,0.4", "--ghosts", "--trace", "B")[1]["picture"]
+        self.assertEqual(picture["legend"], ["earlier: t = 0, 0.2 s", "path of a point on coupler", "path of B"])
+        self.assertEqual([label["text"] for label in picture["labels"] if label["kind"] == "time"], ["0 s", "0.2 s"])
+
+    def test_joints_that_the_legend_names_are_named_in_the_drawing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = self.picture(folder, "a.svg", "--time", "0.3", "--forces", scene="slider-crank")[1]["picture"]
+            robot = self.picture(folder, "b.svg", "--time", "0.3", scene="delta-robot")[1]["picture"]
+        self.assertIn("S on slider", picture["poses"][0]["note"])
+        self.assertIn("S", [label["text"] for label in picture["labels"]])
+        self.assertIn(robot["inset"]["tear"], [label["text"] for label in robot["labels"]])
+
+    def test_a_stopped_run_has_its_own_time_and_the_reason_of_compare(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.svg")
+            method = "index1@rk4:h=2e-2"
+            done = call("snapshot", "four-bar", "--method", method, "--time", "60", "-o", path, "--describe")
+            document = strict(self.assert_exit(done, 4))
+            reason = "the loops are open by 0.601 m, more than half the mechanism's length"
+            self.assertIn(reason.encode(), done.stderr)
+            self.assertIn(reason, document["picture"]["poses"][0]["note"])
+            self.assertIn(reason.encode(), call("compare", "four-bar", "--methods", method, "--time", "60").stderr)
+            self.assertEqual((document["picture"]["time"], document["picture"]["stopped"]), (37.88, True))
+            self.assertGreater(document["picture"]["traces"][0], 5900)  # 0.01 s from point to point
+
+    def test_lengths_of_a_picture_have_one_unit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for scene, unit in (("four-bar", "m"), ("slider-crank", "mm"), ("fb0", "m")):
+                picture = self.picture(folder, "a.svg", "--time", "0.1", "--dimensions", scene=scene)[1]["picture"]
+                lengths = [label["text"] for label in picture["labels"] if label["kind"] == "length"]
+                self.assertGreater(len(lengths), 1)
+                self.assertEqual({text.split()[-1] for text in lengths}, {unit}, (scene, lengths))
 
     def test_the_ending_of_a_snapshot_is_its_format_or_refused(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -72,11 +72,15 @@ static int gather(sheet *p, int moment) {
         p->poses[n] = p->moments[i].poses[0];
         p->poses[n].faint = true;
         p->poses[n].selected = 0;
+        p->poses[n].time = p->moments[i].reached[0];
         p->poses[n++].n_trace = 0;
     }
     const hn_picture_moment *m = &p->moments[moment];
     memcpy(p->poses + n, m->poses, (size_t)m->n_poses * sizeof *p->poses);
-    p->opts.time = m->time;
+    p->opts.time = m->comparison ? m->reached[0] : m->time;
+    p->opts.stopped = m->comparison && m->reached[0] < m->time;
+    p->opts.n_traces = m->comparison ? m->n_traces : 0;
+    p->opts.traces = m->trace_names;
     p->opts.n_loads = m->n_loads;
     p->opts.loads = m->loads;
     p->opts.n_angles = m->n_angles;

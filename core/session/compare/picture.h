@@ -49,6 +49,8 @@ typedef struct hn_picture_request {
     double cpu_limit;        ///< computing time allowed [s], then HN_ERR_LIMIT; 0: no limit
     int (*stop)(void *user); ///< asked every few milliseconds; 1: HN_ERR_LIMIT. May be NULL
     void *user;
+    /// receives the name and the note of the first method that ended early; NULL: not asked for
+    hn_strbuf *ending;
 } hn_picture_request;
 
 /// Appends the bytes of a PNG or SVG file to `file`. `description` (may be NULL) receives the

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_FRAMES = 1000, FORCES_NAMED = 6 };
+enum { MAX_FRAMES = 6000, FORCES_NAMED = 6 };
 static const double FRAME = 0.05, TRACE_FRAME = 0.01; // [s] at most, without and with traces
 static const double SMALLEST_FORCE = 1e-6;            // of the largest: a smaller one is no arrow
 static const double SAME_GAP = 0.01;                  // relative: two digits are shown
@@ -27,6 +27,13 @@ static double cpu_used(const hn_comparison *c) {
     return sum;
 }
 
+/// A copy that lives as long as the moment; NULL where memory is out.
+static const char *keep_text(hn_picture_moment *p, const char *text) {
+    const size_t n = text ? strlen(text) + 1 : 0;
+    char *copy = text ? hn_arena_get(p->arena, n) : NULL;
+    return copy ? memcpy(copy, text, n) : NULL;
+}
+
 // ---- traces ----
 
 static int find_point(const hn_drawing *d, const char *label) {
@@ -38,11 +45,21 @@ static int find_point(const hn_drawing *d, const char *label) {
     return -1;
 }
 
+/// The name of a path: that of its point, or "a point on" its body.
+static void name_trace(hn_picture_moment *p, const char *label, int body) {
+    const hn_scene *scene = hn_model_scene(p->model);
+    char text[HN_SPEC_MAX];
+    const char *of = body >= 0 && body < scene->n_bodies ? scene->bodies[body].name : "the ground";
+    snprintf(text, sizeof text, "a point on %.80s", of);
+    p->trace_names[p->n_traces] = label ? label : keep_text(p, text);
+}
+
 /// The points that leave a trace: those of the scene, then those asked for.
 static hn_status choose_traces(hn_picture_moment *p, hn_diags *diags) {
     const hn_drawing d = hn_system_drawing(hn_model_system(p->model));
     for (int i = 0; i < d.n_shapes && p->n_traces < HN_PICTURE_TRACES; i++) {
         if (d.shapes[i].kind == HN_SHAPE_TRACE) {
+            name_trace(p, d.labels[d.shapes[i].p], d.shapes[i].body);
             p->trace_points[p->n_traces++] = d.shapes[i].p;
         }
     }
@@ -62,6 +79,7 @@ static hn_status choose_traces(hn_picture_moment *p, hn_diags *diags) {
             hn_strbuf_reset(&names);
             return status;
         }
+        p->trace_names[p->n_traces] = d.labels[point];
         p->trace_points[p->n_traces++] = point;
     }
     return HN_OK;
@@ -138,6 +156,19 @@ static hn_status run_methods(hn_picture_moment *p, hn_diags *diags) {
     return status;
 }
 
+/// The reason without the time that it may begin with: the legend has said it.
+static const char *without_time(const char *reason) {
+    const char *after = strstr(reason, " s ");
+    return strncmp(reason, "at t = ", 7) == 0 && after ? after + 3 : reason;
+}
+
+/// Why the method has ended early.
+static const char *reason_of(const hn_picture_moment *p, int i, const hn_run_summary *s) {
+    return hn_comparison_slowness(p->comparison, i) > 0 ? "it was slower than it may be"
+           : s->reason[0]                               ? without_time(s->reason)
+                                                        : hn_status_text(s->status);
+}
+
 /// Returns whether the gap, a norm over all constraints, is not the one that the drawing shows at a
 /// joint.
 static bool is_over_all(const hn_picture_moment *p, const hn_sample *sample) {
@@ -156,13 +187,14 @@ static void note_method(hn_picture_moment *p, int i, const hn_sample *sample, in
     char gap[HN_SI_TEXT], t[HN_SI_TEXT];
     hn_si_format(sample->gap, "m", 2, gap);
     hn_si_format(s.t, "s", 3, t);
+    p->reached[i] = good ? p->time : s.t;
     if (good && hn_system_get_info(hn_model_system(p->model)).nc == 0) {
         snprintf(p->notes[i], HN_PICTURE_NOTE, "no constraints");
     } else if (good) {
         snprintf(p->notes[i], HN_PICTURE_NOTE, "gap %s%s", gap,
                  is_over_all(p, sample) ? " over all constraints" : "");
     } else {
-        snprintf(p->notes[i], HN_PICTURE_NOTE, "stopped at %s: %s", t, hn_status_text(s.status));
+        snprintf(p->notes[i], HN_PICTURE_NOTE, "stopped at %s: %.170s", t, reason_of(p, i, &s));
     }
 }
 
@@ -213,6 +245,9 @@ static void gather_poses(hn_picture_moment *p, hn_status *ended) {
         // the first failure is reported
         if (!good && *ended == HN_OK) {
             *ended = hn_run_get_summary(run).status;
+            if (p->request->ending) {
+                hn_strbuf_printf(p->request->ending, "%s %s", pose->name, pose->note);
+            }
         }
     }
     p->n_poses = n;
@@ -313,11 +348,12 @@ static void add_loads(hn_picture_moment *p, const hn_reaction_writer *w, int *dr
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < hn_reaction_writer_count(w); i++) {
             hn_snapshot_load load = {.point = -1, .unit = "N"};
-            hn_reaction_writer_force(w, i, load.force, load.place);
+            load.name = hn_reaction_writer_force(w, i, load.force, load.place);
             size = hypot(hypot(load.force[0], load.force[1]), load.force[2]);
             largest = fmax(largest, size);
             if (pass == 1 && size > SMALLEST_FORCE * largest) {
                 drawn[p->n_loads] = i;
+                load.name = keep_text(p, load.name);
                 p->loads[p->n_loads++] = load;
             }
         }

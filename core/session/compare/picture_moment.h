@@ -14,7 +14,8 @@ enum { HN_PICTURE_NOTE = 240 };
 typedef struct hn_picture_moment {
     const hn_model *model;
     const hn_picture_request *request;
-    double time; ///< [s]; NaN: a pose that was given
+    double time;                               ///< [s]; NaN: a pose that was given
+    double reached[HN_COMPARISON_MAX_METHODS]; ///< [s] by each method; `time`, or before it
     hn_arena *arena;
     hn_comparison *comparison;
     int n_poses;
@@ -23,6 +24,7 @@ typedef struct hn_picture_moment {
     char notes[HN_COMPARISON_MAX_METHODS][HN_PICTURE_NOTE];
     double *points; ///< 3 n_points per pose
     int n_traces, trace_points[HN_PICTURE_TRACES];
+    const char *trace_names[HN_PICTURE_TRACES];
     int n_loads;
     hn_snapshot_load *loads; ///< forces in the joints of the first method
     int n_angles;

@@ -175,7 +175,9 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     hn_diags diags = {0};
     hn_picture_request request = {0};
     hn_status ended = HN_OK;
-    hn_strbuf png, description;
+    hn_strbuf png, description, ending;
+    hn_strbuf_init(&ending);
+    request.ending = &ending;
     hn_strbuf_init(&png);
     hn_strbuf_init(&description);
     hn_status status = read_opts(args, &request, &diags);
@@ -216,8 +218,7 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     }
     hn_strbuf_reset(&description);
     if (result == HN_EXIT_DONE && ended != HN_OK) {
-        hn_cli_note("holonom: a method ended early (%s); the picture shows which, and when\n",
-                    hn_status_text(ended));
+        hn_cli_note("holonom: %s; the picture shows its last pose\n", hn_strbuf_text(&ending));
         result = HN_EXIT_ENDED;
     }
     return result;

@@ -3,7 +3,7 @@
 
 #include "render/snapshot.h"
 #include "render/snapshot_labels.h"
-#include "render/snapshot_marks.h"
+#include "render/snapshot_lengths.h"
 #include "support/alloc.h"
 
 #include <math.h>
@@ -476,7 +476,7 @@ static void a_length_keeps_off_the_arrow_of_a_force(void **state) {
     assert_int_equal(hn_sheet_make(&sheet, WIDTH, HEIGHT, &four_bar, &pose, 1, &opts, NULL), HN_OK);
     hn_canvas *c = create();
     hn_label_places free_places = {0}, crossed = {0};
-    hn_snapshot_dimensions(c, &sheet, &four_bar, &pose, &free_places);
+    hn_snapshot_lengths(c, &sheet, &four_bar, &pose, &free_places);
     assert_int_equal(free_places.n, 4);       // three bars and the ground
     assert_int_equal(free_places.n_lines, 4); // names keep off these lines
     crossed.n_lines = 1;                      // straight through the first length
@@ -484,7 +484,7 @@ static void a_length_keeps_off_the_arrow_of_a_force(void **state) {
     crossed.line[0][0][1] = free_places.at[0][1] - 40;
     crossed.line[0][1][1] = free_places.at[0][1] + 40;
     assert_true(hn_label_room(&sheet, &crossed, free_places.at[0], free_places.half[0]) < 0);
-    hn_snapshot_dimensions(c, &sheet, &four_bar, &pose, &crossed);
+    hn_snapshot_lengths(c, &sheet, &four_bar, &pose, &crossed);
     hn_canvas_free(c);
     crossed.n = 0; // the arrow alone counts
     crossed.n_lines = 1;

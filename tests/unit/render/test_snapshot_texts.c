@@ -6,7 +6,7 @@
 #include "render/snapshot.h"
 #include "render/snapshot_angles.h"
 #include "render/snapshot_labels.h"
-#include "render/snapshot_marks.h"
+#include "render/snapshot_lengths.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,7 +73,7 @@ static void names_and_angles_stand_beside_the_bars(void **state) {
     hn_label_places placed = {0};
     hn_snapshot_angles(c, &sheet, &pantograph, &pose, &opts, &placed);
     assert_int_equal(placed.n, 2);
-    hn_snapshot_labels(c, &sheet, &pantograph, &pose, &opts, &placed);
+    hn_snapshot_names(c, &sheet, &pantograph, &pose, &opts, &placed);
     hn_canvas_free(c);
     assert_int_equal(placed.n, 2 + N_POINTS);
     for (int i = 0; i < placed.n; i++) {
@@ -90,7 +90,7 @@ static void dimension_lines_of_bars_on_one_line_lie_apart(void **state) {
     const hn_sheet sheet = make_sheet(&opts);
     hn_canvas *c = create();
     hn_label_places placed = {0};
-    hn_snapshot_dimensions(c, &sheet, &pantograph, &pose, &placed);
+    hn_snapshot_lengths(c, &sheet, &pantograph, &pose, &placed);
     hn_canvas_free(c);
     assert_int_equal(placed.n, 6);
     double away[3]; // of the lines of O A, O B and B A from that line
@@ -178,7 +178,7 @@ static void a_name_keeps_off_the_rails_of_a_guide(void **state) {
     const hn_sheet sheet = make_sheet(&opts);
     hn_canvas *c = create();
     hn_label_places placed = {0};
-    hn_snapshot_labels(c, &sheet, &d, &pose, &opts, &placed);
+    hn_snapshot_names(c, &sheet, &d, &pose, &opts, &placed);
     hn_canvas_free(c);
     double rail[2];
     hn_sheet_pixel(&sheet, points, rail);
