@@ -118,7 +118,7 @@ class Kept(unittest.TestCase):
                 process.send_signal(how)
                 told = process.stderr.read().decode()
                 self.assertEqual(process.wait(timeout=600), studies.ENDED, told)
-            self.assertIn("the finished part could not be written and is lost", told)
+            self.assertIn("not all that is finished could be kept: the same command computes the rest of it again", told)
             self.assertNotIn("continues from here", told)
 
 

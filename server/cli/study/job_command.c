@@ -207,7 +207,8 @@ static void report_resumed(const command *c, const hn_job *job) {
 
 static void report_end(const command *c, const hn_job_end *end) {
     const char *kept = !c->request.limits.folder ? ""
-                       : end->lost ? "; the finished part could not be written and is lost"
+                       : end->lost ? "; not all that is finished could be kept: the same command "
+                                     "computes the rest of it again"
                                    : "; the same command continues from here";
     if (end->stopped) {
         hn_cli_note("holonom: stopped on request%s%s\n", kept,

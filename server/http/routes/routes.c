@@ -194,7 +194,7 @@ static const hn_field COMPARISON[] = {
      .required = 1,
      .min = 1,
      .max = HN_COMPARISON_MAX_METHODS,
-     .about = "spellings of methods"},
+     .about = "a list of methods, as [\"projection@rk4:h=0.01\"]"},
     {.name = "frame_dt",
      .type = HN_FIELD_NUMBER,
      .min = 1e-6,
