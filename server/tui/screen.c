@@ -308,10 +308,29 @@ static void suspend(void) {
     hn_foreground_stop();
 }
 
+/// Arrows, Home and End as terminals send them, whatever the description of this one says: some send
+/// the form of the other mode.
+static void define_moves(void) {
+    static const struct {
+        char letter;
+        int key;
+    } moves[] = {{'A', KEY_UP},   {'B', KEY_DOWN}, {'C', KEY_RIGHT},
+                 {'D', KEY_LEFT}, {'H', KEY_HOME}, {'F', KEY_END}};
+    for (size_t i = 0; i < sizeof moves / sizeof *moves; i++) {
+        const char normal[] = {'\033', '[', moves[i].letter, '\0'};
+        const char application[] = {'\033', 'O', moves[i].letter, '\0'};
+        define_key(normal, moves[i].key);
+        define_key(application, moves[i].key);
+    }
+}
+
 static void prepare_asking(void) {
     // only where sequences are those of ANSI
     const char *move_cursor = tigetstr("cup");
     screen.asks = move_cursor && move_cursor != (char *)-1 && strncmp(move_cursor, "\033[", 2) == 0;
+    if (screen.asks) {
+        define_moves();
+    }
     define_key(ANSWER, KEY_ANSWER);
     define_key(NAME, KEY_NAME);
     define_key(PIXELS, KEY_PIXELS);

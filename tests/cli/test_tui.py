@@ -568,6 +568,17 @@ class Keys(unittest.TestCase):
         self.assertEqual(status, 2)
         self.assertIn("8 methods", err)
 
+    def test_arrows_are_read_in_the_form_of_either_mode(self):
+        for down in ("\x1b[B", "\x1bOB"):
+            terminal = self.open("four-bar")
+            self.assertTrue(terminal.wait_for(rb"index-1"))
+            terminal.type("i")
+            self.assertTrue(terminal.wait_for(rb"why: "))
+            terminal.clear()
+            terminal.type(down)
+            self.assertTrue(terminal.wait_for(rb"Baumgarte"), down)
+            self.assertNotIn(b"has no meaning", terminal.seen)
+
     def test_the_mouse_selects_a_time_in_the_plot(self):
         terminal = self.open("four-bar")
         terminal.type("\033[<0;80;10M\033[<0;80;10m")
