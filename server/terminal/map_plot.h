@@ -53,8 +53,8 @@ void hn_map_plot_best_words(hn_strbuf *b, const hn_map_plot *p);
 /// Rows that the map takes of an area of `columns` and `rows`, with its axis and its legend, which
 /// stands beside it where there is room.
 int hn_map_plot_rows(const hn_map_plot *p, int columns, int rows);
-/// Draws the map as large as there is room for, its axes and its legend at the top left of the area. present, cursor: cells to
-/// mark.
+/// Draws the map as large as there is room for, its axes and its legend at the top left of the
+/// area. present, cursor: cells to mark.
 void hn_map_plot_draw(hn_cells *c, hn_area area, const hn_map_plot *p, hn_map_place present,
                       hn_map_place cursor);
 /// "alpha = 12, beta = 40: stable, velocities right to 1 %; worst gap 73 µm; the step is 0.35 of
