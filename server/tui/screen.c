@@ -308,8 +308,8 @@ static void suspend(void) {
     hn_foreground_stop();
 }
 
-/// Arrows, Home and End as terminals send them, whatever the description of this one says: some send
-/// the form of the other mode.
+/// Arrows, Home and End as terminals send them, whatever the description of this one says: some
+/// send the form of the other mode.
 static void define_moves(void) {
     static const struct {
         char letter;
