@@ -14,10 +14,11 @@
 
 /// Writes a remedy: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)" where a trial
 /// removed the incident, "not tried yet: ..." while the recording is under way, else "not tried:
-/// ...".
+/// ...". A setting is one of the method that runs: "try this method with h=0.005".
 static void put_remedy(const hn_workbench *w, const hn_incident_list *list, const char *remedy,
                        char out[HN_WHY_WORDS]) {
     const bool recorded = hn_recording_frames(w->recording) > hn_recording_last(w->recording);
+    const char *of = strchr(remedy, '@') ? "" : "this method with ";
     char tried[sizeof(hn_remedy) + HN_SI_TEXT];
     hn_short_units(hn_remedy_tried(w, list, remedy), tried, sizeof tried);
     switch (hn_remedy_rank_of(w, list, remedy)) {
@@ -26,16 +27,17 @@ static void put_remedy(const hn_workbench *w, const hn_incident_list *list, cons
                  hn_methods_find(w, remedy) + 1);
         break;
     case HN_REMEDY_DELAYS:
-        snprintf(out, HN_WHY_WORDS, "%s %s (%s)", remedy, HN_REMEDY_PUTS_OFF, tried);
+        snprintf(out, HN_WHY_WORDS, "%s%s %s (%s)", of, remedy, HN_REMEDY_PUTS_OFF, tried);
         break;
     case HN_REMEDY_CURES:
-        snprintf(out, HN_WHY_WORDS, "try %s (%s)", remedy, tried);
+        snprintf(out, HN_WHY_WORDS, "try %s%s (%s)", of, remedy, tried);
         break;
     default:
         if (tried[0]) {
-            snprintf(out, HN_WHY_WORDS, "%s: %s", remedy, tried);
+            snprintf(out, HN_WHY_WORDS, "%s%s: %s", of, remedy, tried);
         } else {
-            snprintf(out, HN_WHY_WORDS, "%s: %s", recorded ? "not tried" : "not tried yet", remedy);
+            snprintf(out, HN_WHY_WORDS, "%s: %s%s", recorded ? "not tried" : "not tried yet", of,
+                     remedy);
         }
     }
 }

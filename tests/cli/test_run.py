@@ -333,7 +333,7 @@ class Run(Command):
             done = call(*words)
             self.assert_exit(done, INPUT)
             told = done.stderr.decode()
-            self.assertIn("with l1 = 50 m (0.5 in the scene), loop B cannot be closed: ground+crank spans", told)
+            self.assertIn("with l1 = 50 m (0.5 in the scene), loop B cannot be closed: the side ground+crank is", told)
             self.assertIn("m are missing with th1 = 1 held", told)
             self.assertIn("go back towards l1 = 0.5 (usually 0.1 to 3 m), or", told)
             self.assertNotIn("make ", told)  # a rocker of 48 m

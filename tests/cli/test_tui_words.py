@@ -374,7 +374,7 @@ class Messages(unittest.TestCase):
             column = out.split("\n")[1].index("why:") - 2
             card = " ".join("".join(line[column:-1] + " " for line in out.split("\n")[2:14]).split())
             self.assertRegex(card, r"^worst so far: open by .* off try baumgarte:alpha=20,beta=20@rk4:h=0\.02 \(tried until t = [\d.]+ s: largest gap \d+ µm, .*\)"
-                                   r" h=0\.01 only puts it off, as nothing closes the loop \(tried until t = [\d.]+ s: .*\) projection@rk4:h=0\.02 runs already: method 2", size)
+                                   r" this method with h=0\.01 only puts it off, as nothing closes the loop \(tried until t = [\d.]+ s: .*\) projection@rk4:h=0\.02 runs already: method 2", size)
         # in the list too, where what cures it comes first
         rows = re.findall(r"(?m)^│ (\S+@\S+|h=\S+) +(.*)", once("four-bar", "--once", "--t", "3.5", "--size", "120x40", "--keys", "i<Enter>", *OPENS)[1])
         self.assertRegex(rows[0][0], "^baumgarte:alpha=20,beta=20@rk4")

@@ -209,7 +209,7 @@ static void explain_polygon(const hn_assembler *s, const side *sides, int n, cha
     }
     (void)snprintf(
         text, size,
-        ": %s spans %.6g m and the other sides together reach %.6g m, so %.6g m are missing",
+        ": the side %s is %.6g m long, the others together %.6g m, so %.6g m are missing",
         sides[longest].name, sides[longest].length, others, missing);
     list_remedies(sides, n, longest, missing, hint, hint_size);
 }

@@ -84,7 +84,7 @@ static const option OPTIONS[] = {
     {"--frame", "DT", OPTION_NUMBER, AT(frame_dt),
      "time between two comparisons of the states [s]; chosen when left out"},
     {"--grid", "NxM", OPTION_TEXT, AT(grid),
-     "columns and rows of a map; when left out, 24x24, and 16x16 without --preset"},
+     "columns and rows of a map, as 24x16; when left out, 24x24, or 16x16 without --preset"},
     {"--plots", "DIR", OPTION_TEXT, AT(plots),
      "a folder for every plot of the report, as SVG and PNG"},
     {"--csv", NULL, OPTION_FLAG, AT(csv), "write CSV to standard output, one row for each point"},

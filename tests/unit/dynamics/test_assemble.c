@@ -188,7 +188,7 @@ static void a_dyad_too_near_for_its_long_side_says_so(void **state) {
              "l2=5");
     assert_int_equal(m.status, HN_ERR_UNREACHABLE);
     assert_near(m.assembly.gap, 2, 1e-6);
-    diag_must_hold(&m, "coupler spans 5 m");
+    diag_must_hold(&m, "the side coupler is 5 m long");
     diag_must_hold(&m, "2 m are missing");
     diag_must_hold(&m, "coupler shorter than 3 m");
     diag_must_hold(&m, "rocker longer than 3.8 m");
@@ -202,7 +202,7 @@ static void a_ring_that_never_closes_says_so_without_pins(void **state) {
              "\"th1\": 0", "d=5");
     assert_int_equal(m.status, HN_ERR_UNREACHABLE);
     assert_near(m.assembly.gap, 0.2, 1e-6);
-    diag_must_hold(&m, "ground spans 5 m");
+    diag_must_hold(&m, "the side ground is 5 m long");
     diag_must_hold(&m, "ground shorter than 4.8 m");
     hn_model_close(&m);
 }
@@ -382,7 +382,7 @@ static void a_tilted_mechanism_out_of_reach_is_explained_in_its_own_plane(void *
     assert_int_equal(m.status, HN_ERR_UNREACHABLE);
     double span = hypot(4.9 - cos(1), sin(1));
     char expected[64];
-    (void)snprintf(expected, sizeof expected, "spans %.6g m", span);
+    (void)snprintf(expected, sizeof expected, " is %.6g m long", span);
     diag_must_hold(&m, expected);
     (void)snprintf(expected, sizeof expected, "rocker longer than %.6g m", span - 2);
     diag_must_hold(&m, expected);
