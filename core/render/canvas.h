@@ -102,6 +102,15 @@ void hn_canvas_unclip(hn_canvas *c);
 
 // ---- painting: may be called more than once, and from several threads: they take turns ----
 
+typedef enum hn_renderer {
+    HN_RENDERER_AUTO, ///< OSMesa where it is installed
+    HN_RENDERER_OSMESA,
+    HN_RENDERER_BUILT_IN,
+    HN_RENDERER_COUNT
+} hn_renderer;
+/// Chooses the renderer of the whole program, in place of HOLONOM_RENDERER. Before the first
+/// picture, from one thread.
+void hn_canvas_choose_renderer(hn_renderer renderer);
 /// Returns the name of the renderer: "OSMesa" or "built-in".
 const char *hn_canvas_renderer(void);
 /// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY; HN_ERR_UNSUPPORTED

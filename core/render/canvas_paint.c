@@ -170,10 +170,17 @@ static hn_status paint_with_context(const hn_osmesa *gl, const hn_canvas *c, uns
     return status;
 }
 
-/// Returns whether HOLONOM_RENDERER asks for the built-in renderer.
+static hn_renderer chosen = HN_RENDERER_COUNT; // none: HOLONOM_RENDERER decides
+
+void hn_canvas_choose_renderer(hn_renderer renderer) {
+    chosen = renderer;
+}
+
+/// Returns whether the built-in renderer is asked for, by choice or by HOLONOM_RENDERER.
 static bool wants_builtin(void) {
     const char *wanted = getenv("HOLONOM_RENDERER");
-    return wanted && strcmp(wanted, "built-in") == 0;
+    return chosen == HN_RENDERER_BUILT_IN ||
+           (chosen == HN_RENDERER_COUNT && wanted && strcmp(wanted, "built-in") == 0);
 }
 
 const char *hn_canvas_renderer(void) {

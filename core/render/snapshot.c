@@ -38,11 +38,11 @@ static void draw_header(hn_canvas *c, const hn_sheet *s, const hn_snapshot_opts 
                        hn_paint_solid(surface->ink), text);
         time_width = hn_canvas_text_width(1.1 * s->font, text) + s->font;
     }
-    if (opts->title != NULL) {
+    if (opts->title != NULL && !opts->continued) {
         hn_legend_text(c, left, 2.2 * s->font, 1.3 * s->font, right - left - time_width,
                        surface->ink, opts->title);
     }
-    if (opts->caption != NULL) {
+    if (opts->caption != NULL && !opts->continued) {
         hn_legend_text(c, left, 3.7 * s->font, 0.9 * s->font, right - left, surface->muted,
                        opts->caption);
     }
@@ -170,7 +170,8 @@ hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width, int height,
                                  int n_poses, const hn_snapshot_opts *opts, hn_diag *diag) {
     hn_sheet sheet;
     HN_TRY(hn_sheet_make(&sheet, width, height, drawing, poses, n_poses, opts, diag));
-    *out = (hn_snapshot_place){sheet.scale, sheet.origin[0], sheet.origin[1]};
+    *out = (hn_snapshot_place){sheet.scale, sheet.origin[0], sheet.origin[1],
+                               hn_sheet_mechanism(&sheet)};
     return HN_OK;
 }
 

@@ -76,7 +76,9 @@ typedef struct hn_snapshot_opts {
     const hn_snapshot_angle *angles;
     int n_traces;
     const char *const *traces; ///< the names of the points whose paths the poses carry
-    bool bare;                 ///< the drawing and its scale bar alone: no words, legend or inset
+    /// a later panel of a strip: the first has said title, names and keys
+    bool continued;
+    bool bare; ///< the drawing and its scale bar alone: no words, legend or inset
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);
@@ -92,6 +94,7 @@ HN_MUST_CHECK hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing
 typedef struct hn_snapshot_place {
     double scale; ///< [px/m]
     double x, y;  ///< [px] of the world's origin
+    double size;  ///< [px] the larger of the width and the height of what is shown
 } hn_snapshot_place;
 /// The same arguments as hn_snapshot_draw(), and its failures.
 HN_MUST_CHECK hn_status hn_snapshot_find_place(hn_snapshot_place *out, int width, int height,

@@ -13,7 +13,7 @@ static const double SAME_PLACE = 2;     // [px]
 static const double BEYOND = 0.8;       // [letters] that the dashed line is longer than the radius
 
 static const double EDGE_ON = 0.25; // a circle seen narrower than this share has no arc
-static const double CROSSED = 0.5;  // [letters] that a line may lie within a text at most
+static const double CROSSED = 0.2;  // [letters] that a line may lie within a text at most
 enum { ARC_POINTS = 49, MOST_ANGLES = 48 };
 
 /// An angle on the sheet: part of a circle, which is an ellipse where it is seen at a slant.
@@ -220,6 +220,8 @@ static void list_values(const hn_snapshot_opts *opts, const arcs *all, bool ever
         k += has_arc;
         if (every || !has_arc) {
             write_value(&opts->angles[i], row);
+            const size_t used = strlen(row);
+            snprintf(row + used, sizeof row - used, "%s", has_arc ? "" : ", no arc");
             hn_label_add_row(placed, row);
         }
     }

@@ -74,37 +74,50 @@ static double legend_room(const hn_sheet *s, double font) {
     return s->legend.width - LEGEND_TEXT * font;
 }
 
-/// Returns how far the next row is below this one: a name and a note of a line or more.
+/// Returns how far the next row is below this one: a name and a note of a line or more; a note
+/// alone where an earlier panel has the name.
 static double legend_pitch(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
-                           double font) {
+                           bool continued, double font) {
     const double size = NOTE_SIZE * font;
     const int lines = put_note(NULL, 0, 0, size, legend_room(s, font), 0, note_of(d, pose));
-    return 2.7 * font + NOTE_PITCH * size * (lines > 1 ? lines - 1 : 0);
+    return (continued ? KEY_PITCH : 2.7) * font + NOTE_PITCH * size * (lines > 1 ? lines - 1 : 0);
 }
 
 static double poses_height(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *poses,
-                           int n_poses, double font) {
+                           int n_poses, bool continued, double font) {
     double height = 0.4 * font;
     for (int i = 0; i < n_poses; i++) {
-        height += poses[i].faint ? 0 : legend_pitch(s, d, &poses[i], font);
+        height += poses[i].faint ? 0 : legend_pitch(s, d, &poses[i], continued, font);
     }
     return height;
 }
 
-static void draw_legend_row(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                            const hn_snapshot_pose *pose, bool selected, double y, double font) {
-    const hn_theme theme = hn_canvas_theme(c);
+/// What a row of the legend is drawn with.
+typedef struct row {
+    hn_canvas *c;
+    const hn_sheet *s;
+    const hn_drawing *d;
+    bool continued;
+    double y, font;
+} row;
+
+static void draw_legend_row(const row *r, const hn_snapshot_pose *pose, bool selected) {
+    const hn_theme theme = hn_canvas_theme(r->c);
     const hn_surface *surface = hn_surface_get(theme);
-    const double sample = 3.6 * font, x = s->legend.x, text = x + LEGEND_TEXT * font;
-    const double room = legend_room(s, font), middle = y - 0.32 * font;
-    hn_stroke stroke = hn_slot_stroke(theme, pose->slot, s->line);
+    const double font = r->font, sample = SAMPLE * font, x = r->s->legend.x;
+    const double text = x + LEGEND_TEXT * font, y = r->y + font, middle = y - 0.32 * font;
+    const double room = legend_room(r->s, font);
+    hn_stroke stroke = hn_slot_stroke(theme, pose->slot, r->s->line);
     stroke.n_dash = selected ? 0 : stroke.n_dash; // as in the drawing
-    hn_canvas_segment(c, x, middle, x + sample, middle, &stroke);
-    hn_canvas_disc(c, x + sample / 2, middle, 0.55 * font, hn_paint_solid(surface->paper));
-    hn_canvas_marker(c, hn_look_get(pose->slot)->marker, x + sample / 2, middle, 0.75 * font,
+    hn_canvas_segment(r->c, x, middle, x + sample, middle, &stroke);
+    hn_canvas_disc(r->c, x + sample / 2, middle, 0.55 * font, hn_paint_solid(surface->paper));
+    hn_canvas_marker(r->c, hn_look_get(pose->slot)->marker, x + sample / 2, middle, 0.75 * font,
                      stroke.paint);
-    hn_legend_text(c, text, y, font, room, surface->ink, pose->name != NULL ? pose->name : "");
-    put_note(c, text, y + 1.15 * font, NOTE_SIZE * font, room, surface->muted, note_of(d, pose));
+    if (!r->continued) {
+        hn_legend_text(r->c, text, y, font, room, surface->ink, pose->name ? pose->name : "");
+    }
+    put_note(r->c, text, r->continued ? y : y + 1.15 * font, NOTE_SIZE * font, room, surface->muted,
+             note_of(r->d, pose));
 }
 
 // ---- keys ----
@@ -129,6 +142,12 @@ double hn_legend_force(const hn_sheet *s, const hn_snapshot_opts *opts) {
     return scale > 0 ? hn_round_125(SAMPLE * s->font / scale) : 0;
 }
 
+static void add_short(keys *k, const hn_label_places *placed) {
+    if (placed->has_short) {
+        k->at[k->n++] = (key){.kind = KEY_SHORT, .text = "shorter than drawn"};
+    }
+}
+
 static void add_forces(keys *k, const hn_sheet *s, const hn_snapshot_opts *opts,
                        const hn_label_places *placed) {
     const double force = hn_legend_force(s, opts);
@@ -139,9 +158,7 @@ static void add_forces(keys *k, const hn_sheet *s, const hn_snapshot_opts *opts,
         *arrow = (key){.kind = KEY_ARROW, .length = force * hn_load_scale(s, opts)};
         snprintf(arrow->text, TEXT, "%s%s", value, s->in_space ? " in the picture plane" : "");
     }
-    if (placed->has_short) {
-        k->at[k->n++] = (key){.kind = KEY_SHORT, .text = "shorter than drawn"};
-    }
+    add_short(k, placed);
 }
 
 /// The times of the faint poses: "earlier: t = 0, 0.2 s".
@@ -166,6 +183,10 @@ static void add_earlier(keys *k, const hn_snapshot_pose *poses, int n_poses) {
 static keys list_keys(const hn_sheet *s, const hn_snapshot_pose *poses, int n_poses,
                       const hn_snapshot_opts *opts, const hn_label_places *placed) {
     keys k = {0};
+    if (opts->continued) { // the first panel may have no such arrow
+        add_short(&k, placed);
+        return k;
+    }
     add_forces(&k, s, opts, placed);
     add_earlier(&k, poses, n_poses);
     for (int i = 0; i < opts->n_traces && k.n < MOST_KEYS; i++) {
@@ -239,38 +260,39 @@ static void draw_rows(hn_canvas *c, const hn_sheet *s, const hn_label_places *pl
 // ---- the whole ----
 
 static double whole_height(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *poses,
-                           int n_poses, int n_keys, const hn_label_places *placed, double font) {
-    return poses_height(s, d, poses, n_poses, font) + KEY_PITCH * font * n_keys +
+                           int n_poses, const hn_snapshot_opts *opts, int n_keys,
+                           const hn_label_places *placed, double font) {
+    return poses_height(s, d, poses, n_poses, opts->continued, font) + KEY_PITCH * font * n_keys +
            rows_height(s, placed, font);
 }
 
 double hn_legend_height(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *poses,
                         int n_poses, const hn_snapshot_opts *opts, const hn_label_places *placed) {
     const keys k = list_keys(s, poses, n_poses, opts, placed);
-    return whole_height(s, d, poses, n_poses, k.n, placed, s->font);
+    return whole_height(s, d, poses, n_poses, opts, k.n, placed, s->font);
 }
 
 void hn_snapshot_legend(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *poses, int n_poses, const hn_snapshot_opts *opts,
                         const hn_label_places *placed) {
     const keys k = list_keys(s, poses, n_poses, opts, placed);
-    double font = s->font, y = s->legend.y;
+    row r = {c, s, d, opts->continued, s->legend.y, s->font};
     // smaller until they fit; narrower letters also need fewer lines
-    while (font > SMALLEST_LETTER &&
-           whole_height(s, d, poses, n_poses, k.n, placed, font) > s->height - y) {
-        font *= 0.96;
+    while (r.font > SMALLEST_LETTER &&
+           whole_height(s, d, poses, n_poses, opts, k.n, placed, r.font) > s->height - r.y) {
+        r.font *= 0.96;
     }
     for (int i = 0; i < n_poses; i++) {
         if (!poses[i].faint) {
-            draw_legend_row(c, s, d, &poses[i], i == s->selected, y + font, font);
-            y += legend_pitch(s, d, &poses[i], font);
+            draw_legend_row(&r, &poses[i], i == s->selected);
+            r.y += legend_pitch(s, d, &poses[i], opts->continued, r.font);
         }
     }
     for (int i = 0; i < k.n; i++) {
-        draw_key(c, s, &poses[s->selected], &k.at[i], y + font, font);
-        y += KEY_PITCH * font;
+        draw_key(c, s, &poses[s->selected], &k.at[i], r.y + r.font, r.font);
+        r.y += KEY_PITCH * r.font;
     }
-    draw_rows(c, s, placed, y, font);
+    draw_rows(c, s, placed, r.y, r.font);
 }
 
 void hn_legend_json(hn_strbuf *b, const hn_sheet *s, const hn_snapshot_pose *poses, int n_poses,

@@ -13,7 +13,10 @@ static const double ENOUGH = 2;           // [px] of room: more is no better
 static const double SHORTEST_ARROW = 1.0; // [letters] a shorter one is drawn with a dot,
 static const double SHORT_ARROW = 1.3;    // [letters] as long as this,
 static const double SHORT_DOT = 0.22;     // [letters] the radius of the dot
-enum { MOST_VALUES = 10 };                // more arrows have numbers
+enum {
+    MOST_VALUES = 10, // more arrows have numbers
+    MOST_AWAY = 3     // and so have those of which more values stand away from their arrows
+};
 
 typedef struct arrows {
     int n;
@@ -212,10 +215,21 @@ void hn_label_keep_off_loads(const hn_sheet *s, const hn_snapshot_pose *pose,
     }
 }
 
-/// Finds a place for the text of every arrow; returns whether all of them have one.
+/// Returns whether a text stands away from its arrow, or seems to belong to another one.
+static bool is_away(const hn_sheet *s, const hn_drawing *d, const double *points, const arrows *all,
+                    int own) {
+    const hn_label_places nothing = {0};
+    const hn_load_mark *w = &all->at[own];
+    const double away = hn_label_room_to_line(w->text, w->half, 1.1 * s->font, w->tail, w->tip);
+    return away > BESIDE * s->font || doubt_of(s, d, points, all, own, &nothing, w->text) > 0;
+}
+
+/// Finds a place for the text of every arrow; returns whether all of them have one, and few stand
+/// away from their arrows.
 static bool place_texts(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
                         const hn_snapshot_opts *opts, hn_label_places *placed, arrows *all,
                         bool numbered) {
+    int away = 0;
     bool all_placed = true;
     for (int i = 0; i < all->n; i++) {
         write_text(s, opts, &all->at[i], numbered ? i + 1 : 0);
@@ -231,8 +245,9 @@ static bool place_texts(const hn_sheet *s, const hn_drawing *d, const hn_snapsho
             hn_label_keep_off_line(placed, leader);
         }
         all_placed = all_placed && w->placed;
+        away += w->placed && is_away(s, d, pose->points, all, i);
     }
-    return all_placed;
+    return all_placed && away <= MOST_AWAY;
 }
 
 /// Adds to the legend what the number of each arrow stands for: "1 O1 7.88 N".

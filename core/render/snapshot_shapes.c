@@ -252,24 +252,23 @@ static void draw_damper(const pen *p, const hn_shape *shape) {
     draw_local(p, a, u, length, tail, 2);
 }
 
-/// Returns whether the corners lie on a circle, as many as a scene takes in place of one; `centre`
-/// is its middle.
-static bool is_circle(const pen *p, const hn_shape *shape, double centre[3]) {
-    const double *corner = p->points + 3 * shape->p;
+/// Returns whether n corners lie on a circle, as many as a scene takes in place of one; `centre` is
+/// its middle.
+static bool is_circle(const double *corner, int n, double centre[3]) {
     double least = HUGE_VAL, most = 0;
     for (int k = 0; k < 3; k++) {
         centre[k] = 0;
-        for (int i = 0; i < shape->n; i++) {
-            centre[k] += corner[3 * i + k] / shape->n;
+        for (int i = 0; i < n; i++) {
+            centre[k] += corner[3 * i + k] / n;
         }
     }
-    for (int i = 0; i < shape->n; i++) {
+    for (int i = 0; i < n; i++) {
         const double *x = corner + 3 * i;
         const double r = hypot(hypot(x[0] - centre[0], x[1] - centre[1]), x[2] - centre[2]);
         least = fmin(least, r);
         most = fmax(most, r);
     }
-    return shape->n >= ROUND && shape->n * ARC_STEPS <= MAX_POLYGON && most - least < 0.01 * most;
+    return n >= ROUND && n * ARC_STEPS <= MAX_POLYGON && most - least < 0.01 * most;
 }
 
 /// The point of the circle at a share of the way from one corner to the next.
@@ -291,7 +290,7 @@ static void draw_polygon(const pen *p, const hn_shape *shape) {
     double xy[2 * MAX_POLYGON], centre[3], world[3];
     const double *corner = p->points + 3 * shape->p;
     HN_ASSERT(shape->n <= MAX_POLYGON);
-    const int steps = is_circle(p, shape, centre) ? ARC_STEPS : 1;
+    const int steps = is_circle(corner, shape->n, centre) ? ARC_STEPS : 1;
     for (int i = 0; i < shape->n * steps; i++) {
         const double *a = corner + 3 * (i / steps), *b = corner + 3 * ((i / steps + 1) % shape->n);
         circle_point(a, b, centre, (double)(i % steps) / steps, world);
@@ -501,16 +500,78 @@ static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
     }
 }
 
+/// The corners of a rim: bars of the ground that follow each other round a circle.
+typedef struct rim {
+    int n;
+    double corner[MAX_POLYGON / ARC_STEPS][3], centre[3];
+    const hn_shape *bar;
+} rim;
+
+/// Finds the bars of the ground, as of a ring gear, that are a circle in pieces. False: they are
+/// not.
+static bool find_rim(const pen *p, const hn_drawing *d, rim *out) {
+    out->n = 0;
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *bar = &d->shapes[i];
+        if (bar->kind == HN_SHAPE_BAR && bar->body == HN_GROUND) {
+            if (out->n == MAX_POLYGON / ARC_STEPS ||
+                (out->n > 0 && !same_place(p, out->bar->q, bar->p))) {
+                return false;
+            }
+            out->bar = bar;
+            memcpy(out->corner[out->n++], p->points + 3 * bar->p, sizeof *out->corner);
+        }
+    }
+    return is_circle(out->corner[0], out->n, out->centre);
+}
+
+/// Draws a circle with the centre of the rim, so many pixels outside of it.
+static void draw_rim_line(const pen *p, const rim *r, double beyond, const hn_stroke *stroke) {
+    double xy[2 * MAX_POLYGON], at[3], radius = 0;
+    for (int i = 0; i < r->n * ARC_STEPS; i++) {
+        const double *a = r->corner[i / ARC_STEPS], *b = r->corner[(i / ARC_STEPS + 1) % r->n];
+        circle_point(a, b, r->centre, (double)(i % ARC_STEPS) / ARC_STEPS, at);
+        radius = hypot(hypot(at[0] - r->centre[0], at[1] - r->centre[1]), at[2] - r->centre[2]);
+        for (int k = 0; k < 3; k++) {
+            at[k] += beyond / (p->s->scale * radius) * (at[k] - r->centre[k]);
+        }
+        hn_sheet_pixel(p->s, at, xy + 2 * i);
+    }
+    hn_canvas_line(p->c, xy, r->n * ARC_STEPS, stroke);
+}
+
+static void draw_rim(const pen *p, const rim *r) {
+    const double width = bar_width(p, r->bar);
+    hn_stroke line = p->outline;
+    line.closed = 1;
+    if (p->has_fill) {
+        hn_stroke band = line;
+        band.n_dash = 0;
+        band.paint = p->fill;
+        band.width = width;
+        draw_rim_line(p, r, 0, &band);
+    }
+    draw_rim_line(p, r, -width / 2, &line);
+    draw_rim_line(p, r, width / 2, &line);
+}
+
 static void draw_shapes(const pen *p, const hn_drawing *d, int ground) {
+    rim r;
+    const bool has_rim = !p->s->in_space && find_rim(p, d, &r);
+    if (has_rim && !ground) {
+        draw_rim(p, &r);
+    }
     if (p->s->in_space) {
         draw_by_depth(p, d, ground);
         return;
     }
     for (int order = 0; order < N_ORDERS; order++) {
         for (int i = 0; i < d->n_shapes; i++) {
-            const shape_row *row = row_of(d->shapes[i].kind, order, ground);
-            if (row) {
-                row->draw(p, &d->shapes[i]);
+            const hn_shape *shape = &d->shapes[i];
+            const bool of_rim = has_rim && shape->kind == HN_SHAPE_BAR && shape->body == HN_GROUND;
+            const shape_row *row = row_of(shape->kind, order, ground);
+            if (row && !of_rim) {
+                row->draw(p, shape);
             }
         }
     }

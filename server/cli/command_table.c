@@ -89,7 +89,7 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS
      " --allow-programs --trust-programs --answer-time --method --methods --time "
      "--at --ghosts --animate --trace --dimensions --forces --describe --out -o --width "
-     "--height --theme --view --seed --student",
+     "--height --theme --renderer --view --seed --student --t",
      1, 1, hn_command_snapshot},
     {"import", "FILE",
      "convert a MuJoCo MJCF or URDF file to a scene; unsupported elements are listed with their "

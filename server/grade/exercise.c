@@ -156,9 +156,9 @@ static void read_question(reader *r, const cJSON *root) {
 
 /// A field that nobody reads is a slip of the author.
 static void check_fields(reader *r, const cJSON *root) {
-    static const char *const fields[] = {"exercise", "id",         "title", "lesson", "section",
-                                         "scene",    "statement",  "draw",  "parts",  "hints",
-                                         "about",    "conditions", NULL};
+    static const char *const fields[] = {"exercise", "id",         "title",   "lesson", "section",
+                                         "scene",    "statement",  "draw",    "parts",  "hints",
+                                         "about",    "conditions", "picture", NULL};
     const cJSON *m;
     cJSON_ArrayForEach(m, root) {
         int k = 0;
@@ -168,6 +168,10 @@ static void check_fields(reader *r, const cJSON *root) {
         if (!fields[k]) {
             fault(r, m->string, "an exercise has no such field");
         }
+    }
+    const cJSON *picture = cJSON_GetObjectItemCaseSensitive(root, "picture");
+    if (picture && !cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(picture, "scene"))) {
+        fault(r, "/picture", "a picture names a scene");
     }
 }
 

@@ -155,16 +155,47 @@ static hn_status view_part(const hn_exercise *e, uint64_t seed, hn_part_view *ou
     return status;
 }
 
+const char *hn_shelf_picture_scene(const hn_exercise *exercise) {
+    return hn_part_text(cJSON_GetObjectItemCaseSensitive(exercise->root, "picture"), "scene");
+}
+
+/// The scene of the field "picture", with the numbers of the variant as its parameters.
+static hn_status view_picture(const hn_exercise *e, uint64_t seed, hn_part_view *out,
+                              hn_diag *diag) {
+    const cJSON *picture = cJSON_GetObjectItemCaseSensitive(e->root, "picture"), *m;
+    hn_variant x;
+    hn_status status = hn_variant_init(&x, e, seed, diag);
+    out->scene = hn_shelf_picture_scene(e);
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(picture, "set")) {
+        const char *formula = cJSON_GetStringValue(m);
+        if (status == HN_OK && (!formula || out->n_settings == HN_PART_ENTRIES)) {
+            status = hn_diag_set(diag, HN_ERR_INPUT, "/picture/set", NULL,
+                                 "\"set\" takes at most %d formulas under names", HN_PART_ENTRIES);
+        }
+        if (status == HN_OK) {
+            hn_setting *setting = &out->settings[out->n_settings++];
+            setting->name = m->string;
+            status = hn_draw_value(&x.draw, formula, &setting->value, diag);
+        }
+    }
+    hn_variant_reset(&x);
+    return status;
+}
+
 hn_status hn_shelf_exercise_view(const hn_exercise *exercise, uint64_t seed, hn_part_view *out,
                                  hn_diag *diag) {
     *out = (hn_part_view){.scene = hn_exercise_scene(exercise)};
     if (exercise->n_parts) {
         HN_TRY(view_part(exercise, seed, out, diag));
     }
+    if (exercise->n_parts && !out->scene[0]) {
+        HN_TRY(view_picture(exercise, seed, out, diag));
+    }
     if (!out->scene[0]) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
-                           "no part of exercise '%.40s' is about a scene",
-                           hn_exercise_id(exercise));
+        return hn_diag_set(
+            diag, HN_ERR_INPUT, NULL, NULL,
+            "exercise '%.40s' has no picture: neither it nor a part of it names a scene",
+            hn_exercise_id(exercise));
     }
     return exercise->n_parts ? HN_OK : view_state(exercise, seed, out, diag);
 }

@@ -17,10 +17,13 @@ HN_MUST_CHECK hn_status hn_shelf_exercise_load(const hn_library *lib, const char
 /// its "errors".
 void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib);
 /// The scene of an exercise with the numbers of a variant (seed 0: the exercise's own): that of its
-/// matrix in the first state, or that of the first part with a scene. Names are borrowed from the
-/// exercise. Fails: HN_ERR_INPUT (no part has a scene, or the exercise is at fault), HN_ERR_MEMORY.
+/// matrix in the first state, that of the first part with a scene, or that of its field "picture".
+/// Names are borrowed from the exercise. Fails: HN_ERR_INPUT (there is no scene, or the exercise is
+/// at fault), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_shelf_exercise_view(const hn_exercise *exercise, uint64_t seed,
                                                hn_part_view *out, hn_diag *diag);
+/// The scene that the exercise's field "picture" names; "" where it has none.
+const char *hn_shelf_picture_scene(const hn_exercise *exercise);
 /// The picture of the state at which the first wrong entry shows, as PNG; HN_ERR_UNSUPPORTED when
 /// the verdict has none.
 HN_MUST_CHECK hn_status hn_shelf_verdict_png(hn_strbuf *png, const hn_library *lib,

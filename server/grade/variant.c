@@ -197,7 +197,7 @@ void hn_variant_text(hn_strbuf *b, hn_variant *x) {
         hn_strbuf_add(b, "\n");
         if (part->kind->figure) {
             hn_strbuf_add(b, "\n");
-            part->kind->figure(b, part, false);
+            part->kind->figure(b, part, HN_FIGURE_TEXT);
         }
     }
     put_hand_in(b, x);
@@ -214,7 +214,7 @@ static void put_figure(hn_strbuf *b, const hn_part *part) {
     for (int i = 0; i < 2; i++) {
         hn_strbuf figure;
         hn_strbuf_init(&figure);
-        part->kind->figure(&figure, part, i == 1);
+        part->kind->figure(&figure, part, i == 0 ? HN_FIGURE_TEXT : HN_FIGURE_PAGE);
         hn_json_put_string(b, keys[i], hn_strbuf_text(&figure));
         b->failed |= figure.failed;
         hn_strbuf_reset(&figure);

@@ -78,7 +78,7 @@ class Files(Command):
         (("snapshot", "four-bar"), "s.svg"),
         (("snapshot", "four-bar"), "s.png"),
         (("import", "tests/import/four-bar.xml"), "i.json"),
-        (("problem", "gap-plot"), "p-a.svg"),
+        (("problem", "gap-plot"), "p.svg"),
         (("grade", "p3", "{folder}/ann.json"), "v.json"),
         (("grade", "p3", "{folder}/ann.json", "--format", "gradescope"), "results.json"),
         (("grade", "p3", "{folder}/class"), "scores.csv"),

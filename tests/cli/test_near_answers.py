@@ -353,9 +353,12 @@ def branches(folder):
 def plots(folder):
     """The plot of a question is a picture of its own: ink on paper."""
     run("problem", "gap-plot", "--seed", "1", "-o", os.path.join(folder, "gap.svg"))
-    with open(os.path.join(folder, "gap-a.svg"), encoding="utf-8") as f:
+    expect("parts that ask about one plot share its file", sorted(f for f in os.listdir(folder) if f.startswith("gap")) == ["gap.svg"], str(os.listdir(folder)))
+    with open(os.path.join(folder, "gap.svg"), encoding="utf-8") as f:
         svg = f.read()
-    expect("it has a background", 'class="paper" fill="none" width="640" height="300"' in svg and ".paper{fill:#fcfcfa}" in svg, svg[:400])
+    expect("it has a background", 'width="640" height="300"' in svg and "#FCFCFA" in svg.upper(), svg[:400])
+    expect("its letters are those of the other pictures: lines", "<text" not in svg and svg.count("<path") > 50, svg[:400])
+    expect("the curve joins all samples", max(d.count("l") for d in re.findall(r' d="([^"]*)"', svg)) >= 490, svg[:400])
 
 
 def frames(folder):

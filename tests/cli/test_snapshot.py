@@ -134,7 +134,7 @@ class Snapshot(Command):
                 drawn = [label["text"] for label in picture["labels"] if label["kind"] == "angle"]
                 self.assertIn(sum("=" in text for text in drawn), (0, len(drawn)), scene)
                 rows = drawn if any("=" in text for text in drawn) else picture["listed"]
-                values = {text.split(" = ")[0]: text.split(" = ")[1] for text in rows + picture["listed"] if " = " in text}
+                values = {text.split(" = ")[0]: text.split(" = ")[1].removesuffix(", no arc") for text in rows + picture["listed"] if " = " in text}
                 for angle in picture["angles"]:
                     turns = math.trunc(angle["value"] / (2 * math.pi))
                     more = f" {'-' if turns < 0 else '+'} {abs(turns)} turn{'s' if abs(turns) > 1 else ''}" if turns else ""
@@ -167,6 +167,71 @@ class Snapshot(Command):
             self.assertEqual((document["picture"]["time"], document["picture"]["stopped"]), (37.88, True))
             self.assertGreater(document["picture"]["traces"][0], 5900)  # 0.01 s from point to point
 
+    def test_a_strip_leaves_few_places_empty_and_says_title_and_names_once(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for n, across, down in ((2, 2, 1), (3, 3, 1), (4, 2, 2), (5, 3, 2), (6, 3, 2), (7, 4, 2), (8, 4, 2), (10, 5, 2)):
+                svg, document, _ = self.picture(folder, "s.svg", "--at", ",".join(str(0.01 * k) for k in range(n)), "--forces")
+                root = xml.etree.ElementTree.fromstring(svg)
+                self.assertEqual((root.get("width"), root.get("height")), (str(600 * across), str(400 * down)), n)
+            first, later = document["before"][-1], document["picture"]
+            self.assertEqual(first["legend"][-1], "path of a point on coupler")
+            self.assertLessEqual(set(later["legend"]), {"shorter than drawn"})
+            for k, panel in enumerate([panel for panel in root.iter("{http://www.w3.org/2000/svg}svg")][1:]):
+                starts = [tuple(map(float, re.match(r"[mM]([-\d.]+)[ ,]?([-\d.]+)", path.get("d")).groups())) for path in panel.iter("{http://www.w3.org/2000/svg}path")]
+                self.assertEqual(any(x < 300 and y < 30 for x, y in starts), k == 0)  # the title
+
+    def test_supports_and_guides_of_a_plane_are_hatched_in_that_plane(self):
+        def slope(strip):
+            return math.atan2(strip["to"][1] - strip["from"][1], strip["to"][0] - strip["from"][0])
+
+        with tempfile.TemporaryDirectory() as folder:
+            for view, tilted in (("front", False), ("35,22", True), ("space", True)):
+                strips = self.picture(folder, "a.svg", "--time", "0.1", "--view", view, scene="slider-crank")[1]["picture"]["hatching"]
+                self.assertEqual(len(strips), 2)
+                self.assertAlmostEqual(slope(strips[0]), slope(strips[1]), 6)
+                self.assertEqual(abs(slope(strips[0])) > 0.1, tilted)
+
+    def test_gears_are_circles(self):
+        with tempfile.TemporaryDirectory() as folder:
+            svg = self.picture(folder, "a.svg", "--time", "0", scene="planetary-gear")[0].decode()
+        long = sorted(path.count("l") for path in re.findall(r' d="([^"]*)"', svg))
+        self.assertGreater(long[-1], 8 * 36 - 2)  # the rim, from 36 bars
+        self.assertGreater(sum(180 < n < 200 for n in long), 3)  # sun and planets, from 24 corners each
+
+    def test_a_mechanism_without_room_is_reported(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for size, said in (("300", True), ("600", False)):
+                _, document, stderr = self.picture(folder, "a.png", "--time", "0.1", "--dimensions", width=size, height=str(int(size) * 2 // 3))
+                self.assertEqual(b"pixels large" in stderr, said, stderr)
+                self.assertEqual(document["picture"]["mechanism_pixels"] < 120, said)
+
+    def test_the_renderer_is_an_option(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for asked, name in (("built-in", "built-in"), ("osmesa", "OSMesa"), ("auto", "OSMesa")):
+                _, document, stderr = self.picture(folder, "a.png", "--time", "0.1", "--renderer", asked)
+                self.assertEqual(document["renderer"], name)
+                self.assertIn(f"drawn by {'the built-in renderer' if name == 'built-in' else name}".encode(), stderr)
+            done = call("snapshot", "four-bar", "--renderer", "gpu", "-o", os.path.join(folder, "b.png"))
+            self.assert_exit(done, INPUT)
+            self.assertIn(b"auto, osmesa or built-in", done.stderr)
+            self.assertEqual(self.picture(folder, "c.png", "--t", "0.2")[0], self.picture(folder, "d.png", "--time", "0.2")[0])
+            self.assert_exit(call("snapshot", "four-bar", "--t", "1", "--time", "1", "-o", os.path.join(folder, "b.png")), INPUT)
+
+    def test_exercises_that_describe_a_shipped_mechanism_have_its_picture(self):
+        named = []
+        with tempfile.TemporaryDirectory() as folder:
+            for file in sorted(glob.glob("lessons/*/problems/*.json")):
+                with open(file, encoding="utf-8") as f:
+                    exercise = json.load(f)
+                for seed in ("1", "42") if "picture" in exercise else ():
+                    done = call("snapshot", exercise["id"], "--seed", seed, "-o", os.path.join(folder, "a.svg"), "--describe")
+                    self.assertEqual(strict(self.assert_exit(done, DONE))["scene"], exercise["picture"]["scene"])
+                    self.assertIn(b"lengths are those of the variant", done.stderr)
+                named += [exercise["id"]] if "picture" in exercise else []
+            self.assertLessEqual({"fourbar", "slider", "closure"}, set(named))
+            one, two = (call("snapshot", "closure", "--seed", seed, "-o", os.path.join(folder, "a.svg"), "--describe").stdout for seed in ("1", "2"))
+            self.assertNotEqual(one, two)
+
     def test_lengths_of_a_picture_have_one_unit(self):
         with tempfile.TemporaryDirectory() as folder:
             for scene, unit in (("four-bar", "m"), ("slider-crank", "mm"), ("fb0", "m")):
@@ -196,7 +261,7 @@ class Snapshot(Command):
     def test_several_moments_are_a_strip_or_an_animation(self):
         with tempfile.TemporaryDirectory() as folder:
             strip, document, _ = self.picture(folder, "a.png", "--at", "0,0.1,0.2,0.3")
-            self.assertEqual((int.from_bytes(strip[16:20], "big"), int.from_bytes(strip[20:24], "big")), (1800, 800))
+            self.assertEqual((int.from_bytes(strip[16:20], "big"), int.from_bytes(strip[20:24], "big")), (1200, 800))  # four panels are two rows of two
             self.assertEqual(len(document["before"]), 3)
             alone, single, _ = self.picture(folder, "b.png", "--time", "0.3")
             self.assertEqual(single["picture"]["primitives"], document["picture"]["primitives"])
@@ -257,10 +322,11 @@ class Snapshot(Command):
 
     def test_an_exercise_with_one_configuration_says_that_times_are_not_used(self):
         with tempfile.TemporaryDirectory() as folder:
-            for times in (["--time", "0.5"], ["--at", "0.5"], ["--at", "0,0.5", "--ghosts"]):
+            for times in (["--time", "0.5"], ["--t", "0.5"], ["--at", "0.5"], ["--at", "0,0.5", "--ghosts"]):
                 done = call("snapshot", "p3", "--seed", "42", *times, "-o", os.path.join(folder, "p.png"))
                 self.assert_exit(done, DONE)
                 self.assertIn(b"one configuration and no motion", done.stderr)
+                self.assertIn(b"'holonom snapshot four-angles-as-printed' draws its scene", done.stderr)
 
     def test_several_loops_have_a_gap_over_all_constraints(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -15,7 +15,7 @@
 #include <string.h>
 
 enum { DEFAULT_WIDTH = 1200, DEFAULT_HEIGHT = 720, PANEL_WIDTH = 720, PANEL_HEIGHT = 480 };
-enum { COLUMNS = 3 }; // of a strip
+enum { MOST_COLUMNS = 5 }; // of a strip
 
 /// The data of one file: its moments, and a canvas for each, or one for all of them.
 typedef struct sheet {
@@ -81,6 +81,7 @@ static int gather(sheet *p, int moment) {
     p->opts.stopped = m->comparison && m->reached[0] < m->time;
     p->opts.n_traces = m->comparison ? m->n_traces : 0;
     p->opts.traces = m->trace_names;
+    p->opts.continued = moment > 0 && !p->request->ghosts && p->request->form != HN_PICTURE_APNG;
     p->opts.n_loads = m->n_loads;
     p->opts.loads = m->loads;
     p->opts.n_angles = m->n_angles;
@@ -117,15 +118,34 @@ static hn_status draw(sheet *p, hn_diags *diags) {
         const int n = gather(p, moment_of(p, k));
         status = hn_canvas_create(p->width, p->height, r->theme, &p->canvas[k], &diag);
         HN_THEN(status, hn_snapshot_draw(p->canvas[k], &p->drawing, p->poses, n, &p->opts, &diag));
+        hn_snapshot_place at = {0};
+        HN_THEN(status, hn_snapshot_find_place(&at, p->width, p->height, &p->drawing, p->poses, n,
+                                               &p->opts, &diag));
+        if (r->mechanism) {
+            *r->mechanism = at.size;
+        }
     }
     return add_diag(diags, status, &diag);
 }
 
 // ---- files ----
 
-/// All canvases as one PNG, COLUMNS of them in a row.
+/// Returns how many panels of a strip stand in a row: up to three in one row; otherwise as many as
+/// leave the fewest places empty, nearest to a square.
+static int count_columns(int n) {
+    const double square = ceil(sqrt(n));
+    int best = n < 3 ? n : 3;
+    for (int k = 2; k <= MOST_COLUMNS && n > 3 && k < n; k++) {
+        const int empty = (k - n % k) % k, least = (best - n % best) % best;
+        const double apart = fabs(k - square) - fabs(best - square);
+        best = empty < least || (empty == least && apart <= 0) ? k : best;
+    }
+    return best;
+}
+
+/// All canvases as one PNG.
 static hn_status write_strip(const sheet *p, hn_strbuf *out, hn_diag *diag) {
-    const int n = p->n_canvases, across = n < COLUMNS ? n : COLUMNS;
+    const int n = p->n_canvases, across = count_columns(n);
     const int down = (n + across - 1) / across;
     const size_t row = 3 * (size_t)p->width, whole = row * (size_t)across;
     unsigned char *one = malloc(row * (size_t)p->height);
@@ -241,8 +261,8 @@ static hn_status write_file(hn_strbuf *out, const sheet *p, hn_diags *diags) {
     put_words(&words, p);
     hn_status status = words.failed ? HN_ERR_MEMORY : HN_OK;
     if (status == HN_OK && p->request->form == HN_PICTURE_SVG) {
-        status = hn_canvas_svg(out, p->canvas, p->n_canvases, COLUMNS, p->opts.title,
-                               hn_strbuf_text(&words), &diag);
+        status = hn_canvas_svg(out, p->canvas, p->n_canvases, count_columns(p->n_canvases),
+                               p->opts.title, hn_strbuf_text(&words), &diag);
     } else if (status == HN_OK && p->request->form == HN_PICTURE_APNG) {
         status = write_animation(p, out, &diag);
     } else if (status == HN_OK) {

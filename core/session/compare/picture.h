@@ -51,6 +51,8 @@ typedef struct hn_picture_request {
     void *user;
     /// receives the name and the note of the first method that ended early; NULL: not asked for
     hn_strbuf *ending;
+    /// receives the larger of the width and the height of the mechanism [px]; NULL: not asked for
+    double *mechanism;
 } hn_picture_request;
 
 /// Appends the bytes of a PNG or SVG file to `file`. `description` (may be NULL) receives the

@@ -151,36 +151,70 @@ static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant
     return hn_cli_print_prose(&b);
 }
 
+/// The figures of an exercise: parts that ask about the same plot share one.
+typedef struct figures {
+    int n;
+    hn_strbuf svg[HN_GRADE_MAX_PARTS];
+    char parts[HN_GRADE_MAX_PARTS][64]; ///< "a and b"
+    char ids[HN_GRADE_MAX_PARTS][64];   ///< "ab"
+} figures;
+
+static void add_words(char out[64], const char *between, const char *word) {
+    const size_t used = strlen(out);
+    snprintf(out + used, 64 - used, "%s%s", used ? between : "", word);
+}
+
+static void draw_figures(const hn_variant *x, figures *f) {
+    for (int i = 0; i < x->n_parts; i++) {
+        const hn_part *part = &x->part[i];
+        hn_strbuf *svg = &f->svg[f->n];
+        int same = 0;
+        if (!part->kind->figure) {
+            continue;
+        }
+        hn_strbuf_init(svg);
+        part->kind->figure(svg, part, HN_FIGURE_FILE);
+        while (same < f->n && strcmp(hn_strbuf_text(&f->svg[same]), hn_strbuf_text(svg)) != 0) {
+            same++;
+        }
+        add_words(f->parts[same], " and ", part->id);
+        add_words(f->ids[same], "", part->id);
+        if (same < f->n) {
+            hn_strbuf_reset(svg);
+        } else {
+            f->n++;
+        }
+    }
+}
+
 /// Writes the figures of all parts that have one: into FILE.svg, or with the ids of the parts
 /// before the ending where there are several.
 static hn_exit write_figures(const hn_args *args, const hn_exercise *e, const hn_variant *x) {
-    int n = 0;
     hn_diag diag;
     hn_exit result = HN_EXIT_DONE;
-    for (int i = 0; i < x->n_parts; i++) {
-        n += x->part[i].kind->figure != NULL;
+    figures f = {0};
+    draw_figures(x, &f);
+    if (f.n == 0 || !hn_path_ends_in(args->out, ".svg")) {
+        hn_diag_set(&diag, HN_ERR_INPUT, "/out",
+                    f.n ? "end it in .svg" : "'holonom snapshot ID -o FILE' draws its mechanism",
+                    f.n ? "'%.200s' is no name for a plot" : "no part of '%.80s' asks about a plot",
+                    f.n ? args->out : hn_exercise_id(e));
+        result = hn_report_diag(args, &diag);
     }
-    if (n == 0 || !hn_path_ends_in(args->out, ".svg")) {
-        hn_diag_set(&diag, HN_ERR_INPUT, "/out", n ? "end it in .svg" : "leave --out away",
-                    n ? "'%.200s' is no name for a plot" : "no part of '%.80s' asks about a plot",
-                    n ? args->out : hn_exercise_id(e));
-        return hn_report_diag(args, &diag);
-    }
-    for (int i = 0; i < x->n_parts && result == HN_EXIT_DONE; i++) {
-        const hn_part *part = &x->part[i];
-        hn_strbuf path, svg;
+    for (int i = 0; i < f.n; i++) {
+        hn_strbuf path;
         hn_strbuf_init(&path);
-        hn_strbuf_init(&svg);
-        if (part->kind->figure) {
+        if (result == HN_EXIT_DONE) {
             hn_strbuf_add_n(&path, args->out, strlen(args->out) - 4);
-            hn_strbuf_printf(&path, n > 1 ? "-%s.svg" : ".svg", part->id);
-            part->kind->figure(&svg, part, true);
-            result = hn_cli_write_picture(args, hn_strbuf_text(&path), &svg);
-            if (result == HN_EXIT_DONE) {
-                printf("the plot of part %s: %s\n", part->id, hn_strbuf_text(&path));
-            }
+            hn_strbuf_printf(&path, f.n > 1 ? "-%s.svg" : ".svg", f.ids[i]);
+            result = hn_cli_write_picture(args, hn_strbuf_text(&path), &f.svg[i]);
+        }
+        if (result == HN_EXIT_DONE) {
+            printf("the plot of part%s %s: %s\n", strlen(f.ids[i]) > 1 ? "s" : "", f.parts[i],
+                   hn_strbuf_text(&path));
         }
         hn_strbuf_reset(&path);
+        hn_strbuf_reset(&f.svg[i]);
     }
     return result;
 }

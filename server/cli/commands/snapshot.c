@@ -15,6 +15,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const double SMALL = 120; // [px] texts of a smaller mechanism have no room
+
 /// Chooses the form of the picture by the ending of its file.
 static hn_status choose_form(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
     if (!args->out) {
@@ -49,12 +51,22 @@ static hn_status choose_form(const hn_args *args, hn_picture_request *request, h
     return HN_OK;
 }
 
+/// The time asked for: --time, or --t; NaN where neither is given.
+static double time_of(const hn_args *args) {
+    return isnan(args->time) ? args->t : args->time;
+}
+
 /// Moments of one motion follow each other.
 static hn_status check_times(const hn_args *args, hn_diags *diags) {
-    if (args->at.n > 0 && !isnan(args->time)) {
+    if (!isnan(args->t) && !isnan(args->time)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/t", "leave one of them out",
+                            "--t and --time are the same option, and both are given");
+    }
+    if (args->at.n > 0 && !isnan(time_of(args))) {
         return hn_diags_add(
             diags, HN_ERR_INPUT, "/time", "leave one of them out",
-            "--time %g and --at both choose the time of the picture; give one of them", args->time);
+            "--time %g and --at both choose the time of the picture; give one of them",
+            time_of(args));
     }
     for (int i = 1; i < args->at.n; i++) {
         if (!(args->at.value[i] > args->at.value[i - 1])) {
@@ -73,6 +85,28 @@ static hn_status read_size(const char *option, double given, int *size, hn_diags
                             HN_CANVAS_MIN, HN_CANVAS_MAX);
     }
     *size = (int)given;
+    return HN_OK;
+}
+
+/// The renderer asked for, for the whole program.
+static hn_status choose_renderer(const hn_args *args, hn_diags *diags) {
+    static const char *const names[] = {"auto", "osmesa", "built-in"};
+    hn_renderer wanted = HN_RENDERER_AUTO;
+    if (!args->renderer) {
+        return HN_OK;
+    }
+    while (strcmp(args->renderer, names[wanted]) != 0) {
+        if (++wanted == HN_RENDERER_COUNT) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/renderer", "auto, osmesa or built-in",
+                                "'%.40s' is not a renderer", args->renderer);
+        }
+    }
+    hn_canvas_choose_renderer(wanted);
+    if (wanted == HN_RENDERER_OSMESA && strcmp(hn_canvas_renderer(), "OSMesa") != 0) {
+        return hn_diags_add(diags, HN_ERR_UNSUPPORTED, "/renderer",
+                            "install libosmesa6, or take --renderer built-in",
+                            "OSMesa is not installed");
+    }
     return HN_OK;
 }
 
@@ -98,21 +132,25 @@ static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_
     request->traces = args->traces.word;
     request->n_traces = args->traces.n;
     HN_TRY(check_times(args, diags));
+    HN_TRY(choose_renderer(args, diags));
 
     return choose_form(args, request, diags);
 }
 
-/// The methods asked for, or the scene's own.
-static void choose_methods(const hn_args *args, const hn_scene *scene,
+/// The methods asked for, or the scene's own: its first alone for an exercise, whose picture
+/// compares nothing.
+static void choose_methods(const hn_args *args, const hn_scene *scene, bool is_exercise,
                            hn_picture_request *request) {
     if (args->method) {
         request->methods = &args->method;
         request->n_methods = 1;
     } else {
         request->methods = args->methods.n > 0 ? args->methods.word : scene->methods;
-        request->n_methods = args->methods.n > 0 ? args->methods.n : scene->n_methods;
+        request->n_methods = args->methods.n > 0 ? args->methods.n
+                             : is_exercise       ? 1
+                                                 : scene->n_methods;
     }
-    request->time = isnan(args->time) ? 0 : args->time;
+    request->time = isnan(time_of(args)) ? 0 : time_of(args);
 }
 
 /// Subject that a word names: a scene, or an exercise with the numbers of a variant.
@@ -149,7 +187,11 @@ static void note_start(const hn_exercise *e) {
     for (int i = 0; i < e->n_parts; i++) {
         asked |= strcmp(hn_part_text(e->parts[i].node, "kind"), "configuration") == 0;
     }
-    if (asked) {
+    if (hn_shelf_picture_scene(e)[0]) {
+        hn_cli_note("holonom: lengths are those of the variant; angles are those of the scene's "
+                    "start, not those of exercise '%s'\n",
+                    e->id);
+    } else if (asked) {
         hn_cli_note("holonom: lengths are those of the variant; angles are those of the scene's "
                     "start, because finding the variant's angles is the task of '%s'\n",
                     e->id);
@@ -170,16 +212,62 @@ static hn_status load_subject(const hn_library *lib, const hn_args *args, subjec
     return hn_args_load_model(lib, args, word, 0, &s->model, diags);
 }
 
+/// A picture that is drawn, with what is said about it.
+typedef struct drawn {
+    hn_strbuf png, description;
+    hn_strbuf ending; ///< which method ended early, when and why
+    hn_status ended;
+    double mechanism; ///< its size [px]
+} drawn;
+
+/// Says by which renderer the picture was painted, where that is asked for or not the usual one.
+static void note_renderer(const hn_args *args, const hn_picture_request *request) {
+    const char *renderer = hn_canvas_renderer();
+    const bool usual = strcmp(renderer, "OSMesa") == 0;
+    if (request->form != HN_PICTURE_SVG && (!usual || args->renderer)) {
+        fprintf(stderr, "holonom: drawn by %s\n", usual ? renderer : "the built-in renderer");
+    }
+}
+
+/// Writes the picture, then what it shows.
+static hn_exit deliver(const hn_args *args, const hn_picture_request *request, drawn *d) {
+    hn_exit result = hn_cli_write_picture(args, args->out, &d->png);
+    if (result == HN_EXIT_DONE && d->mechanism < SMALL) {
+        hn_cli_note("holonom: the mechanism is only %.0f pixels large in this picture; --width 600 "
+                    "--height 400 or more gives it and its texts room\n",
+                    d->mechanism);
+    }
+    if (result == HN_EXIT_DONE && (args->json || args->describe) && strcmp(args->out, "-") != 0) {
+        result = hn_cli_print(&d->description);
+    }
+    if (result == HN_EXIT_DONE) {
+        note_renderer(args, request);
+    }
+    if (result == HN_EXIT_DONE && d->ended != HN_OK) {
+        hn_cli_note("holonom: %s; the picture shows its last pose\n", hn_strbuf_text(&d->ending));
+        result = HN_EXIT_ENDED;
+    }
+    return result;
+}
+
+/// Says what of an exercise the picture does not show.
+static void note_exercise(const hn_args *args, const subject *s) {
+    note_start(s->exercise);
+    if (s->view.n_entries > 0 && (args->at.n > 0 || !isnan(time_of(args)))) {
+        hn_cli_note("holonom: exercise '%s' has one configuration and no motion; --time and "
+                    "--at are not used; 'holonom snapshot %s' draws its scene at any time\n",
+                    hn_exercise_id(s->exercise), s->view.scene);
+    }
+}
+
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     subject s = {0};
+    drawn d = {.ended = HN_OK};
     hn_diags diags = {0};
-    hn_picture_request request = {0};
-    hn_status ended = HN_OK;
-    hn_strbuf png, description, ending;
-    hn_strbuf_init(&ending);
-    request.ending = &ending;
-    hn_strbuf_init(&png);
-    hn_strbuf_init(&description);
+    hn_strbuf_init(&d.png);
+    hn_strbuf_init(&d.description);
+    hn_strbuf_init(&d.ending);
+    hn_picture_request request = {.ending = &d.ending, .mechanism = &d.mechanism};
     hn_status status = read_opts(args, &request, &diags);
     HN_THEN(status, load_subject(lib, args, &s, &diags));
     if (status == HN_OK && s.view.n_entries > 0) {
@@ -188,38 +276,20 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
         request.n_times = 0; // one configuration has no other moments
         request.ghosts = false;
     } else if (status == HN_OK) {
-        choose_methods(args, hn_model_scene(s.model), &request);
+        choose_methods(args, hn_model_scene(s.model), s.exercise != NULL, &request);
     }
-    HN_THEN(status, hn_model_picture(&png, &description, s.model, &request, &ended, &diags));
+    HN_THEN(status, hn_model_picture(&d.png, &d.description, s.model, &request, &d.ended, &diags));
     hn_model_free(s.model);
     if (status == HN_OK && s.exercise) {
-        note_start(s.exercise);
-        if (request.n_entries > 0 && (args->at.n > 0 || !isnan(args->time))) {
-            hn_cli_note("holonom: exercise '%s' has one configuration and no motion; --time and "
-                        "--at are not used\n",
-                        hn_exercise_id(s.exercise));
-        }
+        note_exercise(args, &s);
     }
     hn_exercise_free(s.exercise);
-
-    // the picture, then what it shows
+    const hn_exit result =
+        status == HN_OK ? deliver(args, &request, &d) : hn_report_diags(args, status, &diags);
     if (status != HN_OK) {
-        hn_strbuf_reset(&png);
-        hn_strbuf_reset(&description);
-        return hn_report_diags(args, status, &diags);
+        hn_strbuf_reset(&d.png);
     }
-    hn_exit result = hn_cli_write_picture(args, args->out, &png);
-    if (result == HN_EXIT_DONE && (args->json || args->describe) && strcmp(args->out, "-") != 0) {
-        result = hn_cli_print(&description);
-    }
-    if (result == HN_EXIT_DONE && request.form != HN_PICTURE_SVG &&
-        strcmp(hn_canvas_renderer(), "OSMesa") != 0) {
-        fprintf(stderr, "holonom: drawn by the built-in renderer\n");
-    }
-    hn_strbuf_reset(&description);
-    if (result == HN_EXIT_DONE && ended != HN_OK) {
-        hn_cli_note("holonom: %s; the picture shows its last pose\n", hn_strbuf_text(&ending));
-        result = HN_EXIT_ENDED;
-    }
+    hn_strbuf_reset(&d.description);
+    hn_strbuf_reset(&d.ending);
     return result;
 }

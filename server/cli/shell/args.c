@@ -66,7 +66,7 @@ static const option OPTIONS[] = {
     {"--format", "FORMAT", OPTION_TEXT, AT(format), "form of the output"},
     {"--t", "T", OPTION_NUMBER, AT(t),
      "tui: time of the frame [s]. terms: the time t in formulas [s]; the mechanism stays at its "
-     "start"},
+     "start. snapshot: the same as --time"},
     {"--q", "NAME=VALUE...", OPTION_WORDS, AT(state_q),
      "coordinates that differ from the assembled start"},
     {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
@@ -115,6 +115,10 @@ static const option OPTIONS[] = {
      "print the contents of the picture as JSON: in words, and as a list of everything drawn"},
     {"--theme", "light|dark", OPTION_TEXT, AT(theme),
      "light or dark background; the workbench asks the terminal when left out"},
+    {"--renderer", "auto|osmesa|built-in", OPTION_TEXT, AT(renderer),
+     "program part that paints a PNG; auto takes OSMesa where it is installed. Vector graphics "
+     "need "
+     "none"},
     {"--view", "front|side|top|space|A,E", OPTION_TEXT, AT(view),
      "direction of view; A,E: azimuth and elevation in degrees, as in 35,22"},
     {"--jobs", "N", OPTION_COUNT, AT(jobs),

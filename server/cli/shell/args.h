@@ -33,9 +33,9 @@ typedef struct hn_args {
     hn_words set_over_set;     ///< by the program itself: stronger than `set`
     hn_words methods, traces, state_q, state_v, allow_hosts, proxies;
     hn_numbers at;
-    const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
-        *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric, *shard, *style,
-        *pictures, *solver;
+    const char *method, *format, *language, *out, *host, *theme, *renderer, *view, *loops, *key,
+        *grid, *plots, *size, *keys, *runs, *token, *programs, *student, *seeds, *rubric, *shard,
+        *style, *pictures, *solver;
     double time, jobs, answer_time, every, t, port, width, height, seed, frame_dt, frames;
     double animate, hint, history, max_comparisons, max_streams, max_connections, run_cpu,
         idle_pause, expiry, keep_alive;

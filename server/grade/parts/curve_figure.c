@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/curve_figure.h"
 
+#include "render/canvas_svg.h"
 #include "terminal/plot.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum {
     ROWS = 17,
@@ -79,7 +81,7 @@ static void put_grid(hn_strbuf *b, const hn_motion_curve *c, double low, double 
     }
 }
 
-/// A page takes the style away and draws in its own colours; a file has ink and paper.
+/// Without a style of the page it has ink and paper.
 void hn_curve_svg(hn_strbuf *b, const hn_motion_curve *c, const char *title) {
     double low, high;
     hn_curve_axis(c, &low, &high);
@@ -103,4 +105,60 @@ void hn_curve_svg(hn_strbuf *b, const hn_motion_curve *c, const char *title) {
                          down(c->y[k], low, high));
     }
     hn_strbuf_add(b, "\"/></svg>\n");
+}
+
+// ---- as a file ----
+
+static const double LETTERS = 14, SMALL = 12; // [px]
+
+static void write_number(hn_canvas *c, double x, double y, hn_align align, double value) {
+    char text[32];
+    snprintf(text, sizeof text, "%.4g", value);
+    hn_canvas_text(c, x, y, SMALL, align, hn_paint_solid(hn_surface_get(HN_THEME_LIGHT)->ink),
+                   text);
+}
+
+static void draw_grid(hn_canvas *c, const hn_motion_curve *curve, double low, double high) {
+    const hn_stroke line = hn_stroke_solid(hn_surface_get(HN_THEME_LIGHT)->hairline, 1);
+    for (int k = 0; k <= 4; k++) {
+        const double level = low + (high - low) * k / 4, y = down(level, low, high);
+        hn_canvas_segment(c, LEFT, y, WIDTH - RIGHT, y, &line);
+        write_number(c, LEFT - 6, y + 4, HN_ALIGN_RIGHT,
+                     fabs(level) < 1e-9 * (high - low) ? 0 : level);
+    }
+    for (int k = 0; k <= INTERVALS; k++) {
+        const double t = curve->t_end * k / INTERVALS, x = across(curve, t);
+        hn_canvas_segment(c, x, TOP, x, HEIGHT - BOTTOM, &line);
+        write_number(c, x, HEIGHT - BOTTOM + 17, HN_ALIGN_CENTRE, t);
+    }
+}
+
+static void draw_curve(hn_canvas *c, const hn_motion_curve *curve, const char *title) {
+    const hn_surface *surface = hn_surface_get(HN_THEME_LIGHT);
+    const hn_stroke line = hn_stroke_solid(hn_look_get(0)->colour[HN_THEME_LIGHT], 2);
+    double low, high, xy[2 * HN_CURVE_POINTS];
+    char text[96];
+    hn_curve_axis(curve, &low, &high);
+    hn_canvas_text(c, LEFT, 20, LETTERS, HN_ALIGN_LEFT, hn_paint_solid(surface->ink), title);
+    draw_grid(c, curve, low, high);
+    for (int k = 0; k < curve->n; k++) {
+        xy[2 * k] = across(curve, k * curve->dt);
+        xy[2 * k + 1] = down(curve->y[k], low, high);
+    }
+    hn_canvas_line(c, xy, curve->n, &line);
+    snprintf(text, sizeof text, "%d samples, %.3g s apart", curve->n, curve->dt);
+    hn_canvas_text(c, LEFT, HEIGHT - 6, SMALL, HN_ALIGN_LEFT, hn_paint_solid(surface->muted), text);
+    hn_canvas_text(c, WIDTH - RIGHT, HEIGHT - 6, SMALL, HN_ALIGN_RIGHT,
+                   hn_paint_solid(surface->ink), "t [s]");
+}
+
+void hn_curve_picture(hn_strbuf *b, const hn_motion_curve *c, const char *title) {
+    hn_canvas *canvas = NULL;
+    hn_status status = hn_canvas_create(WIDTH, HEIGHT, HN_THEME_LIGHT, &canvas, NULL);
+    if (status == HN_OK) {
+        draw_curve(canvas, c, title);
+        status = hn_canvas_svg(b, &canvas, 1, 1, title, NULL, NULL);
+    }
+    b->failed |= status != HN_OK;
+    hn_canvas_free(canvas);
 }

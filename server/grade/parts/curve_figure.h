@@ -12,4 +12,7 @@ void hn_curve_axis(const hn_motion_curve *c, double *low, double *high);
 void hn_curve_text(hn_strbuf *b, const hn_motion_curve *c, const char *title, int columns);
 /// As an SVG document without colours of its own: it takes the colour of the text around it.
 void hn_curve_svg(hn_strbuf *b, const hn_motion_curve *c, const char *title);
+/// As an SVG file with the paper, the lines and the lettering of a snapshot, which says how many
+/// samples the line joins.
+void hn_curve_picture(hn_strbuf *b, const hn_motion_curve *c, const char *title);
 #endif

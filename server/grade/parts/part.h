@@ -54,6 +54,12 @@ typedef struct hn_part_view {
     double trace[3 * HN_PART_TRACE];
 } hn_part_view;
 
+typedef enum hn_figure_form {
+    HN_FIGURE_TEXT, ///< character cells
+    HN_FIGURE_PAGE, ///< SVG in the colours and the font of the page around it
+    HN_FIGURE_FILE  ///< SVG by itself, in the lettering of the other pictures
+} hn_figure_form;
+
 typedef struct hn_part_kind {
     const char *name;
     const char *fields; ///< members of a node of this kind, separated by blanks
@@ -71,8 +77,8 @@ typedef struct hn_part_kind {
     cJSON *(*fault)(const hn_part *p, int i, const char **id, hn_diag *diag);
     /// Confirms the reference by a second means; NULL: the grading itself proves it.
     hn_status (*prove)(const hn_part *p, hn_diag *diag);
-    /// The figure that the question is about, as text or as SVG; NULL: the kind has none.
-    void (*figure)(hn_strbuf *b, const hn_part *p, bool svg);
+    /// The figure that the question is about; NULL: the kind has none.
+    void (*figure)(hn_strbuf *b, const hn_part *p, hn_figure_form form);
     /// Fills in the content of a picture of an answer that can be read; NULL: the kind has none.
     /// The names of settings are borrowed from the exercise.
     void (*view)(const hn_part *p, const cJSON *given, hn_part_view *out);

@@ -270,14 +270,16 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     free(s);
 }
 
-static void figure(hn_strbuf *b, const hn_part *p, bool svg) {
+static void figure(hn_strbuf *b, const hn_part *p, hn_figure_form form) {
     hn_status status;
     hn_diag diag = {0};
     char title[160];
     sheet *s = make_sheet(p, &status, &diag);
     snprintf(title, sizeof title, "%.60s [%s] over time, %.60s", hn_part_text(p->node, "curve"),
              s ? s->curve.unit : "", hn_part_text(p->node, "method"));
-    if (s && svg) {
+    if (s && form == HN_FIGURE_FILE) {
+        hn_curve_picture(b, &s->curve, title);
+    } else if (s && form == HN_FIGURE_PAGE) {
         hn_curve_svg(b, &s->curve, title);
     } else if (s) {
         hn_curve_text(b, &s->curve, title, COLUMNS);
