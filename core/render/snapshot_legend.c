@@ -180,6 +180,16 @@ static void add_earlier(keys *k, const hn_snapshot_pose *poses, int n_poses) {
     }
 }
 
+/// Returns whether path k of a pose has a line: at the start it is one point.
+static bool has_path(const hn_snapshot_pose *pose, int k, int n_traces) {
+    const int n = pose->trace ? pose->n_trace / n_traces : 0;
+    int finite = 0;
+    for (int i = k * n; i < (k + 1) * n && finite < 2; i++) {
+        finite += isfinite(pose->trace[3 * i]);
+    }
+    return finite > 1;
+}
+
 static keys list_keys(const hn_sheet *s, const hn_snapshot_pose *poses, int n_poses,
                       const hn_snapshot_opts *opts, const hn_label_places *placed) {
     keys k = {0};
@@ -190,6 +200,9 @@ static keys list_keys(const hn_sheet *s, const hn_snapshot_pose *poses, int n_po
     add_forces(&k, s, opts, placed);
     add_earlier(&k, poses, n_poses);
     for (int i = 0; i < opts->n_traces && k.n < MOST_KEYS; i++) {
+        if (!has_path(&poses[s->selected], i, opts->n_traces)) {
+            continue;
+        }
         k.at[k.n] = (key){.kind = KEY_TRACE, .trace = i};
         snprintf(k.at[k.n++].text, TEXT, "path of %.80s", opts->traces[i]);
     }

@@ -357,7 +357,7 @@ def plots(folder):
     with open(os.path.join(folder, "gap.svg"), encoding="utf-8") as f:
         svg = f.read()
     expect("it has a background", 'width="640" height="300"' in svg and "#FCFCFA" in svg.upper(), svg[:400])
-    expect("its letters are those of the other pictures: lines", "<text" not in svg and svg.count("<path") > 50, svg[:400])
+    expect("its letters are those of the other pictures: lines", "<text" not in svg and svg.count("<path") > 20, svg[:400])
     expect("the curve joins all samples", max(d.count("l") for d in re.findall(r' d="([^"]*)"', svg)) >= 490, svg[:400])
 
 

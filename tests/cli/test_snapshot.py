@@ -174,7 +174,8 @@ class Snapshot(Command):
                 root = xml.etree.ElementTree.fromstring(svg)
                 self.assertEqual((root.get("width"), root.get("height")), (str(600 * across), str(400 * down)), n)
             first, later = document["before"][-1], document["picture"]
-            self.assertEqual(first["legend"][-1], "path of a point on coupler")
+            self.assertEqual(first["legend"][0], "5 N")
+            self.assertNotIn("path of a point on coupler", first["legend"])  # at the start there is none
             self.assertLessEqual(set(later["legend"]), {"shorter than drawn"})
             for k, panel in enumerate([panel for panel in root.iter("{http://www.w3.org/2000/svg}svg")][1:]):
                 starts = [tuple(map(float, re.match(r"[mM]([-\d.]+)[ ,]?([-\d.]+)", path.get("d")).groups())) for path in panel.iter("{http://www.w3.org/2000/svg}path")]
