@@ -50,6 +50,7 @@ typedef struct speller {
     hn_strbuf *out;
     kind last;
     bool tight; ///< a name or a digit of a script has just ended
+    bool joins; ///< a digit belongs to the name before it: xi1
 } speller;
 
 static int find(const char *at) {
@@ -85,7 +86,8 @@ static void put_spelling(speller *s, int i) {
 static void put_character(speller *s, const char *at) {
     const int next = find(at + 1);
     const bool accented = next >= 0 && SPELLINGS[next].kind == ACCENT;
-    if ((s->tight || accented) && isalnum((unsigned char)*at)) {
+    const bool joined = s->joins && isdigit((unsigned char)*at);
+    if ((s->tight || accented) && !joined && isalnum((unsigned char)*at)) {
         keep_apart(s);
     }
     hn_strbuf_add_n(s->out, at, 1);
@@ -93,19 +95,28 @@ static void put_character(speller *s, const char *at) {
     s->tight = false;
 }
 
+static void spell(speller *s, const char *utf8) {
+    while (*utf8) {
+        const int i = find(utf8);
+        if (i >= 0) {
+            put_spelling(s, i);
+            utf8 += strlen(SPELLINGS[i].utf8);
+        } else {
+            put_character(s, utf8++);
+        }
+    }
+}
+
+void hn_tex_spell(hn_strbuf *b, const char *utf8) {
+    speller s = {.out = b, .last = SIGN, .joins = true};
+    spell(&s, utf8);
+}
+
 void hn_tex_ascii(hn_strbuf *b, const char *tex) {
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_tex_text(&text, tex);
     speller s = {.out = b, .last = SIGN};
-    for (const char *p = hn_strbuf_text(&text); *p;) {
-        const int i = find(p);
-        if (i >= 0) {
-            put_spelling(&s, i);
-            p += strlen(SPELLINGS[i].utf8);
-        } else {
-            put_character(&s, p++);
-        }
-    }
+    spell(&s, hn_strbuf_text(&text));
     hn_strbuf_reset(&text);
 }

@@ -224,8 +224,8 @@ static void list_actions(hn_workbench *w) {
 
 /// The formulation whose equation lacks a term; what it solves, and what it leaves out.
 static const char AS_PRINTED[] = "nullspace-as-printed";
-static const char MISSING_TERM[] = "it solves     N' M N du/dt = N' f\n"
-                                   "MISSING, left  + N' M (dN/dt) u\n";
+static const char MISSING_TERM[] = "it solves                  N' M N du/dt = N' f\n"
+                                   "missing on the left side:  N' M (dN/dt) u\n";
 
 static void show_equations(hn_workbench *w) {
     hn_diags diags = {0};
@@ -251,6 +251,9 @@ static void show_lesson(hn_workbench *w, const char *id) {
         return;
     }
     hn_text_panel_open(w, "lesson: Esc goes back");
+    if (w->form == HN_DOTS_ASCII) {
+        hn_lesson_spell_out(lesson); // from its formulas, before their lines are folded
+    }
     hn_lesson_text(&w->text, lesson, w->columns > MOST_TEXT + 4 ? MOST_TEXT : w->columns - 4);
     cJSON_Delete(lesson);
 }

@@ -23,7 +23,7 @@ void hn_text_panel_open(hn_workbench *w, const char *title) {
 /// Rows that the line (n bytes) takes when it is folded.
 static int rows_of(const hn_workbench *w, const char *line, size_t n) {
     char row[HN_TUI_PARAGRAPH];
-    snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), line);
+    hn_text_view_paragraph(w, line, n, row);
     const int indent = hn_text_view_indent(row, w->columns - 4);
     const int rows = hn_text_rows(row + indent, w->columns - 4 - indent);
     return rows > 0 ? rows : 1;

@@ -1,10 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tui/text_view.h"
 
+#include "cli/shell/plain.h"
 #include "tui/text_panel.h"
 
 #include <stdio.h>
 #include <string.h>
+
+void hn_text_view_paragraph(const hn_workbench *w, const char *line, size_t n,
+                            char out[HN_TUI_PARAGRAPH]) {
+    snprintf(out, HN_TUI_PARAGRAPH, "%.*s", (int)(n < HN_TUI_PARAGRAPH ? n : HN_TUI_PARAGRAPH - 1),
+             line);
+    if (w->form == HN_DOTS_ASCII) {
+        hn_strbuf plain;
+        hn_strbuf_init(&plain);
+        hn_plain_text(&plain, out);
+        snprintf(out, HN_TUI_PARAGRAPH, "%s", hn_strbuf_text(&plain));
+        hn_strbuf_reset(&plain);
+    }
+}
 
 int hn_text_view_indent(const char *paragraph, int columns) {
     const int indent = (int)strspn(paragraph, " ");
@@ -25,7 +39,7 @@ void hn_text_view_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
     for (; *at && y < in.rows; line++) {
         const size_t n = strcspn(at, "\n");
         char row[HN_TUI_PARAGRAPH];
-        snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), at);
+        hn_text_view_paragraph(w, at, n, row);
         if (line >= w->scroll) {
             const int indent = hn_text_view_indent(row, in.columns - 2);
             const hn_area rest = {in.x + 1 + indent, in.y + y, in.columns - 2 - indent,

@@ -2,6 +2,7 @@
 #include "tui/workbench.h"
 
 #include "cli/shell/command.h"
+#include "cli/shell/plain.h"
 #include "render/look.h"
 #include "tui/preview.h"
 #include "tui/versions.h"
@@ -164,6 +165,13 @@ void hn_workbench_say(hn_workbench *w, const char *format, ...) {
     va_start(list, format);
     vsnprintf(w->message, sizeof w->message, format, list);
     va_end(list);
+    if (w->form == HN_DOTS_ASCII) {
+        hn_strbuf plain;
+        hn_strbuf_init(&plain);
+        hn_plain_text(&plain, w->message);
+        snprintf(w->message, sizeof w->message, "%s", hn_strbuf_text(&plain));
+        hn_strbuf_reset(&plain);
+    }
 }
 
 void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags) {

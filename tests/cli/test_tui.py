@@ -519,7 +519,7 @@ class Keys(unittest.TestCase):
     def test_the_missing_term_stands_above_the_equations_whichever_method_is_selected(self):
         words = ("four-bar", "--once", "--t", "0.1", "--methods", "index1@rk4:h=0.01", "nullspace-as-printed@rk4:h=0.001")
         for keys in ("f", "2f"):
-            self.assertIn("MISSING, left  + N' M (dN/dt) u", once(*words, "--keys", keys)[1])
+            self.assertIn("missing on the left side:  N' M (dN/dt) u", once(*words, "--keys", keys)[1])
         self.assertNotIn("MISSING", once("four-bar", "--once", "--t", "0.1", "--keys", "f", *METHODS)[1])
 
     def test_what_is_typed_is_searched_in_the_list_of_scenes(self):

@@ -590,5 +590,44 @@ class Colours(unittest.TestCase):
         self.assertIn(b"94", self.colours("xterm-16color"))
 
 
+class Ascii(unittest.TestCase):
+    """Where a terminal shows no UTF-8, each character of a text is spelled out: a '?' stands there in the source alone."""
+
+    @staticmethod
+    def listed(kind, of):
+        return [one["id"] for one in json.loads(subprocess.run([PROGRAM, "list", kind, "--json"], capture_output=True, check=True).stdout)[of]]
+
+    def questions(self, keys, *more, **environment):
+        """Question marks of the text that the keys open, and the text."""
+        _, out, err = once("pendulum", "--once", "--t", "0", "--size", "100x480", *more, "--keys", keys, **environment)
+        self.assertEqual(err, "")
+        text = "\n".join(out.split("\n")[:-3])
+        self.assertEqual(text.isascii(), bool(more or environment))
+        return text.count("?"), text
+
+    def test_lessons_and_exercises_of_the_workbench(self):
+        ids = self.listed("lessons", "lessons") + self.listed("problems", "problems")
+        self.assertGreater(len(ids), 60)
+        for one in ids:
+            keys = f"t{one}<Enter>"
+            wanted, text = self.questions(keys)
+            self.assertEqual(self.questions(keys, "--ascii")[0], wanted, one)
+        self.assertEqual(self.questions("t01<Enter>", LC_ALL="C")[0], self.questions("t01<Enter>")[0])
+
+    def test_the_words_are_those_of_the_formulas(self):
+        text = " ".join(self.questions("t01<Enter>", "--ascii")[1].replace("|", " ").split())
+        self.assertIn("Take three absolute angles: theta_1 of the crank, theta_2 of the coupler, theta_3 of the rocker.", text)
+        self.assertIn("J(q) v = 0, J = (d phi)/(d q), v = qdot .", text)
+
+    def test_texts_of_commands(self):
+        commands = [["lesson", one] for one in self.listed("lessons", "lessons")] + [["problem", one, "--seed", "1"] for one in self.listed("problems", "problems")]
+        commands += [["equations", scene] for scene in ("four-bar", "heavy-top", "rssr")] + [["help", "words"], ["manual"], ["inspect", "four-bar"]]
+        for words in commands:
+            texts = [subprocess.run([PROGRAM, *words], capture_output=True, check=True, env={**os.environ, "LC_ALL": locale}).stdout.decode() for locale in ("C.UTF-8", "C")]
+            self.assertTrue(texts[1].isascii(), words)
+            self.assertEqual(texts[1].count("?"), texts[0].count("?"), words)
+        self.assertIn("rho1 = sigma1*sqrt(-kappa1^2 + (eta1^2 + xi1^2))", subprocess.run([PROGRAM, "equations", "four-bar"], capture_output=True, text=True, check=True, env={**os.environ, "LC_ALL": "C"}).stdout)
+
+
 if __name__ == "__main__":
     driver.main()

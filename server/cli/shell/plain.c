@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/plain.h"
 
+#include "lesson/tex_ascii.h"
+#include "terminal/cells.h"
+
 #include <stdbool.h>
 #include <string.h>
 #include <strings.h>
@@ -143,6 +146,56 @@ void hn_plain_add(hn_strbuf *b, const char *utf8) {
             const char ascii = like(utf8, n);
             hn_strbuf_add_n(b, &ascii, 1);
             utf8 += n;
+        }
+    }
+}
+
+/// Bytes up to the end of the line, or to where two blanks stand.
+static size_t field_length(const char *text) {
+    size_t n = strspn(text, " ");
+    while (text[n] && text[n] != '\n' && strncmp(text + n, "  ", 2) != 0) {
+        n++;
+    }
+    return n;
+}
+
+/// Writes one field. Returns the columns that it takes more than before.
+static int add_field(hn_strbuf *b, const char *utf8, size_t n) {
+    hn_strbuf field, spelled;
+    hn_strbuf_init(&field);
+    hn_strbuf_init(&spelled);
+    hn_strbuf_add_n(&field, utf8, n);
+    const int columns = hn_text_columns(hn_strbuf_text(&field));
+    if (field.n > 0) {
+        hn_plain_powers(field.text);
+    }
+    hn_tex_spell(&spelled, hn_strbuf_text(&field));
+    hn_strbuf_clear(&field);
+    hn_plain_add(&field, hn_strbuf_text(&spelled));
+    hn_strbuf_add(b, hn_strbuf_text(&field));
+    const int more = hn_text_columns(hn_strbuf_text(&field)) - columns;
+    hn_strbuf_reset(&spelled);
+    hn_strbuf_reset(&field);
+    return more;
+}
+
+void hn_plain_text(hn_strbuf *b, const char *utf8) {
+    int more = 0; // columns that the line has become longer
+    while (*utf8) {
+        const size_t n = field_length(utf8);
+        more += add_field(b, utf8, n);
+        utf8 += n;
+
+        // the blanks behind it make up for that, but one of them stays
+        const int blanks = (int)strspn(utf8, " ");
+        const int kept = blanks == 0 ? 0 : blanks > more ? blanks - more : 1;
+        hn_strbuf_printf(b, "%*s", kept, "");
+        more -= blanks - kept;
+        utf8 += blanks;
+        if (*utf8 == '\n') {
+            hn_strbuf_add(b, "\n");
+            more = 0;
+            utf8++;
         }
     }
 }

@@ -14,4 +14,8 @@ int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang);
 void hn_plain_powers(char *text);
 /// The text with ASCII characters alone, in as many columns; what has no likeness becomes '?'.
 void hn_plain_add(hn_strbuf *b, const char *utf8);
+/// Appends text for people in ASCII: letters and signs of formulas by name ("theta_1", "<="), other
+/// characters as hn_plain_add() has them. Blanks that stand two or more in a row give way, so that
+/// columns stay where they are.
+void hn_plain_text(hn_strbuf *b, const char *utf8);
 #endif

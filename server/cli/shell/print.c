@@ -71,7 +71,7 @@ static hn_exit print_folded(hn_strbuf *text, int columns,
     if (!text->failed && hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"))) {
         hn_strbuf plain;
         hn_strbuf_init(&plain);
-        hn_plain_add(&plain, hn_strbuf_text(text));
+        hn_plain_text(&plain, hn_strbuf_text(text));
         hn_strbuf_reset(text);
         *text = plain;
     }

@@ -43,6 +43,27 @@ static void every_character_becomes_one_of_ascii(void **state) {
                  "a?b?");
 }
 
+static void assert_text(const char *utf8, const char *expected) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_plain_text(&b, utf8);
+    assert_string_equal(hn_strbuf_text(&b), expected);
+    hn_strbuf_reset(&b);
+}
+
+static void texts_are_spelled_out_and_their_columns_stay(void **state) {
+    (void)state;
+    assert_text("the angles θ₁ and φ of ℓ₂", "the angles theta_1 and phi of l_2");
+    assert_text("ρ1 = σ1*sqrt(-κ1^2)\n", "rho1 = sigma1*sqrt(-kappa1^2)\n");
+    assert_text("α ≤ β, q̇ → q̈, 2 m/s², 5 N·m − 1",
+                "alpha <= beta, qdot -> qddot, 2 m/s^2, 5 N*m - 1");
+    assert_text("gap 2.5×10⁻¹⁰ m, 4 µs", "gap 2.5e-10 m, 4 us");
+    // blanks between columns give way, but not the last of them; a shorter power is filled up
+    assert_text("θ     1\nab    2\n", "theta 1\nab    2\n");
+    assert_text("θ  1    2\n", "theta 1 2\n");
+    assert_text("×10⁻³  1\n", "e-3    1\n");
+}
+
 static void marks_of_methods_stay_apart(void **state) {
     (void)state;
     char seen[HN_LOOK_SLOTS + 1] = "";
@@ -84,6 +105,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ascii_is_wanted_where_the_first_name_that_speaks_is_not_utf8),
         cmocka_unit_test(every_character_becomes_one_of_ascii),
+        cmocka_unit_test(texts_are_spelled_out_and_their_columns_stay),
         cmocka_unit_test(marks_of_methods_stay_apart),
         cmocka_unit_test(lines_stay_where_they_are),
     };
