@@ -8,6 +8,4 @@
 /// Appends a TeX formula in ASCII: as hn_tex_text() gives it, with its letters and signs spelled
 /// out. Names that would run together are kept apart by a blank.
 void hn_tex_ascii(hn_strbuf *b, const char *tex);
-/// Appends text with the same letters and signs spelled out, "ξ1" as "xi1"; other characters stay.
-void hn_tex_spell(hn_strbuf *b, const char *utf8);
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/plain.h"
 
-#include "lesson/tex_ascii.h"
 #include "terminal/cells.h"
+#include "terminal/spell_out.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -169,7 +169,7 @@ static int add_field(hn_strbuf *b, const char *utf8, size_t n) {
     if (field.n > 0) {
         hn_plain_powers(field.text);
     }
-    hn_tex_spell(&spelled, hn_strbuf_text(&field));
+    hn_spell_out(&spelled, hn_strbuf_text(&field), true);
     hn_strbuf_clear(&field);
     hn_plain_add(&field, hn_strbuf_text(&spelled));
     hn_strbuf_add(b, hn_strbuf_text(&field));
