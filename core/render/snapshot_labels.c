@@ -8,6 +8,22 @@
 static const double SAME_PLACE = 2;   // [px]
 static const double TIME_SIZE = 0.85; // letters of the time of a pose, of the body text
 
+/// Returns whether a text at `place` seems to belong to another point with a name than the one at
+/// `xy`, because that is nearer.
+static bool is_nearer_to_another(const hn_sheet *s, const hn_drawing *d, const double *points,
+                                 const double xy[2], double half, const double place[2]) {
+    const double own = hn_label_room_to_line(place, half, s->font, xy, xy);
+    for (int i = 0; i < d->n_points; i++) {
+        double at[2];
+        hn_sheet_pixel(s, points + 3 * i, at);
+        if (d->labels[i] && hypot(at[0] - xy[0], at[1] - xy[1]) > s->font &&
+            hn_label_room_to_line(place, half, s->font, at, at) < own) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// Takes the nearest of sixteen places around a point that is free and has room enough; the one
 /// with the most room where none has. Returns whether one is free.
 static bool place_label(const hn_sheet *s, const hn_drawing *d, const double *points,
@@ -22,7 +38,8 @@ static bool place_label(const hn_sheet *s, const hn_drawing *d, const double *po
         const double off = 0.75 * s->bar + 0.85 * s->font + step * (k / PLACES);
         const double place[2] = {xy[0] + (off + wider) * cos(angle), xy[1] - off * sin(angle)};
         const double room = hn_label_room_of_all(s, d, points, placed, place, half);
-        const double worth = fmin(room, enough) - 0.25 * step * (k / PLACES);
+        const double worth = fmin(room, enough) - 0.25 * step * (k / PLACES) -
+                             s->font * is_nearer_to_another(s, d, points, xy, half, place);
         if (worth > most + 0.5 && hn_label_is_free(s, placed, place, half)) {
             most = worth;
             memcpy(out, place, 2 * sizeof *out);

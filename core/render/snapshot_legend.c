@@ -13,6 +13,7 @@ static const double SAMPLE = 3.6;        // the length of a sample [letters]
 static const double NOTE_SIZE = 0.85;    // of the letters of a name
 static const double SMALLEST_LETTER = 2; // [px]
 static const double NOTE_PITCH = 1.25;   // from line to line of a note [its letters]
+static const double SMALLEST_KEY = 0.7;  // of its letters that the text of a key may have
 static const double KEY_PITCH = 1.5;     // from key to key [letters]
 enum { TEXT = 256, NOTE_LINES = 6, MOST_KEYS = 24, COLUMNS = 3 };
 
@@ -238,7 +239,9 @@ static void draw_key(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *se
         break;
     }
     const double text = x + fmax(LEGEND_TEXT * font, to[0] - x + 0.7 * font);
-    hn_legend_text(c, text, y, size, x + s->legend.width - text, surface->ink, k->text);
+    const double room = x + s->legend.width - text, wide = hn_canvas_text_width(size, k->text);
+    const double fitting = size * fmax(SMALLEST_KEY, fmin(1, room / wide));
+    hn_legend_text(c, text, y, fitting, room, surface->ink, k->text);
 }
 
 // ---- rows ----

@@ -221,6 +221,10 @@ static void draw_dimension(hn_canvas *c, const hn_sheet *s, const double a[2], c
         const double *e = ends[i];
         hn_canvas_segment(c, e[0] + gap * side[0], e[1] + gap * side[1],
                           e[0] + (off + beyond) * side[0], e[1] + (off + beyond) * side[1], &thin);
+        const double line[2][2] = {
+            {e[0] + gap * side[0], e[1] + gap * side[1]},
+            {e[0] + (off + beyond) * side[0], e[1] + (off + beyond) * side[1]}};
+        hn_label_keep_off_line(placed, line);
     }
 
     // arrows from the middle to both ends, and the value on them
@@ -293,7 +297,7 @@ static void draw_length(const writer *w, const lengths *l, int i) {
     write_length(w, best, text);
     if (at.worth > -HUGE_VAL) {
         draw_dimension(w->c, w->s, a, b, &at, text, w->placed);
-    } else if (seen) {
+    } else if (seen || best->count >= count_alike(w->s)) {
         const char *from = w->d->labels[best->ends[0]], *to = w->d->labels[best->ends[1]];
         snprintf(row, sizeof row, "%.30s%s%.30s%s%.30s", from && to ? from : "length",
                  from && to ? " to " : "", from && to ? to : "", " ", text);

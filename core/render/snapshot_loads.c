@@ -9,6 +9,7 @@ static const double LONGEST_LOAD = 0.20;  // of the view
 static const double VALUE_SIZE = 0.9;     // letters of a force's value, of the body text
 static const double BESIDE = 0.6;         // [letters] farther from its arrow a value has a leader
 static const double DOUBT = 1.5;          // [px] of room that a place loses for each doubt_of() it
+static const double CROSSED = 4;          // [px] of room that it loses on a line of another mark
 static const double ENOUGH = 2;           // [px] of room: more is no better
 static const double SHORTEST_ARROW = 1.0; // [letters] a shorter one is drawn with a dot,
 static const double SHORT_ARROW = 1.3;    // [letters] as long as this,
@@ -173,7 +174,8 @@ static bool place_value(const hn_sheet *s, const hn_drawing *d, const double *po
                                   w->tail[1] + t * u[1] + off * (n[1] - back * u[1])};
             const double room = room_for_value(s, d, points, all, own, placed, xy);
             const double worth = fmin(room, ENOUGH) - 0.02 * (ring * ALONG * SIDES + k) -
-                                 DOUBT * doubt_of(s, d, points, all, own, placed, xy);
+                                 DOUBT * doubt_of(s, d, points, all, own, placed, xy) -
+                                 CROSSED * hn_label_is_on_line(s, placed, xy, w->half);
             if ((side || back > 0) && worth > most && hn_label_is_free(s, placed, xy, w->half)) {
                 most = worth;
                 memcpy(out, xy, sizeof xy);

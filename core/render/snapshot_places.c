@@ -7,6 +7,7 @@
 
 static const double HALO = 0.8;  // how far the paper behind a text covers what is there
 static const double TALL = 0.5;  // [letters] half of the height of a text
+static const double PAPER = 2;   // [px] of paper around a text
 static const double APART = 0.3; // [letters] between two texts of one line
 
 void hn_label_remember(hn_label_places *placed, hn_label_kind kind, const char *text,
@@ -171,6 +172,18 @@ bool hn_label_is_free(const hn_sheet *s, const hn_label_places *placed, const do
         }
     }
     return true;
+}
+
+bool hn_label_is_on_line(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
+                         double half) {
+    double box[4];
+    box_of(s, xy, half, PAPER, box);
+    for (int i = 0; i < placed->n_lines; i++) {
+        if (passes_box(box, placed->line[i][0], placed->line[i][1])) {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool hn_label_is_crossed(const hn_sheet *s, const hn_label_places *placed, const double xy[2],

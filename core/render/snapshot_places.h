@@ -61,6 +61,10 @@ void hn_label_add_row(hn_label_places *placed, const char *text);
 /// placed before and off hatching.
 bool hn_label_is_free(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
                       double half);
+/// Returns whether a text of this half width around `xy`, with the paper behind it, lies on a line
+/// that texts keep off.
+bool hn_label_is_on_line(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
+                         double half);
 /// Returns whether the line from `xy` to `end` crosses a text that was placed before.
 bool hn_label_is_crossed(const hn_sheet *s, const hn_label_places *placed, const double xy[2],
                          const double end[2]);

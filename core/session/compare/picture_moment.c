@@ -79,6 +79,14 @@ static hn_status choose_traces(hn_picture_moment *p, hn_diags *diags) {
             hn_strbuf_reset(&names);
             return status;
         }
+        bool is_traced = false; // by the scene, or asked for twice
+        for (int k = 0; k < p->n_traces; k++) {
+            is_traced = is_traced || p->trace_points[k] == point ||
+                        strcmp(p->trace_names[k], d.labels[point]) == 0;
+        }
+        if (is_traced) {
+            continue;
+        }
         p->trace_names[p->n_traces] = d.labels[point];
         p->trace_points[p->n_traces++] = point;
     }

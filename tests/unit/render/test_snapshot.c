@@ -477,9 +477,10 @@ static void a_length_keeps_off_the_arrow_of_a_force(void **state) {
     hn_canvas *c = create();
     hn_label_places free_places = {0}, crossed = {0};
     hn_snapshot_lengths(c, &sheet, &four_bar, &pose, &free_places);
-    assert_int_equal(free_places.n, 4);       // three bars and the ground
-    assert_int_equal(free_places.n_lines, 4); // names keep off these lines
-    crossed.n_lines = 1;                      // straight through the first length
+    assert_int_equal(free_places.n, 4); // three bars and the ground
+    // names keep off these lines and their extension lines
+    assert_int_equal(free_places.n_lines, 3 * 4);
+    crossed.n_lines = 1; // straight through the first length
     crossed.line[0][0][0] = crossed.line[0][1][0] = free_places.at[0][0];
     crossed.line[0][0][1] = free_places.at[0][1] - 40;
     crossed.line[0][1][1] = free_places.at[0][1] + 40;

@@ -95,7 +95,7 @@ static void dimension_lines_of_bars_on_one_line_lie_apart(void **state) {
     assert_int_equal(placed.n, 6);
     double away[3]; // of the lines of O A, O B and B A from that line
     for (int i = 0; i < 3; i++) {
-        double(*line)[2] = placed.line[i == 0 ? 0 : i + 1];
+        double(*line)[2] = placed.line[3 * (i == 0 ? 0 : i + 1) + 2]; // after its extension lines
         double o[2], a[2];
         hn_sheet_pixel(&sheet, points, o);
         hn_sheet_pixel(&sheet, points + 6, a);
