@@ -19,8 +19,9 @@ enum {
     MOST_MAP_ROWS = 24,
     LEAST_MAP_ROWS = 6,
     LEAST_DOUBLED_ROWS = 18,
-    AROUND_MAP = 15, // the frame, the axes, and six lines of sentences below
-    SIDE_COLUMNS = 46
+    AROUND_MAP = 16, // the frame, the axes, and seven lines of sentences below
+    SIDE_COLUMNS = 46,
+    MOST_ROWS = 1 << 20 // more than any text has
 };
 
 static const char FALLBACK[] = "baumgarte@rk4:h=0.01";
@@ -258,6 +259,7 @@ static void move_cursor(hn_workbench *w, int dx, int dy) {
     const int column = w->at.column + dx, row = w->at.row + dy;
     w->at.column = column < 0 ? 0 : column >= map.x.n ? map.x.n - 1 : column;
     w->at.row = row < 0 ? 0 : row >= map.y.n ? map.y.n - 1 : row;
+    w->scroll = 0; // the line of the cell is the first
 }
 
 /// Whether the answer is the same for a study of another length that was made before; or that it
@@ -297,36 +299,68 @@ static void add_words(hn_strbuf *b, const hn_workbench *w) {
     hn_tui_study_words(w->study, b);
 }
 
-/// The same of a map: the cell under the cursor, the best cells, then the map as a whole.
+/// The same of a map: the cell under the cursor, of the present point before there is one; the best
+/// cells, then the map as a whole.
 static void add_map_words(hn_strbuf *b, const hn_workbench *w, const hn_map_plot *map) {
-    if (map->x.n > 0 && w->at.column >= 0) {
-        hn_map_plot_words(b, map, w->at);
-        hn_strbuf_add(b, " (Enter takes these)\n");
+    const hn_map_place here = hn_map_plot_place(map, w->present[0], w->present[1]);
+    const bool chosen = w->at.column >= 0;
+    if (chosen || here.column >= 0) {
+        hn_map_plot_words(b, map, chosen ? w->at : here);
+        hn_strbuf_add(b, chosen ? " (Enter takes these)\n" : " (★ is in this cell)\n");
     }
     hn_map_plot_best_words(b, map);
     hn_tui_study_words(w->study, b);
 }
 
-/// The last lines stay in sight: of a map the last one, which is folded.
-static void scroll(hn_workbench *w, int by) {
+/// Returns whether the text of a work-precision study stands to the right of its plot.
+static bool is_beside(hn_area in) {
+    return in.columns >= 60 + SIDE_COLUMNS;
+}
+
+/// Returns the area of its legend and text, beside the plot or below it.
+static hn_area beside_plot(hn_area in, const hn_cost_plot *plot) {
+    const int below = plot->scatter.n + 4;
+    return is_beside(in) ? (hn_area){in.x + in.columns - SIDE_COLUMNS, in.y, SIDE_COLUMNS, in.rows}
+                         : (hn_area){in.x + 1, in.y + in.rows - below, in.columns - 2, below};
+}
+
+/// Everything that there is to read in a study; `in`: the inside of its frame. Returns where it
+/// stands; no rows: there is no room.
+static hn_area text_of(hn_strbuf *b, hn_area in, const hn_workbench *w) {
     static hn_map_plot map;
-    const bool is_map = hn_tui_study_get_kind(w->study) == HN_TUI_STABILITY;
-    const int stay = is_map ? 1 : 3;
+    static hn_cost_plot cost;
+    hn_area out = {in.x + 1, in.y + 1, in.columns - 2, in.rows - 1};
+    if (hn_tui_study_get_kind(w->study) == HN_TUI_COST) {
+        hn_tui_study_cost(w->study, &cost);
+        const hn_area side = beside_plot(in, &cost);
+        const int used = cost.scatter.n + is_beside(in);
+        out = (hn_area){side.x, side.y + used, side.columns, side.rows - used};
+        add_words(b, w);
+    } else {
+        hn_tui_study_map(w->study, &map);
+        if (map.x.n == 0) {
+            add_words(b, w);
+            return out;
+        }
+        const int rows = hn_map_plot_rows(&map, in.columns, in.rows - 1);
+        const bool beyond = hn_map_plot_is_beyond(&map, w->present[0], w->present[1]);
+        out = (hn_area){out.x, out.y + rows, out.columns, out.rows - rows - beyond};
+        add_map_words(b, w, &map);
+    }
+    return out;
+}
+
+/// Scrolls the text by so many of its rows; pages: by so many times what fits.
+static void scroll(hn_workbench *w, int rows, int pages) {
+    const hn_area in = {1, 2, w->columns - 2, w->rows - 5}; // of the frame
     hn_strbuf b;
     hn_strbuf_init(&b);
-    if (is_map) {
-        hn_tui_study_map(w->study, &map);
-        add_map_words(&b, w, &map);
-    } else {
-        add_words(&b, w);
-    }
-    int lines = 0;
-    for (const char *at = hn_strbuf_text(&b); *at; at++) {
-        lines += *at == '\n';
-    }
-    hn_strbuf_reset(&b);
-    const int last = lines > stay ? lines - stay : 0, to = w->scroll + by;
+    const hn_area area = text_of(&b, in, w);
+    const int all = hn_text_rows(hn_strbuf_text(&b), area.columns);
+    const int last = all > area.rows ? all - area.rows : 0;
+    const int to = w->scroll + rows + pages * (area.rows > 1 ? area.rows : 1);
     w->scroll = to < 0 ? 0 : to > last ? last : to;
+    hn_strbuf_reset(&b);
 }
 
 void hn_study_panel_key(hn_workbench *w, int key) {
@@ -334,6 +368,7 @@ void hn_study_panel_key(hn_workbench *w, int key) {
     const int down = (key == HN_KEY_DOWN) - (key == HN_KEY_UP);
     const int across = (key == HN_KEY_RIGHT) - (key == HN_KEY_LEFT);
     const int page = (key == HN_KEY_PAGE_DOWN) - (key == HN_KEY_PAGE_UP);
+    const int end = (key == HN_KEY_END) - (key == HN_KEY_HOME);
     if (key == HN_KEY_ESCAPE && hn_tui_study_running(w->study)) {
         hn_tui_study_stop(w->study);
     } else if (key == HN_KEY_ESCAPE || key == 'q') {
@@ -350,32 +385,32 @@ void hn_study_panel_key(hn_workbench *w, int key) {
         hn_workbench_ask(w, HN_PROMPT_STUDY_TIME, text);
     } else if (map && (down || across)) {
         move_cursor(w, across, -down);
-    } else if (down || page) {
-        scroll(w, down + page);
+    } else if (down || page || end) {
+        scroll(w, down + MOST_ROWS * end, page);
     }
 }
 
 // ---- drawing ----
 
-/// Text from the line that is scrolled to. Returns whether there is more of it.
-static bool draw_text(hn_cells *c, hn_area area, const hn_workbench *w, const char *text) {
-    for (int line = 0; line < w->scroll && strchr(text, '\n'); line++) {
-        text = strchr(text, '\n') + 1;
-    }
-    hn_cells_fold(c, area, 0, HN_CELL_INK, text);
-    return hn_text_rows(text, area.columns) > area.rows;
-}
-
-static void draw_words(hn_cells *c, hn_area area, const hn_workbench *w) {
+/// Draws the text of the study from the row that is scrolled to, and says in the frame (`edge`)
+/// that there is more of it.
+static void draw_text(hn_cells *c, hn_area in, const hn_workbench *w) {
+    const hn_area edge = {in.x, in.y + in.rows, in.columns, 1};
     hn_strbuf b;
     hn_strbuf_init(&b);
-    add_words(&b, w);
-    draw_text(c, area, w, hn_strbuf_text(&b));
+    const hn_area area = text_of(&b, in, w);
+    const int all = hn_text_rows(hn_strbuf_text(&b), area.columns);
+    hn_cells_fold(c, area, -w->scroll, HN_CELL_INK, hn_strbuf_text(&b));
+    if (all - w->scroll > area.rows) {
+        hn_cells_put(c, edge, 1, 0, HN_CELL_MUTED, 0, " PageDown: more ");
+    } else if (w->scroll > 0) {
+        hn_cells_put(c, edge, 1, 0, HN_CELL_MUTED, 0, " PageUp: back ");
+    }
     hn_strbuf_reset(&b);
 }
 
 /// A line a method: its glyph, how many points are done, how many ended early.
-static int draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
+static void draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
     for (int m = 0; m < p->scatter.n && m < area.rows; m++) {
         hn_cells_put(c, area, 0, m, p->scatter.series[m].colour, HN_CELL_BOLD,
                      p->scatter.series[m].glyph);
@@ -388,7 +423,6 @@ static int draw_legend(hn_cells *c, hn_area area, const hn_cost_plot *p) {
         hn_short_spelling(p->name[m], shown, sizeof shown);
         hn_cells_put(c, area, x, m, HN_CELL_INK, 0, shown);
     }
-    return p->scatter.n;
 }
 
 /// A method has the colour and glyph of the table: the study is about its methods, in its order.
@@ -405,14 +439,10 @@ static void draw_cost(hn_cells *c, hn_area in, const hn_workbench *w) {
     static hn_cost_plot plot;
     hn_tui_study_cost(w->study, &plot);
     take_looks(&plot, w);
-    const bool beside = in.columns >= 60 + SIDE_COLUMNS;
-    const int below = plot.scatter.n + 4;
-    const hn_area left = beside
+    const hn_area side = beside_plot(in, &plot);
+    const hn_area left = is_beside(in)
                              ? (hn_area){in.x, in.y + 1, in.columns - SIDE_COLUMNS - 2, in.rows - 1}
-                             : (hn_area){in.x, in.y + 1, in.columns, in.rows - below - 1};
-    const hn_area side =
-        beside ? (hn_area){in.x + in.columns - SIDE_COLUMNS, in.y, SIDE_COLUMNS, in.rows}
-               : (hn_area){in.x + 1, in.y + in.rows - below, in.columns - 2, below};
+                             : (hn_area){in.x, in.y + 1, in.columns, in.rows - side.rows - 1};
     if (!hn_cost_plot_draw(c, left, &plot, w->form)) {
         hn_cells_put(c, in, 1, 2, HN_CELL_MUTED, 0,
                      hn_tui_study_running(w->study) ? "the reference solution is computed first"
@@ -420,20 +450,18 @@ static void draw_cost(hn_cells *c, hn_area in, const hn_workbench *w) {
     } else {
         hn_cells_put(c, in, 1, 0, HN_CELL_MUTED, 0, hn_cost_plot_title(&plot));
     }
-    const int used = draw_legend(c, side, &plot);
-    draw_words(
-        c, (hn_area){side.x, side.y + used + beside, side.columns, side.rows - used - beside}, w);
+    draw_legend(c, side, &plot);
+    draw_text(c, in, w);
 }
 
 static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     static hn_map_plot map;
     hn_tui_study_map(w->study, &map);
     if (map.x.n == 0) {
-        draw_words(c, (hn_area){in.x + 1, in.y + 1, in.columns - 2, in.rows - 1}, w);
+        draw_text(c, in, w);
         return;
     }
     const hn_map_place here = hn_map_plot_place(&map, w->present[0], w->present[1]);
-    const int rows = hn_map_plot_rows(&map, in.columns, in.rows - 1);
     char shown[HN_SPEC_MAX];
     hn_short_spelling(map.name, shown, sizeof shown);
     const int used = 1 + hn_cells_put(c, in, 1, 0, HN_CELL_INK, HN_CELL_BOLD, shown);
@@ -448,20 +476,10 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     }
     hn_map_plot_draw(c, (hn_area){in.x, in.y + 1, in.columns, in.rows - 1}, &map, here, w->at);
 
-    // below it what it says, and in the frame that there is more of it
-    const hn_area foot = {in.x + 1, in.y + 1 + rows, in.columns - 2, in.rows - rows - 1};
-    const hn_area edge = {in.x, in.y + in.rows, in.columns, 1};
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    add_map_words(&b, w, &map);
-    if (draw_text(c, foot, w, hn_strbuf_text(&b))) {
-        hn_cells_put(c, edge, 1, 0, HN_CELL_MUTED, 0, " PageDown: more ");
-    } else if (w->scroll > 0) {
-        hn_cells_put(c, edge, 1, 0, HN_CELL_MUTED, 0, " PageUp: back ");
-    }
-    hn_strbuf_reset(&b);
+    // below it what it says
+    draw_text(c, in, w);
     if (hn_map_plot_is_beyond(&map, w->present[0], w->present[1])) {
-        hn_cells_printf(c, foot, 0, foot.rows - 1, HN_CELL_INK, 0,
+        hn_cells_printf(c, in, 1, in.rows - 1, HN_CELL_INK, 0,
                         "★ at the edge: now alpha = %.4g, beta = %.4g, beyond the map",
                         w->present[0], w->present[1]);
     }

@@ -101,6 +101,38 @@ class Studies(unittest.TestCase):
         self.assertIn("PageUp: back", small[-1])
         self.assertIn(" ★ is now, Esc goes back ─", small[-1].split("\n")[1])
 
+    def test_a_page_of_a_map_is_what_fits_and_an_arrow_shows_the_line_of_its_cell(self):
+        def foot(keys):
+            out = once("four-bar", "--once", "--size", "100x30", "--methods", "baumgarte@rk4:h=0.02", "--keys", "bt0.2<Enter>" + keys)[1]
+            rows = out.split("\n")
+            at = next(i for i, row in enumerate(rows) if "across: alpha" in row)
+            return " ".join(" ".join(rows[at + 1:-3]).replace("│", " ").split())
+        # before the first arrow the line is that of the present point
+        first = foot("")
+        self.assertRegex(first, r"^alpha = 4\.56 1/s, beta = 5\.08 1/s: .*; worst gap .*\(★ is in this cell\) g smallest")
+        self.assertIn("The best place lies between, and it is another one for the gap, the motion and the energy.", first)
+        self.assertIn("PageDown: more", first)
+        # one page reaches the end
+        self.assertIn("prediction right in", foot("<PageDown>"))
+        self.assertIn("PageUp: back", foot("<PageDown>"))
+        self.assertEqual(foot("<PageDown>"), foot("<End>"))
+        self.assertEqual(foot("<End><Home>"), first)
+        moved = foot("<PageDown><Right>")
+        self.assertRegex(moved, r"^alpha = 5\.57 1/s, beta = 5\.08 1/s: .*\(Enter takes these\)")
+        self.assertEqual(moved, foot("<Right>"))
+
+    def test_a_cost_study_marks_that_its_text_goes_on_and_end_goes_there(self):
+        with tempfile.TemporaryDirectory() as cache:
+            def shown(keys):
+                return once("four-bar", "--once", "--size", "100x30", "--keys", "wt1<Enter>" + keys, HOLONOM_CACHE=cache)[1]
+            first = shown("")
+            self.assertIn("PageDown: more", first)
+            last = shown("<End>")
+            self.assertIn("PageUp: back", last)
+            self.assertEqual(last, shown(20 * "<PageDown>"))
+            self.assertNotEqual(last, first)
+            self.assertEqual(shown("<End><Home>"), first)
+
     def test_the_legend_of_a_map_stands_beside_it_or_below_unbroken(self):
         out = self.study("bt0.2<Enter>", "four-bar", "--methods", "baumgarte@rk4:h=0.02")
         rows = out.split("\n")
