@@ -146,6 +146,11 @@ class Snapshot(Command):
         self.assertEqual(picture["legend"], ["earlier: t = 0, 0.2 s", "path of a point on coupler", "path of B"])
         self.assertEqual([label["text"] for label in picture["labels"] if label["kind"] == "time"], ["0 s", "0.2 s"])
 
+    def test_a_path_that_the_scene_draws_is_not_drawn_twice(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = self.picture(folder, "a.svg", "--time", "0.2", "--trace", "P", "--trace", "P", scene="peaucellier")[1]["picture"]
+        self.assertEqual(picture["legend"], ["path of P"])
+
     def test_joints_that_the_legend_names_are_named_in_the_drawing(self):
         with tempfile.TemporaryDirectory() as folder:
             picture = self.picture(folder, "a.svg", "--time", "0.3", "--forces", scene="slider-crank")[1]["picture"]
