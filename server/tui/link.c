@@ -11,7 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double LEAST_SPEED = 1e-3, MOST_SPEED = 1e3; // of the page's links
 static const char ADDRESS[] = "http://127.0.0.1:8080/#";
+
+/// The name that the page has for the quantity of each plot (web/state/quantities.js).
+static const char *const QUANTITY[HN_TUI_PLOTS] = {
+    [HN_TUI_GAP] = "gap", [HN_TUI_ERROR] = "off", [HN_TUI_ENERGY] = "energy_change"};
 
 static void add_escaped(hn_strbuf *b, const char *text) {
     for (; *text; text++) {
@@ -38,6 +43,16 @@ void hn_workbench_link(const hn_workbench *w, hn_strbuf *b) {
     }
     hn_strbuf_printf(b, "&frame=%d&selected=%d",
                      hn_recording_page_frame(w->recording, hn_workbench_frame(w)), w->selected);
+
+    // what is here by itself is left out
+    if (w->speed != 1) {
+        char speed[HN_SHORTEST_TEXT];
+        hn_shortest_write(w->speed, speed);
+        hn_strbuf_printf(b, "&speed=%s", speed);
+    }
+    if (w->plot != HN_TUI_GAP) {
+        hn_strbuf_printf(b, "&upper=%s", QUANTITY[w->plot]);
+    }
 }
 
 /// Turns %40 and its like back; in place.
@@ -57,11 +72,12 @@ static void unescape(char *text) {
 }
 
 /// Fields of the page's links (web/state/link.js) that a terminal has no use for.
-static const char *const OF_THE_PAGE[] = {
-    "hidden", "show",   "look",  "camera", "upper",  "lower", "zoom",   "why",  "speed", "study",
-    "map",    "judged", "until", "step",   "budget", "panel", "lesson", "note", "build"};
+static const char *const OF_THE_PAGE[] = {"hidden", "show",  "look",   "camera", "lower", "zoom",
+                                          "why",    "study", "map",    "judged", "until", "step",
+                                          "budget", "panel", "lesson", "note",   "build"};
 /// Those that are read here; "set." begins the name of a parameter.
-static const char *const FIELDS[] = {"scene", "method", "frame", "selected", "pulls", "set."};
+static const char *const FIELDS[] = {"scene", "method", "frame", "selected",
+                                     "speed", "upper",  "pulls", "set."};
 enum {
     N_OF_THE_PAGE = sizeof OF_THE_PAGE / sizeof *OF_THE_PAGE,
     N_FIELDS = sizeof FIELDS / sizeof *FIELDS
@@ -113,6 +129,26 @@ static void take_number(hn_tui_link *link, int *to, const char *name, const char
     }
 }
 
+static void take_speed(hn_tui_link *link, const char *value) {
+    double speed;
+    if (hn_number_parse(value, &speed) && speed >= LEAST_SPEED && speed <= MOST_SPEED) {
+        link->speed = speed;
+    } else {
+        add_fault(link, "speed is '%.40s'; a number from %g to %g is needed", value, LEAST_SPEED,
+                  MOST_SPEED);
+    }
+}
+
+/// The quantity before the first comma; one that is not plotted here leaves what was there.
+static void take_plot(hn_tui_link *link, const char *value) {
+    const size_t n = strcspn(value, ",");
+    for (int i = 0; i < HN_TUI_PLOTS; i++) {
+        if (strlen(QUANTITY[i]) == n && strncmp(QUANTITY[i], value, n) == 0) {
+            link->plot = (hn_tui_plot)i;
+        }
+    }
+}
+
 /// A field that is not read: one of the page alone, or misspelt.
 static void take_other(hn_tui_link *link, const char *name) {
     const char *names[N_FIELDS + N_OF_THE_PAGE];
@@ -139,6 +175,10 @@ static void take_item(hn_tui_link *link, const char *name, const char *value) {
         take_number(link, &link->frame, name, value, 1e6);
     } else if (strcmp(name, "selected") == 0) {
         take_number(link, &link->selected, name, value, HN_COMPARISON_MAX_METHODS - 1);
+    } else if (strcmp(name, "speed") == 0) {
+        take_speed(link, value);
+    } else if (strcmp(name, "upper") == 0) {
+        take_plot(link, value);
     } else if (strcmp(name, "pulls") == 0) {
         add_fault(link, "a hand pulls at the mechanism there; here the motion is without it");
     } else {
@@ -149,7 +189,7 @@ static void take_item(hn_tui_link *link, const char *name, const char *value) {
 bool hn_workbench_read_link(const char *text, hn_tui_link *link) {
     const char *hash = strchr(text, '#');
     char copy[4096];
-    *link = (hn_tui_link){.frame = -1};
+    *link = (hn_tui_link){.frame = -1, .speed = 1, .plot = HN_TUI_GAP};
     if (!hash && strncmp(text, "scene=", 6) != 0) {
         return false;
     }
@@ -187,4 +227,6 @@ void hn_workbench_go_to_link(hn_workbench *w, const hn_tui_link *link) {
         hn_recording_want(w->recording, (int)w->clock);
     }
     w->selected = link->selected < w->n_methods ? link->selected : 0;
+    w->speed = link->speed;
+    w->plot = link->plot;
 }

@@ -18,12 +18,14 @@ typedef struct hn_tui_link {
     int n_settings, n_methods;
     int frame;                   ///< of the page; -1: none, it is at the start
     int selected;                ///< method
+    double speed;                ///< times real time
+    hn_tui_plot plot;            ///< the page's upper one, where it is drawn here too
     char faults[HN_TUI_MESSAGE]; ///< what could not be read; "": nothing
 } hn_tui_link;
 
 /// Reads a link of the page (the part after #, or the whole address). False: it is no link; scene
 /// and numbers are then empty and frame is -1.
 bool hn_workbench_read_link(const char *text, hn_tui_link *link);
-/// Shows the frame and selects the method of a link that was opened.
+/// Takes frame, selected method, speed and plot of a link that was opened.
 void hn_workbench_go_to_link(hn_workbench *w, const hn_tui_link *link);
 #endif

@@ -253,6 +253,23 @@ class Keys(unittest.TestCase):
         self.assertEqual((status, err), (0, ""))
         self.assertEqual(len(re.findall(r"Baumgarte", out)), 8)
 
+    def test_the_link_keeps_speed_and_plot_in_the_fields_of_the_page(self):
+        def link(keys, scene="four-bar"):
+            out = once(scene, "--once", "--t", "0.1", "--size", "300x30", "--keys", keys + "l")[1]
+            return re.search(r"http\S+", out).group(0)
+        self.assertNotRegex(link(""), "speed|upper")
+        for keys, fields, seen in (("---g", "&speed=0.1&upper=off", ("×0.1", "─ error against the reference")), ("=gg", "&speed=2&upper=energy_change", ("×2", "─ energy change, size"))):
+            copied = link(keys)
+            self.assertTrue(copied.endswith(fields), copied)
+            out = once(copied, "--once", "--t", "0.1", "--size", "100x30")[1]
+            for words in seen:
+                self.assertIn(words, out)
+            self.assertTrue(link("", copied).endswith(fields))
+        # the page draws other quantities too, and says more about one
+        self.assertIn("×5", once("#scene=four-bar&speed=5&upper=sigma_min,table", "--once", "--t", "0.1")[1])
+        self.assertTrue(link("", "#scene=four-bar&upper=off,table").endswith("&upper=off"))
+        self.assertIn("speed is 'fast'; a number from 0.001 to 1000 is needed", " ".join(once("#scene=four-bar&speed=fast", "--once", "--t", "0.1")[1].split()))
+
     def test_a_link_opens_paused_in_a_terminal(self):
         terminal = Terminal("#scene=four-bar&method=projection@rk4:h=0.02&frame=50")
         self.addCleanup(terminal.close)
