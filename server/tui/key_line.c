@@ -91,12 +91,18 @@ void hn_key_line(const hn_workbench *w, bool more, int columns, char out[HN_TUI_
     for (;;) {
         snprintf(out, HN_TUI_LINE, "%.*s%s", (int)(to - line), line, end);
         if (hn_text_columns(out) <= columns || to == line) {
-            return;
+            break;
         }
 
         // back over one key and the gap behind it
         for (to -= strlen(GAP); to > line && strncmp(to - strlen(GAP), GAP, strlen(GAP)) != 0;) {
             to--;
         }
+    }
+
+    // the last key has its word where there is room
+    const size_t n = strlen(out);
+    if (n > 1 && strcmp(out + n - 2, " q") == 0 && hn_text_columns(out) + 5 <= columns) {
+        snprintf(out + n, HN_TUI_LINE - n, " quit");
     }
 }

@@ -295,20 +295,31 @@ static double draw_tear(const placing *p, double *x, double *y) {
     return power;
 }
 
-/// "gap ×20" beside the end of an enlarged tear.
-static void name_tear(hn_cells *c, hn_area area, double x, double y, double power) {
-    char text[32];
-    snprintf(text, sizeof text, "gap ×%g", power);
-    const int wide = hn_text_columns(text);
-    const int column = (int)floor(x / ACROSS), row = (int)floor(y / DOWN);
+/// Puts a text to the right or left of a cell, or near it above or below. Returns whether there is
+/// room.
+static bool put_beside(hn_cells *c, hn_area area, int column, int row, const char *text) {
     static const signed char rows[] = {0, -1, 1, -2, 2, -3, 3};
+    const int wide = hn_text_columns(text);
     for (size_t k = 0; k < sizeof rows; k++) {
         for (int side = 0; side < 2; side++) {
             const int left = side == 0 ? column + 3 : column - 2 - wide;
             if (is_free(c, area, left, row + rows[k], wide)) {
                 hn_cells_put(c, area, left, row + rows[k], HN_CELL_ALARM, 0, text);
-                return;
+                return true;
             }
+        }
+    }
+    return false;
+}
+
+/// "gap enlarged ×20" beside the end of an enlarged tear; "gap ×20" where that has no room.
+static void name_tear(hn_cells *c, hn_area area, double x, double y, double power) {
+    const int column = (int)floor(x / ACROSS), row = (int)floor(y / DOWN);
+    for (int i = 0; i < 2; i++) {
+        char text[32];
+        snprintf(text, sizeof text, i == 0 ? "gap enlarged ×%g" : "gap ×%g", power);
+        if (put_beside(c, area, column, row, text)) {
+            return;
         }
     }
 }

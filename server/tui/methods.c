@@ -168,7 +168,8 @@ static void name_until(const hn_tui_worst *worst, double t, char *out, size_t si
 
 static void begin_change(const hn_workbench *w, int m, hn_tui_change *out) {
     const int frame = hn_workbench_frame(w);
-    *out = (hn_tui_change){.open = true, .method = m, .t = hn_recording_time(w->recording, frame)};
+    *out = (hn_tui_change){.method = m, .t = hn_recording_time(w->recording, frame)};
+    out->open = out->t > 0; // at the start there is nothing to compare
     out->before = find_worst(w, m, frame);
 }
 
@@ -290,11 +291,26 @@ void hn_methods_add(hn_workbench *w, const char *spelling) {
     }
 }
 
+void hn_methods_add_beside(hn_workbench *w, const char *spelling) {
+    const int from = w->selected, at = w->n_methods;
+    hn_tui_change change;
+    begin_change(w, from, &change);
+    hn_methods_add(w, spelling);
+    if (w->n_methods == at + 1) {
+        name_change(at, spelling, change.what, sizeof change.what);
+        const size_t n = strlen(change.what);
+        snprintf(change.what + n, sizeof change.what - n, " (before: method %d)", from + 1);
+        change.method = at;
+        say_change(w, &change);
+    }
+}
+
 void hn_methods_remove(hn_workbench *w, int at) {
     kept before;
     keep(&before, w);
     if (at >= w->n_methods || w->n_methods < 2) {
-        hn_workbench_say(w, "one method stays");
+        hn_workbench_say(w, at < w->n_methods ? "one method stays"
+                                              : "x removes a method of the list; none is chosen");
         return;
     }
     memmove(w->methods[at], w->methods[at + 1],

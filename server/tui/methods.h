@@ -18,6 +18,8 @@ bool hn_methods_put(hn_workbench *w, int at, const char *spelling);
 int hn_methods_find(const hn_workbench *w, const char *spelling);
 /// Adds a method, or finds it where it is already compared, and selects it.
 void hn_methods_add(hn_workbench *w, const char *spelling);
+/// The same, and says its gap and energy beside those of the method that was selected.
+void hn_methods_add_beside(hn_workbench *w, const char *spelling);
 /// Sets an option of the selected method: "h". The earlier value is reported.
 void hn_methods_set_one(hn_workbench *w, const char *key, double value);
 /// The last one stays.

@@ -459,7 +459,9 @@ static void list_key(hn_workbench *w, int key) {
     if (w->list != HN_LIST_SCENES && !removes && search_key(w, key)) {
         return;
     }
-    w->n_search = 0; // another key ends the search
+    if (w->list != HN_LIST_SCENES) { // whose letters stay in its title
+        w->n_search = 0;             // another key ends the search
+    }
     if (key == HN_KEY_ENTER && w->n_items > 0) {
         choose(w);
     } else if (removes) {

@@ -96,7 +96,15 @@ static bool accept_parameter(hn_workbench *w) {
                          item->unit[0] ? " in a unit that fits " : "", item->unit);
         return false;
     }
-    return hn_prompt_set_parameter(w, name, value);
+    char unit[32], text[HN_SHORTEST_TEXT];
+    snprintf(unit, sizeof unit, "%s%.30s", item->unit[0] ? " " : "", item->unit);
+    if (!hn_prompt_set_parameter(w, name, value)) {
+        return false;
+    }
+    hn_shortest_write(value, text);
+    hn_workbench_say(w, "%s = %s%s: the methods start again; p changes another one", name, text,
+                     unit);
+    return true;
 }
 
 /// The shortest text that reads back the same; what is not known stays empty.
@@ -140,8 +148,13 @@ static bool write_recording(hn_workbench *w) {
 
     // only a file that was closed well is complete
     const bool good = fclose(file) == 0;
-    hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames",
-                     w->input, n);
+    if (good) {
+        hn_workbench_say(w, "%.200s: %d frames written, to t = %.4g s of %.4g s", w->input, n,
+                         hn_recording_time(w->recording, n - 1),
+                         hn_recording_duration(w->recording));
+    } else {
+        hn_workbench_say(w, "%.200s: the disk is full; %d frames", w->input, n);
+    }
     return good;
 }
 

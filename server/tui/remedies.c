@@ -90,7 +90,7 @@ void hn_remedies_take(hn_workbench *w) {
         hn_methods_set_one(w, key, value);
     } else if (strchr(remedy, '@') && !strchr(remedy, ' ')) {
         const int runs = hn_methods_find(w, remedy);
-        hn_methods_add(w, remedy);
+        hn_methods_add_beside(w, remedy);
         if (runs >= 0) {
             hn_workbench_say(w, "%s runs already: it is method %d, now selected", remedy, runs + 1);
         }

@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "cli/shell/plain.h"
 #include "terminal/keys.h"
+#include "tui/cursor_keys.h"
 #include "tui/foreground.h"
 #include "tui/screen_colours.h"
 
@@ -308,20 +309,26 @@ static void suspend(void) {
     hn_foreground_stop();
 }
 
-/// Arrows, Home and End as terminals send them, whatever the description of this one says: some
-/// send the form of the other mode.
-static void define_moves(void) {
-    static const struct {
-        char letter;
-        int key;
-    } moves[] = {{'A', KEY_UP},   {'B', KEY_DOWN}, {'C', KEY_RIGHT},
-                 {'D', KEY_LEFT}, {'H', KEY_HOME}, {'F', KEY_END}};
-    for (size_t i = 0; i < sizeof moves / sizeof *moves; i++) {
-        const char normal[] = {'\033', '[', moves[i].letter, '\0'};
-        const char application[] = {'\033', 'O', moves[i].letter, '\0'};
-        define_key(normal, moves[i].key);
-        define_key(application, moves[i].key);
+/// A sequence that no key is known for is one key without a meaning, not an Escape and letters.
+/// Returns whether Escape was the begin of one, which is read to its end.
+static bool skip_sequence(void) {
+    timeout(0);
+    int key = getch();
+    const bool asked = screen.questions > 0 || screen.early || screen.asked;
+    if (asked && (key == '[' || key == ']' || key == '_')) {
+        screen.parted = true; // it may be an answer that comes in parts
+        return take_parted_answer(key);
     }
+    if (key != '[' && key != 'O') {
+        if (key != ERR) {
+            ungetch(key);
+        }
+        return false;
+    }
+    do {
+        key = getch();
+    } while (key >= ' ' && key < '@');
+    return true;
 }
 
 static void prepare_asking(void) {
@@ -329,7 +336,7 @@ static void prepare_asking(void) {
     const char *move_cursor = tigetstr("cup");
     screen.asks = move_cursor && move_cursor != (char *)-1 && strncmp(move_cursor, "\033[", 2) == 0;
     if (screen.asks) {
-        define_moves();
+        hn_cursor_keys_define();
     }
     define_key(ANSWER, KEY_ANSWER);
     define_key(NAME, KEY_NAME);
@@ -558,7 +565,7 @@ static int next_key(double seconds) {
         } else if (key == SUSPEND || hn_foreground_must_stop()) {
             suspend();
             return KEY_RESIZE;
-        } else {
+        } else if (key != ESCAPE || !skip_sequence()) {
             return take_picture_answer(key) ? KEY_NAME : key;
         }
     }

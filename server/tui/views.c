@@ -4,11 +4,14 @@
 #include "base/units.h"
 #include "cli/shell/plain.h"
 #include "render/look.h"
+#include "session/model/caption.h"
+#include "session/verdict/verdict.h"
 #include "study/incidents/wording.h"
 #include "terminal/plot.h"
 #include "tui/key_line.h"
 #include "tui/list_view.h"
 #include "tui/mechanism_view.h"
+#include "tui/method_name.h"
 #include "tui/methods.h"
 #include "tui/reactions_view.h"
 #include "tui/study_panel.h"
@@ -23,9 +26,7 @@ enum { NUMBER_DIGITS = 2 }; // significant, as in the page
 enum {
     LEAST_NAME = 7,
     SHORT_NAME = 14,
-    LEAST_STEM = 4,
     MOST_NAME = 22,
-    ROW_NAME = 64,
     VERDICT_COLUMNS = 51,
     MOST_INCIDENTS = 512
 };
@@ -37,12 +38,16 @@ enum {
     LEAST_NUMBERS = 2,
     ENERGY_NUMBERS = 3
 };                                // columns of a number; gap and error, and energy
+enum { BESIDE_TITLE = 6 };        // columns of a frame's edge that its title leaves
 enum { LEAST_VIEW_COLUMNS = 32 }; // from which on the plot has room for its labels
 enum { LEAST_VIEW_ROWS = 6 };     // of mechanism and plot, with their frame: fewer would be empty
 
 /// [s] for which the clock waits before it is said that the methods are slower: a single late frame
 /// is none.
 static const double LATE = 1.0;
+
+/// The verdict on a counter-example as long as nothing shows.
+static const char OTHER_EQUATIONS[] = "it solves other equations";
 
 /// An incident is news for this share of the motion.
 static const double NEWS = 0.2;
@@ -162,12 +167,15 @@ static void draw_lines(hn_cells *c, hn_area area, int last, int most, int colour
     hn_cells_fold_fitted(c, lines, colour, text);
 }
 
-/// Returns whether an incident is worth the line: it has just happened, or its method is the
-/// selected one, which is still not well (`ill`).
+/// Returns whether an incident is worth the line: it has just happened, its method is the selected
+/// one, which is still not well (`ill`), or it is the one that ended its method.
 static bool is_news(const hn_workbench *w, const hn_incident *incident, int method, bool ill) {
     const double t = hn_recording_time(w->recording, hn_workbench_frame(w));
     const bool late = t - incident->t > NEWS * hn_recording_duration(w->recording);
-    return incident->t <= t && !w->hidden[method] && (!late || (ill && method == w->selected));
+    const hn_track_end end = hn_recording_end(w->recording, method);
+    const bool last = end.failed && incident->t >= end.t;
+    return incident->t <= t && !w->hidden[method] &&
+           (!late || last || (ill && method == w->selected));
 }
 
 void hn_views_update(hn_workbench *w) {
@@ -192,10 +200,10 @@ void hn_views_update(hn_workbench *w) {
     w->notice[0] = '\0';
     w->notice_of = last >= 0 ? whose[last] : 0;
     if (last >= 0 && w->panel == HN_PANEL_MAIN) {
-        char message[480];
+        char message[480], name[HN_METHOD_NAME];
+        hn_method_name(w, whose[last], MOST_NAME, name);
         hn_wording_behind_time(list[last].t, list[last].message, message, sizeof message);
-        snprintf(w->notice, sizeof w->notice, "! %s at %.4g s: %s",
-                 hn_recording_track(w->recording, whose[last])->name, list[last].t, message);
+        snprintf(w->notice, sizeof w->notice, "! %s at %.4g s: %s", name, list[last].t, message);
     }
 }
 
@@ -258,124 +266,13 @@ typedef struct table_columns {
     int name_width;
 } table_columns;
 
-/// The fixed step of a method [s]; NaN: it has none.
-static double step_of(const hn_track *t) {
-    hn_method_spec spec;
-    hn_diag diag = {0};
-    const bool fixed =
-        hn_method_parse(t->spelling, &spec, &diag) == HN_OK && !hn_method_is_adaptive(&spec);
-    return fixed ? hn_method_option(&spec, "h", (double)NAN) : (double)NAN;
-}
-
-static bool differs(const hn_method_spec *spec, const hn_method_spec *than, int option) {
-    const double value = spec->formulation_set[option];
-    return value != spec->formulation->options[option].initial ||
-           (than && value != than->formulation_set[option]);
-}
-
-/// Adds the options of the formulation that differ from their defaults, or from those of another
-/// method (NULL: none): " 20/20" of Baumgarte, " unit-length". Both of two numbers are shown, of
-/// more those that differ, with their keys.
-static void add_options(const hn_method_spec *spec, const hn_method_spec *than, char *out,
-                        size_t size) {
-    const hn_formulation *f = spec->formulation;
-    int numbers = 0, other = 0;
-    for (int i = 0; i < f->n_options; i++) {
-        const bool number = !f->options[i].choices;
-        numbers += number;
-        other += number && differs(spec, than, i);
-    }
-    const char *joint = " ";
-    for (int i = 0; i < f->n_options; i++) {
-        const hn_option *o = &f->options[i];
-        const double value = spec->formulation_set[i];
-        const bool own = differs(spec, than, i);
-        const size_t n = strlen(out);
-        if (o->choices && own) {
-            snprintf(out + n, size - n, " %s", o->choices[(int)value]);
-        } else if (!o->choices && numbers <= 2 && other > 0) {
-            snprintf(out + n, size - n, "%s%.4g", joint, value);
-            joint = "/";
-        } else if (!o->choices && own) {
-            snprintf(out + n, size - n, " %s=%.4g", o->key, value);
-        }
-    }
-}
-
-/// Takes the last word of a text away; false: it is one word alone.
-static bool drop_word(char *text) {
-    char *last = strrchr(text, ' ');
-    if (last && last > text) {
-        *last = '\0';
-    }
-    return last && last > text;
-}
-
-/// "Baumgarte" and " 20/20 20 ms" in `most` columns: where both are too long the name loses words
-/// from its end, then is abbreviated, as its letters tell least; then the options lose words.
-static void fit_name(const char *whole, char ending[ROW_NAME], int most, char out[ROW_NAME]) {
-    char name[ROW_NAME];
-    snprintf(name, sizeof name, "%s", whole);
-    snprintf(out, ROW_NAME, "%.40s%.22s", name, ending);
-    if (hn_text_columns(out) <= most) {
-        return;
-    }
-    const int room = most - hn_text_columns(ending);
-    while (hn_text_columns(name) > room && strcspn(name, " ") >= LEAST_STEM && drop_word(name)) {}
-    const size_t letters = strlen(name);
-    const bool abbreviates = (int)letters > room && room >= LEAST_STEM && !strchr(name, ' ');
-    if (abbreviates) {
-        snprintf(name + room - 1, sizeof name - (size_t)room + 1, ".");
-    }
-
-    // options from the last on
-    bool cut = false;
-    while (hn_text_columns(name) + hn_text_columns(ending) + cut > most && drop_word(ending)) {
-        cut = true;
-    }
-    const int rest = most - hn_text_columns(name);
-    const bool fits = hn_text_columns(ending) + cut <= rest;
-    snprintf(out, ROW_NAME, "%.*s%.40s%s", most, name, fits ? ending : "", cut || !fits ? "…" : "");
-}
-
-/// The name of method m with its own options, and with its step where another one has the same name
-/// and another step, in `most` columns.
-static void name_row(const hn_workbench *w, int m, int most, char out[ROW_NAME]) {
-    const hn_track *own = hn_recording_track(w->recording, m);
-    hn_method_spec spec, like;
-    hn_diag diag = {0};
-    char ending[ROW_NAME] = "";
-    bool shared = false, compared = false;
-    const bool read = hn_method_parse(own->spelling, &spec, &diag) == HN_OK && spec.formulation;
-    for (int i = 0; i < w->n_methods; i++) {
-        const hn_track *other = hn_recording_track(w->recording, i);
-        const bool named = i != m && strcmp(other->name, own->name) == 0;
-        shared |= named && step_of(own) != step_of(other) && isfinite(step_of(own));
-        if (read && named && !compared && hn_method_parse(other->spelling, &like, &diag) == HN_OK) {
-            compared = like.formulation == spec.formulation &&
-                       memcmp(like.formulation_set, spec.formulation_set,
-                              sizeof like.formulation_set) != 0;
-        }
-    }
-    if (read) {
-        add_options(&spec, compared ? &like : NULL, ending, sizeof ending);
-    }
-    if (shared) {
-        char step[HN_SI_TEXT];
-        const size_t n = strlen(ending);
-        hn_si_format(step_of(own), "s", 2, step);
-        snprintf(ending + n, sizeof ending - n, " %s", step);
-    }
-    fit_name(own->name, ending, most, out);
-}
-
 /// Gap and error are shown even where the verdict is cut, the others while it has room; names are
 /// shortened before the energy goes.
 static table_columns lay_out(const hn_workbench *w, int width) {
     int longest = LEAST_NAME;
     for (int m = 0; m < w->n_methods; m++) {
-        char name[ROW_NAME];
-        name_row(w, m, MOST_NAME, name);
+        char name[HN_METHOD_NAME];
+        hn_method_name(w, m, MOST_NAME, name);
         const int n = hn_text_columns(name);
         longest = n > longest ? n : longest;
     }
@@ -430,8 +327,8 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     const bool calm = v.tone == HN_TONE_CALM;
     hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
                     hn_look_get(track->slot)->glyph);
-    char name[ROW_NAME];
-    name_row(w, m, at.name_width, name);
+    char name[HN_METHOD_NAME];
+    hn_method_name(w, m, at.name_width, name);
     hn_cells_put(c, area, at.name, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, name);
     for (int i = 0; i < at.numbers; i++) {
         put_number(c, area, number_end(at, i), m, NUMBERS[i].of(track)[frame], NUMBERS[i].unit);
@@ -440,7 +337,9 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     // the verdict, in words; hidden methods say so
     char line[HN_MOTION_VERDICT_TEXT + 32];
     snprintf(line, sizeof line, "%s %s%s%s", v.arrow, w->hidden[m] ? "(hidden) " : "",
-             track->model_error ? "model error: " : "", v.text);
+             track->model_error ? "model error: " : "",
+             track->model_error && strcmp(v.text, HN_STARTS_CLOSED) == 0 ? OTHER_EQUATIONS
+                                                                         : v.text);
     if (w->form == HN_DOTS_ASCII) {
         hn_plain_powers(line);
     }
@@ -553,6 +452,22 @@ static bool draw_too_small(hn_cells *c, const hn_workbench *w) {
     return true;
 }
 
+/// "crank-rocker, 1 degree of freedom", as much of it as `most` columns hold.
+static void title_mechanism(const hn_workbench *w, int most, char *out, size_t size) {
+    static const char *const ends[] = {"", " (", ", "};
+    hn_model_caption(w->model, out, size);
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char *end = ends[i][0] ? strstr(out, ends[i]) : NULL;
+        if (end) {
+            *end = '\0';
+        }
+        if (out[0] && hn_text_columns(out) <= most) {
+            return;
+        }
+    }
+    snprintf(out, size, "mechanism");
+}
+
 void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     hn_cells_clear(c);
     if (draw_too_small(c, w)) {
@@ -571,7 +486,9 @@ void hn_views_draw(hn_cells *c, const hn_workbench *w) {
         const hn_places places = hn_views_places(c->columns, c->rows, w);
         const hn_area left = {0, 1, places.plot.x, places.plot.rows};
         hn_reactions_update(w);
-        hn_mechanism_view(c, hn_cells_frame(c, left, "mechanism"), w);
+        char title[96];
+        title_mechanism(w, left.columns - BESIDE_TITLE, title, sizeof title);
+        hn_mechanism_view(c, hn_cells_frame(c, left, title), w);
         if (w->why) {
             hn_why_draw(c, places.plot, w);
         } else if (w->reactions) {

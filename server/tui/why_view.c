@@ -6,11 +6,14 @@
 #include "study/incidents/kinds.h"
 #include "study/incidents/log.h"
 #include "study/incidents/wording.h"
+#include "tui/method_name.h"
 #include "tui/methods.h"
 #include "tui/remedy_words.h"
 
 #include <stdio.h>
 #include <string.h>
+
+enum { LONGEST_NAME = 22 }; // columns of a name in the title
 
 /// Writes a remedy: "try h=0.005 (tried until t = 3.6 s: largest gap 0.3 mm, ...)" where a trial
 /// removed the incident, "not tried yet: ..." while the recording is under way, else "not tried:
@@ -307,9 +310,9 @@ void hn_why_follow(hn_workbench *w) {
 }
 
 void hn_why_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
-    char title[96];
-    snprintf(title, sizeof title, "why: %s (%si closes)",
-             hn_recording_track(w->recording, w->selected)->name,
+    char title[128], name[HN_METHOD_NAME];
+    hn_method_name(w, w->selected, LONGEST_NAME, name);
+    snprintf(title, sizeof title, "why: %s (%si closes)", name,
              hn_why_has_remedy(w) ? "Enter tries, " : "");
     const hn_area in = hn_cells_frame(c, area, title);
     page p = {.c = c, .in = in, .first = first_shown(w)};

@@ -400,6 +400,11 @@ class Keys(unittest.TestCase):
         self.assertRegex(listed, r"(?m)^│ projection@rk4:h=0\.02 .*\n│ baumgarte\S+ .*\n│ ggl\S+ .*\n│ h=0\.01 +only puts it off")
         added = after("<Enter><Esc>")
         self.assertRegex(added, r"2. projection .*closed")
+        # its gap and energy beside those of the method that was selected, where time has passed
+        told = " ".join(after("<Enter>").split())
+        self.assertRegex(told, r"method 2: projection@rk4:h=0\.02 \(before: method 1\); until 4\.00 s: worst gap \S+ m, before [\d.]+ mm; energy change \S+ mJ, before")
+        _, out, _ = once("four-bar", "--once", "--t", "0", "--keys", "m<End><Enter><Enter><Enter>", *METHODS[:2])
+        self.assertNotIn("before", out)
         smaller = after("<Down><Down><Down><Enter>")
         self.assertRegex(smaller, r"h = 0\.01; until 4\.00 s: worst gap [\d.]+ mm, before [\d.]+ mm")
         # a remedy that is there already is selected, not added twice
@@ -595,6 +600,18 @@ class Keys(unittest.TestCase):
             terminal.type(down)
             self.assertTrue(terminal.wait_for(rb"Baumgarte"), down)
             self.assertNotIn(b"has no meaning", terminal.seen)
+
+    def test_a_sequence_of_no_key_does_nothing(self):
+        terminal = self.open("four-bar")
+        terminal.type("i")
+        self.assertTrue(terminal.wait_for(rb"why: "))
+        terminal.clear()
+        for unknown in ("\x1b[25;2~", "\x1bOz", "\x1b[1;9Z"):
+            terminal.type(unknown)
+        terminal.type("\x1b[1~")  # Home of some terminals
+        self.assertTrue(terminal.wait_for(rb"paused"))
+        self.assertNotIn(b"has no meaning", terminal.seen)
+        self.assertNotIn(b"loop gap", terminal.seen)  # the card stays open
 
     def test_the_mouse_selects_a_time_in_the_plot(self):
         terminal = self.open("four-bar")

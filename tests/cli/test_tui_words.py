@@ -36,8 +36,44 @@ class Table(unittest.TestCase):
     def test_the_longest_line_of_keys_that_fits_is_shown_whole(self):
         for columns in (80, 92, 100, 106, 120):
             _, out, _ = once("four-bar", "--once", "--t", "0.1", "--size", f"{columns}x24")
-            self.assertTrue(out.rstrip("\n").endswith("? menu  q"), columns)
+            self.assertTrue(out.rstrip("\n").endswith(("? menu  q", "? menu  q quit")), columns)
 
+
+    def test_an_arrow_does_not_end_the_search_of_scenes(self):
+        _, out, _ = once("four-bar", "--once", "--size", "100x30", "--keys", "sxq<Down><Backspace><Backspace>benn<Enter>")
+        self.assertRegex(out, r"holonom +bennett")
+
+    def test_x_on_a_row_that_is_no_method_says_so(self):
+        _, out, _ = once("four-bar", "--once", "--size", "100x30", "--keys", "m<End>x")
+        self.assertIn("x removes a method of the list; none is chosen", out)
+        _, out, _ = once("four-bar", "--once", "--size", "100x30", "--methods", "projection@rk4:h=0.01", "--keys", "mx")
+        self.assertIn("one method stays", out)
+
+    def test_a_method_that_has_stopped_is_told_to_the_end_with_its_reason(self):
+        words = ("triple-rocker", "--once", "--t", "5", "--methods", "projection@rk4:h=0.01", "reduced@rk4:h=0.01")
+        _, out, _ = once(*words, "--size", "120x40")
+        self.assertRegex(out, r"(?m)^│2\S reduced .* stopped at 0\.\d\d s: a dead point of the independent coordinates +│$")
+        self.assertRegex(" ".join(out.split()), r"! reduced at 0\.\d\d s: .*past a dead point")
+
+    def test_a_model_error_is_none_that_starts_closed(self):
+        _, out, _ = once("four-bar", "--once", "--t", "0.02", "--size", "100x30", "--methods", "nullspace-as-printed@rk4:h=0.01", "projection@rk4:h=0.01")
+        self.assertIn("model error: it solves other equations", out)
+        self.assertRegex(out, r"2\S projection .* starts closed")
+
+    def test_incidents_and_cards_name_the_options_in_which_methods_differ(self):
+        methods = ("--methods", "baumgarte:alpha=5,beta=5@rk4:h=0.02", "baumgarte:alpha=20,beta=20@rk4:h=0.02")
+        _, out, _ = once("four-bar", "--once", "--t", "10", "--size", "120x40", "--keys", "2i", *methods)
+        self.assertIn("why: Baumgarte 20/20", out)
+        self.assertRegex(out, r"! Baumgarte 20/20 at ")
+
+    def test_the_frame_of_the_mechanism_says_what_it_is(self):
+        for size, title in (("80x24", "crank-rocker"), ("100x30", "crank-rocker, 1 degree of freedom"),
+                            ("200x60", "crank-rocker, 1 degree of freedom (3 − 2 independent constraints)")):
+            self.assertIn(f"─ {title} ─", once("four-bar", "--once", "--size", size)[1], size)
+
+    def test_a_parameter_that_is_taken_is_said(self):
+        _, out, _ = once("four-bar", "--once", "--size", "100x30", "--keys", "p<Enter><CtrlU>45 cm<Enter>")
+        self.assertIn("l1 = 0.45 m: the methods start again; p changes another one", out)
 
     def test_methods_that_differ_in_their_step_alone_show_it(self):
         _, out, _ = once("pendulum", "--once", "--t", "0.1", "--size", "100x30", "--methods", "index1@rk4:h=0.02", "index1@rk4:h=0.01", "projection@rk4:h=0.02")
@@ -102,8 +138,8 @@ class Table(unittest.TestCase):
                 self.assertEqual(os.path.exists(path), written, size)
 
     def test_a_narrow_line_of_keys_keeps_its_end(self):
-        for columns, keys, wanted in ((60, "", "Space run  ←→ step  1-8 method  d dt  g plot  ? menu  q"), (40, "", "Space run  ←→ step  ? menu  q"),
-                                      (60, "i", "Enter try a remedy  ↑↓ another method  ? menu  q"), (40, "s", "letters search  Backspace  Esc back"),
+        for columns, keys, wanted in ((60, "", "Space run  ←→ step  1-8 method  d dt  g plot  ? menu  q"), (40, "", "Space run  ←→ step  ? menu  q quit"),
+                                      (60, "i", "Enter try a remedy  ↑↓ another method  ? menu  q quit"), (40, "s", "letters search  Backspace  Esc back"),
                                       (40, "t", "↑↓ choose  Enter open  Esc back")):
             _, out, _ = once("four-bar", "--once", "--t", "4", "--size", f"{columns}x24", "--keys", keys)
             self.assertEqual(out.rstrip("\n").split("\n")[-1].strip(), wanted, (columns, keys))

@@ -211,7 +211,7 @@ hn_motion_verdict hn_motion_judge(const hn_motion_history *h) {
     const trend is = trend_of(h);
     v.arrow = arrows[is];
     if (h->shown < HN_MOTION_EARLIEST) {
-        snprintf(v.text, sizeof v.text, "starts closed");
+        snprintf(v.text, sizeof v.text, "%s", HN_STARTS_CLOSED);
         return v;
     }
     const sizes s = measure(h, is);

@@ -13,6 +13,8 @@ typedef enum hn_tone { HN_TONE_CALM, HN_TONE_WARN, HN_TONE_BAD } hn_tone;
 
 enum { HN_MOTION_VERDICT_TEXT = 160, HN_MOTION_EARLIEST = 6 };
 
+#define HN_STARTS_CLOSED "starts closed" // the verdict before frame HN_MOTION_EARLIEST
+
 /// Frames 0 to `shown` of one method, equally spaced in time, and the scales of the comparison.
 typedef struct hn_motion_history {
     const double *gap; ///< constraint violation [m]; NaN: the method had ended

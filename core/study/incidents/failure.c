@@ -69,7 +69,7 @@ const hn_incident_kind hn_incident_chart_lost = {
     .code = HN_INCIDENT_CHART_LOST,
     .is_wrong = true,
     .spelling = "chart-lost",
-    .name = "the independent coordinates no longer determine the configuration",
+    .name = "a dead point of the independent coordinates",
     .rule = "A set of independent coordinates is valid for a part of the motion. At a dead "
             "point of one of them, where it turns back, the dependent coordinates cannot be solved "
             "for.",
