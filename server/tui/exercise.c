@@ -137,6 +137,10 @@ int hn_tui_exercise_n_fields(const hn_tui_exercise *x) {
     return x->n_fields;
 }
 
+const char *hn_tui_exercise_field(const hn_tui_exercise *x, int i) {
+    return x->fields[i].name;
+}
+
 const char *hn_tui_exercise_answer(const hn_tui_exercise *x, int i) {
     return x->fields[i].answer;
 }
@@ -237,13 +241,23 @@ static cJSON *matrix_of(const hn_tui_exercise *x) {
     return rows;
 }
 
-hn_status hn_tui_exercise_check(hn_tui_exercise *x, hn_diag *diag) {
+/// Returns whether an entry of the verdict belongs to a field: "b", "b.2".
+static bool is_of(const hn_entry_verdict *e, const field *f) {
+    const size_t n = strlen(f->name);
+    return strncmp(e->name, f->name, n) == 0 && (e->name[n] == '\0' || e->name[n] == '.');
+}
+
+/// Grades the answer of one field, or of all (`only` -1), as `holonom grade` does.
+static hn_status grade(const hn_tui_exercise *x, int only, hn_verdict *out, hn_diag *diag) {
     cJSON *submission = cJSON_CreateObject();
     hn_status status = HN_OK;
     if (x->matrix[0]) {
         cJSON_AddItemToObject(submission, x->matrix, matrix_of(x));
     }
     for (int i = 0; i < x->n_fields && !x->matrix[0] && status == HN_OK; i++) {
+        if (only >= 0 && i != only) {
+            continue;
+        }
         cJSON *answer;
         status = read_answer(&x->fields[i], &answer, diag);
         if (answer) {
@@ -251,18 +265,38 @@ hn_status hn_tui_exercise_check(hn_tui_exercise *x, hn_diag *diag) {
         }
     }
 
-    // the same grader as that of `holonom grade`
     char *text = cJSON_PrintUnformatted(submission);
     if (status == HN_OK && !text) {
         status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     if (status == HN_OK) {
-        status = hn_grade_json(x->exercise, text, strlen(text), 0, x->verdict);
-        x->checked = status == HN_OK;
+        status = hn_grade_json(x->exercise, text, strlen(text), 0, out);
     }
     cJSON_free(text);
     cJSON_Delete(submission);
     return status;
+}
+
+hn_status hn_tui_exercise_check(hn_tui_exercise *x, hn_diag *diag) {
+    const hn_status status = grade(x, -1, x->verdict, diag);
+    x->checked = status == HN_OK;
+    return status;
+}
+
+bool hn_tui_exercise_is_unreadable(const hn_tui_exercise *x, int i, char why[HN_GRADE_TEXT]) {
+    hn_verdict *v = calloc(1, sizeof *v);
+    hn_diag diag = {0};
+    why[0] = '\0';
+    if (v && x->fields[i].answer[0] && grade(x, i, v, &diag) == HN_OK) {
+        for (int k = 0; k < v->n_entries && !why[0]; k++) {
+            const hn_entry_verdict *e = &v->entry[k];
+            if (is_of(e, &x->fields[i]) && strcmp(e->mistake, "unreadable") == 0) {
+                snprintf(why, HN_GRADE_TEXT, "%s", e->explanation);
+            }
+        }
+    }
+    free(v);
+    return why[0] != '\0';
 }
 
 // ---- what there is to read ----
@@ -302,21 +336,44 @@ static void add_form(hn_strbuf *b, const field *f) {
     hn_strbuf_printf(b, "%s%s", figure[0] ? "\n" : "", figure);
 }
 
-/// Returns whether an entry of the verdict belongs to a field: "b", "b.2".
-static bool is_of(const hn_entry_verdict *e, const field *f) {
-    const size_t n = strlen(f->name);
-    return strncmp(e->name, f->name, n) == 0 && (e->name[n] == '\0' || e->name[n] == '.');
+/// The points that a field earns, of so many.
+static double points_of(const hn_verdict *v, const field *f, double *most) {
+    double points = 0;
+    *most = 0;
+    for (int i = 0; i < v->n_entries; i++) {
+        if (is_of(&v->entry[i], f)) {
+            points += v->entry[i].points;
+            *most += v->entry[i].max_points;
+        }
+    }
+    return points;
+}
+
+void hn_tui_exercise_summary(const hn_tui_exercise *x, char out[HN_GRADE_TEXT]) {
+    const hn_verdict *v = x->verdict;
+    int right = 0, n = 0;
+    char partly[HN_GRADE_TEXT / 2] = "";
+    for (int i = 0; i < x->n_fields; i++) {
+        double most;
+        const double points = points_of(v, &x->fields[i], &most);
+        right += points >= most;
+        if (points > 0 && points < most && n < (int)sizeof partly) {
+            n += snprintf(partly + n, sizeof partly - (size_t)n,
+                          "; %s is partly right: %g of %g point%s", x->fields[i].name, points, most,
+                          most == 1 ? "" : "s");
+        }
+    }
+    if (x->matrix[0] || right == x->n_fields || (v->n_entries == x->n_fields && !partly[0])) {
+        snprintf(out, HN_GRADE_TEXT, "%s", v->summary);
+    } else {
+        snprintf(out, HN_GRADE_TEXT, "%d of %d parts are right%s", right, x->n_fields, partly);
+    }
 }
 
 /// "right, 2 points", or what is wrong.
 static void add_result(hn_strbuf *b, const hn_verdict *v, const field *f) {
-    double points = 0, most = 0;
-    for (int i = 0; i < v->n_entries; i++) {
-        if (is_of(&v->entry[i], f)) {
-            points += v->entry[i].points;
-            most += v->entry[i].max_points;
-        }
-    }
+    double most;
+    const double points = points_of(v, f, &most);
     hn_strbuf_printf(b, "    %s%g of %g point%s\n", points >= most ? "right, " : "", points, most,
                      most == 1 ? "" : "s");
     for (int i = 0; i < v->n_entries; i++) {
@@ -389,8 +446,10 @@ static void add_worth(hn_strbuf *b, const hn_tui_exercise *x) {
 static void add_end(hn_strbuf *b, const hn_tui_exercise *x) {
     const hn_verdict *v = x->verdict;
     if (x->checked && v->kind == HN_VERDICT_GRADED) {
-        hn_strbuf_printf(b, "%g of %g points: %s\n%s%s", v->score, v->max_score, v->summary,
-                         v->note, v->note[0] ? "\n" : "");
+        char summary[HN_GRADE_TEXT];
+        hn_tui_exercise_summary(x, summary);
+        hn_strbuf_printf(b, "%g of %g points: %s\n%s%s", v->score, v->max_score, summary, v->note,
+                         v->note[0] ? "\n" : "");
         add_worth(b, x);
     } else if (x->checked) {
         hn_strbuf_printf(b, "not graded: %s%s%s\n", v->reason, v->hint[0] ? "; " : "", v->hint);

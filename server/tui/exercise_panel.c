@@ -49,10 +49,12 @@ static void check(hn_workbench *w) {
     if (v->kind == HN_VERDICT_GRADED) {
         const char *id = hn_tui_exercise_id(w->exercise);
         const bool kept = hn_best_scores_keep(id, v->score, v->max_score, &diag) == HN_OK;
-        hn_workbench_say(w, "%g of %g points: %s%s%s", v->score, v->max_score, v->summary,
+        char summary[HN_GRADE_TEXT];
+        hn_tui_exercise_summary(w->exercise, summary);
+        hn_workbench_say(w, "%g of %g points: %s%s%s", v->score, v->max_score, summary,
                          kept ? "" : "; this score is not kept: ", kept ? "" : diag.message);
     } else {
-        hn_workbench_say(w, "not graded: %s", v->reason);
+        hn_workbench_say(w, "not graded: %s%s%s", v->reason, v->hint[0] ? "; " : "", v->hint);
     }
 }
 
@@ -74,7 +76,13 @@ static void type_answer(hn_workbench *w) {
 
 void hn_exercise_panel_accept(hn_workbench *w) {
     const int n = hn_tui_exercise_n_fields(w->exercise);
+    char why[HN_GRADE_TEXT];
     hn_tui_exercise_set_answer(w->exercise, w->cursor, w->input);
+    if (hn_tui_exercise_is_unreadable(w->exercise, w->cursor, why)) {
+        hn_workbench_say(w, "%s: %s", hn_tui_exercise_field(w->exercise, w->cursor), why);
+        write_text(w, true);
+        return; // to be put right
+    }
 
     // on to the next field, as a form does
     w->cursor = w->cursor + 1 < n ? w->cursor + 1 : w->cursor;

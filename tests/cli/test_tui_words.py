@@ -591,8 +591,22 @@ class Scores(unittest.TestCase):
         points = [float(one.split()[-1]) for one in worth.group(2).split(",")]
         self.assertEqual(len(points), int(worth.group(1)))
         self.assertEqual(sum(points), float(re.search(r"of ([\d.]+) points:", message(out)).group(1)))
+        # parts are counted, not the answers that they have, and what is partly right is said
+        self.assertIn("points: 0 of 4 parts are right; b is partly right: 0.5 of 1 point", message(out))
         # where each answer is worth a point nothing is explained
         self.assertNotIn("answers are checked", self.frame(self.ring + "<Enter><Down><Enter>2<Enter>c"))
+
+    def test_an_answer_that_cannot_be_read_is_refused_as_it_is_typed(self):
+        def said(keys):
+            return " ".join(self.frame(self.closure + "<Enter>" + keys).split("\n└")[1].split())
+        typed = self.frame(self.closure + "<Enter><Enter>l1*sin(th1<Enter>")
+        why = "column 11: the end of the formula was found where ',' or ')' is expected"
+        self.assertIn("a: 'l1*sin(th1' cannot be read: " + why, said("<Enter>l1*sin(th1<Enter>"))
+        # it stays chosen, to be put right; one that can be read leads to the next
+        self.assertIn("> a = l1*sin(th1", typed)
+        self.assertIn("> b = ", self.frame(self.closure + "<Enter><Enter>l1*sin(th1)<Enter>"))
+        # the check says the reason too
+        self.assertRegex(said("<Enter>l1*sin(th1<Enter>c"), r"not graded: no answer can be read \(a\); 'l1\*sin\(th1' cannot be read: " + re.escape(why))
 
 
 class Colours(unittest.TestCase):
