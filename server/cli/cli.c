@@ -6,12 +6,12 @@
 #include "cli/command_table.h"
 #include "cli/completion.h"
 #include "cli/examples.h"
-#include "cli/glossary.h"
 #include "cli/manual.h"
 #include "cli/shell/cache_folder.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/fold.h"
+#include "cli/shell/glossary.h"
 #include "cli/shell/option_help.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
@@ -99,7 +99,7 @@ static void describe_one(hn_strbuf *b, const hn_command *command) {
 /// The terms that answer best to a word; "": all. Returns whether there is one.
 static bool describe_words(hn_strbuf *b, const char *word) {
     int n;
-    const hn_term *terms = hn_glossary(&n);
+    const hn_glossary_term *terms = hn_glossary(&n);
     hn_term_match best = HN_TERM_OTHER;
     for (int i = 0; i < n; i++) {
         const hn_term_match match = hn_term_matches(&terms[i], word);

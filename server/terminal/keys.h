@@ -58,6 +58,7 @@ enum {
     X(EXPORT, 'x', "x", "export: recording, programs")             \
     X(UNDO, 'z', "z", "undo the last change")                      \
     X(REDO, 'y', "y", "redo it")                                   \
+    X(GLOSSARY, 'h', "h", "words: what the terms here mean")       \
     X(HELP, '?', "?", "menu: this table, Enter does it")           \
     X(QUIT, 'q', "q", "quit")
 

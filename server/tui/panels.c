@@ -3,6 +3,7 @@
 
 #include "base/shortest.h"
 #include "base/units.h"
+#include "cli/shell/glossary.h"
 #include "dynamics/compile/coordinates.h"
 #include "formulations/list/formulation_list.h"
 #include "grade/exercise_shelf.h"
@@ -19,6 +20,7 @@
 #include "tui/methods.h"
 #include "tui/prompt.h"
 #include "tui/remedies.h"
+#include "tui/remedy_words.h"
 #include "tui/scene_list.h"
 #include "tui/study_panel.h"
 #include "tui/text_panel.h"
@@ -241,6 +243,41 @@ static void show_equations(hn_workbench *w) {
         w->panel = HN_PANEL_MAIN;
         hn_workbench_say_fault(w, &diags);
     }
+}
+
+/// What the main view says of the selected method: in it the terms are looked for.
+static void add_said(hn_strbuf *b, const hn_workbench *w) {
+    const hn_track *track = hn_recording_track(w->recording, w->selected);
+    const hn_incident_list *list = hn_incident_list_get(w);
+    hn_strbuf_printf(b, "%s\n%s\n", w->notice, track->rule ? track->rule : "");
+    for (int i = 0; i < list->n; i++) {
+        if (list->whose[i] == w->selected) {
+            hn_strbuf_printf(b, "%s\n", list->at[i].message);
+        }
+    }
+}
+
+/// The glossary, terms that the view uses first.
+static void show_words(hn_workbench *w) {
+    int n;
+    const hn_glossary_term *terms = hn_glossary(&n);
+    hn_strbuf said;
+    hn_strbuf_init(&said);
+    add_said(&said, w);
+    hn_text_panel_open(w, "words: Esc goes back");
+    for (int other = 0; other < 2; other++) {
+        bool first = true;
+        for (int i = 0; i < n; i++) {
+            if (hn_term_is_in(&terms[i], hn_strbuf_text(&said)) == (other == 0)) {
+                const char *head = other ? "Other terms" : "Terms of what is said here";
+                hn_strbuf_printf(&w->text, "%s%s%s%s\n    %s\n",
+                                 first && other && w->text.n ? "\n" : "", first ? head : "",
+                                 first ? "\n\n" : "", terms[i].word, terms[i].means);
+                first = false;
+            }
+        }
+    }
+    hn_strbuf_reset(&said);
 }
 
 static void show_lesson(hn_workbench *w, const char *id) {
@@ -499,7 +536,8 @@ void hn_panel_open(hn_workbench *w, hn_tui_action action) {
     } panels[] = {{HN_TUI_PARAMETERS, list_parameters}, {HN_TUI_METHODS, list_methods},
                   {HN_TUI_SCENES, hn_scene_list_open},  {HN_TUI_FORMULAS, show_equations},
                   {HN_TUI_LESSONS, list_lessons},       {HN_TUI_BUDGET, show_budget},
-                  {HN_TUI_EXPORT, list_exports},        {HN_TUI_HELP, list_actions}};
+                  {HN_TUI_EXPORT, list_exports},        {HN_TUI_GLOSSARY, show_words},
+                  {HN_TUI_HELP, list_actions}};
     for (size_t i = 0; i < sizeof panels / sizeof *panels; i++) {
         if (panels[i].action == action) {
             panels[i].open(w);

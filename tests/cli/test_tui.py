@@ -27,7 +27,7 @@ SEEN = {"PLAY": "running", "NEXT": r"t 0\.520 s", "BACK": r"t 0\.480 s", "NEXT_T
         "PARAMETERS": "length of the crank", "METHODS": "methods: Enter changes", "SCENES": "bennett", "FORMULAS": r"M a = f", "LESSONS": "Where do the links stand",
         "STUDY": "what accuracy costs in 10 s: Esc goes back", "MAP": "stability over alpha and beta in 3 s: arrows", "BUDGET": "their sum",
         "LINK": r"sent to the terminal's clipboard \(OSC 52\)[^#]+http://127.0.0.1:8080/#scene=four-bar", "EXPORT": "recording .*a row a frame", "UNDO": "nothing to undo",
-        "REDO": "nothing to redo", "HELP": "play or pause", "QUIT": None}
+        "REDO": "nothing to redo", "GLOSSARY": "Distance between the two halves of the joints", "HELP": "play or pause", "QUIT": None}
 METHODS = ("--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02", "projection@rk4:h=0.02")
 
 

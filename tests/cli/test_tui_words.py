@@ -501,6 +501,24 @@ class Forces(unittest.TestCase):
         self.assertIn("forces (moments) that keep the loop closed", once("four-bar", "--once", "--t", "0.1", "--keys", "r")[1])
 
 
+class Glossary(unittest.TestCase):
+    def test_the_words_of_the_screen_stand_before_the_others(self):
+        def text(keys, *words):
+            out = once(*words, "--once", "--size", "120x150", "--keys", keys)[1]
+            return " ".join(out.replace("│", " ").split())
+        near = text("h", "parallelogram", "--t", "3")
+        used, others = near.split(" Other terms ")
+        for term in ("pilot run", "pivot ratio", "sigma_min", "scaled J"):
+            self.assertRegex(used, rf"(?:\. |here ){term} [A-Z]", term)
+            self.assertNotRegex(others, rf"\. {term} [A-Z]", term)
+        # of a pendulum nothing of that is said; all terms are there all the same
+        calm = text("h", "pendulum", "--t", "0.1")
+        self.assertRegex(calm.split(" Other terms ")[1], r"\. pilot run A second run")
+        # the menu opens it too
+        self.assertIn("h words: what the terms here mean", text("?", "pendulum", "--t", "0.1"))
+        self.assertIn("words: Esc goes back", text("?" + "<End>" + 5 * "<Up>" + "<Enter>", "pendulum", "--t", "0.1"))
+
+
 class Scores(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

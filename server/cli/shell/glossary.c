@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/glossary.h"
+#include "cli/shell/glossary.h"
 
 #include <ctype.h>
 #include <stdbool.h>
-#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-static const hn_term TERMS[] = {
+static const hn_glossary_term TERMS[] = {
     // loops
     {"loop gap, constraint violation",
      "Distance between the two halves of the joints at which the loops are cut to write their "
@@ -55,6 +55,9 @@ static const hn_term TERMS[] = {
     {"sigma_min",
      "The smallest singular value of J: how close the constraints are to dependent. It is 0 in a "
      "singular configuration, and is compared with the largest one, sigma_max."},
+    {"scaled J", "J with each column divided by the root of the mass that belongs to its velocity, "
+                 "and each row by the largest length that it has had. Its singular values are pure "
+                 "numbers, whatever the units of the coordinates."},
     {"pivot ratio",
      "Smallest pivot met in solving for the multipliers, divided by the sum of the absolute values "
      "of its terms: another measure of how close the constraints are to dependent. 1 is far, 0 is "
@@ -117,7 +120,7 @@ static const hn_term TERMS[] = {
      "interpreted at first, and replaced by machine code where a C compiler is installed."},
 };
 
-const hn_term *hn_glossary(int *n) {
+const hn_glossary_term *hn_glossary(int *n) {
     *n = (int)(sizeof TERMS / sizeof *TERMS);
     return TERMS;
 }
@@ -134,7 +137,7 @@ static bool holds_word(const char *text, const char *word) {
     return false;
 }
 
-hn_term_match hn_term_matches(const hn_term *term, const char *word) {
+hn_term_match hn_term_matches(const hn_glossary_term *term, const char *word) {
     // the names stand in one text with commas between
     for (const char *name = term->word; *name;) {
         const size_t n = strcspn(name, ",");
@@ -147,4 +150,18 @@ hn_term_match hn_term_matches(const hn_term *term, const char *word) {
     return holds_word(term->word, word)    ? HN_TERM_HOLDS
            : holds_word(term->means, word) ? HN_TERM_TELLS
                                            : HN_TERM_OTHER;
+}
+
+bool hn_term_is_in(const hn_glossary_term *term, const char *text) {
+    char name[64];
+    for (const char *at = term->word; *at;) {
+        const size_t n = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", (int)n, at);
+        if (n > 1 && holds_word(text, name)) { // "J" is a unit too
+            return true;
+        }
+        at += n;
+        at += strspn(at, ", ");
+    }
+    return false;
 }
