@@ -227,10 +227,14 @@ static void grade_one(const grading *g, int i, hn_strbuf *b) {
         put_graded(g, b, v, hn_strbuf_text(&text), file);
     } else {
         char why[2 * HN_GRADE_TEXT + 2] = "";
-        if (!failed && there) { // the hint of a submission says what to do, or why
+        if (failed) {
+            const bool named = v && v->reason[0];
+            snprintf(why, sizeof why, "%s%s", named ? HN_CLASS_EXERCISE_FAULT : "",
+                     named ? v->reason : hn_status_text(status));
+        } else if (there) { // the hint of a submission says what to do, or why
             snprintf(why, sizeof why, "%s%s%s", v->reason, v->hint[0] ? "; " : "", v->hint);
         }
-        put_zero(g, b, failed ? hn_status_text(status) : there ? why : diag.message);
+        put_zero(g, b, failed || there ? why : diag.message);
     }
     hn_class_line_put_check(b);
     hn_json_end_object(b);

@@ -12,6 +12,9 @@
 
 #include <stdint.h>
 
+/// Begins the reason of a line whose exercise, not its submission, is at fault; the cause follows.
+#define HN_CLASS_EXERCISE_FAULT "the exercise is at fault: "
+
 /// One part of a roster, for several machines: every n-th submission from the i-th on, i = 1 .. n.
 typedef struct hn_class_shard {
     int i, n; ///< n = 0: the whole roster

@@ -99,8 +99,9 @@ static const hn_command COMMANDS[] = {
      hn_command_lesson},
     {"problem", "ID|FILE",
      "print an exercise with the numbers of a variant; --check tests it over --seeds A..B; --out "
-     "FILE.svg writes the plot that the exercise asks about",
-     "--seed --student --hint --seeds --check --wide --out -o", 1, 1, hn_command_problem},
+     "FILE.svg writes the plot that the exercise asks about; --rubric prints a teacher's points "
+     "and tolerances",
+     "--seed --student --hint --seeds --check --rubric --wide --out -o", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...|FOLDER",
      "verdicts (SUBMISSION - is standard input) as --format text, json, gradescope, prairielearn, "
      "autolab, coderunner, lti-score, "
@@ -117,9 +118,10 @@ static const hn_command COMMANDS[] = {
      "--out -o --seed --student --rubric --plot --show-expected --no-pictures "
      "--wide --jobs --shard --merge",
      2, HN_CLI_MAX_WORDS, hn_command_grade},
-    {"rubric", "check|write FILE|ID",
-     "check a rubric and explain it, or write the exercise's own rubric as a starting point",
-     "--out -o --force", 2, 2, hn_command_rubric},
+    {"rubric", "check|write FILE|ID [EXERCISE.json]",
+     "check a rubric and explain it, or write the exercise's own rubric as a starting point; check "
+     "takes the file of an exercise of your own behind the rubric",
+     "--out -o --force", 2, 3, hn_command_rubric},
     {"regrade", "VERDICT [SUBMISSION]",
      "grade the submission of a verdict (JSON) again, and compare the scores", "--rubric", 1, 2,
      hn_command_regrade},

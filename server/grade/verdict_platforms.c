@@ -109,11 +109,14 @@ static bool same_part(const hn_entry_verdict *a, const hn_entry_verdict *b) {
 static void each_part(hn_strbuf *b, const hn_verdict *v,
                       void (*put)(hn_strbuf *b, const hn_verdict *v, const char *name, int first,
                                   int last)) {
-    if (!v->problem->n_parts || !is_graded(v)) {
+    if (!v->problem->n_parts) {
         put(b, v, v->problem->id, 0, v->n_entries);
         return;
     }
-    for (int k = 0, last; k < v->n_entries; k = last) {
+    for (int i = 0; i < v->problem->n_parts && !is_graded(v); i++) {
+        put(b, v, v->problem->parts[i].id, 0, 0);
+    }
+    for (int k = 0, last; k < v->n_entries && is_graded(v); k = last) {
         char name[32];
         for (last = k + 1; last < v->n_entries && same_part(&v->entry[k], &v->entry[last]);) {
             last++;
@@ -233,7 +236,9 @@ void hn_verdict_lti_score(hn_strbuf *b, const hn_verdict *v) {
     snprintf(stamp + n, sizeof stamp - n, ".%03ldZ", now.tv_nsec / 1000000);
 
     hn_json_object(b);
-    hn_json_put_string(b, "userId", v->student);
+    if (v->student[0]) { // an empty id would be posted for nobody
+        hn_json_put_string(b, "userId", v->student);
+    }
     if (is_graded(v)) {
         hn_json_put_number(b, "scoreGiven", v->score);
         hn_json_put_number(b, "scoreMaximum", v->max_score);

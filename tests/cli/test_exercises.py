@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(__file__))
-from exercise import PROGRAM, expect, run, speak_tap, write  # noqa: E402
+from exercise import PROGRAM, expect, read, run, speak_tap, write  # noqa: E402
 
 
 def variants(_):
@@ -129,6 +129,43 @@ def broken_exercise(folder):
     expect("an exercise that is not JSON is named", done.returncode == 3 and named, f"{done.returncode} {done.stderr}")
 
 
+def unproven_exercise(folder):
+    """A reference that its second means denies: files and classes end with 3, each result names the cause."""
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "2*l", "second": "3*l"}
+    path = write(folder, "unproven.json", {"exercise": 2, "id": "unproven", "title": "t", "lesson": "06-drift", "section": "s",
+                                           "statement": ["s {l}"], "draw": {"l": {"range": [2, 9], "digits": 0}}, "parts": [part]})  # fmt: skip
+    answer = write(folder, "answer.json", {"a": 1})
+    for form in ("json", "gradescope", "prairielearn", "autolab", "coderunner", "lti-score", "junit", "csv", "html"):
+        done = run("grade", path, answer, "--format", form)
+        expect(f"{form} says that the exercise is at fault", done.returncode == 3 and "by the second means" in done.stdout, done.stdout + done.stderr)
+    results = os.path.join(folder, "results")
+    done = run("grade", path, answer, "--out", results + "/")
+    expect("--out holds a result", done.returncode == 3 and b"by the second means" in read(os.path.join(results, "answer.txt")), done.stderr)
+    students = os.path.join(folder, "class")
+    os.makedirs(students)
+    for name in ("ada", "bob"):
+        write(students, name + ".json", {"a": 1})
+    scores = os.path.join(folder, "scores.csv")
+    done = run("grade", path, students, "--out", scores)
+    lines = read(scores).decode().splitlines()[1:]
+    expect("a class ends with 3 as well", done.returncode == 3 and done.stderr.count("the exercise is at fault") == 1, done.stdout + done.stderr)
+    expect("each line of it names the cause", len(lines) == 2 and all("the exercise is at fault" in x and "by the second means" in x for x in lines), str(lines))
+
+
+def notes_of_mistakes(_):
+    """Each mistake of a shipped exercise has a whole sentence: it follows 'the note on it'."""
+    n = 0
+    for path in sorted(glob.glob("lessons/*/problems/*.json")):
+        for part in json.loads(read(path))["parts"] if "parts" in json.loads(read(path)) else []:
+            for fault in part.get("faults", []):
+                if "says" not in fault:
+                    continue
+                says, n = fault["says"], n + 1
+                verb = re.search(r"\b(?:is|are|was|were|has|have|had|would|must|can|does|do|did|[a-z]+s|[a-z]+ed|differentiate|divide|count|subtract|multiply|take)\b", says)
+                expect(f"{os.path.basename(path)} {part['id']} {fault['id']} is a sentence", len(says.split()) > 2 and bool(verb), says)
+    expect("there are mistakes to look at", n > 300, str(n))
+
+
 def indented(text, start, end):
     """The indented block of a Markdown text from the line with `start` to the line with `end`, without its indent."""
     lines = text.splitlines()
@@ -185,5 +222,6 @@ def the_guide_for_teachers(folder):
 if __name__ == "__main__":
     sys.exit(speak_tap([
         variants, checks, bad_variants, choices, own_exercise, broken_exercise,
+        unproven_exercise, notes_of_mistakes,
         the_guide_for_teachers,
     ]))

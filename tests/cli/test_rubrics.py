@@ -137,6 +137,24 @@ def whole_check(folder):
     expect("the mistakes that an exercise names are listed", "mistakes of part a: along-y coupler-sign" in told, told)
 
 
+def rubric_of_an_own_exercise(folder):
+    """The file of an own exercise is named behind its rubric; the statement shows the rubric's points."""
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "2*l", "second": "l+l"}
+    own = write(folder, "own.json", {"exercise": 2, "id": "own-one", "title": "t", "lesson": "06-drift", "section": "s",
+                                     "statement": ["s {l}"], "draw": {"l": {"range": [2, 9], "digits": 0}}, "parts": [part]})  # fmt: skip
+    path = os.path.join(folder, "own-rubric.json")
+    expect("the rubric of an own exercise is written", run("rubric", "write", own, "-o", path).returncode == 0)
+    alone, both = run("rubric", "check", path), run("rubric", "check", path, own)
+    expect("its check asks for the exercise's file", alone.returncode == 2 and "rubric check FILE EXERCISE.json" in alone.stderr, alone.stderr)
+    expect("and takes it", both.returncode == 0, both.stdout + both.stderr)
+    with open(path, encoding="utf-8") as f:
+        rubric = json.load(f)
+    rubric["points"]["a"] = rubric["total"] = 7
+    write(folder, "own-rubric.json", rubric)
+    shown = run("problem", own, "--rubric", path)
+    expect("the statement has the rubric's points", shown.returncode == 0 and "7 points" in shown.stdout, shown.stdout + shown.stderr)
+
+
 def other_maximum(folder):
     """Graded again with other points: both scores stand beside their own maximum."""
     rubric = os.path.join(folder, "double.json")
@@ -192,4 +210,4 @@ b = "after_due_date"
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([rubrics, whole_check, other_maximum, rubrics_in_toml]))
+    sys.exit(speak_tap([rubrics, whole_check, rubric_of_an_own_exercise, other_maximum, rubrics_in_toml]))

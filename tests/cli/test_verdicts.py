@@ -265,7 +265,10 @@ def platforms(folder):
     p, t = json.loads(out["prairielearn"].stdout), json.loads(out["lti-score"].stdout)
     expect("PrairieLearn: not gradable, with the reason", p["gradable"] is False and "score" not in p and p["format_errors"])
     expect("LTI: no score", t["gradingProgress"] == "Failed" and "scoreGiven" not in t)
-    expect("Autolab: the reason is the feedback", "no part" in json.loads(out["autolab"].stdout.splitlines()[0])["Grade"]["fourbar"]["hint"])
+    expect("Autolab: the reason is the feedback", "no part" in json.loads(out["autolab"].stdout.splitlines()[0])["Grade"]["a"]["hint"])
+    scores = json.loads(out["autolab"].stdout.splitlines()[1])["scores"]
+    expect("Autolab: each part has its 0", len(scores) > 1 and "fourbar" not in scores and set(scores.values()) == {0}, str(scores))
+    expect("LTI: no user, no empty id", "userId" not in t, str(t))
 
     # pictures, as part of the document and beside it
     matrix = [["l1*sin(th1)"] + ["1"] * 3, ["1"] * 4]

@@ -133,6 +133,24 @@ static bool is_zip(const char *path) {
            memcmp(begin, "PK\003\004", sizeof begin) == 0;
 }
 
+/// The verdict of a submission that nobody can grade: an exercise or a rubric is at fault.
+static hn_exit write_failure(const task *t, const hn_exercise *exercise, const hn_diag *why) {
+    hn_verdict *v = calloc(1, sizeof *v);
+    if (!v) {
+        return HN_EXIT_PROGRAM;
+    }
+    hn_submission_refuse(v, "tell your teacher; your file was not read",
+                         "the exercise or its rubric is at fault, not the submission (%.300s)",
+                         why->message);
+    v->no_submission = true;
+    v->problem = exercise;
+    v->shown_entry = -1;
+    snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");
+    write_result(t, v, 0);
+    free(v);
+    return HN_EXIT_PROGRAM;
+}
+
 static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
@@ -172,6 +190,12 @@ static hn_exit grade_one(const task *t) {
         hn_diag_set(&diag, status, NULL, NULL, "the grader failed on '%.200s': %s", t->submission,
                     v && v->reason[0] ? v->reason : hn_status_text(status));
         hn_report_diag(t->args, &diag);
+
+        // a platform gets a result that names the exercise's fault
+        if (v && v->reason[0] && (t->args->out || t->args->format)) {
+            hn_diag_set(&diag, status, NULL, NULL, "%s", v->reason);
+            write_failure(t, t->subject.exercise, &diag);
+        }
     }
     hn_strbuf_reset(&program.text);
     free(v);
@@ -375,24 +399,6 @@ static hn_exit grade_files(task t) {
         status == HN_OK ? grade_all(t, &names) : hn_report_diags(args, status, &diags);
     hn_verdict_names_reset(&names);
     return result;
-}
-
-/// The verdict of a submission that nobody can grade: an exercise or a rubric is at fault.
-static hn_exit write_failure(const task *t, const hn_exercise *exercise, const hn_diag *why) {
-    hn_verdict *v = calloc(1, sizeof *v);
-    if (!v) {
-        return HN_EXIT_PROGRAM;
-    }
-    hn_submission_refuse(v, "tell your teacher; your file was not read",
-                         "the exercise or its rubric is at fault, not the submission (%.300s)",
-                         why->message);
-    v->no_submission = true;
-    v->problem = exercise;
-    v->shown_entry = -1;
-    snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");
-    write_result(t, v, 0);
-    free(v);
-    return HN_EXIT_PROGRAM;
 }
 
 /// Reports a fault of the teacher. If a file or the form of a platform was asked for, each

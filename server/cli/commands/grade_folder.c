@@ -137,6 +137,27 @@ static hn_exit write_result(const hn_args *args, const hn_class_result *r, bool 
     return hn_cli_write_file(args, args->out, &b);
 }
 
+/// Reports the cause once where the exercise is at fault, whose class is then not graded.
+static hn_exit report_exercise_fault(const hn_args *args, const hn_class_result *r) {
+    hn_diag diag = {0};
+    const size_t n = strlen(HN_CLASS_EXERCISE_FAULT);
+    for (int i = 0; i < r->n && !diag.message[0]; i++) {
+        cJSON *o = r->line[i] ? cJSON_Parse(r->line[i]) : NULL;
+        const char *reason = hn_document_text(o, "reason");
+        if (strcmp(hn_document_text(o, "status"), "failed") == 0 &&
+            strncmp(reason, HN_CLASS_EXERCISE_FAULT, n) == 0) {
+            hn_diag_set(&diag, HN_ERR_INTERNAL, NULL, "problem EXERCISE --check tries each variant",
+                        "%s", reason);
+        }
+        cJSON_Delete(o);
+    }
+    if (diag.message[0]) {
+        hn_report_diag(args, &diag);
+        return HN_EXIT_PROGRAM;
+    }
+    return HN_EXIT_DONE;
+}
+
 /// The result into --out, and its summary to the terminal.
 static hn_exit finish(const hn_args *args, const hn_class_result *result, bool programs) {
     hn_exit exit = args->out ? write_result(args, result, programs) : HN_EXIT_DONE;
@@ -209,6 +230,8 @@ static hn_exit grade_roster(const hn_args *args, const hn_grade_subject *subject
         if (exit == HN_EXIT_DONE && journal[0]) {
             unlink(journal); // all of it is in the result
         }
+        const hn_exit fault = report_exercise_fault(args, &result);
+        exit = fault > exit ? fault : exit;
     }
 
     hn_class_result_reset(&result);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom problem: an exercise with its numbers, its hints, or the proof that it is sound.
 #include "cli/commands/exercise_word.h"
+#include "cli/commands/rubric_file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/forms.h"
@@ -41,8 +42,8 @@ static void put_spread(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
     for (int k = 0; k < HN_DRAW_CONDITIONS; k++) {
         const char *condition = cJSON_GetStringValue(cJSON_GetArrayItem(conditions, k));
         if (condition && r->refused[k] > 0) {
-            hn_strbuf_printf(b, "  drawn again %lld times, for not %s > 0\n", r->refused[k],
-                             condition);
+            hn_strbuf_printf(b, "  drawn again %lld time%s, for not %s > 0\n", r->refused[k],
+                             r->refused[k] == 1 ? "" : "s", condition);
         }
     }
     for (int i = 0; i < e->n_parts; i++) {
@@ -274,6 +275,13 @@ hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
     if (check_options(args, e, &diags) != HN_OK) {
         hn_exercise_free(e);
         return hn_report_diags(args, HN_ERR_INPUT, &diags);
+    }
+
+    // the points and tolerances by which the answer will be graded
+    const hn_status fits = hn_cli_apply_rubric(args, e, &diags);
+    if (fits != HN_OK) {
+        hn_exercise_free(e);
+        return hn_report_diags(args, fits, &diags);
     }
     const hn_exit result = args->check  ? check(args, e)
                            : e->n_parts ? print_variant(args, e)

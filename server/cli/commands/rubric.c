@@ -15,12 +15,25 @@
 #include <string.h>
 #include <unistd.h>
 
+/// Loads the exercise that `word` names, or else the rubric itself. A rubric holds the id of an
+/// exercise alone: the file of a teacher's own one must be named.
+static hn_status load_exercise(const hn_library *lib, const hn_rubric *rubric, const char *word,
+                               hn_exercise **e, hn_diags *diags) {
+    const char *id = hn_rubric_exercise(rubric);
+    if (!word && !hn_cli_is_exercise(lib, id)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/exercise",
+                            "name the file of your own exercise: rubric check FILE EXERCISE.json",
+                            "no shipped exercise is called '%.80s'", id);
+    }
+    return hn_cli_load_exercise(lib, word ? word : id, e, diags);
+}
+
 /// Every fault of a rubric: of its fields, then those that its exercise shows.
-static hn_status load(const hn_library *lib, const char *path, hn_rubric **rubric, hn_exercise **e,
-                      hn_diags *diags) {
+static hn_status load(const hn_library *lib, const char *path, const char *word, hn_rubric **rubric,
+                      hn_exercise **e, hn_diags *diags) {
     hn_status status = hn_rubric_load_file(path, rubric, diags);
     if (*rubric) {
-        const hn_status own = hn_cli_load_exercise(lib, hn_rubric_exercise(*rubric), e, diags);
+        const hn_status own = load_exercise(lib, *rubric, word, e, diags);
         const hn_status fits = own == HN_OK ? hn_rubric_check(*rubric, *e, diags) : own;
         status = status == HN_OK ? fits : status;
     }
@@ -29,12 +42,13 @@ static hn_status load(const hn_library *lib, const char *path, hn_rubric **rubri
     return status;
 }
 
-static hn_exit check(const hn_library *lib, const hn_args *args, const char *path) {
+static hn_exit check(const hn_library *lib, const hn_args *args, const char *path,
+                     const char *exercise) {
     hn_rubric *rubric = NULL;
     hn_exercise *e = NULL;
     hn_diags diags = {0};
     hn_strbuf b;
-    const hn_status status = load(lib, path, &rubric, &e, &diags);
+    const hn_status status = load(lib, path, exercise, &rubric, &e, &diags);
     if (status != HN_OK) {
         hn_exercise_free(e);
         hn_rubric_free(rubric);
@@ -95,13 +109,19 @@ static hn_exit write_rubric(const hn_library *lib, const hn_args *args, const ch
 hn_exit hn_command_rubric(const hn_library *lib, const hn_args *args) {
     static const char *const deeds[] = {"check", "write"};
     const char *deed = args->words.word[0], *what = args->words.word[1];
+    hn_diag diag;
     if (strcmp(deed, "check") == 0) {
-        return check(lib, args, what);
+        return check(lib, args, what, args->words.n > 2 ? args->words.word[2] : NULL);
+    }
+    if (strcmp(deed, "write") == 0 && args->words.n > 2) {
+        hn_diag_set(&diag, HN_ERR_INPUT, NULL, "rubric write ID -o FILE",
+                    "rubric write takes one exercise; '%.200s' is a second word",
+                    args->words.word[2]);
+        return hn_report_diag(args, &diag);
     }
     if (strcmp(deed, "write") == 0) {
         return write_rubric(lib, args, what);
     }
-    hn_diag diag;
     char hint[HN_DIAG_HINT];
     hn_suggest(hint, deed, deeds, 2, "rubric check FILE, rubric write ID");
     hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "there is no command 'rubric %.40s'", deed);

@@ -247,8 +247,9 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
         cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, keys[k])) {
             if (!cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(m, "right")) &&
                 !hn_part_text(m, "says")[0]) {
-                return hn_diag_set(diag, HN_ERR_INPUT, "/parts/options", NULL,
-                                   "part %s: a wrong option does not say why: %.80s", p->id,
+                return hn_diag_set(diag, HN_ERR_INPUT, "/parts/options",
+                                   "\"says\": \"why it is wrong\" beside its text",
+                                   "part %s: the wrong option '%.80s' has no key 'says'", p->id,
                                    hn_part_text(m, "text"));
             }
         }

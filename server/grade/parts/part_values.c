@@ -240,7 +240,7 @@ static hn_status prove(const hn_part *p, hn_diag *diag) {
             const double x = s.reference.x[k][i], y = second.x[k][i];
             if (!(fabs(x - y) <= fmin(1e-9 * fmax(fabs(x), 1), s.allowed[k]))) {
                 status = hn_diag_set(diag, HN_ERR_INPUT, "/parts/second", NULL,
-                                     "part %s, entry %d: %.12g and by the second means %.12g",
+                                     "part %s: entry %d is %.12g and by the second means %.12g",
                                      p->id, k + 1, x, y);
             }
         }
