@@ -174,13 +174,34 @@ static bool is_said(const hn_workbench *w, const entries *all, int e, const char
     return said;
 }
 
-/// Returns whether entry e is the first of its kind, and not all of that kind are listed.
-static bool tells_count(const entries *all, int e) {
-    bool is_first = true;
+/// Returns whether an entry before e, which does not end the method, is of its kind.
+static bool is_repeated(const hn_workbench *w, const entries *all, int e) {
+    bool repeated = false;
     for (int k = 0; k < e; k++) {
-        is_first = is_first && entry_at(all, k)->code != entry_at(all, e)->code;
+        repeated = repeated || entry_at(all, k)->code == entry_at(all, e)->code;
     }
-    return is_first && entry_at(all, e)->times > HN_INCIDENT_MOST_OF_ONE_KIND;
+    return repeated && standing_of(w, all->list, all->at[e]) != ENDING;
+}
+
+/// Writes when the incident of entry e came again, and how often in all.
+static void put_again(page *p, const hn_workbench *w, const entries *all, int e) {
+    const hn_incident *incident = entry_at(all, e);
+    char line[240] = "again at";
+    int n = (int)strlen(line), found = 0;
+    for (int i = 0; i < all->list->n; i++) {
+        const hn_incident *other = &all->list->at[i];
+        const bool same = all->list->whose[i] == w->selected && other->code == incident->code;
+        if (same && i != all->at[e] && n < (int)sizeof line) {
+            n += snprintf(line + n, sizeof line - (size_t)n, "%s %.4g", found > 0 ? "," : "",
+                          other->t);
+            found++;
+        }
+    }
+    if (found > 0 && n < (int)sizeof line) {
+        const int times = incident->times > found ? incident->times : found + 1;
+        snprintf(line + n, sizeof line - (size_t)n, " s: %d times in all", times);
+        put(p, 2, HN_CELL_MUTED, line);
+    }
 }
 
 /// Writes what entry e says of its incident.
@@ -189,11 +210,7 @@ static void put_message(page *p, const entries *all, int e) {
     char line[640], message[480], units[480];
     hn_wording_behind_time(incident->t, incident->message, message, sizeof message);
     hn_short_units(message, units, sizeof units);
-    const int n = snprintf(line, sizeof line, "%.4g s: %s", incident->t, units);
-    if (tells_count(all, e) && n < (int)sizeof line) {
-        snprintf(line + n, sizeof line - (size_t)n, "; one of %d, the first %d are listed",
-                 incident->times, HN_INCIDENT_MOST_OF_ONE_KIND);
-    }
+    snprintf(line, sizeof line, "%.4g s: %s", incident->t, units);
     put(p, 0, HN_CELL_ALARM, line);
 }
 
@@ -264,23 +281,19 @@ static void put_card(page *p, const hn_workbench *w) {
     }
     put(p, 0, HN_CELL_INK, track->rule ? track->rule : "");
     for (int e = ending; e < all.n; e++) {
+        if (is_repeated(w, &all, e)) {
+            continue;
+        }
         p->line++;
         put_message(p, &all, e);
-        if (e != all.first) {
-            put_remedies(p, w, &all, e);
+        put_again(p, w, &all, e);
+        for (int k = e; k < all.n; k++) {
+            if (k != all.first &&
+                (k == e ||
+                 (is_repeated(w, &all, k) && entry_at(&all, k)->code == entry_at(&all, e)->code))) {
+                put_remedies(p, w, &all, k);
+            }
         }
-    }
-
-    // those of one cause after the first
-    int same = 0;
-    for (int i = 0; i < all.list->n; i++) {
-        same += all.list->whose[i] == w->selected && is_again(all.list, i);
-    }
-    if (same > 0) {
-        char line[96];
-        snprintf(line, sizeof line, "and %d more of the same causes", same);
-        p->line++;
-        put(p, 0, HN_CELL_MUTED, line);
     }
 }
 
