@@ -140,7 +140,7 @@ $(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(OUT)/generated/bundle.o $(LIBRAR
 
 # what the program reads lies in it too, so that a copy of it alone has all of it
 SHIPPED = $$(find web lessons core -path '*/node_modules' -prune -o -type f \
-    ! -name '*.[ch]' ! -name 'package*.json' ! -name 'README.md' -print 2>/dev/null | LC_ALL=C sort)
+    ! -name '*.[ch]' ! -name 'package*.json' ! -name 'README.md' ! -name '.npmrc' -print 2>/dev/null | LC_ALL=C sort)
 BUNDLE := $(OUT)/generated/bundle.tar
 .PHONY: bundle
 bundle:
