@@ -174,6 +174,9 @@ def units_that_do_not_measure_it(folder):
         for factor in factors:
             found = told(exercise, part, right(exercise, part) * factor)
             expect(f"{exercise} {part} times {factor:.4g} is no slip of angles or units", found["mistake"] not in ("degrees", "radians", "milli", "kilo"), str(found))
+    for factor in (100, 0.01, 1e4, 1e6, 1e-6, 1e9):
+        said = told("slider", "c", right("slider", "c") * factor)
+        expect(f"a factor of {factor:g} in a unit is named", said["mistake"] == "power-of-ten" and "check the unit" in said["explanation"], str(said))
     expect("a factor of 1000 in a unit is named", told("gears", "b", right("gears", "b") * 1000)["mistake"] == "milli")
 
 

@@ -37,6 +37,8 @@ static const struct factor_row {
      "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 0, UNITS},
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
+/// Factors of units that a number without a written unit may be in: cm, their squares, micro, nano.
+static const double UNIT_FACTORS[] = {100, 0.01, 1e4, 1e-4, 1e6, 1e-6, 1e9, 1e-9};
 
 /// Tolerance for a formula with numbers of three digits, relative to its size: what numbers
 /// themselves are allowed.
@@ -151,6 +153,13 @@ static void try_factors(hn_value_search *f) {
             hn_value_search_try(f, s->reference.e[f->entry], FACTORS[i].factor, FACTORS[i].id,
                                 FACTORS[i].share, "%s", FACTORS[i].says);
         }
+    }
+
+    // a formula has no unit of its own, and a count has none at all
+    const bool unit = !s->symbolic && !hn_value_is_count(s);
+    for (size_t i = 0; unit && i < sizeof UNIT_FACTORS / sizeof *UNIT_FACTORS; i++) {
+        hn_value_search_try(f, s->reference.e[f->entry], UNIT_FACTORS[i], "power-of-ten", 0.5,
+                            "a factor of %g: check the unit", UNIT_FACTORS[i]);
     }
 }
 
