@@ -211,7 +211,7 @@ class Run(Command):
         whole = told("10")
         self.assertEqual((float(whole[1]), whole[2]), (10, ""))
         near = told("9.2")
-        self.assertEqual(near[2], ", beyond the end of the run")
+        self.assertEqual(near[2], ", past the end of the run at 9.2 s")
         # a tenth of the way to the event
         self.assertGreater(float(near[1]), 9.2)
         self.assertLess(float(near[1]), 9.18 * 1.11)

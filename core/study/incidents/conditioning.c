@@ -32,7 +32,8 @@ static void check_multipliers(hn_watch *w) {
     if (size > limit) {
         hn_incident_report(
             w, &hn_incident_multipliers, "|lambda|", size, limit,
-            "the multipliers grew to %.3g, %.2g times their size away from singular configurations",
+            "the multipliers grew to %.3g (N, or N m for an equation of angles), %.2g times their "
+            "size away from singular configurations",
             size, size / s->multiplier);
     }
 }

@@ -354,15 +354,17 @@ static void say_result(const hn_watch *w, const shown *r, const hn_state_at *fro
     const bool beyond = w->t_end > 0 && reached > w->t_end + w->run->h;
 
     // a loop that is open where the trial begins is no fault of the remedy
-    char begun[40] = "";
+    char begun[40] = "", past[48] = "";
+    if (beyond) {
+        snprintf(past, sizeof past, ", past the end of the run at %.4g s", w->t_end);
+    }
     if (from != &w->run->start) {
         snprintf(begun, sizeof begun, "from t = %.4g s ", from->t);
     }
     snprintf(said, sizeof(hn_remedy),
              TRIED "%suntil t = %.*g s%s: %s gap %.2g m, energy changed by %.2g J", begun,
-             begun[0] ? 4 : 3, reached, beyond ? ", beyond the end of the run" : "",
-             begun[0] ? "last" : "largest", begun[0] ? r->last_gap : r->sum.worst_gap,
-             r->sum.worst_energy_change);
+             begun[0] ? 4 : 3, reached, past, begun[0] ? "last" : "largest",
+             begun[0] ? r->last_gap : r->sum.worst_gap, r->sum.worst_energy_change);
 }
 
 /// Runs a remedy of report k from a state before its event to a time past it and writes the result
