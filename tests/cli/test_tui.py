@@ -324,8 +324,8 @@ class Keys(unittest.TestCase):
         for name, (keys, submission, said) in cases.items():
             verdict, out = self.grade(name, submission), self.exercise(name, keys)
             # the workbench counts parts where one of them has several answers
-            said = r"\d of 4 parts are right" if name == "closure" else re.escape(verdict["summary"][:40])
-            self.assertRegex(out, rf"{verdict['score']:g} of {verdict['max_score']:g} points: {said}", name)
+            counted = r"\d of 4 parts are right" if name == "closure" else re.escape(verdict["summary"][:40])
+            self.assertRegex(out, rf"{verdict['score']:g} of {verdict['max_score']:g} points: {counted}", name)
             self.assertIn(said, out, name)
             self.assertGreater(verdict["max_score"], verdict["score"], name)
 
