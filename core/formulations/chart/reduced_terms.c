@@ -397,8 +397,8 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
     if (status == HN_OK && freedoms >= 0 && chart->r != freedoms) {
         snprintf(chart->why, sizeof chart->why,
                  "a singular configuration: closure rows depend on each other here, and for a "
-                 "moment the mechanism has %d degrees of freedom instead of %d",
-                 chart->r, freedoms);
+                 "moment the mechanism has %d degree%s of freedom instead of %d",
+                 chart->r, chart->r == 1 ? "" : "s", freedoms);
         return HN_ERR_CHART;
     }
     HN_THEN(status, hn_chart_locate(chart, &chart->here, t, q));

@@ -177,9 +177,9 @@ static void tell_assembly(const hn_model *model, const hn_diags *why) {
                     open->message, open->hint);
         return;
     }
-    hn_cli_note("holonom: assembled with a gap of %.2g and %d degrees of freedom; of the closure "
-                "equations, %d are redundant and %d hold in every configuration\n",
-                a->gap, a->freedoms, a->redundant,
+    hn_cli_note("holonom: assembled with a gap of %.2g m and %d degree%s of freedom; closure "
+                "equations that depend on others: %d; that hold in every configuration: %d\n",
+                a->gap, a->freedoms, a->freedoms == 1 ? "" : "s", a->redundant,
                 hn_system_get_info(hn_model_system(model)).rows_dropped);
 }
 

@@ -11,9 +11,11 @@
 #include "render/canvas.h"
 #include "session/compare/picture.h"
 
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const double SMALL = 120; // [px] texts of a smaller mechanism have no room
 
@@ -229,6 +231,22 @@ static void note_renderer(const hn_args *args, const hn_picture_request *request
     }
 }
 
+/// Prints what a picture shows: at a terminal over lines, to a program in one.
+static hn_exit print_description(hn_strbuf *description) {
+    cJSON *document = isatty(STDOUT_FILENO) ? cJSON_Parse(hn_strbuf_text(description)) : NULL;
+    char *lines = document ? cJSON_Print(document) : NULL;
+    hn_strbuf shown;
+    hn_strbuf_init(&shown);
+    if (lines) {
+        hn_strbuf_printf(&shown, "%s\n", lines);
+    }
+    const hn_exit result = hn_cli_print(lines ? &shown : description);
+    hn_strbuf_reset(&shown);
+    cJSON_free(lines);
+    cJSON_Delete(document);
+    return result;
+}
+
 /// Writes the picture, then what it shows.
 static hn_exit deliver(const hn_args *args, const hn_picture_request *request, drawn *d) {
     hn_exit result = hn_cli_write_picture(args, args->out, &d->png);
@@ -238,7 +256,7 @@ static hn_exit deliver(const hn_args *args, const hn_picture_request *request, d
                     d->mechanism);
     }
     if (result == HN_EXIT_DONE && (args->json || args->describe) && strcmp(args->out, "-") != 0) {
-        result = hn_cli_print(&d->description);
+        result = print_description(&d->description);
     }
     if (result == HN_EXIT_DONE) {
         note_renderer(args, request);
